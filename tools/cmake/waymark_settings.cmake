@@ -1,0 +1,56 @@
+# Settings every target shares: language level, warnings, one include spelling (<waymark/core/graph.hpp>) in the
+# build tree and in the installed one.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+
+# <waymark/ROOM/header.hpp> is found through links in the build tree to the source folders.
+set(WAYMARK_INCLUDE_DIR "${PROJECT_BINARY_DIR}/include")
+file(MAKE_DIRECTORY "${WAYMARK_INCLUDE_DIR}/waymark")
+foreach(room core types_se2 solvers plugins formats tools)
+  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${room}" "${WAYMARK_INCLUDE_DIR}/waymark/${room}" SYMBOLIC)
+endforeach()
+
+add_library(waymark_settings INTERFACE)
+target_include_directories(waymark_settings INTERFACE
+  $<BUILD_INTERFACE:${WAYMARK_INCLUDE_DIR}> $<INSTALL_INTERFACE:include>)
+target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
+if(WAYMARK_WARNINGS_AS_ERRORS)
+  target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Werror>)
+endif()
+
+# A fast linker and a compiler cache where present: neither changes what is built.
+find_program(WAYMARK_MOLD mold)
+if(WAYMARK_MOLD)
+  add_link_options(-fuse-ld=mold)
+endif()
+find_program(WAYMARK_CCACHE ccache)
+if(WAYMARK_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${WAYMARK_CCACHE}")
+endif()
+
+# waymark_library(NAME [SHARED]): a library of every *.cpp beside the calling CMakeLists.txt (and in the folders
+# given after FOLDERS), with the shared settings and the alias waymark::NAME.
+function(waymark_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED" "" "FOLDERS")
+  set(patterns "*.cpp")
+  foreach(folder ${ARG_FOLDERS})
+    list(APPEND patterns "${folder}/*.cpp")
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
+  if(ARG_SHARED)
+    add_library(waymark_${name} SHARED ${sources})
+  else()
+    add_library(waymark_${name} STATIC ${sources})
+  endif()
+  add_library(waymark::${name} ALIAS waymark_${name})
+  target_link_libraries(waymark_${name} PUBLIC waymark_settings)
+endfunction()
