@@ -1,0 +1,59 @@
+/// What a drive.yaml says. Every member has its default; `load_drive_config` checks all of it before any log
+/// is read.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <waymark/core/log_reader.hpp>
+#include <waymark/core/stamp.hpp>
+#include <waymark/tools/drive/gate.hpp>
+#include <waymark/tools/drive/start.hpp>
+#include <waymark/tools/drive/timeline.hpp>
+
+namespace waymark {
+
+/// One log of a stream: which reader, which file, how to read it.
+struct LogConfig {
+  std::string file;            ///< as resolved against the folder of drive.yaml
+  std::string format = "csv";  ///< name of a registered log reader
+  LogRequest request;
+};
+
+/// A drive to be fused.
+struct DriveConfig {
+  std::string path;  ///< of the drive.yaml itself
+  std::string name;
+  std::optional<LogConfig> odometry;
+  std::vector<LogConfig> gnss;  ///< at least one
+  std::optional<LogConfig> truth;
+
+  TimeScale time_scale = TimeScale::gps;  ///< the drive's own scale; logs on others are converted
+  std::optional<int> utm_zone;            ///< signed: negative is south; default: zone of the first good fix
+  std::optional<Eigen::Vector2d>
+      utm_origin;                   ///< easting, northing of the local origin; default: near the first fix
+  Eigen::Vector2d antenna_m{0, 0};  ///< GNSS antenna in the body frame (x forward, y left)
+  Eigen::Vector2d truth_reference_m{0, 0};  ///< truth reference point in the body frame
+  double gnss_period_s = 0;                 ///< thin fixes to one per period (0: keep all)
+  double gnss_delay_s = 0;                  ///< subtracted from fix stamps: how late the receiver stamps
+  int withhold_every = 0;                   ///< every n-th fix is kept out of the graph (0: none)
+  std::optional<double> from_s;             ///< seconds after the drive's first stamp
+  std::optional<double> to_s;
+
+  TimelineOptions timeline;
+  GateOptions gate;
+  StartOptions start;
+  std::string modeling = "g1";  ///< registered GNSS modeling
+  std::map<std::string, std::string> modeling_options;
+  std::map<std::string, double> odometry_noise;  ///< options of the odometry plugin
+};
+
+/// Reads and checks a drive.yaml.
+/// @throws InputError "drive.yaml:12:5: unknown key 'colums'; did you mean 'columns'?" and the like.
+[[nodiscard]] DriveConfig load_drive_config(const std::string& path);
+
+}  // namespace waymark

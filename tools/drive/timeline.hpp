@@ -1,0 +1,59 @@
+/// The drive's nodes in time: one at every odometry stamp and one at every GNSS epoch, with the constant
+/// twist that the vehicle followed between neighbours.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <waymark/core/sample.hpp>
+
+namespace waymark {
+
+/// What to do where the odometry has no sample for longer than `gap_s`.
+enum class GapPolicy {
+  bridge,  ///< keep the mean twist of both sides, process noise inflated by `gap_noise_factor`
+  error    ///< refuse the drive
+};
+
+struct TimelineOptions {
+  double snap_s = 0.001;  ///< a GNSS epoch this near to an odometry stamp shares its node; >= 0
+  double gap_s = 0.5;     ///< a longer interval between odometry samples is a gap; > 0
+  GapPolicy gap_policy = GapPolicy::bridge;
+  double gap_noise_factor = 100;  ///< variance factor of a bridged interval; >= 1
+};
+
+/// The motion between two neighbouring nodes: constant speed and yaw rate over dt.
+struct Interval {
+  double speed_mps = 0;  ///< grid metres per second (grid scale applied); negative is reversing
+  double yaw_rate_radps = 0;
+  double dt_s = 0;
+  bool bridged = false;  ///< lies in a gap of the odometry
+
+  friend bool operator==(const Interval&, const Interval&) = default;
+};
+
+struct Timeline {
+  std::vector<Stamp> stamps;          ///< of the n nodes, strictly increasing
+  std::vector<Interval> intervals;    ///< n - 1
+  std::vector<std::size_t> fix_node;  ///< node of each fix given
+};
+
+/// Builds nodes and intervals.
+/// Between odometry samples k and k+1 the twist is the mean of the two; an interval split at a fix keeps that
+/// twist on both parts. Fixes outside the odometry's span must have been dropped before.
+/// @param odometry sorted by stamp, stamps unique, at least 2
+/// @param fixes    sorted by stamp
+/// @throws InputError for fewer than two samples, a gap under GapPolicy::error, a fix outside the odometry's
+/// span.
+[[nodiscard]] Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<const Fix> fixes,
+                                      const TimelineOptions& options);
+
+/// Poses of all nodes by exact integration of the intervals from `start`; headings are *not* wrapped, so that
+/// windings can be read off. An interval with |speed| below `standstill_mps` is the identity.
+[[nodiscard]] std::vector<Eigen::Vector3d> dead_reckon(const Timeline& timeline, const Eigen::Vector3d& start,
+                                                       double standstill_mps);
+
+}  // namespace waymark
