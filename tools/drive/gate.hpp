@@ -16,10 +16,9 @@ struct GateOptions {
   bool enabled = true;
   double max_angle_rad = 0.026179938779914945;  ///< 1.5 degrees: chord angle of GNSS against odometry, > 0
   double max_displacement_m = 15;               ///< difference of the displacement vectors, > 0
-  double chord_s = 1;  ///< chords span about this long; both limits above are meant for it, > 0
-  double max_chord_s =
-      5;  ///< a longer chord is not formed: the fixes on its two sides are strangers, > chord_s
-  double min_chord_m = 2;  ///< a shorter chord (GNSS or odometry) has no direction, >= 0
+  double chord_s = 1;      ///< chords span about this long; both limits are meant for it, > 0
+  double max_chord_s = 5;  ///< fixes further apart than this form no chord, >= chord_s
+  double min_chord_m = 1;  ///< a shorter chord (GNSS or odometry) has no direction, > 0
 };
 
 /// What the gate did. Every fix is in exactly one count.
@@ -38,21 +37,23 @@ struct GateSummary {
 ///
 /// With c the fix judged, b the fix about `chord_s` before it and a the fix about `chord_s` before b, the
 /// GNSS chords are ab and bc, and so are the odometry's between the same stamps. The angle error is the turn
-/// from ab to bc in GNSS minus that in odometry, in (-pi, pi]. The displacement error is |bc_gnss - R
-/// bc_odometry|, R being the rotation that lays the odometry's ab along the GNSS ab: the vectors are compared
-/// in the GNSS frame without any estimate of heading.
+/// from ab to bc in GNSS minus that in odometry, in (-pi, pi]; its limit grows with the duration of the
+/// chords beyond `chord_s`. The displacement error is |bc_gnss - R bc_odometry|, R being the rotation that
+/// lays the odometry's ab along the GNSS ab: the vectors are compared in the GNSS frame without any estimate
+/// of heading. Where ab has no direction it is the difference of the two lengths. The first fixes, and the
+/// first after a gap, are judged by their successors with time reversed.
 ///
 /// Reasons of an accepted fix: `agrees` (both tests passed), `short` (a chord too short for an angle;
 /// displacement passed), `standstill` (the odometry did not move; displacement passed), `pair` (only one
 /// chord could be formed; its length passed), `alone` (none could), `off` (the gate is disabled). Reasons of
-/// a rejected fix: `angle`, `displacement`, `both`.
+/// a rejected fix: `angle`, `displacement`, `both`, `frozen` (GNSS stands while the odometry moves).
 ///
 /// @param fixes          sorted by stamp; fixes of different `source` are judged apart from each other
 /// @param dead_reckoned  for each fix the pose (x [m], y [m], heading [rad]) of odometry alone at its stamp
 /// in
 ///                       any one frame; give antenna positions where a lever arm is known
-/// @throws UsageError where the sizes differ or an option is out of range. All rejected is not an error here:
-///         see require_accepted_fix.
+/// @throws UsageError where the sizes differ, the stamps are not sorted or an option is out of range. All
+/// rejected is not an error here: see require_accepted_fix.
 GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned,
                        const GateOptions& options);
 
