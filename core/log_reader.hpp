@@ -25,18 +25,26 @@ enum class AccuracyMeaning {
   cep50       ///< radius of the 50 % circle: sigma = a / 1.1774
 };
 
+/// Where a quantity stands in a table and in what unit.
+struct ColumnRequest {
+  std::string column;  ///< name in the header line, or 1-based number
+  std::string unit;    ///< "km/h", "deg", ...; empty: the quantity's SI unit (latitude, longitude: degrees)
+  std::string convention;  ///< sense of an angle, e.g. "cw_from_north"; empty: the quantity's default
+};
+
 /// How to read one stream of one log.
 struct LogRequest {
   StreamKind stream = StreamKind::gnss;
-  std::map<std::string, std::string>
-      columns;           ///< quantity -> column name or 1-based number (CSV); see the reader
-  char separator = ',';  ///< CSV field separator
+  std::map<std::string, ColumnRequest> columns;  ///< by quantity (CSV); see formats/csv_log.hpp
+  char separator = ',';                          ///< CSV field separator; ' ': any run of blanks and tabs
   AccuracyMeaning accuracy = AccuracyMeaning::automatic;
   double default_sigma_m = 0;  ///< per-axis sigma where the log gives none; 0: such a fix is corrupt
-  TimeScale time_scale = TimeScale::gps;  ///< the scale of the log's own stamps
-  int gps_week = 0;                       ///< added where the log counts seconds of week; 0: none
-  double time_offset_s = 0;               ///< added to every stamp of the log
-  int source = 0;                         ///< index given to the samples' receiver
+  TimeScale time_scale =
+      TimeScale::gps;        ///< the scale of the samples' stamps: the log's own, except for logs
+                             ///< that name theirs (ISO 8601 dates are UTC): those are converted
+  int gps_week = 0;          ///< added where the log counts seconds of week; 0: none
+  double time_offset_s = 0;  ///< added to every stamp of the log
+  int source = 0;            ///< index given to the samples' receiver
 };
 
 /// What a reader found.

@@ -23,6 +23,16 @@ struct OdometrySample {
   double yaw_rate_radps = 0;  ///< counter-clockwise seen from above, rad/s
 };
 
+/// The motion between two neighbouring nodes of a drive: constant speed and yaw rate over dt.
+struct Interval {
+  double speed_mps = 0;  ///< grid metres per second (grid scale applied); negative is reversing
+  double yaw_rate_radps = 0;
+  double dt_s = 0;
+  bool bridged = false;  ///< lies in a gap of the odometry
+
+  friend bool operator==(const Interval&, const Interval&) = default;
+};
+
 /// One GNSS reading as a receiver gives it: WGS84, true-north axes.
 struct GeodeticFix {
   Stamp stamp;

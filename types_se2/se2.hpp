@@ -45,6 +45,16 @@ struct Pose2 {
   [[nodiscard]] Vector3<T> vector() const { return Vector3<T>(position[0], position[1], heading); }
 };
 
+/// A measured pose or vector in the scalar of an error function.
+template <typename T>
+[[nodiscard]] Pose2<T> constant_pose(const Eigen::Vector3d& v) {
+  return Pose2<T>(T(v[0]), T(v[1]), T(v[2]));
+}
+template <typename T>
+[[nodiscard]] Vector2<T> constant_vector(const Eigen::Vector2d& v) {
+  return Vector2<T>(T(v[0]), T(v[1]));
+}
+
 /// R(angle) v.
 template <typename T>
 [[nodiscard]] Vector2<T> rotate(const T& angle, const Vector2<T>& v) {

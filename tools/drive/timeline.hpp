@@ -25,16 +25,6 @@ struct TimelineOptions {
   double gap_noise_factor = 100;  ///< variance factor of a bridged interval; >= 1
 };
 
-/// The motion between two neighbouring nodes: constant speed and yaw rate over dt.
-struct Interval {
-  double speed_mps = 0;  ///< grid metres per second (grid scale applied); negative is reversing
-  double yaw_rate_radps = 0;
-  double dt_s = 0;
-  bool bridged = false;  ///< lies in a gap of the odometry
-
-  friend bool operator==(const Interval&, const Interval&) = default;
-};
-
 struct Timeline {
   std::vector<Stamp> stamps;          ///< of the n nodes, strictly increasing
   std::vector<Interval> intervals;    ///< n - 1

@@ -1,0 +1,59 @@
+/// The block pattern of the normal matrix and its numbers, as linear solvers see them: no graph, only blocks.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace waymark {
+
+/// The upper block triangle of a symmetric matrix, by block columns in elimination order, diagonal block
+/// last.
+///
+/// The numbers of block column j form one dense column-major panel at value[j] with height[j] rows: the
+/// blocks stacked in the order of their rows, the whole diagonal block at the bottom. Read as scalars, that
+/// is a compressed-column matrix whose entries below the diagonal (inside diagonal blocks) mirror those
+/// above.
+struct BlockPattern {
+  std::vector<int> size;                ///< scalar columns of each block column
+  std::vector<std::int64_t> start{0};   ///< first scalar column; size.size() + 1 entries
+  std::vector<std::int64_t> column{0};  ///< begin of each block column in `row`; size.size() + 1 entries
+  std::vector<int> row;                 ///< block rows, ascending within a column
+  std::vector<int> row_offset;          ///< first scalar row of the block within its panel
+  std::vector<int> height;              ///< rows of each panel
+  std::vector<std::int64_t> value{0};   ///< begin of each panel; size.size() + 1 entries
+  std::uint64_t version = 0;  ///< changes with the pattern; equal versions of one structure: equal patterns
+
+  [[nodiscard]] int columns() const { return static_cast<int>(size.size()); }
+  [[nodiscard]] std::int64_t dimension() const { return start.back(); }  ///< scalar rows and columns
+  [[nodiscard]] std::int64_t value_count() const { return value.back(); }
+};
+
+/// The same pattern entry by entry: compressed columns with full diagonal blocks, upper triangle of blocks.
+/// values[k] of the panels is the entry (row[k], column j) for column[j] <= k < column[j + 1].
+template <typename Index>
+struct ScalarPattern {
+  std::vector<Index> column;
+  std::vector<Index> row;
+};
+
+template <typename Index>
+[[nodiscard]] ScalarPattern<Index> to_scalar(const BlockPattern& pattern) {
+  ScalarPattern<Index> scalar;
+  scalar.column.reserve(static_cast<std::size_t>(pattern.dimension()) + 1);
+  scalar.row.reserve(static_cast<std::size_t>(pattern.value_count()));
+  scalar.column.push_back(0);
+  for (std::size_t j = 0; j < pattern.size.size(); ++j) {
+    for (int c = 0; c < pattern.size[j]; ++c) {
+      for (auto k = pattern.column[j]; k < pattern.column[j + 1]; ++k) {
+        const auto block_row = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(k)]);
+        for (int r = 0; r < pattern.size[block_row]; ++r) {
+          scalar.row.push_back(static_cast<Index>(pattern.start[block_row] + r));
+        }
+      }
+      scalar.column.push_back(static_cast<Index>(scalar.row.size()));
+    }
+  }
+  return scalar;
+}
+
+}  // namespace waymark

@@ -1,0 +1,102 @@
+/// Forward-mode automatic differentiation: a value with its N partial derivatives. An edge's error(...)
+/// evaluated in Dual numbers yields exact Jacobians; this is the default for every edge type that gives no
+/// linearize(...).
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+template <int N>
+struct Dual {
+  using Derivative = Eigen::Array<double, N, 1, Eigen::DontAlign>;
+
+  double value = 0;
+  Derivative derivative = Derivative::Zero();
+
+  Dual() = default;
+  Dual(double v) : value(v) {}  // implicit: constants mix with variables in formulas
+  Dual(double v, const Derivative& d) : value(v), derivative(d) {}
+
+  /// The variable number `index` with the given value.
+  [[nodiscard]] static Dual variable(double v, int index) {
+    Dual result(v);
+    result.derivative[index] = 1;
+    return result;
+  }
+
+  Dual& operator+=(const Dual& b) {
+    value += b.value;
+    derivative += b.derivative;
+    return *this;
+  }
+  Dual& operator-=(const Dual& b) {
+    value -= b.value;
+    derivative -= b.derivative;
+    return *this;
+  }
+  Dual& operator*=(const Dual& b) { return *this = *this * b; }
+  Dual& operator/=(const Dual& b) { return *this = *this / b; }
+
+  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  friend Dual operator-(const Dual& a) { return Dual(-a.value, -a.derivative); }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return Dual(a.value * b.value, a.derivative * b.value + b.derivative * a.value);
+  }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    const double inverse = 1 / b.value;
+    const double quotient = a.value * inverse;
+    return Dual(quotient, (a.derivative - quotient * b.derivative) * inverse);
+  }
+  friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
+  friend bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
+  friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
+  friend bool operator>=(const Dual& a, const Dual& b) { return a.value >= b.value; }
+  friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
+
+  friend Dual sin(const Dual& a) { return Dual(std::sin(a.value), std::cos(a.value) * a.derivative); }
+  friend Dual cos(const Dual& a) { return Dual(std::cos(a.value), -std::sin(a.value) * a.derivative); }
+  friend Dual tan(const Dual& a) {
+    const double t = std::tan(a.value);
+    return Dual(t, (1 + t * t) * a.derivative);
+  }
+  friend Dual exp(const Dual& a) {
+    const double e = std::exp(a.value);
+    return Dual(e, e * a.derivative);
+  }
+  friend Dual log(const Dual& a) { return Dual(std::log(a.value), a.derivative / a.value); }
+  friend Dual sqrt(const Dual& a) {
+    const double r = std::sqrt(a.value);
+    return Dual(r, a.derivative * (0.5 / r));
+  }
+  friend Dual abs(const Dual& a) { return a.value < 0 ? -a : a; }
+  friend Dual hypot(const Dual& a, const Dual& b) {
+    const double r = std::hypot(a.value, b.value);
+    return Dual(r, (a.value * a.derivative + b.value * b.derivative) / r);
+  }
+  friend Dual atan2(const Dual& y, const Dual& x) {
+    const double squared = x.value * x.value + y.value * y.value;
+    return Dual(std::atan2(y.value, x.value), (x.value * y.derivative - y.value * x.derivative) / squared);
+  }
+};
+
+}  // namespace waymark
+
+template <int N>
+struct Eigen::NumTraits<waymark::Dual<N>> : Eigen::NumTraits<double> {
+  using Real = waymark::Dual<N>;
+  using NonInteger = waymark::Dual<N>;
+  using Nested = waymark::Dual<N>;
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1,
+    AddCost = 3,
+    MulCost = 5
+  };
+};

@@ -1,0 +1,55 @@
+/// The field list of a type is its schema: parsing, writing, `waymark info`, checks and fuzzing all come from
+/// it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+/// A named group of numbers of an edge record, as `waymark info` and the TYPE line of a .graph file show it.
+struct FieldInfo {
+  std::string name;
+  int size = 1;  ///< number of doubles
+
+  friend bool operator==(const FieldInfo&, const FieldInfo&) = default;
+};
+
+/// A field of the edge struct E: where its numbers are.
+template <typename E>
+struct Field {
+  std::string_view name;
+  int size;
+  double* (*data)(E& edge);
+};
+
+namespace detail {
+
+template <typename M>
+struct MemberPointer;
+template <typename E, typename V>
+struct MemberPointer<V E::*> {
+  using Class = E;
+  using Value = V;
+};
+
+}  // namespace detail
+
+/// Makes a Field from a member that is a double or a fixed-size Eigen vector:
+/// field<&EdgeSe2::measured>("measured").
+template <auto Member>
+[[nodiscard]] constexpr auto field(std::string_view name) {
+  using E = typename detail::MemberPointer<decltype(Member)>::Class;
+  using V = typename detail::MemberPointer<decltype(Member)>::Value;
+  if constexpr (std::is_same_v<V, double>) {
+    return Field<E>{name, 1, [](E& edge) -> double* { return &(edge.*Member); }};
+  } else {
+    static_assert(V::SizeAtCompileTime > 0, "a field is a double or a fixed-size Eigen vector");
+    return Field<E>{name, V::SizeAtCompileTime, [](E& edge) -> double* { return (edge.*Member).data(); }};
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,168 @@
+#include <waymark/core/error.hpp>
+#include <waymark/core/gaussian_prior.hpp>
+
+namespace waymark {
+
+std::unique_ptr<EdgeBatchBase> GaussianPriorBatch::clone() const {
+  return std::make_unique<GaussianPriorBatch>(*this);
+}
+
+int GaussianPriorBatch::error_dimension(std::size_t i) const {
+  return static_cast<int>(records_[i].offset.size());
+}
+
+void GaussianPriorBatch::append(std::span<const VertexIndex> vertices,
+                                std::span<const VertexType* const> types, std::span<const double> fields,
+                                const Eigen::MatrixXd& information) {
+  Record record;
+  record.vertices.assign(vertices.begin(), vertices.end());
+  std::size_t values = 0;
+  std::size_t tangents = 0;
+  for (const VertexType* type : types) {
+    record.types.push_back(*type);
+    values += static_cast<std::size_t>(type->value_size);
+    tangents += static_cast<std::size_t>(type->tangent_size);
+  }
+  const auto dimension = static_cast<Eigen::Index>(tangents);
+  if (fields.size() != values + tangents || information.rows() != dimension ||
+      information.cols() != dimension) {
+    throw UsageError("EDGE_GAUSSIAN_PRIOR: expected " + std::to_string(values) +
+                     " reference values, an offset of " + std::to_string(tangents) +
+                     " numbers and an information matrix of that size");
+  }
+  record.reference.assign(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(values));
+  record.offset = Eigen::Map<const Eigen::VectorXd>(fields.data() + values, dimension);
+  record.information = information;
+  records_.push_back(std::move(record));
+}
+
+void GaussianPriorBatch::fields(std::size_t i, std::vector<double>& out) const {
+  const Record& record = records_[i];
+  out.insert(out.end(), record.reference.begin(), record.reference.end());
+  out.insert(out.end(), record.offset.begin(), record.offset.end());
+}
+
+Eigen::VectorXd GaussianPriorBatch::error(const Record& record, const ValueView& view) {
+  Eigen::VectorXd e(record.offset.size());
+  const double* reference = record.reference.data();
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < record.vertices.size(); ++k) {
+    const VertexType& type = record.types[k];
+    type.local(reference, view.values + view.offsets[record.vertices[k]], e.data() + row);
+    reference += type.value_size;
+    row += type.tangent_size;
+  }
+  return e - record.offset;
+}
+
+// d local(r, x [+] delta) / d delta. Exact where the chart is linear, as for all types of this project; a
+// foreign manifold is differentiated numerically (central differences, error near 1e-10).
+Eigen::MatrixXd GaussianPriorBatch::jacobian(const Record& record, std::size_t vertex,
+                                             const ValueView& view) {
+  const VertexType& type = record.types[vertex];
+  const int n = type.tangent_size;
+  if (type.linear_chart) return Eigen::MatrixXd::Identity(n, n);
+  const double* reference = record.reference.data();
+  for (std::size_t k = 0; k < vertex; ++k) reference += record.types[k].value_size;
+  const double* value = view.values + view.offsets[record.vertices[vertex]];
+  constexpr double kStep = 1e-6;
+  Eigen::MatrixXd result(n, n);
+  for (int column = 0; column < n; ++column) {
+    Eigen::VectorXd side[2] = {Eigen::VectorXd(n), Eigen::VectorXd(n)};
+    for (int sign = 0; sign < 2; ++sign) {
+      std::vector<double> moved(value, value + type.value_size);
+      Eigen::VectorXd delta = Eigen::VectorXd::Zero(n);
+      delta[column] = sign == 0 ? -kStep : kStep;
+      type.retract(moved.data(), delta.data());
+      type.local(reference, moved.data(), side[sign].data());
+    }
+    result.col(column) = (side[1] - side[0]) / (2 * kStep);
+  }
+  return result;
+}
+
+double GaussianPriorBatch::chi2(const ValueView& view) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const Eigen::VectorXd e = error(records_[i], view);
+    sum += evaluate_loss(i, e.dot(records_[i].information * e)).rho;
+  }
+  return sum;
+}
+
+double GaussianPriorBatch::linearize(const ValueView& view, const Scatter& scatter,
+                                     const NormalView& normal) const {
+  double sum = 0;
+  const std::int64_t* gradient = scatter.gradient.data();
+  const BlockTarget* block = scatter.blocks.data();
+  Eigen::VectorXd e;
+  std::vector<Eigen::MatrixXd> jacobians;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const Record& record = records_[i];
+    linearize_edge(i, view, e, jacobians);
+    const LossValue loss = evaluate_loss(i, e.dot(record.information * e));
+    sum += loss.rho;
+    const Eigen::MatrixXd information = loss.weight * record.information;
+    for (std::size_t k = 0; k < record.vertices.size(); ++k) {
+      const Eigen::MatrixXd left = jacobians[k].transpose() * information;
+      Eigen::Map<Eigen::VectorXd>(normal.gradient + *gradient++, left.rows()) += left * e;
+      for (std::size_t l = 0; l <= k; ++l, ++block) {
+        const Eigen::MatrixXd product = left * jacobians[l];
+        const Eigen::MatrixXd& placed = block->transposed ? Eigen::MatrixXd(product.transpose()) : product;
+        Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(normal.hessian + block->offset, placed.rows(),
+                                                             placed.cols(),
+                                                             Eigen::OuterStride<>(block->stride)) += placed;
+      }
+    }
+  }
+  return sum;
+}
+
+void GaussianPriorBatch::linearize_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& e,
+                                        std::vector<Eigen::MatrixXd>& jacobians) const {
+  const Record& record = records_[i];
+  e = error(record, view);
+  jacobians.clear();
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < record.vertices.size(); ++k) {
+    const int n = record.types[k].tangent_size;
+    jacobians.emplace_back(Eigen::MatrixXd::Zero(e.size(), n));
+    jacobians.back().middleRows(row, n) = jacobian(record, k, view);
+    row += n;
+  }
+}
+
+void GaussianPriorBatch::differentiate_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& e,
+                                            std::vector<Eigen::MatrixXd>& jacobians) const {
+  linearize_edge(i, view, e, jacobians);
+}
+
+void GaussianPriorBatch::add_rigid_information(const ValueView& view, const RigidMotionView& motion) const {
+  Eigen::VectorXd e;
+  std::vector<Eigen::MatrixXd> jacobians;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    linearize_edge(i, view, e, jacobians);
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(e.size(), 3);
+    std::int32_t component = -1;
+    for (std::size_t k = 0; k < jacobians.size(); ++k) {
+      const VertexIndex vertex = records_[i].vertices[k];
+      const std::int64_t offset = motion.offsets[vertex];
+      if (offset < 0) continue;
+      component = motion.components[vertex];
+      moved +=
+          jacobians[k] * Eigen::Map<const Eigen::MatrixXd>(motion.columns + offset, jacobians[k].cols(), 3);
+    }
+    if (component >= 0) motion.information[component] += moved.transpose() * records_[i].information * moved;
+  }
+}
+
+EdgeType gaussian_prior_type() {
+  EdgeType type;
+  type.tag = std::string(GaussianPriorBatch::kTag);
+  type.form = "local";
+  type.arity = EdgeType::kRuntimeArity;
+  type.make_batch = [] { return std::make_unique<GaussianPriorBatch>(); };
+  return type;
+}
+
+}  // namespace waymark

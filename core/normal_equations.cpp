@@ -1,0 +1,97 @@
+#include <algorithm>
+
+#include <waymark/core/normal_equations.hpp>
+
+namespace waymark {
+namespace {
+
+std::size_t at(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+NormalEquations::NormalEquations(const Graph& graph, const Structure& structure)
+    : graph_(graph), structure_(structure) {}
+
+double NormalEquations::linearize(const std::vector<double>& values) {
+  hessian_.assign(at(structure_.hessian_size()), 0.0);
+  gradient_.assign(at(structure_.gradient_size()), 0.0);
+  const ValueView view{values.data(), graph_.offsets().data()};
+  const NormalView normal{hessian_.data(), gradient_.data()};
+  double sum = 0;
+  for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
+    sum += graph_.batch(b).linearize(view, structure_.scatter(b), normal);
+  }
+  return sum;
+}
+
+double NormalEquations::chi2(const std::vector<double>& values) const {
+  const ValueView view{values.data(), graph_.offsets().data()};
+  double sum = 0;
+  for (std::size_t b = 0; b < graph_.batch_count(); ++b) sum += graph_.batch(b).chi2(view);
+  return sum;
+}
+
+Eigen::VectorXd NormalEquations::diagonal() const {
+  const BlockPattern& p = pattern();
+  Eigen::VectorXd result(p.dimension());
+  for (int j = 0; j < p.columns(); ++j) {
+    const int size = p.size[at(j)];
+    const int height = p.height[at(j)];
+    for (int c = 0; c < size; ++c) {
+      result[p.start[at(j)] + c] =
+          hessian_[at(p.value[at(j)] + std::int64_t{c} * height + height - size + c)];
+    }
+  }
+  return result;
+}
+
+void NormalEquations::add_to_diagonal(const Eigen::VectorXd& extra, std::vector<double>& damped) const {
+  const BlockPattern& p = pattern();
+  damped.assign(hessian_.begin(), hessian_.begin() + p.value_count());
+  for (int j = 0; j < p.columns(); ++j) {
+    const int size = p.size[at(j)];
+    const int height = p.height[at(j)];
+    for (int c = 0; c < size; ++c) {
+      damped[at(p.value[at(j)] + std::int64_t{c} * height + height - size + c)] += extra[p.start[at(j)] + c];
+    }
+  }
+}
+
+Eigen::VectorXd NormalEquations::multiply(const Eigen::VectorXd& x) const {
+  const BlockPattern& p = pattern();
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(p.dimension());
+  using Block = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+  for (int j = 0; j < p.columns(); ++j) {
+    const int size = p.size[at(j)];
+    const auto x_j = x.segment(p.start[at(j)], size);
+    for (auto k = p.column[at(j)]; k < p.column[at(j) + 1]; ++k) {
+      const int i = p.row[at(k)];
+      const Block block(hessian_.data() + p.value[at(j)] + p.row_offset[at(k)], p.size[at(i)], size,
+                        Eigen::OuterStride<>(p.height[at(j)]));
+      y.segment(p.start[at(i)], p.size[at(i)]) += block * x_j;
+      if (i != j)
+        y.segment(p.start[at(j)], size) += block.transpose() * x.segment(p.start[at(i)], p.size[at(i)]);
+    }
+  }
+  return y;
+}
+
+void NormalEquations::retract(const std::vector<double>& values, const Eigen::VectorXd& step,
+                              std::vector<double>& moved) const {
+  moved = values;
+  const BlockPattern& p = pattern();
+  for (int j = 0; j < p.columns(); ++j) {
+    const VertexIndex v = structure_.vertex_of(j);
+    graph_.vertex_type(v).retract(moved.data() + graph_.offsets()[at(v)], step.data() + p.start[at(j)]);
+  }
+}
+
+VertexIndex NormalEquations::vertex_of_unknown(std::int64_t unknown) const {
+  const auto& start = pattern().start;
+  const auto after = std::upper_bound(start.begin(), start.end(), unknown);
+  return structure_.vertex_of(static_cast<int>(after - start.begin()) - 1);
+}
+
+}  // namespace waymark

@@ -1,0 +1,261 @@
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include <waymark/core/error.hpp>
+#include <waymark/core/gauge.hpp>
+#include <waymark/core/optimizer.hpp>
+
+namespace waymark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Adds the time until it leaves its scope to a counter.
+class Timer {
+ public:
+  explicit Timer(double& counter) : counter_(counter), start_(Clock::now()) {}
+  ~Timer() { counter_ += seconds_since(start_); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  double& counter_;
+  Clock::time_point start_;
+};
+
+template <typename... Part>
+std::string text(const Part&... part) {
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  (out << ... << part);
+  return out.str();
+}
+
+/// Below this share of chi2 a difference of two sums is rounding, not a decrease.
+constexpr double kChi2Rounding = 1e-12;
+
+class Loop {
+ public:
+  Loop(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options)
+      : graph_(graph),
+        algorithm_(algorithm),
+        solver_(solver),
+        options_(options),
+        equations_(graph, structure_) {}
+
+  Summary run();
+
+ private:
+  void prepare();
+  bool converged_at_gradient();
+  bool step_once();
+  bool converged_by(const Step& step);
+  void finish(Termination termination, std::string message);
+  double linearize();
+  std::string singular_message() const;
+
+  Graph& graph_;
+  Algorithm& algorithm_;
+  LinearSolver& solver_;
+  const OptimizerOptions& options_;
+  Structure structure_;
+  NormalEquations equations_;
+  Summary summary_;
+  Clock::time_point start_ = Clock::now();
+
+  std::vector<double> values_;  // present
+  std::vector<double> trial_;
+  std::vector<double> best_;  // lowest chi2 seen; differs from values_ only after an uphill step
+  double chi2_ = 0;
+  double best_chi2_ = 0;
+  double gradient_ = 0;
+  Step step_;
+  bool done_ = false;
+};
+
+void Loop::finish(Termination termination, std::string message) {
+  summary_.termination = termination;
+  summary_.message = std::move(message);
+  done_ = true;
+}
+
+void Loop::prepare() {
+  const Timer timer(summary_.structure_seconds);
+  Gauge gauge = find_gauge(graph_);
+  summary_.notes = gauge.messages;
+  structure_.build(graph_, gauge.held);
+  summary_.ordering = structure_.ordering();
+  summary_.vertices = graph_.vertex_count();
+  summary_.edges = graph_.edge_count();
+  summary_.unknowns = structure_.pattern().dimension();
+  for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
+    if (graph_.batch(b).size() == 0) continue;
+    const EdgeType& type = graph_.edge_type(b);
+    summary_.error_forms += (summary_.error_forms.empty() ? "" : ", ") + type.tag + " " + type.form;
+  }
+  if (summary_.unknowns > 0) solver_.analyze(structure_.pattern());
+}
+
+double Loop::linearize() {
+  const Timer timer(summary_.linearize_seconds);
+  return equations_.linearize(values_);
+}
+
+bool Loop::converged_at_gradient() {
+  const Eigen::VectorXd diagonal = equations_.diagonal();
+  const auto gradient = equations_.gradient();
+  gradient_ = 0;
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
+    if (diagonal[i] > 0) gradient_ = std::max(gradient_, std::abs(gradient[i]) / std::sqrt(diagonal[i]));
+  }
+  const double bound = options_.gradient_tolerance * std::sqrt(1 + chi2_);
+  if (!(gradient_ <= bound)) return false;
+  finish(Termination::converged_gradient, text("converged: scaled gradient ", gradient_, " <= ", bound));
+  return true;
+}
+
+bool Loop::converged_by(const Step& step) {
+  if (!step.full_newton) return false;
+  const double bound = options_.decrement_tolerance * (1 + chi2_);
+  if (step.newton_decrement <= bound) {
+    finish(Termination::converged_decrement,
+           text("converged: Newton decrement ", step.newton_decrement, " <= ", bound));
+    return true;
+  }
+  double largest = 0;
+  for (const double value : values_) largest = std::max(largest, std::abs(value));
+  const double step_bound = options_.step_tolerance * (1 + largest);
+  const double step_size = step.delta.lpNorm<Eigen::Infinity>();
+  if (step_size > step_bound) return false;
+  finish(Termination::converged_step, text("converged: full Newton step ", step_size, " <= ", step_bound));
+  return true;
+}
+
+std::string Loop::singular_message() const {
+  const Eigen::VectorXd diagonal = equations_.diagonal();
+  Eigen::Index weakest = 0;
+  diagonal.minCoeff(&weakest);
+  const VertexIndex v = equations_.vertex_of_unknown(weakest);
+  return text("the normal equations are not positive definite; the weakest unknown belongs to ",
+              graph_.vertex_type(v).tag, " ", graph_.id(v), " (H_ii = ", diagonal[weakest],
+              "): it lacks edges or information");
+}
+
+// One proposed step: from the present linearisation to the next, or to the end.
+bool Loop::step_once() {
+  // 1. Propose.
+  ProposalStatus status;
+  {
+    const Timer timer(summary_.solve_seconds);
+    status = algorithm_.propose(equations_, solver_, options_.decrement_tolerance * (1 + chi2_), step_);
+  }
+  if (status == ProposalStatus::singular) {
+    finish(Termination::singular, singular_message());
+    return false;
+  }
+  if (status == ProposalStatus::exhausted) {
+    finish(Termination::stalled,
+           "stalled: no step lowers chi2 any more, yet the Newton decrement is not small");
+    return false;
+  }
+  IterationRecord record;
+  record.iteration = ++summary_.iterations;
+  record.predicted_decrease = step_.predicted_decrease;
+  record.newton_decrement = step_.newton_decrement;
+  record.gradient = gradient_;
+  record.step = step_.delta.lpNorm<Eigen::Infinity>();
+  record.control = step_.control;
+  record.kind = step_.kind;
+
+  // 2. Test convergence, on full Newton steps only; the last step is still taken where it does not climb.
+  const bool converged = converged_by(step_);
+
+  // 3. Try it.
+  equations_.retract(values_, step_.delta, trial_);
+  const double trial_chi2 = equations_.chi2(trial_);
+  record.chi2 = trial_chi2;
+  record.decrease = chi2_ - trial_chi2;
+  const double noise = kChi2Rounding * chi2_;
+  const bool within_rounding = std::abs(record.decrease) <= noise && step_.predicted_decrease <= noise;
+  const double ratio = within_rounding ? 1 : record.decrease / step_.predicted_decrease;
+  const bool finite = std::isfinite(trial_chi2);
+
+  // 4. Take it or not.
+  record.accepted = finite && (converged ? record.decrease >= -noise : algorithm_.acceptable(ratio));
+  if (record.accepted) {
+    values_.swap(trial_);
+    chi2_ = trial_chi2;
+    if (chi2_ <= best_chi2_) {
+      best_ = values_;
+      best_chi2_ = chi2_;
+    }
+    if (!converged) {
+      algorithm_.accepted(step_, ratio);
+      chi2_ = linearize();
+    }
+  } else if (!converged) {
+    algorithm_.rejected(step_, finite ? ratio : -1);
+  }
+  record.seconds = seconds_since(start_);
+  summary_.records.push_back(record);
+  if (options_.observer) options_.observer(record);
+  return record.accepted;
+}
+
+Summary Loop::run() {
+  options_.check();
+  prepare();
+  values_ = best_ = graph_.values();
+  chi2_ = best_chi2_ = summary_.initial_chi2 = linearize();
+  if (!std::isfinite(chi2_)) {
+    finish(Termination::non_finite, "chi2 is not finite at the start");
+  } else if (summary_.unknowns == 0) {
+    finish(Termination::nothing_to_do, "nothing to do: every vertex is fixed, held or without edges");
+  }
+  algorithm_.reset();
+  bool moved = true;
+  while (!done_) {
+    if (moved && converged_at_gradient()) break;
+    if (options_.cancel != nullptr && options_.cancel->load()) {
+      finish(Termination::interrupted, text("interrupted after ", summary_.iterations, " iterations"));
+    } else if (summary_.iterations >= options_.max_iterations) {
+      finish(Termination::max_iterations, text("not converged after ", summary_.iterations, " iterations"));
+    } else {
+      moved = step_once();
+    }
+  }
+  summary_.final_chi2 = best_chi2_;
+  if (summary_.unknowns > 0) {
+    summary_.factor_size = solver_.factor_size();
+    summary_.solver = solver_.description();
+  }
+  graph_.set_values(std::move(best_));
+  summary_.total_seconds = seconds_since(start_);
+  return std::move(summary_);
+}
+
+}  // namespace
+
+void OptimizerOptions::check() const {
+  const auto require = [](bool valid, const char* field, double value, const char* rule) {
+    if (!valid) throw UsageError(text("optimizer option ", field, " = ", value, ": must be ", rule));
+  };
+  require(max_iterations >= 0, "max_iterations", max_iterations, ">= 0");
+  require(decrement_tolerance > 0, "decrement_tolerance", decrement_tolerance, "> 0");
+  require(gradient_tolerance >= 0, "gradient_tolerance", gradient_tolerance, ">= 0");
+  require(step_tolerance >= 0, "step_tolerance", step_tolerance, ">= 0");
+}
+
+Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options) {
+  return Loop(graph, algorithm, solver, options).run();
+}
+
+Algorithm::~Algorithm() = default;
+LinearSolver::~LinearSolver() = default;
+
+}  // namespace waymark

@@ -1,0 +1,38 @@
+/// The optimisation loop: minimises chi2 over the free vertices of a graph.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include <waymark/core/algorithm.hpp>
+#include <waymark/core/graph.hpp>
+#include <waymark/core/summary.hpp>
+
+namespace waymark {
+
+/// Convergence is declared only at a full (undamped, untruncated) Newton step d, by one of
+///   decrement  g^T H^-1 g <= decrement_tolerance (1 + chi2)      the step promises no more than this
+///   decrease gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(1 + chi2) step       |d_i| <=
+///   step_tolerance (1 + |x|_max) for all i
+/// All are free of scale: the first two do not change with the units of the unknowns. Since g_i^2 / H_ii
+/// never exceeds the decrement, the gradient test catches a start that already is a minimum.
+struct OptimizerOptions {
+  int max_iterations = 200;            ///< proposed steps, >= 0
+  double decrement_tolerance = 1e-10;  ///< relative to 1 + chi2, > 0
+  double gradient_tolerance = 1e-12;   ///< relative to sqrt(1 + chi2), >= 0
+  double step_tolerance = 1e-14;       ///< relative to 1 + largest value, >= 0
+
+  /// Asked before every step; true ends the run with the best values so far.
+  const std::atomic<bool>* cancel = nullptr;
+  /// Called after every proposed step.
+  std::function<void(const IterationRecord&)> observer;
+
+  /// @throws UsageError naming field, value and rule.
+  void check() const;
+};
+
+/// Minimises chi2 of the graph; on return the graph holds the best values found, whatever the outcome.
+/// @throws UsageError for invalid options; InputError where the gauge is undetermined (see find_gauge).
+Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options);
+
+}  // namespace waymark

@@ -1,0 +1,77 @@
+/// The structure of the normal equations of a graph: which vertices are unknowns, in which order they are
+/// eliminated, the block pattern, and where each edge adds its part.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <waymark/core/block_pattern.hpp>
+#include <waymark/core/edge_batch.hpp>
+#include <waymark/core/graph.hpp>
+
+namespace waymark {
+
+class Structure {
+ public:
+  /// Makes the structure new: order, pattern, scatter offsets.
+  /// @param held per vertex: not zero keeps it out of the unknowns (beside the graph's own fixed vertices)
+  void build(const Graph& graph, std::span<const char> held);
+
+  /// Follows a graph that has grown at its end: new vertices are ordered after the old ones (before dense
+  /// columns) and the old order stays. Where each new edge has a new vertex and no column is dense, old
+  /// columns and scatter offsets are kept and only new ones are made; otherwise the pattern is made again in
+  /// the kept order.
+  /// @param held as in build, for all vertices; it must not change for old ones.
+  void extend(const Graph& graph, std::span<const char> held);
+
+  [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
+  [[nodiscard]] const Scatter& scatter(std::size_t batch) const { return scatters_[batch]; }
+  /// Block column of a vertex, -1 where it is no unknown.
+  [[nodiscard]] int column_of(VertexIndex v) const { return column_of_[static_cast<std::size_t>(v)]; }
+  /// The vertex of a block column.
+  [[nodiscard]] VertexIndex vertex_of(int column) const {
+    return vertex_of_[static_cast<std::size_t>(column)];
+  }
+  /// Doubles to reserve for the matrix and the gradient: numbers plus the scratch area of held vertices.
+  [[nodiscard]] std::int64_t hessian_size() const { return pattern_.value_count() + scratch_block_; }
+  [[nodiscard]] std::int64_t gradient_size() const { return pattern_.dimension() + scratch_row_; }
+  /// "natural" or "amd".
+  [[nodiscard]] const std::string& ordering() const { return ordering_; }
+  /// Number of block columns ordered last because they touch very many edges.
+  [[nodiscard]] int dense_columns() const { return dense_columns_; }
+
+ private:
+  void choose_unknowns(const Graph& graph, std::span<const char> held);
+  void make_pattern(const Graph& graph, int first_column);
+  void make_scatter(const Graph& graph, bool only_new);
+  void size_scratch(const Graph& graph);
+  [[nodiscard]] BlockTarget target(const Graph& graph, VertexIndex k, VertexIndex l) const;
+
+  BlockPattern pattern_;
+  std::vector<Scatter> scatters_;
+  std::vector<std::size_t> scattered_edges_;  // per batch: edges that have their offsets
+  std::vector<int> column_of_;
+  std::vector<VertexIndex> vertex_of_;
+  std::int64_t scratch_block_ = 0;
+  std::int64_t scratch_row_ = 0;
+  int dense_columns_ = 0;
+  std::string ordering_ = "natural";
+};
+
+/// A fill-reducing order of a symmetric block pattern, and how it was found.
+struct BlockOrder {
+  std::vector<int> order;  ///< order[k] is the node eliminated as number k
+  std::string method;      ///< "natural" or "amd"
+};
+
+/// Orders nodes 0..n-1 joined by `neighbours` (compressed rows, both directions, no diagonal): the natural
+/// order where it already is as good, else approximate minimum degree (Amestoy, Davis, Duff) on the block
+/// graph.
+[[nodiscard]] BlockOrder order_blocks(std::span<const std::int64_t> begin, std::span<const int> neighbours);
+
+/// Off-diagonal blocks of the Cholesky factor under an order, or -1 once they exceed `limit`.
+[[nodiscard]] std::int64_t count_fill(std::span<const std::int64_t> begin, std::span<const int> neighbours,
+                                      std::span<const int> order, std::int64_t limit);
+
+}  // namespace waymark

@@ -1,0 +1,80 @@
+/// Vertices: what is estimated. A vertex type is a struct of static functions (concept Vertex); at run time
+/// it is known by its VertexType, found by tag and never by address.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace waymark {
+
+/// The name of a vertex in a file; any int64.
+using VertexId = std::int64_t;
+/// The place of a vertex in its graph: 0, 1, 2, ... in insertion order.
+using VertexIndex = std::int32_t;
+
+/// What a vertex type V gives:
+///   V::kTag            std::string_view, its word in .graph files
+///   V::kValueSize      doubles that hold a value;  V::kTangentSize  degrees of freedom
+///   V::value_names()   names of the value's numbers, container of strings
+///   V::Value<T>        what an edge's error sees, generic in the scalar
+///   V::at<T>(const double* value, const T* delta) -> Value<T>: the value retracted by delta
+///   V::retract(double* value, const double* delta)            value := value [+] delta, normalised
+///   V::local(const double* from, const double* to, double* delta)    delta with from [+] delta == to
+/// Invariants (tested for every registered type): retract by 0 is the identity on normalised values;
+/// local(v, v) = 0; local(v, retract(v, d)) = d for small d.
+/// Optional: V::kDense = true for states that touch very many edges (calibration); their columns are ordered
+/// last. Optional: V::position(const double*) -> Vector2d and
+///   V::rigid_motion(const double* value, const Vector2d& centre, double extent, double* columns): how the
+///   value moves under a rigid motion of the plane, kTangentSize x 3 column-major: along x, along y, a turn
+///   about centre by 1/extent rad. Types without it do not take part in the gauge test.
+template <typename V>
+concept Vertex = requires(double* value, const double* constant) {
+  { V::kTag } -> std::convertible_to<std::string_view>;
+  { V::kValueSize } -> std::convertible_to<int>;
+  { V::kTangentSize } -> std::convertible_to<int>;
+  V::value_names();
+  V::template at<double>(constant, constant);
+  V::retract(value, constant);
+  V::local(constant, constant, value);
+};
+
+/// A vertex type at run time.
+struct VertexType {
+  std::string tag;
+  int value_size = 0;
+  int tangent_size = 0;
+  std::vector<std::string> value_names;
+  bool dense = false;
+  bool linear_chart = false;  ///< local(r, x [+] d) = local(r, x) + d: true for additive types
+
+  void (*retract)(double* value, const double* delta) = nullptr;
+  void (*local)(const double* from, const double* to, double* delta) = nullptr;
+  Eigen::Vector2d (*position)(const double* value) = nullptr;  ///< null: has no place in the plane
+  void (*rigid_motion)(const double* value, const Eigen::Vector2d& centre, double extent,
+                       double* columns) = nullptr;
+};
+
+template <Vertex V>
+[[nodiscard]] VertexType make_vertex_type() {
+  VertexType type;
+  type.tag = std::string(std::string_view(V::kTag));
+  type.value_size = V::kValueSize;
+  type.tangent_size = V::kTangentSize;
+  for (const auto& name : V::value_names()) type.value_names.emplace_back(name);
+  if constexpr (requires { V::kDense; }) type.dense = V::kDense;
+  if constexpr (requires { V::kLinearChart; }) type.linear_chart = V::kLinearChart;
+  type.retract = &V::retract;
+  type.local = &V::local;
+  if constexpr (requires { V::rigid_motion; }) {
+    type.position = &V::position;
+    type.rigid_motion = &V::rigid_motion;
+  }
+  return type;
+}
+
+}  // namespace waymark

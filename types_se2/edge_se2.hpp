@@ -1,0 +1,117 @@
+/// The classic edges of the plane. A tag has one meaning: EDGE_SE2 is always the (t, theta) form that every
+/// reader of g2o files expects; the group logarithm is EDGE_SE2_LOG.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include <waymark/core/typed_batch.hpp>
+#include <waymark/types_se2/se2.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
+
+namespace waymark {
+
+/// Relative pose, (t, theta) form: with D = Z^-1 (X_from^-1 X_to), e = (D.x, D.y, wrap(D.heading)).
+/// measured = (x, y, heading) of Z in metres and radians.
+struct EdgeSe2 {
+  static constexpr std::string_view kTag = "EDGE_SE2";
+  static constexpr std::string_view kForm = "(t, theta)";
+  static constexpr int kErrorDimension = 3;
+  using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr auto fields() { return std::array{field<&EdgeSe2::measured>("measured")}; }
+
+  template <typename T>
+  Vector3<T> error(const Pose2<T>& from, const Pose2<T>& to) const {
+    const Pose2<T> d = between(constant_pose<T>(measured), between(from, to));
+    return Vector3<T>(d.position[0], d.position[1], wrap_angle(d.heading));
+  }
+
+  void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
+                 JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const;
+
+  Eigen::Vector3d measured = Eigen::Vector3d::Zero();
+};
+
+/// Relative pose, logarithmic form, the paper's equation (1): e = log(Z^-1 (X_from^-1 X_to)), ordered (rho,
+/// theta).
+struct EdgeSe2Log {
+  static constexpr std::string_view kTag = "EDGE_SE2_LOG";
+  static constexpr std::string_view kForm = "log";
+  static constexpr int kErrorDimension = 3;
+  using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr auto fields() { return std::array{field<&EdgeSe2Log::measured>("measured")}; }
+
+  template <typename T>
+  Vector3<T> error(const Pose2<T>& from, const Pose2<T>& to) const {
+    return se2_log(between(constant_pose<T>(measured), between(from, to)));
+  }
+
+  void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
+                 JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const;
+
+  Eigen::Vector3d measured = Eigen::Vector3d::Zero();
+};
+
+/// e = log(Z^-1 (X_from^-1 X_to)) with its exact Jacobians, for every edge of that form.
+void linearize_log_error(const Pose2<double>& measured, const Pose2<double>& from, const Pose2<double>& to,
+                         ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to);
+
+/// Position of an antenna as seen from a reference pose (for GNSS: the fixed origin of the frame, or a fixed
+/// GNSS node): e = R_from^T (p_to + R_to antenna - p_from) - measured. With the origin as reference that is
+/// the difference in the frame's own axes, untouched by any heading error: the decoupled GNSS error. Metres.
+struct EdgeGnssPosition {
+  static constexpr std::string_view kTag = "EDGE_GNSS_POSITION";
+  static constexpr std::string_view kForm = "position";
+  static constexpr int kErrorDimension = 2;
+  using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeGnssPosition::measured>("measured"),
+                      field<&EdgeGnssPosition::antenna>("antenna")};
+  }
+
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& from, const Pose2<T>& to) const {
+    const Vector2<T> place = to.position + rotate(to.heading, constant_vector<T>(antenna));
+    const Vector2<T> seen = rotate_back(from.heading, Vector2<T>(place - from.position));
+    return seen - constant_vector<T>(measured);
+  }
+
+  Eigen::Vector2d measured = Eigen::Vector2d::Zero();
+  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();  ///< in the body frame of `to`: x forward, y left
+};
+
+/// Prior on a pose, (t, theta) form: with D = Z^-1 X, e = (D.x, D.y, wrap(D.heading)).
+struct EdgePriorSe2 {
+  static constexpr std::string_view kTag = "EDGE_PRIOR_SE2";
+  static constexpr std::string_view kForm = "(t, theta)";
+  static constexpr int kErrorDimension = 3;
+  using Vertices = VertexList<VertexSe2>;
+  static constexpr auto fields() { return std::array{field<&EdgePriorSe2::measured>("measured")}; }
+
+  template <typename T>
+  Vector3<T> error(const Pose2<T>& pose) const {
+    const Pose2<T> d = between(constant_pose<T>(measured), pose);
+    return Vector3<T>(d.position[0], d.position[1], wrap_angle(d.heading));
+  }
+
+  Eigen::Vector3d measured = Eigen::Vector3d::Zero();
+};
+
+/// A landmark seen from a pose: e = R^T (p_landmark - p) - measured. Metres.
+struct EdgeSe2Xy {
+  static constexpr std::string_view kTag = "EDGE_SE2_XY";
+  static constexpr std::string_view kForm = "body frame";
+  static constexpr int kErrorDimension = 2;
+  using Vertices = VertexList<VertexSe2, VertexXy>;
+  static constexpr auto fields() { return std::array{field<&EdgeSe2Xy::measured>("measured")}; }
+
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& pose, const Vector2<T>& landmark) const {
+    const Vector2<T> seen = rotate_back(pose.heading, Vector2<T>(landmark - pose.position));
+    return seen - constant_vector<T>(measured);
+  }
+
+  Eigen::Vector2d measured = Eigen::Vector2d::Zero();
+};
+
+}  // namespace waymark

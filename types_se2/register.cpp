@@ -1,0 +1,16 @@
+#include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/register.hpp>
+
+namespace waymark {
+
+void register_se2_types(TypeRegistry& registry) {
+  registry.add_vertex<VertexSe2>();
+  registry.add_vertex<VertexXy>();
+  registry.add_edge<EdgeSe2>();
+  registry.add_edge<EdgeSe2Log>();
+  registry.add_edge<EdgeGnssPosition>();
+  registry.add_edge<EdgePriorSe2>();
+  registry.add_edge<EdgeSe2Xy>();
+}
+
+}  // namespace waymark

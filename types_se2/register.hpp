@@ -1,0 +1,11 @@
+/// Registration of the SE(2) vocabulary.
+#pragma once
+
+#include <waymark/core/registry.hpp>
+
+namespace waymark {
+
+/// VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_LOG, EDGE_GNSS_POSITION, EDGE_PRIOR_SE2, EDGE_SE2_XY.
+void register_se2_types(TypeRegistry& registry);
+
+}  // namespace waymark
