@@ -1,0 +1,101 @@
+#include <waymark/formats/stamp_text.hpp>
+
+#include <charconv>
+#include <cstdint>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace waymark {
+namespace {
+
+/// A decimal number taken apart: value = digits * 10^exponent, digits without leading zeros.
+struct Decimal {
+  bool negative = false;
+  std::string digits;
+  int exponent = 0;
+};
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// The exponent after 'e'; empty where it is none or beyond any use.
+std::optional<int> read_exponent(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  if (text.empty() || !(is_digit(text.front()) || text.front() == '-')) return std::nullopt;
+  int exponent = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (exponent < -1000 || exponent > 1000) return std::nullopt;
+  return exponent;
+}
+
+std::optional<Decimal> read_decimal(std::string_view text) {
+  Decimal number;
+  if (!text.empty() && (text.front() == '+' || text.front() == '-')) {
+    number.negative = text.front() == '-';
+    text.remove_prefix(1);
+  }
+  bool any_digit = false;
+  bool after_point = false;
+  while (!text.empty() && (is_digit(text.front()) || (text.front() == '.' && !after_point))) {
+    if (text.front() == '.') {
+      after_point = true;
+    } else {
+      any_digit = true;
+      if (!number.digits.empty() || text.front() != '0') number.digits += text.front();
+      if (after_point) --number.exponent;
+    }
+    text.remove_prefix(1);
+  }
+  if (!any_digit) return std::nullopt;
+  if (text.empty()) return number;
+  if (text.front() != 'e' && text.front() != 'E') return std::nullopt;
+  const std::optional<int> exponent = read_exponent(text.substr(1));
+  if (!exponent) return std::nullopt;
+  number.exponent += *exponent;
+  return number;
+}
+
+/// digits * 10^exponent as an integer, rounded half up; empty on overflow of 64 bits.
+std::optional<std::uint64_t> to_integer(std::string digits, int exponent) {
+  if (digits.empty()) return 0;
+  bool round_up = false;
+  if (exponent >= 0) {
+    if (digits.size() + static_cast<std::size_t>(exponent) > 20) return std::nullopt;
+    digits.append(static_cast<std::size_t>(exponent), '0');
+  } else {
+    const auto dropped = static_cast<std::size_t>(-exponent);
+    if (dropped > digits.size()) return 0;
+    round_up = digits[digits.size() - dropped] >= '5';
+    digits.resize(digits.size() - dropped);
+  }
+  std::uint64_t value = 0;
+  if (!digits.empty()) {
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc()) return std::nullopt;
+  }
+  return round_up ? value + 1 : value;
+}
+
+}  // namespace
+
+std::string decimal_seconds(Stamp stamp) {
+  const bool negative = stamp.nanoseconds < 0;
+  const auto bits = static_cast<std::uint64_t>(stamp.nanoseconds);
+  const std::uint64_t magnitude = negative ? 0 - bits : bits;  // also right for the smallest int64
+  return fmt::format("{}{}.{:09}", negative ? "-" : "", magnitude / 1'000'000'000, magnitude % 1'000'000'000);
+}
+
+std::optional<Stamp> stamp_from_decimal_seconds(std::string_view text) {
+  const std::optional<Decimal> number = read_decimal(text);
+  if (!number) return std::nullopt;
+  const std::optional<std::uint64_t> magnitude = to_integer(number->digits, number->exponent + 9);
+  if (!magnitude || *magnitude > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+    return std::nullopt;
+  const auto nanoseconds = static_cast<std::int64_t>(*magnitude);
+  return Stamp{number->negative ? -nanoseconds : nanoseconds};
+}
+
+}  // namespace waymark
