@@ -22,8 +22,8 @@ bool is_digit(char c) {
 
 /// The exponent after 'e'; empty where it is none or beyond any use.
 std::optional<int> read_exponent(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  if (text.empty() || !(is_digit(text.front()) || text.front() == '-')) return std::nullopt;
+  // from_chars takes a minus but no plus.
+  if (text.size() > 1 && text.front() == '+' && is_digit(text[1])) text.remove_prefix(1);
   int exponent = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
