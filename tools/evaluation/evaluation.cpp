@@ -1,0 +1,159 @@
+#include <waymark/tools/evaluation/evaluation.hpp>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/stamp_text.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark {
+namespace {
+
+void check(const EvaluationInput& input) {
+  const std::size_t n = input.fixes.size();
+  if (input.fused.size() != n)
+    throw UsageError(fmt::format("evaluate: {} fused poses for {} fixes", input.fused.size(), n));
+  if (!input.position_covariances.empty() && input.position_covariances.size() != n)
+    throw UsageError(
+        fmt::format("evaluate: {} covariances for {} poses", input.position_covariances.size(), n));
+  if (!input.antenna_m.allFinite() || !input.truth_reference_m.allFinite())
+    throw UsageError("evaluate: a lever arm is not finite");
+  for (std::size_t i = 0; i < n; ++i) {
+    const Stamp stamp = input.fixes[i].stamp;
+    if (std::abs(seconds_between(input.fused[i].stamp, stamp)) > input.max_stamp_offset_s)
+      throw UsageError(fmt::format("evaluate: fused pose {} at {} s does not belong to the fix at {} s", i,
+                                   decimal_seconds(input.fused[i].stamp), decimal_seconds(stamp)));
+    if (!input.fused[i].pose.allFinite())
+      throw InputError(fmt::format("evaluate: fused pose at {} s is not finite", decimal_seconds(stamp)));
+    if (!input.fixes[i].position.allFinite())
+      throw InputError(fmt::format("evaluate: fix at {} s is not finite", decimal_seconds(stamp)));
+  }
+}
+
+ResidualKind residual_kind(FixStatus status) {
+  switch (status) {
+    case FixStatus::accepted:
+      return ResidualKind::post_fit;
+    case FixStatus::rejected:
+      return ResidualKind::gated;
+    case FixStatus::withheld:
+      return ResidualKind::prediction;
+  }
+  return ResidualKind::post_fit;
+}
+
+/// Where the fused pose puts the antenna.
+Eigen::Vector2d predicted_antenna(const StampedPose& fused, const Eigen::Vector2d& antenna_m) {
+  return fused.pose.head<2>() + rotate(fused.pose[2], antenna_m);
+}
+
+/// Offsets of one system, gathered over the epochs.
+struct Gathered {
+  std::vector<Eigen::Vector2d> offsets;
+  std::vector<std::optional<double>> directions;
+  std::vector<double> heading_errors;
+
+  void add(const Eigen::Vector2d& offset, const std::optional<double>& direction) {
+    offsets.push_back(offset);
+    directions.push_back(direction);
+  }
+
+  [[nodiscard]] SystemMetrics metrics() const {
+    return SystemMetrics{.position = position_metrics(offsets),
+                         .track = track_metrics(offsets, directions),
+                         .heading = scalar_statistics(heading_errors)};
+  }
+};
+
+void compare_with_truth(const EvaluationInput& input, std::size_t i, const TruthPose& truth,
+                        EpochResult& result) {
+  const Eigen::Vector3d& fused = input.fused[i].pose;
+  const double heading = truth.heading_rad.value_or(fused[2]);
+  const Eigen::Vector2d truth_body = truth.position - rotate(heading, input.truth_reference_m);
+  const Eigen::Vector2d gnss_body = input.fixes[i].position - rotate(heading, input.antenna_m);
+  result.gnss_offset_m = gnss_body - truth_body;
+  result.fused_offset_m = fused.head<2>() - truth_body;
+  if (truth.heading_rad) result.heading_error_rad = wrap_angle(fused[2] - *truth.heading_rad);
+}
+
+TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochResult>& epochs) {
+  std::vector<Stamp> stamps;
+  stamps.reserve(input.fixes.size());
+  for (const Fix& fix : input.fixes) stamps.push_back(fix.stamp);
+
+  TruthEvaluation evaluation;
+  evaluation.match = interpolate_truth(input.truth, stamps, input.truth_options);
+  Gathered gnss;
+  Gathered gnss_accepted;
+  Gathered fused;
+  for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+    const std::optional<TruthAtEpoch>& truth = evaluation.match.at[i];
+    if (!truth) continue;
+    EpochResult& epoch = epochs[i];
+    compare_with_truth(input, i, truth->pose, epoch);
+    const std::optional<double> direction =
+        truth->pose.heading_rad ? truth->pose.heading_rad : truth->direction_rad;
+    gnss.add(*epoch.gnss_offset_m, direction);
+    fused.add(*epoch.fused_offset_m, direction);
+    if (epoch.status == FixStatus::accepted) gnss_accepted.add(*epoch.gnss_offset_m, direction);
+    if (epoch.heading_error_rad) fused.heading_errors.push_back(*epoch.heading_error_rad);
+  }
+  evaluation.gnss = gnss.metrics();
+  evaluation.gnss_accepted = gnss_accepted.metrics();
+  evaluation.fused = fused.metrics();
+  evaluation.improvement = improvement(evaluation.gnss.position, evaluation.fused.position);
+  return evaluation;
+}
+
+/// Residuals of all fixes against the fused trajectory: no truth needed.
+void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
+  std::vector<double> post_fit;
+  std::vector<double> gated;
+  std::vector<double> prediction;
+  Gathered withheld;
+  for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+    const Fix& fix = input.fixes[i];
+    const ResidualKind kind = residual_kind(fix.status);
+    const Eigen::Vector2d residual = fix.position - predicted_antenna(input.fused[i], input.antenna_m);
+    const Eigen::Matrix2d* pose_covariance =
+        input.position_covariances.empty() ? nullptr : &input.position_covariances[i];
+    const double nu =
+        normalised_innovation_squared(residual, residual_covariance(kind, fix.covariance, pose_covariance));
+    evaluation.epochs[i].nu = nu;
+    if (kind == ResidualKind::post_fit) post_fit.push_back(nu);
+    if (kind == ResidualKind::gated) gated.push_back(nu);
+    if (kind == ResidualKind::prediction) {
+      prediction.push_back(nu);
+      withheld.add(-residual, input.fused[i].pose[2]);
+    }
+  }
+  evaluation.accepted = post_fit.size();
+  evaluation.rejected = gated.size();
+  evaluation.withheld = prediction.size();
+  evaluation.post_fit = innovation_statistics(ResidualKind::post_fit, post_fit);
+  evaluation.gated = innovation_statistics(ResidualKind::gated, gated);
+  evaluation.prediction = innovation_statistics(ResidualKind::prediction, prediction);
+  if (!withheld.offsets.empty()) evaluation.withheld_fixes = withheld.metrics();
+}
+
+}  // namespace
+
+Evaluation evaluate(const EvaluationInput& input) {
+  check(input);
+  Evaluation evaluation;
+  evaluation.frame = input.frame;
+  evaluation.epochs.reserve(input.fixes.size());
+  for (const Fix& fix : input.fixes)
+    evaluation.epochs.push_back(EpochResult{.stamp = fix.stamp,
+                                            .status = fix.status,
+                                            .gnss_offset_m = {},
+                                            .fused_offset_m = {},
+                                            .heading_error_rad = {}});
+  evaluate_residuals(input, evaluation);
+  if (!input.truth.empty()) evaluation.truth = evaluate_truth(input, evaluation.epochs);
+  return evaluation;
+}
+
+}  // namespace waymark
