@@ -1,0 +1,121 @@
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <waymark/tools/evaluation/report.hpp>
+
+namespace waymark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json to_json(const PositionMetrics& m) {
+  return {{"n", m.count},
+          {"max_m", number(m.max_m)},
+          {"accuracy_m", number(m.accuracy_m)},
+          {"precision_m", number(m.precision_m)},
+          {"rmse_m", number(m.rmse_m)},
+          {"median_m", number(m.median_m)},
+          {"cep50_m", number(m.cep50_m)},
+          {"cep95_m", number(m.cep95_m)},
+          {"mean_offset_m", Json::array({number(m.mean_m.x()), number(m.mean_m.y())})}};
+}
+
+/// @param unit  suffix of the keys: "m" or "rad".
+Json to_json(const ScalarStatistics& s, const std::string& unit) {
+  return {{"n", s.count},
+          {"mean_" + unit, number(s.mean)},
+          {"std_" + unit, number(s.deviation)},
+          {"rms_" + unit, number(s.rms)},
+          {"max_abs_" + unit, number(s.max_abs)}};
+}
+
+Json to_json(const SystemMetrics& m) {
+  return {{"position", to_json(m.position)},
+          {"along_track", to_json(m.track.along, "m")},
+          {"cross_track", to_json(m.track.cross, "m")},
+          {"heading", to_json(m.heading, "rad")}};
+}
+
+Json to_json(const Improvement& i) {
+  return {{"max", number(i.max_percent)},
+          {"accuracy", number(i.accuracy_percent)},
+          {"precision", number(i.precision_percent)},
+          {"rmse", number(i.rmse_percent)},
+          {"median", number(i.median_percent)},
+          {"cep50", number(i.cep50_percent)},
+          {"cep95", number(i.cep95_percent)}};
+}
+
+Json to_json(const InnovationStatistics& s) {
+  return {{"kind", to_string(s.kind)},
+          {"n", s.count},
+          {"undefined", s.undefined},
+          {"mean", number(s.mean)},
+          {"expected_mean", InnovationStatistics::kExpectedMean},
+          {"expected_deviation_of_mean", number(s.expected_deviation)},
+          {"bound_95", InnovationStatistics::kBound95},
+          {"fraction_inside", number(s.fraction_inside)},
+          {"expected_fraction_inside", InnovationStatistics::kExpectedInside},
+          {"max", number(s.max)}};
+}
+
+Json to_json(const TruthMatch& m) {
+  return {{"matched", m.matched},
+          {"unmatched", m.unmatched()},
+          {"before_truth", m.before_truth},
+          {"after_truth", m.after_truth},
+          {"in_gap", m.in_gap},
+          {"median_interval_s", number(m.median_interval_s)},
+          {"longest_interpolated_s", number(m.longest_interpolated_s)}};
+}
+
+Json to_json(const TruthEvaluation& t) {
+  return {{"match", to_json(t.match)},
+          {"gnss", to_json(t.gnss)},
+          {"gnss_accepted", to_json(t.gnss_accepted)},
+          {"fused", to_json(t.fused)},
+          {"improvement_percent", to_json(t.improvement)}};
+}
+
+Json to_json(const Frame& frame) {
+  return {{"utm_zone", frame.zone},
+          {"north", frame.north},
+          {"origin_easting_m", number(frame.origin_easting_m)},
+          {"origin_northing_m", number(frame.origin_northing_m)}};
+}
+
+Json to_json(const LabelledEvaluation& labelled) {
+  const Evaluation& e = labelled.evaluation;
+  return {
+      {"label", labelled.label},
+      {"frame", to_json(e.frame)},
+      {"fixes",
+       {{"total", e.fixes()}, {"accepted", e.accepted}, {"rejected", e.rejected}, {"withheld", e.withheld}}},
+      {"truth", e.truth ? to_json(*e.truth) : Json(nullptr)},
+      {"withheld_fixes", e.withheld_fixes ? to_json(*e.withheld_fixes) : Json(nullptr)},
+      {"innovation",
+       {{"accepted", to_json(e.post_fit)},
+        {"rejected", to_json(e.gated)},
+        {"withheld", to_json(e.prediction)}}}};
+}
+
+}  // namespace
+
+std::string metrics_json(std::span<const LabelledEvaluation> evaluations, const ReportHeader& header) {
+  Json list = Json::array();
+  for (const LabelledEvaluation& evaluation : evaluations) list.push_back(to_json(evaluation));
+  const Json document = {{"schema", "waymark-metrics"},
+                         {"version", 1},
+                         {"drive", header.drive},
+                         {"provenance", Json(header.provenance)},
+                         {"evaluations", std::move(list)}};
+  // A label that is no UTF-8 must not cost the whole file.
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace waymark

@@ -1,0 +1,191 @@
+#include <waymark/tools/evaluation/report.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace waymark {
+namespace {
+
+using Row = std::vector<std::string>;
+
+/// Rows under a heading, columns as wide as their widest cell; the first is flush left, the others flush
+/// right.
+class Table {
+ public:
+  explicit Table(Row heading) { rows_.push_back(std::move(heading)); }
+
+  /// A row whose numbers stand there already under another label is not added again.
+  void add_unless_known(Row row) {
+    const bool known = std::any_of(rows_.begin() + 1, rows_.end(), [&](const Row& other) {
+      return std::equal(row.begin() + 1, row.end(), other.begin() + 1, other.end());
+    });
+    if (!known) add(std::move(row));
+  }
+
+  void add(Row row) { rows_.push_back(std::move(row)); }
+  [[nodiscard]] bool empty() const { return rows_.size() < 2; }
+
+  [[nodiscard]] std::string text() const {
+    std::vector<std::size_t> widths(rows_.front().size(), 0);
+    for (const Row& row : rows_)
+      for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    std::string out;
+    for (const Row& row : rows_) {
+      std::string line = fmt::format("{:<{}}", row[0], widths[0]);
+      for (std::size_t c = 1; c < row.size(); ++c) line += fmt::format("  {:>{}}", row[c], widths[c]);
+      out += line + "\n";
+    }
+    return out;
+  }
+
+ private:
+  std::vector<Row> rows_;
+};
+
+std::string number(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+}
+std::string metres(double value) {
+  return number(value, 3);
+}
+std::string degrees(double value_rad) {
+  return number(value_rad * 180 / std::numbers::pi, 3);
+}
+std::string percent(double value) {
+  return number(value, 2);
+}
+
+Row position_row(const std::string& label, const PositionMetrics& m) {
+  return {label,
+          std::to_string(m.count),
+          metres(m.max_m),
+          metres(m.accuracy_m),
+          metres(m.precision_m),
+          metres(m.rmse_m),
+          metres(m.median_m),
+          metres(m.cep50_m),
+          metres(m.cep95_m)};
+}
+
+Row improvement_row(const std::string& label, const Improvement& i) {
+  return {label,
+          percent(i.max_percent),
+          percent(i.accuracy_percent),
+          percent(i.precision_percent),
+          percent(i.rmse_percent),
+          percent(i.median_percent),
+          percent(i.cep50_percent),
+          percent(i.cep95_percent)};
+}
+
+Row track_row(const std::string& label, const SystemMetrics& m) {
+  return {label,
+          std::to_string(m.track.along.count),
+          metres(m.track.along.mean),
+          metres(m.track.along.deviation),
+          metres(m.track.along.rms),
+          metres(m.track.cross.mean),
+          metres(m.track.cross.deviation),
+          metres(m.track.cross.rms),
+          degrees(m.heading.rms),
+          degrees(m.heading.max_abs)};
+}
+
+Row position_heading(std::string title) {
+  return {std::move(title), "n",          "Max [m]",   "Acc [m]",  "Prec [m]",
+          "RMSE [m]",       "median [m]", "CEP50 [m]", "CEP95 [m]"};
+}
+
+/// The raw row of the first evaluation, and of every further one whose numbers differ.
+template <typename MakeRow>
+void add_raw_rows(Table& table, std::span<const LabelledEvaluation> evaluations, const std::string& name,
+                  const MakeRow& make_row) {
+  bool any = false;
+  for (const auto& [label, evaluation] : evaluations) {
+    if (!evaluation.truth) continue;
+    const std::string row_label = any ? name + " (" + label + ")" : name;
+    table.add_unless_known(make_row(row_label, *evaluation.truth));
+    any = true;
+  }
+}
+
+std::string truth_block(std::span<const LabelledEvaluation> evaluations) {
+  Table table(position_heading("against truth"));
+  Table better({"improvement over raw gnss", "Max [%]", "Acc [%]", "Prec [%]", "RMSE [%]", "median [%]",
+                "CEP50 [%]", "CEP95 [%]"});
+  add_raw_rows(table, evaluations, "raw gnss", [](const std::string& label, const TruthEvaluation& t) {
+    return position_row(label, t.gnss.position);
+  });
+  add_raw_rows(table, evaluations, "raw gnss, accepted",
+               [](const std::string& label, const TruthEvaluation& t) {
+                 return position_row(label, t.gnss_accepted.position);
+               });
+  for (const auto& [label, evaluation] : evaluations) {
+    if (!evaluation.truth) continue;
+    table.add(position_row(label, evaluation.truth->fused.position));
+    better.add(improvement_row(label, evaluation.truth->improvement));
+  }
+  return table.empty() ? "" : table.text() + "\n" + better.text() + "\n";
+}
+
+std::string track_block(std::span<const LabelledEvaluation> evaluations) {
+  Table table({"along / across track", "n", "along mean [m]", "std [m]", "rms [m]", "across mean [m]",
+               "std [m]", "rms [m]", "heading rms [deg]", "max [deg]"});
+  add_raw_rows(table, evaluations, "raw gnss",
+               [](const std::string& label, const TruthEvaluation& t) { return track_row(label, t.gnss); });
+  for (const auto& [label, evaluation] : evaluations)
+    if (evaluation.truth) table.add(track_row(label, evaluation.truth->fused));
+  return table.empty() ? "" : table.text() + "\n";
+}
+
+std::string withheld_block(std::span<const LabelledEvaluation> evaluations) {
+  Table table(position_heading("against withheld fixes"));
+  for (const auto& [label, evaluation] : evaluations)
+    if (evaluation.withheld_fixes) table.add(position_row(label, evaluation.withheld_fixes->position));
+  return table.empty() ? "" : table.text() + "\n";
+}
+
+void add_innovations(Table& table, const std::string& label, const InnovationStatistics& s) {
+  if (s.count + s.undefined == 0) return;
+  table.add({label + ", " + to_string(s.kind), std::to_string(s.count), number(s.mean, 3), "2",
+             percent(100 * s.fraction_inside), "95", number(s.max, 1), std::to_string(s.undefined)});
+}
+
+std::string innovation_block(std::span<const LabelledEvaluation> evaluations) {
+  Table table({"normalised innovation squared", "n", "mean", "expected", "inside 5.991 [%]", "expected [%]",
+               "max", "undefined"});
+  for (const auto& [label, evaluation] : evaluations) {
+    add_innovations(table, label, evaluation.post_fit);
+    add_innovations(table, label, evaluation.gated);
+    add_innovations(table, label, evaluation.prediction);
+  }
+  return table.empty() ? "" : table.text() + "\n";
+}
+
+std::string count_block(std::span<const LabelledEvaluation> evaluations) {
+  Table table(
+      {"epochs", "fixes", "accepted", "rejected", "withheld", "rejected [%]", "matched", "unmatched"});
+  for (const auto& [label, e] : evaluations) {
+    const double share =
+        e.fixes() == 0 ? kUndefined
+                       : 100 * static_cast<double>(e.rejected) / static_cast<double>(e.accepted + e.rejected);
+    table.add({label, std::to_string(e.fixes()), std::to_string(e.accepted), std::to_string(e.rejected),
+               std::to_string(e.withheld), percent(share),
+               e.truth ? std::to_string(e.truth->match.matched) : "-",
+               e.truth ? std::to_string(e.truth->match.unmatched()) : "-"});
+  }
+  return table.empty() ? "" : table.text();
+}
+
+}  // namespace
+
+std::string metrics_table(std::span<const LabelledEvaluation> evaluations) {
+  return truth_block(evaluations) + track_block(evaluations) + withheld_block(evaluations) +
+         innovation_block(evaluations) + count_block(evaluations);
+}
+
+}  // namespace waymark
