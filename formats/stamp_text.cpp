@@ -58,25 +58,30 @@ std::optional<Decimal> read_decimal(std::string_view text) {
   return number;
 }
 
-/// digits * 10^exponent as an integer, rounded half up; empty on overflow of 64 bits.
-std::optional<std::uint64_t> to_integer(std::string digits, int exponent) {
-  if (digits.empty()) return 0;
-  bool round_up = false;
-  if (exponent >= 0) {
-    if (digits.size() + static_cast<std::size_t>(exponent) > 20) return std::nullopt;
-    digits.append(static_cast<std::size_t>(exponent), '0');
-  } else {
-    const auto dropped = static_cast<std::size_t>(-exponent);
-    if (dropped > digits.size()) return 0;
-    round_up = digits[digits.size() - dropped] >= '5';
-    digits.resize(digits.size() - dropped);
-  }
+/// An integer of decimal digits, none of them meaning 0; empty on overflow of 64 bits.
+std::optional<std::uint64_t> read_integer(std::string_view digits) {
   std::uint64_t value = 0;
-  if (!digits.empty()) {
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc()) return std::nullopt;
+  if (digits.empty()) return value;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  return value;
+}
+
+/// digits * 10^exponent as an integer, rounded half up; empty on overflow of 64 bits.
+std::optional<std::uint64_t> to_integer(std::string_view digits, int exponent) {
+  if (digits.empty()) return 0;
+  if (exponent >= 0) {
+    const auto zeros = static_cast<std::size_t>(exponent);
+    if (digits.size() + zeros > 20) return std::nullopt;
+    return read_integer(std::string(digits) + std::string(zeros, '0'));
   }
-  return round_up ? value + 1 : value;
+  const auto dropped = static_cast<std::size_t>(-exponent);
+  if (dropped > digits.size()) return 0;
+  const std::size_t kept = digits.size() - dropped;
+  const std::optional<std::uint64_t> value = read_integer(digits.substr(0, kept));
+  // Far out of a stamp's range, and the one value that rounding up would wrap.
+  if (!value || *value == std::numeric_limits<std::uint64_t>::max()) return std::nullopt;
+  return digits[kept] >= '5' ? *value + 1 : *value;
 }
 
 }  // namespace

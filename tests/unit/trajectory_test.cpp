@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -94,6 +95,14 @@ TEST_CASE("TUM: stamps exact, heading as a quaternion", "[trajectory]") {
   const std::string text = trajectory_tum(points);
   CHECK_THAT(text, Catch::StartsWith("# t x y z qx qy qz qw\n1149206567.040000001 1.5 -2 0 0 0 0 1\n"
                                      "2.000000000 0 0 0 0 0 1 "));
+}
+
+TEST_CASE("TUM: single blanks, none at the end, as evo's reader demands", "[trajectory]") {
+  const std::string text = trajectory_tum(std::vector{point(1, -0.5, 1e-7, 3), point(2, 1e6, 0, -3)});
+  CHECK_THAT(text, !Contains("  ") && !Contains(" \n") && !Contains("\t") && !Contains("\r"));
+  const std::string data = text.substr(text.find('\n') + 1);
+  CHECK(std::count(data.begin(), data.end(), '\n') == 2);
+  CHECK(std::count(data.begin(), data.end(), ' ') == 2 * 7);
 }
 
 TEST_CASE("TUM round trip", "[trajectory]") {
