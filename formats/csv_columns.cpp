@@ -1,0 +1,182 @@
+#include <waymark/formats/csv_columns.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/iso8601.hpp>
+#include <waymark/formats/stamp_text.hpp>
+#include <waymark/formats/suggest.hpp>
+
+namespace waymark {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+/// A column given by number; empty for a name.
+std::optional<std::size_t> column_number(std::string_view column) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(column.data(), column.data() + column.size(), number);
+  if (error != std::errc() || end != column.data() + column.size()) return std::nullopt;
+  return number;
+}
+
+template <typename Item>
+std::vector<std::string_view> names_of(std::span<const Item> items) {
+  std::vector<std::string_view> names;
+  for (const Item& item : items) names.push_back(item.name);
+  return names;
+}
+
+/// Whether the first line of a table holds values already: all of them numbers, or a time in the column that
+/// is given by number for it (a headerless table may hold dates and words beside).
+bool holds_values(const std::vector<std::string_view>& fields, const LogRequest& request) {
+  const auto is_number = [](std::string_view field) { return number_from_field(field).has_value(); };
+  if (std::all_of(fields.begin(), fields.end(), is_number)) return true;
+  const auto time = request.columns.find("time");
+  if (time == request.columns.end()) return false;
+  const std::size_t number = column_number(time->second.column).value_or(0);
+  if (number < 1 || number > fields.size()) return false;
+  const std::string_view field = fields[number - 1];
+  return stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
+}
+
+void check_request(const std::string& place, const LogRequest& request) {
+  const std::vector<std::string_view> known = quantity_names(request.stream);
+  for (const auto& [name, wanted] : request.columns) {
+    const Quantity* quantity = find_quantity(request.stream, name);
+    if (quantity == nullptr)
+      throw InputError(fmt::format("{}'{}' is no quantity of the {} stream{}", place, name,
+                                   to_string(request.stream), did_you_mean(name, known)));
+    if (const std::string error = column_request_error(*quantity, wanted); !error.empty())
+      throw InputError(place + error);
+  }
+}
+
+}  // namespace
+
+std::optional<double> number_from_field(std::string_view field) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (field.empty()) return kNone;
+  const char* begin = field.data() + (field.front() == '+' ? 1 : 0);
+  const char* end = field.data() + field.size();
+  double value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error == std::errc() && stop == end && !std::isinf(value)) return value;
+  const std::string word = lower(field);
+  for (const std::string_view none : {"nan", "na", "n/a", "null", "none"}) {
+    if (word == none) return kNone;
+  }
+  return std::nullopt;
+}
+
+std::string column_request_error(const Quantity& quantity, const ColumnRequest& request) {
+  if (request.column.empty()) return fmt::format("no column is given for {}", quantity.name);
+  if (find_unit(quantity, request.unit) == nullptr) {
+    const std::vector<std::string_view> known = names_of(quantity.units);
+    return fmt::format("unknown unit '{}' for {}{}; known: {}", request.unit, quantity.name,
+                       did_you_mean(request.unit, known), joined(known));
+  }
+  if (find_convention(quantity, request.convention) != nullptr) return {};
+  if (quantity.conventions.empty()) return fmt::format("{} has no convention to choose", quantity.name);
+  const std::vector<std::string_view> known = names_of(quantity.conventions);
+  return fmt::format("unknown convention '{}' for {}{}; known: {}", request.convention, quantity.name,
+                     did_you_mean(request.convention, known), joined(known));
+}
+
+CsvColumns::CsvColumns(const CsvLines& lines, const std::string& path, const LogRequest& request) {
+  check_request(path + ": ", request);
+  find_header(lines, path, request);
+  const std::string place = fmt::format("{}:{}:1: ", path, lines.number());
+  for (const Quantity& quantity : quantities(request.stream)) {
+    const auto wanted = request.columns.find(std::string(quantity.name));
+    bind(quantity, wanted == request.columns.end() ? nullptr : &wanted->second, place);
+  }
+}
+
+void CsvColumns::find_header(const CsvLines& lines, const std::string& path, const LogRequest& request) {
+  std::vector<std::string_view> first;
+  if (!split_fields(lines.line(), request.separator, first))
+    throw InputError(
+        fmt::format("{}:{}:1: a quoted field of the header is not closed", path, lines.number()));
+  field_count_ = first.size();
+  if (!holds_values(first, request)) {
+    names_ = first;
+    first_line_is_header_ = true;
+    return;
+  }
+  std::vector<std::string_view> comment;
+  if (lines.comment_above().empty() || !split_fields(lines.comment_above(), request.separator, comment))
+    return;
+  if (comment.size() != first.size()) return;
+  names_ = comment;
+  notes_.push_back(
+      fmt::format("{}: column names were taken from the comment above line {}", path, lines.number()));
+}
+
+void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place) {
+  BoundColumn bound;
+  bound.quantity = &quantity;
+  std::optional<std::size_t> field;
+  if (wanted != nullptr) {
+    field = field_named(wanted->column);
+    if (const auto number = column_number(wanted->column); !field && number) {
+      if (*number < 1 || *number > field_count_)
+        throw InputError(fmt::format("{}no column {} for {}: the table has columns 1 to {}", place, *number,
+                                     quantity.name, field_count_));
+      field = *number - 1;
+    }
+    if (!field)
+      throw InputError(fmt::format("{}no column '{}' for {}{}{}", place, wanted->column, quantity.name,
+                                   did_you_mean(wanted->column, names_), columns_present()));
+  } else {
+    field = field_named(quantity.name);
+    if (!field) field = field_named(quantity.default_column);
+    if (!field && quantity.required)
+      throw InputError(fmt::format("{}no column for {} (neither '{}' nor '{}'): name it under columns{}",
+                                   place, quantity.name, quantity.name, quantity.default_column,
+                                   columns_present()));
+    if (!field) return;
+    notes_.push_back(fmt::format("{}{} is column '{}' by default", place, quantity.name, names_[*field]));
+  }
+  const ColumnRequest plain;
+  const ColumnRequest& how = wanted != nullptr ? *wanted : plain;
+  const Unit& unit = *find_unit(quantity, how.unit);
+  const Convention& convention = *find_convention(quantity, how.convention);
+  bound.field = *field;
+  bound.unit = unit.name;
+  bound.factor = convention.sign * unit.factor;
+  bound.offset = convention.offset;
+  if (quantity.name == "time") bound.time_power = static_cast<int>(unit.factor);
+  columns_.push_back(bound);
+}
+
+const BoundColumn* CsvColumns::find(std::string_view quantity) const {
+  for (const BoundColumn& column : columns_) {
+    if (column.quantity->name == quantity) return &column;
+  }
+  return nullptr;
+}
+
+std::optional<std::size_t> CsvColumns::field_named(std::string_view name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found == names_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names_.begin());
+}
+
+std::string CsvColumns::columns_present() const {
+  if (names_.empty()) return fmt::format("; the table has no header, only columns 1 to {}", field_count_);
+  return fmt::format("; columns present: {}", joined(names_));
+}
+
+}  // namespace waymark

@@ -1,0 +1,63 @@
+/// Which field of a table holds which quantity.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <waymark/core/log_reader.hpp>
+#include <waymark/formats/csv_table.hpp>
+#include <waymark/formats/quantity.hpp>
+
+namespace waymark {
+
+/// A quantity tied to a field.
+struct BoundColumn {
+  const Quantity* quantity = nullptr;
+  std::size_t field = 0;
+  double factor = 1;  ///< value = sign * factor * number + offset
+  double offset = 0;
+  std::string_view unit;
+  int time_power = 0;  ///< of ten, for times
+};
+
+/// The columns of one stream in one table.
+class CsvColumns {
+ public:
+  /// Finds the header and ties the quantities.
+  /// @param lines  standing on the first line of the table; its text must outlive the columns
+  /// @throws InputError see CsvLogReader
+  CsvColumns(const CsvLines& lines, const std::string& path, const LogRequest& request);
+
+  [[nodiscard]] bool first_line_is_header() const { return first_line_is_header_; }
+  [[nodiscard]] std::size_t field_count() const { return field_count_; }
+  /// Null where the table has no such quantity.
+  [[nodiscard]] const BoundColumn* find(std::string_view quantity) const;
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  void find_header(const CsvLines& lines, const std::string& path, const LogRequest& request);
+  void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
+  [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
+  [[nodiscard]] std::string columns_present() const;
+
+  std::vector<std::string_view> names_;  ///< of the header; empty where there is none
+  std::size_t field_count_ = 0;
+  bool first_line_is_header_ = false;
+  std::vector<BoundColumn> columns_;
+  std::vector<std::string> notes_;
+};
+
+/// Why a column request cannot be met by any table ("unknown unit 'kmh' for speed; did you mean 'km/h'?");
+/// empty where it is well formed.
+[[nodiscard]] std::string column_request_error(const Quantity& quantity, const ColumnRequest& request);
+
+/// A number, also with a leading '+'. NaN where the field says that there is none (empty, "nan", "na",
+/// "null", "none").
+/// @return empty for anything else, infinities included.
+[[nodiscard]] std::optional<double> number_from_field(std::string_view field);
+
+}  // namespace waymark

@@ -1,0 +1,309 @@
+#include <waymark/formats/csv_log.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/csv_columns.hpp>
+#include <waymark/formats/csv_table.hpp>
+#include <waymark/formats/iso8601.hpp>
+#include <waymark/formats/log_data.hpp>
+#include <waymark/formats/stamp_text.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr std::int64_t kNanosecondsPerWeek = 604'800'000'000'000;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// The first complaint about the line at hand.
+struct Complaint {
+  std::size_t column = 0;  ///< 0: none
+  std::string what;
+};
+
+/// The columns of the stream, looked up once.
+struct Bindings {
+  explicit Bindings(const CsvColumns& columns)
+      : time(columns.find("time")),
+        speed(columns.find("speed")),
+        yaw_rate(columns.find("yaw_rate")),
+        latitude(columns.find("latitude")),
+        longitude(columns.find("longitude")),
+        height(columns.find("height")),
+        heading(columns.find("heading")),
+        accuracy(columns.find("accuracy")),
+        accuracy_east(columns.find("accuracy_east")),
+        accuracy_north(columns.find("accuracy_north")),
+        sigma_east(columns.find("sigma_east")),
+        sigma_north(columns.find("sigma_north")),
+        covariance_root(columns.find("covariance_en_signed_root")),
+        course(columns.find("course")),
+        course_accuracy(columns.find("course_accuracy")),
+        speed_accuracy(columns.find("speed_accuracy")),
+        valid(columns.find("valid")) {}
+
+  const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *height, *heading;
+  const BoundColumn *accuracy, *accuracy_east, *accuracy_north, *sigma_east, *sigma_north, *covariance_root;
+  const BoundColumn *course, *course_accuracy, *speed_accuracy, *valid;
+};
+
+/// How the accuracy figures of this table become sigmas.
+struct AccuracyRule {
+  const BoundColumn* east = nullptr;  ///< null: the table gives none
+  const BoundColumn* north = nullptr;
+  const BoundColumn* covariance_root = nullptr;
+  double factor = 1;
+};
+
+/// Reads the table line by line.
+class TableReader {
+ public:
+  TableReader(const CsvColumns& columns, const std::string& path, const LogRequest& request, LogData& data)
+      : bound_(columns), field_count_(columns.field_count()), path_(path), request_(request), data_(data) {
+    offset_ = request.gps_week * kNanosecondsPerWeek + std::llround(request.time_offset_s * 1e9);
+    if (request.stream == StreamKind::gnss) choose_accuracy();
+  }
+
+  void read_line(const CsvLines& lines) {
+    ++data_.records;
+    line_ = lines.line();
+    complaint_ = {};
+    number_ = lines.number();
+    if (check_fields()) read_sample();
+    if (complaint_.column != 0) add_corrupt(data_, path_, number_, complaint_.column, complaint_.what);
+  }
+
+  void finish() {
+    if (without_fix_ > 0)
+      data_.notes.push_back(fmt::format("{}: {} of {} records are marked as without a fix", path_,
+                                        without_fix_, data_.records));
+    if (defaulted_ > 0)
+      data_.notes.push_back(
+          fmt::format("{}: {} fixes give no accuracy, the stated default sigma of {} m is used", path_,
+                      defaulted_, request_.default_sigma_m));
+    require_samples(data_, path_, without_fix_);
+  }
+
+ private:
+  void choose_accuracy();
+  bool check_fields();
+  void read_sample();
+  [[nodiscard]] std::optional<Stamp> stamp();
+  [[nodiscard]] double number(const BoundColumn* column, bool required);
+  [[nodiscard]] std::optional<double> optional_number(const BoundColumn* column);
+  [[nodiscard]] std::optional<double> optional_sigma(const BoundColumn* column);
+  [[nodiscard]] bool has_fix();
+  [[nodiscard]] Eigen::Matrix2d covariance();
+  void complain(const BoundColumn& column, std::string what);
+
+  Bindings bound_;
+  std::size_t field_count_;
+  const std::string& path_;
+  const LogRequest& request_;
+  LogData& data_;
+  AccuracyRule accuracy_;
+  std::int64_t offset_ = 0;
+  std::size_t without_fix_ = 0;
+  std::size_t defaulted_ = 0;
+
+  std::string_view line_;
+  std::size_t number_ = 0;
+  std::vector<std::string_view> fields_;
+  Complaint complaint_;
+};
+
+void TableReader::choose_accuracy() {
+  AccuracyMeaning meaning = request_.accuracy;
+  const bool automatic = meaning == AccuracyMeaning::automatic;
+  if (bound_.sigma_east != nullptr && bound_.sigma_north != nullptr) {
+    accuracy_ = {bound_.sigma_east, bound_.sigma_north, bound_.covariance_root, 1};
+    return;
+  }
+  if (bound_.accuracy_east != nullptr && bound_.accuracy_north != nullptr) {
+    if (automatic) meaning = AccuracyMeaning::percent95;
+    accuracy_ = {bound_.accuracy_east, bound_.accuracy_north, nullptr, sigma_factor(meaning)};
+  } else if (bound_.accuracy != nullptr) {
+    if (automatic) meaning = AccuracyMeaning::drms;
+    accuracy_ = {bound_.accuracy, bound_.accuracy, nullptr, sigma_factor(meaning)};
+  } else if (!(request_.default_sigma_m > 0)) {
+    throw InputError(
+        fmt::format("{}: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or "
+                    "sigma_east and sigma_north, or state a default sigma in metres",
+                    path_));
+  }
+  if (automatic && accuracy_.east != nullptr)
+    data_.notes.push_back(fmt::format("{}: accuracy is taken as {} (not stated)", path_, to_string(meaning)));
+}
+
+bool TableReader::check_fields() {
+  if (!split_fields(line_, request_.separator, fields_)) {
+    complaint_ = {line_.size() + 1, "a quoted field is not closed or text follows its end"};
+    return false;
+  }
+  const bool trailing_separator = fields_.size() == field_count_ + 1 && fields_.back().empty();
+  if (fields_.size() == field_count_ || trailing_separator) return true;
+  const std::size_t column =
+      fields_.size() > field_count_ ? column_of(line_, fields_[field_count_]) : line_.size() + 1;
+  complaint_ = {column, fmt::format("expected {} fields, got {}", field_count_, fields_.size())};
+  return false;
+}
+
+void TableReader::read_sample() {
+  if (request_.stream == StreamKind::gnss && !has_fix()) return;
+  const std::optional<Stamp> at = stamp();
+  if (!at) return;
+  if (request_.stream == StreamKind::odometry) {
+    const OdometrySample sample{*at, number(bound_.speed, true), number(bound_.yaw_rate, true)};
+    if (complaint_.column == 0) data_.odometry.push_back(sample);
+    return;
+  }
+  const double latitude = number(bound_.latitude, true);
+  const double longitude = number(bound_.longitude, true);
+  const double height = number(bound_.height, false);
+  if (request_.stream == StreamKind::truth) {
+    const GeodeticTruth truth{*at, latitude, longitude, height, optional_number(bound_.heading)};
+    if (complaint_.column == 0) data_.truth.push_back(truth);
+    return;
+  }
+  GeodeticFix fix;
+  fix.stamp = *at;
+  fix.latitude_deg = latitude;
+  fix.longitude_deg = longitude;
+  fix.height_m = height;
+  fix.covariance_en = covariance();
+  fix.course_rad = optional_number(bound_.course);
+  fix.course_sigma_rad = optional_sigma(bound_.course_accuracy);
+  fix.speed_mps = optional_number(bound_.speed);
+  fix.speed_sigma_mps = optional_sigma(bound_.speed_accuracy);
+  fix.source = request_.source;
+  fix.line = number_;
+  if (complaint_.column == 0) data_.fixes.push_back(fix);
+}
+
+std::optional<Stamp> TableReader::stamp() {
+  const std::string_view field = fields_[bound_.time->field];
+  std::optional<Stamp> stamp;
+  if (bound_.time->unit == kIso8601) {
+    stamp = stamp_from_iso8601(field);
+    if (stamp) stamp = convert(*stamp, TimeScale::utc, request_.time_scale);
+  } else if (bound_.time->time_power == 0) {
+    stamp = stamp_from_decimal_seconds(field);
+  } else if (field.find_first_of("eE") == std::string_view::npos) {
+    stamp = stamp_from_decimal_seconds(fmt::format("{}e{}", field, bound_.time->time_power));
+  }
+  if (!stamp) {
+    const char* expected = bound_.time->unit == kIso8601 ? "an ISO 8601 date" : "a decimal number";
+    complain(*bound_.time,
+             field.empty() ? "no value" : fmt::format("expected {}, got '{}'", expected, field));
+    return std::nullopt;
+  }
+  if (request_.gps_week != 0 && (stamp->nanoseconds < 0 || stamp->nanoseconds >= 2 * kNanosecondsPerWeek)) {
+    complain(*bound_.time, fmt::format("'{}' is no second of a week", field));
+    return std::nullopt;
+  }
+  if (__builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) {
+    complain(*bound_.time, fmt::format("'{}' is too large for a stamp", field));
+    return std::nullopt;
+  }
+  return stamp;
+}
+
+double TableReader::number(const BoundColumn* column, bool required) {
+  if (column == nullptr) return kNone;
+  const std::string_view field = fields_[column->field];
+  const std::optional<double> given = number_from_field(field);
+  if (!given) {
+    complain(*column, fmt::format("expected a number, got '{}'", field));
+    return kNone;
+  }
+  if (std::isnan(*given)) {
+    if (required) complain(*column, "no value");
+    return kNone;
+  }
+  const Quantity& quantity = *column->quantity;
+  const double scaled =
+      column->factor * *given;  // the range is that of the angle as given, before any offset
+  if (scaled < quantity.smallest || scaled > quantity.largest) {
+    complain(*column, fmt::format("'{}' {} is outside {:.6g} .. {:.6g}", field, column->unit,
+                                  quantity.smallest / std::abs(column->factor),
+                                  quantity.largest / std::abs(column->factor)));
+    return kNone;
+  }
+  return scaled + column->offset;
+}
+
+std::optional<double> TableReader::optional_number(const BoundColumn* column) {
+  const double value = number(column, false);
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+std::optional<double> TableReader::optional_sigma(const BoundColumn* column) {
+  const double value = number(column, false);
+  return value > 0 ? std::optional(value) : std::nullopt;
+}
+
+/// Whether the receiver marks the line as a fix.
+bool TableReader::has_fix() {
+  if (bound_.valid == nullptr) return true;
+  const std::string_view field = fields_[bound_.valid->field];
+  for (const std::string_view yes : {"true", "True", "TRUE", "A", "yes"}) {
+    if (field == yes) return true;
+  }
+  bool fix = false;
+  bool known = false;
+  for (const std::string_view no : {"false", "False", "FALSE", "V", "no"}) known = known || field == no;
+  if (!known) {
+    const double flag = number(bound_.valid, true);
+    if (complaint_.column != 0) return false;
+    fix = flag != 0;
+  }
+  if (!fix) ++without_fix_;
+  return fix;
+}
+
+Eigen::Matrix2d TableReader::covariance() {
+  const double east = accuracy_.factor * number(accuracy_.east, false);
+  const double north = accuracy_.factor * number(accuracy_.north, false);
+  if (!(east > 0 && north > 0)) {
+    if (complaint_.column != 0) return Eigen::Matrix2d::Identity();
+    if (!(request_.default_sigma_m > 0))
+      complain(*(east > 0 ? accuracy_.north : accuracy_.east), "no accuracy, and no default sigma is stated");
+    ++defaulted_;
+    return request_.default_sigma_m * request_.default_sigma_m * Eigen::Matrix2d::Identity();
+  }
+  const double root = number(accuracy_.covariance_root, false);
+  const double off_diagonal = std::isnan(root) ? 0 : root * std::abs(root);
+  if (std::abs(off_diagonal) >= east * north)
+    complain(*accuracy_.covariance_root, "the covariance is not positive definite");
+  Eigen::Matrix2d result;
+  result << east * east, off_diagonal, off_diagonal, north * north;
+  return result;
+}
+
+void TableReader::complain(const BoundColumn& column, std::string what) {
+  if (complaint_.column != 0) return;
+  complaint_ = {column_of(line_, fields_[column.field]), fmt::format("{}: {}", column.quantity->name, what)};
+}
+
+}  // namespace
+
+LogData CsvLogReader::read(std::string_view text, const std::string& path, const LogRequest& request) const {
+  LogData data;
+  CsvLines lines(text);
+  if (!lines.next()) throw InputError(fmt::format("{}: the log is empty", path));
+  const CsvColumns columns(lines, path, request);
+  data.notes = columns.notes();
+
+  TableReader reader(columns, path, request, data);
+  if (!columns.first_line_is_header()) reader.read_line(lines);
+  while (lines.next()) reader.read_line(lines);
+  reader.finish();
+  return data;
+}
+
+}  // namespace waymark

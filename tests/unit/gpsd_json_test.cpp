@@ -1,0 +1,213 @@
+#include <catch2/catch.hpp>
+
+#include <iostream>
+#include <numbers>
+#include <string>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/gpsd_json.hpp>
+#include <waymark/formats/iso8601.hpp>
+#include <waymark/formats/text_file.hpp>
+
+#include "tests/support/paths.hpp"
+
+using namespace waymark;
+using Catch::Matchers::Message;
+
+namespace {
+
+LogRequest utc_fixes() {
+  LogRequest request;
+  request.time_scale = TimeScale::utc;
+  return request;
+}
+
+LogData read(std::string_view text, const LogRequest& request = utc_fixes()) {
+  return GpsdJsonReader().read(text, "log.json", request);
+}
+
+constexpr const char* kFix =
+    R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45.280Z","lat":46.5,"lon":7.5,"altHAE":1391.3,)"
+    R"("epx":4,"epy":6,"eph":10,"track":90,"epd":20,"speed":5,"eps":3})";
+
+/// The log in the shared data, or empty with a line that says so.
+std::string shared_log(const std::string& name) {
+  const auto path = waymark_test::shared_data_dir() / "logs" / "gpsd" / name;
+  if (std::filesystem::exists(path)) return read_text_file(path.string());
+  std::cout << "SKIPPED: " << path.string() << " is absent\n";
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("gpsd: one report") {
+  const LogData data = read(kFix);
+  REQUIRE(data.fixes.size() == 1);
+  const GeodeticFix& fix = data.fixes[0];
+  CHECK(fix.stamp.nanoseconds == 1'118'327'685'280'000'000);  // date -u -d 2005-06-09T14:34:45 +%s
+  CHECK(fix.latitude_deg == 46.5);
+  CHECK(fix.longitude_deg == 7.5);
+  CHECK(fix.height_m == 1391.3);
+  CHECK(fix.covariance_en(0, 0) == Approx(4));  // (epx / 2)^2, the paper's rule
+  CHECK(fix.covariance_en(1, 1) == Approx(9));
+  CHECK(*fix.course_rad == Approx(std::numbers::pi / 2));
+  CHECK(*fix.course_sigma_rad == Approx(std::numbers::pi / 18));
+  CHECK(*fix.speed_mps == 5);
+  CHECK(*fix.speed_sigma_mps == 1.5);
+  CHECK(fix.line == 1);
+  CHECK(data.notes ==
+        std::vector<std::string>{
+            "log.json: gpsd of unknown version: 1 fixes with epx and epy read as 95 (not stated)"});
+}
+
+TEST_CASE("gpsd: stamps come out on the scale asked for") {
+  LogRequest request = utc_fixes();
+  request.time_scale = TimeScale::gps;
+  request.time_offset_s = -0.25;
+  // 13 leap seconds in 2005; GPS began at POSIX 315964800.
+  CHECK(read(kFix, request).fixes.at(0).stamp.nanoseconds ==
+        (1'118'327'685LL - 315'964'800 + 13) * 1'000'000'000 + 30'000'000);
+}
+
+TEST_CASE("gpsd: which figure a stated meaning reads") {
+  LogRequest request = utc_fixes();
+  const auto east_variance = [&](AccuracyMeaning meaning, std::string_view text) {
+    request.accuracy = meaning;
+    return read(text, request).fixes.at(0).covariance_en(0, 0);
+  };
+  CHECK(east_variance(AccuracyMeaning::one_sigma, kFix) == Approx(16));       // epx
+  CHECK(east_variance(AccuracyMeaning::drms, kFix) == Approx(50));            // eph^2 / 2
+  CHECK(east_variance(AccuracyMeaning::cep50, kFix) == Approx(72.13475204));  // eph^2 / (2 ln 2)
+  const char* radial_only =
+      R"({"class":"TPV","mode":2,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,"eph":10})";
+  CHECK(east_variance(AccuracyMeaning::automatic, radial_only) == Approx(50));
+  CHECK(east_variance(AccuracyMeaning::percent95, radial_only) == Approx(25));
+}
+
+TEST_CASE("gpsd: a report without accuracy takes the stated default, or is corrupt") {
+  const std::string text = std::string(kFix) + "\n" +
+                           R"({"class":"TPV","mode":2,"time":"2005-06-09T14:34:46Z","lat":1,"lon":2})" + "\n";
+  LogRequest request = utc_fixes();
+  const LogData strict = read(text, request);
+  CHECK(strict.fixes.size() == 1);
+  CHECK(strict.corrupt_examples ==
+        std::vector<std::string>{
+            "log.json:2:1: TPV: neither epx and epy nor eph, and no default sigma is stated"});
+  request.default_sigma_m = 7;
+  CHECK(read(text, request).fixes.at(1).covariance_en(1, 1) == 49);
+}
+
+TEST_CASE("gpsd: neighbouring reports of one epoch are merged, the later field wins") {
+  const std::string text =
+      std::string(kFix) + "\n" +
+      R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45.280Z","lat":46.6,"lon":7.5,"epx":8})" + "\n";
+  const LogData data = read(text);
+  REQUIRE(data.fixes.size() == 1);
+  CHECK(data.fixes[0].latitude_deg == 46.6);
+  CHECK(data.fixes[0].covariance_en(0, 0) == Approx(16));
+  CHECK(data.fixes[0].covariance_en(1, 1) == Approx(9));  // epy kept from the first
+  CHECK(data.fixes[0].line == 2);
+  CHECK(data.records == 1);
+}
+
+TEST_CASE("gpsd: only the first device is read") {
+  const std::string one = R"({"class":"TPV","device":"/dev/a","mode":3,"time":"2005-06-09T14:34:45Z",)"
+                          R"("lat":1,"lon":2,"eph":3})";
+  const std::string two = R"({"class":"TPV","device":"/dev/b","mode":3,"time":"2005-06-09T14:34:45Z",)"
+                          R"("lat":3,"lon":4,"eph":3})";
+  const LogData data = read(one + "\n" + two + "\n");
+  REQUIRE(data.fixes.size() == 1);
+  CHECK(data.fixes[0].latitude_deg == 1);
+  CHECK(data.notes.back() == "log.json: 1 reports of other devices than '/dev/a' were skipped");
+}
+
+TEST_CASE("gpsd: what is no fix, what is no JSON and what is corrupt are told apart") {
+  const std::string text =
+      std::string("# a comment\n$GPGGA,1*00\n{\"class\":\"VERSION\",\"release\":\"3.22\"}\n") + kFix + "\n" +
+      R"({"class":"TPV","mode":1,"time":"2005-06-09T14:34:46Z"}
+{"class":"TPV","mode":3,"lat":1,"lon":2}
+{"class":"TPV","mode":3,"time":"2005-06-09T14:34:47Z","lat":1,
+{"class":"TPV","mode":3,"time":"2005-06-09T14:34:48Z","lat":"1","lon":2,"eph":3}
+{"class":"TPV","mode":3,"time":"2005-06-09T14:34:49Z","lat":1,"eph":3}
+{"class":"TPV","mode":1e999}
+{"class":"TPV","mode":3,"time":"2005-06-09T14:34:50Z","lat":91,"lon":2,"eph":3}
+{"class":"TPV","mode":3,"time":"2005-13-09T14:34:50Z","lat":9,"lon":2,"eph":3}
+)";
+  const LogData data = read(text);
+  CHECK(data.fixes.size() == 1);
+  CHECK(data.corrupt == 6);
+  REQUIRE(data.corrupt_examples.size() == 5);
+  CHECK(data.corrupt_examples[0] == "log.json:7:63: malformed JSON");
+  CHECK(data.corrupt_examples[1] == "log.json:8:1: TPV: expected a number for 'lat', got \"1\"");
+  CHECK(data.corrupt_examples[2] ==
+        "log.json:10:1: a number is out of range");  // found before the epoch above ends
+  CHECK(data.corrupt_examples[3] == "log.json:9:1: TPV: a fix without 'lon'");
+  CHECK(data.corrupt_examples[4] == "log.json:11:1: TPV: 'lat' 91 is outside -90 .. 90");
+  CHECK(data.notes ==
+        std::vector<std::string>{"log.json: gpsd 3.22: 1 fixes with epx and epy read as 95 (not stated)",
+                                 "log.json: 2 lines that are no JSON objects were skipped",
+                                 "log.json: 1 of 9 records are marked as without a fix",
+                                 "log.json: 1 fixes without a time were skipped"});
+}
+
+TEST_CASE("gpsd: equal epx and epy throughout are remarked upon") {
+  const LogData data =
+      read(R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,"epx":3,"epy":3})");
+  CHECK(data.notes.back() ==
+        "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms "
+        "reads better");
+}
+
+TEST_CASE("gpsd: a log may serve as truth") {
+  LogRequest request = utc_fixes();
+  request.stream = StreamKind::truth;
+  const LogData data = read(kFix, request);
+  REQUIRE(data.truth.size() == 1);
+  CHECK(data.truth[0].longitude_deg == 7.5);
+  CHECK(!data.truth[0].heading_rad);
+}
+
+TEST_CASE("gpsd: what cannot be read at all is an error that says why") {
+  LogRequest request = utc_fixes();
+  CHECK_THROWS_MATCHES(read(" \n"), InputError, Message("log.json: the log is empty"));
+  CHECK_THROWS_MATCHES(read("$GPGGA\n"), InputError, Message("log.json: the log holds no records"));
+  CHECK_THROWS_MATCHES(read("{\"class\":\"TPV\",\"mode\":1}\n"), InputError,
+                       Message("log.json: not one fix in 1 records (1 are marked as without a fix)"));
+  request.columns["time"] = {"t", "", ""};
+  CHECK_THROWS_MATCHES(read(kFix, request), InputError,
+                       Message("log.json: a gpsd log has no columns to map"));
+  request.stream = StreamKind::odometry;
+  CHECK_THROWS_MATCHES(read(kFix, request), InputError, Message("log.json: a gpsd log holds no odometry"));
+}
+
+TEST_CASE("gpsd: real logs") {
+  if (const std::string text = shared_log("gpsd_ublox-glo.log.chk"); !text.empty()) {
+    const LogData data = read(text);
+    CHECK(data.corrupt == 0);
+    CHECK(data.fixes.size() > 200);
+    CHECK(data.fixes.front().latitude_deg == Approx(55.6024871));
+    CHECK(data.fixes.front().covariance_en(0, 0) == Approx(11.143 * 11.143 / 4));
+  }
+  if (const std::string text = shared_log("gpsd_neo-m8n.log.chk"); !text.empty()) {
+    LogRequest request = utc_fixes();
+    request.default_sigma_m = 10;
+    const LogData data = read(text, request);
+    CHECK(data.corrupt == 0);
+    CHECK(data.fixes.size() >= 20);
+  }
+  if (const std::string text = shared_log("gpsd_bu303-nofix.log.chk"); !text.empty())
+    CHECK_THROWS_AS(read(text), InputError);
+}
+
+TEST_CASE("ISO 8601") {
+  const auto nanoseconds = [](std::string_view text) { return stamp_from_iso8601(text).value().nanoseconds; };
+  CHECK(nanoseconds("1970-01-01T00:00:00Z") == 0);
+  CHECK(nanoseconds("2000-02-29T12:00:00.123456789Z") == 951'825'600'123'456'789);
+  CHECK(nanoseconds("1969-12-31T23:59:59.5Z") == -500'000'000);
+  CHECK(nanoseconds("2016-12-31T23:59:60Z") == nanoseconds("2017-01-01T00:00:00Z"));
+  CHECK(nanoseconds("2023-06-28 14:52:12-0130") == nanoseconds("2023-06-28T16:22:12Z"));
+  for (const char* wrong :
+       {"", "2023-06-31T00:00:00Z", "2023-6-1T00:00:00Z", "2023-06-01T24:00:00Z", "2023-06-01T00:00:00X",
+        "2023-06-01T00:00:00.Z", "2023-06-01", "2023-06-01T00:00:00Z "})
+    CHECK(!stamp_from_iso8601(wrong));
+}
