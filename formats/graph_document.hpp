@@ -1,0 +1,71 @@
+/// A graph file in memory: the graph and what belongs to it. Specification of the text format:
+/// formats/README.md.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <waymark/core/frame.hpp>
+#include <waymark/core/graph.hpp>
+#include <waymark/core/registry.hpp>
+#include <waymark/core/sample.hpp>
+#include <waymark/core/stamp.hpp>
+
+namespace waymark {
+
+/// The covariance of one vertex in the chart of its retraction (for VERTEX_SE2: x, y in frame axes, heading).
+struct VertexCovariance {
+  VertexIndex vertex = -1;
+  Eigen::MatrixXd covariance;
+};
+
+struct GraphDocument {
+  Graph graph;
+  std::optional<Frame> frame;
+  TimeScale time_scale = TimeScale::gps;                        ///< of all stamps
+  std::vector<std::pair<std::string, std::string>> provenance;  ///< key, text; in order of writing
+  Eigen::Vector2d antenna_m{0, 0};                              ///< GNSS antenna in the body frame
+  Eigen::Vector2d truth_reference_m{0, 0};                      ///< truth's reference point in the body frame
+  std::vector<Fix> fixes;                     ///< every fix of the drive with the gate's verdict
+  std::vector<VertexCovariance> covariances;  ///< those asked for
+};
+
+/// Lines that a lenient reading left out.
+struct ReadReport {
+  std::size_t skipped = 0;
+  std::vector<std::string> examples;  ///< messages of the first ten
+  bool edges_only = false;            ///< the file had no vertices; they were made along the odometry chain
+};
+
+/// The schema of an edge type as the TYPE line states it: "vertices=A,B fields=measured:3 information=3
+/// error=log".
+[[nodiscard]] std::string describe_schema(const EdgeType& type);
+
+/// Reads a .graph text (first line `GRAPH 1`) or a plain g2o SE(2) file (any other first line).
+/// @param name      for messages
+/// @param lenient   skip wrong lines and count them instead of failing at the first
+/// @throws InputError "run.graph:812:17: EDGE_SE2: expected a number for 'information[2]', got 'abc'"
+[[nodiscard]] GraphDocument read_graph(std::string_view text, const std::string& name,
+                                       const TypeRegistry& registry, bool lenient = false,
+                                       ReadReport* report = nullptr);
+
+/// Writes a .graph text. Reading it back gives the same document, number by number.
+/// @throws UsageError for an edge type that the registry does not have (its schema would be lost).
+[[nodiscard]] std::string write_graph(const GraphDocument& document, const TypeRegistry& registry);
+
+/// Writes a plain g2o file: vertices, FIX and edges of g2o's SE(2) vocabulary, in exact numbers.
+/// EDGE_GNSS_POSITION without lever arm becomes the equal EDGE_SE2 without heading information.
+/// @throws UsageError naming what g2o cannot express (stamps, records and provenance are dropped silently, as
+/// `check` tells).
+[[nodiscard]] std::string write_g2o(const GraphDocument& document);
+
+/// Gives poses to the vertices of an edges-only SE(2) file, along the chain of consecutive ids from (0, 0,
+/// 0), then by breadth first search over the remaining edges. Returns how many could not be reached (they
+/// stay at the origin).
+std::size_t start_from_odometry_chain(Graph& graph);
+
+}  // namespace waymark

@@ -1,0 +1,190 @@
+#include <charconv>
+#include <cmath>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/graph_document.hpp>
+#include <waymark/formats/text_builder.hpp>
+
+namespace waymark {
+namespace {
+
+void write_header(const GraphDocument& document, TextBuilder& out) {
+  out.line("GRAPH", 1);
+  if (document.frame) {
+    const Frame& frame = *document.frame;
+    if (frame.zone == 0) {
+      out.word("FRAME local origin");
+    } else {
+      out.word("FRAME utm").word(std::to_string(frame.zone) + (frame.north ? "N" : "S")).word("origin");
+    }
+    out.number(frame.origin_easting_m).number(frame.origin_northing_m).end_line();
+  }
+  out.word("TIME").word(to_string(document.time_scale)).end_line();
+  for (const auto& [key, text] : document.provenance) out.word("PROVENANCE").word(key).word(text).end_line();
+  const auto write_lever = [&](const char* which, const Eigen::Vector2d& lever) {
+    if (!lever.isZero(0)) out.word("LEVER").word(which).number(lever[0]).number(lever[1]).end_line();
+  };
+  write_lever("antenna", document.antenna_m);
+  write_lever("truth", document.truth_reference_m);
+}
+
+void write_vertices(const Graph& graph, bool stamps, TextBuilder& out) {
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    out.word(graph.vertex_type(v).tag).integer(graph.id(v));
+    for (const double value : graph.value(v)) out.number(value);
+    out.end_line();
+    if (const auto stamp = graph.stamp(v); stamp && stamps) {
+      out.word("STAMP").integer(graph.id(v)).integer(stamp->nanoseconds).end_line();
+    }
+  }
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (graph.fixed(v)) out.word("FIX").integer(graph.id(v)).end_line();
+  }
+}
+
+void write_upper_triangle(const Eigen::MatrixXd& matrix, TextBuilder& out) {
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (Eigen::Index column = row; column < matrix.cols(); ++column) out.number(matrix(row, column));
+  }
+}
+
+void write_edges(const Graph& graph, TextBuilder& out) {
+  std::vector<double> fields;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeBatchBase& batch = graph.batch(b);
+    const EdgeType& type = graph.edge_type(b);
+    for (std::size_t e = 0; e < batch.size(); ++e) {
+      out.word(type.tag);
+      const auto vertices = batch.vertices(e);
+      if (type.arity == EdgeType::kRuntimeArity) out.integer(static_cast<std::int64_t>(vertices.size()));
+      for (const VertexIndex v : vertices) out.integer(graph.id(v));
+      fields.clear();
+      batch.fields(e, fields);
+      for (const double value : fields) out.number(value);
+      write_upper_triangle(batch.information(e), out);
+      out.end_line();
+      if (const Loss* loss = batch.loss(e)) out.word("LOSS").word(loss->name).number(loss->scale).end_line();
+    }
+  }
+}
+
+void write_fix(const Fix& fix, TextBuilder& out) {
+  const auto optional = [&](const std::optional<double>& value) {
+    value ? out.number(*value) : out.word("-");
+  };
+  const auto or_dash = [&](double value) { std::isfinite(value) ? out.number(value) : out.word("-"); };
+  out.word("GNSS").integer(fix.vertex).integer(fix.stamp.nanoseconds);
+  out.number(fix.position[0]).number(fix.position[1]);
+  out.number(fix.covariance(0, 0)).number(fix.covariance(0, 1)).number(fix.covariance(1, 1));
+  or_dash(fix.height_m);
+  optional(fix.heading_rad);
+  optional(fix.heading_sigma_rad);
+  optional(fix.speed_mps);
+  optional(fix.speed_sigma_mps);
+  out.number(fix.grid_scale).integer(fix.epoch).integer(fix.source);
+  out.word(to_string(fix.status)).word(fix.reason);
+  or_dash(fix.chord_angle_rad);
+  or_dash(fix.displacement_m);
+  out.end_line();
+}
+
+}  // namespace
+
+std::string write_graph(const GraphDocument& document, const TypeRegistry& registry) {
+  const Graph& graph = document.graph;
+  TextBuilder out;
+  write_header(document, out);
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeType& type = graph.edge_type(b);
+    if (graph.batch(b).size() == 0) continue;
+    if (registry.find_edge(type.tag) == nullptr) {
+      throw UsageError("cannot write edges of type " + type.tag + ": it is not registered");
+    }
+    out.word("TYPE").word(type.tag).word(describe_schema(type)).end_line();
+  }
+  write_vertices(graph, true, out);
+  write_edges(graph, out);
+  for (const Fix& fix : document.fixes) write_fix(fix, out);
+  for (const VertexCovariance& block : document.covariances) {
+    out.word("COVARIANCE").integer(graph.id(block.vertex));
+    write_upper_triangle(block.covariance, out);
+    out.end_line();
+  }
+  return std::move(out).text();
+}
+
+namespace {
+
+constexpr std::string_view kG2oTags[] = {"VERTEX_SE2", "VERTEX_XY", "EDGE_SE2", "EDGE_SE2_XY",
+                                         "EDGE_PRIOR_SE2"};
+
+bool in_g2o(std::string_view tag) {
+  for (const std::string_view known : kG2oTags) {
+    if (tag == known) return true;
+  }
+  return false;
+}
+
+// The same error as EDGE_SE2 with measurement (x, y, 0) and no information on the heading.
+void write_position_as_se2(const Graph& graph, const EdgeBatchBase& batch, TextBuilder& out) {
+  std::vector<double> fields;
+  for (std::size_t e = 0; e < batch.size(); ++e) {
+    fields.clear();
+    batch.fields(e, fields);
+    if (fields[2] != 0 || fields[3] != 0) {
+      throw UsageError("g2o has no position edge with an antenna lever arm (EDGE_GNSS_POSITION number " +
+                       std::to_string(e + 1) + "); write the .graph format instead");
+    }
+    const Eigen::MatrixXd omega = batch.information(e);
+    const auto vertices = batch.vertices(e);
+    out.word("EDGE_SE2").integer(graph.id(vertices[0])).integer(graph.id(vertices[1]));
+    for (const double value :
+         {fields[0], fields[1], 0.0, omega(0, 0), omega(0, 1), 0.0, omega(1, 1), 0.0, 0.0}) {
+      out.number(value);
+    }
+    out.end_line();
+  }
+}
+
+}  // namespace
+
+std::string write_g2o(const GraphDocument& document) {
+  const Graph& graph = document.graph;
+  TextBuilder out;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (!in_g2o(graph.vertex_type(v).tag)) {
+      throw UsageError("g2o has no vertex type " + graph.vertex_type(v).tag +
+                       "; write the .graph format instead");
+    }
+  }
+  write_vertices(graph, false, out);
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeType& type = graph.edge_type(b);
+    const EdgeBatchBase& batch = graph.batch(b);
+    if (batch.size() == 0) continue;
+    if (type.tag == "EDGE_GNSS_POSITION") {
+      write_position_as_se2(graph, batch, out);
+      continue;
+    }
+    if (!in_g2o(type.tag)) {
+      throw UsageError("g2o has no edge type " + type.tag + "; write the .graph format instead");
+    }
+    std::vector<double> fields;
+    for (std::size_t e = 0; e < batch.size(); ++e) {
+      if (batch.loss(e) != nullptr) {
+        throw UsageError("g2o files cannot hold robust losses (" + type.tag +
+                         "); write the .graph format instead");
+      }
+      out.word(type.tag);
+      for (const VertexIndex v : batch.vertices(e)) out.integer(graph.id(v));
+      fields.clear();
+      batch.fields(e, fields);
+      for (const double value : fields) out.number(value);
+      write_upper_triangle(batch.information(e), out);
+      out.end_line();
+    }
+  }
+  return std::move(out).text();
+}
+
+}  // namespace waymark

@@ -1,0 +1,81 @@
+#include <charconv>
+#include <cmath>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/line_scanner.hpp>
+
+namespace waymark {
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r';
+}
+
+}  // namespace
+
+std::string_view LineScanner::word() {
+  while (cursor_ < line_.size() && is_blank(line_[cursor_])) ++cursor_;
+  word_start_ = cursor_;
+  while (cursor_ < line_.size() && !is_blank(line_[cursor_])) ++cursor_;
+  return line_.substr(word_start_, cursor_ - word_start_);
+}
+
+std::string_view LineScanner::rest() {
+  while (cursor_ < line_.size() && is_blank(line_[cursor_])) ++cursor_;
+  word_start_ = cursor_;
+  std::size_t end = line_.size();
+  while (end > cursor_ && is_blank(line_[end - 1])) --end;
+  cursor_ = line_.size();
+  return line_.substr(word_start_, end - word_start_);
+}
+
+double LineScanner::number(const Expected& expected) {
+  const std::string_view text = word();
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (begin != end && *begin == '+') ++begin;
+  double value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || stop != end || begin == end) fail_expected("a number", expected, text);
+  if (!std::isfinite(value)) fail_expected("a finite number", expected, text);
+  return value;
+}
+
+std::optional<double> LineScanner::optional_number(const Expected& expected) {
+  const std::size_t before = cursor_;
+  if (word() == "-") return std::nullopt;
+  cursor_ = before;
+  return number(expected);
+}
+
+std::int64_t LineScanner::integer(const Expected& expected) {
+  const std::string_view text = word();
+  std::int64_t value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size() || text.empty()) {
+    fail_expected("an integer", expected, text);
+  }
+  return value;
+}
+
+void LineScanner::end(std::string_view tag) {
+  const std::string_view left = word();
+  if (!left.empty() && left.front() != '#') {
+    fail(std::string(tag) + ": expected the end of the line, got '" + std::string(left) + "'");
+  }
+}
+
+void LineScanner::fail(const std::string& message) const {
+  throw InputError(file_ + ":" + std::to_string(line_number_) + ":" + std::to_string(word_start_ + 1) + ": " +
+                   message);
+}
+
+void LineScanner::fail_expected(const char* what, const Expected& expected, std::string_view got) const {
+  std::string message =
+      std::string(expected.tag) + ": expected " + what + " for '" + std::string(expected.field);
+  if (expected.index >= 0) message += "[" + std::to_string(expected.index) + "]";
+  message += "', got " + (got.empty() ? "the end of the line" : "'" + std::string(got) + "'");
+  fail(message);
+}
+
+}  // namespace waymark

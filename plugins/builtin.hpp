@@ -1,0 +1,11 @@
+/// The plugins that were built into this library.
+#pragma once
+
+#include <waymark/core/registry.hpp>
+
+namespace waymark {
+
+/// Enters every built-in plugin, through the same door that modules use.
+void register_builtin_plugins(TypeRegistry& registry);
+
+}  // namespace waymark

@@ -1,0 +1,62 @@
+#include <array>
+
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/gnss_edges.hpp>
+
+namespace waymark {
+namespace {
+
+/// The paper's G2: a fix is a free node, measured from the origin as in G1 and tied to the pose by a stiff
+/// identity. The node is the antenna with the vehicle's heading, so the identity becomes the lever arm where
+/// there is one.
+class GnssG2 final : public GnssModeling {
+ public:
+  GnssG2(bool literal, double identity_information) : literal_(literal), identity_(identity_information) {}
+
+  void build(const GnssInput& input, Graph& graph) const override {
+    if (literal_) require_no_lever_arm(input, "g2");
+    VertexId id = input.first_free_id;
+    const VertexIndex origin = add_origin(id++, graph);
+    const Eigen::Matrix3d identity = identity_ * Eigen::Matrix3d::Identity();
+    for (const Fix& fix : input.fixes) {
+      const VertexIndex pose = pose_vertex(fix, graph);
+      const VertexIndex node =
+          graph.add_vertex<VertexSe2>(id++, {fix.position[0], fix.position[1], graph.value(pose)[2]});
+      if (literal_) {
+        graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, {origin, node},
+                       pose_information(fix));
+        graph.add_edge(EdgeSe2Log{}, {node, pose}, identity);
+      } else {
+        graph.add_edge(EdgeGnssPosition{fix.position, {0, 0}}, {origin, node}, position_information(fix));
+        graph.add_edge(EdgeSe2{{-input.antenna[0], -input.antenna[1], 0}}, {node, pose}, identity);
+      }
+    }
+  }
+
+ private:
+  bool literal_;
+  double identity_;
+};
+
+std::vector<OptionInfo> options() {
+  return {gnss_error_option(),
+          {"identity_information", "1e6", "1/m^2, 1/rad^2", "of the (virtual) identity edges; in [1, 1e12]"}};
+}
+
+std::unique_ptr<GnssModeling> make(const Options& given) {
+  const std::vector<OptionInfo> known = options();
+  check_option_names("g2", given, known);
+  return std::make_unique<GnssG2>(is_literal("g2", given),
+                                  number_option("g2", given, known, "identity_information", 1, 1e12));
+}
+
+void register_types(TypeRegistry& registry) {
+  registry.add_gnss_modeling(
+      {"g2", "fixes are free nodes, tied to the poses by stiff identity edges", options(), make});
+}
+
+}  // namespace
+}  // namespace waymark
+
+WAYMARK_PLUGIN(gnss_g2, "0.1.0", waymark::register_types);

@@ -1,0 +1,54 @@
+#include <array>
+
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/gnss_edges.hpp>
+
+namespace waymark {
+namespace {
+
+/// The paper's G3: a fix is a fixed node, tied to the pose by an identity edge that carries the fix's
+/// information.
+class GnssG3 final : public GnssModeling {
+ public:
+  explicit GnssG3(bool literal) : literal_(literal) {}
+
+  void build(const GnssInput& input, Graph& graph) const override {
+    if (literal_) require_no_lever_arm(input, "g3");
+    VertexId id = input.first_free_id;
+    for (const Fix& fix : input.fixes) {
+      const VertexIndex pose = pose_vertex(fix, graph);
+      // Heading 0: the error of the identity edge is then p - z in frame axes.
+      const VertexIndex node = graph.add_vertex<VertexSe2>(id++, {fix.position[0], fix.position[1], 0});
+      graph.set_fixed(node, true);
+      if (literal_) {
+        graph.add_edge(EdgeSe2Log{}, {node, pose}, pose_information(fix));
+      } else {
+        graph.add_edge(EdgeGnssPosition{{0, 0}, input.antenna}, {node, pose}, position_information(fix));
+      }
+    }
+  }
+
+ private:
+  bool literal_;
+};
+
+std::vector<OptionInfo> options() {
+  return {gnss_error_option()};
+}
+
+std::unique_ptr<GnssModeling> make(const Options& given) {
+  const std::vector<OptionInfo> known = options();
+  check_option_names("g3", given, known);
+  return std::make_unique<GnssG3>(is_literal("g3", given));
+}
+
+void register_types(TypeRegistry& registry) {
+  registry.add_gnss_modeling(
+      {"g3", "fixes are fixed nodes, tied to the poses by identity edges", options(), make});
+}
+
+}  // namespace
+}  // namespace waymark
+
+WAYMARK_PLUGIN(gnss_g3, "0.1.0", waymark::register_types);

@@ -1,0 +1,45 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <waymark/plugins/odometry/noise.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark {
+
+Eigen::Matrix3d process_covariance(const Interval& interval, const ProcessNoise& noise) {
+  const double speed = std::abs(interval.speed_mps);
+  const Eigen::Vector3d rate(noise.longitudinal_per_m * speed + noise.position_per_s,
+                             noise.lateral_per_m * speed + noise.position_per_s,
+                             noise.heading_per_m * speed + noise.heading_per_s);
+  // Gauss-Legendre with three points: exact for straight motion (the integrand is quadratic in tau) and to
+  // 1e-9 relative for turns up to 0.2 rad per interval.
+  const double root = std::sqrt(0.6);
+  const std::array<std::pair<double, double>, 3> points = {
+      {{0.5 * (1 - root), 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 * (1 + root), 5.0 / 18}}};
+  const Eigen::Vector3d twist(interval.speed_mps, 0, interval.yaw_rate_radps);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const auto& [place, weight] : points) {
+    const Eigen::Vector3d remaining = -place * interval.dt_s * twist;
+    const Eigen::Matrix3d adjoint = se2_adjoint(se2_exp(remaining));
+    covariance += weight * interval.dt_s * adjoint * rate.asDiagonal() * adjoint.transpose();
+  }
+  return interval.bridged ? Eigen::Matrix3d(noise.gap_factor * covariance) : covariance;
+}
+
+Eigen::Matrix3d standstill_covariance(double dt_s, const StandstillNoise& noise) {
+  const double position = std::min(noise.position_per_s * dt_s, noise.largest);
+  const double heading = std::min(noise.heading_per_s * dt_s, noise.largest);
+  return Eigen::Vector3d(position, position, heading).asDiagonal();
+}
+
+Eigen::Matrix3d paper_covariance(const Interval& interval) {
+  constexpr double kDrift = 0.011;
+  const double distance = interval.speed_mps * interval.dt_s;
+  const double turn = interval.yaw_rate_radps * interval.dt_s;
+  const double position = std::max(std::pow(kDrift * distance, 2), 1e-5);
+  const double heading = std::max(std::pow(kDrift * turn, 2), 1e-6);
+  return Eigen::Vector3d(position, position, heading).asDiagonal();
+}
+
+}  // namespace waymark

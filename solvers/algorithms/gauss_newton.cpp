@@ -1,0 +1,41 @@
+#include <waymark/core/options.hpp>
+#include <waymark/solvers/algorithms/newton_step.hpp>
+#include <waymark/solvers/backends.hpp>
+
+namespace waymark {
+namespace {
+
+/// The plain method: full steps, taken even uphill (it often comes back), never damped.
+class GaussNewton final : public Algorithm {
+ public:
+  void reset() override { failed_ = false; }
+
+  [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver, double,
+                                       Step& step) override {
+    if (failed_) return ProposalStatus::exhausted;
+    Eigen::VectorXd newton;
+    if (!solve_step(equations, solver, {}, scratch_, newton)) return ProposalStatus::singular;
+    take_newton_step(equations, newton, step);
+    step.control = 0;
+    return ProposalStatus::ok;
+  }
+
+  [[nodiscard]] bool acceptable(double) const override { return true; }
+  void accepted(const Step&, double) override {}
+  void rejected(const Step&, double) override { failed_ = true; }  // only where chi2 was not finite
+
+ private:
+  std::vector<double> scratch_;
+  bool failed_ = false;
+};
+
+}  // namespace
+
+AlgorithmType gauss_newton() {
+  return {"gauss_newton", "full Gauss-Newton steps", {}, [](const Options& given) {
+            check_option_names("gauss_newton", given, {});
+            return std::make_unique<GaussNewton>();
+          }};
+}
+
+}  // namespace waymark

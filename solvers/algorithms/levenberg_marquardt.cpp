@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <waymark/core/options.hpp>
+#include <waymark/solvers/algorithms/newton_step.hpp>
+#include <waymark/solvers/backends.hpp>
+
+namespace waymark {
+namespace {
+
+struct LevenbergMarquardtOptions {
+  double initial_damping;
+  bool scale_by_diagonal;
+};
+
+/// (H + mu D) d = -g with D = diag(H) (Marquardt) or the identity, mu by the rule of Nielsen, "Damping
+/// parameter in Marquardt's method" (1999). Near the minimum the damped step says nothing about convergence,
+/// so the undamped one is computed and proposed there.
+class LevenbergMarquardt final : public Algorithm {
+ public:
+  explicit LevenbergMarquardt(const LevenbergMarquardtOptions& options) : options_(options) { reset(); }
+
+  void reset() override {
+    damping_ = -1;
+    growth_ = 2;
+    newton_failed_ = false;
+  }
+
+  [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver,
+                                       double tolerance, Step& step) override {
+    const Eigen::VectorXd scale = scaling(equations);
+    if (damping_ < 0)
+      damping_ = options_.initial_damping * (options_.scale_by_diagonal ? 1 : scale_of_identity_);
+    while (damping_ <= kMaxDamping * scale_of_identity_) {
+      if (!solve_step(equations, solver, damping_ * scale, scratch_, step.delta)) {
+        grow();
+        continue;
+      }
+      step.predicted_decrease =
+          step.delta.dot((damping_ * scale.array() * step.delta.array()).matrix() - equations.gradient());
+      step.newton_decrement = std::numeric_limits<double>::quiet_NaN();
+      step.full_newton = false;
+      step.kind = "damped";
+      step.control = damping_;
+      // The damped step promises little: because of the damping, or because this is the minimum? The full one
+      // tells.
+      if (step.predicted_decrease <= kLookAhead * tolerance && !newton_failed_) {
+        Eigen::VectorXd newton;
+        if (solve_step(equations, solver, {}, scratch_, newton)) take_newton_step(equations, newton, step);
+      }
+      return ProposalStatus::ok;
+    }
+    return ProposalStatus::exhausted;
+  }
+
+  [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 1e-4; }
+
+  void accepted(const Step& step, double gain_ratio) override {
+    newton_failed_ = false;
+    if (step.full_newton) return;
+    damping_ *= std::max(1.0 / 3, 1 - std::pow(2 * gain_ratio - 1, 3));
+    damping_ = std::max(damping_, kMinDamping);
+    growth_ = 2;
+  }
+
+  void rejected(const Step& step, double) override {
+    if (step.full_newton) {
+      newton_failed_ = true;
+    } else {
+      grow();
+    }
+  }
+
+ private:
+  static constexpr double kMaxDamping = 1e20;
+  static constexpr double kMinDamping = 1e-30;
+  static constexpr double kLookAhead = 1e3;  // how far above the tolerance the full step is looked at
+
+  Eigen::VectorXd scaling(const NormalEquations& equations) {
+    const Eigen::VectorXd diagonal = equations.diagonal();
+    const double largest = diagonal.maxCoeff();
+    if (!options_.scale_by_diagonal) {
+      scale_of_identity_ = largest;
+      return Eigen::VectorXd::Ones(diagonal.size());
+    }
+    scale_of_identity_ = 1;
+    return diagonal.cwiseMax(1e-15 * largest);  // an unknown without information must be damped too
+  }
+
+  void grow() {
+    damping_ *= growth_;
+    growth_ *= 2;
+  }
+
+  LevenbergMarquardtOptions options_;
+  std::vector<double> scratch_;
+  double damping_ = -1;
+  double growth_ = 2;
+  double scale_of_identity_ = 1;
+  bool newton_failed_ = false;  // at the present values
+};
+
+}  // namespace
+
+AlgorithmType levenberg_marquardt() {
+  const std::vector<OptionInfo> options = {
+      {"initial_damping", "1e-4", "", "first damping factor, relative to the scaling; in [1e-12, 1e6]"},
+      {"scaling", "marquardt", "",
+       "what the damping multiplies: 'marquardt' diag(H), 'identity' the identity"}};
+  return {"levenberg_marquardt", "damped Gauss-Newton steps, damping by Nielsen's rule", options,
+          [options](const Options& given) {
+            constexpr std::string_view kOwner = "levenberg_marquardt";
+            check_option_names(kOwner, given, options);
+            constexpr std::array<std::string_view, 2> kScalings = {"marquardt", "identity"};
+            return std::make_unique<LevenbergMarquardt>(LevenbergMarquardtOptions{
+                number_option(kOwner, given, options, "initial_damping", 1e-12, 1e6),
+                word_option(kOwner, given, options, "scaling", kScalings) == "marquardt"});
+          }};
+}
+
+}  // namespace waymark

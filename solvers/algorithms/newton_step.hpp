@@ -1,0 +1,38 @@
+/// What all algorithms share: the factorisation of H (damped or not) and the step it gives.
+#pragma once
+
+#include <vector>
+
+#include <waymark/core/algorithm.hpp>
+
+namespace waymark {
+
+/// Solves (H + diag(damping)) d = -g. @param damping empty: none. @param scratch reused between calls.
+/// Returns false where the matrix is not positive definite or the step not finite; `delta` is then unchanged.
+[[nodiscard]] inline bool solve_step(const NormalEquations& equations, LinearSolver& solver,
+                                     const Eigen::VectorXd& damping, std::vector<double>& scratch,
+                                     Eigen::VectorXd& delta) {
+  std::span<const double> numbers = equations.hessian();
+  if (damping.size() > 0) {
+    equations.add_to_diagonal(damping, scratch);
+    numbers = scratch;
+  }
+  if (solver.factorize(numbers) != FactorStatus::ok) return false;
+  Eigen::VectorXd solution = -equations.gradient();
+  const std::span<double> view(solution.data(), static_cast<std::size_t>(solution.size()));
+  solver.solve(view, view);
+  if (!solution.allFinite()) return false;
+  delta = std::move(solution);
+  return true;
+}
+
+/// Makes `step` the full Newton step `newton`; its decrement g^T H^-1 g = -g^T d is what the model promises.
+inline void take_newton_step(const NormalEquations& equations, const Eigen::VectorXd& newton, Step& step) {
+  step.delta = newton;
+  step.newton_decrement = -equations.gradient().dot(newton);
+  step.predicted_decrease = step.newton_decrement;
+  step.full_newton = true;
+  step.kind = "newton";
+}
+
+}  // namespace waymark

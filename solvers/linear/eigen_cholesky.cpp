@@ -1,0 +1,58 @@
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <waymark/solvers/backends.hpp>
+
+namespace waymark {
+namespace {
+
+/// Eigen's simplicial LL^T. EIGEN_MPL2_ONLY compatible, so a build without SuiteSparse is permissive.
+class EigenCholesky final : public LinearSolver {
+ public:
+  void analyze(const BlockPattern& pattern) override {
+    scalar_ = to_scalar<int>(pattern);
+    factor_.analyzePattern(view(nullptr));
+  }
+
+  [[nodiscard]] FactorStatus factorize(std::span<const double> values) override {
+    factor_.factorize(view(values.data()));
+    return factor_.info() == Eigen::Success ? FactorStatus::ok : FactorStatus::not_positive_definite;
+  }
+
+  void solve(std::span<const double> b, std::span<double> x) override {
+    const auto n = static_cast<Eigen::Index>(b.size());
+    const Eigen::VectorXd solution = factor_.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
+    Eigen::Map<Eigen::VectorXd>(x.data(), n) = solution;
+  }
+
+  [[nodiscard]] std::int64_t factor_size() const override {
+    return factor_.matrixL().nestedExpression().nonZeros();
+  }
+  [[nodiscard]] std::string description() const override { return "eigen, simplicial"; }
+
+ private:
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+  // Analysis reads the pattern only, yet Eigen wants a matrix with numbers.
+  Matrix view(const double* values) {
+    const auto n = static_cast<Eigen::Index>(scalar_.column.size()) - 1;
+    if (values == nullptr) {
+      pattern_only_.assign(scalar_.row.size(), 1.0);
+      values = pattern_only_.data();
+    }
+    return Eigen::Map<const Matrix>(n, n, static_cast<Eigen::Index>(scalar_.row.size()),
+                                    scalar_.column.data(), scalar_.row.data(), values);
+  }
+
+  ScalarPattern<int> scalar_;
+  std::vector<double> pattern_only_;
+  Eigen::SimplicialLLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<int>> factor_;
+};
+
+}  // namespace
+
+LinearSolverType eigen_solver() {
+  return {"eigen", "Eigen's simplicial LL^T", "MPL-2.0", [] { return std::make_unique<EigenCholesky>(); }};
+}
+
+}  // namespace waymark

@@ -1,0 +1,19 @@
+#include <waymark/solvers/backends.hpp>
+#include <waymark/solvers/register.hpp>
+
+namespace waymark {
+
+void register_solvers(TypeRegistry& registry) {
+#ifdef WAYMARK_WITH_CHOLMOD
+  for (const LinearSolverType& solver : cholmod_solvers()) registry.add_linear_solver(solver);
+#endif
+#ifdef WAYMARK_WITH_CSPARSE
+  registry.add_linear_solver(csparse_solver());
+#endif
+  registry.add_linear_solver(eigen_solver());
+  registry.add_algorithm(gauss_newton());
+  registry.add_algorithm(levenberg_marquardt());
+  registry.add_algorithm(dogleg());
+}
+
+}  // namespace waymark
