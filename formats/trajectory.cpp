@@ -2,13 +2,14 @@
 
 #include <charconv>
 #include <cmath>
-#include <initializer_list>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/stamp_text.hpp>
+#include <waymark/formats/text_builder.hpp>
 
 namespace waymark {
 namespace {
@@ -129,19 +130,15 @@ std::string trajectory_csv(std::span<const TrajectoryPoint> points) {
 }
 
 std::string trajectory_tum(std::span<const TrajectoryPoint> points) {
-  std::string out = "# t x y z qx qy qz qw\n";
+  TextBuilder out;
+  out.word("# t x y z qx qy qz qw").end_line();
   for (std::size_t i = 0; i < points.size(); ++i) {
     check_finite("TUM", i, points[i]);
     const Eigen::Vector3d& pose = points[i].pose;
-    out += decimal_seconds(points[i].stamp);
-    for (const double value :
-         {pose.x(), pose.y(), 0.0, 0.0, 0.0, std::sin(0.5 * pose.z()), std::cos(0.5 * pose.z())}) {
-      out += ' ';
-      append_number(out, value);
-    }
-    out += '\n';
+    out.word(decimal_seconds(points[i].stamp)).number(pose.x()).number(pose.y()).number(0);
+    out.number(0).number(0).number(std::sin(0.5 * pose.z())).number(std::cos(0.5 * pose.z())).end_line();
   }
-  return out;
+  return std::move(out).text();
 }
 
 std::string trajectory_geojson(std::span<const TrajectoryPoint> points, std::span<const FixPoint> fixes,

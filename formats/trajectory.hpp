@@ -61,7 +61,7 @@ struct FixPoint {
 /// (norm within 1 % of 1), in (-pi, pi]. Poses come in the order of the file.
 /// @param text  the whole file.
 /// @param name  of the file, for messages.
-/// @throws InputError "truth.tum:3:14: TUM: expected number for 'y', got 'abc'" and the like; also where no
+/// @throws InputError "truth.tum:3:14: TUM: expected a number for 'y', got 'abc'" and the like; also where no
 /// pose is found.
 [[nodiscard]] std::vector<StampedPose> read_tum(std::string_view text, std::string_view name);
 

@@ -137,14 +137,13 @@ TEST_CASE("TUM: heading is the yaw of a full rotation", "[trajectory]") {
 }
 
 TEST_CASE("TUM: errors name file, line, column, found and expected", "[trajectory]") {
-  CHECK(tum_error("# c\n1 2 abc 0 0 0 0 1\n") == "truth.tum:2:5: TUM: expected number for 'y', got 'abc'");
-  CHECK(tum_error("x 2 3 0 0 0 0 1") == "truth.tum:1:1: TUM: expected number for 't', got 'x'");
-  CHECK(tum_error("1 2 nan 0 0 0 0 1") == "truth.tum:1:5: TUM: expected number for 'y', got 'nan'");
-  CHECK_THAT(tum_error("1 2 3 0 0 0 0\n"),
-             Catch::StartsWith("truth.tum:1:14: TUM: expected number for 'qw', got end of line"));
-  CHECK(tum_error("1 2 3 0 0 0 0 1 7") ==
-        "truth.tum:1:17: TUM: expected end of line after 8 numbers, got '7'");
-  CHECK(tum_error("1 2 3 0 0 0 0 0") == "truth.tum:1:9: TUM: expected a unit quaternion, got norm 0");
+  CHECK(tum_error("# c\n1 2 abc 0 0 0 0 1\n") == "truth.tum:2:5: TUM: expected a number for 'y', got 'abc'");
+  CHECK(tum_error("x 2 3 0 0 0 0 1") == "truth.tum:1:1: TUM: expected a number for 't', got 'x'");
+  CHECK(tum_error("1 2 nan 0 0 0 0 1") == "truth.tum:1:5: TUM: expected a finite number for 'y', got 'nan'");
+  CHECK(tum_error("1 2 3 0 0 0 0\n") ==
+        "truth.tum:1:14: TUM: expected a number for 'qw', got the end of the line");
+  CHECK(tum_error("1 2 3 0 0 0 0 1 7") == "truth.tum:1:17: TUM: expected the end of the line, got '7'");
+  CHECK(tum_error("1 2 3 0 0 0 0 0") == "truth.tum:1:15: TUM: expected a unit quaternion, got norm 0");
   CHECK(tum_error("") == "truth.tum: TUM: no pose in it");
   CHECK(tum_error("# only a comment") == "truth.tum: TUM: no pose in it");
 }
