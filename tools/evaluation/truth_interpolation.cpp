@@ -126,8 +126,8 @@ TruthMatch interpolate_truth(std::span<const TruthPose> truth, std::span<const S
   check_order(truth);
   TruthMatch match;
   match.median_interval_s = median_interval_s(truth);
-  // A nanosecond of grace: 1.5 x 0.2 s must be allowed where the stamps say exactly 0.3 s.
-  match.longest_interpolated_s = options.max_gap_factor * match.median_interval_s + 1e-9;
+  // A microsecond of grace: 1.5 x 0.2 s must be allowed where the stamps say 0.3 s, rounded as they may be.
+  match.longest_interpolated_s = options.max_gap_factor * match.median_interval_s + 1e-6;
   const SampledTruth sampled{
       .poses = truth, .longest_interval_s = match.longest_interpolated_s, .options = options};
 
