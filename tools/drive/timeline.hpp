@@ -33,11 +33,12 @@ struct Timeline {
 
 /// Builds nodes and intervals.
 /// Between odometry samples k and k+1 the twist is the mean of the two; an interval split at a fix keeps that
-/// twist on both parts. Fixes outside the odometry's span must have been dropped before.
+/// twist on both parts. The speed is multiplied by the grid scale of the fix nearest in time to the middle of
+/// the odometry interval. Fixes outside the odometry's span must have been dropped before.
 /// @param odometry sorted by stamp, stamps unique, at least 2
 /// @param fixes    sorted by stamp
 /// @throws InputError for fewer than two samples, a gap under GapPolicy::error, a fix outside the odometry's
-/// span.
+/// span; UsageError for samples out of order.
 [[nodiscard]] Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<const Fix> fixes,
                                       const TimelineOptions& options);
 
@@ -45,5 +46,11 @@ struct Timeline {
 /// windings can be read off. An interval with |speed| below `standstill_mps` is the identity.
 [[nodiscard]] std::vector<Eigen::Vector3d> dead_reckon(const Timeline& timeline, const Eigen::Vector3d& start,
                                                        double standstill_mps);
+
+/// For each fix of the timeline the pose of its node moved to the antenna (heading kept): what the gate
+/// compares with the fixes. @param antenna_m antenna in the body frame (x forward, y left)
+[[nodiscard]] std::vector<Eigen::Vector3d> antenna_at_fixes(const Timeline& timeline,
+                                                            std::span<const Eigen::Vector3d> poses,
+                                                            const Eigen::Vector2d& antenna_m);
 
 }  // namespace waymark
