@@ -1,0 +1,94 @@
+#include <charconv>
+#include <cmath>
+
+#include <waymark/core/error.hpp>
+#include <waymark/tools/drive/assemble.hpp>
+#include <waymark/tools/drive/timeline.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
+
+namespace waymark {
+namespace {
+
+std::string shortest(double value) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+
+std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, const TypeRegistry& registry) {
+  Options options;
+  for (const auto& [name, value] : config.odometry_noise) options[name] = shortest(value);
+  options.try_emplace("gap_noise_factor", shortest(config.timeline.gap_noise_factor));
+  return registry.make_odometry_model("constant_twist", options);
+}
+
+}  // namespace
+
+DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& config,
+                             const TypeRegistry& registry) {
+  const std::unique_ptr<OdometryModel> odometry = make_odometry_model(config, registry);
+  DriveSkeleton skeleton;
+  GraphDocument& document = skeleton.document;
+  document.frame = drive.frame;
+  document.time_scale = drive.scale;
+  document.antenna_m = drive.antenna_m;
+  document.truth_reference_m = drive.truth_reference_m;
+  document.fixes = drive.fixes;
+
+  const Timeline timeline = build_timeline(drive.odometry, document.fixes, config.timeline);
+  const double standstill = odometry->standstill_speed();
+  const std::vector<Eigen::Vector3d> reckoned = dead_reckon(timeline, Eigen::Vector3d::Zero(), standstill);
+  skeleton.gate =
+      apply_gate(document.fixes, antenna_at_fixes(timeline, reckoned, drive.antenna_m), config.gate);
+  require_accepted_fix(skeleton.gate);
+  skeleton.start = make_start(timeline, document.fixes, drive.antenna_m, standstill, config.start);
+
+  std::vector<VertexIndex> poses;
+  poses.reserve(timeline.stamps.size());
+  for (std::size_t i = 0; i < timeline.stamps.size(); ++i) {
+    const Eigen::Vector3d& pose = skeleton.start.poses[i];
+    const auto id = static_cast<VertexId>(i) + 1;
+    poses.push_back(document.graph.add_vertex<VertexSe2>(id, {pose[0], pose[1], pose[2]}));
+    document.graph.set_stamp(poses.back(), timeline.stamps[i]);
+  }
+  odometry->build(timeline.intervals, poses, document.graph);
+  for (std::size_t i = 0; i < document.fixes.size(); ++i) {
+    document.fixes[i].vertex = static_cast<VertexId>(timeline.fix_node[i]) + 1;
+  }
+  for (const Interval& interval : timeline.intervals) {
+    skeleton.distance_m += std::abs(interval.speed_mps) * interval.dt_s;
+  }
+  return skeleton;
+}
+
+GraphDocument add_modeling(const DriveSkeleton& skeleton, const std::string& modeling, const Options& options,
+                           const TypeRegistry& registry) {
+  GraphDocument document = skeleton.document;
+  std::vector<Fix> accepted;
+  for (const Fix& fix : document.fixes) {
+    if (fix.status == FixStatus::accepted) accepted.push_back(fix);
+  }
+  GnssInput input;
+  input.fixes = accepted;
+  input.antenna = document.antenna_m;
+  input.first_free_id = static_cast<VertexId>(document.graph.vertex_count()) + 1;
+  registry.make_gnss_modeling(modeling, options)->build(input, document.graph);
+  return document;
+}
+
+std::vector<StampedPose> poses_at_fixes(const GraphDocument& document) {
+  std::vector<StampedPose> poses;
+  poses.reserve(document.fixes.size());
+  for (const Fix& fix : document.fixes) {
+    const auto vertex = document.graph.find(fix.vertex);
+    if (!vertex || document.graph.vertex_type(*vertex).tag != VertexSe2::kTag ||
+        !document.graph.stamp(*vertex)) {
+      throw InputError("fix of epoch " + std::to_string(fix.epoch) + ": its vertex " +
+                       std::to_string(fix.vertex) + " is no pose with a stamp");
+    }
+    const auto value = document.graph.value(*vertex);
+    poses.push_back({*document.graph.stamp(*vertex), {value[0], value[1], value[2]}});
+  }
+  return poses;
+}
+
+}  // namespace waymark

@@ -1,0 +1,35 @@
+/// The graph of a drive: nodes, odometry edges, the gate's verdicts, the start, a GNSS modeling.
+#pragma once
+
+#include <waymark/core/registry.hpp>
+#include <waymark/formats/graph_document.hpp>
+#include <waymark/tools/drive/config.hpp>
+#include <waymark/tools/drive/gate.hpp>
+#include <waymark/tools/drive/prepare.hpp>
+#include <waymark/tools/drive/start.hpp>
+
+namespace waymark {
+
+/// Everything that is the same for all modelings of a drive.
+struct DriveSkeleton {
+  GraphDocument document;  ///< poses with stamps, odometry edges, records of all fixes; no GNSS edges yet
+  GateSummary gate;
+  Start start;
+  double distance_m = 0;  ///< driven, by the odometry
+};
+
+/// Builds nodes, odometry edges and the start, and runs the gate. Pose ids are 1, 2, ... in order of time.
+/// @throws InputError where the gate leaves no fix; what the steps throw.
+[[nodiscard]] DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& config,
+                                           const TypeRegistry& registry);
+
+/// The skeleton's document with the modeling's vertices and edges for the accepted fixes.
+/// @throws UsageError for an unknown modeling or option
+[[nodiscard]] GraphDocument add_modeling(const DriveSkeleton& skeleton, const std::string& modeling,
+                                         const Options& options, const TypeRegistry& registry);
+
+/// The poses at the fixes, in their order. @throws InputError where a fix's vertex has no stamp or is no
+/// pose.
+[[nodiscard]] std::vector<StampedPose> poses_at_fixes(const GraphDocument& document);
+
+}  // namespace waymark
