@@ -20,7 +20,7 @@ double median(std::span<const double> sorted) {
 double nearest_rank_quantile(std::span<const double> sorted, double probability) {
   if (sorted.empty()) return kUndefined;
   const auto n = static_cast<double>(sorted.size());
-  // 0.95 * 20 is 19.000000000000004 in other factorings: a rank must not move up by rounding alone.
+  // 0.07 * 100 is 7.000000000000001: a rank must not move up by rounding alone.
   const double rank = std::clamp(std::ceil(probability * n - 1e-9), 1.0, n);
   return sorted[static_cast<std::size_t>(rank) - 1];
 }
