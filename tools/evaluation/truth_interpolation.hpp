@@ -46,9 +46,10 @@ struct TruthMatch {
 /// O(n log m) for n epochs and m truth poses.
 /// @param truth   stamps not decreasing, on the scale of the epochs.
 /// @param epochs  in any order.
-/// @throws InputError for no truth, truth out of order, a truth that does not overlap the epochs (the message
-/// has
-///         both time spans), and where every epoch falls into a gap; UsageError for an invalid option.
+/// @throws InputError for no truth, truth out of order or not finite, a truth that does not overlap the
+/// epochs
+///         (the message has both time spans), and where every epoch falls into a gap;
+///         UsageError for an invalid option.
 [[nodiscard]] TruthMatch interpolate_truth(std::span<const TruthPose> truth, std::span<const Stamp> epochs,
                                            const TruthOptions& options = {});
 
