@@ -46,9 +46,8 @@ struct TruthMatch {
 /// O(n log m) for n epochs and m truth poses.
 /// @param truth   stamps not decreasing, on the scale of the epochs.
 /// @param epochs  in any order.
-/// @throws InputError for no truth, truth out of order or not finite, a truth that does not overlap the
-/// epochs
-///         (the message has both time spans), and where every epoch falls into a gap;
+/// @throws InputError for truth that is empty, out of order, not finite, without overlap with the epochs (the
+///         message has both time spans) or with every epoch in a gap;
 ///         UsageError for an invalid option.
 [[nodiscard]] TruthMatch interpolate_truth(std::span<const TruthPose> truth, std::span<const Stamp> epochs,
                                            const TruthOptions& options = {});
