@@ -208,6 +208,7 @@ TEST_CASE("a receiver that stands while the vehicle moves is frozen", "[gate]") 
   for (std::size_t i = 10; i < 15; ++i) scene.fixes[i].position = scene.fixes[9].position;
   scene.judge();
   for (std::size_t i = 10; i < 15; ++i) CHECK(scene.fixes[i].reason == "frozen");
+  for (std::size_t i = 10; i < 15; ++i) CHECK(scene.fixes[i].status == FixStatus::rejected);
 }
 
 TEST_CASE("withheld fixes are neither judged nor used", "[gate]") {
@@ -224,8 +225,11 @@ TEST_CASE("withheld fixes are neither judged nor used", "[gate]") {
 
 TEST_CASE("receivers are judged apart: their offset is not a jump", "[gate]") {
   Scene scene;
-  for (int i = 0; i < 20; ++i) scene.add(0.5 * i, {5.0 * i, i % 2 == 0 ? 0.0 : 30.0}, i % 2);
-  for (std::size_t i = 1; i < 20; i += 2) scene.odometry[i] = scene.odometry[i - 1];
+  for (int i = 0; i < 20; ++i) {
+    scene.add(i, {10.0 * i, 0}, 0);
+    scene.add(i, {10.0 * i, 0}, 1);
+    scene.fixes.back().position[1] += 30;
+  }
   CHECK(scene.judge().rejected == 0);
 }
 
