@@ -19,15 +19,17 @@ namespace waymark {
 
 /// One log of a stream: which reader, which file, how to read it.
 struct LogConfig {
-  std::string file;            ///< as resolved against the folder of drive.yaml
+  std::string file;            ///< as resolved against the folder of the logs
   std::string format = "csv";  ///< name of a registered log reader
   LogRequest request;
+  std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
 };
 
 /// A drive to be fused.
 struct DriveConfig {
-  std::string path;  ///< of the drive.yaml itself
-  std::string name;
+  std::string path;    ///< of the drive.yaml itself
+  std::string name;    ///< default: the file's name without ".yaml"
+  std::string folder;  ///< where relative log names are looked up
   std::optional<LogConfig> odometry;
   std::vector<LogConfig> gnss;  ///< at least one
   std::optional<LogConfig> truth;
@@ -50,10 +52,19 @@ struct DriveConfig {
   std::string modeling = "g1";  ///< registered GNSS modeling
   std::map<std::string, std::string> modeling_options;
   std::map<std::string, double> odometry_noise;  ///< options of the odometry plugin
+  /// "drive.yaml:12:5: " of what only a plugin can check: "modeling", "modeling.options.NAME",
+  /// "odometry.noise.NAME".
+  std::map<std::string, std::string> places;
 };
 
-/// Reads and checks a drive.yaml.
+/// Reads and checks a drive.yaml (schema: tools/drive/README.md). Logs are not opened.
+/// @param data_folder  where relative log names are looked up, instead of the file's own `folder` (empty:
+/// that one)
 /// @throws InputError "drive.yaml:12:5: unknown key 'colums'; did you mean 'columns'?" and the like.
-[[nodiscard]] DriveConfig load_drive_config(const std::string& path);
+[[nodiscard]] DriveConfig load_drive_config(const std::string& path, const std::string& data_folder = "");
+
+/// The same from text. @param path  the file's name, for messages and as the anchor of relative folders
+[[nodiscard]] DriveConfig parse_drive_config(const std::string& text, const std::string& path,
+                                             const std::string& data_folder = "");
 
 }  // namespace waymark

@@ -1,0 +1,224 @@
+#include <waymark/tools/drive/config.hpp>
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/tools/drive/log_config.hpp>
+#include <waymark/tools/drive/yaml_section.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::array<std::string_view, 3> kScales{"gps", "utc", "unix"};
+constexpr std::array<std::string_view, 2> kGapPolicies{"bridge", "error"};
+constexpr std::array<std::string_view, 2> kStarts{"anchored", "dead_reckoning"};
+constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
+constexpr NumberRule kAngle{std::numeric_limits<double>::min(), 180, "degrees above 0, up to 180"};
+constexpr NumberRule kWithhold{0, 1e9, "0 (none) or a whole number from 2"};
+
+/// What a gnss entry says beyond its log.
+struct Receiver {
+  Eigen::Vector2d antenna_m{0, 0};
+  double period_s = 0;
+  double delay_s = 0;
+  int withhold_every = 0;
+
+  friend bool operator==(const Receiver&, const Receiver&) = default;
+};
+
+void read_time(const YamlSection& top, DriveConfig& config) {
+  const auto time = top.section("time", {"scale", "from", "to"});
+  if (!time) return;
+  if (const auto scale = time->read_word("scale", kScales))
+    config.time_scale = *time_scale_from_string(kScales[*scale]);
+  time->read("from", config.from_s, kNotNegative);
+  time->read("to", config.to_s, kPositive);
+  if (config.to_s && *config.to_s <= config.from_s.value_or(0)) time->fail("to", "must lie after 'from'");
+}
+
+/// 32, "32N" or "32S"; a plain number is north.
+int read_zone(const YamlSection& frame) {
+  std::string text;
+  frame.read("utm_zone", text);
+  bool north = true;
+  if (!text.empty() && (text.back() == 'N' || text.back() == 'S')) {
+    north = text.back() == 'N';
+    text.pop_back();
+  }
+  int zone = 0;
+  for (const char c : text) {
+    const bool good = c >= '0' && c <= '9' && zone < 100;
+    zone = good ? 10 * zone + (c - '0') : 100;
+  }
+  if (zone < 1 || zone > 60) frame.fail_value("utm_zone", "a zone such as 32N or 56S");
+  return north ? zone : -zone;
+}
+
+void read_frame(const YamlSection& top, DriveConfig& config) {
+  const auto frame = top.section("frame", {"utm_zone", "origin"});
+  if (!frame) return;
+  if (frame->has("utm_zone")) config.utm_zone = read_zone(*frame);
+  if (!frame->has("origin")) return;
+  if (!config.utm_zone) frame->fail("origin", "needs a stated utm_zone: it counts from that zone's corner");
+  Eigen::Vector2d origin;
+  frame->read("origin", origin);
+  config.utm_origin = origin;
+}
+
+void read_odometry(const YamlSection& top, DriveConfig& config) {
+  const auto section = top.section("odometry", {"file", "format", "separator", "columns", "time", "noise"});
+  if (!section) throw InputError(top.place() + "'odometry' is missing");
+  config.odometry = read_log_config(*section, StreamKind::odometry, config.folder, config.time_scale);
+  const auto noise = section->free_section("noise");
+  if (!noise) return;
+  for (const std::string& key : noise->keys()) {
+    noise->read(key, config.odometry_noise[key], kNotNegative);
+    config.places["odometry.noise." + key] = noise->place(key);
+  }
+}
+
+Receiver read_receiver(const YamlSection& section) {
+  Receiver receiver;
+  section.read("antenna", receiver.antenna_m);
+  section.read("period", receiver.period_s, kNotNegative);
+  if (section.has("rate")) {
+    if (section.has("period")) section.fail("rate", "give either period (s) or rate (Hz)");
+    double rate_hz = 0;
+    section.read("rate", rate_hz, kPositive);
+    receiver.period_s = 1 / rate_hz;
+  }
+  section.read("delay", receiver.delay_s, kAnyNumber);
+  section.read("withhold_every", receiver.withhold_every, kWithhold);
+  if (receiver.withhold_every == 1) section.fail_value("withhold_every", kWithhold.words);
+  return receiver;
+}
+
+void read_gnss(const YamlSection& top, DriveConfig& config) {
+  if (!top.has("gnss")) throw InputError(top.place() + "'gnss' is missing");
+  const YAML::Node node = top.node("gnss");
+  std::vector<YAML::Node> entries;
+  if (node.IsSequence()) {
+    for (const auto& entry : node) entries.push_back(entry);
+  } else {
+    entries.push_back(node);
+  }
+  if (entries.empty()) top.fail("gnss", "at least one log is needed");
+  std::optional<Receiver> first;
+  for (const YAML::Node& entry : entries) {
+    const YamlSection section(entry, "gnss", top.file(),
+                              {"file", "format", "separator", "columns", "time", "accuracy", "antenna",
+                               "period", "rate", "delay", "withhold_every"});
+    LogConfig log = read_log_config(section, StreamKind::gnss, config.folder, config.time_scale);
+    log.request.source = static_cast<int>(config.gnss.size());
+    config.gnss.push_back(std::move(log));
+    const Receiver receiver = read_receiver(section);
+    if (first && !(receiver == *first))
+      throw InputError(section.place() +
+                       "gnss: all logs must state the same antenna, period, delay and withhold_every");
+    first = receiver;
+  }
+  config.antenna_m = first->antenna_m;
+  config.gnss_period_s = first->period_s;
+  config.gnss_delay_s = first->delay_s;
+  config.withhold_every = first->withhold_every;
+}
+
+void read_truth(const YamlSection& top, DriveConfig& config) {
+  const auto section = top.section("truth", {"file", "format", "separator", "columns", "time", "reference"});
+  if (!section) return;
+  config.truth = read_log_config(*section, StreamKind::truth, config.folder, config.time_scale);
+  section->read("reference", config.truth_reference_m);
+}
+
+void read_gate(const YamlSection& top, DriveConfig& config) {
+  const auto gate = top.section(
+      "gate", {"enabled", "max_angle_deg", "max_displacement_m", "chord_s", "max_chord_s", "min_chord_m"});
+  if (!gate) return;
+  gate->read("enabled", config.gate.enabled);
+  double max_angle_deg = config.gate.max_angle_rad / kDegree;
+  gate->read("max_angle_deg", max_angle_deg, kAngle);
+  if (gate->has("max_angle_deg")) config.gate.max_angle_rad = max_angle_deg * kDegree;
+  gate->read("max_displacement_m", config.gate.max_displacement_m, kPositive);
+  gate->read("chord_s", config.gate.chord_s, kPositive);
+  gate->read("max_chord_s", config.gate.max_chord_s, kPositive);
+  gate->read("min_chord_m", config.gate.min_chord_m, kPositive);
+  if (config.gate.max_chord_s < config.gate.chord_s)
+    throw InputError(fmt::format("{}gate: max_chord_s ({}) must not be below chord_s ({})", gate->place(),
+                                 config.gate.max_chord_s, config.gate.chord_s));
+}
+
+void read_timeline(const YamlSection& top, DriveConfig& config) {
+  top.read("snap", config.timeline.snap_s, kNotNegative);
+  const auto gap = top.section("gap", {"longer_than", "policy", "noise_factor"});
+  if (!gap) return;
+  gap->read("longer_than", config.timeline.gap_s, kPositive);
+  if (const auto policy = gap->read_word("policy", kGapPolicies))
+    config.timeline.gap_policy = *policy == 0 ? GapPolicy::bridge : GapPolicy::error;
+  gap->read("noise_factor", config.timeline.gap_noise_factor, kFactor);
+}
+
+void read_modeling(const YamlSection& top, DriveConfig& config) {
+  if (!top.has("modeling")) return;
+  config.places["modeling"] = top.place("modeling");
+  if (!top.node("modeling").IsMap()) return top.read("modeling", config.modeling);
+  const YamlSection modeling = *top.section("modeling", {"name", "options"});
+  modeling.read("name", config.modeling);
+  const auto options = modeling.free_section("options");
+  if (!options) return;
+  for (const std::string& key : options->keys()) {
+    options->read(key, config.modeling_options[key]);
+    config.places["modeling.options." + key] = options->place(key);
+  }
+}
+
+void read_folder(const YamlSection& top, const std::string& data_folder, DriveConfig& config) {
+  std::string stated = ".";
+  top.read("folder", stated);
+  const std::filesystem::path beside = std::filesystem::path(config.path).parent_path();
+  config.folder = data_folder.empty() ? (beside / stated).lexically_normal().string() : data_folder;
+}
+
+}  // namespace
+
+DriveConfig parse_drive_config(const std::string& text, const std::string& path,
+                               const std::string& data_folder) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format("{}:{}:{}: no valid YAML: {}", path, error.mark.line + 1,
+                                 error.mark.column + 1, error.msg));
+  }
+  const YamlSection top(root, "", path,
+                        {"name", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap",
+                         "snap", "start", "modeling"});
+  DriveConfig config;
+  config.path = path;
+  config.name = std::filesystem::path(path).stem().string();
+  top.read("name", config.name);
+  read_folder(top, data_folder, config);
+  read_time(top, config);
+  read_frame(top, config);
+  read_odometry(top, config);
+  read_gnss(top, config);
+  read_truth(top, config);
+  read_gate(top, config);
+  read_timeline(top, config);
+  if (const auto start = top.read_word("start", kStarts))
+    config.start.method = *start == 0 ? StartMethod::anchored : StartMethod::dead_reckoning;
+  read_modeling(top, config);
+  return config;
+}
+
+DriveConfig load_drive_config(const std::string& path, const std::string& data_folder) {
+  return parse_drive_config(read_text_file(path), path, data_folder);
+}
+
+}  // namespace waymark
