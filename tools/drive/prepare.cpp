@@ -1,0 +1,213 @@
+#include <waymark/tools/drive/prepare.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/stamp_text.hpp>
+#include <waymark/tools/drive/projection.hpp>
+#include <waymark/tools/drive/streams.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr std::int64_t kTwoWeeks = 2 * 604'800'000'000'000;
+
+std::int64_t nanoseconds(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+/// Appends the samples of one log, on the drive's scale, and its counts.
+template <typename Sample>
+void append_log(const std::vector<Sample>& from, const DriveLogs::Log& log, TimeScale scale,
+                std::vector<Sample>& to, StreamReport& stream, PrepareReport& report) {
+  const bool changes_scale = convert(Stamp{}, log.scale, scale) != Stamp{};
+  for (Sample sample : from) {
+    if (changes_scale && log.scale == TimeScale::gps && sample.stamp.nanoseconds < kTwoWeeks)
+      throw InputError(
+          fmt::format("{}: seconds of week cannot be put onto the scale '{}' of the drive; state the "
+                      "log's 'time: {{week: ...}}'",
+                      log.file, to_string(scale)));
+    sample.stamp = convert(sample.stamp, log.scale, scale);
+    to.push_back(sample);
+  }
+  stream.records += log.data.records;
+  stream.corrupt += log.data.corrupt;
+  report.notes.insert(report.notes.end(), log.data.notes.begin(), log.data.notes.end());
+  report.corrupt_examples.insert(report.corrupt_examples.end(), log.data.corrupt_examples.begin(),
+                                 log.data.corrupt_examples.end());
+}
+
+bool same_number(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+bool same_place(const auto& a, const auto& b) {
+  return a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg &&
+         same_number(a.height_m, b.height_m);
+}
+
+bool finite_place(const auto& sample) {
+  return std::isfinite(sample.latitude_deg) && std::isfinite(sample.longitude_deg);
+}
+
+std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveConfig& config,
+                                             PrepareReport& report) {
+  std::vector<OdometrySample> odometry;
+  append_log(logs.odometry.data.odometry, logs.odometry, config.time_scale, odometry, report.odometry,
+             report);
+  clean_stream(
+      odometry, report.odometry,
+      [](const OdometrySample& s) { return std::isfinite(s.speed_mps) && std::isfinite(s.yaw_rate_radps); },
+      [](const OdometrySample&, const OdometrySample&) { return true; },
+      [](const OdometrySample& a, const OdometrySample& b) {
+        return a.speed_mps == b.speed_mps && a.yaw_rate_radps == b.yaw_rate_radps;
+      });
+  if (odometry.size() < 2)
+    throw InputError(fmt::format("{}: {} usable odometry samples; at least 2 are needed", logs.odometry.file,
+                                 odometry.size()));
+  const std::int64_t first = odometry.front().stamp.nanoseconds;
+  const std::size_t before = odometry.size();
+  std::erase_if(odometry, [&](const OdometrySample& s) {
+    const std::int64_t after_first = s.stamp.nanoseconds - first;
+    return (config.from_s && after_first < nanoseconds(*config.from_s)) ||
+           (config.to_s && after_first > nanoseconds(*config.to_s));
+  });
+  report.odometry_outside_window = before - odometry.size();
+  if (odometry.size() < 2)
+    throw InputError(
+        fmt::format("{}: the window from {} s to {} s holds {} odometry samples of a log of {} s; widen "
+                    "'time: {{from, to}}'",
+                    config.path, config.from_s.value_or(0), config.to_s.value_or(0), odometry.size(),
+                    report.odometry.median_interval_s * static_cast<double>(before)));
+  for (const OdometrySample& sample : odometry) report.reversing += sample.speed_mps < 0;
+  describe_stream(odometry, config.timeline.gap_s, report.odometry);
+  return odometry;
+}
+
+/// "from 12.5 s to 80.25 s".
+template <typename Sample>
+std::string span_text(const std::vector<Sample>& samples) {
+  return fmt::format("from {} s to {} s", decimal_seconds(samples.front().stamp),
+                     decimal_seconds(samples.back().stamp));
+}
+
+/// Keeps of each source the fix nearest to each whole multiple of the period; the earlier of two equally
+/// near.
+void thin(std::vector<GeodeticFix>& fixes, std::int64_t period) {
+  struct Nearest {
+    std::size_t index = 0;
+    std::int64_t distance = 0;
+  };
+  std::map<std::pair<int, std::int64_t>, Nearest> nearest;  // by source and multiple
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const std::int64_t stamp = fixes[i].stamp.nanoseconds;
+    std::int64_t remainder = stamp % period;
+    if (remainder < 0) remainder += period;
+    const bool up = 2 * remainder >= period;
+    const std::int64_t multiple = (stamp - remainder) / period + (up ? 1 : 0);
+    const std::int64_t distance = up ? period - remainder : remainder;
+    const auto [place, is_new] = nearest.try_emplace({fixes[i].source, multiple}, Nearest{i, distance});
+    if (!is_new && distance < place->second.distance) place->second = {i, distance};
+  }
+  std::vector<char> keep(fixes.size(), 0);
+  for (const auto& [key, best] : nearest) keep[best.index] = 1;
+  std::size_t index = 0;
+  std::erase_if(fixes, [&](const GeodeticFix&) { return keep[index++] == 0; });
+}
+
+std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig& config,
+                                       const std::vector<OdometrySample>& odometry, PrepareReport& report) {
+  std::vector<GeodeticFix> fixes;
+  for (const DriveLogs::Log& log : logs.gnss)
+    append_log(log.data.fixes, log, config.time_scale, fixes, report.gnss, report);
+  clean_stream(
+      fixes, report.gnss, [](const GeodeticFix& f) { return finite_place(f) && f.covariance_en.allFinite(); },
+      [](const GeodeticFix& a, const GeodeticFix& b) { return a.source == b.source; },
+      [](const GeodeticFix& a, const GeodeticFix& b) {
+        return same_place(a, b) && a.covariance_en == b.covariance_en && a.course_rad == b.course_rad &&
+               a.speed_mps == b.speed_mps;
+      });
+  if (fixes.empty())
+    throw InputError(fmt::format("{}: the GNSS logs hold no usable fix; a drive without a fix has no place",
+                                 logs.gnss.empty() ? config.path : logs.gnss.front().file));
+  for (GeodeticFix& fix : fixes) fix.stamp.nanoseconds -= nanoseconds(config.gnss_delay_s);
+
+  const std::string gnss_span = span_text(fixes);
+  const std::size_t before = fixes.size();
+  std::erase_if(fixes, [&](const GeodeticFix& fix) {
+    return fix.stamp < odometry.front().stamp || fix.stamp > odometry.back().stamp;
+  });
+  report.fixes_outside_odometry = before - fixes.size();
+  if (fixes.empty())
+    throw InputError(
+        fmt::format("{}: no fix lies within the odometry: odometry {}, fixes {} on the scale '{}'; check "
+                    "'time: {{scale, week, offset}}' of both logs and 'time: {{from, to}}'",
+                    config.path, span_text(odometry), gnss_span, to_string(config.time_scale)));
+  const std::size_t within = fixes.size();
+  if (config.gnss_period_s > 0) thin(fixes, nanoseconds(config.gnss_period_s));
+  report.fixes_thinned = within - fixes.size();
+  describe_stream(fixes, 0, report.gnss);
+  return fixes;
+}
+
+std::vector<GeodeticTruth> prepare_truth(const DriveLogs& logs, const DriveConfig& config,
+                                         const std::vector<OdometrySample>& odometry, PrepareReport& report) {
+  std::vector<GeodeticTruth> truth;
+  for (const DriveLogs::Log& log : logs.truth)
+    append_log(log.data.truth, log, config.time_scale, truth, report.truth, report);
+  clean_stream(
+      truth, report.truth, [](const GeodeticTruth& t) { return finite_place(t); },
+      [](const GeodeticTruth&, const GeodeticTruth&) { return true; },
+      [](const GeodeticTruth& a, const GeodeticTruth& b) {
+        return same_place(a, b) && a.heading_rad == b.heading_rad;
+      });
+  describe_stream(truth, 0, report.truth);
+  const bool apart = !truth.empty() && (truth.back().stamp < odometry.front().stamp ||
+                                        truth.front().stamp > odometry.back().stamp);
+  if (apart)
+    throw InputError(
+        fmt::format("{}: the truth does not overlap the odometry: odometry {}, truth {} on the scale "
+                    "'{}'; check 'time: {{scale, week, offset}}' of both logs and 'time: {{from, to}}'",
+                    config.path, span_text(odometry), span_text(truth), to_string(config.time_scale)));
+  return truth;
+}
+
+/// Numbers the epochs and withholds every n-th: fixes of one stamp are one epoch.
+void number_epochs(std::vector<Fix>& fixes, int withhold_every, PrepareReport& report) {
+  int epoch = -1;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    if (i == 0 || fixes[i].stamp != fixes[i - 1].stamp) ++epoch;
+    fixes[i].epoch = epoch;
+    if (withhold_every < 2 || (epoch + 1) % withhold_every != 0) continue;
+    fixes[i].status = FixStatus::withheld;
+    fixes[i].reason = "withheld";
+    ++report.fixes_withheld;
+  }
+}
+
+}  // namespace
+
+PreparedDrive prepare_drive(const DriveLogs& logs, const DriveConfig& config) {
+  PreparedDrive drive;
+  drive.name = config.name;
+  drive.scale = config.time_scale;
+  drive.antenna_m = config.antenna_m;
+  drive.truth_reference_m = config.truth_reference_m;
+  drive.odometry = prepare_odometry(logs, config, drive.report);
+  const std::vector<GeodeticFix> fixes = prepare_fixes(logs, config, drive.odometry, drive.report);
+  const std::vector<GeodeticTruth> truth = prepare_truth(logs, config, drive.odometry, drive.report);
+
+  drive.frame = choose_frame({fixes.front().latitude_deg, fixes.front().longitude_deg}, config.utm_zone,
+                             config.utm_origin);
+  const Projection projection(drive.frame);
+  for (const GeodeticFix& fix : fixes) drive.fixes.push_back(projection.project(fix));
+  for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection.project(pose));
+  number_epochs(drive.fixes, config.withhold_every, drive.report);
+  return drive;
+}
+
+}  // namespace waymark

@@ -1,0 +1,34 @@
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/tools/drive/prepare.hpp>
+
+namespace waymark {
+namespace {
+
+DriveLogs::Log read_log(const LogConfig& log, const LogReaderLookup& find_reader) {
+  const LogReader* reader = find_reader(log.format);
+  if (reader == nullptr)
+    throw InputError(fmt::format("{}unknown log format '{}'; `waymark info` lists those there are", log.place,
+                                 log.format));
+  const std::string text = read_text_file(log.file);
+  return {reader->read(text, log.file, log.request), log.request.time_scale, log.file};
+}
+
+}  // namespace
+
+DriveLogs read_drive_logs(const DriveConfig& config, const LogReaderLookup& find_reader) {
+  DriveLogs logs;
+  if (!config.odometry) throw InputError(fmt::format("{}: no odometry log is named", config.path));
+  logs.odometry = read_log(*config.odometry, find_reader);
+  for (const LogConfig& log : config.gnss) logs.gnss.push_back(read_log(log, find_reader));
+  if (config.truth) logs.truth.push_back(read_log(*config.truth, find_reader));
+  return logs;
+}
+
+PreparedDrive load_drive(const DriveConfig& config, const LogReaderLookup& find_reader) {
+  return prepare_drive(read_drive_logs(config, find_reader), config);
+}
+
+}  // namespace waymark

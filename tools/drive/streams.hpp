@@ -1,0 +1,64 @@
+/// What preparing a drive does to any stream of stamped samples: clean, sort, find gaps.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include <waymark/core/stamp.hpp>
+#include <waymark/tools/drive/prepare.hpp>
+
+namespace waymark {
+
+/// Drops non-finite samples and duplicates, sorts the rest by stamp, stable.
+/// @param is_finite  bool(const Sample&)
+/// @param same_key   bool(const Sample&, const Sample&): neighbours of one stamp that exclude each other
+/// @param same       bool(const Sample&, const Sample&): identical in content
+template <typename Sample, typename IsFinite, typename SameKey, typename Same>
+void clean_stream(std::vector<Sample>& samples, StreamReport& report, IsFinite is_finite, SameKey same_key,
+                  Same same) {
+  report.read = samples.size();
+  std::erase_if(samples, [&](const Sample& sample) { return !is_finite(sample); });
+  report.non_finite = report.read - samples.size();
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    report.out_of_order += samples[i].stamp < samples[i - 1].stamp && same_key(samples[i], samples[i - 1]);
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const Sample& a, const Sample& b) { return a.stamp < b.stamp; });
+
+  std::vector<Sample> kept;
+  kept.reserve(samples.size());
+  for (const Sample& sample : samples) {
+    const Sample* earlier = nullptr;  // kept samples of the same stamp stand at the end
+    for (auto it = kept.rbegin(); it != kept.rend() && it->stamp == sample.stamp; ++it) {
+      if (same_key(*it, sample)) earlier = &*it;
+    }
+    if (earlier == nullptr) {
+      kept.push_back(sample);
+    } else {
+      ++(same(*earlier, sample) ? report.duplicates_identical : report.duplicates_conflicting);
+    }
+  }
+  samples = std::move(kept);
+}
+
+/// Fills used, median_interval_s and gaps.
+/// @param gap_s  longer intervals are gaps; 0: 2.5 median intervals
+template <typename Sample>
+void describe_stream(const std::vector<Sample>& samples, double gap_s, StreamReport& report) {
+  report.used = samples.size();
+  std::vector<std::int64_t> intervals;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    intervals.push_back(samples[i].stamp.nanoseconds - samples[i - 1].stamp.nanoseconds);
+  if (intervals.empty()) return;
+  std::vector<std::int64_t> ordered = intervals;
+  const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2);
+  std::nth_element(ordered.begin(), middle, ordered.end());
+  report.median_interval_s = static_cast<double>(*middle) * 1e-9;
+  const double limit = gap_s > 0 ? gap_s : 2.5 * report.median_interval_s;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const double length = static_cast<double>(intervals[i]) * 1e-9;
+    if (length > limit) report.gaps.push_back({samples[i].stamp, length});
+  }
+}
+
+}  // namespace waymark
