@@ -26,12 +26,14 @@ std::vector<double> selected_inverse(const Matrix& factor) {
   const double* numbers = factor.valuePtr();
   std::vector<double> inverse(at(factor.nonZeros()), 0.0);
   std::vector<double> column(at(factor.rows()), 0.0);   // l_sj, spread out
+  std::vector<Eigen::Index> owner(at(factor.rows()), -1);  // column whose pattern a row was last seen in
   std::vector<double> product(at(factor.rows()), 0.0);  // Z_ss l_sj, spread out
   for (Eigen::Index j = factor.cols() - 1; j >= 0; --j) {
     const int first = begin[j];
     const int last = begin[j + 1];
     for (int k = first + 1; k < last; ++k) {
       column[at(rows[k])] = numbers[k];
+      owner[at(rows[k])] = j;
       product[at(rows[k])] = 0;
     }
     // Every pair of rows of this column lies on the pattern of the earlier of the two: fill theorem.
@@ -39,7 +41,7 @@ std::vector<double> selected_inverse(const Matrix& factor) {
       const int r = rows[k];
       for (int m = begin[r]; m < begin[r + 1]; ++m) {
         const int s = rows[m];
-        if (s != r && column[at(s)] == 0) continue;  // not in this column (an exact zero adds nothing)
+        if (owner[at(s)] != j) continue;
         product[at(s)] += inverse[at(m)] * column[at(r)];
         if (s != r) product[at(r)] += inverse[at(m)] * column[at(s)];
       }
@@ -51,7 +53,6 @@ std::vector<double> selected_inverse(const Matrix& factor) {
       diagonal -= numbers[k] * inverse[at(k)];
     }
     inverse[at(first)] = diagonal / pivot;
-    for (int k = first + 1; k < last; ++k) column[at(rows[k])] = 0;
   }
   return inverse;
 }

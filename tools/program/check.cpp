@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <waymark/core/error.hpp>
+#include <waymark/core/gauge.hpp>
+#include <waymark/core/gradient_check.hpp>
+#include <waymark/formats/graph_document.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/tools/program/commands.hpp>
+
+namespace waymark {
+namespace {
+
+struct CheckOptions {
+  CommonOptions common;
+  std::string input;
+};
+
+constexpr std::size_t kCheckedEdges = 50;  // per type
+constexpr double kGradientTolerance =
+    1e-5;  // differences are good to 1e-7; a wrong Jacobian is off by far more
+
+ExitCode check(const CheckOptions& options) {
+  const Console console(options.common);
+  const TypeRegistry registry = make_registry(options.common);
+  ReadReport report;
+  constexpr bool kLenient = true;  // to name the first ten wrong lines, not only one
+  const GraphDocument document =
+      read_graph(read_text_file(options.input), options.input, registry, kLenient, &report);
+  const Graph& graph = document.graph;
+  std::vector<std::string> problems = report.examples;
+  if (report.skipped > problems.size()) {
+    problems.push_back(fmt::format("{} more wrong lines", report.skipped - problems.size()));
+  }
+  nlohmann::ordered_json json = {{"file", options.input}, {"vertices", graph.vertex_count()}};
+  std::string text = fmt::format("{}: {} vertices, {} edges, {} GNSS records\n", options.input,
+                                 graph.vertex_count(), graph.edge_count(), document.fixes.size());
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const GradientCheck gradients = check_gradients(graph, b, kCheckedEdges);
+    const EdgeType& type = graph.edge_type(b);
+    text +=
+        fmt::format("  {:<22} {:>8} edges   chi2 {:<14.8g} error {:<12} Jacobians off by {:.1e}\n", type.tag,
+                    graph.batch(b).size(), graph.batch(b).chi2(graph.view()), type.form, gradients.error);
+    json["edges"].push_back({{"type", type.tag},
+                             {"count", graph.batch(b).size()},
+                             {"chi2", graph.batch(b).chi2(graph.view())},
+                             {"jacobian_error", gradients.error}});
+    if (gradients.error > kGradientTolerance) {
+      problems.push_back(fmt::format(
+          "{} number {}: Jacobian of vertex {} row {} column {} is {:.10g}, central differences give {:.10g}",
+          type.tag, gradients.edge + 1, gradients.vertex + 1, gradients.row, gradients.column,
+          gradients.given, gradients.reference));
+    }
+  }
+  try {
+    for (const std::string& message : find_gauge(graph).messages) {
+      text += "note: " + message + "\n";
+      json["notes"].push_back(message);
+    }
+  } catch (const InputError& error) {
+    problems.push_back(error.what());
+  }
+  for (const std::string& problem : problems) text += "problem: " + problem + "\n";
+  if (problems.empty()) text += "no problems found\n";
+  json["problems"] = problems;
+  console.result(options.common.json ? json.dump(2) + "\n" : text);
+  return problems.empty() ? kSuccess : kInputError;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("check", "Look a graph file over: lines, gauge, Jacobians");
+  const auto options = std::make_shared<CheckOptions>();
+  command->add_option("graph", options->input, ".graph or g2o file")->required();
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  waymark check drive.graph");
+  command->callback([options, &action] { action = [options] { return check(*options); }; });
+}
+
+}  // namespace waymark

@@ -1,0 +1,26 @@
+/// The subcommands. Each adds itself to the parser; its action runs after parsing and gives the exit code.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+#include <waymark/tools/program/console.hpp>
+#include <waymark/tools/program/exit_codes.hpp>
+
+namespace waymark {
+
+/// What the chosen subcommand does.
+using Action = std::function<ExitCode()>;
+
+void add_convert(CLI::App& app, Action& action);
+void add_optimize(CLI::App& app, Action& action);
+void add_evaluate(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_info(CLI::App& app, Action& action);
+void add_check(CLI::App& app, Action& action);
+
+/// --quiet, -v, --json, --plugin.
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+}  // namespace waymark

@@ -1,0 +1,80 @@
+#include <unistd.h>
+#include <csignal>
+#include <cstdio>
+
+#include <waymark/core/error.hpp>
+#include <waymark/core/plugin_loader.hpp>
+#include <waymark/formats/log_readers.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/plugins/builtin.hpp>
+#include <waymark/solvers/register.hpp>
+#include <waymark/tools/program/console.hpp>
+#include <waymark/types_se2/register.hpp>
+
+namespace waymark {
+
+std::atomic<bool> interrupted{false};
+
+namespace {
+
+extern "C" void on_interrupt(int signal) {
+  if (interrupted.exchange(true)) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
+
+}  // namespace
+
+void install_signal_handlers() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+Console::Console(const CommonOptions& options)
+    : options_(options), show_progress_(!options.quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+void Console::result(const std::string& text, bool to_stderr) const {
+  if (options_.quiet && !options_.json) return;
+  end_progress();
+  if (to_stderr) {
+    std::fputs(text.c_str(), stderr);
+  } else {
+    write_file_atomically("-", text);
+  }
+}
+
+void Console::note(const std::string& text) const {
+  if (options_.quiet) return;
+  end_progress();
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void Console::detail(const std::string& text) const {
+  if (options_.verbosity > 0) note(text);
+}
+
+void Console::progress(const std::string& text) const {
+  if (show_progress_) std::fprintf(stderr, "\r\033[K%s", text.c_str());
+}
+
+void Console::end_progress() const {
+  if (show_progress_) std::fputs("\r\033[K", stderr);
+}
+
+TypeRegistry make_registry(const CommonOptions& options) {
+  TypeRegistry registry;
+  register_core_types(registry);
+  register_se2_types(registry);
+  register_solvers(registry);
+  register_builtin_plugins(registry);
+  for (const NamedLogReader& reader : builtin_log_readers()) {
+    registry.add_log_reader({std::string(reader.name), std::string(reader.about), reader.reader});
+  }
+  for (const std::string& file : options.plugins) load_plugin(file, registry);
+  return registry;
+}
+
+}  // namespace waymark

@@ -1,0 +1,64 @@
+#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/drive_options.hpp>
+
+namespace waymark {
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  command.add_flag("-q,--quiet", options.quiet, "Print errors only");
+  command.add_flag("-v,--verbose", options.verbosity, "Print what is done (iterations, files)");
+  command.add_flag("--json", options.json, "Print the result as JSON on standard output");
+  command.add_option("--plugin", options.plugins, "Load a plugin module (may be repeated)")
+      ->type_name("FILE.so")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
+  command.add_option("--data", overrides.data_folder, "Folder of the logs, instead of the drive.yaml's own")
+      ->type_name("DIR");
+  command
+      .add_option("-m,--modeling", overrides.modelings,
+                  "GNSS modelings, or 'all' (default: the drive.yaml's)")
+      ->delimiter(',')
+      ->type_name("NAME[,NAME]");
+  command
+      .add_option("--modeling-option", overrides.modeling_options,
+                  "Option of the modeling, see 'waymark info'")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--from", overrides.from_s, "Begin so many seconds after the first odometry sample");
+  command.add_option("--to", overrides.to_s, "End so many seconds after the first odometry sample");
+  command
+      .add_option("--withhold", overrides.withhold_every,
+                  "Keep every N-th fix out of the graph, to evaluate against")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1000000));
+  command.add_option("--start", overrides.start, "Where the optimisation starts")
+      ->check(CLI::IsMember({"anchored", "dead_reckoning"}));
+  command.add_flag("--no-gate", overrides.no_gate, "Accept every fix");
+}
+
+void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
+  command.add_option("-a,--algorithm", choice.algorithm, "gauss_newton, levenberg_marquardt or dogleg")
+      ->capture_default_str();
+  command.add_option("-s,--solver", choice.solver,
+                     "Linear solver, see 'waymark info' (default: the first listed)");
+  command.add_option("--algorithm-option", choice.options, "Option of the algorithm, see 'waymark info'")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--max-iterations", choice.max_iterations, "Give up after so many steps")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      .add_option("--tolerance", choice.tolerance, "Newton decrement relative to 1 + chi2 that ends the run")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      .add_option("--covariance", choice.covariance, "Covariances to write: of no, the fixes' or all poses")
+      ->check(CLI::IsMember({"none", "fixes", "all"}))
+      ->capture_default_str();
+}
+
+}  // namespace waymark

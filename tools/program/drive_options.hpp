@@ -1,0 +1,14 @@
+/// Command-line options that `convert` and `run` share, and those that `optimize` and `run` share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <waymark/tools/program/optimization.hpp>
+#include <waymark/tools/program/pipeline.hpp>
+
+namespace waymark {
+
+void add_drive_options(CLI::App& command, DriveOverrides& overrides);
+void add_optimization_options(CLI::App& command, OptimizationChoice& choice);
+
+}  // namespace waymark

@@ -1,0 +1,65 @@
+#include <filesystem>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/pipeline.hpp>
+
+namespace waymark {
+namespace {
+
+struct EvaluateOptions {
+  CommonOptions common;
+  std::vector<std::string> inputs;
+  std::string truth;
+  std::string data_folder;
+  std::string folder;
+};
+
+std::string stem(const std::string& path) {
+  return std::filesystem::path(path).stem().string();
+}
+
+ExitCode evaluate_files(const EvaluateOptions& options) {
+  const Console console(options.common);
+  const TypeRegistry registry = make_registry(options.common);
+  std::vector<LabelledEvaluation> evaluations;
+  ReportHeader header;
+  for (const std::string& input : options.inputs) {
+    console.progress("evaluating " + input);
+    const GraphDocument document = read_graph(read_text_file(input), input, registry);
+    if (document.fixes.empty()) throw InputError(input + ": has no GNSS records to evaluate at");
+    std::vector<TruthPose> truth;
+    if (!options.truth.empty()) truth = read_truth(options.truth, options.data_folder, document, registry);
+    evaluations.push_back({stem(input), evaluate_document(document, truth)});
+    for (const auto& [key, text] : document.provenance) header.provenance[stem(input) + "." + key] = text;
+    if (options.folder.empty()) continue;
+    std::filesystem::create_directories(options.folder);
+    for (const std::string& file :
+         write_trajectories(document, options.folder + "/" + stem(input), stem(input))) {
+      console.detail("written " + file);
+    }
+  }
+  const std::string json = metrics_json(evaluations, header);
+  if (!options.folder.empty()) write_file_atomically(options.folder + "/metrics.json", json);
+  console.result(options.common.json ? json : metrics_table(evaluations));
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("evaluate", "Metrics of fused graphs against truth and withheld fixes");
+  const auto options = std::make_shared<EvaluateOptions>();
+  command->add_option("graphs", options->inputs, "Optimised .graph files")->required();
+  command->add_option("--truth", options->truth,
+                      "Truth: a drive.yaml with a truth section, or a TUM file in the frame");
+  command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own");
+  command->add_option("--out", options->folder,
+                      "Folder for metrics.json and the trajectories (CSV, TUM, GeoJSON)");
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  waymark evaluate fused.graph --truth drive.yaml --out results");
+  command->callback([options, &action] { action = [options] { return evaluate_files(*options); }; });
+}
+
+}  // namespace waymark

@@ -1,0 +1,142 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/core/marginals.hpp>
+#include <waymark/tools/program/optimization.hpp>
+
+namespace waymark {
+namespace {
+
+std::string iteration_line(const IterationRecord& r) {
+  return fmt::format(
+      "{:4d}  {:<7} chi2 {:<16.10g} decrease {:<12.5g} predicted {:<12.5g} gradient {:<10.3g} {}",
+      r.iteration, r.kind, r.chi2, r.decrease, r.predicted_decrease, r.gradient,
+      r.accepted ? "" : "rejected");
+}
+
+std::vector<VertexIndex> covariance_vertices(const GraphDocument& document, const std::string& which) {
+  std::vector<VertexIndex> vertices;
+  if (which == "fixes") {
+    for (const Fix& fix : document.fixes) {
+      if (const auto vertex = document.graph.find(fix.vertex)) vertices.push_back(*vertex);
+    }
+  } else if (which == "all") {
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(document.graph.vertex_count()); ++v) {
+      if (!document.graph.fixed(v)) vertices.push_back(v);
+    }
+  }
+  return vertices;
+}
+
+nlohmann::ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace
+
+Options parse_options(const std::vector<std::string>& pairs) {
+  Options options;
+  for (const std::string& pair : pairs) {
+    const auto equals = pair.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw UsageError("expected NAME=VALUE, got '" + pair + "'");
+    }
+    options[pair.substr(0, equals)] = pair.substr(equals + 1);
+  }
+  return options;
+}
+
+Summary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
+                          const TypeRegistry& registry, const Console& console) {
+  const auto algorithm = registry.make_algorithm(choice.algorithm, parse_options(choice.options));
+  const std::string solver_name =
+      choice.solver.empty() ? registry.linear_solvers().front().type.name : choice.solver;
+  const auto solver = registry.make_linear_solver(solver_name);
+  OptimizerOptions options;
+  options.max_iterations = choice.max_iterations;
+  options.decrement_tolerance = choice.tolerance;
+  options.cancel = &interrupted;
+  options.observer = [&](const IterationRecord& record) {
+    if (console.verbosity() > 0) {
+      console.detail(iteration_line(record));
+    } else {
+      console.progress(fmt::format("iteration {}  chi2 {:.8g}", record.iteration, record.chi2));
+    }
+  };
+  Summary summary = optimize(document.graph, *algorithm, *solver, options);
+  summary.algorithm = choice.algorithm;
+  console.end_progress();
+  for (const std::string& note : summary.notes) console.note("note: " + note);
+  if (!summary.converged()) {
+    console.note("warning: no minimum was reached: " + summary.message +
+                 (summary.termination == Termination::interrupted ? "; the best state so far is kept" : ""));
+  }
+  document.covariances.clear();
+  const std::vector<VertexIndex> vertices = covariance_vertices(document, choice.covariance);
+  if (!vertices.empty() && summary.converged()) {
+    const std::vector<Eigen::MatrixXd> blocks = marginal_covariances(document.graph, vertices);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      document.covariances.push_back({vertices[i], blocks[i]});
+  }
+  return summary;
+}
+
+ExitCode exit_code(const Summary& summary) {
+  if (summary.termination == Termination::interrupted) return kInterrupted;
+  return summary.converged() ? kSuccess : kNotConverged;
+}
+
+std::string summary_text(const Summary& s) {
+  std::string text;
+  text += fmt::format("{}\n", s.message);
+  text += fmt::format("chi2        {:.10g} -> {:.10g}   (errors: {})\n", s.initial_chi2, s.final_chi2,
+                      s.error_forms);
+  text += fmt::format("iterations  {}   algorithm {}, solver {}, ordering {}\n", s.iterations, s.algorithm,
+                      s.solver, s.ordering);
+  text += fmt::format("size        {} vertices, {} edges, {} unknowns, {} numbers in the factor\n",
+                      s.vertices, s.edges, s.unknowns, s.factor_size);
+  text += fmt::format("time        {:.3f} s (structure {:.3f}, linearise {:.3f}, solve {:.3f})\n",
+                      s.total_seconds, s.structure_seconds, s.linearize_seconds, s.solve_seconds);
+  return text;
+}
+
+nlohmann::ordered_json summary_json(const Summary& s) {
+  nlohmann::ordered_json json = {{"termination", to_string(s.termination)},
+                                 {"converged", s.converged()},
+                                 {"message", s.message},
+                                 {"initial_chi2", number_or_null(s.initial_chi2)},
+                                 {"final_chi2", number_or_null(s.final_chi2)},
+                                 {"error_forms", s.error_forms},
+                                 {"iterations", s.iterations},
+                                 {"algorithm", s.algorithm},
+                                 {"solver", s.solver},
+                                 {"ordering", s.ordering},
+                                 {"vertices", s.vertices},
+                                 {"edges", s.edges},
+                                 {"unknowns", s.unknowns},
+                                 {"factor_size", s.factor_size},
+                                 {"structure_seconds", s.structure_seconds},
+                                 {"linearize_seconds", s.linearize_seconds},
+                                 {"solve_seconds", s.solve_seconds},
+                                 {"total_seconds", s.total_seconds},
+                                 {"notes", s.notes}};
+  json["records"] = nlohmann::ordered_json::array();
+  for (const IterationRecord& r : s.records) {
+    json["records"].push_back({{"iteration", r.iteration},
+                               {"kind", r.kind},
+                               {"accepted", r.accepted},
+                               {"chi2", number_or_null(r.chi2)},
+                               {"decrease", number_or_null(r.decrease)},
+                               {"predicted_decrease", number_or_null(r.predicted_decrease)},
+                               {"newton_decrement", number_or_null(r.newton_decrement)},
+                               {"gradient", number_or_null(r.gradient)},
+                               {"step", number_or_null(r.step)},
+                               {"control", number_or_null(r.control)},
+                               {"seconds", r.seconds}});
+  }
+  return json;
+}
+
+}  // namespace waymark

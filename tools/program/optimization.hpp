@@ -1,0 +1,42 @@
+/// Optimising a document from the command line: options, progress, outcome as text and JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <waymark/core/optimizer.hpp>
+#include <waymark/formats/graph_document.hpp>
+#include <waymark/tools/program/console.hpp>
+#include <waymark/tools/program/exit_codes.hpp>
+
+namespace waymark {
+
+/// What `optimize` and `run` let the user choose.
+struct OptimizationChoice {
+  std::string algorithm = "dogleg";
+  std::string solver;                ///< empty: the first that was built in
+  std::vector<std::string> options;  ///< name=value, for the algorithm
+  int max_iterations = 500;
+  double tolerance = 1e-10;         ///< decrement_tolerance
+  std::string covariance = "none";  ///< none, fixes, all
+};
+
+/// Optimises; fills document.covariances as asked. Iterations are shown by the console. A result that is no
+/// minimum is said on stderr.
+Summary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
+                          const TypeRegistry& registry, const Console& console);
+
+/// 0, 4 or 130.
+[[nodiscard]] ExitCode exit_code(const Summary& summary);
+
+/// "name=value" pairs to Options. @throws UsageError
+[[nodiscard]] Options parse_options(const std::vector<std::string>& pairs);
+
+/// A few lines for the terminal.
+[[nodiscard]] std::string summary_text(const Summary& summary);
+/// The same and the iterations, for --json.
+[[nodiscard]] nlohmann::ordered_json summary_json(const Summary& summary);
+
+}  // namespace waymark

@@ -1,0 +1,68 @@
+#include <waymark/core/error.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/drive_options.hpp>
+
+namespace waymark {
+namespace {
+
+struct OptimizeOptions {
+  CommonOptions common;
+  OptimizationChoice choice;
+  std::string input;
+  std::string output;
+  std::string format = "graph";
+  std::string start = "file";
+  bool lenient = false;
+};
+
+ExitCode optimize_file(const OptimizeOptions& options) {
+  const Console console(options.common);
+  const TypeRegistry registry = make_registry(options.common);
+  ReadReport report;
+  console.progress("reading " + options.input);
+  GraphDocument document =
+      read_graph(read_text_file(options.input), options.input, registry, options.lenient, &report);
+  if (report.skipped > 0) {
+    console.note("warning: " + std::to_string(report.skipped) + " lines were skipped; the first ones:");
+    for (const std::string& example : report.examples) console.note("  " + example);
+  }
+  if (report.edges_only) console.note("note: the file has edges only; started along the odometry chain");
+  if (options.start == "odometry") start_from_odometry_chain(document.graph);
+
+  const Summary summary = optimize_document(document, options.choice, registry, console);
+  document.provenance.emplace_back("optimized", "waymark " WAYMARK_VERSION " algorithm " + summary.algorithm +
+                                                    " solver " + options.choice.solver + " " +
+                                                    std::string(to_string(summary.termination)));
+  const bool to_stdout = options.output == "-" || options.output == "/dev/stdout";
+  write_file_atomically(options.output,
+                        options.format == "g2o" ? write_g2o(document) : write_graph(document, registry));
+  if (options.common.json) {
+    console.result(summary_json(summary).dump(2) + "\n", to_stdout);
+  } else {
+    console.result(summary_text(summary) + "written     " + options.output + "\n", to_stdout);
+  }
+  return exit_code(summary);
+}
+
+}  // namespace
+
+void add_optimize(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("optimize", "Minimise chi2 of a graph");
+  const auto options = std::make_shared<OptimizeOptions>();
+  command->add_option("graph", options->input, ".graph or g2o file")->required();
+  command->add_option("-o,--output", options->output, "File to write ('-': standard output)")->required();
+  command->add_option("--format", options->format, "Format to write")
+      ->check(CLI::IsMember({"graph", "g2o"}))
+      ->capture_default_str();
+  command->add_option("--start", options->start, "Start from the file's values or from the odometry chain")
+      ->check(CLI::IsMember({"file", "odometry"}))
+      ->capture_default_str();
+  command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");
+  add_optimization_options(*command, options->choice);
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  waymark optimize drive.graph -o fused.graph --algorithm dogleg");
+  command->callback([options, &action] { action = [options] { return optimize_file(*options); }; });
+}
+
+}  // namespace waymark

@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/formats/trajectory.hpp>
+#include <waymark/tools/drive/projection.hpp>
+#include <waymark/tools/program/hash.hpp>
+#include <waymark/tools/program/optimization.hpp>
+#include <waymark/tools/program/pipeline.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
+
+namespace waymark {
+namespace {
+
+void apply(const DriveOverrides& overrides, DriveConfig& config) {
+  if (overrides.from_s) config.from_s = overrides.from_s;
+  if (overrides.to_s) config.to_s = overrides.to_s;
+  if (overrides.withhold_every) config.withhold_every = *overrides.withhold_every;
+  if (overrides.no_gate) config.gate.enabled = false;
+  if (overrides.start == "dead_reckoning") config.start.method = StartMethod::dead_reckoning;
+  if (overrides.start == "anchored") config.start.method = StartMethod::anchored;
+}
+
+LogReaderLookup reader_lookup(const TypeRegistry& registry) {
+  return [&registry](std::string_view name) { return registry.find_log_reader(name); };
+}
+
+std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const DriveConfig& config,
+                                          const TypeRegistry& registry) {
+  std::vector<std::string> names;
+  for (const std::string& name : overrides.modelings) {
+    if (name != "all") {
+      names.push_back(name);
+      continue;
+    }
+    for (const auto& entry : registry.gnss_modelings()) names.push_back(entry.type.name);
+  }
+  if (names.empty()) names.push_back(config.modeling);
+  return names;
+}
+
+void tell(const PrepareReport& report, const Console& console) {
+  for (const std::string& note : report.notes) console.note("note: " + note);
+  const std::size_t corrupt = report.odometry.corrupt + report.gnss.corrupt + report.truth.corrupt;
+  if (corrupt > 0) {
+    console.note(fmt::format("warning: {} corrupt records were left out; the first ones:", corrupt));
+    for (const std::string& example : report.corrupt_examples) console.note("  " + example);
+  }
+}
+
+std::vector<const LogConfig*> logs_of(const DriveConfig& config) {
+  std::vector<const LogConfig*> logs;
+  if (config.odometry) logs.push_back(&*config.odometry);
+  for (const LogConfig& log : config.gnss) logs.push_back(&log);
+  if (config.truth) logs.push_back(&*config.truth);
+  return logs;
+}
+
+std::string file_name(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+}  // namespace
+
+LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overrides,
+                           const TypeRegistry& registry, const Console& console) {
+  LoadedDrive loaded;
+  loaded.config = load_drive_config(path, overrides.data_folder);
+  apply(overrides, loaded.config);
+  console.progress("reading logs");
+  loaded.drive = load_drive(loaded.config, reader_lookup(registry));
+  tell(loaded.drive.report, console);
+  console.progress("gate and start");
+  loaded.skeleton = build_skeleton(loaded.drive, loaded.config, registry);
+  console.end_progress();
+  if (!loaded.skeleton.start.note.empty()) console.note("note: start: " + loaded.skeleton.start.note);
+  loaded.modelings = chosen_modelings(overrides, loaded.config, registry);
+  return loaded;
+}
+
+GraphDocument build_document(const LoadedDrive& loaded, const std::string& modeling, const Options& options,
+                             const TypeRegistry& registry) {
+  Options all(loaded.config.modeling == modeling ? loaded.config.modeling_options : Options());
+  for (const auto& [name, value] : options) all[name] = value;
+  GraphDocument document = add_modeling(loaded.skeleton, modeling, all, registry);
+  document.provenance = {{"program", "waymark " WAYMARK_VERSION}, {"drive", loaded.config.name}};
+  for (const LogConfig* log : logs_of(loaded.config)) {
+    document.provenance.emplace_back(
+        "input", file_name(log->file) + " fnv1a64:" + fnv1a64_hex(read_text_file(log->file)));
+  }
+  document.provenance.emplace_back("modeling", modeling);
+  for (const auto& [name, value] : all)
+    document.provenance.emplace_back("modeling_option", name + "=" + value);
+  const GateOptions& gate = loaded.config.gate;
+  document.provenance.emplace_back(
+      "gate", gate.enabled ? fmt::format("angle {:.6g} deg displacement {:.6g} m",
+                                         gate.max_angle_rad * 180 / std::numbers::pi, gate.max_displacement_m)
+                           : "off");
+  document.provenance.emplace_back(
+      "start", loaded.config.start.method == StartMethod::anchored ? "anchored" : "dead_reckoning");
+  for (const std::string& note : loaded.drive.report.notes) document.provenance.emplace_back("assumed", note);
+  return document;
+}
+
+std::string describe_drive(const LoadedDrive& loaded) {
+  const GateSummary& gate = loaded.skeleton.gate;
+  const PrepareReport& report = loaded.drive.report;
+  std::string reasons;
+  for (const auto& [reason, count] : gate.reasons) reasons += fmt::format(" {} {}", reason, count);
+  std::string text;
+  const auto& odometry = loaded.drive.odometry;
+  text += fmt::format("drive       {}: {:.0f} s, {:.0f} m by odometry, {} odometry samples, {} fixes\n",
+                      loaded.config.name, seconds_between(odometry.front().stamp, odometry.back().stamp),
+                      loaded.skeleton.distance_m, odometry.size(), loaded.skeleton.document.fixes.size());
+  text += fmt::format("left out    {} fixes outside the odometry, {} by thinning, {} withheld\n",
+                      report.fixes_outside_odometry, report.fixes_thinned, report.fixes_withheld);
+  text += fmt::format("gate        {} of {} fixes rejected ({:.1f} %):{}\n", gate.rejected,
+                      gate.accepted + gate.rejected, gate.rejected_percent(), reasons);
+  return text;
+}
+
+Evaluation evaluate_document(const GraphDocument& document, const std::vector<TruthPose>& truth) {
+  EvaluationInput input;
+  input.fused = poses_at_fixes(document);
+  input.fixes = document.fixes;
+  input.truth = truth;
+  input.antenna_m = document.antenna_m;
+  input.truth_reference_m = document.truth_reference_m;
+  input.frame = document.frame.value_or(Frame());
+  std::vector<std::ptrdiff_t> block_of(document.graph.vertex_count(), -1);
+  for (std::size_t i = 0; i < document.covariances.size(); ++i) {
+    block_of[static_cast<std::size_t>(document.covariances[i].vertex)] = static_cast<std::ptrdiff_t>(i);
+  }
+  for (const Fix& fix : document.fixes) {
+    const auto block = block_of[static_cast<std::size_t>(*document.graph.find(fix.vertex))];
+    if (block < 0) {
+      input.position_covariances.clear();
+      break;
+    }
+    input.position_covariances.emplace_back(
+        document.covariances[static_cast<std::size_t>(block)].covariance.topLeftCorner<2, 2>());
+  }
+  return evaluate(input);
+}
+
+std::vector<TruthPose> read_truth(const std::string& path, const std::string& data_folder,
+                                  const GraphDocument& document, const TypeRegistry& registry) {
+  if (path.ends_with(".yaml") || path.ends_with(".yml")) {
+    DriveConfig config = load_drive_config(path, data_folder);
+    if (!config.truth) throw InputError(path + ": has no 'truth' section");
+    if (!document.frame || document.frame->zone == 0) {
+      throw InputError("the graph has no UTM frame, so geodetic truth cannot be compared with it");
+    }
+    config.utm_zone = document.frame->north ? document.frame->zone : -document.frame->zone;
+    config.utm_origin = {document.frame->origin_easting_m, document.frame->origin_northing_m};
+    return load_drive(config, reader_lookup(registry)).truth;
+  }
+  std::vector<TruthPose> truth;
+  for (const StampedPose& pose : read_tum(read_text_file(path), path)) {
+    truth.push_back({pose.stamp, pose.pose.head<2>(), pose.pose[2]});
+  }
+  std::stable_sort(truth.begin(), truth.end(),
+                   [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
+  return truth;
+}
+
+std::vector<std::string> write_trajectories(const GraphDocument& document, const std::string& prefix,
+                                            const std::string& name) {
+  const bool mapped = document.frame && document.frame->zone != 0;
+  std::optional<Projection> projection;
+  if (mapped) projection.emplace(*document.frame);
+  const Graph& graph = document.graph;
+  std::vector<const Fix*> fix_of(graph.vertex_count(), nullptr);
+  std::vector<FixPoint> fix_points;
+  for (const Fix& fix : document.fixes) {
+    if (const auto v = graph.find(fix.vertex)) fix_of[static_cast<std::size_t>(*v)] = &fix;
+    if (!mapped) continue;
+    const GeodeticPoint place = projection->to_geodetic(fix.position);
+    fix_points.push_back(
+        {fix.stamp, place.latitude_deg, place.longitude_deg, std::string(to_string(fix.status)), fix.reason});
+  }
+  std::vector<const Eigen::MatrixXd*> covariance_of(graph.vertex_count(), nullptr);
+  for (const VertexCovariance& block : document.covariances) {
+    covariance_of[static_cast<std::size_t>(block.vertex)] = &block.covariance;
+  }
+  std::vector<TrajectoryPoint> points;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const auto stamp = graph.stamp(v);
+    if (!stamp || graph.vertex_type(v).tag != VertexSe2::kTag) continue;
+    TrajectoryPoint point;
+    point.stamp = *stamp;
+    const auto value = graph.value(v);
+    point.pose = {value[0], value[1], value[2]};
+    if (mapped) {
+      const GeodeticPoint place = projection->to_geodetic({value[0], value[1]});
+      point.latitude_deg = place.latitude_deg;
+      point.longitude_deg = place.longitude_deg;
+    }
+    if (const auto* covariance = covariance_of[static_cast<std::size_t>(v)]) {
+      point.sigma = covariance->diagonal().cwiseSqrt();
+    }
+    if (const Fix* fix = fix_of[static_cast<std::size_t>(v)]) {
+      point.status = std::string(to_string(fix->status));
+      point.reason = fix->reason;
+    }
+    points.push_back(std::move(point));
+  }
+  if (points.empty()) return {};
+  std::vector<std::string> files = {prefix + ".csv", prefix + ".tum"};
+  write_file_atomically(files[0], trajectory_csv(points));
+  write_file_atomically(files[1], trajectory_tum(points));
+  if (mapped) {
+    files.push_back(prefix + ".geojson");
+    write_file_atomically(files[2], trajectory_geojson(points, fix_points, name));
+  }
+  return files;
+}
+
+}  // namespace waymark

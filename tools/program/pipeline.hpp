@@ -1,0 +1,61 @@
+/// The steps of the main job as the commands use them: drive.yaml to graph, document to evaluation, files
+/// out.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <waymark/tools/drive/assemble.hpp>
+#include <waymark/tools/evaluation/evaluation.hpp>
+#include <waymark/tools/evaluation/report.hpp>
+#include <waymark/tools/program/console.hpp>
+
+namespace waymark {
+
+/// What the command line may override of a drive.yaml.
+struct DriveOverrides {
+  std::string data_folder;
+  std::vector<std::string> modelings;  ///< empty: the drive.yaml's; "all": every registered one
+  std::vector<std::string> modeling_options;
+  std::optional<double> from_s;
+  std::optional<double> to_s;
+  std::optional<int> withhold_every;
+  std::optional<std::string> start;  ///< anchored, dead_reckoning
+  bool no_gate = false;
+};
+
+/// A drive read, gated and started; ready for any modeling.
+struct LoadedDrive {
+  DriveConfig config;
+  PreparedDrive drive;
+  DriveSkeleton skeleton;
+  std::vector<std::string> modelings;
+};
+
+/// Reads a drive.yaml and its logs and builds the skeleton; what was assumed or left out is told on the
+/// console.
+[[nodiscard]] LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overrides,
+                                         const TypeRegistry& registry, const Console& console);
+
+/// The graph of one modeling, with provenance.
+[[nodiscard]] GraphDocument build_document(const LoadedDrive& loaded, const std::string& modeling,
+                                           const Options& options, const TypeRegistry& registry);
+
+/// A paragraph on what went in: samples, fixes, rejections by reason, the start.
+[[nodiscard]] std::string describe_drive(const LoadedDrive& loaded);
+
+/// Evaluates a document at its fixes. @param truth may be empty
+[[nodiscard]] Evaluation evaluate_document(const GraphDocument& document,
+                                           const std::vector<TruthPose>& truth);
+
+/// Truth for a document from a drive.yaml or a TUM file, in the document's frame and on its clock.
+[[nodiscard]] std::vector<TruthPose> read_truth(const std::string& path, const std::string& data_folder,
+                                                const GraphDocument& document, const TypeRegistry& registry);
+
+/// Writes the trajectory of all poses as PREFIX.csv, PREFIX.tum and PREFIX.geojson (the last where the frame
+/// is known); returns the names.
+std::vector<std::string> write_trajectories(const GraphDocument& document, const std::string& prefix,
+                                            const std::string& name);
+
+}  // namespace waymark

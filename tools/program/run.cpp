@@ -1,0 +1,112 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/drive_options.hpp>
+
+namespace waymark {
+namespace {
+
+struct RunOptions {
+  CommonOptions common;
+  DriveOverrides overrides;
+  OptimizationChoice choice;
+  std::string input;
+  std::string folder;
+};
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw OutputError(folder + ": cannot make the folder: " + error.message());
+}
+
+/// One modeling of the drive: graph, optimum, evaluation, files.
+struct ModelingRun {
+  LabelledEvaluation evaluation;
+  Summary summary;
+  std::vector<std::string> files;
+};
+
+ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, const std::string& modeling,
+                         const TypeRegistry& registry, const Console& console) {
+  ModelingRun run;
+  const std::string prefix = options.folder + "/" + modeling;
+  GraphDocument document =
+      build_document(loaded, modeling, parse_options(options.overrides.modeling_options), registry);
+  const auto write = [&](const std::string& name) {
+    write_file_atomically(name, write_graph(document, registry));
+    run.files.push_back(name);
+  };
+  write(prefix + ".graph");
+  run.summary = optimize_document(document, options.choice, registry, console);
+  document.provenance.emplace_back("optimized", "algorithm " + options.choice.algorithm + " " +
+                                                    std::string(to_string(run.summary.termination)));
+  write(prefix + ".fused.graph");
+  for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
+  run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth)};
+  return run;
+}
+
+std::string run_line(const std::string& modeling, const Summary& s) {
+  return fmt::format("{:<11} {} in {} iterations, {:.3f} s, chi2 {:.10g} -> {:.10g}{}\n", modeling,
+                     s.converged() ? "converged" : "NOT CONVERGED", s.iterations, s.total_seconds,
+                     s.initial_chi2, s.final_chi2, s.converged() ? "" : " (" + s.message + ")");
+}
+
+ExitCode run_drive(const RunOptions& options) {
+  const Console console(options.common);
+  const TypeRegistry registry = make_registry(options.common);
+  const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
+  make_folder(options.folder);
+  std::vector<LabelledEvaluation> evaluations;
+  ReportHeader header{loaded.config.name, {{"program", "waymark " WAYMARK_VERSION}}};
+  std::string text = describe_drive(loaded);
+  std::vector<std::string> files;
+  nlohmann::ordered_json summaries;
+  ExitCode code = kSuccess;
+  for (const std::string& modeling : loaded.modelings) {
+    ModelingRun run = run_modeling(options, loaded, modeling, registry, console);
+    text += run_line(modeling, run.summary);
+    summaries[modeling] = summary_json(run.summary);
+    evaluations.push_back(std::move(run.evaluation));
+    files.insert(files.end(), run.files.begin(), run.files.end());
+    if (exit_code(run.summary) != kSuccess) code = exit_code(run.summary);
+    if (code == kInterrupted) break;
+  }
+  const std::string metrics_file = options.folder + "/metrics.json";
+  const std::string json = metrics_json(evaluations, header);
+  write_file_atomically(metrics_file, json);
+  files.push_back(metrics_file);
+  const std::string summary_file = options.folder + "/summary.json";
+  write_file_atomically(summary_file, summaries.dump(2) + "\n");
+  files.push_back(summary_file);
+  if (options.common.json) {
+    console.result(json);
+    return code;
+  }
+  text += "\n" + metrics_table(evaluations) + "\nwritten:\n";
+  for (const std::string& file : files) text += "  " + file + "\n";
+  console.result(text);
+  return code;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("run", "The whole job: convert, optimise, evaluate");
+  const auto options = std::make_shared<RunOptions>();
+  command->add_option("drive", options->input, "Description of the drive and its logs (drive.yaml)")
+      ->required();
+  command->add_option("--out", options->folder, "Folder for all results")->required();
+  add_drive_options(*command, options->overrides);
+  add_optimization_options(*command, options->choice);
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  waymark run drive.yaml --out results --modeling all");
+  command->callback([options, &action] { action = [options] { return run_drive(*options); }; });
+}
+
+}  // namespace waymark
