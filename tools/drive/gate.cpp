@@ -222,7 +222,8 @@ void require_accepted_fix(const GateSummary& summary) {
   throw InputError(
       "all " + std::to_string(summary.rejected) +
       " fixes were rejected by the gate; check the sign and unit of the yaw rate and the clocks of "
-      "both logs, widen the gate's limits, or turn the gate off");
+      "both logs, widen gate: max_angle_deg and max_displacement_m, or turn the gate off (gate: enabled: "
+      "false)");
 }
 
 }  // namespace waymark

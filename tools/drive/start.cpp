@@ -1,8 +1,11 @@
 #include <waymark/tools/drive/start.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 #include <waymark/core/error.hpp>
 #include <waymark/tools/drive/start_alignment.hpp>

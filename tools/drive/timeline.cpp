@@ -43,11 +43,12 @@ void check_inputs(std::span<const OdometrySample> odometry, std::span<const Fix>
 
 void check_gap(Stamp start, Stamp left, double length_s, const TimelineOptions& options) {
   if (options.gap_policy != GapPolicy::error || length_s <= options.gap_s) return;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "gap of %.3f s in the odometry, %.3f s after its start (limit %.3f s); bridge gaps or raise "
-                "the limit to go on",
-                length_s, seconds_between(start, left), options.gap_s);
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "gap of %.3f s in the odometry, %.3f s after its start; set gap: policy: bridge or raise gap: "
+      "longer_than (%.3f) to go on",
+      length_s, seconds_between(start, left), options.gap_s);
   throw InputError(text);
 }
 
