@@ -56,9 +56,10 @@ constexpr std::array kGnss{
     kOptionalSpeed,
     Quantity{"speed_accuracy", "speed_accuracy_mps", false, kSpeeds, {}, -kInfinity, kInfinity},
     Quantity{"valid", "valid_flag", false, kFlags, {}, -kInfinity, kInfinity}};
+// References often count headings on through the turns of a drive.
 constexpr std::array kTruth{
     kTime, kLatitude, kLongitude, kHeight,
-    Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -2 * pi, 2 * pi}};
+    Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -200 * pi, 200 * pi}};
 
 template <typename Item>
 const Item* find_named(std::span<const Item> items, std::string_view name) {

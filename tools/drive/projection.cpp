@@ -1,10 +1,10 @@
 #include <waymark/tools/drive/projection.hpp>
 
 #include <cmath>
-#include <exception>
 #include <numbers>
 
 #include <fmt/format.h>
+#include <GeographicLib/TransverseMercator.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 
 #include <waymark/core/error.hpp>
@@ -13,29 +13,41 @@
 namespace waymark {
 namespace {
 
+using GeographicLib::TransverseMercator;
 using GeographicLib::UTMUPS;
 using std::numbers::pi;
 
 constexpr double kDegree = pi / 180;
+constexpr double kFalseEasting = 500'000;      // m
 constexpr double kFalseNorthing = 10'000'000;  // of the southern hemisphere, m
+constexpr double kWidestOffset = 30;           // degrees of longitude from the zone's central meridian
+constexpr double kFarthest = 5'000'000;        // m, easting of about that offset and more
 constexpr double kOriginStep = 100;            // m
 
-/// UTM easting and northing; the northing as the frame's hemisphere counts it.
+double central_meridian_deg(int zone) {
+  return 6.0 * zone - 183;
+}
+
+double false_northing(bool north) {
+  return north ? 0 : kFalseNorthing;
+}
+
+/// UTM easting and northing. The transverse Mercator map itself knows no border and no equator; UTMUPS would
+/// refuse eastings beyond 1000 km and count northings by the hemisphere of the point.
 GridPoint forward(const GeodeticPoint& point, int zone, bool north) {
-  bool point_north = true;
-  double easting = 0;
-  double northing = 0;
-  double convergence_deg = 0;
-  double scale = 1;
-  try {
-    UTMUPS::Forward(point.latitude_deg, point.longitude_deg, zone, point_north, easting, northing,
-                    convergence_deg, scale, zone);
-  } catch (const std::exception&) {
+  const double meridian = central_meridian_deg(zone);
+  const double offset = std::remainder(point.longitude_deg - meridian, 360);
+  const bool good = std::abs(point.latitude_deg) <= 90 && std::abs(offset) <= kWidestOffset;
+  if (!good)
     throw InputError(fmt::format("latitude {}, longitude {} cannot be projected into UTM zone {}",
                                  point.latitude_deg, point.longitude_deg, zone));
-  }
-  if (point_north != north) northing += north ? -kFalseNorthing : kFalseNorthing;
-  return {{easting, northing}, convergence_deg * kDegree, scale};
+  double x = 0;
+  double y = 0;
+  double convergence_deg = 0;
+  double scale = 1;
+  TransverseMercator::UTM().Forward(meridian, point.latitude_deg, point.longitude_deg, x, y, convergence_deg,
+                                    scale);
+  return {{x + kFalseEasting, y + false_northing(north)}, convergence_deg * kDegree, scale};
 }
 
 }  // namespace
@@ -66,15 +78,14 @@ GridPoint Projection::to_grid(const GeodeticPoint& point) const {
 }
 
 GeodeticPoint Projection::to_geodetic(const Eigen::Vector2d& position) const {
-  const double easting = position.x() + frame_.origin_easting_m;
-  const double northing = position.y() + frame_.origin_northing_m;
+  const double x = position.x() + frame_.origin_easting_m - kFalseEasting;
+  const double y = position.y() + frame_.origin_northing_m - false_northing(frame_.north);
+  if (!(std::abs(x) <= kFarthest && std::abs(y) <= 2 * kFarthest))
+    throw InputError(fmt::format("easting {}, northing {} lie outside of UTM zone {}", x + kFalseEasting,
+                                 y + false_northing(frame_.north), frame_.zone));
   GeodeticPoint point;
-  try {
-    UTMUPS::Reverse(frame_.zone, frame_.north, easting, northing, point.latitude_deg, point.longitude_deg);
-  } catch (const std::exception&) {
-    throw InputError(
-        fmt::format("easting {}, northing {} lie outside of UTM zone {}", easting, northing, frame_.zone));
-  }
+  TransverseMercator::UTM().Reverse(central_meridian_deg(frame_.zone), x, y, point.latitude_deg,
+                                    point.longitude_deg);
   return point;
 }
 

@@ -27,7 +27,8 @@ struct GridPoint {
 /// stated, the origin that fix's easting and northing rounded to multiples of 100 m unless stated.
 /// @param zone    signed: negative is the southern hemisphere (northings from 10,000 km); 1 <= |zone| <= 60
 /// @param origin  easting, northing, m
-/// @throws InputError where the point lies too far from the stated zone to be projected.
+/// @throws InputError where the point is no place or lies 30 degrees of longitude or more from the zone's
+/// meridian.
 [[nodiscard]] Frame choose_frame(const GeodeticPoint& first_fix, std::optional<int> zone,
                                  const std::optional<Eigen::Vector2d>& origin);
 
@@ -44,7 +45,7 @@ class Projection {
 
   [[nodiscard]] const Frame& frame() const { return frame_; }
 
-  /// @throws InputError where the point is no place or lies too far from the zone.
+  /// @throws InputError as choose_frame.
   [[nodiscard]] GridPoint to_grid(const GeodeticPoint& point) const;
   /// Inverse of to_grid. @throws InputError far outside the zone.
   [[nodiscard]] GeodeticPoint to_geodetic(const Eigen::Vector2d& position) const;
