@@ -1,0 +1,206 @@
+#include <catch2/catch.hpp>
+
+#include <numbers>
+#include <string>
+
+#include <waymark/core/error.hpp>
+#include <waymark/tools/drive/config.hpp>
+
+using namespace waymark;
+using Catch::Matchers::Message;
+
+namespace {
+
+DriveConfig parse(const std::string& text, const std::string& data_folder = "") {
+  return parse_drive_config(text, "tours/drive.yaml", data_folder);
+}
+
+/// The error that a line added to a minimal drive gives.
+std::string error_of(const std::string& more) {
+  try {
+    (void)parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n" + more);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string error_of_gnss(const std::string& entries) {
+  try {
+    (void)parse("odometry: {file: o.csv}\ngnss:\n  file: g.csv\n" + entries);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("drive.yaml: the least there is, and its defaults") {
+  const DriveConfig config = parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n");
+  CHECK(config.name == "drive");
+  CHECK(config.odometry->file == "tours/o.csv");
+  CHECK(config.odometry->format == "csv");
+  CHECK(config.odometry->request.stream == StreamKind::odometry);
+  REQUIRE(config.gnss.size() == 1);
+  CHECK(config.gnss[0].file == "tours/g.csv");
+  CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::automatic);
+  CHECK(config.gnss[0].request.time_scale == TimeScale::gps);
+  CHECK(!config.truth);
+  CHECK(!config.utm_zone);
+  CHECK(config.gate.enabled);
+  CHECK(config.gate.max_angle_rad == Approx(1.5 * std::numbers::pi / 180));
+  CHECK(config.gate.max_displacement_m == 15);
+  CHECK(config.start.method == StartMethod::anchored);
+  CHECK(config.modeling == "g1");
+}
+
+TEST_CASE("drive.yaml: everything that can be said") {
+  const DriveConfig config = parse(R"(
+name: Somewhere
+folder: logs
+time: {scale: utc, from: 10, to: 70.5}
+frame: {utm_zone: 56S, origin: [300000, 6250000]}
+odometry:
+  file: can.tsv
+  separator: tab
+  columns:
+    time: 1
+    speed: {column: v, unit: km/h}
+    yaw_rate: {column: w, unit: deg/s, convention: cw}
+  time: {scale: gps, week: 1900, offset: -0.4}
+  noise: {heading_per_s: 1e-7}
+gnss:
+  - {file: a.json, format: gpsd_json, accuracy: {meaning: drms, default_sigma: 5}, antenna: [1, -0.5], rate: 4,
+     delay: 0.1, withhold_every: 10}
+  - {file: /logs/b.csv, antenna: [1, -0.5], period: 0.25, delay: 0.1, withhold_every: 10}
+truth: {file: t.csv, reference: [0.1, 0.2], time: {scale: unix}}
+gate: {enabled: false, max_angle_deg: 2, max_displacement_m: 20}
+gap: {longer_than: 1, policy: error, noise_factor: 10}
+snap: 0.002
+start: dead_reckoning
+modeling: {name: g2, options: {weight: 1e6}}
+)");
+  CHECK(config.name == "Somewhere");
+  CHECK(config.time_scale == TimeScale::utc);
+  CHECK(*config.from_s == 10);
+  CHECK(*config.to_s == 70.5);
+  CHECK(*config.utm_zone == -56);
+  CHECK(*config.utm_origin == Eigen::Vector2d(300000, 6250000));
+  CHECK(config.odometry->file == "tours/logs/can.tsv");
+  const LogRequest& odometry = config.odometry->request;
+  CHECK(odometry.separator == '\t');
+  CHECK(odometry.columns.at("time").column == "1");
+  CHECK(odometry.columns.at("speed").unit == "km/h");
+  CHECK(odometry.columns.at("yaw_rate").convention == "cw");
+  CHECK(odometry.time_scale == TimeScale::gps);
+  CHECK(odometry.gps_week == 1900);
+  CHECK(odometry.time_offset_s == -0.4);
+  CHECK(config.odometry_noise.at("heading_per_s") == 1e-7);
+  CHECK(config.places.at("odometry.noise.heading_per_s") == "tours/drive.yaml:14:26: ");
+  REQUIRE(config.gnss.size() == 2);
+  CHECK(config.gnss[0].format == "gpsd_json");
+  CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::drms);
+  CHECK(config.gnss[0].request.default_sigma_m == 5);
+  CHECK(config.gnss[0].request.time_scale == TimeScale::utc);  // the drive's, where it states none
+  CHECK(config.gnss[1].file == "/logs/b.csv");
+  CHECK(config.gnss[1].request.source == 1);
+  CHECK(config.antenna_m == Eigen::Vector2d(1, -0.5));
+  CHECK(config.gnss_period_s == 0.25);
+  CHECK(config.gnss_delay_s == 0.1);
+  CHECK(config.withhold_every == 10);
+  CHECK(config.truth->request.time_scale == TimeScale::unix_time);
+  CHECK(config.truth_reference_m == Eigen::Vector2d(0.1, 0.2));
+  CHECK(!config.gate.enabled);
+  CHECK(config.gate.max_angle_rad == Approx(2 * std::numbers::pi / 180));
+  CHECK(config.gate.max_displacement_m == 20);
+  CHECK(config.timeline.gap_s == 1);
+  CHECK(config.timeline.gap_policy == GapPolicy::error);
+  CHECK(config.timeline.gap_noise_factor == 10);
+  CHECK(config.timeline.snap_s == 0.002);
+  CHECK(config.start.method == StartMethod::dead_reckoning);
+  CHECK(config.modeling == "g2");
+  CHECK(config.modeling_options.at("weight") == "1e6");
+}
+
+TEST_CASE("drive.yaml: a data folder given from outside replaces the stated one, absolute names stand") {
+  const DriveConfig config =
+      parse("folder: logs\nodometry: {file: o.csv}\ngnss: {file: /g.csv}\n", "/elsewhere");
+  CHECK(config.odometry->file == "/elsewhere/o.csv");
+  CHECK(config.gnss[0].file == "/g.csv");
+}
+
+TEST_CASE("drive.yaml: an unknown key is an error with its place and the right key") {
+  CHECK(error_of("gates: {}\n") == "tours/drive.yaml:3:1: unknown key 'gates'; did you mean 'gate'?");
+  CHECK(error_of("gate: {max_angle_dg: 1}\n") ==
+        "tours/drive.yaml:3:8: unknown key 'max_angle_dg' in gate; did you mean 'max_angle_deg'?");
+  CHECK(error_of("frame: {foo: 1}\n") ==
+        "tours/drive.yaml:3:9: unknown key 'foo' in frame; known: utm_zone, origin");
+  CHECK(error_of_gnss("  colums: {time: t}\n") ==
+        "tours/drive.yaml:4:3: unknown key 'colums' in gnss; did you mean 'columns'?");
+  CHECK(error_of_gnss("  columns:\n    lattitude: lat\n") ==
+        "tours/drive.yaml:5:5: unknown key 'lattitude' in columns; did you mean 'latitude'?");
+  CHECK(error_of_gnss("  columns:\n    latitude: {colum: lat}\n") ==
+        "tours/drive.yaml:5:16: unknown key 'colum' in columns.latitude; did you mean 'column'?");
+}
+
+TEST_CASE("drive.yaml: wrong types and ranges") {
+  CHECK(error_of("snap: soon\n") == "tours/drive.yaml:3:7: snap: expected a number not below 0, got 'soon'");
+  CHECK(error_of("gap: {noise_factor: 0.5}\n") ==
+        "tours/drive.yaml:3:21: gap.noise_factor: expected a number not below 1, got '0.5'");
+  CHECK(error_of("gap: {longer_than: .nan}\n") ==
+        "tours/drive.yaml:3:20: gap.longer_than: expected a number above 0, got '.nan'");
+  CHECK(error_of("gate: {enabled: maybe}\n") ==
+        "tours/drive.yaml:3:17: gate.enabled: expected true or false, got 'maybe'");
+  CHECK(error_of("gate: {chord_s: 8}\n") ==
+        "tours/drive.yaml:3:7: gate: max_chord_s (5) must not be below chord_s (8)");
+  CHECK(error_of("gate: 3\n") == "tours/drive.yaml:3:7: gate: expected a mapping (key: value), got '3'");
+  CHECK(error_of("start: somewhere\n") ==
+        "tours/drive.yaml:3:8: start: expected one of anchored, dead_reckoning, got 'somewhere'");
+  CHECK(error_of("time: {from: 5, to: 5}\n") == "tours/drive.yaml:3:21: time.to: must lie after 'from'");
+  CHECK(error_of("frame: {utm_zone: 61N}\n") ==
+        "tours/drive.yaml:3:19: frame.utm_zone: expected a zone such as 32N or 56S, got '61N'");
+  CHECK(error_of("frame: {origin: [1, 2]}\n") ==
+        "tours/drive.yaml:3:17: frame.origin: needs a stated utm_zone: it counts from that zone's corner");
+  CHECK(error_of("truth: {reference: [1, 2]}\n") == "tours/drive.yaml:3:8: truth: 'file' is missing");
+  CHECK(error_of("truth: {file: t.csv, reference: [1, 2, 3]}\n") ==
+        "tours/drive.yaml:3:33: truth.reference: expected two numbers [x, y], got a list of 3");
+  CHECK(error_of_gnss("  rate: 0\n") ==
+        "tours/drive.yaml:4:9: gnss.rate: expected a number above 0, got '0'");
+  CHECK(error_of_gnss("  rate: 1\n  period: 1\n") ==
+        "tours/drive.yaml:4:9: gnss.rate: give either period (s) or rate (Hz)");
+  CHECK(error_of_gnss("  withhold_every: 1\n") ==
+        "tours/drive.yaml:4:19: gnss.withhold_every: expected 0 (none) or a whole number from 2, got '1'");
+  CHECK(error_of_gnss("  accuracy: {meaning: 2sigma}\n") ==
+        "tours/drive.yaml:4:23: gnss.accuracy.meaning: expected one of auto, 95, 1sigma, drms, cep50, got "
+        "'2sigma'");
+  CHECK(error_of_gnss("  time: {scale: utc, week: 1900}\n") ==
+        "tours/drive.yaml:4:28: gnss.time.week: a week belongs to the scale gps");
+  CHECK(error_of_gnss("  format: gpsd_json\n  separator: ;\n") ==
+        "tours/drive.yaml:5:14: gnss.separator: belongs to the format csv, not to gpsd_json");
+  CHECK(error_of_gnss("  columns:\n    speed: {column: v, unit: kmh}\n") ==
+        "tours/drive.yaml:5:12: unknown unit 'kmh' for speed; did you mean 'km/h'?; known: m/s, km/h, mph, "
+        "kn, mm/s");
+  CHECK(error_of_gnss("  columns:\n    course: {unit: deg}\n") ==
+        "tours/drive.yaml:5:13: no column is given for course");
+}
+
+TEST_CASE("drive.yaml: what is missing, doubled or no YAML") {
+  CHECK_THROWS_MATCHES(parse("gnss: {file: g.csv}\n"), InputError,
+                       Message("tours/drive.yaml:1:1: 'odometry' is missing"));
+  CHECK_THROWS_MATCHES(parse("odometry: {file: g.csv}\n"), InputError,
+                       Message("tours/drive.yaml:1:1: 'gnss' is missing"));
+  CHECK_THROWS_MATCHES(parse("odometry: {file: o.csv}\ngnss: []\n"), InputError,
+                       Message("tours/drive.yaml:2:7: gnss: at least one log is needed"));
+  CHECK(error_of("gate: {}\ngate: {}\n") == "tours/drive.yaml:4:1: key 'gate' is given twice");
+  CHECK_THROWS_MATCHES(parse("odometry: {file: [\n"), InputError,
+                       Message("tours/drive.yaml:2:1: no valid YAML: end of sequence flow not found"));
+  CHECK_THROWS_MATCHES(parse(""), InputError,
+                       Message("tours/drive.yaml: the file: expected a mapping (key: value), got nothing"));
+  CHECK_THROWS_MATCHES(
+      parse("odometry: {file: o.csv}\ngnss: [{file: a.csv}, {file: b.csv, delay: 1}]\n"), InputError,
+      Message("tours/drive.yaml:2:23: gnss: all logs must state the same antenna, period, delay and "
+              "withhold_every"));
+  CHECK_THROWS_MATCHES(load_drive_config("absent/drive.yaml"), InputError,
+                       Message("absent/drive.yaml: cannot read: No such file or directory"));
+}
