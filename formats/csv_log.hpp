@@ -5,7 +5,7 @@
 
 namespace waymark {
 
-/// Reader "csv". formats/README.md has the quantities with their default columns, units and senses.
+/// Reader "csv". formats/logs.md has the quantities with their default columns, units and senses.
 ///
 /// A quantity is found by `request.columns` (a name of the header line, or a 1-based number), else by its
 /// default column names; a quantity found so without being asked for is named in the notes. The header is the

@@ -38,7 +38,7 @@ struct Quantity {
 /// Unit of times written as ISO 8601 dates.
 inline constexpr std::string_view kIso8601 = "iso8601";
 
-/// The quantities of a stream, `time` first. formats/README.md has the same as a table.
+/// The quantities of a stream, `time` first. formats/logs.md has the same as a table.
 [[nodiscard]] std::span<const Quantity> quantities(StreamKind stream);
 [[nodiscard]] std::vector<std::string_view> quantity_names(StreamKind stream);
 /// Null for an unknown name.
