@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Sets everything up, builds with warnings as errors and runs all tests: tools/test.sh [CTEST_ARGUMENTS...]
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+"$root/tools/setup/install_packages.sh"
+cd "$root"
+cmake --preset dev >/dev/null
+cmake --build --preset dev
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+status=0
+ctest --preset dev --parallel "$(nproc)" "$@" | tee "$log" || status=$?
+skipped=$(grep -c '\*\*\*Skipped' "$log" || true)
+echo "tests skipped for want of data or packages: $skipped"
+exit "$status"
