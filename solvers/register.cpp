@@ -1,4 +1,5 @@
-#include <waymark/solvers/backends.hpp>
+#include <waymark/solvers/algorithms/algorithms.hpp>
+#include <waymark/solvers/linear/backends.hpp>
 #include <waymark/solvers/register.hpp>
 
 namespace waymark {

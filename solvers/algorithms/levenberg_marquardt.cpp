@@ -4,8 +4,8 @@
 #include <vector>
 
 #include <waymark/core/options.hpp>
+#include <waymark/solvers/algorithms/algorithms.hpp>
 #include <waymark/solvers/algorithms/newton_step.hpp>
-#include <waymark/solvers/backends.hpp>
 
 namespace waymark {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <new>
 
-#include <waymark/solvers/backends.hpp>
+#include <waymark/solvers/linear/backends.hpp>
 
 namespace waymark {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <waymark/solvers/backends.hpp>
+#include <waymark/solvers/linear/backends.hpp>
 
 namespace waymark {
 namespace {

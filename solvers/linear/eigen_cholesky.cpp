@@ -1,7 +1,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
-#include <waymark/solvers/backends.hpp>
+#include <waymark/solvers/linear/backends.hpp>
 
 namespace waymark {
 namespace {
