@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/csv_bindings.hpp>
 #include <waymark/formats/csv_columns.hpp>
 #include <waymark/formats/csv_table.hpp>
 #include <waymark/formats/iso8601.hpp>
@@ -24,32 +25,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 struct Complaint {
   std::size_t column = 0;  ///< 0: none
   std::string what;
-};
-
-/// The columns of the stream, looked up once.
-struct Bindings {
-  explicit Bindings(const CsvColumns& columns)
-      : time(columns.find("time")),
-        speed(columns.find("speed")),
-        yaw_rate(columns.find("yaw_rate")),
-        latitude(columns.find("latitude")),
-        longitude(columns.find("longitude")),
-        height(columns.find("height")),
-        heading(columns.find("heading")),
-        accuracy(columns.find("accuracy")),
-        accuracy_east(columns.find("accuracy_east")),
-        accuracy_north(columns.find("accuracy_north")),
-        sigma_east(columns.find("sigma_east")),
-        sigma_north(columns.find("sigma_north")),
-        covariance_root(columns.find("covariance_en_signed_root")),
-        course(columns.find("course")),
-        course_accuracy(columns.find("course_accuracy")),
-        speed_accuracy(columns.find("speed_accuracy")),
-        valid(columns.find("valid")) {}
-
-  const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *height, *heading;
-  const BoundColumn *accuracy, *accuracy_east, *accuracy_north, *sigma_east, *sigma_north, *covariance_root;
-  const BoundColumn *course, *course_accuracy, *speed_accuracy, *valid;
 };
 
 /// How the accuracy figures of this table become sigmas.

@@ -9,7 +9,7 @@
 #include <waymark/formats/iso8601.hpp>
 #include <waymark/formats/text_file.hpp>
 
-#include "tests/support/paths.hpp"
+#include "support/paths.hpp"
 
 using namespace waymark;
 using Catch::Matchers::Message;

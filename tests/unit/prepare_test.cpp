@@ -10,7 +10,7 @@
 #include <waymark/tools/drive/prepare.hpp>
 #include <waymark/tools/drive/projection.hpp>
 
-#include "tests/support/paths.hpp"
+#include "support/paths.hpp"
 
 using namespace waymark;
 using Catch::Matchers::Message;

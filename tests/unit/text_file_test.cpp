@@ -13,7 +13,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
 
-#include "tests/support/paths.hpp"
+#include "support/paths.hpp"
 
 using namespace waymark;
 using Catch::Matchers::Message;

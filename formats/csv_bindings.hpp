@@ -1,0 +1,34 @@
+/// The columns of a table by what the samples need; private to the CSV reader.
+#pragma once
+
+#include <waymark/formats/csv_columns.hpp>
+
+namespace waymark {
+
+/// The columns of the stream, looked up once; null where the table has none.
+struct Bindings {
+  explicit Bindings(const CsvColumns& columns)
+      : time(columns.find("time")),
+        speed(columns.find("speed")),
+        yaw_rate(columns.find("yaw_rate")),
+        latitude(columns.find("latitude")),
+        longitude(columns.find("longitude")),
+        height(columns.find("height")),
+        heading(columns.find("heading")),
+        accuracy(columns.find("accuracy")),
+        accuracy_east(columns.find("accuracy_east")),
+        accuracy_north(columns.find("accuracy_north")),
+        sigma_east(columns.find("sigma_east")),
+        sigma_north(columns.find("sigma_north")),
+        covariance_root(columns.find("covariance_en_signed_root")),
+        course(columns.find("course")),
+        course_accuracy(columns.find("course_accuracy")),
+        speed_accuracy(columns.find("speed_accuracy")),
+        valid(columns.find("valid")) {}
+
+  const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *height, *heading;
+  const BoundColumn *accuracy, *accuracy_east, *accuracy_north, *sigma_east, *sigma_north, *covariance_root;
+  const BoundColumn *course, *course_accuracy, *speed_accuracy, *valid;
+};
+
+}  // namespace waymark
