@@ -101,7 +101,7 @@ TEST_CASE("csv: columns by number need no header") {
           std::vector<std::string>{"log.csv:1:3: yaw_rate: expected a number, got 'x'"});
   }
   SECTION("beyond the last column") {
-    request.columns["speed"].column = "4";
+    request.columns["speed"] = {"4", "", ""};
     CHECK_THROWS_MATCHES(read("1,2,3\n", request), InputError,
                          Message("log.csv:1:1: no column 4 for speed: the table has columns 1 to 3"));
   }
