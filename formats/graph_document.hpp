@@ -39,6 +39,7 @@ struct ReadReport {
   std::size_t skipped = 0;
   std::vector<std::string> examples;  ///< messages of the first ten
   bool edges_only = false;            ///< the file had no vertices; they were made along the odometry chain
+  std::size_t unreached = 0;  ///< those of them that the chain does not reach: they start at the origin
 };
 
 /// The schema of an edge type as the TYPE line states it: "vertices=A,B fields=measured:3 information=3
@@ -59,13 +60,14 @@ struct ReadReport {
 
 /// Writes a plain g2o file: vertices, FIX and edges of g2o's SE(2) vocabulary, in exact numbers.
 /// EDGE_GNSS_POSITION without lever arm becomes the equal EDGE_SE2 without heading information.
-/// @throws UsageError naming what g2o cannot express (stamps, records and provenance are dropped silently, as
-/// `check` tells).
+/// Header, stamps, GNSS records and covariances have no place in it and are left out.
+/// @throws UsageError naming what g2o cannot express.
 [[nodiscard]] std::string write_g2o(const GraphDocument& document);
 
-/// Gives poses to the vertices of an edges-only SE(2) file, along the chain of consecutive ids from (0, 0,
-/// 0), then by breadth first search over the remaining edges. Returns how many could not be reached (they
-/// stay at the origin).
+/// Gives poses to the vertices of an SE(2) graph from its relative edges (EDGE_SE2, EDGE_SE2_LOG): from the
+/// first vertex that has one, which keeps its pose, along the chain of consecutive vertices, then by breadth
+/// first search over the remaining edges. Fixed vertices stay where they are. Returns how many vertices were
+/// not reached; these keep their values.
 std::size_t start_from_odometry_chain(Graph& graph);
 
 }  // namespace waymark

@@ -1,28 +1,27 @@
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
-
 #include <waymark/core/error.hpp>
 #include <waymark/formats/graph_document.hpp>
+#include <waymark/formats/graph_records.hpp>
 #include <waymark/formats/line_scanner.hpp>
 
 namespace waymark {
 namespace {
 
 constexpr std::size_t kExamples = 10;
+constexpr std::int64_t kMaxArity = 1000;  // of a run-time-arity edge: 72 MB of information matrix
 
-/// Smallest eigenvalue not below -1e-9 of the largest; zeros are legal (no information on an axis).
-bool is_positive_semidefinite(const Eigen::MatrixXd& information) {
-  const Eigen::VectorXd diagonal = information.diagonal();
-  if (diagonal.minCoeff() > 0) {
-    // Gershgorin settles the usual, diagonally dominant case.
-    const Eigen::VectorXd off = information.cwiseAbs().rowwise().sum() - diagonal;
-    if ((diagonal - off).minCoeff() >= 0) return true;
-  }
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(information, Eigen::EigenvaluesOnly).eigenvalues();
-  const double largest = std::max(std::abs(eigenvalues[0]), eigenvalues[eigenvalues.size() - 1]);
-  return eigenvalues[0] >= -1e-9 * largest;
+constexpr std::string_view kOwnTags[] = {"GRAPH", "FRAME", "TIME", "PROVENANCE", "LEVER",
+                                         "TYPE",  "STAMP", "LOSS", "GNSS",       "COVARIANCE"};
+constexpr std::string_view kToroTags[] = {"VERTEX2", "EDGE2", "VERTEX", "EDGE"};
+
+template <std::size_t N>
+bool is_one_of(std::string_view tag, const std::string_view (&tags)[N]) {
+  return std::find(std::begin(tags), std::end(tags), tag) != std::end(tags);
+}
+
+std::string join(std::string_view tag, std::string_view message) {
+  return std::string(tag) + ": " + std::string(message);
 }
 
 class GraphReader {
@@ -41,7 +40,7 @@ class GraphReader {
     for_each_line([this](LineScanner& line, std::string_view tag) {
       if (vertex_type(tag) == nullptr) read_statement(line, tag);
     });
-    if (report_.edges_only) start_from_odometry_chain(document_.graph);
+    if (report_.edges_only) report_.unreached = start_from_odometry_chain(document_.graph);
     if (document_.graph.vertex_count() == 0) throw InputError(name_ + ": no vertices in it");
     return std::move(document_);
   }
@@ -122,9 +121,12 @@ class GraphReader {
   }
 
   void read_edge(LineScanner& line, const EdgeType& type) {
+    last_batch_ = nullptr;  // a LOSS must not go to an earlier edge where this one is skipped
     const bool runtime = type.arity == EdgeType::kRuntimeArity;
     const std::int64_t arity = runtime ? line.integer({type.tag, "arity"}) : type.arity;
-    if (runtime && (arity < 1 || arity > 100000)) line.fail(type.tag + ": the arity must be 1 to 100000");
+    if (runtime && (arity < 1 || arity > kMaxArity)) {
+      line.fail(join(type.tag, "the arity must be 1 to " + std::to_string(kMaxArity)));
+    }
     vertices_.clear();
     for (std::int64_t k = 0; k < arity; ++k) vertices_.push_back(read_vertex_id(line, type.tag));
     values_.clear();
@@ -169,31 +171,56 @@ class GraphReader {
     if (tag == "FIX") {
       do {
         document_.graph.set_fixed(read_vertex_id(line, tag), true);
-      } while (!LineScanner(line).word().empty());
-    } else if (tag == "STAMP" && is_waymark_) {
+      } while (!line.at_end());
+    } else if (!is_waymark_) {
+      fail_unknown(line, tag);
+    } else if (tag == "STAMP") {
       const VertexIndex v = read_vertex_id(line, tag);
-      document_.graph.set_stamp(v, Stamp{line.integer({tag, "nanoseconds"})});
+      if (document_.graph.stamp(v)) line.fail(join(tag, "this vertex has a stamp already"));
+      const Stamp stamp{line.integer({tag, "nanoseconds"})};
       line.end(tag);
-    } else if (tag == "LOSS" && is_waymark_) {
+      document_.graph.set_stamp(v, stamp);
+    } else if (tag == "LOSS") {
       read_loss(line);
-    } else if (tag == "GNSS" && is_waymark_) {
-      read_fix(line);
-    } else if (tag == "COVARIANCE" && is_waymark_) {
+    } else if (tag == "GNSS") {
+      read_record(line);
+    } else if (tag == "COVARIANCE") {
       read_covariance(line);
-    } else if (is_waymark_ && read_header(line, tag)) {
-      return;
-    } else {
-      line.fail("unknown tag '" + std::string(tag) + "'; if a plugin defines it, load it with --plugin");
+    } else if (!read_header(line, tag)) {
+      fail_unknown(line, tag);
     }
+  }
+
+  [[noreturn]] void fail_unknown(const LineScanner& line, std::string_view tag) {
+    last_batch_ = nullptr;  // it may have been an edge: a LOSS below it belongs to none that is known
+    if (is_one_of(tag, kOwnTags)) {
+      line.fail(join(tag, is_waymark_ ? "stands in the first line only"
+                                      : "is known in files only whose first line is 'GRAPH 1'"));
+    }
+    if (is_one_of(tag, kToroTags)) {
+      line.fail("tag " + quoted(tag) +
+                " of TORO, whose files are not read (order and meaning of their numbers differ)");
+    }
+    line.fail("unknown tag " + quoted(tag) + "; if a plugin defines it, load it with --plugin");
+  }
+
+  /// For statements that hold for the whole file.
+  void only_once(LineScanner& line, const std::string& statement) {
+    if (std::find(seen_.begin(), seen_.end(), statement) != seen_.end()) {
+      line.fail(statement + ": is given a second time");
+    }
+    seen_.push_back(statement);
   }
 
   bool read_header(LineScanner& line, std::string_view tag) {
     if (tag == "FRAME") {
-      read_frame(line);
+      only_once(line, "FRAME");
+      document_.frame = read_frame(line);
     } else if (tag == "TIME") {
+      only_once(line, "TIME");
       const std::string_view word = line.word();
       const auto scale = time_scale_from_string(word);
-      if (!scale) line.fail("TIME: expected gps, utc or unix, got '" + std::string(word) + "'");
+      if (!scale) line.fail("TIME: expected gps, utc or unix, got " + quoted(word));
       document_.time_scale = *scale;
       line.end(tag);
     } else if (tag == "PROVENANCE") {
@@ -202,7 +229,10 @@ class GraphReader {
       document_.provenance.emplace_back(key, std::string(line.rest()));
     } else if (tag == "LEVER") {
       const std::string_view which = line.word();
-      if (which != "antenna" && which != "truth") line.fail("LEVER: expected antenna or truth");
+      if (which != "antenna" && which != "truth") {
+        line.fail("LEVER: expected antenna or truth, got " + quoted(which));
+      }
+      only_once(line, join(tag, which));
       Eigen::Vector2d& lever = which == "antenna" ? document_.antenna_m : document_.truth_reference_m;
       lever[0] = line.number({tag, "x"});
       lever[1] = line.number({tag, "y"});
@@ -215,32 +245,11 @@ class GraphReader {
     return true;
   }
 
-  void read_frame(LineScanner& line) {
-    Frame frame;
-    const std::string_view kind = line.word();
-    if (kind == "utm") {
-      const std::string zone(line.word());
-      const char hemisphere = zone.empty() ? ' ' : zone.back();
-      frame.zone = std::atoi(zone.c_str());
-      frame.north = hemisphere == 'N';
-      if (frame.zone < 1 || frame.zone > 60 || (hemisphere != 'N' && hemisphere != 'S')) {
-        line.fail("FRAME: expected a UTM zone such as 32N, got '" + zone + "'");
-      }
-    } else if (kind != "local") {
-      line.fail("FRAME: expected utm or local, got '" + std::string(kind) + "'");
-    }
-    if (line.word() != "origin") line.fail("FRAME: expected the word origin");
-    frame.origin_easting_m = line.number({"FRAME", "easting"});
-    frame.origin_northing_m = line.number({"FRAME", "northing"});
-    line.end("FRAME");
-    document_.frame = frame;
-  }
-
   void check_type(LineScanner& line) {
     const std::string tag(line.word());
     const EdgeType* type = registry_.find_edge(tag);
     if (type == nullptr)
-      line.fail("TYPE: edge type '" + tag + "' is not known; load the plugin that defines it");
+      line.fail("TYPE: edge type " + quoted(tag) + " is not known; load the plugin that defines it");
     const std::string_view given = line.rest();
     const std::string known = describe_schema(*type);
     if (given != known) {
@@ -250,10 +259,10 @@ class GraphReader {
   }
 
   void read_loss(LineScanner& line) {
-    if (last_batch_ == nullptr) line.fail("LOSS: stands before any edge");
+    if (last_batch_ == nullptr) line.fail("LOSS: no edge stands above it");
     const std::string_view name = line.word();
     const LossType* type = registry_.find_loss(name);
-    if (type == nullptr) line.fail("LOSS: unknown loss '" + std::string(name) + "'");
+    if (type == nullptr) line.fail("LOSS: unknown loss " + quoted(name));
     const double scale = line.number({"LOSS", "scale"});
     if (scale <= 0) line.fail("LOSS: the scale must be positive");
     line.end("LOSS");
@@ -272,40 +281,15 @@ class GraphReader {
       }
     }
     line.end("COVARIANCE");
+    if (!is_positive_semidefinite(covariance)) line.fail("COVARIANCE: the covariance matrix is indefinite");
     document_.covariances.push_back({v, covariance});
   }
 
-  void read_fix(LineScanner& line) {
-    constexpr std::string_view kTag = "GNSS";
-    Fix fix;
-    fix.vertex = line.integer({kTag, "vertex"});
+  void read_record(LineScanner& line) {
+    Fix fix = read_fix(line);
     if (!document_.graph.find(fix.vertex)) {
       line.fail("GNSS: vertex " + std::to_string(fix.vertex) + " is not defined");
     }
-    fix.stamp.nanoseconds = line.integer({kTag, "nanoseconds"});
-    fix.position[0] = line.number({kTag, "x"});
-    fix.position[1] = line.number({kTag, "y"});
-    fix.covariance(0, 0) = line.number({kTag, "covariance", 0});
-    fix.covariance(0, 1) = fix.covariance(1, 0) = line.number({kTag, "covariance", 1});
-    fix.covariance(1, 1) = line.number({kTag, "covariance", 2});
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    fix.height_m = line.optional_number({kTag, "height"}).value_or(nan);
-    fix.heading_rad = line.optional_number({kTag, "heading"});
-    fix.heading_sigma_rad = line.optional_number({kTag, "heading_sigma"});
-    fix.speed_mps = line.optional_number({kTag, "speed"});
-    fix.speed_sigma_mps = line.optional_number({kTag, "speed_sigma"});
-    fix.grid_scale = line.number({kTag, "grid_scale"});
-    fix.epoch = static_cast<int>(line.integer({kTag, "epoch"}));
-    fix.source = static_cast<int>(line.integer({kTag, "source"}));
-    const std::string_view status = line.word();
-    const auto known = fix_status_from_string(status);
-    if (!known) line.fail("GNSS: expected accepted, rejected or withheld, got '" + std::string(status) + "'");
-    fix.status = *known;
-    fix.reason = std::string(line.word());
-    if (fix.reason.empty()) line.fail("GNSS: expected a reason, got the end of the line");
-    fix.chord_angle_rad = line.optional_number({kTag, "chord_angle"}).value_or(nan);
-    fix.displacement_m = line.optional_number({kTag, "displacement"}).value_or(nan);
-    line.end(kTag);
     document_.fixes.push_back(std::move(fix));
   }
 
@@ -338,6 +322,7 @@ class GraphReader {
   ReadReport& report_;
   GraphDocument document_;
   bool is_waymark_ = false;
+  std::vector<std::string> seen_;
   const VertexType* last_vertex_ = nullptr;
   const EdgeType* last_edge_ = nullptr;
   std::string_view last_other_;

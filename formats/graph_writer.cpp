@@ -8,6 +8,14 @@
 namespace waymark {
 namespace {
 
+/// A line break in a text from outside (a drive's name) would begin a new statement.
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  return text;
+}
+
 void write_header(const GraphDocument& document, TextBuilder& out) {
   out.line("GRAPH", 1);
   if (document.frame) {
@@ -20,7 +28,11 @@ void write_header(const GraphDocument& document, TextBuilder& out) {
     out.number(frame.origin_easting_m).number(frame.origin_northing_m).end_line();
   }
   out.word("TIME").word(to_string(document.time_scale)).end_line();
-  for (const auto& [key, text] : document.provenance) out.word("PROVENANCE").word(key).word(text).end_line();
+  for (const auto& [key, text] : document.provenance) {
+    out.word("PROVENANCE").word(one_line(key));
+    if (!text.empty()) out.word(one_line(text));
+    out.end_line();
+  }
   const auto write_lever = [&](const char* which, const Eigen::Vector2d& lever) {
     if (!lever.isZero(0)) out.word("LEVER").word(which).number(lever[0]).number(lever[1]).end_line();
   };

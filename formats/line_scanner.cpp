@@ -11,7 +11,29 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';
 }
 
+/// from_chars knows no '+'; one sign at most.
+const char* skip_plus(const char* begin, const char* end) {
+  const bool plus = end - begin > 1 && *begin == '+' && begin[1] != '-';
+  return plus ? begin + 1 : begin;
+}
+
 }  // namespace
+
+std::string quoted(std::string_view word) {
+  constexpr std::size_t kLongest = 40;
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  if (word.empty()) return "the end of the line";
+  std::string text = "'";
+  for (const char c : word.substr(0, kLongest)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte < 0x7f) {
+      text += c;
+    } else {
+      text += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 15U]};
+    }
+  }
+  return text + (word.size() > kLongest ? "...'" : "'");
+}
 
 std::string_view LineScanner::word() {
   while (cursor_ < line_.size() && is_blank(line_[cursor_])) ++cursor_;
@@ -31,12 +53,11 @@ std::string_view LineScanner::rest() {
 
 double LineScanner::number(const Expected& expected) {
   const std::string_view text = word();
-  const char* begin = text.data();
-  const char* end = begin + text.size();
-  if (begin != end && *begin == '+') ++begin;
+  const char* end = text.data() + text.size();
   double value = 0;
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error != std::errc() || stop != end || begin == end) fail_expected("a number", expected, text);
+  const auto [stop, error] = std::from_chars(skip_plus(text.data(), end), end, value);
+  if (error == std::errc::result_out_of_range) fail_expected("a number that fits a double", expected, text);
+  if (error != std::errc() || stop != end) fail_expected("a number", expected, text);
   if (!std::isfinite(value)) fail_expected("a finite number", expected, text);
   return value;
 }
@@ -50,18 +71,18 @@ std::optional<double> LineScanner::optional_number(const Expected& expected) {
 
 std::int64_t LineScanner::integer(const Expected& expected) {
   const std::string_view text = word();
+  const char* end = text.data() + text.size();
   std::int64_t value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size() || text.empty()) {
-    fail_expected("an integer", expected, text);
-  }
+  const auto [stop, error] = std::from_chars(skip_plus(text.data(), end), end, value);
+  if (error == std::errc::result_out_of_range) fail_expected("an integer of 64 bits", expected, text);
+  if (error != std::errc() || stop != end) fail_expected("an integer", expected, text);
   return value;
 }
 
 void LineScanner::end(std::string_view tag) {
   const std::string_view left = word();
   if (!left.empty() && left.front() != '#') {
-    fail(std::string(tag) + ": expected the end of the line, got '" + std::string(left) + "'");
+    fail(std::string(tag) + ": expected the end of the line, got " + quoted(left));
   }
 }
 
@@ -74,7 +95,7 @@ void LineScanner::fail_expected(const char* what, const Expected& expected, std:
   std::string message =
       std::string(expected.tag) + ": expected " + what + " for '" + std::string(expected.field);
   if (expected.index >= 0) message += "[" + std::to_string(expected.index) + "]";
-  message += "', got " + (got.empty() ? "the end of the line" : "'" + std::string(got) + "'");
+  message += "', got " + quoted(got);
   fail(message);
 }
 

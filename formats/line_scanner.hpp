@@ -9,6 +9,10 @@
 
 namespace waymark {
 
+/// A word of a file as a message shows it: in quotes, cut after 40 characters, bytes that a terminal could
+/// take for a command (and all beyond ASCII) as \xNN; an empty one is "the end of the line".
+[[nodiscard]] std::string quoted(std::string_view word);
+
 /// What the scanner expected, made into text only when it fails.
 struct Expected {
   std::string_view tag;    ///< word at the line's start
@@ -25,6 +29,8 @@ class LineScanner {
   std::string_view word();
   /// The rest of the line without surrounding blanks.
   std::string_view rest();
+  /// Whether nothing but blanks and a comment is left.
+  [[nodiscard]] bool at_end() const { return LineScanner(*this).next_is_comment(); }
   /// A finite number. @throws InputError
   double number(const Expected& expected);
   /// A finite number, or nothing for the word "-".
@@ -38,6 +44,10 @@ class LineScanner {
 
  private:
   [[noreturn]] void fail_expected(const char* what, const Expected& expected, std::string_view got) const;
+  bool next_is_comment() {
+    const std::string_view next = word();
+    return next.empty() || next.front() == '#';
+  }
 
   std::string_view line_;
   const std::string& file_;

@@ -47,14 +47,17 @@ std::size_t start_from_odometry_chain(Graph& graph) {
   std::vector<char> placed(graph.vertex_count(), 0);
   std::vector<VertexIndex> queue;
   const auto reach = [&](VertexIndex from, const Motion& motion) {
-    place(graph, from, motion);
+    if (!graph.fixed(motion.to)) place(graph, from, motion);
     placed[static_cast<std::size_t>(motion.to)] = 1;
     queue.push_back(motion.to);
   };
-  placed[0] = 1;
-  queue.push_back(0);
+  std::size_t first = 0;
+  while (first < motions.size() && motions[first].empty()) ++first;
+  if (first == motions.size()) return motions.size();
+  placed[first] = 1;
+  queue.push_back(static_cast<VertexIndex>(first));
   // The chain first: the edge from one vertex to the next.
-  for (std::size_t v = 0; v + 1 < graph.vertex_count() && placed[v]; ++v) {
+  for (std::size_t v = first; v + 1 < graph.vertex_count() && placed[v]; ++v) {
     for (const Motion& motion : motions[v]) {
       if (static_cast<std::size_t>(motion.to) != v + 1 || placed[v + 1]) continue;
       reach(static_cast<VertexIndex>(v), motion);

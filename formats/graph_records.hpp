@@ -1,0 +1,21 @@
+/// Statements of the .graph format that stand for themselves: no other line is needed to read them.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <waymark/core/frame.hpp>
+#include <waymark/core/sample.hpp>
+#include <waymark/formats/line_scanner.hpp>
+
+namespace waymark {
+
+/// Smallest eigenvalue not below -1e-9 of the largest; zeros are legal (no information on an axis).
+[[nodiscard]] bool is_positive_semidefinite(const Eigen::MatrixXd& matrix);
+
+/// The rest of a FRAME line. @throws InputError
+[[nodiscard]] Frame read_frame(LineScanner& line);
+
+/// The rest of a GNSS line; whether its vertex exists is not known here. @throws InputError
+[[nodiscard]] Fix read_fix(LineScanner& line);
+
+}  // namespace waymark
