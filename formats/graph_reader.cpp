@@ -47,6 +47,7 @@ class GraphReader {
 
  private:
   void read_first_line() {
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // the byte order mark of some editors
     const std::string_view first = text_.substr(0, text_.find('\n'));
     LineScanner line(first, name_, 1);
     if (line.word() != "GRAPH") return;
@@ -198,10 +199,10 @@ class GraphReader {
                                       : "is known in files only whose first line is 'GRAPH 1'"));
     }
     if (is_one_of(tag, kToroTags)) {
-      line.fail("tag " + quoted(tag) +
+      line.fail("tag " + quote_word(tag) +
                 " of TORO, whose files are not read (order and meaning of their numbers differ)");
     }
-    line.fail("unknown tag " + quoted(tag) + "; if a plugin defines it, load it with --plugin");
+    line.fail("unknown tag " + quote_word(tag) + "; if a plugin defines it, load it with --plugin");
   }
 
   /// For statements that hold for the whole file.
@@ -220,7 +221,7 @@ class GraphReader {
       only_once(line, "TIME");
       const std::string_view word = line.word();
       const auto scale = time_scale_from_string(word);
-      if (!scale) line.fail("TIME: expected gps, utc or unix, got " + quoted(word));
+      if (!scale) line.fail("TIME: expected gps, utc or unix, got " + quote_word(word));
       document_.time_scale = *scale;
       line.end(tag);
     } else if (tag == "PROVENANCE") {
@@ -230,9 +231,9 @@ class GraphReader {
     } else if (tag == "LEVER") {
       const std::string_view which = line.word();
       if (which != "antenna" && which != "truth") {
-        line.fail("LEVER: expected antenna or truth, got " + quoted(which));
+        line.fail("LEVER: expected antenna or truth, got " + quote_word(which));
       }
-      only_once(line, join(tag, which));
+      only_once(line, "LEVER " + std::string(which));
       Eigen::Vector2d& lever = which == "antenna" ? document_.antenna_m : document_.truth_reference_m;
       lever[0] = line.number({tag, "x"});
       lever[1] = line.number({tag, "y"});
@@ -249,7 +250,7 @@ class GraphReader {
     const std::string tag(line.word());
     const EdgeType* type = registry_.find_edge(tag);
     if (type == nullptr)
-      line.fail("TYPE: edge type " + quoted(tag) + " is not known; load the plugin that defines it");
+      line.fail("TYPE: edge type " + quote_word(tag) + " is not known; load the plugin that defines it");
     const std::string_view given = line.rest();
     const std::string known = describe_schema(*type);
     if (given != known) {
@@ -262,7 +263,7 @@ class GraphReader {
     if (last_batch_ == nullptr) line.fail("LOSS: no edge stands above it");
     const std::string_view name = line.word();
     const LossType* type = registry_.find_loss(name);
-    if (type == nullptr) line.fail("LOSS: unknown loss " + quoted(name));
+    if (type == nullptr) line.fail("LOSS: unknown loss " + quote_word(name));
     const double scale = line.number({"LOSS", "scale"});
     if (scale <= 0) line.fail("LOSS: the scale must be positive");
     line.end("LOSS");

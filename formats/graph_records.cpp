@@ -41,13 +41,13 @@ Frame read_frame(LineScanner& line) {
     frame.north = end - stop == 1 && *stop == 'N';
     const bool south = end - stop == 1 && *stop == 'S';
     if (error != std::errc() || frame.zone < 1 || frame.zone > 60 || (!frame.north && !south)) {
-      line.fail("FRAME: expected a UTM zone such as 32N, got " + quoted(zone));
+      line.fail("FRAME: expected a UTM zone such as 32N, got " + quote_word(zone));
     }
   } else if (kind != "local") {
-    line.fail("FRAME: expected utm or local, got " + quoted(kind));
+    line.fail("FRAME: expected utm or local, got " + quote_word(kind));
   }
   if (const auto word = line.word(); word != "origin") {
-    line.fail("FRAME: expected the word origin, got " + quoted(word));
+    line.fail("FRAME: expected the word origin, got " + quote_word(word));
   }
   frame.origin_easting_m = line.number({"FRAME", "easting"});
   frame.origin_northing_m = line.number({"FRAME", "northing"});
@@ -76,7 +76,7 @@ Fix read_fix(LineScanner& line) {
   fix.source = read_int(line, {kTag, "source"});
   const std::string_view status = line.word();
   const auto known = fix_status_from_string(status);
-  if (!known) line.fail("GNSS: expected accepted, rejected or withheld, got " + quoted(status));
+  if (!known) line.fail("GNSS: expected accepted, rejected or withheld, got " + quote_word(status));
   fix.status = *known;
   fix.reason = std::string(line.word());
   if (fix.reason.empty()) line.fail("GNSS: expected a reason, got the end of the line");

@@ -137,6 +137,13 @@ bool in_g2o(std::string_view tag) {
   return false;
 }
 
+void refuse_losses(const EdgeBatchBase& batch, const std::string& tag) {
+  for (std::size_t e = 0; e < batch.size(); ++e) {
+    if (batch.loss(e) == nullptr) continue;
+    throw UsageError("g2o files cannot hold robust losses (" + tag + "); write the .graph format instead");
+  }
+}
+
 // The same error as EDGE_SE2 with measurement (x, y, 0) and no information on the heading.
 void write_position_as_se2(const Graph& graph, const EdgeBatchBase& batch, TextBuilder& out) {
   std::vector<double> fields;
@@ -174,6 +181,7 @@ std::string write_g2o(const GraphDocument& document) {
     const EdgeType& type = graph.edge_type(b);
     const EdgeBatchBase& batch = graph.batch(b);
     if (batch.size() == 0) continue;
+    refuse_losses(batch, type.tag);
     if (type.tag == "EDGE_GNSS_POSITION") {
       write_position_as_se2(graph, batch, out);
       continue;
@@ -183,10 +191,6 @@ std::string write_g2o(const GraphDocument& document) {
     }
     std::vector<double> fields;
     for (std::size_t e = 0; e < batch.size(); ++e) {
-      if (batch.loss(e) != nullptr) {
-        throw UsageError("g2o files cannot hold robust losses (" + type.tag +
-                         "); write the .graph format instead");
-      }
       out.word(type.tag);
       for (const VertexIndex v : batch.vertices(e)) out.integer(graph.id(v));
       fields.clear();

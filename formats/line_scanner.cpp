@@ -19,7 +19,7 @@ const char* skip_plus(const char* begin, const char* end) {
 
 }  // namespace
 
-std::string quoted(std::string_view word) {
+std::string quote_word(std::string_view word) {
   constexpr std::size_t kLongest = 40;
   constexpr std::string_view kDigits = "0123456789abcdef";
   if (word.empty()) return "the end of the line";
@@ -82,7 +82,7 @@ std::int64_t LineScanner::integer(const Expected& expected) {
 void LineScanner::end(std::string_view tag) {
   const std::string_view left = word();
   if (!left.empty() && left.front() != '#') {
-    fail(std::string(tag) + ": expected the end of the line, got " + quoted(left));
+    fail(std::string(tag) + ": expected the end of the line, got " + quote_word(left));
   }
 }
 
@@ -95,7 +95,7 @@ void LineScanner::fail_expected(const char* what, const Expected& expected, std:
   std::string message =
       std::string(expected.tag) + ": expected " + what + " for '" + std::string(expected.field);
   if (expected.index >= 0) message += "[" + std::to_string(expected.index) + "]";
-  message += "', got " + quoted(got);
+  message += "', got " + quote_word(got);
   fail(message);
 }
 
