@@ -69,7 +69,7 @@ odometry:
     speed: {column: v, unit: km/h}
     yaw_rate: {column: w, unit: deg/s, convention: cw}
   time: {scale: gps, week: 1900, offset: -0.4}
-  noise: {heading_per_s: 1e-7}
+  noise: {heading_variance_per_s: 1e-7}
 gnss:
   - {file: a.json, format: gpsd_json, accuracy: {meaning: drms, default_sigma: 5}, antenna: [1, -0.5], rate: 4,
      delay: 0.1, withhold_every: 10}
@@ -96,8 +96,8 @@ modeling: {name: g2, options: {weight: 1e6}}
   CHECK(odometry.time_scale == TimeScale::gps);
   CHECK(odometry.gps_week == 1900);
   CHECK(odometry.time_offset_s == -0.4);
-  CHECK(config.odometry_noise.at("heading_per_s") == 1e-7);
-  CHECK(config.places.at("odometry.noise.heading_per_s") == "tours/drive.yaml:14:26: ");
+  CHECK(config.odometry_options.at("heading_variance_per_s") == "1e-7");
+  CHECK(config.places.at("odometry.noise.heading_variance_per_s") == "tours/drive.yaml:14:35: ");
   REQUIRE(config.gnss.size() == 2);
   CHECK(config.gnss[0].format == "gpsd_json");
   CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::drms);

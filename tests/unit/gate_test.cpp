@@ -182,7 +182,7 @@ TEST_CASE("at other rates the chords still span a second", "[gate]") {
   }
 }
 
-TEST_CASE("short chords have no angle; the displacement alone decides", "[gate]") {
+TEST_CASE("short chords have no angle, the displacement alone decides", "[gate]") {
   Scene creeping = straight(0.8, 10);
   creeping.fixes[5].position[1] += 3;  // 75 degrees, and mere noise
   const GateSummary summary = creeping.judge();

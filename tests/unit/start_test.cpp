@@ -159,7 +159,7 @@ TEST_CASE("windings across a stop come from the odometry", "[start]") {
         Approx(drive.truth.back()[2] - drive.truth.front()[2]).margin(0.2));
 }
 
-TEST_CASE("headings are wrapped into (-pi, pi]", "[start]") {
+TEST_CASE("headings are wrapped to half a turn either way", "[start]") {
   const SyntheticDrive drive = simulate([](double) { return std::pair(8.0, 0.2); }, {});
   for (const Start& start :
        {drive.anchored(), dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill)})

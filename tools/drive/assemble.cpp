@@ -15,10 +15,14 @@ std::string shortest(double value) {
 }
 
 std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, const TypeRegistry& registry) {
-  Options options;
-  for (const auto& [name, value] : config.odometry_noise) options[name] = shortest(value);
+  Options options = config.odometry_options;
   options.try_emplace("gap_noise_factor", shortest(config.timeline.gap_noise_factor));
-  return registry.make_odometry_model("constant_twist", options);
+  try {
+    return registry.make_odometry_model("constant_twist", options);
+  } catch (const UsageError& error) {
+    if (config.odometry_options.empty()) throw;
+    throw InputError(config.path + ": odometry.noise: " + error.what());
+  }
 }
 
 }  // namespace

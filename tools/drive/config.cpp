@@ -79,7 +79,7 @@ void read_odometry(const YamlSection& top, DriveConfig& config) {
   const auto noise = section->free_section("noise");
   if (!noise) return;
   for (const std::string& key : noise->keys()) {
-    noise->read(key, config.odometry_noise[key], kNotNegative);
+    noise->read(key, config.odometry_options[key]);
     config.places["odometry.noise." + key] = noise->place(key);
   }
 }

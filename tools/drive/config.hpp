@@ -51,7 +51,7 @@ struct DriveConfig {
   StartOptions start;
   std::string modeling = "g1";  ///< registered GNSS modeling
   std::map<std::string, std::string> modeling_options;
-  std::map<std::string, double> odometry_noise;  ///< options of the odometry plugin
+  std::map<std::string, std::string> odometry_options;  ///< of the odometry model, checked by its plugin
   /// "drive.yaml:12:5: " of what only a plugin can check: "modeling", "modeling.options.NAME",
   /// "odometry.noise.NAME".
   std::map<std::string, std::string> places;
