@@ -21,8 +21,9 @@ LossValue cauchy(double s, double c) {
 LossValue tukey(double s, double c) {
   const double c2 = c * c;
   if (s >= c2) return {c2 / 3, 0, 0};
-  const double u = 1 - s / c2;
-  return {c2 / 3 * (1 - u * u * u), u * u, -2 * u / c2};
+  const double x = s / c2;
+  const double u = 1 - x;
+  return {s * (1 - x * (1 - x / 3)), u * u, -2 * u / c2};  // expanded: no cancellation for small s
 }
 
 LossValue geman_mcclure(double s, double c) {
