@@ -4,6 +4,7 @@
 #include <new>
 
 #include <waymark/solvers/linear/backends.hpp>
+#include <waymark/solvers/linear/finite.hpp>
 
 namespace waymark {
 namespace {
@@ -43,6 +44,7 @@ class Cholmod final : public LinearSolver {
   }
 
   [[nodiscard]] FactorStatus factorize(std::span<const double> values) override {
+    if (!all_finite(values)) return FactorStatus::not_positive_definite;
     cholmod_sparse matrix = view(values.data());
     common_.status = CHOLMOD_OK;
     cholmod_factorize(&matrix, factor_, &common_);

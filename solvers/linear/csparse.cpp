@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <waymark/solvers/linear/backends.hpp>
+#include <waymark/solvers/linear/finite.hpp>
 
 namespace waymark {
 namespace {
@@ -27,6 +28,7 @@ class Csparse final : public LinearSolver {
 
   [[nodiscard]] FactorStatus factorize(std::span<const double> values) override {
     if (symbolic_ == nullptr) return FactorStatus::out_of_memory;
+    if (!all_finite(values)) return FactorStatus::not_positive_definite;
     const cs_di matrix = view(values.data());
     numeric_.reset(cs_di_chol(&matrix, symbolic_.get()));
     return numeric_ == nullptr ? FactorStatus::not_positive_definite : FactorStatus::ok;

@@ -2,6 +2,7 @@
 #include <Eigen/SparseCore>
 
 #include <waymark/solvers/linear/backends.hpp>
+#include <waymark/solvers/linear/finite.hpp>
 
 namespace waymark {
 namespace {
@@ -15,6 +16,7 @@ class EigenCholesky final : public LinearSolver {
   }
 
   [[nodiscard]] FactorStatus factorize(std::span<const double> values) override {
+    if (!all_finite(values)) return FactorStatus::not_positive_definite;
     factor_.factorize(view(values.data()));
     return factor_.info() == Eigen::Success ? FactorStatus::ok : FactorStatus::not_positive_definite;
   }

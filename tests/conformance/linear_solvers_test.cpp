@@ -1,0 +1,243 @@
+// Every registered linear solver against dense algebra: positive definite, singular, indefinite, tiny,
+// refactored, analysed anew, blocks of mixed sizes.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+
+#include <Eigen/Cholesky>
+#include <catch2/catch.hpp>
+
+#include "support/registry.hpp"
+
+using namespace waymark;
+
+namespace {
+
+using Pairs = std::set<std::pair<int, int>>;
+
+/// The pattern of blocks of these sizes, with the off-diagonal blocks (row < column) named.
+BlockPattern make_pattern(const std::vector<int>& sizes, const Pairs& pairs, std::uint64_t version = 1) {
+  BlockPattern pattern;
+  pattern.version = version;
+  for (int j = 0; j < static_cast<int>(sizes.size()); ++j) {
+    const int size = sizes[static_cast<std::size_t>(j)];
+    pattern.size.push_back(size);
+    pattern.start.push_back(pattern.start.back() + size);
+    int height = 0;
+    for (int i = 0; i <= j; ++i) {
+      if (i < j && !pairs.contains({i, j})) continue;
+      pattern.row.push_back(i);
+      pattern.row_offset.push_back(height);
+      height += sizes[static_cast<std::size_t>(i)];
+    }
+    pattern.column.push_back(static_cast<std::int64_t>(pattern.row.size()));
+    pattern.height.push_back(height);
+    pattern.value.push_back(pattern.value.back() + std::int64_t{height} * size);
+  }
+  return pattern;
+}
+
+/// The numbers of a symmetric matrix on the pattern.
+std::vector<double> gather(const BlockPattern& pattern, const Eigen::MatrixXd& matrix) {
+  const ScalarPattern<int> scalar = to_scalar<int>(pattern);
+  std::vector<double> values;
+  for (std::size_t j = 0; j + 1 < scalar.column.size(); ++j) {
+    for (int k = scalar.column[j]; k < scalar.column[j + 1]; ++k)
+      values.push_back(matrix(scalar.row[static_cast<std::size_t>(k)], static_cast<Eigen::Index>(j)));
+  }
+  return values;
+}
+
+/// A symmetric positive definite matrix on the pattern: the sum of small ones over its blocks.
+Eigen::MatrixXd random_spd(const BlockPattern& pattern, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto n = static_cast<Eigen::Index>(pattern.dimension());
+  Eigen::MatrixXd matrix = 0.1 * Eigen::MatrixXd::Identity(n, n);
+  for (std::size_t j = 0; j < pattern.size.size(); ++j) {
+    for (auto k = pattern.column[j]; k < pattern.column[j + 1]; ++k) {
+      const auto i = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(k)]);
+      std::vector<Eigen::Index> place;
+      for (int c = 0; c < pattern.size[i]; ++c) place.push_back(pattern.start[i] + c);
+      for (int c = 0; c < pattern.size[j] && i != j; ++c) place.push_back(pattern.start[j] + c);
+      const auto m = static_cast<Eigen::Index>(place.size());
+      const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(m, m, [&] { return unit(random); });
+      matrix(place, place) += root * root.transpose();
+    }
+  }
+  return 0.5 * (matrix + matrix.transpose());
+}
+
+Eigen::VectorXd right_side(Eigen::Index n) {
+  return Eigen::VectorXd::NullaryExpr(n,
+                                      [](Eigen::Index i) { return std::sin(1.0 + static_cast<double>(i)); });
+}
+
+Eigen::VectorXd solve(LinearSolver& solver, const Eigen::VectorXd& b) {
+  Eigen::VectorXd x = b;  // the same memory for both is allowed
+  const std::span<double> view(x.data(), static_cast<std::size_t>(x.size()));
+  solver.solve(view, view);
+  return x;
+}
+
+void check_solves(LinearSolver& solver, const BlockPattern& pattern, const Eigen::MatrixXd& matrix) {
+  REQUIRE(solver.factorize(gather(pattern, matrix)) == FactorStatus::ok);
+  const Eigen::VectorXd b = right_side(matrix.rows());
+  const Eigen::VectorXd expected = matrix.llt().solve(b);
+  CHECK((solve(solver, b) - expected).norm() <= 1e-10 * expected.norm());
+  Eigen::VectorXd apart(b.size());
+  const Eigen::VectorXd untouched = b;
+  solver.solve({b.data(), static_cast<std::size_t>(b.size())},
+               {apart.data(), static_cast<std::size_t>(apart.size())});
+  CHECK((apart - expected).norm() <= 1e-10 * expected.norm());
+  CHECK(b == untouched);
+}
+
+template <typename Visit>
+void for_each_solver(Visit visit) {
+  const TypeRegistry registry = waymark_test::full_registry();
+  REQUIRE_FALSE(registry.linear_solvers().empty());
+  for (const auto& [type, origin] : registry.linear_solvers()) {
+    INFO(type.name);
+    visit(*type.make());
+  }
+}
+
+const BlockPattern kOne = make_pattern({1}, {});
+const BlockPattern kTwo = make_pattern({1, 1}, {{0, 1}});
+
+Pairs random_pairs(int blocks, int count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  Pairs pairs;
+  for (int j = 1; j < blocks; ++j) pairs.insert({j - 1, j});
+  for (int k = 0; k < count; ++k) {
+    const int a = static_cast<int>(random() % static_cast<unsigned>(blocks));
+    const int b = static_cast<int>(random() % static_cast<unsigned>(blocks));
+    if (a != b) pairs.insert({std::min(a, b), std::max(a, b)});
+  }
+  return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("every linear solver: 1 x 1") {
+  for_each_solver([](LinearSolver& solver) {
+    solver.analyze(kOne);
+    REQUIRE(solver.factorize(std::array{4.0}) == FactorStatus::ok);
+    CHECK(solve(solver, Eigen::VectorXd::Constant(1, 2))[0] == Approx(0.5).epsilon(1e-15));
+    CHECK(solver.factor_size() >= 1);
+    CHECK_FALSE(solver.description().empty());
+  });
+}
+
+TEST_CASE("every linear solver: a chain of 3 x 3 blocks with closures") {
+  const BlockPattern pattern = make_pattern(std::vector<int>(40, 3), random_pairs(40, 25, 1));
+  for_each_solver([&](LinearSolver& solver) {
+    solver.analyze(pattern);
+    check_solves(solver, pattern, random_spd(pattern, 2));
+  });
+}
+
+TEST_CASE("every linear solver: blocks of mixed sizes") {
+  const BlockPattern pattern =
+      make_pattern({1, 3, 2, 6, 3, 3, 1, 2, 4, 3, 1},
+                   {{0, 1}, {1, 3}, {0, 4}, {3, 5}, {5, 8}, {2, 9}, {0, 10}, {1, 10}, {4, 10}, {8, 10}});
+  for_each_solver([&](LinearSolver& solver) {
+    solver.analyze(pattern);
+    check_solves(solver, pattern, random_spd(pattern, 3));
+  });
+}
+
+TEST_CASE("every linear solver: large enough for supernodes, dense last columns") {
+  Pairs pairs = random_pairs(150, 60, 4);
+  for (int i = 0; i < 149; ++i) pairs.insert({i, 149});
+  std::vector<int> sizes(150, 3);
+  sizes.back() = 4;
+  const BlockPattern pattern = make_pattern(sizes, pairs);
+  for_each_solver([&](LinearSolver& solver) {
+    solver.analyze(pattern);
+    check_solves(solver, pattern, random_spd(pattern, 5));
+  });
+}
+
+TEST_CASE("every linear solver: other numbers on the same pattern") {
+  const BlockPattern pattern = make_pattern(std::vector<int>(20, 3), random_pairs(20, 10, 6));
+  for_each_solver([&](LinearSolver& solver) {
+    solver.analyze(pattern);
+    for (std::uint64_t seed = 7; seed < 10; ++seed) check_solves(solver, pattern, random_spd(pattern, seed));
+  });
+}
+
+TEST_CASE("every linear solver: another pattern, larger and then smaller") {
+  for_each_solver([&](LinearSolver& solver) {
+    std::uint64_t version = 1;
+    for (const int blocks : {5, 30, 3}) {
+      const BlockPattern pattern = make_pattern(std::vector<int>(static_cast<std::size_t>(blocks), 2),
+                                                random_pairs(blocks, blocks, 10), version++);
+      solver.analyze(pattern);
+      check_solves(solver, pattern, random_spd(pattern, 11));
+    }
+  });
+}
+
+TEST_CASE("every linear solver: singular is reported") {
+  for_each_solver([](LinearSolver& solver) {
+    solver.analyze(kOne);
+    CHECK(solver.factorize(std::array{0.0}) == FactorStatus::not_positive_definite);
+    solver.analyze(kTwo);
+    CHECK(solver.factorize(gather(kTwo, Eigen::MatrixXd::Ones(2, 2))) == FactorStatus::not_positive_definite);
+    CHECK(solver.factorize(gather(kTwo, Eigen::MatrixXd::Zero(2, 2))) == FactorStatus::not_positive_definite);
+  });
+}
+
+TEST_CASE("every linear solver: indefinite is reported, and the next good matrix is solved") {
+  const BlockPattern pattern = make_pattern(std::vector<int>(12, 3), random_pairs(12, 6, 12));
+  for_each_solver([&](LinearSolver& solver) {
+    solver.analyze(kTwo);
+    Eigen::MatrixXd saddle(2, 2);
+    saddle << 1, 2, 2, 1;  // eigenvalues 3 and -1, with a positive diagonal
+    CHECK(solver.factorize(gather(kTwo, saddle)) == FactorStatus::not_positive_definite);
+    solver.analyze(pattern);
+    for (const Eigen::Index place : {0, 17, 35}) {
+      Eigen::MatrixXd matrix = random_spd(pattern, 13);
+      matrix(place, place) = -1;
+      CHECK(solver.factorize(gather(pattern, matrix)) == FactorStatus::not_positive_definite);
+      check_solves(solver, pattern, random_spd(pattern, 13));
+    }
+    CHECK(solver.factorize(gather(pattern, -random_spd(pattern, 13))) == FactorStatus::not_positive_definite);
+  });
+}
+
+TEST_CASE("every linear solver: numbers that are not finite are reported") {
+  const BlockPattern pattern = make_pattern(std::vector<int>(12, 3), random_pairs(12, 6, 14));
+  for_each_solver([&](LinearSolver& solver) {
+    solver.analyze(pattern);
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      for (const Eigen::Index place : {0, 18, 35}) {
+        Eigen::MatrixXd matrix = random_spd(pattern, 15);
+        matrix(place, place) = bad;
+        CHECK(solver.factorize(gather(pattern, matrix)) == FactorStatus::not_positive_definite);
+      }
+    }
+    check_solves(solver, pattern, random_spd(pattern, 15));
+  });
+}
+
+TEST_CASE("every linear solver: scales from 1e-8 to 1e8 on one diagonal") {
+  const BlockPattern pattern = make_pattern(std::vector<int>(10, 3), random_pairs(10, 5, 16));
+  const Eigen::MatrixXd matrix = random_spd(pattern, 17);
+  const Eigen::VectorXd scale = Eigen::VectorXd::NullaryExpr(
+      30, [](Eigen::Index i) { return std::pow(10.0, static_cast<double>(i % 9) - 4); });
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  for_each_solver([&](LinearSolver& solver) {
+    solver.analyze(pattern);
+    REQUIRE(solver.factorize(gather(pattern, scaled)) == FactorStatus::ok);
+    const Eigen::VectorXd x = solve(solver, scale.cwiseProduct(right_side(30)));
+    const Eigen::VectorXd expected = matrix.llt().solve(right_side(30));
+    CHECK((scale.cwiseProduct(x) - expected).norm() <= 1e-10 * expected.norm());
+  });
+}
