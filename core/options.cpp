@@ -30,7 +30,8 @@ const std::string& given_or_default(const Options& given, std::span<const Option
 }  // namespace
 
 void check_option_names(std::string_view owner, const Options& given, std::span<const OptionInfo> known) {
-  for (const auto& [name, value] : given) {
+  for (const auto& entry : given) {
+    const std::string& name = entry.first;
     if (std::any_of(known.begin(), known.end(), [&](const OptionInfo& o) { return o.name == name; }))
       continue;
     std::string message = std::string(owner) + ": unknown option '" + name + "'; it has";

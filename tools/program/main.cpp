@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/suggest.hpp>
 #include <waymark/tools/program/commands.hpp>
 
 namespace waymark {
@@ -17,11 +20,32 @@ ExitCode fail(ExitCode code, const char* message) {
   return code;
 }
 
+/// Version, and the backends built in with the licences they bring.
+std::string version_text() {
+  std::string text = "waymark " WAYMARK_VERSION " (BSD-3-Clause)";
+  const TypeRegistry registry = make_registry({});
+  for (const auto& [solver, origin] : registry.linear_solvers())
+    text += "\n  " + solver.name + ": " + solver.license;
+  return text;
+}
+
+/// The parser would only say that a subcommand is required. @throws UsageError
+void check_command(const CLI::App& app, int argc, char** argv) {
+  const std::string_view word = argc > 1 ? argv[1] : "-";
+  if (word.starts_with('-')) return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  throw UsageError("unknown subcommand '" + std::string(word) + "'" + did_you_mean(word, views) +
+                   "; there are: " + joined(views));
+}
+
 ExitCode run(int argc, char** argv) {
   CLI::App app("Waymark: fuses a vehicle's odometry with GNSS in a pose graph, and optimises graphs.");
   Action action;
   app.require_subcommand(1);
-  app.set_version_flag("--version", "waymark " WAYMARK_VERSION " (backends: see 'waymark info')");
+  app.set_version_flag("--version", version_text);
   app.footer(kFooter);
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("waymark: error: ") + error.what() + "\nRun with --help for more information.\n";
@@ -33,10 +57,15 @@ ExitCode run(int argc, char** argv) {
   add_info(app, action);
   add_check(app, action);
   try {
+    check_command(app, argc, argv);
     app.parse(argc, argv);
     return action();
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kSuccess : kUsageError;
+    if (app.exit(error) != 0) return kUsageError;
+    std::cout.flush();
+    return std::cout.good() ? kSuccess : fail(kOutputError, "standard output: cannot write");
+  } catch (const Interrupted& error) {
+    return fail(kInterrupted, error.what());
   } catch (const UsageError& error) {
     return fail(kUsageError, error.what());
   } catch (const InputError& error) {
