@@ -7,6 +7,7 @@
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/output.hpp>
 
 namespace waymark {
 namespace {
@@ -36,6 +37,7 @@ ExitCode check(const CheckOptions& options) {
   std::string text = fmt::format("{}: {} vertices, {} edges, {} GNSS records\n", options.input,
                                  graph.vertex_count(), graph.edge_count(), document.fixes.size());
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    stop_if_interrupted();
     const GradientCheck gradients = check_gradients(graph, b, kCheckedEdges);
     const EdgeType& type = graph.edge_type(b);
     text +=
@@ -63,7 +65,7 @@ ExitCode check(const CheckOptions& options) {
   for (const std::string& problem : problems) text += "problem: " + problem + "\n";
   if (problems.empty()) text += "no problems found\n";
   json["problems"] = problems;
-  console.result(options.common.json ? json.dump(2) + "\n" : text);
+  console.result(options.common.json ? json_text(json) : text);
   return problems.empty() ? kSuccess : kInputError;
 }
 

@@ -33,6 +33,10 @@ void install_signal_handlers() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
+void stop_if_interrupted() {
+  if (interrupted) throw Interrupted();
+}
+
 Console::Console(const CommonOptions& options)
     : options_(options), show_progress_(!options.quiet && ::isatty(STDERR_FILENO) == 1) {}
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <waymark/core/error.hpp>
 #include <waymark/core/registry.hpp>
 #include <waymark/core/summary.hpp>
 
@@ -23,6 +24,14 @@ struct CommonOptions {
 extern std::atomic<bool> interrupted;
 /// Lets Ctrl-C end a run in good order; a second one kills. File size limits and closed pipes become errors.
 void install_signal_handlers();
+
+/// Ctrl-C before there was anything to keep.
+class Interrupted : public Error {
+ public:
+  Interrupted() : Error("interrupted; nothing was written") {}
+};
+/// Between steps other than the optimizer's. @throws Interrupted
+void stop_if_interrupted();
 
 class Console {
  public:

@@ -5,6 +5,7 @@
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/output.hpp>
 
 namespace waymark {
 namespace {
@@ -16,18 +17,16 @@ struct ConvertOptions {
   std::string output;
 };
 
-bool is_stdout(const std::string& path) {
-  return path == "-" || path == "/dev/stdout";
-}
-
 ExitCode convert(const ConvertOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
+  require_output_place(options.output);
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
   if (loaded.modelings.size() != 1)
     throw UsageError("convert writes one graph: name one modeling ('run' takes many)");
   const GraphDocument document = build_document(loaded, loaded.modelings.front(),
                                                 parse_options(options.overrides.modeling_options), registry);
+  stop_if_interrupted();
   write_file_atomically(options.output, write_graph(document, registry));
   if (options.common.json) {
     const GateSummary& gate = loaded.skeleton.gate;
@@ -42,7 +41,7 @@ ExitCode convert(const ConvertOptions& options) {
                                          {"reasons", gate.reasons},
                                          {"distance_m", loaded.skeleton.distance_m},
                                          {"start_chi2", document.graph.chi2()}};
-    console.result(json.dump(2) + "\n", is_stdout(options.output));
+    console.result(json_text(json), is_stdout(options.output));
     return kSuccess;
   }
   console.result(describe_drive(loaded) + fmt::format("written     {}: {} vertices, {} edges, modeling {}\n",

@@ -1,7 +1,27 @@
+#include <cmath>
+
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
 
 namespace waymark {
+namespace {
+
+/// A check of a number whose failure reads "--withhold: must be 0 (none) or at least 2, got 1".
+CLI::Validator rule(const std::string& words, bool (*holds)(double)) {
+  return CLI::Validator(
+      [words, holds](const std::string& text) {
+        double value = 0;
+        const bool number = CLI::detail::lexical_cast(text, value);
+        return number && holds(value) ? std::string() : words + ", got " + text;
+      },
+      "");
+}
+
+bool at_least_zero(double value) {
+  return value >= 0 && std::isfinite(value);
+}
+
+}  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("-q,--quiet", options.quiet, "Print errors only");
@@ -27,13 +47,17 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--from", overrides.from_s, "Begin so many seconds after the first odometry sample");
-  command.add_option("--to", overrides.to_s, "End so many seconds after the first odometry sample");
+  command.add_option("--from", overrides.from_s, "Begin so many seconds after the first odometry sample")
+      ->type_name("SECONDS")
+      ->check(rule("must be a number of seconds, at least 0", at_least_zero));
+  command.add_option("--to", overrides.to_s, "End so many seconds after the first odometry sample")
+      ->type_name("SECONDS")
+      ->check(rule("must be a number of seconds, at least 0", at_least_zero));
   command
       .add_option("--withhold", overrides.withhold_every,
                   "Keep every N-th fix out of the graph, to evaluate against")
       ->type_name("N")
-      ->check(CLI::Range(0, 1000000));
+      ->check(rule("must be 0 (none) or at least 2", [](double n) { return n == 0 || n >= 2; }));
   command.add_option("--start", overrides.start, "Where the optimisation starts")
       ->check(CLI::IsMember({"anchored", "dead_reckoning"}));
   command.add_flag("--no-gate", overrides.no_gate, "Accept every fix");
@@ -49,11 +73,11 @@ void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--max-iterations", choice.max_iterations, "Give up after so many steps")
-      ->check(CLI::NonNegativeNumber)
+      ->check(rule("must be at least 0", at_least_zero))
       ->capture_default_str();
   command
       .add_option("--tolerance", choice.tolerance, "Newton decrement relative to 1 + chi2 that ends the run")
-      ->check(CLI::PositiveNumber)
+      ->check(rule("must be above 0", [](double x) { return x > 0 && std::isfinite(x); }))
       ->capture_default_str();
   command
       .add_option("--covariance", choice.covariance, "Covariances to write: of no, the fixes' or all poses")

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <filesystem>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/pipeline.hpp>
 
 namespace waymark {
@@ -16,8 +18,18 @@ struct EvaluateOptions {
   std::string folder;
 };
 
-std::string stem(const std::string& path) {
-  return std::filesystem::path(path).stem().string();
+/// The files' names without folder and suffix, made different where they are not: fused, fused_2.
+std::vector<std::string> labels_of(const std::vector<std::string>& paths) {
+  std::vector<std::string> labels;
+  for (const std::string& path : paths) {
+    const std::string stem = std::filesystem::path(path).stem().string();
+    std::string label = stem;
+    for (int n = 2; std::find(labels.begin(), labels.end(), label) != labels.end(); ++n) {
+      label = stem + "_" + std::to_string(n);
+    }
+    labels.push_back(label);
+  }
+  return labels;
 }
 
 ExitCode evaluate_files(const EvaluateOptions& options) {
@@ -25,18 +37,21 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
   const TypeRegistry registry = make_registry(options.common);
   std::vector<LabelledEvaluation> evaluations;
   ReportHeader header;
-  for (const std::string& input : options.inputs) {
+  const std::vector<std::string> labels = labels_of(options.inputs);
+  if (!options.folder.empty()) make_folder(options.folder);
+  for (std::size_t i = 0; i < options.inputs.size(); ++i) {
+    const std::string& input = options.inputs[i];
+    const std::string& label = labels[i];
+    stop_if_interrupted();
     console.progress("evaluating " + input);
     const GraphDocument document = read_graph(read_text_file(input), input, registry);
     if (document.fixes.empty()) throw InputError(input + ": has no GNSS records to evaluate at");
     std::vector<TruthPose> truth;
     if (!options.truth.empty()) truth = read_truth(options.truth, options.data_folder, document, registry);
-    evaluations.push_back({stem(input), evaluate_document(document, truth)});
-    for (const auto& [key, text] : document.provenance) header.provenance[stem(input) + "." + key] = text;
+    evaluations.push_back({label, evaluate_document(document, truth)});
+    for (const auto& [key, text] : document.provenance) header.provenance[label + "." + key] = text;
     if (options.folder.empty()) continue;
-    std::filesystem::create_directories(options.folder);
-    for (const std::string& file :
-         write_trajectories(document, options.folder + "/" + stem(input), stem(input))) {
+    for (const std::string& file : write_trajectories(document, options.folder + "/" + label, label)) {
       console.detail("written " + file);
     }
   }

@@ -3,6 +3,7 @@
 
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/output.hpp>
 
 namespace waymark {
 namespace {
@@ -104,7 +105,7 @@ void add_info(CLI::App& app, Action& action) {
   command->callback([options, &action] {
     action = [options] {
       const Json json = registry_json(make_registry(*options));
-      Console(*options).result(options->json ? json.dump(2) + "\n" : registry_text(json));
+      Console(*options).result(options->json ? json_text(json) : registry_text(json));
       return kSuccess;
     };
   });

@@ -48,6 +48,11 @@ Options parse_options(const std::vector<std::string>& pairs) {
   return options;
 }
 
+void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry) {
+  (void)registry.make_algorithm(choice.algorithm, parse_options(choice.options));
+  if (!choice.solver.empty()) (void)registry.make_linear_solver(choice.solver);
+}
+
 Summary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
                           const TypeRegistry& registry, const Console& console) {
   const auto algorithm = registry.make_algorithm(choice.algorithm, parse_options(choice.options));

@@ -28,6 +28,9 @@ struct OptimizationChoice {
 Summary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
                           const TypeRegistry& registry, const Console& console);
 
+/// Whether algorithm, its options and solver exist, before anything is read. @throws UsageError
+void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry);
+
 /// 0, 4 or 130.
 [[nodiscard]] ExitCode exit_code(const Summary& summary);
 

@@ -2,6 +2,7 @@
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/output.hpp>
 
 namespace waymark {
 namespace {
@@ -19,6 +20,8 @@ struct OptimizeOptions {
 ExitCode optimize_file(const OptimizeOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
+  check_choice(options.choice, registry);
+  require_output_place(options.output);
   ReadReport report;
   console.progress("reading " + options.input);
   GraphDocument document =
@@ -28,17 +31,27 @@ ExitCode optimize_file(const OptimizeOptions& options) {
     for (const std::string& example : report.examples) console.note("  " + example);
   }
   if (report.edges_only) console.note("note: the file has edges only; started along the odometry chain");
-  if (options.start == "odometry") start_from_odometry_chain(document.graph);
+  if (options.start == "odometry") report.unreached = start_from_odometry_chain(document.graph);
+  if (report.unreached > 0) {
+    console.note(
+        "note: " + std::to_string(report.unreached) +
+        " vertices are not reached by relative edges (EDGE_SE2, EDGE_SE2_LOG) and start where they are");
+  }
+  const bool g2o = options.format == "g2o";
+  if (g2o) (void)write_g2o(document);  // refuses before the work what it cannot hold
+  if (g2o && (document.frame || !document.fixes.empty())) {
+    console.note("note: g2o has no place for the frame, stamps and GNSS records; they are left out");
+  }
+  stop_if_interrupted();
 
   const Summary summary = optimize_document(document, options.choice, registry, console);
   document.provenance.emplace_back("optimized", "waymark " WAYMARK_VERSION " algorithm " + summary.algorithm +
-                                                    " solver " + options.choice.solver + " " +
+                                                    " solver " + summary.solver + " " +
                                                     std::string(to_string(summary.termination)));
-  const bool to_stdout = options.output == "-" || options.output == "/dev/stdout";
-  write_file_atomically(options.output,
-                        options.format == "g2o" ? write_g2o(document) : write_graph(document, registry));
+  const bool to_stdout = is_stdout(options.output);
+  write_file_atomically(options.output, g2o ? write_g2o(document) : write_graph(document, registry));
   if (options.common.json) {
-    console.result(summary_json(summary).dump(2) + "\n", to_stdout);
+    console.result(json_text(summary_json(summary)), to_stdout);
   } else {
     console.result(summary_text(summary) + "written     " + options.output + "\n", to_stdout);
   }

@@ -19,6 +19,11 @@ namespace {
 void apply(const DriveOverrides& overrides, DriveConfig& config) {
   if (overrides.from_s) config.from_s = overrides.from_s;
   if (overrides.to_s) config.to_s = overrides.to_s;
+  if ((overrides.from_s || overrides.to_s) && config.from_s && config.to_s &&
+      *config.from_s >= *config.to_s) {
+    throw UsageError(
+        fmt::format("--from {} and --to {} leave nothing between them", *config.from_s, *config.to_s));
+  }
   if (overrides.withhold_every) config.withhold_every = *overrides.withhold_every;
   if (overrides.no_gate) config.gate.enabled = false;
   if (overrides.start == "dead_reckoning") config.start.method = StartMethod::dead_reckoning;
@@ -40,7 +45,13 @@ std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const
     for (const auto& entry : registry.gnss_modelings()) names.push_back(entry.type.name);
   }
   if (names.empty()) names.push_back(config.modeling);
-  return names;
+  std::vector<std::string> once;
+  for (const std::string& name : names) {
+    if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+  }
+  for (const std::string& name : once)
+    (void)registry.make_gnss_modeling(name);  // an unknown one: before the work
+  return once;
 }
 
 void tell(const PrepareReport& report, const Console& console) {
@@ -71,6 +82,7 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   LoadedDrive loaded;
   loaded.config = load_drive_config(path, overrides.data_folder);
   apply(overrides, loaded.config);
+  loaded.modelings = chosen_modelings(overrides, loaded.config, registry);
   console.progress("reading logs");
   loaded.drive = load_drive(loaded.config, reader_lookup(registry));
   tell(loaded.drive.report, console);
@@ -78,7 +90,6 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   loaded.skeleton = build_skeleton(loaded.drive, loaded.config, registry);
   console.end_progress();
   if (!loaded.skeleton.start.note.empty()) console.note("note: start: " + loaded.skeleton.start.note);
-  loaded.modelings = chosen_modelings(overrides, loaded.config, registry);
   return loaded;
 }
 

@@ -1,11 +1,10 @@
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/output.hpp>
 
 namespace waymark {
 namespace {
@@ -17,12 +16,6 @@ struct RunOptions {
   std::string input;
   std::string folder;
 };
-
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw OutputError(folder + ": cannot make the folder: " + error.message());
-}
 
 /// One modeling of the drive: graph, optimum, evaluation, files.
 struct ModelingRun {
@@ -43,7 +36,8 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, c
   };
   write(prefix + ".graph");
   run.summary = optimize_document(document, options.choice, registry, console);
-  document.provenance.emplace_back("optimized", "algorithm " + options.choice.algorithm + " " +
+  document.provenance.emplace_back("optimized", "algorithm " + options.choice.algorithm + " " + " solver " +
+                                                    run.summary.solver + " " +
                                                     std::string(to_string(run.summary.termination)));
   write(prefix + ".fused.graph");
   for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
@@ -60,7 +54,9 @@ std::string run_line(const std::string& modeling, const Summary& s) {
 ExitCode run_drive(const RunOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
+  check_choice(options.choice, registry);
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
+  stop_if_interrupted();
   make_folder(options.folder);
   std::vector<LabelledEvaluation> evaluations;
   ReportHeader header{loaded.config.name, {{"program", "waymark " WAYMARK_VERSION}}};
@@ -82,7 +78,7 @@ ExitCode run_drive(const RunOptions& options) {
   write_file_atomically(metrics_file, json);
   files.push_back(metrics_file);
   const std::string summary_file = options.folder + "/summary.json";
-  write_file_atomically(summary_file, summaries.dump(2) + "\n");
+  write_file_atomically(summary_file, json_text(summaries));
   files.push_back(summary_file);
   if (options.common.json) {
     console.result(json);

@@ -1,0 +1,36 @@
+#include <filesystem>
+
+#include <waymark/core/error.hpp>
+#include <waymark/tools/program/output.hpp>
+
+namespace waymark {
+
+bool is_stdout(const std::string& path) {
+  return path == "-" || path == "/dev/stdout";
+}
+
+void require_output_place(const std::string& path) {
+  if (is_stdout(path)) return;
+  std::error_code unknown;  // what cannot be looked at fails when it is written
+  if (std::filesystem::is_directory(path, unknown))
+    throw OutputError(path + ": cannot write: it is a folder");
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty() && !std::filesystem::exists(folder, unknown)) {
+    throw OutputError(path + ": cannot write: its folder does not exist");
+  }
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && !std::filesystem::is_directory(folder, error)) {
+    error = std::make_error_code(std::errc::not_a_directory);
+  }
+  if (error) throw OutputError(folder + ": cannot make the folder: " + error.message());
+}
+
+std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace waymark

@@ -1,0 +1,24 @@
+/// Where results go, looked at before the work is done: an hour of optimisation must not end at a folder's
+/// name.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace waymark {
+
+/// Whether a file of this name goes to the standard output, so that reports must not.
+[[nodiscard]] bool is_stdout(const std::string& path);
+
+/// @throws OutputError where the file cannot be written for a reason that shows already: it is a folder, or
+/// its folder does not exist.
+void require_output_place(const std::string& path);
+
+/// Makes a folder and those above it. @throws OutputError
+void make_folder(const std::string& folder);
+
+/// JSON for people and files: indented; what is not UTF-8 (a file name may be anything) is replaced.
+[[nodiscard]] std::string json_text(const nlohmann::ordered_json& json);
+
+}  // namespace waymark
