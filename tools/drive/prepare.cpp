@@ -71,6 +71,7 @@ std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveC
                                  odometry.size()));
   const std::int64_t first = odometry.front().stamp.nanoseconds;
   const std::size_t before = odometry.size();
+  const double length_s = seconds_between(odometry.front().stamp, odometry.back().stamp);
   std::erase_if(odometry, [&](const OdometrySample& s) {
     const std::int64_t after_first = s.stamp.nanoseconds - first;
     return (config.from_s && after_first < nanoseconds(*config.from_s)) ||
@@ -78,11 +79,11 @@ std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveC
   });
   report.odometry_outside_window = before - odometry.size();
   if (odometry.size() < 2)
-    throw InputError(
-        fmt::format("{}: the window from {} s to {} s holds {} odometry samples of a log of {} s; widen "
-                    "'time: {{from, to}}'",
-                    config.path, config.from_s.value_or(0), config.to_s.value_or(0), odometry.size(),
-                    report.odometry.median_interval_s * static_cast<double>(before)));
+    throw InputError(fmt::format(
+        "{}: the window from {} s to {} holds {} odometry samples of a log of {:.6g} s; widen 'time: "
+        "{{from, to}}' or --from and --to",
+        config.path, config.from_s.value_or(0), config.to_s ? fmt::format("{} s", *config.to_s) : "the end",
+        odometry.size(), length_s));
   for (const OdometrySample& sample : odometry) report.reversing += sample.speed_mps < 0;
   describe_stream(odometry, config.timeline.gap_s, report.odometry);
   return odometry;
