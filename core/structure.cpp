@@ -152,6 +152,9 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
   const int old_columns = static_cast<int>(vertex_of_.size());
   const std::size_t old_vertices = column_of_.size();
   bool append_only = dense_columns_ == 0;
+  for (std::size_t v = old_vertices; v < graph.vertex_count(); ++v) {
+    append_only = append_only && !graph.vertex_type(static_cast<VertexIndex>(v)).dense;  // goes last
+  }
   for (std::size_t b = 0; b < graph.batch_count() && append_only; ++b) {
     const std::size_t known = b < scattered_edges_.size() ? scattered_edges_[b] : 0;
     for (std::size_t e = known; e < graph.batch(b).size() && append_only; ++e) {

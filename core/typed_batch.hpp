@@ -239,13 +239,14 @@ class EdgeBatch final : public EdgeBatchBase {
     constexpr int kRows = Left::RowsAtCompileTime;
     constexpr int kColumns = Jacobian::ColsAtCompileTime;
     const Eigen::Matrix<double, kRows, kColumns> product = left * jacobian;
-    using Stride = Eigen::OuterStride<>;
+    // Column by column: a block of one row would be row-major to Eigen, whatever the stride says.
+    double* place = hessian + target.offset;
     if (target.transposed) {
-      Eigen::Map<Eigen::Matrix<double, kColumns, kRows>, 0, Stride>(
-          hessian + target.offset, Stride(target.stride)) += product.transpose();
+      for (int c = 0; c < kRows; ++c, place += target.stride)
+        Eigen::Map<Eigen::Matrix<double, kColumns, 1>>{place} += product.row(c).transpose();
     } else {
-      Eigen::Map<Eigen::Matrix<double, kRows, kColumns>, 0, Stride>(hessian + target.offset,
-                                                                    Stride(target.stride)) += product;
+      for (int c = 0; c < kColumns; ++c, place += target.stride)
+        Eigen::Map<Eigen::Matrix<double, kRows, 1>>{place} += product.col(c);
     }
   }
 

@@ -60,7 +60,7 @@ TEST_CASE("every loss: weight is rho' and curvature is rho''") {
 }
 
 TEST_CASE(
-    "every loss: weights lie in [0, 1] and never grow; rho starts at 0 with slope 1 and never exceeds s") {
+    "every loss: weights lie in 0 to 1 and never grow, rho starts at 0 with slope 1 and never exceeds s") {
   for (const auto& [loss, origin] : registry().losses()) {
     for (const double scale : kScales) {
       INFO(loss.name << " scale " << scale);
