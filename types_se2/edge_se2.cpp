@@ -41,4 +41,10 @@ void EdgeSe2Log::linearize(const Pose2<double>& from, const Pose2<double>& to, E
   linearize_log_error(Pose2<double>(measured[0], measured[1], measured[2]), from, to, e, by_from, by_to);
 }
 
+template class EdgeBatch<EdgeSe2>;
+template class EdgeBatch<EdgeSe2Log>;
+template class EdgeBatch<EdgeGnssPosition>;
+template class EdgeBatch<EdgePriorSe2>;
+template class EdgeBatch<EdgeSe2Xy>;
+
 }  // namespace waymark

@@ -114,4 +114,11 @@ struct EdgeSe2Xy {
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
 };
 
+// Compiled once, in edge_se2.cpp, instead of in every file that adds an edge.
+extern template class EdgeBatch<EdgeSe2>;
+extern template class EdgeBatch<EdgeSe2Log>;
+extern template class EdgeBatch<EdgeGnssPosition>;
+extern template class EdgeBatch<EdgePriorSe2>;
+extern template class EdgeBatch<EdgeSe2Xy>;
+
 }  // namespace waymark
