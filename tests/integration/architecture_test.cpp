@@ -3,8 +3,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -27,12 +28,12 @@ bool is_source(const fs::path& file) {
 
 /// The paths inside <> or "" of all include lines of a file.
 std::vector<std::string> includes(const fs::path& file) {
-  static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<std::string> found;
   std::ifstream in(file);
-  std::smatch match;
   for (std::string line; std::getline(in, line);) {
-    if (std::regex_search(line, match, kInclude)) found.push_back(match[1]);
+    if (!line.starts_with("#include ")) continue;
+    const auto begin = line.find_first_of("<\"") + 1;
+    found.push_back(line.substr(begin, line.find_first_of(">\"", begin) - begin));
   }
   return found;
 }
@@ -70,25 +71,28 @@ TEST_CASE("Core knows Eigen and the standard library, nothing else") {
 }
 
 TEST_CASE("Linear backends see no graph") {
-  const std::set<std::string> allowed = {"waymark/core/linear_solver.hpp", "waymark/core/block_pattern.hpp",
-                                         "waymark/solvers/linear/backends.hpp"};
+  const std::set<std::string> allowed = {"waymark/core/linear_solver.hpp", "waymark/core/block_pattern.hpp"};
   for_each_include("solvers/linear", [&](const fs::path& file, const std::string& include) {
     INFO(file << " includes " << include);
-    if (include.starts_with("waymark/")) CHECK(allowed.contains(include));
+    const bool own = include.starts_with("waymark/solvers/linear/");
+    if (include.starts_with("waymark/") && !own) CHECK(allowed.contains(include));
   });
 }
 
 TEST_CASE("Libraries neither print nor exit") {
-  static const std::regex kForbidden(R"(std::cout|std::cerr|\bprintf\(|std::exit|std::abort|\bassert\()");
+  // Words with what stands before them, so that static_assert and snprintf pass.
+  const std::vector<std::string> forbidden = {"std::cout", "std::cerr", " printf(",   "std::printf(",
+                                              "fprintf(",  "std::exit", "std::abort", " assert("};
   for (const std::string room : {"core", "types_se2", "solvers", "plugins", "formats"}) {
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(WAYMARK_SOURCE_DIR) / room)) {
       if (!is_source(entry.path())) continue;
       std::ifstream in(entry.path());
       const std::string text((std::istreambuf_iterator<char>(in)), {});
       INFO(entry.path());
-      const bool forbidden =
-          std::regex_search(text, kForbidden) && text.find("static_assert(") == std::string::npos;
-      CHECK_FALSE(forbidden);
+      for (const std::string& word : forbidden) {
+        INFO(word);
+        CHECK(text.find(word) == std::string::npos);
+      }
     }
   }
 }
