@@ -19,6 +19,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 3> kScales{"gps", "utc", "unix"};
 constexpr std::array<std::string_view, 2> kGapPolicies{"bridge", "error"};
 constexpr std::array<std::string_view, 2> kStarts{"anchored", "dead_reckoning"};
+constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
 constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
 constexpr NumberRule kAngle{std::numeric_limits<double>::min(), 180, "degrees above 0, up to 180"};
 constexpr NumberRule kWithhold{0, 1e9, "0 (none) or a whole number from 2"};
@@ -155,7 +156,7 @@ void read_gate(const YamlSection& top, DriveConfig& config) {
 }
 
 void read_timeline(const YamlSection& top, DriveConfig& config) {
-  top.read("snap", config.timeline.snap_s, kNotNegative);
+  top.read("snap", config.timeline.snap_s, kSnap);
   const auto gap = top.section("gap", {"longer_than", "policy", "noise_factor"});
   if (!gap) return;
   gap->read("longer_than", config.timeline.gap_s, kPositive);

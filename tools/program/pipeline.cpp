@@ -34,6 +34,13 @@ LogReaderLookup reader_lookup(const TypeRegistry& registry) {
   return [&registry](std::string_view name) { return registry.find_log_reader(name); };
 }
 
+/// The drive.yaml's options where it names this modeling, and those of the command line over them.
+Options options_of(const std::string& modeling, const DriveConfig& config, const Options& given) {
+  Options all(config.modeling == modeling ? config.modeling_options : Options());
+  for (const auto& [name, value] : given) all[name] = value;
+  return all;
+}
+
 std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const DriveConfig& config,
                                           const TypeRegistry& registry) {
   std::vector<std::string> names;
@@ -49,8 +56,10 @@ std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const
   for (const std::string& name : names) {
     if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
   }
-  for (const std::string& name : once)
-    (void)registry.make_gnss_modeling(name);  // an unknown one: before the work
+  for (const std::string& name : once) {  // what is wrong with them shows before the work
+    (void)registry.make_gnss_modeling(name,
+                                      options_of(name, config, parse_options(overrides.modeling_options)));
+  }
   return once;
 }
 
@@ -95,8 +104,7 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
 
 GraphDocument build_document(const LoadedDrive& loaded, const std::string& modeling, const Options& options,
                              const TypeRegistry& registry) {
-  Options all(loaded.config.modeling == modeling ? loaded.config.modeling_options : Options());
-  for (const auto& [name, value] : options) all[name] = value;
+  const Options all = options_of(modeling, loaded.config, options);
   GraphDocument document = add_modeling(loaded.skeleton, modeling, all, registry);
   document.provenance = {{"program", "waymark " WAYMARK_VERSION}, {"drive", loaded.config.name}};
   for (const LogConfig* log : logs_of(loaded.config)) {
@@ -142,6 +150,7 @@ Evaluation evaluate_document(const GraphDocument& document, const std::vector<Tr
   input.antenna_m = document.antenna_m;
   input.truth_reference_m = document.truth_reference_m;
   input.frame = document.frame.value_or(Frame());
+  input.max_stamp_offset_s = kLargestSnap;  // a fix may share the node of an odometry sample
   std::vector<std::ptrdiff_t> block_of(document.graph.vertex_count(), -1);
   for (std::size_t i = 0; i < document.covariances.size(); ++i) {
     block_of[static_cast<std::size_t>(document.covariances[i].vertex)] = static_cast<std::ptrdiff_t>(i);
