@@ -37,8 +37,9 @@ void check_command(const CLI::App& app, int argc, char** argv) {
   for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
   const std::vector<std::string_view> views(names.begin(), names.end());
-  throw UsageError("unknown subcommand '" + std::string(word) + "'" + did_you_mean(word, views) +
-                   "; there are: " + joined(views));
+  const std::string nearest = did_you_mean(word, views);
+  throw UsageError("unknown subcommand '" + std::string(word) + "'" +
+                   (nearest.empty() ? "; there are: " + joined(views) : nearest));
 }
 
 ExitCode run(int argc, char** argv) {
