@@ -1,0 +1,151 @@
+// What a user types wrong, and what every subcommand has.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tools/material.hpp"
+#include "tools/program.hpp"
+
+namespace {
+
+const std::vector<std::string> kCommands = {"convert", "optimize", "evaluate", "run", "info", "check"};
+
+}  // namespace
+
+TEST_CASE("help of every subcommand has an example, and the program's the exit codes") {
+  for (const std::string& command : kCommands) {
+    const RunResult result = run({command, "--help"});
+    INFO(command);
+    CHECK(result.code == 0);
+    CHECK(contains(result.out, "Example:\n  waymark " + command));
+    CHECK(result.err.empty());
+  }
+  const RunResult result = run({"--help"});
+  CHECK(result.code == 0);
+  CHECK(contains(result.out,
+                 "Exit codes: 0 success, 1 internal error, 2 wrong usage, 3 bad input, 4 no convergence"));
+}
+
+TEST_CASE("the version names the program first") {
+  const RunResult result = run({"--version"});
+  CHECK(result.code == 0);
+  CHECK(result.out.rfind("waymark ", 0) == 0);
+}
+
+TEST_CASE("wrong words on the command line are usage errors that name them") {
+  const std::string folder = fresh_folder();
+  const std::string graph = write_text(folder + "a.graph", square_graph());
+  const std::string out = folder + "out.graph";
+  const std::string drive = bundled_drive();
+  struct Case {
+    std::vector<std::string> arguments;
+    std::string message;
+  };
+  const std::vector<Case> cases = {
+      {{}, "A subcommand is required"},
+      {{"optimise"}, "unknown subcommand 'optimise'; did you mean 'optimize'?"},
+      {{"xyz"}, "unknown subcommand 'xyz'; there are: convert, optimize, evaluate, run, info, check"},
+      {{"optimize", graph}, "--output is required"},
+      {{"optimize", "-o", out}, "graph is required"},
+      {{"optimize", graph, "-o", out, "--speed", "3"}, "--speed"},
+      {{"optimize", graph, "-o", out, "--solver", "mumps"}, "unknown linear solver 'mumps'; there are: "},
+      {{"optimize", graph, "-o", out, "-a", "newton"},
+       "unknown algorithm 'newton'; there are: gauss_newton levenberg_marquardt dogleg"},
+      {{"optimize", graph, "-o", out, "--algorithm-option", "radius"}, "expected NAME=VALUE, got 'radius'"},
+      {{"optimize", graph, "-o", out, "--algorithm-option", "radius=1"}, "dogleg: unknown option 'radius'"},
+      {{"optimize", graph, "-o", out, "--max-iterations", "-1"},
+       "--max-iterations: must be at least 0, got -1"},
+      {{"optimize", graph, "-o", out, "--max-iterations", "many"},
+       "--max-iterations: must be at least 0, got many"},
+      {{"optimize", graph, "-o", out, "--tolerance", "0"}, "--tolerance: must be above 0, got 0"},
+      {{"optimize", graph, "-o", out, "--tolerance", "nan"}, "--tolerance: must be above 0, got nan"},
+      {{"optimize", graph, "-o", out, "--format", "toro"}, "--format: toro not in {graph,g2o}"},
+      {{"optimize", graph, "-o", out, "--covariance", "some"}, "--covariance: some not in {none,fixes,all}"},
+      {{"run", drive, "--out", out, "-m", "g9"}, "unknown GNSS modeling 'g9'; there are: g1 g2 g3"},
+      {{"run", drive, "--out", out, "--modeling-option", "error=perfect"}, "perfect"},
+      {{"run", drive, "--out", out, "--withhold", "1"}, "--withhold: must be 0 (none) or at least 2, got 1"},
+      {{"run", drive, "--out", out, "--from", "nan"},
+       "--from: must be a number of seconds, at least 0, got nan"},
+      {{"run", drive, "--out", out, "--to", "-3"}, "--to: must be a number of seconds, at least 0, got -3"},
+      {{"run", drive, "--out", out, "--from", "9", "--to", "5"},
+       "--from 9 and --to 5 leave nothing between them"},
+      {{"convert", drive, "-o", out, "-m", "all"}, "convert writes one graph: name one modeling"},
+  };
+  for (const Case& c : cases) {
+    const RunResult result = run(c.arguments);
+    INFO(c.message << "\n" << result.err);
+    CHECK(result.code == 2);
+    CHECK(contains(result.err, "waymark: error: "));
+    CHECK(contains(result.err, c.message));
+    CHECK(result.out.empty());
+    CHECK_FALSE(exists(out));
+  }
+}
+
+TEST_CASE("a plugin that cannot be loaded is a usage error that names the file") {
+  const std::string folder = fresh_folder();
+  const RunResult missing = run({"info", "--plugin", "missing.so"}, {.folder = folder});
+  CHECK(missing.code == 2);
+  CHECK(contains(missing.err, "cannot load plugin: ./missing.so: cannot open shared object file"));
+
+  write_text(folder + "text.so", "no library");
+  const RunResult text = run({"info", "--plugin", folder + "text.so"});
+  CHECK(text.code == 2);
+  CHECK(contains(text.err, "text.so"));
+
+  const RunResult other = run({"info", "--plugin", "libm.so.6"}, {.folder = "/lib/x86_64-linux-gnu"});
+  if (!exists("/lib/x86_64-linux-gnu/libm.so.6")) {
+    WARN("SKIPPED: no libm.so.6 to load");
+    return;
+  }
+  CHECK(other.code == 2);
+  CHECK(contains(other.err, "libm.so.6: is no waymark plugin (no symbol 'waymark_plugin')"));
+}
+
+TEST_CASE("quiet prints nothing and json only json, for every subcommand") {
+  const std::string folder = fresh_folder();
+  const std::string drive = write_drive(folder);
+  const std::vector<std::vector<std::string>> commands = {
+      {"convert", drive, "-o", folder + "a.graph"},
+      {"optimize", folder + "a.graph", "-o", folder + "b.graph"},
+      {"evaluate", folder + "b.graph", "--truth", drive},
+      {"run", drive, "--out", folder + "results"},
+      {"info"},
+      {"check", folder + "b.graph"}};
+  for (std::vector<std::string> arguments : commands) {
+    INFO(arguments[0]);
+    arguments.emplace_back("--quiet");
+    const RunResult quiet = run(arguments);
+    INFO(quiet.err);
+    CHECK(quiet.code == 0);
+    CHECK(quiet.out.empty());
+    CHECK(quiet.err.empty());
+    arguments.back() = "--json";
+    const RunResult json = run(arguments);
+    CHECK(json.code == 0);
+    CHECK(nlohmann::json::accept(json.out));
+    CHECK_FALSE(nlohmann::json::parse(json.out, nullptr, false).empty());
+    arguments.emplace_back("--quiet");
+    CHECK(nlohmann::json::accept(run(arguments).out));
+  }
+}
+
+TEST_CASE("progress and colours are for terminals only") {
+  // Guards against log files full of escape codes and carriage returns.
+  const std::string folder = fresh_folder();
+  const RunResult result = run({"run", write_drive(folder), "--out", folder + "results", "-v"});
+  CHECK(result.code == 0);
+  CHECK(contains(result.err, "   1  "));
+  for (const std::string& text : {result.out, result.err}) {
+    CHECK_FALSE(contains(text, "\033"));
+    CHECK_FALSE(contains(text, "\r"));
+  }
+}
+
+TEST_CASE("info lists what is registered, with options") {
+  const auto json = nlohmann::json::parse(run({"info", "--json"}).out);
+  for (const char* section : {"vertices", "edges", "modelings", "odometry_models", "algorithms", "solvers",
+                              "losses", "log_formats", "graph_formats", "trajectory_formats"}) {
+    INFO(section);
+    CHECK_FALSE(json.at(section).empty());
+  }
+}
