@@ -229,6 +229,12 @@ Summary Loop::run() {
       moved = step_once();
     }
   }
+  // Full steps taken uphill may end at a minimum above values seen on the way: what is returned is then no
+  // minimum.
+  if (summary_.converged() && chi2_ - best_chi2_ > options_.decrement_tolerance * (1 + best_chi2_)) {
+    finish(Termination::stalled, text("the steps ended at a stationary point of chi2 ", chi2_,
+                                      ", above the lowest on the way, ", best_chi2_, ", which is kept"));
+  }
   summary_.final_chi2 = best_chi2_;
   if (summary_.unknowns > 0) {
     summary_.factor_size = solver_.factor_size();
