@@ -79,16 +79,15 @@ RunResult run(std::vector<std::string> arguments, const RunOptions& options) {
     target = ::open(options.out_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (target < 0) throw std::runtime_error("cannot open " + options.out_file);
   }
+  if (options.close_output) ::close(out[0]);  // before the program can write
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("cannot fork");
   if (child == 0) {
-    if (options.close_output) ::close(out[0]);
     become_program(arguments, options, target, err[1]);
   }
   if (target != out[1]) ::close(target);
   ::close(out[1]);
   ::close(err[1]);
-  if (options.close_output) ::close(out[0]);
 
   RunResult result;
   bool interrupted = options.interrupt_at.empty();
