@@ -89,8 +89,13 @@ std::vector<StampedPose> poses_at_fixes(const GraphDocument& document) {
       throw InputError("fix of epoch " + std::to_string(fix.epoch) + ": its vertex " +
                        std::to_string(fix.vertex) + " is no pose with a stamp");
     }
+    const Stamp stamp = *document.graph.stamp(*vertex);
+    if (std::abs(seconds_between(fix.stamp, stamp)) > kLargestSnap) {
+      throw InputError("fix of epoch " + std::to_string(fix.epoch) +
+                       ": its stamp is not that of its vertex " + std::to_string(fix.vertex));
+    }
     const auto value = document.graph.value(*vertex);
-    poses.push_back({*document.graph.stamp(*vertex), {value[0], value[1], value[2]}});
+    poses.push_back({stamp, {value[0], value[1], value[2]}});
   }
   return poses;
 }
