@@ -19,12 +19,21 @@ namespace waymark_test {
   return WAYMARK_TEST_DATA;
 }
 
-/// A folder of this process for files that a test writes; made on first use.
+/// A folder of this process for files that a test writes; made on first use, removed at the end.
 [[nodiscard]] inline std::filesystem::path scratch_dir() {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("waymark_test_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
-  return folder;
+  struct Folder {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("waymark_test_" + std::to_string(::getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+  };
+  static const Folder folder;
+  return folder.path;
 }
 
 }  // namespace waymark_test

@@ -28,8 +28,8 @@ struct DriveSkeleton {
 [[nodiscard]] GraphDocument add_modeling(const DriveSkeleton& skeleton, const std::string& modeling,
                                          const Options& options, const TypeRegistry& registry);
 
-/// The poses at the fixes, in their order. @throws InputError where a fix's vertex has no stamp or is no
-/// pose.
+/// The poses at the fixes, in their order. @throws InputError where a fix's vertex is no pose, or has no
+/// stamp or another than the fix.
 [[nodiscard]] std::vector<StampedPose> poses_at_fixes(const GraphDocument& document);
 
 }  // namespace waymark
