@@ -39,7 +39,6 @@ Graph single_edge(const TypeRegistry& registry, const EdgeType& type, const Scen
   std::uniform_real_distribution<double> unit(-1, 1);
   Graph graph;
   std::vector<VertexIndex> vertices;
-  std::size_t reference_size = 0;
   std::size_t tangent_size = 0;
   std::vector<double> reference;
   const bool runtime = type.arity == EdgeType::kRuntimeArity;
@@ -58,7 +57,6 @@ Graph single_edge(const TypeRegistry& registry, const EdgeType& type, const Scen
     const std::vector<double> zero(static_cast<std::size_t>(vertex->tangent_size), 0.0);
     vertex->retract(value.data(), zero.data());  // normalised
     vertices.push_back(graph.add_vertex(*vertex, static_cast<VertexId>(vertices.size()), value));
-    reference_size += value.size();
     tangent_size += zero.size();
     for (const double x : value) reference.push_back(x + scenario.field * unit(random));
   }
