@@ -34,7 +34,8 @@ if(WAYMARK_MOLD)
 endif()
 find_program(WAYMARK_CCACHE ccache)
 if(WAYMARK_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${WAYMARK_CCACHE}")
+  # The cache must be told that precompiled headers may be trusted to be what they were.
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${WAYMARK_CCACHE}")
 endif()
 
 # waymark_library(NAME [SHARED]): a library of every *.cpp beside the calling CMakeLists.txt (and in the folders
@@ -53,4 +54,5 @@ function(waymark_library name)
   endif()
   add_library(waymark::${name} ALIAS waymark_${name})
   target_link_libraries(waymark_${name} PUBLIC waymark_settings)
+  target_precompile_headers(waymark_${name} PRIVATE <Eigen/Core> <string> <vector>)
 endfunction()
