@@ -25,9 +25,9 @@ std::vector<double> selected_inverse(const Matrix& factor) {
   const int* rows = factor.innerIndexPtr();
   const double* numbers = factor.valuePtr();
   std::vector<double> inverse(at(factor.nonZeros()), 0.0);
-  std::vector<double> column(at(factor.rows()), 0.0);   // l_sj, spread out
+  std::vector<double> column(at(factor.rows()), 0.0);      // l_sj, spread out
   std::vector<Eigen::Index> owner(at(factor.rows()), -1);  // column whose pattern a row was last seen in
-  std::vector<double> product(at(factor.rows()), 0.0);  // Z_ss l_sj, spread out
+  std::vector<double> product(at(factor.rows()), 0.0);     // Z_ss l_sj, spread out
   for (Eigen::Index j = factor.cols() - 1; j >= 0; --j) {
     const int first = begin[j];
     const int last = begin[j + 1];

@@ -1,4 +1,5 @@
-// A robot drives round a square and recognises its starting corner: four poses, four odometry edges, one minimum.
+// A robot drives round a square and recognises its starting corner: four poses, four odometry edges, one
+// minimum.
 #include <cstdio>
 #include <numbers>
 
@@ -21,7 +22,8 @@ int main() {
   const VertexIndex d = graph.add_vertex<VertexSe2>(4, {0.5, 10.4, -1.6});
   graph.set_fixed(a, true);
 
-  // "10 m forward, then a quarter turn left" four times, with sigma 10 cm and 1 degree. The measured sides differ.
+  // "10 m forward, then a quarter turn left" four times, with sigma 10 cm and 1 degree. The measured sides
+  // differ.
   const Eigen::Matrix3d information = Eigen::Vector3d(100, 100, 3283).asDiagonal();
   graph.add_edge(EdgeSe2{{10.1, 0, kRight}}, {a, b}, information);
   graph.add_edge(EdgeSe2{{9.9, 0, kRight}}, {b, c}, information);

@@ -145,7 +145,8 @@ TEST_CASE("drive.yaml: an unknown key is an error with its place and the right k
 }
 
 TEST_CASE("drive.yaml: wrong types and ranges") {
-  CHECK(error_of("snap: soon\n") == "tours/drive.yaml:3:7: snap: expected seconds from 0 to 0.05, got 'soon'");
+  CHECK(error_of("snap: soon\n") ==
+        "tours/drive.yaml:3:7: snap: expected seconds from 0 to 0.05, got 'soon'");
   CHECK(error_of("gap: {noise_factor: 0.5}\n") ==
         "tours/drive.yaml:3:21: gap.noise_factor: expected a number not below 1, got '0.5'");
   CHECK(error_of("gap: {longer_than: .nan}\n") ==
