@@ -106,7 +106,7 @@ class LevenbergMarquardt final : public Algorithm {
 
 AlgorithmType levenberg_marquardt() {
   const std::vector<OptionInfo> options = {
-      {"initial_damping", "1e-4", "", "first damping factor, relative to the scaling; in [1e-12, 1e6]"},
+      {"initial_damping", "1e-8", "", "first damping factor, relative to the scaling; in [1e-12, 1e6]"},
       {"scaling", "marquardt", "",
        "what the damping multiplies: 'marquardt' diag(H), 'identity' the identity"}};
   return {"levenberg_marquardt", "damped Gauss-Newton steps, damping by Nielsen's rule", options,
