@@ -14,7 +14,7 @@ namespace waymark {
 struct LossValue {
   double rho = 0;
   double weight = 1;     ///< rho'(s), >= 0
-  double curvature = 0;  ///< rho''(s), <= 0 for redescending losses
+  double curvature = 0;  ///< rho''(s), <= 0; H leaves its term out, so that it stays positive semi-definite
 };
 
 /// A kind of loss. @param squared s >= 0; @param scale in standard deviations (DCS: Phi, in s), > 0.

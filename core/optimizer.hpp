@@ -10,12 +10,14 @@
 
 namespace waymark {
 
-/// Convergence is declared only at a full (undamped, untruncated) Newton step d, by one of
-///   decrement  g^T H^-1 g <= decrement_tolerance (1 + chi2)      the step promises no more than this
-///   decrease gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(1 + chi2) step       |d_i| <=
-///   step_tolerance (1 + |x|_max) for all i
-/// All are free of scale: the first two do not change with the units of the unknowns. Since g_i^2 / H_ii
-/// never exceeds the decrement, the gradient test catches a start that already is a minimum.
+/// Convergence is declared where the values are stationary, or at a full (undamped, untruncated) Newton step
+/// d:
+///   gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(1 + chi2)
+///   decrement  g^T H^-1 g <= decrement_tolerance (1 + chi2)      the full step promises no more than this
+///   step       |d_i| <= step_tolerance (1 + |x|_max) for all i of the full step
+/// The first two are free of scale: they do not change with the units of the unknowns. g_i^2 / H_ii never
+/// exceeds the decrement, so the gradient test, at rounding level, serves a start that already is a minimum.
+/// A damped or truncated step never ends the run as converged, however little it changes.
 struct OptimizerOptions {
   int max_iterations = 200;            ///< proposed steps, >= 0
   double decrement_tolerance = 1e-10;  ///< relative to 1 + chi2, > 0
