@@ -9,6 +9,10 @@
 namespace waymark {
 namespace {
 
+/// Flops per number of the factor above which the automatic choice is supernodal. CHOLMOD's own 40 presumes a
+/// tuned BLAS; with Debian's reference BLAS the two are equal near 100 (figures in solvers/README.md).
+constexpr double kSupernodalSwitch = 100;
+
 /// CHOLMOD's LL^T, simplicial or supernodal. Its workspaces live as long as this object, so that no iteration
 /// allocates them anew.
 class Cholmod final : public LinearSolver {
@@ -19,6 +23,7 @@ class Cholmod final : public LinearSolver {
     common_.method[0].ordering = CHOLMOD_NATURAL;  // the matrix comes in elimination order
     common_.postorder = 0;
     common_.supernodal = supernodal;
+    common_.supernodal_switch = kSupernodalSwitch;
     common_.final_asis = 0;
     common_.final_ll = 1;  // LDL^T would pass an indefinite matrix
     common_.quick_return_if_not_posdef = 1;
