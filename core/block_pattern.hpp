@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <stdexcept>
 #include <vector>
 
 namespace waymark {
@@ -38,6 +40,9 @@ struct ScalarPattern {
 
 template <typename Index>
 [[nodiscard]] ScalarPattern<Index> to_scalar(const BlockPattern& pattern) {
+  if (pattern.value_count() > std::numeric_limits<Index>::max()) {
+    throw std::length_error("the normal equations have more numbers than this solver can index");
+  }
   ScalarPattern<Index> scalar;
   scalar.column.reserve(static_cast<std::size_t>(pattern.dimension()) + 1);
   scalar.row.reserve(static_cast<std::size_t>(pattern.value_count()));

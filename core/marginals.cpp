@@ -77,7 +77,7 @@ std::vector<Eigen::MatrixXd> marginal_covariances(const Graph& graph, std::span<
     const Eigen::SimplicialLLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<int>> cholesky(hessian);
     if (cholesky.info() != Eigen::Success) {
       throw InputError(
-          "covariances: the normal equations are not positive definite, some vertex is not determined");
+          "the normal equations are not positive definite: some vertex is not determined by its edges");
     }
     factor = cholesky.matrixL().nestedExpression();
     inverse = selected_inverse(factor);

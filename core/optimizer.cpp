@@ -235,6 +235,12 @@ Summary Loop::run() {
     finish(Termination::stalled, text("the steps ended at a stationary point of chi2 ", chi2_,
                                       ", above the lowest on the way, ", best_chi2_, ", which is kept"));
   }
+  // Damping hides an undetermined unknown; where no minimum was reached it is named.
+  const bool gave_up =
+      summary_.termination == Termination::max_iterations || summary_.termination == Termination::stalled;
+  if (gave_up && solver_.factorize(equations_.hessian()) == FactorStatus::not_positive_definite) {
+    summary_.message += "; " + singular_message();
+  }
   summary_.final_chi2 = best_chi2_;
   if (summary_.unknowns > 0) {
     summary_.factor_size = solver_.factor_size();

@@ -19,7 +19,7 @@ namespace waymark {
 /// exceeds the decrement, so the gradient test, at rounding level, serves a start that already is a minimum.
 /// A damped or truncated step never ends the run as converged, however little it changes.
 struct OptimizerOptions {
-  int max_iterations = 200;            ///< proposed steps, >= 0
+  int max_iterations = 500;            ///< proposed steps, >= 0
   double decrement_tolerance = 1e-10;  ///< relative to 1 + chi2, > 0
   double gradient_tolerance = 1e-12;   ///< relative to sqrt(1 + chi2), >= 0
   double step_tolerance = 1e-14;       ///< relative to 1 + largest value, >= 0

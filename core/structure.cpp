@@ -224,7 +224,7 @@ void Structure::make_pattern(const Graph& graph, int first_column) {
   }
 }
 
-// The largest block and the longest tangent among held vertices' edges: as much room lies behind the numbers.
+// Room behind the numbers for the largest block and the longest tangent that a held vertex can have.
 void Structure::size_scratch(const Graph& graph) {
   std::int64_t longest = 0;
   for (std::size_t v = 0; v < graph.vertex_count(); ++v) {

@@ -8,7 +8,7 @@
 
 namespace waymark {
 
-/// Why the loop ended. The first three mean that a minimum was reached.
+/// Why the loop ended. The first four leave nothing to be gained.
 enum class Termination {
   converged_decrement,  ///< Newton decrement below tolerance on a full step
   converged_gradient,   ///< gradient at rounding level

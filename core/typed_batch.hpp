@@ -41,7 +41,6 @@ class EdgeBatch final : public EdgeBatchBase {
   }
   [[nodiscard]] int error_dimension(std::size_t) const override { return kDimension; }
   [[nodiscard]] const Record& record(std::size_t i) const { return records_[i]; }
-  void reserve(std::size_t n) { records_.reserve(n); }
 
   void append(const E& edge, const Indices& vertices, const Information& information) {
     records_.push_back({edge, information, vertices});

@@ -246,9 +246,11 @@ Eigen::Matrix2d TableReader::covariance() {
   const double north = accuracy_.factor * number(accuracy_.north, false);
   if (!(east > 0 && north > 0)) {
     if (complaint_.column != 0) return Eigen::Matrix2d::Identity();
-    if (!(request_.default_sigma_m > 0))
+    if (request_.default_sigma_m > 0) {
+      ++defaulted_;
+    } else {
       complain(*(east > 0 ? accuracy_.north : accuracy_.east), "no accuracy, and no default sigma is stated");
-    ++defaulted_;
+    }
     return request_.default_sigma_m * request_.default_sigma_m * Eigen::Matrix2d::Identity();
   }
   const double root = number(accuracy_.covariance_root, false);

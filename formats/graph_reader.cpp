@@ -283,6 +283,10 @@ class GraphReader {
     }
     line.end("COVARIANCE");
     if (!is_positive_semidefinite(covariance)) line.fail("COVARIANCE: the covariance matrix is indefinite");
+    has_covariance_.resize(document_.graph.vertex_count(), 0);
+    if (has_covariance_[static_cast<std::size_t>(v)]++ != 0) {
+      line.fail("COVARIANCE: this vertex has a covariance already");
+    }
     document_.covariances.push_back({v, covariance});
   }
 
@@ -329,6 +333,7 @@ class GraphReader {
   std::string_view last_other_;
   EdgeBatchBase* last_batch_ = nullptr;
   std::vector<VertexIndex> vertices_;
+  std::vector<char> has_covariance_;  // per vertex
   std::vector<double> values_;
   Eigen::MatrixXd information_;
 };

@@ -66,7 +66,8 @@ class ConstantTwist final : public OdometryModel {
 std::vector<OptionInfo> options() {
   return {
       {"noise", "process", "",
-       "'process': additive process noise; 'paper': 1.1 % per edge, as the paper says"},
+       "'process': additive process noise; 'paper': 1.1 % per edge, at least 1e-5 m^2 and 1e-6 rad^2, gaps "
+       "alike"},
       {"longitudinal_variance_per_m", "2e-3", "m^2/m", "variance of the distance driven; in [1e-9, 1]"},
       {"lateral_variance_per_m", "5e-4", "m^2/m", "variance across the way; in [1e-9, 1]"},
       {"position_variance_per_s", "1e-4", "m^2/s",

@@ -37,7 +37,7 @@ class Dogleg final : public Algorithm {
 
   [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 1e-4; }
 
-  // Radius rule of Nocedal & Wright, algorithm 4.1: grow only where the radius was what held the step back.
+  // A good step triples the radius it reached, a poor one halves it.
   void accepted(const Step& step, double gain_ratio) override {
     const double length = (scale_.array() * step.delta.array()).matrix().norm();
     if (gain_ratio < 0.25) {
@@ -126,7 +126,8 @@ AlgorithmType dogleg() {
       {"initial_radius", "1", "",
        "first trust radius over the length of the first Newton step; in [1e-6, 1e6]"}};
   return {
-      "dogleg", "Powell's dogleg in the norm scaled by diag(H)", options, [options](const Options& given) {
+      "dogleg", "Powell's dogleg in the norm scaled by diag(H)^(1/2)", options,
+      [options](const Options& given) {
         check_option_names("dogleg", given, options);
         return std::make_unique<Dogleg>(number_option("dogleg", given, options, "initial_radius", 1e-6, 1e6));
       }};

@@ -1,6 +1,7 @@
 /// What all algorithms share: the factorisation of H (damped or not) and the step it gives.
 #pragma once
 
+#include <new>
 #include <vector>
 
 #include <waymark/core/algorithm.hpp>
@@ -17,7 +18,9 @@ namespace waymark {
     equations.add_to_diagonal(damping, scratch);
     numbers = scratch;
   }
-  if (solver.factorize(numbers) != FactorStatus::ok) return false;
+  const FactorStatus status = solver.factorize(numbers);
+  if (status == FactorStatus::out_of_memory) throw std::bad_alloc();  // damping would not help
+  if (status != FactorStatus::ok) return false;
   Eigen::VectorXd solution = -equations.gradient();
   const std::span<double> view(solution.data(), static_cast<std::size_t>(solution.size()));
   solver.solve(view, view);

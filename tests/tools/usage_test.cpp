@@ -149,3 +149,38 @@ TEST_CASE("info lists what is registered, with options") {
     CHECK_FALSE(json.at(section).empty());
   }
 }
+
+TEST_CASE("a list of modelings does not swallow the drive that follows it") {
+  const std::string folder = fresh_folder();
+  for (const std::vector<std::string>& modelings :
+       std::vector<std::vector<std::string>>{{"-m", "all"}, {"-m", "g1,g3"}, {"-m", "g1", "-m", "g2"}}) {
+    std::vector<std::string> arguments = {"run"};
+    arguments.insert(arguments.end(), modelings.begin(), modelings.end());
+    arguments.insert(arguments.end(), {bundled_drive(), "-o", folder + "results"});
+    const RunResult result = run(arguments);
+    INFO(modelings.back() << ": " << result.err);
+    CHECK(result.code == 0);
+  }
+}
+
+TEST_CASE("an option of one modeling goes to that one where all run, an unknown one is refused") {
+  const std::string folder = fresh_folder();
+  const RunResult known = run({"run", bundled_drive(), "--out", folder + "a", "--modeling", "all",
+                               "--modeling-option", "identity_information=1e5"});
+  CHECK(known.code == 0);
+  const RunResult unknown = run({"run", bundled_drive(), "--out", folder + "b", "--modeling", "all",
+                                 "--modeling-option", "identity=1e5"});
+  CHECK(unknown.code == 2);
+  CHECK(contains(unknown.err, "unknown option 'identity'"));
+}
+
+TEST_CASE("check names a graph whose edges leave a vertex undetermined") {
+  const std::string graph =
+      write_text(fresh_folder() + "loose.graph",
+                 "GRAPH 1\nVERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_XY 2 1 1\nFIX 0\n"
+                 "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2_XY 0 2 1 1 1 0 0\n"
+                 "EDGE_SE2_XY 1 2 0 1 1 0 0\n");
+  const RunResult result = run({"check", graph});
+  CHECK(result.code == 3);
+  CHECK(contains(result.out, "some vertex is not determined by its edges"));
+}

@@ -3,6 +3,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/tools/drive/assemble.hpp>
+#include <waymark/tools/drive/plausibility.hpp>
 #include <waymark/tools/drive/timeline.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
@@ -41,8 +42,9 @@ DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& conf
   const Timeline timeline = build_timeline(drive.odometry, document.fixes, config.timeline);
   const double standstill = odometry->standstill_speed();
   const std::vector<Eigen::Vector3d> reckoned = dead_reckon(timeline, Eigen::Vector3d::Zero(), standstill);
-  skeleton.gate =
-      apply_gate(document.fixes, antenna_at_fixes(timeline, reckoned, drive.antenna_m), config.gate);
+  const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, drive.antenna_m);
+  skeleton.warnings = compare_odometry_with_fixes(document.fixes, antenna);
+  skeleton.gate = apply_gate(document.fixes, antenna, config.gate);
   require_accepted_fix(skeleton.gate);
   skeleton.start = make_start(timeline, document.fixes, drive.antenna_m, standstill, config.start);
 

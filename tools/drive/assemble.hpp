@@ -15,7 +15,8 @@ struct DriveSkeleton {
   GraphDocument document;  ///< poses with stamps, odometry edges, records of all fixes; no GNSS edges yet
   GateSummary gate;
   Start start;
-  double distance_m = 0;  ///< driven, by the odometry
+  std::vector<std::string> warnings;  ///< what looks wrong about units and signs of the logs
+  double distance_m = 0;              ///< driven, by the odometry
 };
 
 /// Builds nodes, odometry edges and the start, and runs the gate. Pose ids are 1, 2, ... in order of time.

@@ -37,8 +37,10 @@ struct Receiver {
 void read_time(const YamlSection& top, DriveConfig& config) {
   const auto time = top.section("time", {"scale", "from", "to"});
   if (!time) return;
-  if (const auto scale = time->read_word("scale", kScales))
+  if (const auto scale = time->read_word("scale", kScales)) {
     config.time_scale = *time_scale_from_string(kScales[*scale]);
+    config.time_scale_stated = true;
+  }
   time->read("from", config.from_s, kNotNegative);
   time->read("to", config.to_s, kPositive);
   if (config.to_s && *config.to_s <= config.from_s.value_or(0)) time->fail("to", "must lie after 'from'");

@@ -35,6 +35,7 @@ struct DriveConfig {
   std::optional<LogConfig> truth;
 
   TimeScale time_scale = TimeScale::gps;  ///< the drive's own scale; logs on others are converted
+  bool time_scale_stated = false;         ///< where it is not, what is assumed is told
   std::optional<int> utm_zone;            ///< signed: negative is south; default: zone of the first good fix
   std::optional<Eigen::Vector2d>
       utm_origin;                   ///< easting, northing of the local origin; default: near the first fix

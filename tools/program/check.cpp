@@ -4,6 +4,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/core/gauge.hpp>
 #include <waymark/core/gradient_check.hpp>
+#include <waymark/core/marginals.hpp>
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
@@ -55,6 +56,7 @@ ExitCode check(const CheckOptions& options) {
     }
   }
   try {
+    (void)marginal_covariances(graph, {});  // factorises without damping
     for (const std::string& message : find_gauge(graph).messages) {
       text += "note: " + message + "\n";
       json["notes"].push_back(message);

@@ -24,8 +24,9 @@ ExitCode convert(const ConvertOptions& options) {
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
   if (loaded.modelings.size() != 1)
     throw UsageError("convert writes one graph: name one modeling ('run' takes many)");
-  const GraphDocument document = build_document(loaded, loaded.modelings.front(),
-                                                parse_options(options.overrides.modeling_options), registry);
+  const GraphDocument document =
+      build_document(loaded, loaded.modelings.front(),
+                     known_options(loaded.modelings.front(), options.overrides, registry), registry);
   stop_if_interrupted();
   write_file_atomically(options.output, write_graph(document, registry));
   if (options.common.json) {

@@ -24,7 +24,7 @@ bool at_least_zero(double value) {
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
-  command.add_flag("-q,--quiet", options.quiet, "Print errors only");
+  command.add_flag("-q,--quiet", options.quiet, "Print errors only (and what --json asks for)");
   command.add_flag("-v,--verbose", options.verbosity, "Print what is done (iterations, files)");
   command.add_flag("--json", options.json, "Print the result as JSON on standard output");
   command.add_option("--plugin", options.plugins, "Load a plugin module (may be repeated)")
@@ -40,6 +40,9 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
       .add_option("-m,--modeling", overrides.modelings,
                   "GNSS modelings, or 'all' (default: the drive.yaml's)")
       ->delimiter(',')
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("NAME[,NAME]");
   command
       .add_option("--modeling-option", overrides.modeling_options,
@@ -55,7 +58,7 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
       ->check(rule("must be a number of seconds, at least 0", at_least_zero));
   command
       .add_option("--withhold", overrides.withhold_every,
-                  "Keep every N-th fix out of the graph, to evaluate against")
+                  "Keep the fixes of every N-th epoch out of the graph, to evaluate against")
       ->type_name("N")
       ->check(rule("must be 0 (none) or at least 2", [](double n) { return n == 0 || n >= 2; }));
   command.add_option("--start", overrides.start, "Where the optimisation starts")

@@ -49,7 +49,7 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
     std::vector<TruthPose> truth;
     if (!options.truth.empty()) truth = read_truth(options.truth, options.data_folder, document, registry);
     evaluations.push_back({label, evaluate_document(document, truth)});
-    for (const auto& [key, text] : document.provenance) header.provenance[label + "." + key] = text;
+    add_provenance(document, label, header);
     if (options.folder.empty()) continue;
     for (const std::string& file : write_trajectories(document, options.folder + "/" + label, label)) {
       console.detail("written " + file);
@@ -70,7 +70,7 @@ void add_evaluate(CLI::App& app, Action& action) {
   command->add_option("--truth", options->truth,
                       "Truth: a drive.yaml with a truth section, or a TUM file in the frame");
   command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own");
-  command->add_option("--out", options->folder,
+  command->add_option("-o,--out", options->folder,
                       "Folder for metrics.json and the trajectories (CSV, TUM, GeoJSON)");
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark evaluate fused.graph --truth drive.yaml --out results");

@@ -19,9 +19,11 @@ std::string iteration_line(const IterationRecord& r) {
 std::vector<VertexIndex> covariance_vertices(const GraphDocument& document, const std::string& which) {
   std::vector<VertexIndex> vertices;
   if (which == "fixes") {
-    for (const Fix& fix : document.fixes) {
+    for (const Fix& fix : document.fixes) {  // fixes of several receivers may share a vertex
       if (const auto vertex = document.graph.find(fix.vertex)) vertices.push_back(*vertex);
     }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   } else if (which == "all") {
     for (VertexIndex v = 0; v < static_cast<VertexIndex>(document.graph.vertex_count()); ++v) {
       if (!document.graph.fixed(v)) vertices.push_back(v);
@@ -82,10 +84,18 @@ Summary optimize_document(GraphDocument& document, const OptimizationChoice& cho
   const std::vector<VertexIndex> vertices = covariance_vertices(document, choice.covariance);
   if (!vertices.empty() && summary.converged()) {
     const std::vector<Eigen::MatrixXd> blocks = marginal_covariances(document.graph, vertices);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      document.covariances.push_back({vertices[i], blocks[i]});
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      // Zero: not estimated (held, or without edges). No line is honester than a line that reads as
+      // certainty.
+      if (!blocks[i].isZero(0)) document.covariances.push_back({vertices[i], blocks[i]});
+    }
   }
   return summary;
+}
+
+std::string describe_optimization(const Summary& summary) {
+  return fmt::format("waymark {} algorithm {} solver {} {}", WAYMARK_VERSION, summary.algorithm,
+                     summary.solver, to_string(summary.termination));
 }
 
 ExitCode exit_code(const Summary& summary) {

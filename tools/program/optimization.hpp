@@ -31,6 +31,9 @@ Summary optimize_document(GraphDocument& document, const OptimizationChoice& cho
 /// Whether algorithm, its options and solver exist, before anything is read. @throws UsageError
 void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry);
 
+/// What the header of an optimised graph says of it.
+[[nodiscard]] std::string describe_optimization(const Summary& summary);
+
 /// 0, 4 or 130.
 [[nodiscard]] ExitCode exit_code(const Summary& summary);
 

@@ -45,9 +45,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   stop_if_interrupted();
 
   const Summary summary = optimize_document(document, options.choice, registry, console);
-  document.provenance.emplace_back("optimized", "waymark " WAYMARK_VERSION " algorithm " + summary.algorithm +
-                                                    " solver " + summary.solver + " " +
-                                                    std::string(to_string(summary.termination)));
+  document.provenance.emplace_back("optimized", describe_optimization(summary));
   const bool to_stdout = is_stdout(options.output);
   write_file_atomically(options.output, g2o ? write_g2o(document) : write_graph(document, registry));
   if (options.common.json) {

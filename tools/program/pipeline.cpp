@@ -41,6 +41,27 @@ Options options_of(const std::string& modeling, const DriveConfig& config, const
   return all;
 }
 
+bool has_option(const std::string& modeling, const std::string& option, const TypeRegistry& registry) {
+  for (const auto& [type, origin] : registry.gnss_modelings()) {
+    if (type.name != modeling) continue;
+    for (const OptionInfo& info : type.options) {
+      if (info.name == option) return true;
+    }
+  }
+  return false;
+}
+
+/// @throws UsageError for an option that no chosen modeling has
+void check_options_are_used(const std::vector<std::string>& modelings, const DriveOverrides& overrides,
+                            const TypeRegistry& registry) {
+  for (const auto& entry : parse_options(overrides.modeling_options)) {
+    const auto has = [&](const std::string& modeling) { return has_option(modeling, entry.first, registry); };
+    if (std::any_of(modelings.begin(), modelings.end(), has)) continue;
+    // Its own message names the options that exist.
+    (void)registry.make_gnss_modeling(modelings.front(), {{entry.first, entry.second}});
+  }
+}
+
 std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const DriveConfig& config,
                                           const TypeRegistry& registry) {
   std::vector<std::string> names;
@@ -58,8 +79,9 @@ std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const
   }
   for (const std::string& name : once) {  // what is wrong with them shows before the work
     (void)registry.make_gnss_modeling(name,
-                                      options_of(name, config, parse_options(overrides.modeling_options)));
+                                      options_of(name, config, known_options(name, overrides, registry)));
   }
+  check_options_are_used(once, overrides, registry);
   return once;
 }
 
@@ -94,10 +116,17 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   loaded.modelings = chosen_modelings(overrides, loaded.config, registry);
   console.progress("reading logs");
   loaded.drive = load_drive(loaded.config, reader_lookup(registry));
+  if (!loaded.config.time_scale_stated) {
+    loaded.drive.report.notes.push_back("time scale gps is assumed; state time: {scale: gps | utc | unix}");
+  }
   tell(loaded.drive.report, console);
+  for (const LogConfig* log : logs_of(loaded.config)) {
+    loaded.inputs.push_back(file_name(log->file) + " fnv1a64:" + fnv1a64_hex(read_text_file(log->file)));
+  }
   console.progress("gate and start");
   loaded.skeleton = build_skeleton(loaded.drive, loaded.config, registry);
   console.end_progress();
+  for (const std::string& warning : loaded.skeleton.warnings) console.note("warning: " + warning);
   if (!loaded.skeleton.start.note.empty()) console.note("note: start: " + loaded.skeleton.start.note);
   return loaded;
 }
@@ -107,10 +136,7 @@ GraphDocument build_document(const LoadedDrive& loaded, const std::string& model
   const Options all = options_of(modeling, loaded.config, options);
   GraphDocument document = add_modeling(loaded.skeleton, modeling, all, registry);
   document.provenance = {{"program", "waymark " WAYMARK_VERSION}, {"drive", loaded.config.name}};
-  for (const LogConfig* log : logs_of(loaded.config)) {
-    document.provenance.emplace_back(
-        "input", file_name(log->file) + " fnv1a64:" + fnv1a64_hex(read_text_file(log->file)));
-  }
+  for (const std::string& input : loaded.inputs) document.provenance.emplace_back("input", input);
   document.provenance.emplace_back("modeling", modeling);
   for (const auto& [name, value] : all)
     document.provenance.emplace_back("modeling_option", name + "=" + value);
@@ -123,6 +149,24 @@ GraphDocument build_document(const LoadedDrive& loaded, const std::string& model
       "start", loaded.config.start.method == StartMethod::anchored ? "anchored" : "dead_reckoning");
   for (const std::string& note : loaded.drive.report.notes) document.provenance.emplace_back("assumed", note);
   return document;
+}
+
+Options known_options(const std::string& modeling, const DriveOverrides& overrides,
+                      const TypeRegistry& registry) {
+  Options known;
+  for (const auto& [name, value] : parse_options(overrides.modeling_options)) {
+    if (has_option(modeling, name, registry)) known[name] = value;
+  }
+  return known;
+}
+
+void add_provenance(const GraphDocument& document, const std::string& label, ReportHeader& header) {
+  for (const auto& [key, text] : document.provenance) {
+    if (key == "drive" && header.drive.empty()) header.drive = text;
+    std::string name = label + "." + key;
+    for (int n = 2; header.provenance.contains(name); ++n) name = label + "." + key + "." + std::to_string(n);
+    header.provenance[name] = text;
+  }
 }
 
 std::string describe_drive(const LoadedDrive& loaded) {

@@ -31,6 +31,7 @@ struct LoadedDrive {
   PreparedDrive drive;
   DriveSkeleton skeleton;
   std::vector<std::string> modelings;
+  std::vector<std::string> inputs;  ///< name and fingerprint of each log
 };
 
 /// Reads a drive.yaml and its logs and builds the skeleton; what was assumed or left out is told on the
@@ -41,6 +42,14 @@ struct LoadedDrive {
 /// The graph of one modeling, with provenance.
 [[nodiscard]] GraphDocument build_document(const LoadedDrive& loaded, const std::string& modeling,
                                            const Options& options, const TypeRegistry& registry);
+
+/// The command line's modeling options that this modeling has; where several modelings run, each takes its
+/// own.
+[[nodiscard]] Options known_options(const std::string& modeling, const DriveOverrides& overrides,
+                                    const TypeRegistry& registry);
+
+/// Puts a document's provenance into a report, keys as "LABEL.KEY" (numbered where a key repeats).
+void add_provenance(const GraphDocument& document, const std::string& label, ReportHeader& header);
 
 /// A paragraph on what went in: samples, fixes, rejections by reason, the start.
 [[nodiscard]] std::string describe_drive(const LoadedDrive& loaded);

@@ -25,23 +25,22 @@ struct ModelingRun {
 };
 
 ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, const std::string& modeling,
-                         const TypeRegistry& registry, const Console& console) {
+                         const TypeRegistry& registry, const Console& console, ReportHeader& header) {
   ModelingRun run;
   const std::string prefix = options.folder + "/" + modeling;
   GraphDocument document =
-      build_document(loaded, modeling, parse_options(options.overrides.modeling_options), registry);
+      build_document(loaded, modeling, known_options(modeling, options.overrides, registry), registry);
   const auto write = [&](const std::string& name) {
     write_file_atomically(name, write_graph(document, registry));
     run.files.push_back(name);
   };
   write(prefix + ".graph");
   run.summary = optimize_document(document, options.choice, registry, console);
-  document.provenance.emplace_back("optimized", "algorithm " + options.choice.algorithm + " " + " solver " +
-                                                    run.summary.solver + " " +
-                                                    std::string(to_string(run.summary.termination)));
+  document.provenance.emplace_back("optimized", describe_optimization(run.summary));
   write(prefix + ".fused.graph");
   for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
   run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth)};
+  add_provenance(document, modeling, header);
   return run;
 }
 
@@ -59,13 +58,13 @@ ExitCode run_drive(const RunOptions& options) {
   stop_if_interrupted();
   make_folder(options.folder);
   std::vector<LabelledEvaluation> evaluations;
-  ReportHeader header{loaded.config.name, {{"program", "waymark " WAYMARK_VERSION}}};
+  ReportHeader header{loaded.config.name, {}};
   std::string text = describe_drive(loaded);
   std::vector<std::string> files;
   nlohmann::ordered_json summaries;
   ExitCode code = kSuccess;
   for (const std::string& modeling : loaded.modelings) {
-    ModelingRun run = run_modeling(options, loaded, modeling, registry, console);
+    ModelingRun run = run_modeling(options, loaded, modeling, registry, console, header);
     text += run_line(modeling, run.summary);
     summaries[modeling] = summary_json(run.summary);
     evaluations.push_back(std::move(run.evaluation));
@@ -97,7 +96,7 @@ void add_run(CLI::App& app, Action& action) {
   const auto options = std::make_shared<RunOptions>();
   command->add_option("drive", options->input, "Description of the drive and its logs (drive.yaml)")
       ->required();
-  command->add_option("--out", options->folder, "Folder for all results")->required();
+  command->add_option("-o,--out", options->folder, "Folder for all results")->required();
   add_drive_options(*command, options->overrides);
   add_optimization_options(*command, options->choice);
   add_common_options(*command, options->common);
