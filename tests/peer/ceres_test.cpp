@@ -202,6 +202,14 @@ TEST_CASE("peer: Ceres ends at the same minimum of manhattan, from its odometry"
   check_file("manhattan");
 }
 
+TEST_CASE("peer: Ceres ends at the same minimum of ring, for which no figure is published") {
+  check_file("ring");
+}
+
+TEST_CASE("peer: Ceres ends at the same minimum of manhattanOlson3500, for which no figure is published") {
+  check_file("manhattanOlson3500");
+}
+
 TEST_CASE(
     "peer: Ceres ends at the same minimum of a drive under G1, logarithmic odometry, antenna off the axle") {
   const TypeRegistry registry = waymark_test::full_registry();
