@@ -5,6 +5,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/gauge.hpp>
+#include <waymark/core/incidence.hpp>
 
 namespace waymark {
 namespace {
@@ -115,12 +116,7 @@ Gauge find_gauge(const Graph& graph) {
 
   Gauge gauge;
   gauge.held.assign(graph.vertex_count(), 0);
-  std::vector<char> has_edge(graph.vertex_count(), 0);
-  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    for (std::size_t e = 0; e < graph.batch(b).size(); ++e) {
-      for (const VertexIndex v : graph.batch(b).vertices(e)) has_edge[at(v)] = 1;
-    }
-  }
+  const std::vector<char> has_edge = vertices_with_edges(graph);
   std::vector<VertexIndex> judged(graph.vertex_count(), -1);  // first vertex with a place, per component
   for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
     const auto c = at(component[v]);

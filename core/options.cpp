@@ -12,11 +12,6 @@ std::string prefix(std::string_view owner, const std::string& name) {
   return std::string(owner) + ": option '" + name + "' ";
 }
 
-std::string shortest(double value) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
-
 const std::string& given_or_default(const Options& given, std::span<const OptionInfo> known,
                                     const std::string& name) {
   const auto found = given.find(name);
@@ -28,6 +23,11 @@ const std::string& given_or_default(const Options& given, std::span<const Option
 }
 
 }  // namespace
+
+std::string shortest(double value) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
 
 void check_option_names(std::string_view owner, const Options& given, std::span<const OptionInfo> known) {
   for (const auto& entry : given) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <waymark/core/incidence.hpp>
 #include <waymark/core/structure.hpp>
 
 namespace waymark {
@@ -93,12 +94,7 @@ bool is_dense(std::int64_t degree, int n) {
 }  // namespace
 
 void Structure::choose_unknowns(const Graph& graph, std::span<const char> held) {
-  std::vector<char> has_edge(graph.vertex_count(), 0);
-  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    for (std::size_t e = 0; e < graph.batch(b).size(); ++e) {
-      for (const VertexIndex v : graph.batch(b).vertices(e)) has_edge[at(v)] = 1;
-    }
-  }
+  const std::vector<char> has_edge = vertices_with_edges(graph);
   for (std::size_t v = column_of_.size(); v < graph.vertex_count(); ++v) {
     const auto vertex = static_cast<VertexIndex>(v);
     const bool unknown = has_edge[v] && !graph.fixed(vertex) && held[v] == 0;

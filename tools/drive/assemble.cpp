@@ -1,7 +1,7 @@
-#include <charconv>
 #include <cmath>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/options.hpp>
 #include <waymark/tools/drive/assemble.hpp>
 #include <waymark/tools/drive/plausibility.hpp>
 #include <waymark/tools/drive/timeline.hpp>
@@ -9,11 +9,6 @@
 
 namespace waymark {
 namespace {
-
-std::string shortest(double value) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
 
 std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, const TypeRegistry& registry) {
   Options options = config.odometry_options;
