@@ -14,7 +14,12 @@
 ///   void linearize(const Pose2<double>&, const Vector2<double>&, Error& e, Jacobian<3>& J0, Jacobian<2>& J1)
 ///   const;
 /// with J_k the derivative of the error by the tangent vector of vertex k. The conformance tests compare the
-/// two.
+/// two. Two more things may be told:
+///   static constexpr bool kRelative = true;    the error stays when all vertices undergo one rigid motion of
+///                                              the plane: the gauge test then need not look (tested)
+///   void prepare();                            called once when the fields are set: keeps what depends on
+///   the
+///                                              measurement alone
 #pragma once
 
 #include <concepts>
@@ -62,6 +67,7 @@ struct EdgeType {
   std::vector<std::string> vertex_tags;  ///< arity entries; empty for run-time arity
   int error_dimension = 0;               ///< 0 for run-time arity: the sum of the vertices' tangent sizes
   std::vector<FieldInfo> fields;         ///< without the information matrix, which every edge has
+  bool relative = false;                 ///< the error does not change under a common rigid motion
   std::function<std::unique_ptr<EdgeBatchBase>()> make_batch;
 
   /// Numbers in the field list together.

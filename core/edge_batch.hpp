@@ -14,20 +14,31 @@
 namespace waymark {
 
 /// Where the product of two Jacobians of an edge goes in the normal matrix: a column-major block at
-/// values[offset] with the given stride between columns. `transposed`: the first vertex is the block's
+/// values[offset]. `stride` is the distance between columns; negative: the first vertex is the block's
 /// column.
 struct BlockTarget {
-  std::int64_t offset = 0;
+  std::uint32_t offset = 0;
   std::int32_t stride = 0;
-  bool transposed = false;
+};
+
+/// Edges [first, last) of a batch.
+struct EdgeRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
 };
 
 /// The targets of all edges of a batch, made once per structure. Per edge of K vertices: K places in the
 /// gradient and K (K + 1) / 2 blocks, pair (k, l <= k) at k (k + 1) / 2 + l. Held vertices point to a scratch
 /// area behind the numbers, so that the kernels have no branch for them.
+///
+/// The edges are parted into chunks that write to disjoint places and may be worked on at the same time;
+/// those of the last chunk write anywhere and come after all others. Chunks do not depend on the number of
+/// threads, so sums do not either.
 struct Scatter {
-  std::vector<std::int64_t> gradient;
+  std::vector<std::uint32_t> gradient;
   std::vector<BlockTarget> blocks;
+  std::vector<EdgeRange> ranges;
+  std::vector<std::size_t> chunk{0};  ///< begin of each chunk in `ranges`; one more at the end
 };
 
 /// What a pass over the edges reads.
@@ -42,13 +53,29 @@ struct NormalView {
   double* gradient = nullptr;
 };
 
-/// Per vertex: how it moves under the three rigid motions (Graph::rigid_motions), 3 columns at offset 3 *
-/// tangent.
+/// What the edges know of rigid motions is added up per component of the graph.
 struct RigidMotionView {
-  const double* columns = nullptr;
-  const std::int64_t* offsets = nullptr;     ///< -1: the vertex is held or does not move
-  const std::int32_t* components = nullptr;  ///< per vertex
-  Eigen::Matrix3d* information = nullptr;    ///< per component, added to
+  /// Where a component lies; a turn is about the centre by 1 / extent radians.
+  struct Place {
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+    double extent = 1;
+  };
+  const std::int32_t* component = nullptr;  ///< per vertex; -1: it is held or does not move
+  const Place* places = nullptr;            ///< per component
+  Eigen::Matrix3d* information = nullptr;   ///< per component, added to
+};
+
+/// The vertices of all edges of a batch, where each has as many: edge e's begin `stride` bytes after those of
+/// e - 1.
+struct VertexTable {
+  const VertexIndex* first = nullptr;
+  std::size_t stride = 0;
+  int arity = 0;  ///< 0: of run-time arity; ask for each edge
+
+  [[nodiscard]] std::span<const VertexIndex> operator[](std::size_t edge) const {
+    const auto* bytes = reinterpret_cast<const char*>(first) + edge * stride;
+    return {reinterpret_cast<const VertexIndex*>(bytes), static_cast<std::size_t>(arity)};
+  }
 };
 
 class EdgeBatchBase {
@@ -68,10 +95,17 @@ class EdgeBatchBase {
   virtual void fields(std::size_t edge, std::vector<double>& out) const = 0;
   [[nodiscard]] virtual Eigen::MatrixXd information(std::size_t edge) const = 0;
 
-  /// Sum of rho(e^T Omega e). Non-finite when an error is.
-  [[nodiscard]] virtual double chi2(const ValueView& view) const = 0;
-  /// Adds the batch's part to the normal equations and returns its chi2.
-  virtual double linearize(const ValueView& view, const Scatter& scatter, const NormalView& normal) const = 0;
+  /// The vertices of all edges at once; empty for run-time arity.
+  [[nodiscard]] virtual VertexTable vertex_table() const { return {}; }
+
+  /// Sum of rho(e^T Omega e) over a range of edges. Non-finite when an error is.
+  [[nodiscard]] virtual double chi2(const ValueView& view, EdgeRange range) const = 0;
+  [[nodiscard]] double chi2(const ValueView& view) const {
+    return chi2(view, {0, static_cast<std::uint32_t>(size())});
+  }
+  /// Adds the part of a range of edges to the normal equations and returns its chi2.
+  virtual double linearize(const ValueView& view, const Scatter& scatter, EdgeRange range,
+                           const NormalView& normal) const = 0;
   /// One edge's error and Jacobians (one matrix per vertex), without information and loss: for checks and
   /// tests.
   virtual void linearize_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
@@ -79,8 +113,8 @@ class EdgeBatchBase {
   /// The same by dual numbers even where the type has a linearize(...) of its own.
   virtual void differentiate_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
                                   std::vector<Eigen::MatrixXd>& jacobians) const = 0;
-  /// Adds (sum_k J_k T_k)^T Omega (sum_k J_k T_k) to the component of each edge: what it knows of rigid
-  /// motions.
+  /// Adds (sum_k J_k T_k)^T Omega (sum_k J_k T_k) to the component of each edge, T_k the rigid motions of its
+  /// vertices (Vertex: rigid_motion).
   virtual void add_rigid_information(const ValueView& view, const RigidMotionView& motion) const = 0;
 
   /// The loss of every edge that has none of its own.
@@ -104,5 +138,16 @@ class EdgeBatchBase {
   std::vector<std::int32_t>
       edge_loss_;  // per edge an index into losses_, -1: the batch's; empty: none attached
 };
+
+/// visit(vertices) for every edge of a batch, in order.
+template <typename Visit>
+void for_each_edge(const EdgeBatchBase& batch, Visit visit, std::size_t first = 0) {
+  const VertexTable table = batch.vertex_table();
+  if (table.arity > 0) {
+    for (std::size_t e = first; e < batch.size(); ++e) visit(table[e]);
+  } else {
+    for (std::size_t e = first; e < batch.size(); ++e) visit(batch.vertices(e));
+  }
+}
 
 }  // namespace waymark

@@ -23,10 +23,9 @@ std::vector<std::int32_t> find_components(const Graph& graph) {
     return v;
   };
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    const EdgeBatchBase& batch = graph.batch(b);
-    for (std::size_t e = 0; e < batch.size(); ++e) {
+    for_each_edge(graph.batch(b), [&](std::span<const VertexIndex> vertices) {
       std::int32_t joined = -1;
-      for (const VertexIndex v : batch.vertices(e)) {
+      for (const VertexIndex v : vertices) {
         if (graph.fixed(v)) continue;
         const std::int32_t r = root(v);
         if (joined >= 0 && r != joined) {
@@ -36,41 +35,58 @@ std::vector<std::int32_t> find_components(const Graph& graph) {
           joined = r;
         }
       }
-    }
+    });
   }
   for (std::size_t v = 0; v < parent.size(); ++v) parent[v] = root(static_cast<std::int32_t>(v));
   return parent;
 }
 
-/// Centre and extent of each component's positions.
-struct Place {
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  double extent = 1;
-  int count = 0;
+/// The components of the vertices that move under a rigid motion.
+struct Components {
+  std::vector<std::int32_t> of;    // per vertex; -1: it is fixed or does not move
+  std::vector<VertexIndex> first;  // first vertex with edges
+  std::vector<int> count;          // vertices that move
+  std::vector<RigidMotionView::Place> places;
 };
 
-std::vector<Place> find_places(const Graph& graph, const std::vector<std::int32_t>& component) {
-  std::vector<Place> places(graph.vertex_count());
-  const auto for_each_place = [&](auto visit) {
-    for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
-      const auto vertex = static_cast<VertexIndex>(v);
-      const VertexType& type = graph.vertex_type(vertex);
-      if (type.rigid_motion == nullptr || graph.fixed(vertex)) continue;
-      visit(places[at(component[v])], type.position(graph.value(vertex).data()));
-    }
-  };
-  for_each_place([](Place& place, const Eigen::Vector2d& position) {
-    place.centre += position;
-    ++place.count;
-  });
-  for (Place& place : places) {
-    if (place.count > 0) place.centre /= place.count;
+template <typename Visit>
+void for_each_position(const Graph& graph, const Components& components, Visit visit) {
+  for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
+    if (components.of[v] < 0) continue;
+    const auto vertex = static_cast<VertexIndex>(v);
+    visit(at(components.of[v]), graph.vertex_type(vertex).position(graph.value(vertex).data()));
   }
+}
+
+Components describe_components(const Graph& graph) {
+  const std::vector<std::int32_t> root = find_components(graph);
+  const std::vector<char> has_edge = vertices_with_edges(graph);
+  Components result;
+  result.of.assign(graph.vertex_count(), -1);
+  std::vector<std::int32_t> number(graph.vertex_count(), -1);  // of the component with that root
+  for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
+    const auto vertex = static_cast<VertexIndex>(v);
+    if (!has_edge[v] || graph.fixed(vertex) || graph.vertex_type(vertex).rigid_motion == nullptr) continue;
+    std::int32_t& component = number[at(root[v])];
+    if (component < 0) {
+      component = static_cast<std::int32_t>(result.first.size());
+      result.first.push_back(vertex);
+      result.count.push_back(0);
+    }
+    result.of[v] = component;
+    ++result.count[at(component)];
+  }
+  result.places.resize(result.first.size());
+  for_each_position(graph, result, [&](std::size_t c, const Eigen::Vector2d& position) {
+    result.places[c].centre += position;
+  });
+  for (std::size_t c = 0; c < result.places.size(); ++c) result.places[c].centre /= result.count[c];
   // At least a metre: below, a turn of the component means only turning its poses.
-  for_each_place([](Place& place, const Eigen::Vector2d& position) {
+  for_each_position(graph, result, [&](std::size_t c, const Eigen::Vector2d& position) {
+    RigidMotionView::Place& place = result.places[c];
     place.extent = std::max(place.extent, (position - place.centre).norm());
   });
-  return places;
+  return result;
 }
 
 /// Number of eigenvalues above the noise of the largest; 0 where all of them are no more than rounding.
@@ -96,39 +112,22 @@ int rank_of(const Eigen::Matrix3d& information) {
 }  // namespace
 
 Gauge find_gauge(const Graph& graph) {
-  const std::vector<std::int32_t> component = find_components(graph);
-  const std::vector<Place> places = find_places(graph, component);
-  std::vector<std::int64_t> offsets(graph.vertex_count(), -1);
-  std::vector<double> columns;
-  for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
-    const auto vertex = static_cast<VertexIndex>(v);
-    const VertexType& type = graph.vertex_type(vertex);
-    if (type.rigid_motion == nullptr || graph.fixed(vertex)) continue;
-    offsets[v] = static_cast<std::int64_t>(columns.size());
-    columns.resize(columns.size() + at(3 * type.tangent_size));
-    const Place& place = places[at(component[v])];
-    type.rigid_motion(graph.value(vertex).data(), place.centre, place.extent, columns.data() + offsets[v]);
-  }
-  std::vector<Eigen::Matrix3d> information(graph.vertex_count(), Eigen::Matrix3d::Zero());
-  const RigidMotionView motion{columns.data(), offsets.data(), component.data(), information.data()};
-  for (std::size_t b = 0; b < graph.batch_count(); ++b)
+  const Components components = describe_components(graph);
+  std::vector<Eigen::Matrix3d> information(components.first.size(), Eigen::Matrix3d::Zero());
+  const RigidMotionView motion{components.of.data(), components.places.data(), information.data()};
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     graph.batch(b).add_rigid_information(graph.view(), motion);
-
+  }
   Gauge gauge;
   gauge.held.assign(graph.vertex_count(), 0);
-  const std::vector<char> has_edge = vertices_with_edges(graph);
-  std::vector<VertexIndex> judged(graph.vertex_count(), -1);  // first vertex with a place, per component
-  for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
-    const auto c = at(component[v]);
-    if (offsets[v] < 0 || !has_edge[v] || judged[c] >= 0) continue;
-    const auto vertex = static_cast<VertexIndex>(v);
-    judged[c] = vertex;
+  for (std::size_t c = 0; c < components.first.size(); ++c) {
+    const VertexIndex first = components.first[c];
     const int rank = rank_of(information[c]);
-    if (rank == 1 || rank == 2) refuse(graph, vertex, rank);
+    if (rank == 1 || rank == 2) refuse(graph, first, rank);
     if (rank == 0) {
-      gauge.held[v] = 1;
-      gauge.messages.push_back("nothing anchors vertex " + std::to_string(graph.id(vertex)) + " and the " +
-                               std::to_string(places[c].count - 1) +
+      gauge.held[at(first)] = 1;
+      gauge.messages.push_back("nothing anchors vertex " + std::to_string(graph.id(first)) + " and the " +
+                               std::to_string(components.count[c] - 1) +
                                " vertices joined to it: it is held at its present value");
     }
   }

@@ -1,3 +1,5 @@
+#include <cstdlib>
+
 #include <waymark/core/error.hpp>
 #include <waymark/core/gaussian_prior.hpp>
 
@@ -33,6 +35,12 @@ void GaussianPriorBatch::append(std::span<const VertexIndex> vertices,
   record.reference.assign(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(values));
   record.offset = Eigen::Map<const Eigen::VectorXd>(fields.data() + values, dimension);
   record.information = information;
+  if (!records_.empty()) {
+    const Record& before = records_.back();
+    const std::size_t arity = before.vertices.size();
+    record.first_gradient = before.first_gradient + arity;
+    record.first_block = before.first_block + arity * (arity + 1) / 2;
+  }
   records_.push_back(std::move(record));
 }
 
@@ -81,24 +89,24 @@ Eigen::MatrixXd GaussianPriorBatch::jacobian(const Record& record, std::size_t v
   return result;
 }
 
-double GaussianPriorBatch::chi2(const ValueView& view) const {
+double GaussianPriorBatch::chi2(const ValueView& view, EdgeRange range) const {
   double sum = 0;
-  for (std::size_t i = 0; i < records_.size(); ++i) {
+  for (std::size_t i = range.first; i < range.last; ++i) {
     const Eigen::VectorXd e = error(records_[i], view);
     sum += evaluate_loss(i, e.dot(records_[i].information * e)).rho;
   }
   return sum;
 }
 
-double GaussianPriorBatch::linearize(const ValueView& view, const Scatter& scatter,
+double GaussianPriorBatch::linearize(const ValueView& view, const Scatter& scatter, EdgeRange range,
                                      const NormalView& normal) const {
   double sum = 0;
-  const std::int64_t* gradient = scatter.gradient.data();
-  const BlockTarget* block = scatter.blocks.data();
   Eigen::VectorXd e;
   std::vector<Eigen::MatrixXd> jacobians;
-  for (std::size_t i = 0; i < records_.size(); ++i) {
+  for (std::size_t i = range.first; i < range.last; ++i) {
     const Record& record = records_[i];
+    const std::uint32_t* gradient = scatter.gradient.data() + record.first_gradient;
+    const BlockTarget* block = scatter.blocks.data() + record.first_block;
     linearize_edge(i, view, e, jacobians);
     const LossValue loss = evaluate_loss(i, e.dot(record.information * e));
     sum += loss.rho;
@@ -108,10 +116,10 @@ double GaussianPriorBatch::linearize(const ValueView& view, const Scatter& scatt
       Eigen::Map<Eigen::VectorXd>(normal.gradient + *gradient++, left.rows()) += left * e;
       for (std::size_t l = 0; l <= k; ++l, ++block) {
         const Eigen::MatrixXd product = left * jacobians[l];
-        const Eigen::MatrixXd& placed = block->transposed ? Eigen::MatrixXd(product.transpose()) : product;
-        Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(normal.hessian + block->offset, placed.rows(),
-                                                             placed.cols(),
-                                                             Eigen::OuterStride<>(block->stride)) += placed;
+        const Eigen::MatrixXd& placed = block->stride < 0 ? Eigen::MatrixXd(product.transpose()) : product;
+        Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
+            normal.hessian + block->offset, placed.rows(), placed.cols(),
+            Eigen::OuterStride<>(std::abs(block->stride))) += placed;
       }
     }
   }
@@ -146,11 +154,13 @@ void GaussianPriorBatch::add_rigid_information(const ValueView& view, const Rigi
     std::int32_t component = -1;
     for (std::size_t k = 0; k < jacobians.size(); ++k) {
       const VertexIndex vertex = records_[i].vertices[k];
-      const std::int64_t offset = motion.offsets[vertex];
-      if (offset < 0) continue;
-      component = motion.components[vertex];
-      moved +=
-          jacobians[k] * Eigen::Map<const Eigen::MatrixXd>(motion.columns + offset, jacobians[k].cols(), 3);
+      const std::int32_t own = motion.component[vertex];
+      if (own < 0) continue;
+      component = own;
+      Eigen::MatrixXd columns(jacobians[k].cols(), 3);
+      records_[i].types[k].rigid_motion(view.values + view.offsets[vertex], motion.places[own].centre,
+                                        motion.places[own].extent, columns.data());
+      moved += jacobians[k] * columns;
     }
     if (component >= 0) motion.information[component] += moved.transpose() * records_[i].information * moved;
   }

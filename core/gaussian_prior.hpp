@@ -25,8 +25,10 @@ class GaussianPriorBatch final : public EdgeBatchBase {
               std::span<const double> fields, const Eigen::MatrixXd& information) override;
   void fields(std::size_t i, std::vector<double>& out) const override;
   [[nodiscard]] Eigen::MatrixXd information(std::size_t i) const override { return records_[i].information; }
-  [[nodiscard]] double chi2(const ValueView& view) const override;
-  double linearize(const ValueView& view, const Scatter& scatter, const NormalView& normal) const override;
+  using EdgeBatchBase::chi2;
+  [[nodiscard]] double chi2(const ValueView& view, EdgeRange range) const override;
+  double linearize(const ValueView& view, const Scatter& scatter, EdgeRange range,
+                   const NormalView& normal) const override;
   void linearize_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& error,
                       std::vector<Eigen::MatrixXd>& jacobians) const override;
   void differentiate_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& error,
@@ -40,6 +42,8 @@ class GaussianPriorBatch final : public EdgeBatchBase {
     std::vector<double> reference;  // all vertices' values
     Eigen::VectorXd offset;
     Eigen::MatrixXd information;
+    std::size_t first_gradient = 0;  // its first places in the scatter: they depend on the edges before
+    std::size_t first_block = 0;
   };
 
   static Eigen::VectorXd error(const Record& record, const ValueView& view);

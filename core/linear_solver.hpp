@@ -11,6 +11,8 @@
 
 namespace waymark {
 
+class ThreadPool;
+
 /// Outcome of a factorisation; failing is ordinary flow (a damped method then damps more).
 enum class FactorStatus {
   ok,
@@ -28,6 +30,8 @@ class LinearSolver {
   [[nodiscard]] virtual FactorStatus factorize(std::span<const double> values) = 0;
   /// Solves A x = b with the last factor, which must be ok. b and x may be the same memory.
   virtual void solve(std::span<const double> b, std::span<double> x) = 0;
+  /// Threads to work with from now on; a backend may ignore them. The bits of a result must not depend on it.
+  virtual void set_threads(ThreadPool*) {}
   /// Numbers stored in the factor.
   [[nodiscard]] virtual std::int64_t factor_size() const = 0;
   /// What was chosen inside ("simplicial", "supernodal"), for the Summary.

@@ -14,37 +14,59 @@ std::size_t at(std::int64_t i) {
 NormalEquations::NormalEquations(const Graph& graph, const Structure& structure)
     : graph_(graph), structure_(structure) {}
 
+template <typename Work>
+double NormalEquations::sum_over_chunks(const Work& work) const {
+  const int last = structure_.chunks() - 1;
+  sums_.assign(at(last) + 1, 0.0);
+  const auto one_chunk = [&](int chunk) {
+    double sum = 0;
+    for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
+      const Scatter& scatter = structure_.scatter(b);
+      for (auto r = scatter.chunk[at(chunk)]; r < scatter.chunk[at(chunk) + 1]; ++r) {
+        sum += work(graph_.batch(b), scatter, scatter.ranges[r]);
+      }
+    }
+    sums_[at(chunk)] = sum;
+  };
+  run_parallel(pool_, last, one_chunk);
+  one_chunk(last);
+  double total = 0;
+  for (const double sum : sums_) total += sum;
+  return total;
+}
+
 double NormalEquations::linearize(const std::vector<double>& values) {
   hessian_.assign(at(structure_.hessian_size()), 0.0);
   gradient_.assign(at(structure_.gradient_size()), 0.0);
+  diagonal_known_ = false;
   const ValueView view{values.data(), graph_.offsets().data()};
   const NormalView normal{hessian_.data(), gradient_.data()};
-  double sum = 0;
-  for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
-    sum += graph_.batch(b).linearize(view, structure_.scatter(b), normal);
-  }
-  return sum;
+  const double chi2 =
+      sum_over_chunks([&](const EdgeBatchBase& batch, const Scatter& scatter, EdgeRange range) {
+        return batch.linearize(view, scatter, range, normal);
+      });
+  structure_.add_slots(hessian_.data(), gradient_.data());
+  return chi2;
 }
 
 double NormalEquations::chi2(const std::vector<double>& values) const {
   const ValueView view{values.data(), graph_.offsets().data()};
-  double sum = 0;
-  for (std::size_t b = 0; b < graph_.batch_count(); ++b) sum += graph_.batch(b).chi2(view);
-  return sum;
+  return sum_over_chunks(
+      [&](const EdgeBatchBase& batch, const Scatter&, EdgeRange range) { return batch.chi2(view, range); });
 }
 
-Eigen::VectorXd NormalEquations::diagonal() const {
+const Eigen::VectorXd& NormalEquations::diagonal() const {
+  if (diagonal_known_) return diagonal_;
   const BlockPattern& p = pattern();
-  Eigen::VectorXd result(p.dimension());
-  for (int j = 0; j < p.columns(); ++j) {
-    const int size = p.size[at(j)];
-    const int height = p.height[at(j)];
-    for (int c = 0; c < size; ++c) {
-      result[p.start[at(j)] + c] =
-          hessian_[at(p.value[at(j)] + std::int64_t{c} * height + height - size + c)];
-    }
+  diagonal_.resize(p.dimension());
+  for (std::size_t j = 0; j < p.size.size(); ++j) {
+    const int size = p.size[j];
+    const int height = p.height[j];
+    const double* block = hessian_.data() + p.value[j] + height - size;
+    for (int c = 0; c < size; ++c, block += height + 1) diagonal_[p.start[j] + c] = *block;
   }
-  return result;
+  diagonal_known_ = true;
+  return diagonal_;
 }
 
 void NormalEquations::add_to_diagonal(const Eigen::VectorXd& extra, std::vector<double>& damped) const {
@@ -59,9 +81,9 @@ void NormalEquations::add_to_diagonal(const Eigen::VectorXd& extra, std::vector<
   }
 }
 
-Eigen::VectorXd NormalEquations::multiply(const Eigen::VectorXd& x) const {
+void NormalEquations::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   const BlockPattern& p = pattern();
-  Eigen::VectorXd y = Eigen::VectorXd::Zero(p.dimension());
+  y.setZero(p.dimension());
   using Block = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
   for (int j = 0; j < p.columns(); ++j) {
     const int size = p.size[at(j)];
@@ -75,7 +97,6 @@ Eigen::VectorXd NormalEquations::multiply(const Eigen::VectorXd& x) const {
         y.segment(p.start[at(j)], size) += block.transpose() * x.segment(p.start[at(i)], p.size[at(i)]);
     }
   }
-  return y;
 }
 
 void NormalEquations::retract(const std::vector<double>& values, const Eigen::VectorXd& step,

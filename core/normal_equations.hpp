@@ -9,6 +9,7 @@
 
 #include <waymark/core/graph.hpp>
 #include <waymark/core/structure.hpp>
+#include <waymark/core/thread_pool.hpp>
 
 namespace waymark {
 
@@ -16,6 +17,10 @@ class NormalEquations {
  public:
   /// Both must outlive this object; the structure must have been built for the graph.
   NormalEquations(const Graph& graph, const Structure& structure);
+
+  /// Threads to work with from now on, null: the caller's alone. The bits of H, g and chi2 do not depend on
+  /// it.
+  void set_threads(ThreadPool* pool) { pool_ = pool; }
 
   /// Fills H and g at `values` (laid out as graph.values()) and returns chi2 there.
   double linearize(const std::vector<double>& values);
@@ -30,12 +35,12 @@ class NormalEquations {
   [[nodiscard]] Eigen::Map<const Eigen::VectorXd> gradient() const {
     return {gradient_.data(), pattern().dimension()};
   }
-  /// Diagonal of H, in elimination order like all vectors here.
-  [[nodiscard]] Eigen::VectorXd diagonal() const;
+  /// Diagonal of H, in elimination order like all vectors here; gathered once for each linearisation.
+  [[nodiscard]] const Eigen::VectorXd& diagonal() const;
   /// H + diag(extra), into `damped` (same layout as hessian()).
   void add_to_diagonal(const Eigen::VectorXd& extra, std::vector<double>& damped) const;
-  /// H x.
-  [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;
+  /// H x, into `product`.
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& product) const;
   /// values [+] step, into `moved`.
   void retract(const std::vector<double>& values, const Eigen::VectorXd& step,
                std::vector<double>& moved) const;
@@ -43,10 +48,19 @@ class NormalEquations {
   [[nodiscard]] VertexIndex vertex_of_unknown(std::int64_t unknown) const;
 
  private:
+  /// Calls work(batch, range, chunk) for all edges, chunks side by side, the last one after the others, and
+  /// sums what it returns in order.
+  template <typename Work>
+  double sum_over_chunks(const Work& work) const;
+
   const Graph& graph_;
   const Structure& structure_;
+  ThreadPool* pool_ = nullptr;
   std::vector<double> hessian_;
   std::vector<double> gradient_;
+  mutable std::vector<double> sums_;  // per chunk
+  mutable Eigen::VectorXd diagonal_;
+  mutable bool diagonal_known_ = false;
 };
 
 }  // namespace waymark

@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/gauge.hpp>
 #include <waymark/core/optimizer.hpp>
+#include <waymark/core/thread_pool.hpp>
 
 namespace waymark {
 namespace {
@@ -46,7 +49,14 @@ class Loop {
         algorithm_(algorithm),
         solver_(solver),
         options_(options),
-        equations_(graph, structure_) {}
+        equations_(graph, structure_) {
+    if (options.threads > 1) pool_.emplace(options.threads);
+    equations_.set_threads(pool());
+    solver_.set_threads(pool());
+  }
+  ~Loop() { solver_.set_threads(nullptr); }
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
 
   Summary run();
 
@@ -56,13 +66,16 @@ class Loop {
   bool step_once();
   bool converged_by(const Step& step);
   void finish(Termination termination, std::string message);
-  double linearize();
+  double linearize(const std::vector<double>& values);
+  void accept(double trial_chi2);
   std::string singular_message() const;
+  ThreadPool* pool() { return pool_ ? &*pool_ : nullptr; }
 
   Graph& graph_;
   Algorithm& algorithm_;
   LinearSolver& solver_;
   const OptimizerOptions& options_;
+  std::optional<ThreadPool> pool_;
   Structure structure_;
   NormalEquations equations_;
   Summary summary_;
@@ -70,9 +83,11 @@ class Loop {
 
   std::vector<double> values_;  // present
   std::vector<double> trial_;
-  std::vector<double> best_;  // lowest chi2 seen; differs from values_ only after an uphill step
+  std::vector<double> best_;  // lowest chi2 seen, where that is not values_: after an uphill step
+  bool present_is_best_ = true;
   double chi2_ = 0;
   double best_chi2_ = 0;
+  bool last_accepted_ = true;
   double gradient_ = 0;
   Step step_;
   bool done_ = false;
@@ -101,18 +116,20 @@ void Loop::prepare() {
   if (summary_.unknowns > 0) solver_.analyze(structure_.pattern());
 }
 
-double Loop::linearize() {
+double Loop::linearize(const std::vector<double>& values) {
   const Timer timer(summary_.linearize_seconds);
-  return equations_.linearize(values_);
+  return equations_.linearize(values);
 }
 
 bool Loop::converged_at_gradient() {
-  const Eigen::VectorXd diagonal = equations_.diagonal();
+  const Eigen::VectorXd& diagonal = equations_.diagonal();
   const auto gradient = equations_.gradient();
-  gradient_ = 0;
+  double largest = 0;
   for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
-    if (diagonal[i] > 0) gradient_ = std::max(gradient_, std::abs(gradient[i]) / std::sqrt(diagonal[i]));
+    const double square = gradient[i] * gradient[i];
+    if (square > largest * diagonal[i] && diagonal[i] > 0) largest = square / diagonal[i];
   }
+  gradient_ = std::sqrt(largest);
   const double bound = options_.gradient_tolerance * std::sqrt(1 + chi2_);
   if (!(gradient_ <= bound)) return false;
   finish(Termination::converged_gradient, text("converged: scaled gradient ", gradient_, " <= ", bound));
@@ -127,8 +144,9 @@ bool Loop::converged_by(const Step& step) {
            text("converged: Newton decrement ", step.newton_decrement, " <= ", bound));
     return true;
   }
-  double largest = 0;
-  for (const double value : values_) largest = std::max(largest, std::abs(value));
+  const double largest =
+      Eigen::Map<const Eigen::VectorXd>(values_.data(), static_cast<Eigen::Index>(values_.size()))
+          .lpNorm<Eigen::Infinity>();
   const double step_bound = options_.step_tolerance * (1 + largest);
   const double step_size = step.delta.lpNorm<Eigen::Infinity>();
   if (step_size > step_bound) return false;
@@ -137,7 +155,7 @@ bool Loop::converged_by(const Step& step) {
 }
 
 std::string Loop::singular_message() const {
-  const Eigen::VectorXd diagonal = equations_.diagonal();
+  const Eigen::VectorXd& diagonal = equations_.diagonal();
   Eigen::Index weakest = 0;
   diagonal.minCoeff(&weakest);
   const VertexIndex v = equations_.vertex_of_unknown(weakest);
@@ -175,9 +193,11 @@ bool Loop::step_once() {
   // 2. Test convergence, on full Newton steps only; the last step is still taken where it does not climb.
   const bool converged = converged_by(step_);
 
-  // 3. Try it.
+  // 3. Try it. A step is mostly taken: then its chi2 comes with the next linearisation. After a rejection,
+  // and for the last step, chi2 alone is computed.
   equations_.retract(values_, step_.delta, trial_);
-  const double trial_chi2 = equations_.chi2(trial_);
+  const bool linearized = !converged && last_accepted_;
+  const double trial_chi2 = linearized ? linearize(trial_) : equations_.chi2(trial_);
   record.chi2 = trial_chi2;
   record.decrease = chi2_ - trial_chi2;
   const double noise = kChi2Rounding * chi2_;
@@ -188,30 +208,40 @@ bool Loop::step_once() {
   // 4. Take it or not.
   record.accepted = finite && (converged ? record.decrease >= -noise : algorithm_.acceptable(ratio));
   if (record.accepted) {
-    values_.swap(trial_);
-    chi2_ = trial_chi2;
-    if (chi2_ <= best_chi2_) {
-      best_ = values_;
-      best_chi2_ = chi2_;
-    }
+    accept(trial_chi2);
     if (!converged) {
       algorithm_.accepted(step_, ratio);
-      chi2_ = linearize();
+      if (!linearized) linearize(values_);
     }
   } else if (!converged) {
     algorithm_.rejected(step_, finite ? ratio : -1);
+    if (linearized) linearize(values_);
   }
+  last_accepted_ = record.accepted;
   record.seconds = seconds_since(start_);
   summary_.records.push_back(record);
   if (options_.observer) options_.observer(record);
   return record.accepted;
 }
 
+void Loop::accept(double trial_chi2) {
+  if (present_is_best_ && trial_chi2 > chi2_) {
+    best_ = values_;
+    present_is_best_ = false;
+  }
+  values_.swap(trial_);
+  chi2_ = trial_chi2;
+  if (chi2_ <= best_chi2_) {
+    best_chi2_ = chi2_;
+    present_is_best_ = true;
+  }
+}
+
 Summary Loop::run() {
-  options_.check();
   prepare();
-  values_ = best_ = graph_.values();
-  chi2_ = best_chi2_ = summary_.initial_chi2 = linearize();
+  summary_.records.reserve(static_cast<std::size_t>(std::min(options_.max_iterations, 1000)));
+  values_ = graph_.values();
+  chi2_ = best_chi2_ = summary_.initial_chi2 = linearize(values_);
   if (!std::isfinite(chi2_)) {
     finish(Termination::non_finite, "chi2 is not finite at the start");
   } else if (summary_.unknowns == 0) {
@@ -246,7 +276,7 @@ Summary Loop::run() {
     summary_.factor_size = solver_.factor_size();
     summary_.solver = solver_.description();
   }
-  graph_.set_values(std::move(best_));
+  graph_.set_values(std::move(present_is_best_ ? values_ : best_));
   summary_.total_seconds = seconds_since(start_);
   return std::move(summary_);
 }
@@ -258,12 +288,14 @@ void OptimizerOptions::check() const {
     if (!valid) throw UsageError(text("optimizer option ", field, " = ", value, ": must be ", rule));
   };
   require(max_iterations >= 0, "max_iterations", max_iterations, ">= 0");
+  require(threads >= 1, "threads", threads, ">= 1");
   require(decrement_tolerance > 0, "decrement_tolerance", decrement_tolerance, "> 0");
   require(gradient_tolerance >= 0, "gradient_tolerance", gradient_tolerance, ">= 0");
   require(step_tolerance >= 0, "step_tolerance", step_tolerance, ">= 0");
 }
 
 Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options) {
+  options.check();
   return Loop(graph, algorithm, solver, options).run();
 }
 

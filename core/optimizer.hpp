@@ -19,10 +19,14 @@ namespace waymark {
 /// exceeds the decrement, so the gradient test, at rounding level, serves a start that already is a minimum.
 /// A damped or truncated step never ends the run as converged, however little it changes.
 struct OptimizerOptions {
-  int max_iterations = 500;            ///< proposed steps, >= 0
-  double decrement_tolerance = 1e-10;  ///< relative to 1 + chi2, > 0
-  double gradient_tolerance = 1e-12;   ///< relative to sqrt(1 + chi2), >= 0
-  double step_tolerance = 1e-14;       ///< relative to 1 + largest value, >= 0
+  int max_iterations = 500;           ///< proposed steps, >= 0
+  double decrement_tolerance = 1e-6;  ///< relative to 1 + chi2, > 0; that last step is still taken
+  double gradient_tolerance = 1e-12;  ///< relative to sqrt(1 + chi2), >= 0
+  double step_tolerance = 1e-14;      ///< relative to 1 + largest value, >= 0
+
+  /// Threads for linearisation and, where the backend has them, factorisation; >= 1. The result is the same,
+  /// bit by bit, for any number.
+  int threads = 1;
 
   /// Asked before every step; true ends the run with the best values so far.
   const std::atomic<bool>* cancel = nullptr;

@@ -33,45 +33,61 @@ class Structure {
   [[nodiscard]] VertexIndex vertex_of(int column) const {
     return vertex_of_[static_cast<std::size_t>(column)];
   }
-  /// Doubles to reserve for the matrix and the gradient: numbers plus the scratch area of held vertices.
-  [[nodiscard]] std::int64_t hessian_size() const { return pattern_.value_count() + scratch_block_; }
-  [[nodiscard]] std::int64_t gradient_size() const { return pattern_.dimension() + scratch_row_; }
-  /// "natural" or "amd".
+  /// Chunks of every scatter; the last is worked on alone, after the others.
+  [[nodiscard]] int chunks() const { return chunks_; }
+  /// Doubles to reserve for the matrix and the gradient: numbers plus a slot per chunk.
+  [[nodiscard]] std::int64_t hessian_size() const { return pattern_.value_count() + chunks_ * slot_block_; }
+  [[nodiscard]] std::int64_t gradient_size() const { return pattern_.dimension() + chunks_ * slot_row_; }
+  /// Adds what the chunks gathered for dense columns in their slots, chunk by chunk, to its place.
+  void add_slots(double* hessian, double* gradient) const;
+  /// "natural", "leaves first" or "amd".
   [[nodiscard]] const std::string& ordering() const { return ordering_; }
   /// Number of block columns ordered last because they touch very many edges.
   [[nodiscard]] int dense_columns() const { return dense_columns_; }
 
  private:
+  /// Vertices per chunk, by index: fixed, so that a growing graph keeps its chunks.
+  static constexpr std::size_t kChunkVertices = 4096;
+
   void choose_unknowns(const Graph& graph, std::span<const char> held);
-  void make_pattern(const Graph& graph, int first_column);
+  void make_pattern(const Graph& graph, int first_column, std::span<const std::int64_t> begin,
+                    std::span<const int> rows);
   void make_scatter(const Graph& graph, bool only_new);
-  void size_scratch(const Graph& graph);
-  [[nodiscard]] BlockTarget target(const Graph& graph, VertexIndex k, VertexIndex l) const;
+  void size_slots(const Graph& graph);
+  [[nodiscard]] int chunk_of(std::span<const VertexIndex> vertices) const;
+  [[nodiscard]] std::int64_t gradient_target(int chunk, int column) const;
+  [[nodiscard]] BlockTarget target(int chunk, int first, int second) const;
 
   BlockPattern pattern_;
   std::vector<Scatter> scatters_;
   std::vector<std::size_t> scattered_edges_;  // per batch: edges that have their offsets
   std::vector<int> column_of_;
   std::vector<VertexIndex> vertex_of_;
-  std::int64_t scratch_block_ = 0;
-  std::int64_t scratch_row_ = 0;
   int dense_columns_ = 0;
+  int chunks_ = 1;
+  int scratch_ = 0;     // rows of the largest held vertex
+  int dense_size_ = 0;  // scalar rows of all dense columns
+  std::int64_t slot_block_ = 0;
+  std::int64_t slot_row_ = 0;
   std::string ordering_ = "natural";
 };
 
 /// A fill-reducing order of a symmetric block pattern, and how it was found.
 struct BlockOrder {
   std::vector<int> order;  ///< order[k] is the node eliminated as number k
-  std::string method;      ///< "natural" or "amd"
+  std::string method;      ///< "natural", "leaves first" or "amd"
 };
 
-/// Orders nodes 0..n-1 joined by `neighbours` (compressed rows, both directions, no diagonal): the natural
-/// order where it already is as good, else approximate minimum degree (Amestoy, Davis, Duff) on the block
-/// graph.
-[[nodiscard]] BlockOrder order_blocks(std::span<const std::int64_t> begin, std::span<const int> neighbours);
+/// Orders the columns 0..n-1 of an upper triangle (rows of column j: rows[begin[j]..begin[j + 1]), ascending,
+/// without the diagonal). Columns marked dense go last. The others: in their natural order where it fills
+/// little; or so that nodes with a single neighbour come just before it (GNSS nodes of a drive); else by
+/// approximate minimum degree (Amestoy, Davis, Duff 1996) on the block graph.
+[[nodiscard]] BlockOrder order_blocks(std::span<const std::int64_t> begin, std::span<const int> rows,
+                                      std::span<const char> dense);
 
-/// Off-diagonal blocks of the Cholesky factor under an order, or -1 once they exceed `limit`.
-[[nodiscard]] std::int64_t count_fill(std::span<const std::int64_t> begin, std::span<const int> neighbours,
-                                      std::span<const int> order, std::int64_t limit);
+/// Off-diagonal blocks of the Cholesky factor in the natural order, leaving out what is marked, or -1 once
+/// they exceed `limit`.
+[[nodiscard]] std::int64_t count_fill(std::span<const std::int64_t> begin, std::span<const int> rows,
+                                      std::span<const char> left_out, std::int64_t limit);
 
 }  // namespace waymark

@@ -6,6 +6,7 @@
 
 #include <waymark/core/dual.hpp>
 #include <waymark/core/edge_batch.hpp>
+#include <waymark/core/unrolled.hpp>
 
 namespace waymark {
 
@@ -28,7 +29,7 @@ class EdgeBatch final : public EdgeBatchBase {
 
   struct Record {
     E edge;
-    Information information;
+    std::array<double, kDimension*(kDimension + 1) / 2> information;  // lower triangle, row by row
     Indices vertices;
   };
 
@@ -40,10 +41,15 @@ class EdgeBatch final : public EdgeBatchBase {
     return records_[i].vertices;
   }
   [[nodiscard]] int error_dimension(std::size_t) const override { return kDimension; }
-  [[nodiscard]] const Record& record(std::size_t i) const { return records_[i]; }
+  [[nodiscard]] VertexTable vertex_table() const override {
+    return {records_.empty() ? nullptr : records_.front().vertices.data(), sizeof(Record), kArity};
+  }
 
   void append(const E& edge, const Indices& vertices, const Information& information) {
-    records_.push_back({edge, information, vertices});
+    Record& record = records_.emplace_back();
+    record.edge = edge;
+    record.vertices = vertices;
+    finish(record, information);
   }
 
   void append(std::span<const VertexIndex> vertices, std::span<const VertexType* const>,
@@ -55,7 +61,7 @@ class EdgeBatch final : public EdgeBatchBase {
       double* data = f.data(record.edge);
       for (int i = 0; i < f.size; ++i) data[i] = fields[next++];
     }
-    record.information = information;
+    finish(record, information);
   }
 
   void fields(std::size_t i, std::vector<double>& out) const override {
@@ -66,38 +72,25 @@ class EdgeBatch final : public EdgeBatchBase {
     }
   }
 
-  [[nodiscard]] Eigen::MatrixXd information(std::size_t i) const override { return records_[i].information; }
+  [[nodiscard]] Eigen::MatrixXd information(std::size_t i) const override { return square(records_[i]); }
 
-  [[nodiscard]] double chi2(const ValueView& view) const override {
+  using EdgeBatchBase::chi2;
+  [[nodiscard]] double chi2(const ValueView& view, EdgeRange range) const override {
     double sum = 0;
     const bool robust = has_loss();
-    for (std::size_t i = 0; i < records_.size(); ++i) {
+    for (std::size_t i = range.first; i < range.last; ++i) {
       const Record& record = records_[i];
       const ErrorVector<kDimension> e = error(record, view, std::make_index_sequence<kArity>());
-      const double squared = e.dot(record.information * e);
+      const double squared = e.dot(times(record.information, e));
       sum += robust ? evaluate_loss(i, squared).rho : squared;
     }
     return sum;
   }
 
-  double linearize(const ValueView& view, const Scatter& scatter, const NormalView& normal) const override {
-    double sum = 0;
-    const bool robust = has_loss();
-    const std::int64_t* gradient = scatter.gradient.data();
-    const BlockTarget* blocks = scatter.blocks.data();
-    for (std::size_t i = 0; i < records_.size(); ++i, gradient += kArity, blocks += kPairs) {
-      const Record& record = records_[i];
-      ErrorVector<kDimension> e;
-      Jacobians jacobians;
-      derive(record, view, e, jacobians);
-      const double squared = e.dot(record.information * e);
-      LossValue loss{squared, 1, 0};
-      if (robust) loss = evaluate_loss(i, squared);
-      sum += loss.rho;
-      const Eigen::Matrix<double, kDimension, kDimension> weighted = loss.weight * record.information;
-      add(jacobians, weighted, e, gradient, blocks, normal, std::make_index_sequence<kArity>());
-    }
-    return sum;
+  double linearize(const ValueView& view, const Scatter& scatter, EdgeRange range,
+                   const NormalView& normal) const override {
+    return has_loss() ? linearize_range<true>(view, scatter, range, normal)
+                      : linearize_range<false>(view, scatter, range, normal);
   }
 
   void linearize_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& e,
@@ -120,17 +113,94 @@ class EdgeBatch final : public EdgeBatchBase {
 
   void add_rigid_information(const ValueView& view, const RigidMotionView& motion) const override {
     for (const Record& record : records_) {
+      if (is_blind(record, motion)) continue;
       ErrorVector<kDimension> e;
       Jacobians jacobians;
       derive(record, view, e, jacobians);
       Eigen::Matrix<double, kDimension, 3> moved = Eigen::Matrix<double, kDimension, 3>::Zero();
       const std::int32_t component =
-          add_motion(record, jacobians, motion, moved, std::make_index_sequence<kArity>());
-      if (component >= 0) motion.information[component] += moved.transpose() * record.information * moved;
+          add_motion(record, view, jacobians, motion, moved, std::make_index_sequence<kArity>());
+      if (component >= 0) motion.information[component] += moved.transpose() * square(record) * moved;
     }
   }
 
  private:
+  using Triangle = std::array<double, kDimension*(kDimension + 1) / 2>;
+
+  static void finish(Record& record, const Eigen::Ref<const Eigen::MatrixXd>& information) {
+    std::size_t next = 0;
+    for (int r = 0; r < kDimension; ++r) {
+      for (int c = 0; c <= r; ++c) record.information[next++] = information(r, c);
+    }
+    if constexpr (requires { record.edge.prepare(); }) record.edge.prepare();
+  }
+
+  static Information square(const Record& record) {
+    Information full;
+    std::size_t next = 0;
+    for (int r = 0; r < kDimension; ++r) {
+      for (int c = 0; c <= r; ++c) full(r, c) = full(c, r) = record.information[next++];
+    }
+    return full;
+  }
+
+  /// Omega x for every column of x.
+  template <int N>
+  [[gnu::always_inline]] static JacobianMatrix<kDimension, N> times(const Triangle& information,
+                                                                    const JacobianMatrix<kDimension, N>& x) {
+    const auto entry = [&](int row, int column) __attribute__((always_inline)) {
+      const int high = row > column ? row : column;
+      const int low = row > column ? column : row;
+      return information[static_cast<std::size_t>(high * (high + 1) / 2 + low)];
+    };
+    JacobianMatrix<kDimension, N> product;
+    unrolled<0, N>([&](int c) __attribute__((always_inline)) {
+      unrolled<0, kDimension>([&](int r) __attribute__((always_inline)) {
+        double sum = entry(r, 0) * x(0, c);
+        unrolled<1, kDimension>([&](int k) __attribute__((always_inline)) { sum += entry(r, k) * x(k, c); });
+        product(r, c) = sum;
+      });
+    });
+    return product;
+  }
+
+  template <bool kRobust>
+  double linearize_range(const ValueView& view, const Scatter& scatter, EdgeRange range,
+                         const NormalView& normal) const {
+    double sum = 0;
+    const std::uint32_t* gradient = scatter.gradient.data() + std::size_t{range.first} * kArity;
+    const BlockTarget* blocks = scatter.blocks.data() + std::size_t{range.first} * kPairs;
+    for (std::size_t i = range.first; i < range.last; ++i, gradient += kArity, blocks += kPairs) {
+      const Record& record = records_[i];
+      ErrorVector<kDimension> e;
+      Jacobians jacobians;
+      derive(record, view, e, jacobians);
+      const auto add_part = [&](const Triangle& information, const ErrorVector<kDimension>& weighted_error)
+          __attribute__((always_inline)) {
+        if constexpr (carries()) {
+          add_carried<VertexOf<0>>(record, view, jacobians, information, weighted_error, gradient, blocks,
+                                   normal);
+        } else {
+          add(jacobians, information, weighted_error, gradient, blocks, normal,
+              std::make_index_sequence<kArity>());
+        }
+      };
+      const ErrorVector<kDimension> weighted_error = times(record.information, e);
+      const double squared = e.dot(weighted_error);
+      if constexpr (kRobust) {
+        const LossValue loss = evaluate_loss(i, squared);
+        sum += loss.rho;
+        Triangle weighted = record.information;
+        for (double& number : weighted) number *= loss.weight;
+        add_part(weighted, loss.weight * weighted_error);
+      } else {
+        sum += squared;
+        add_part(record.information, weighted_error);
+      }
+    }
+    return sum;
+  }
+
   template <typename Sequence>
   struct JacobianTuple;
   template <std::size_t... K>
@@ -145,25 +215,26 @@ class EdgeBatch final : public EdgeBatchBase {
   }
 
   template <std::size_t K>
-  static auto load(const Record& record, const ValueView& view) {
+  [[gnu::always_inline]] static auto load(const Record& record, const ValueView& view) {
     static constexpr std::array<double, VertexOf<K>::kTangentSize> kZero{};
     return VertexOf<K>::template at<double>(value<K>(record, view), kZero.data());
   }
 
   template <std::size_t... K>
-  static ErrorVector<kDimension> error(const Record& record, const ValueView& view,
-                                       std::index_sequence<K...>) {
+  [[gnu::always_inline]] static ErrorVector<kDimension> error(const Record& record, const ValueView& view,
+                                                              std::index_sequence<K...>) {
     return record.edge.template error<double>(load<K>(record, view)...);
   }
 
-  static void derive(const Record& record, const ValueView& view, ErrorVector<kDimension>& e,
-                     Jacobians& jacobians) {
+  [[gnu::always_inline]] static void derive(const Record& record, const ValueView& view,
+                                            ErrorVector<kDimension>& e, Jacobians& jacobians) {
     derive_impl(record, view, e, jacobians, std::make_index_sequence<kArity>());
   }
 
   template <std::size_t... K>
-  static void derive_impl(const Record& record, const ValueView& view, ErrorVector<kDimension>& e,
-                          Jacobians& jacobians, std::index_sequence<K...> sequence) {
+  [[gnu::always_inline]] static void derive_impl(const Record& record, const ValueView& view,
+                                                 ErrorVector<kDimension>& e, Jacobians& jacobians,
+                                                 std::index_sequence<K...> sequence) {
     if constexpr (requires {
                     record.edge.linearize(load<K>(record, view)..., e, std::get<K>(jacobians)...);
                   }) {
@@ -205,63 +276,173 @@ class EdgeBatch final : public EdgeBatchBase {
     }
   }
 
+  /// Whether J_0 = -J_1 T: a relative error between two vertices of a type that can carry a motion over.
+  static constexpr bool carries() {
+    if constexpr (requires { requires E::kRelative; } && kArity == 2) {
+      using V = VertexOf<0>;
+      using Row = Eigen::Matrix<double, 1, V::kTangentSize>;
+      return std::is_same_v<V, VertexOf<kArity - 1>> && requires(const double* value, Row& row) {
+        V::template carry<1>(value, value, row);
+      };
+    } else {
+      return false;
+    }
+  }
+
+  /// The same as add() where J_0 = -J_1 T: with P = J_1^T Omega J_1 the blocks are P, -P T and T^T P T, and
+  /// the gradient q = J_1^T Omega e and -T^T q; T costs a few operations only.
+  template <typename V>  // a template, so that types without carry() need not compile it
+  [[gnu::always_inline]] static void add_carried(const Record& record, const ValueView& view,
+                                                 const Jacobians& jacobians, const Triangle& information,
+                                                 const ErrorVector<kDimension>& weighted_error,
+                                                 const std::uint32_t* gradient, const BlockTarget* blocks,
+                                                 const NormalView& normal) {
+    constexpr int kSize = V::kTangentSize;
+    using Block = Eigen::Matrix<double, kSize, kSize>;
+    const auto& jacobian = std::get<kArity - 1>(jacobians);
+    const double* from = value<0>(record, view);
+    const double* to = value<kArity - 1>(record, view);
+    Eigen::Matrix<double, 1, kSize> row;
+    unrolled<0, kSize>([&](int c) __attribute__((always_inline)) {
+      double sum = jacobian(0, c) * weighted_error[0];
+      unrolled<1, kDimension>([&](int r) __attribute__((always_inline)) {
+        sum += jacobian(r, c) * weighted_error[r];
+      });
+      row(0, c) = sum;
+    });
+    add_to<kSize>(
+        normal.gradient + gradient[1], [&](int c) __attribute__((always_inline)) { return row(0, c); });
+    V::template carry<1>(from, to, row);
+    add_to<kSize>(
+        normal.gradient + gradient[0], [&](int c) __attribute__((always_inline)) { return -row(0, c); });
+    Block p;
+    const JacobianMatrix<kDimension, kSize> left = times(information, jacobian);
+    unrolled<0, kSize>([&](int c) __attribute__((always_inline)) {
+      unrolled<0, kSize>([&](int r) __attribute__((always_inline)) {
+        if (r < c) return;
+        double sum = left(0, r) * jacobian(0, c);
+        unrolled<1, kDimension>([&](int k)
+                                    __attribute__((always_inline)) { sum += left(k, r) * jacobian(k, c); });
+        p(r, c) = p(c, r) = sum;
+      });
+    });
+    place_block(p, blocks[2], normal.hessian);
+    V::template carry<kSize>(from, to, p);  // P T
+    Block turned;
+    unrolled<0, kSize>([&](int c) __attribute__((always_inline)) {
+      unrolled<0, kSize>([&](int r) __attribute__((always_inline)) {
+        turned(r, c) = p(c, r);
+        p(c, r) = -p(c, r);
+      });
+    });
+    place_block(p, blocks[1], normal.hessian);
+    V::template carry<kSize>(from, to, turned);  // (P T)^T T
+    place_block(turned, blocks[0], normal.hessian);
+  }
+
+  template <int N, typename Value>
+  [[gnu::always_inline]] static void add_to(double* place, const Value& value_of) {
+    unrolled<0, N>([&](int i) __attribute__((always_inline)) { place[i] += value_of(i); });
+  }
+
   template <std::size_t... K>
-  static void add(const Jacobians& jacobians,
-                  const Eigen::Matrix<double, kDimension, kDimension>& information,
-                  const ErrorVector<kDimension>& e, const std::int64_t* gradient, const BlockTarget* blocks,
-                  const NormalView& normal, std::index_sequence<K...>) {
-    const ErrorVector<kDimension> weighted_error = information * e;
+  [[gnu::always_inline]] static void add(const Jacobians& jacobians, const Triangle& information,
+                                         const ErrorVector<kDimension>& weighted_error,
+                                         const std::uint32_t* gradient, const BlockTarget* blocks,
+                                         const NormalView& normal, std::index_sequence<K...>) {
     (add_row<K>(jacobians, information, weighted_error, gradient, blocks, normal), ...);
   }
 
   template <std::size_t K>
-  static void add_row(const Jacobians& jacobians,
-                      const Eigen::Matrix<double, kDimension, kDimension>& information,
-                      const ErrorVector<kDimension>& weighted_error, const std::int64_t* gradient,
-                      const BlockTarget* blocks, const NormalView& normal) {
+  [[gnu::always_inline]] static void add_row(const Jacobians& jacobians, const Triangle& information,
+                                             const ErrorVector<kDimension>& weighted_error,
+                                             const std::uint32_t* gradient, const BlockTarget* blocks,
+                                             const NormalView& normal) {
     constexpr int kSize = VertexOf<K>::kTangentSize;
     const auto& jacobian = std::get<K>(jacobians);
-    Eigen::Map<Eigen::Matrix<double, kSize, 1>>(normal.gradient + gradient[K]) +=
-        jacobian.transpose() * weighted_error;
-    const Eigen::Matrix<double, kSize, kDimension> left = jacobian.transpose() * information;
-    [&]<std::size_t... L>(std::index_sequence<L...>) {
-      (add_block(left, std::get<L>(jacobians), blocks[K * (K + 1) / 2 + L], normal.hessian), ...);
-    }
-    (std::make_index_sequence<K + 1>());
+    double* place = normal.gradient + gradient[K];
+    unrolled<0, kSize>([&](int c) __attribute__((always_inline)) {
+      double sum = jacobian(0, c) * weighted_error[0];
+      unrolled<1, kDimension>([&](int r) __attribute__((always_inline)) {
+        sum += jacobian(r, c) * weighted_error[r];
+      });
+      place[c] += sum;
+    });
+    const JacobianMatrix<kDimension, kSize> left = times(information, jacobian);
+    unrolled<0, static_cast<int>(K) + 1>([&](auto l) __attribute__((always_inline)) {
+      constexpr std::size_t kOther = decltype(l)::value;
+      add_block<K == kOther>(left, std::get<kOther>(jacobians), blocks[K * (K + 1) / 2 + kOther],
+                             normal.hessian);
+    });
   }
 
-  // The block (k, l) is J_k^T Omega J_l; its place in the upper triangle is (l, k), unless k is ordered
+  // The block (k, l) is (Omega J_k)^T J_l; its place in the upper triangle is (l, k), unless k is ordered
   // first.
-  template <typename Left, typename Jacobian>
-  static void add_block(const Left& left, const Jacobian& jacobian, const BlockTarget& target,
-                        double* hessian) {
-    constexpr int kRows = Left::RowsAtCompileTime;
+  template <bool kDiagonal, typename Left, typename Jacobian>
+  [[gnu::always_inline]] static void add_block(const Left& left, const Jacobian& jacobian,
+                                               const BlockTarget& target, double* hessian) {
+    constexpr int kRows = Left::ColsAtCompileTime;
     constexpr int kColumns = Jacobian::ColsAtCompileTime;
-    const Eigen::Matrix<double, kRows, kColumns> product = left * jacobian;
-    // Column by column: a block of one row would be row-major to Eigen, whatever the stride says.
+    Eigen::Matrix<double, kRows, kColumns> product;
+    unrolled<0, kColumns>([&](int c) __attribute__((always_inline)) {
+      unrolled<0, kRows>([&](int r) __attribute__((always_inline)) {
+        if (kDiagonal && r < c) return;
+        double sum = left(0, r) * jacobian(0, c);
+        unrolled<1, kDimension>([&](int k)
+                                    __attribute__((always_inline)) { sum += left(k, r) * jacobian(k, c); });
+        product(r, c) = sum;
+        if constexpr (kDiagonal) product(c, r) = sum;
+      });
+    });
+    place_block(product, target, hessian);
+  }
+
+  template <int kRows, int kColumns>
+  [[gnu::always_inline]] static void place_block(const Eigen::Matrix<double, kRows, kColumns>& block,
+                                                 const BlockTarget& target, double* hessian) {
     double* place = hessian + target.offset;
-    if (target.transposed) {
-      for (int c = 0; c < kRows; ++c, place += target.stride)
-        Eigen::Map<Eigen::Matrix<double, kColumns, 1>>{place} += product.row(c).transpose();
+    if (target.stride < 0) {
+      unrolled<0, kRows>([&](int r) __attribute__((always_inline)) {
+        add_to<kColumns>(
+            place, [&](int c) __attribute__((always_inline)) { return block(r, c); });
+        place -= target.stride;
+      });
     } else {
-      for (int c = 0; c < kColumns; ++c, place += target.stride)
-        Eigen::Map<Eigen::Matrix<double, kRows, 1>>{place} += product.col(c);
+      unrolled<0, kColumns>([&](int c) __attribute__((always_inline)) {
+        add_to<kRows>(
+            place, [&](int r) __attribute__((always_inline)) { return block(r, c); });
+        place += target.stride;
+      });
+    }
+  }
+
+  /// Whether the edge cannot see a rigid motion: all its vertices take part in it and its type says so.
+  static bool is_blind(const Record& record, const RigidMotionView& motion) {
+    if constexpr (requires { E::kRelative; }) {
+      bool all_move = E::kRelative;
+      for (const VertexIndex v : record.vertices) all_move = all_move && motion.component[v] >= 0;
+      return all_move;
+    } else {
+      return false;
     }
   }
 
   template <std::size_t... K>
-  static std::int32_t add_motion(const Record& record, const Jacobians& jacobians,
+  static std::int32_t add_motion(const Record& record, const ValueView& view, const Jacobians& jacobians,
                                  const RigidMotionView& motion, Eigen::Matrix<double, kDimension, 3>& moved,
                                  std::index_sequence<K...>) {
     std::int32_t component = -1;
     const auto add_one = [&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
-      const VertexIndex vertex = record.vertices[I];
-      const std::int64_t offset = motion.offsets[vertex];
-      if (offset < 0) return;
-      component = motion.components[vertex];
-      constexpr int kSize = VertexOf<I>::kTangentSize;
-      moved +=
-          std::get<I>(jacobians) * Eigen::Map<const Eigen::Matrix<double, kSize, 3>>(motion.columns + offset);
+      using V = VertexOf<I>;
+      const std::int32_t own = motion.component[record.vertices[I]];
+      if constexpr (requires { &V::rigid_motion; }) {
+        if (own < 0) return;
+        component = own;
+        Eigen::Matrix<double, V::kTangentSize, 3> columns;
+        V::rigid_motion(value<I>(record, view), motion.places[own].centre, motion.places[own].extent,
+                        columns.data());
+        moved += std::get<I>(jacobians) * columns;
+      }
     };
     (add_one(std::integral_constant<std::size_t, K>()), ...);
     return component;
@@ -286,6 +467,7 @@ template <Edge E>
     (type.vertex_tags.emplace_back(std::string_view(E::Vertices::template Type<K>::kTag)), ...);
   }
   (std::make_index_sequence<E::Vertices::kSize>());
+  if constexpr (requires { E::kRelative; }) type.relative = E::kRelative;
   for (const auto& f : E::fields()) type.fields.push_back({std::string(f.name), f.size});
   type.make_batch = [] { return std::make_unique<EdgeBatch<E>>(); };
   return type;

@@ -31,7 +31,10 @@ using VertexIndex = std::int32_t;
 /// last. Optional: V::position(const double*) -> Vector2d and
 ///   V::rigid_motion(const double* value, const Vector2d& centre, double extent, double* columns): how the
 ///   value moves under a rigid motion of the plane, kTangentSize x 3 column-major: along x, along y, a turn
-///   about centre by 1/extent rad. Types without it do not take part in the gauge test.
+///   about centre by 1/extent rad. Types without it do not take part in the gauge test. And
+///   V::carry<R>(const double* from, const double* to, Matrix<double, R, kTangentSize>& m): m := m T, where T
+///   takes the change of `from` to that of `to` when both move rigidly together; edges between two of them
+///   that are relative (kRelative) are then linearised in half the time.
 template <typename V>
 concept Vertex = requires(double* value, const double* constant) {
   { V::kTag } -> std::convertible_to<std::string_view>;

@@ -5,6 +5,7 @@
 namespace waymark {
 
 void register_solvers(TypeRegistry& registry) {
+  registry.add_linear_solver(block_cholesky_solver());
 #ifdef WAYMARK_WITH_CHOLMOD
   for (const LinearSolverType& solver : cholmod_solvers()) registry.add_linear_solver(solver);
 #endif

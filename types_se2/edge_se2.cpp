@@ -2,20 +2,44 @@
 
 namespace waymark {
 
-void EdgeSe2::linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
-                        JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const {
-  // With a = theta_from + z.heading: e_t = R(a)^T (p_to - p_from) - R(z.heading)^T z.t.
-  const double a = from.heading + measured[2];
-  const double c = std::cos(a);
-  const double s = std::sin(a);
-  const double dx = to.position[0] - from.position[0];
-  const double dy = to.position[1] - from.position[1];
-  const double turned_x = c * dx + s * dy;
-  const double turned_y = c * dy - s * dx;
-  const Eigen::Vector2d z = rotate_back(measured[2], Eigen::Vector2d(measured.head<2>()));
-  e << turned_x - z[0], turned_y - z[1], wrap_angle(to.heading - a);
-  by_from << -c, -s, turned_y, s, -c, -turned_x, 0, 0, -1;
-  by_to << c, s, 0, -s, c, 0, 0, 0, 1;
+void EdgeSe2::prepare() {
+  turned = rotate_back(measured[2], Eigen::Vector2d(measured.head<2>()));
+}
+
+void EdgeGnssPosition::linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<2>& e,
+                                 JacobianMatrix<2, 3>& by_from, JacobianMatrix<2, 3>& by_to) const {
+  const auto [s, c] = sin_cos(from.heading);
+  const auto [to_s, to_c] = sin_cos(to.heading);
+  const double arm_x = to_c * antenna[0] - to_s * antenna[1];
+  const double arm_y = to_s * antenna[0] + to_c * antenna[1];
+  const double dx = to.position[0] + arm_x - from.position[0];
+  const double dy = to.position[1] + arm_y - from.position[1];
+  const double seen_x = c * dx + s * dy;
+  const double seen_y = c * dy - s * dx;
+  e << seen_x - measured[0], seen_y - measured[1];
+  by_from << -c, -s, seen_y, s, -c, -seen_x;
+  by_to << c, s, s * arm_x - c * arm_y, -s, c, c * arm_x + s * arm_y;
+}
+
+void EdgePriorSe2::linearize(const Pose2<double>& pose, ErrorVector<3>& e,
+                             JacobianMatrix<3, 3>& by_pose) const {
+  const auto [s, c] = sin_cos(measured[2]);
+  const double dx = pose.position[0] - measured[0];
+  const double dy = pose.position[1] - measured[1];
+  e << c * dx + s * dy, c * dy - s * dx, wrap_angle(pose.heading - measured[2]);
+  by_pose << c, s, 0, -s, c, 0, 0, 0, 1;
+}
+
+void EdgeSe2Xy::linearize(const Pose2<double>& pose, const Vector2<double>& landmark, ErrorVector<2>& e,
+                          JacobianMatrix<2, 3>& by_pose, JacobianMatrix<2, 2>& by_landmark) const {
+  const auto [s, c] = sin_cos(pose.heading);
+  const double dx = landmark[0] - pose.position[0];
+  const double dy = landmark[1] - pose.position[1];
+  const double seen_x = c * dx + s * dy;
+  const double seen_y = c * dy - s * dx;
+  e << seen_x - measured[0], seen_y - measured[1];
+  by_pose << -c, -s, seen_y, s, -c, -seen_x;
+  by_landmark << c, s, -s, c;
 }
 
 // With D = Z^-1 X_from^-1 X_to and e = log(D): moving X_to in world axes by (dp, dtheta) is a body-frame

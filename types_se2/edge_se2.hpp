@@ -18,6 +18,7 @@ struct EdgeSe2 {
   static constexpr std::string_view kForm = "(t, theta)";
   static constexpr int kErrorDimension = 3;
   using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr bool kRelative = true;
   static constexpr auto fields() { return std::array{field<&EdgeSe2::measured>("measured")}; }
 
   template <typename T>
@@ -29,7 +30,11 @@ struct EdgeSe2 {
   void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
                  JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const;
 
+  /// Keeps the measured translation as seen from the measured pose.
+  void prepare();
+
   Eigen::Vector3d measured = Eigen::Vector3d::Zero();
+  Eigen::Vector2d turned = Eigen::Vector2d::Zero();  ///< R(heading)^T translation of Z, by prepare()
 };
 
 /// Relative pose, logarithmic form, the paper's equation (1): e = log(Z^-1 (X_from^-1 X_to)), ordered (rho,
@@ -39,6 +44,7 @@ struct EdgeSe2Log {
   static constexpr std::string_view kForm = "log";
   static constexpr int kErrorDimension = 3;
   using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr bool kRelative = true;
   static constexpr auto fields() { return std::array{field<&EdgeSe2Log::measured>("measured")}; }
 
   template <typename T>
@@ -64,6 +70,7 @@ struct EdgeGnssPosition {
   static constexpr std::string_view kForm = "position";
   static constexpr int kErrorDimension = 2;
   using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr bool kRelative = true;
   static constexpr auto fields() {
     return std::array{field<&EdgeGnssPosition::measured>("measured"),
                       field<&EdgeGnssPosition::antenna>("antenna")};
@@ -75,6 +82,9 @@ struct EdgeGnssPosition {
     const Vector2<T> seen = rotate_back(from.heading, Vector2<T>(place - from.position));
     return seen - constant_vector<T>(measured);
   }
+
+  void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<2>& e,
+                 JacobianMatrix<2, 3>& by_from, JacobianMatrix<2, 3>& by_to) const;
 
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
   Eigen::Vector2d antenna = Eigen::Vector2d::Zero();  ///< in the body frame of `to`: x forward, y left
@@ -94,6 +104,8 @@ struct EdgePriorSe2 {
     return Vector3<T>(d.position[0], d.position[1], wrap_angle(d.heading));
   }
 
+  void linearize(const Pose2<double>& pose, ErrorVector<3>& e, JacobianMatrix<3, 3>& by_pose) const;
+
   Eigen::Vector3d measured = Eigen::Vector3d::Zero();
 };
 
@@ -103,6 +115,7 @@ struct EdgeSe2Xy {
   static constexpr std::string_view kForm = "body frame";
   static constexpr int kErrorDimension = 2;
   using Vertices = VertexList<VertexSe2, VertexXy>;
+  static constexpr bool kRelative = true;
   static constexpr auto fields() { return std::array{field<&EdgeSe2Xy::measured>("measured")}; }
 
   template <typename T>
@@ -111,8 +124,39 @@ struct EdgeSe2Xy {
     return seen - constant_vector<T>(measured);
   }
 
+  void linearize(const Pose2<double>& pose, const Vector2<double>& landmark, ErrorVector<2>& e,
+                 JacobianMatrix<2, 3>& by_pose, JacobianMatrix<2, 2>& by_landmark) const;
+
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
 };
+
+[[gnu::always_inline]] inline void EdgeSe2::linearize(const Pose2<double>& from, const Pose2<double>& to,
+                                                      ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from,
+                                                      JacobianMatrix<3, 3>& by_to) const {
+  // With a = theta_from + z.heading: e_t = R(a)^T (p_to - p_from) - R(z.heading)^T z.t.
+  const double a = from.heading + measured[2];
+  const auto [s, c] = sin_cos(a);
+  const double dx = to.position[0] - from.position[0];
+  const double dy = to.position[1] - from.position[1];
+  const double turned_x = c * dx + s * dy;
+  const double turned_y = c * dy - s * dx;
+  e[0] = turned_x - turned[0];
+  e[1] = turned_y - turned[1];
+  e[2] = wrap_angle(to.heading - a);
+  // Entry by entry: a comma initialiser would keep the matrices in memory.
+  const auto set = [](JacobianMatrix<3, 3> & m, double cosine, double sine, double x, double y, double unit)
+      __attribute__((always_inline)) {
+    m(0, 0) = m(1, 1) = cosine;
+    m(0, 1) = sine;
+    m(1, 0) = -sine;
+    m(0, 2) = x;
+    m(1, 2) = y;
+    m(2, 0) = m(2, 1) = 0;
+    m(2, 2) = unit;
+  };
+  set(by_from, -c, -s, turned_y, -turned_x, -1);
+  set(by_to, c, s, 0, 0, 1);
+}
 
 // Compiled once, in edge_se2.cpp, instead of in every file that adds an edge.
 extern template class EdgeBatch<EdgeSe2>;

@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include <waymark/types_se2/sin_cos.hpp>
+
 namespace waymark {
 
 template <typename T>
@@ -19,7 +21,7 @@ using Vector3 = Eigen::Matrix<T, 3, 1>;
 
 /// The equivalent angle in (-pi, pi]. Derivatives pass through unchanged: whole turns are constants.
 template <typename T>
-[[nodiscard]] T wrap_angle(const T& angle) {
+[[nodiscard]] [[gnu::always_inline]] inline T wrap_angle(const T& angle) {
   using std::ceil;
   constexpr double kTurn = 2 * std::numbers::pi;
   double value;
@@ -55,23 +57,37 @@ template <typename T>
   return Vector2<T>(T(v[0]), T(v[1]));
 }
 
+namespace detail {
+
+template <typename T>
+void sin_cos_of(const T& angle, T& s, T& c) {
+  if constexpr (std::is_same_v<T, double>) {
+    const SinCos both = sin_cos(angle);
+    s = both.sin;
+    c = both.cos;
+  } else {
+    s = sin(angle);
+    c = cos(angle);
+  }
+}
+
+}  // namespace detail
+
 /// R(angle) v.
 template <typename T>
 [[nodiscard]] Vector2<T> rotate(const T& angle, const Vector2<T>& v) {
-  using std::cos;
-  using std::sin;
-  const T c = cos(angle);
-  const T s = sin(angle);
+  T s;
+  T c;
+  detail::sin_cos_of(angle, s, c);
   return Vector2<T>(c * v[0] - s * v[1], s * v[0] + c * v[1]);
 }
 
 /// R(angle)^T v.
 template <typename T>
 [[nodiscard]] Vector2<T> rotate_back(const T& angle, const Vector2<T>& v) {
-  using std::cos;
-  using std::sin;
-  const T c = cos(angle);
-  const T s = sin(angle);
+  T s;
+  T c;
+  detail::sin_cos_of(angle, s, c);
   return Vector2<T>(c * v[0] + s * v[1], c * v[1] - s * v[0]);
 }
 

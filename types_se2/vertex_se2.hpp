@@ -39,6 +39,14 @@ struct VertexSe2 {
         0, 1, (value[0] - centre[0]) / extent,                                       //
         0, 0, 1 / extent;
   }
+  /// T = [1 0 -dy; 0 1 dx; 0 0 1] with (dx, dy) the way between the two: a turn of `from` swings `to`.
+  template <int R>
+  [[gnu::always_inline]] static void carry(const double* from, const double* to,
+                                           Eigen::Matrix<double, R, 3>& m) {
+    const double dx = to[0] - from[0];
+    const double dy = to[1] - from[1];
+    for (int r = 0; r < R; ++r) m(r, 2) += m(r, 1) * dx - m(r, 0) * dy;
+  }
 };
 
 /// A point (x, y): a landmark.

@@ -16,6 +16,7 @@ struct EdgeSe2Odometry {
   static constexpr std::string_view kForm = "log";
   static constexpr int kErrorDimension = 3;
   using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr bool kRelative = true;
   static constexpr auto fields() {
     return std::array{field<&EdgeSe2Odometry::speed>("speed"), field<&EdgeSe2Odometry::yaw_rate>("yaw_rate"),
                       field<&EdgeSe2Odometry::dt>("dt")};
@@ -46,6 +47,7 @@ struct EdgeSe2Standstill {
   static constexpr std::string_view kForm = "log";
   static constexpr int kErrorDimension = 3;
   using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr bool kRelative = true;
   static constexpr auto fields() {
     return std::array{field<&EdgeSe2Standstill::speed>("speed"),
                       field<&EdgeSe2Standstill::yaw_rate>("yaw_rate"), field<&EdgeSe2Standstill::dt>("dt")};

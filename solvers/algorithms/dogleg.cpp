@@ -22,15 +22,17 @@ class Dogleg final : public Algorithm {
 
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver, double,
                                        Step& step) override {
-    if (fresh_ && !compute_legs(equations, solver)) return ProposalStatus::singular;
+    if (fresh_ && !compute_newton(equations, solver)) return ProposalStatus::singular;
     fresh_ = false;
     if (radius_ < 0) radius_ = initial_radius_ * newton_norm_;
     if (radius_ < kMinRadius * newton_norm_) return ProposalStatus::exhausted;
     step.control = radius_;
     if (newton_norm_ <= radius_ && damping_ == 0) {
       take_newton_step(equations, newton_, step);
+      length_ = newton_norm_;
     } else {
       truncate(equations, step);
+      length_ = scaled_norm(step.delta);
     }
     return ProposalStatus::ok;
   }
@@ -38,48 +40,50 @@ class Dogleg final : public Algorithm {
   [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 1e-4; }
 
   // A good step triples the radius it reached, a poor one halves it.
-  void accepted(const Step& step, double gain_ratio) override {
-    const double length = (scale_.array() * step.delta.array()).matrix().norm();
+  void accepted(const Step&, double gain_ratio) override {
     if (gain_ratio < 0.25) {
-      radius_ = 0.5 * std::min(radius_, length);
+      radius_ = 0.5 * std::min(radius_, length_);
     } else if (gain_ratio > 0.75) {
-      radius_ = std::max(radius_, 3 * length);
+      radius_ = std::max(radius_, 3 * length_);
     }
     fresh_ = true;
   }
 
-  void rejected(const Step& step, double) override {
-    const double length = (scale_.array() * step.delta.array()).matrix().norm();
-    radius_ = 0.25 * std::min(radius_, length);
-  }
+  void rejected(const Step&, double) override { radius_ = 0.25 * std::min(radius_, length_); }
 
  private:
   static constexpr double kMinRadius = 1e-18;
   static constexpr double kMaxDamping = 1;
 
-  // Both ends of the path: the minimum along the scaled gradient and the Newton step. Where H is singular to
-  // working precision the Newton leg comes from the least damped matrix that is not.
-  bool compute_legs(const NormalEquations& equations, LinearSolver& solver) {
-    const Eigen::VectorXd diagonal = equations.diagonal();
-    const Eigen::VectorXd floored = diagonal.cwiseMax(1e-15 * diagonal.maxCoeff());
-    scale_ = floored.cwiseSqrt();
+  // The end of the path. Where H is singular to working precision it comes from the least damped matrix that
+  // is not.
+  bool compute_newton(const NormalEquations& equations, LinearSolver& solver) {
+    const Eigen::VectorXd& diagonal = equations.diagonal();
+    scale_ = diagonal.cwiseMax(1e-15 * diagonal.maxCoeff());
     damping_ = 0;
-    while (!solve_step(equations, solver,
-                       damping_ > 0 ? Eigen::VectorXd(damping_ * floored) : Eigen::VectorXd(), scratch_,
-                       newton_)) {
+    extra_.resize(0);
+    while (solve_step(equations, solver, extra_, scratch_, newton_) != FactorStatus::ok) {
       damping_ = damping_ == 0 ? 1e-12 : damping_ * 100;
       if (damping_ > kMaxDamping) return false;
+      extra_ = damping_ * scale_;
     }
-    newton_norm_ = (scale_.array() * newton_.array()).matrix().norm();
-    const Eigen::VectorXd descent = -(equations.gradient().array() / floored.array()).matrix();
-    const double curvature = descent.dot(equations.multiply(descent));
-    const double slope = -equations.gradient().dot(descent);
-    cauchy_ = curvature > 0 ? Eigen::VectorXd(descent * (slope / curvature)) : descent;
-    cauchy_norm_ = (scale_.array() * cauchy_.array()).matrix().norm();
+    newton_norm_ = scaled_norm(newton_);
+    cauchy_norm_ = -1;
     return true;
   }
 
+  // Its bend, the minimum along the scaled gradient: only a truncated step needs it.
+  void compute_cauchy(const NormalEquations& equations) {
+    cauchy_ = -(equations.gradient().array() / scale_.array()).matrix();
+    equations.multiply(cauchy_, product_);
+    const double curvature = cauchy_.dot(product_);
+    const double slope = -equations.gradient().dot(cauchy_);
+    if (curvature > 0) cauchy_ *= slope / curvature;
+    cauchy_norm_ = scaled_norm(cauchy_);
+  }
+
   void truncate(const NormalEquations& equations, Step& step) {
+    if (cauchy_norm_ < 0) compute_cauchy(equations);
     if (cauchy_norm_ >= radius_) {
       step.delta = cauchy_ * (radius_ / cauchy_norm_);
       step.kind = "cauchy";
@@ -90,30 +94,37 @@ class Dogleg final : public Algorithm {
       step.delta = cauchy_ + crossing() * (newton_ - cauchy_);
       step.kind = "dogleg";
     }
-    step.predicted_decrease =
-        -2 * equations.gradient().dot(step.delta) - step.delta.dot(equations.multiply(step.delta));
+    equations.multiply(step.delta, product_);
+    step.predicted_decrease = -2 * equations.gradient().dot(step.delta) - step.delta.dot(product_);
     step.full_newton = false;
     step.newton_decrement = damping_ == 0 ? -equations.gradient().dot(newton_) : std::nan("");
   }
 
   /// Where the second leg leaves the trust region: |D (c + t (n - c))| = radius.
   [[nodiscard]] double crossing() const {
-    const Eigen::VectorXd start = scale_.array() * cauchy_.array();
-    const Eigen::VectorXd leg = scale_.array() * (newton_ - cauchy_).array();
-    const double a = leg.squaredNorm();
-    const double b = start.dot(leg);
-    const double c = radius_ * radius_ - start.squaredNorm();  // > 0 here
+    const auto leg = (newton_ - cauchy_).array();
+    const double a = (scale_.array() * leg.square()).sum();
+    const double b = (scale_.array() * cauchy_.array() * leg).sum();
+    const double c = radius_ * radius_ - cauchy_norm_ * cauchy_norm_;  // > 0 here
     const double root = std::sqrt(b * b + a * c);
     return b > 0 ? c / (b + root) : (root - b) / a;  // the form without cancellation
   }
 
+  /// |D v|.
+  [[nodiscard]] double scaled_norm(const Eigen::VectorXd& v) const {
+    return std::sqrt((scale_.array() * v.array().square()).sum());
+  }
+
   double initial_radius_;
   std::vector<double> scratch_;
-  Eigen::VectorXd scale_;
+  Eigen::VectorXd scale_;  // D^2
   Eigen::VectorXd newton_;
   Eigen::VectorXd cauchy_;
+  Eigen::VectorXd extra_;
+  Eigen::VectorXd product_;
   double newton_norm_ = 0;
-  double cauchy_norm_ = 0;
+  double cauchy_norm_ = -1;  // -1: not computed
+  double length_ = 0;        // of the last proposal
   double damping_ = 0;
   double radius_ = -1;
   bool fresh_ = true;

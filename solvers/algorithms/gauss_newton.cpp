@@ -13,9 +13,9 @@ class GaussNewton final : public Algorithm {
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver, double,
                                        Step& step) override {
     if (failed_) return ProposalStatus::exhausted;
-    Eigen::VectorXd newton;
-    if (!solve_step(equations, solver, {}, scratch_, newton)) return ProposalStatus::singular;
-    take_newton_step(equations, newton, step);
+    if (solve_step(equations, solver, {}, scratch_, newton_) != FactorStatus::ok)
+      return ProposalStatus::singular;
+    take_newton_step(equations, newton_, step);
     step.control = 0;
     return ProposalStatus::ok;
   }
@@ -26,6 +26,7 @@ class GaussNewton final : public Algorithm {
 
  private:
   std::vector<double> scratch_;
+  Eigen::VectorXd newton_;
   bool failed_ = false;
 };
 

@@ -25,30 +25,33 @@ class LevenbergMarquardt final : public Algorithm {
   void reset() override {
     damping_ = -1;
     growth_ = 2;
-    newton_failed_ = false;
+    look_below_ = std::numeric_limits<double>::infinity();
   }
 
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver,
                                        double tolerance, Step& step) override {
-    const Eigen::VectorXd scale = scaling(equations);
+    set_scale(equations);
     if (damping_ < 0)
       damping_ = options_.initial_damping * (options_.scale_by_diagonal ? 1 : scale_of_identity_);
     while (damping_ <= kMaxDamping * scale_of_identity_) {
-      if (!solve_step(equations, solver, damping_ * scale, scratch_, step.delta)) {
+      extra_ = damping_ * scale_;
+      if (solve_step(equations, solver, extra_, scratch_, step.delta) != FactorStatus::ok) {
         grow();
         continue;
       }
       step.predicted_decrease =
-          step.delta.dot((damping_ * scale.array() * step.delta.array()).matrix() - equations.gradient());
+          (extra_.array() * step.delta.array().square()).sum() - step.delta.dot(equations.gradient());
       step.newton_decrement = std::numeric_limits<double>::quiet_NaN();
       step.full_newton = false;
       step.kind = "damped";
       step.control = damping_;
       // The damped step promises little: because of the damping, or because this is the minimum? The full one
       // tells.
-      if (step.predicted_decrease <= kLookAhead * tolerance && !newton_failed_) {
-        Eigen::VectorXd newton;
-        if (solve_step(equations, solver, {}, scratch_, newton)) take_newton_step(equations, newton, step);
+      if (step.predicted_decrease <= std::min(kLookAhead * tolerance, look_below_)) {
+        promised_ = step.predicted_decrease;
+        if (solve_step(equations, solver, {}, scratch_, newton_) == FactorStatus::ok) {
+          take_newton_step(equations, newton_, step);
+        }
       }
       return ProposalStatus::ok;
     }
@@ -58,7 +61,6 @@ class LevenbergMarquardt final : public Algorithm {
   [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 1e-4; }
 
   void accepted(const Step& step, double gain_ratio) override {
-    newton_failed_ = false;
     if (step.full_newton) return;
     damping_ *= std::max(1.0 / 3, 1 - std::pow(2 * gain_ratio - 1, 3));
     damping_ = std::max(damping_, kMinDamping);
@@ -67,7 +69,8 @@ class LevenbergMarquardt final : public Algorithm {
 
   void rejected(const Step& step, double) override {
     if (step.full_newton) {
-      newton_failed_ = true;
+      // It promised more than the model holds for; not before damped steps promise much less is it worth a look.
+      look_below_ = 0.01 * promised_;
     } else {
       grow();
     }
@@ -78,15 +81,16 @@ class LevenbergMarquardt final : public Algorithm {
   static constexpr double kMinDamping = 1e-30;
   static constexpr double kLookAhead = 1e3;  // how far above the tolerance the full step is looked at
 
-  Eigen::VectorXd scaling(const NormalEquations& equations) {
-    const Eigen::VectorXd diagonal = equations.diagonal();
+  void set_scale(const NormalEquations& equations) {
+    const Eigen::VectorXd& diagonal = equations.diagonal();
     const double largest = diagonal.maxCoeff();
-    if (!options_.scale_by_diagonal) {
+    if (options_.scale_by_diagonal) {
+      scale_of_identity_ = 1;
+      scale_ = diagonal.cwiseMax(1e-15 * largest);  // an unknown without information must be damped too
+    } else {
       scale_of_identity_ = largest;
-      return Eigen::VectorXd::Ones(diagonal.size());
+      scale_.setOnes(diagonal.size());
     }
-    scale_of_identity_ = 1;
-    return diagonal.cwiseMax(1e-15 * largest);  // an unknown without information must be damped too
   }
 
   void grow() {
@@ -96,10 +100,14 @@ class LevenbergMarquardt final : public Algorithm {
 
   LevenbergMarquardtOptions options_;
   std::vector<double> scratch_;
+  Eigen::VectorXd scale_;
+  Eigen::VectorXd extra_;
+  Eigen::VectorXd newton_;
   double damping_ = -1;
   double growth_ = 2;
   double scale_of_identity_ = 1;
-  bool newton_failed_ = false;  // at the present values
+  double look_below_ = 0;  // promise of a damped step below which the full one is looked at
+  double promised_ = 0;    // by the damped step in whose place the full one was proposed
 };
 
 }  // namespace

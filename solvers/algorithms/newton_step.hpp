@@ -9,10 +9,10 @@
 namespace waymark {
 
 /// Solves (H + diag(damping)) d = -g. @param damping empty: none. @param scratch reused between calls.
-/// Returns false where the matrix is not positive definite or the step not finite; `delta` is then unchanged.
-[[nodiscard]] inline bool solve_step(const NormalEquations& equations, LinearSolver& solver,
-                                     const Eigen::VectorXd& damping, std::vector<double>& scratch,
-                                     Eigen::VectorXd& delta) {
+/// Returns ok, or not_positive_definite also where the step is not finite; `delta` is then arbitrary.
+[[nodiscard]] inline FactorStatus solve_step(const NormalEquations& equations, LinearSolver& solver,
+                                             const Eigen::VectorXd& damping, std::vector<double>& scratch,
+                                             Eigen::VectorXd& delta) {
   std::span<const double> numbers = equations.hessian();
   if (damping.size() > 0) {
     equations.add_to_diagonal(damping, scratch);
@@ -20,13 +20,13 @@ namespace waymark {
   }
   const FactorStatus status = solver.factorize(numbers);
   if (status == FactorStatus::out_of_memory) throw std::bad_alloc();  // damping would not help
-  if (status != FactorStatus::ok) return false;
-  Eigen::VectorXd solution = -equations.gradient();
-  const std::span<double> view(solution.data(), static_cast<std::size_t>(solution.size()));
-  solver.solve(view, view);
-  if (!solution.allFinite()) return false;
-  delta = std::move(solution);
-  return true;
+  if (status != FactorStatus::ok) return status;
+  const auto gradient = equations.gradient();
+  const auto size = static_cast<std::size_t>(gradient.size());
+  delta.resize(gradient.size());
+  solver.solve({gradient.data(), size}, {delta.data(), size});
+  delta = -delta;
+  return delta.allFinite() ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
 /// Makes `step` the full Newton step `newton`; its decrement g^T H^-1 g = -g^T d is what the model promises.

@@ -7,6 +7,7 @@
 
 namespace waymark {
 
+[[nodiscard]] LinearSolverType block_cholesky_solver();
 [[nodiscard]] std::vector<LinearSolverType> cholmod_solvers();
 [[nodiscard]] LinearSolverType csparse_solver();
 [[nodiscard]] LinearSolverType eigen_solver();

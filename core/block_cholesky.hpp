@@ -1,0 +1,51 @@
+/// Cholesky factorisation of a sparse symmetric positive definite matrix of small dense blocks.
+///
+/// Chains are eliminated link by link in registers, from both ends; everything else in dense fronts, each
+/// handing its update to its parent (the multifrontal method; Duff, Reid 1983). Nothing recurses and, after
+/// the first factorisation, nothing allocates. Independent subtrees may be worked on by several threads; a
+/// sum is always formed in the same order, so the bits do not depend on their number.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <waymark/core/block_symbolic.hpp>
+#include <waymark/core/dense_kernels.hpp>
+#include <waymark/core/linear_solver.hpp>
+
+namespace waymark {
+
+class ThreadPool;
+
+class BlockCholesky final : public LinearSolver {
+ public:
+  void analyze(const BlockPattern& pattern) override;
+  [[nodiscard]] FactorStatus factorize(std::span<const double> values) override;
+  void solve(std::span<const double> b, std::span<double> x) override;
+  [[nodiscard]] std::int64_t factor_size() const override { return symbolic_.factor_size; }
+  [[nodiscard]] std::string description() const override;
+  void set_threads(ThreadPool* pool) override { pool_ = pool; }
+
+  /// Diagonal blocks of the inverse, by selected inversion: all blocks on the pattern of the factor are
+  /// passed, so that all cost as much as one. `take(column, block)` is called once for each block column of
+  /// the pattern given to analyze(); the factor must be ok.
+  void invert_diagonal(const std::function<void(int, const Eigen::Ref<const Eigen::MatrixXd>&)>& take);
+
+ private:
+  class Stream;
+
+  template <typename Work>
+  void for_each_subtree(Work work);
+
+  BlockSymbolic symbolic_;
+  const DenseKernels* kernels_ = &dense_kernels();
+  ThreadPool* pool_ = nullptr;
+  std::vector<double> factor_;
+  std::vector<double> updates_;
+  std::vector<double> vectors_;
+  std::vector<double> work_;
+};
+
+}  // namespace waymark

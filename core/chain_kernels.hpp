@@ -1,0 +1,90 @@
+/// Kernels for the links of a chain: blocks of 3 x 3, each joined only to the next.
+///
+/// A link is factorised as L D L^T (one division a pivot, no square root), for its latency is what a long
+/// chain waits for. Written for one number or a pair: a pair works on two independent chains at once, which
+/// hides half of that latency. Both do the same operations in the same order, so results do not depend on
+/// which is used; this file must be compiled without contraction of products and sums.
+#pragma once
+
+#include <array>
+#include <limits>
+
+namespace waymark {
+
+/// Two numbers in one register.
+using NumberPair [[gnu::vector_size(16)]] = double;
+
+/// What a link hands on to the next: the lower triangle of its update, column by column, to be subtracted.
+template <typename T>
+using LinkUpdate = std::array<T, 6>;
+
+/// The factor of a link, as stored: reciprocal pivots r, L below them (unit diagonal), G = B L^-T D^-1 of the
+/// block B towards the next, column by column: r0 l10 l20 g00 g10 g20  r1 l21 g01 g11 g21  r2 g02 g12 g22.
+template <typename T>
+using LinkFactor = std::array<T, 15>;
+
+/// @param diagonal lower triangle, column by column @param below B, column by column
+/// @param carry in: what earlier links hand on; out: what this one does @param pivots the three pivots
+template <typename T>
+[[gnu::always_inline]] inline void factorize_link(const std::array<T, 6>& diagonal,
+                                                  const std::array<T, 9>& below, LinkUpdate<T>& carry,
+                                                  LinkFactor<T>& factor, std::array<T, 3>& pivots) {
+  const T d00 = diagonal[0] - carry[0];
+  const T d10 = diagonal[1] - carry[1];
+  const T d20 = diagonal[2] - carry[2];
+  const T r0 = 1.0 / d00;
+  const T l10 = d10 * r0;
+  const T l20 = d20 * r0;
+  const T d11 = (diagonal[3] - carry[3]) - l10 * d10;
+  const T d21 = (diagonal[4] - carry[4]) - l20 * d10;
+  const T r1 = 1.0 / d11;
+  const T l21 = d21 * r1;
+  const T d22 = ((diagonal[5] - carry[5]) - l20 * d20) - l21 * d21;
+  const T r2 = 1.0 / d22;
+  pivots = {d00, d11, d22};
+  std::array<T, 9> b;  // B L^-T
+  std::array<T, 9> g;
+  for (unsigned row = 0; row < 3; ++row) {
+    b[row] = below[row];
+    b[row + 3] = below[row + 3] - b[row] * l10;
+    b[row + 6] = (below[row + 6] - b[row] * l20) - b[row + 3] * l21;
+    g[row] = b[row] * r0;
+    g[row + 3] = b[row + 3] * r1;
+    g[row + 6] = b[row + 6] * r2;
+  }
+  unsigned at = 0;
+  for (unsigned c = 0; c < 3; ++c) {
+    for (unsigned row = c; row < 3; ++row) {
+      carry[at++] = (g[row] * b[c] + g[row + 3] * b[c + 3]) + g[row + 6] * b[c + 6];
+    }
+  }
+  factor = {r0, l10, l20, g[0], g[1], g[2], r1, l21, g[3], g[4], g[5], r2, g[6], g[7], g[8]};
+}
+
+/// Forward substitution: x = D^-1 L^-1 (b + carry); carry becomes what the next link's right side gets.
+template <typename T>
+[[gnu::always_inline]] inline void solve_link(const LinkFactor<T>& f, const std::array<T, 3>& b,
+                                              std::array<T, 3>& carry, std::array<T, 3>& x) {
+  const T y0 = b[0] + carry[0];
+  const T y1 = (b[1] + carry[1]) - f[1] * y0;
+  const T y2 = ((b[2] + carry[2]) - f[2] * y0) - f[7] * y1;
+  carry[0] = -((f[3] * y0 + f[8] * y1) + f[12] * y2);
+  carry[1] = -((f[4] * y0 + f[9] * y1) + f[13] * y2);
+  carry[2] = -((f[5] * y0 + f[10] * y1) + f[14] * y2);
+  x = {y0 * f[0], y1 * f[6], y2 * f[11]};
+}
+
+/// Backward substitution: x = L^-T (x - G^T next), next the solution of the next link, which becomes x.
+template <typename T>
+[[gnu::always_inline]] inline void solve_link_back(const LinkFactor<T>& f, std::array<T, 3>& next,
+                                                   std::array<T, 3>& x) {
+  const T t0 = x[0] - ((f[3] * next[0] + f[4] * next[1]) + f[5] * next[2]);
+  const T t1 = x[1] - ((f[8] * next[0] + f[9] * next[1]) + f[10] * next[2]);
+  const T t2 = x[2] - ((f[12] * next[0] + f[13] * next[1]) + f[14] * next[2]);
+  const T x1 = t1 - f[7] * t2;
+  const T x0 = (t0 - f[1] * x1) - f[2] * t2;
+  x = {x0, x1, t2};
+  next = x;
+}
+
+}  // namespace waymark

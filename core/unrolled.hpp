@@ -1,0 +1,23 @@
+/// Loops over a few constants, unrolled before the optimiser sees them: small matrices then live in
+/// registers.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+namespace waymark {
+
+/// body(i) for i = first ... last - 1, i an integral constant; a plain loop where there are more than 16.
+template <int kFirst, int kLast, typename Body>
+[[gnu::always_inline]] inline void unrolled(const Body& body) {
+  if constexpr (kLast - kFirst <= 16) {
+    const auto all = [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
+      (body(std::integral_constant<int, kFirst + I>()), ...);
+    };
+    all(std::make_integer_sequence<int, kLast - kFirst>());
+  } else {
+    for (int i = kFirst; i < kLast; ++i) body(i);
+  }
+}
+
+}  // namespace waymark
