@@ -91,6 +91,8 @@ class EdgeBatchBase {
   /// matrix.
   virtual void append(std::span<const VertexIndex> vertices, std::span<const VertexType* const> types,
                       std::span<const double> fields, const Eigen::MatrixXd& information) = 0;
+  /// Makes room for this many edges in all; only a matter of speed.
+  virtual void reserve(std::size_t) {}
   /// The numbers of an edge, in schema order, appended to `out`.
   virtual void fields(std::size_t edge, std::vector<double>& out) const = 0;
   [[nodiscard]] virtual Eigen::MatrixXd information(std::size_t edge) const = 0;

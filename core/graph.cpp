@@ -12,11 +12,7 @@ constexpr Stamp kNoStamp{std::numeric_limits<std::int64_t>::min()};
 
 }  // namespace
 
-VertexIndex VertexIds::find(VertexId id) const {
-  if (id >= 0 && id < kArrayLimit) {
-    const auto place = static_cast<std::size_t>(id);
-    return place < array_.size() ? array_[place] : -1;
-  }
+VertexIndex VertexIds::find_in_map(VertexId id) const {
   const auto found = map_.find(id);
   return found == map_.end() ? -1 : found->second;
 }
@@ -50,6 +46,8 @@ Graph& Graph::operator=(const Graph& other) {
 }
 
 std::size_t Graph::register_type(const VertexType& type) {
+  // Vertices mostly follow others of their type.
+  if (!type_of_.empty() && vertex_types_[type_of_.back()].tag == type.tag) return type_of_.back();
   for (std::size_t t = 0; t < vertex_types_.size(); ++t) {
     if (vertex_types_[t].tag == type.tag) return t;
   }
@@ -72,12 +70,6 @@ VertexIndex Graph::add_vertex(const VertexType& type, VertexId id, std::span<con
   if (!stamps_.empty()) stamps_.push_back(kNoStamp);
   by_id_.insert(id, v);
   ++structure_version_;
-  return v;
-}
-
-std::optional<VertexIndex> Graph::find(VertexId id) const {
-  const VertexIndex v = by_id_.find(id);
-  if (v < 0) return std::nullopt;
   return v;
 }
 
@@ -148,8 +140,8 @@ void Graph::check_vertices(const EdgeType& type, std::span<const VertexIndex> ve
   }
 }
 
-void Graph::add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
-                     std::span<const double> fields, const Eigen::MatrixXd& information) {
+EdgeBatchBase& Graph::add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
+                               std::span<const double> fields, const Eigen::MatrixXd& information) {
   check_vertices(type, vertices);
   if (type.arity != EdgeType::kRuntimeArity) {
     if (fields.size() != static_cast<std::size_t>(type.field_size())) {
@@ -161,8 +153,17 @@ void Graph::add_edge(const EdgeType& type, std::span<const VertexIndex> vertices
                        " x " + std::to_string(type.error_dimension));
     }
   }
-  batch(type).append(vertices, types_of(vertices), fields, information);
+  EdgeBatchBase& target = batch(type);
+  constexpr std::size_t kFew = 4;  // most edges have two vertices: no list on the heap for them
+  if (vertices.size() <= kFew) {
+    std::array<const VertexType*, kFew> types{};
+    for (std::size_t k = 0; k < vertices.size(); ++k) types[k] = &vertex_type(vertices[k]);
+    target.append(vertices, std::span(types).first(vertices.size()), fields, information);
+  } else {
+    target.append(vertices, types_of(vertices), fields, information);
+  }
   ++structure_version_;
+  return target;
 }
 
 double Graph::chi2() const {

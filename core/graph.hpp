@@ -23,11 +23,16 @@ namespace waymark {
 /// Id -> index. Ids from 0 up are looked up in an array, all others in a hash map (never iterated).
 class VertexIds {
  public:
-  [[nodiscard]] VertexIndex find(VertexId id) const;  ///< -1: absent
+  [[nodiscard]] VertexIndex find(VertexId id) const {  ///< -1: absent
+    if (id < 0 || id >= kArrayLimit) return find_in_map(id);
+    const auto place = static_cast<std::size_t>(id);
+    return place < array_.size() ? array_[place] : -1;
+  }
   void insert(VertexId id, VertexIndex index);
 
  private:
   static constexpr VertexId kArrayLimit = VertexId{1} << 24;
+  [[nodiscard]] VertexIndex find_in_map(VertexId id) const;
   std::vector<VertexIndex> array_;
   std::unordered_map<VertexId, VertexIndex> map_;
 };
@@ -51,7 +56,10 @@ class Graph {
   }
 
   [[nodiscard]] std::size_t vertex_count() const { return ids_.size(); }
-  [[nodiscard]] std::optional<VertexIndex> find(VertexId id) const;
+  [[nodiscard]] std::optional<VertexIndex> find(VertexId id) const {
+    const VertexIndex v = by_id_.find(id);
+    return v < 0 ? std::nullopt : std::optional(v);
+  }
   [[nodiscard]] VertexId id(VertexIndex v) const { return ids_[index(v)]; }
   [[nodiscard]] const VertexType& vertex_type(VertexIndex v) const {
     return vertex_types_[type_of_[index(v)]];
@@ -83,10 +91,11 @@ class Graph {
   [[nodiscard]] const EdgeType& edge_type(std::size_t b) const { return batches_[b].type; }
   [[nodiscard]] std::size_t edge_count() const;
 
-  /// Adds an edge by run-time type. @param fields see EdgeType::fields; @param information symmetric.
+  /// Adds an edge by run-time type and returns its batch, whose last it is. @param fields see
+  /// EdgeType::fields; @param information symmetric.
   /// @throws UsageError for a wrong number or type of vertices, a vertex named twice, wrong sizes.
-  void add_edge(const EdgeType& type, std::span<const VertexIndex> vertices, std::span<const double> fields,
-                const Eigen::MatrixXd& information);
+  EdgeBatchBase& add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
+                          std::span<const double> fields, const Eigen::MatrixXd& information);
   template <Edge E>
   void add_edge(const E& edge, const typename EdgeBatch<E>::Indices& vertices,
                 const typename EdgeBatch<E>::Information& information) {

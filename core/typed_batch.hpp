@@ -64,6 +64,8 @@ class EdgeBatch final : public EdgeBatchBase {
     finish(record, information);
   }
 
+  void reserve(std::size_t edges) override { records_.reserve(edges); }
+
   void fields(std::size_t i, std::vector<double>& out) const override {
     E edge = records_[i].edge;
     for (const auto& f : E::fields()) {

@@ -14,6 +14,7 @@
 #include <waymark/core/registry.hpp>
 #include <waymark/core/sample.hpp>
 #include <waymark/core/stamp.hpp>
+#include <waymark/formats/text_sink.hpp>
 
 namespace waymark {
 
@@ -54,15 +55,22 @@ struct ReadReport {
                                        const TypeRegistry& registry, bool lenient = false,
                                        ReadReport* report = nullptr);
 
-/// Writes a .graph text. Reading it back gives the same document, number by number.
-/// @throws UsageError for an edge type that the registry does not have (its schema would be lost).
+/// Writes a .graph text, piece by piece or as a whole. Reading it back gives the same document, number by
+/// number.
+/// @throws UsageError before the first piece for an edge type that the registry does not have (its schema
+/// would be lost).
+void write_graph(const GraphDocument& document, const TypeRegistry& registry, const TextSink& sink);
 [[nodiscard]] std::string write_graph(const GraphDocument& document, const TypeRegistry& registry);
 
 /// Writes a plain g2o file: vertices, FIX and edges of g2o's SE(2) vocabulary, in exact numbers.
 /// EDGE_GNSS_POSITION without lever arm becomes the equal EDGE_SE2 without heading information.
 /// Header, stamps, GNSS records and covariances have no place in it and are left out.
-/// @throws UsageError naming what g2o cannot express.
+/// @throws UsageError before the first piece, as check_g2o does.
+void write_g2o(const GraphDocument& document, const TextSink& sink);
 [[nodiscard]] std::string write_g2o(const GraphDocument& document);
+
+/// @throws UsageError naming what g2o cannot express.
+void check_g2o(const GraphDocument& document);
 
 /// Gives poses to the vertices of an SE(2) graph from its relative edges (EDGE_SE2, EDGE_SE2_LOG): from the
 /// first vertex that has one, which keeps its pose, along the chain of consecutive vertices, then by breadth

@@ -9,6 +9,7 @@ namespace waymark {
 namespace {
 
 constexpr std::size_t kExamples = 10;
+constexpr std::size_t kMostTags = 64;     // remembered; further ones are looked up each time
 constexpr std::int64_t kMaxArity = 1000;  // of a run-time-arity edge: 72 MB of information matrix
 
 constexpr std::string_view kOwnTags[] = {"GRAPH", "FRAME", "TIME", "PROVENANCE", "LEVER",
@@ -33,19 +34,39 @@ class GraphReader {
   GraphDocument read() {
     read_first_line();
     // Vertices first, so that edges, FIX and STAMP may stand anywhere.
-    for_each_line([this](LineScanner& line, std::string_view tag) {
-      if (const VertexType* type = vertex_type(tag)) read_vertex(line, *type);
+    std::optional<Place> first_statement;
+    for_each_line({}, [&](LineScanner& line, std::string_view word) {
+      Tag& tag = known_tag(word);
+      ++tag.lines;
+      if (tag.vertex != nullptr) return read_vertex(line, *tag.vertex);
+      if (!first_statement) first_statement = place_;
     });
     if (document_.graph.vertex_count() == 0 && !is_waymark_) make_vertices_of_edges();
-    for_each_line([this](LineScanner& line, std::string_view tag) {
-      if (vertex_type(tag) == nullptr) read_statement(line, tag);
-    });
+    if (first_statement) {
+      for_each_line(*first_statement, [this](LineScanner& line, std::string_view word) {
+        const Tag& tag = known_tag(word);
+        if (tag.vertex == nullptr) read_statement(line, tag);
+      });
+    }
     if (report_.edges_only) report_.unreached = start_from_odometry_chain(document_.graph);
     if (document_.graph.vertex_count() == 0) throw InputError(name_ + ": no vertices in it");
     return std::move(document_);
   }
 
  private:
+  /// Where a line begins.
+  struct Place {
+    std::size_t offset = 0;
+    std::size_t line_number = 1;
+  };
+  /// A line's first word and what the registry knows by it.
+  struct Tag {
+    std::string_view word;
+    const VertexType* vertex = nullptr;
+    const EdgeType* edge = nullptr;
+    std::size_t lines = 0;  // counted by the first pass
+  };
+
   void read_first_line() {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // the byte order mark of some editors
     const std::string_view first = text_.substr(0, text_.find('\n'));
@@ -61,18 +82,16 @@ class GraphReader {
   }
 
   template <typename Visit>
-  void for_each_line(Visit visit) {
-    std::size_t begin = 0;
-    for (std::size_t number = 1; begin < text_.size(); ++number) {
-      std::size_t end = text_.find('\n', begin);
-      if (end == std::string_view::npos) end = text_.size();
-      const std::string_view text = text_.substr(begin, end - begin);
-      begin = end + 1;
-      LineScanner line(text, name_, number);
-      const std::string_view tag = line.word();
-      if (tag.empty() || tag.front() == '#' || (number == 1 && is_waymark_)) continue;
+  void for_each_line(Place first, Visit visit) {
+    for (Place next = first; next.offset < text_.size(); ++next.line_number) {
+      place_ = next;
+      const std::size_t end = std::min(text_.find('\n', place_.offset), text_.size());
+      next.offset = end + 1;
+      LineScanner line(text_.substr(place_.offset, end - place_.offset), name_, place_.line_number);
+      const std::string_view word = line.word();
+      if (word.empty() || word.front() == '#' || (place_.line_number == 1 && is_waymark_)) continue;
       try {
-        visit(line, tag);
+        visit(line, word);
       } catch (const InputError& error) {
         if (!lenient_) throw;
         ++report_.skipped;
@@ -81,17 +100,15 @@ class GraphReader {
     }
   }
 
-  // Neighbouring lines mostly have the same tag: the last one found is tried first.
-  const VertexType* vertex_type(std::string_view tag) {
-    if (last_vertex_ != nullptr && last_vertex_->tag == tag) return last_vertex_;
-    if (last_other_ == tag) return nullptr;
-    const VertexType* type = registry_.find_vertex(tag);
-    if (type != nullptr) {
-      last_vertex_ = type;
-    } else {
-      last_other_ = tag;
+  // Neighbouring lines mostly have the same tag, and a file has few: the last one found is tried first.
+  Tag& known_tag(std::string_view word) {
+    if (last_tag_ < tags_.size() && tags_[last_tag_].word == word) return tags_[last_tag_];
+    for (last_tag_ = 0; last_tag_ < tags_.size(); ++last_tag_) {
+      if (tags_[last_tag_].word == word) return tags_[last_tag_];
     }
-    return type;
+    if (tags_.size() == kMostTags) tags_.pop_back();
+    last_tag_ = tags_.size();
+    return tags_.emplace_back(Tag{word, registry_.find_vertex(word), registry_.find_edge(word)});
   }
 
   void read_vertex(LineScanner& line, const VertexType& type) {
@@ -112,16 +129,12 @@ class GraphReader {
     return *found;
   }
 
-  void read_statement(LineScanner& line, std::string_view tag) {
-    if (last_edge_ == nullptr || last_edge_->tag != tag) {
-      const EdgeType* type = registry_.find_edge(tag);
-      if (type == nullptr) return read_other(line, tag);
-      last_edge_ = type;
-    }
-    read_edge(line, *last_edge_);
+  void read_statement(LineScanner& line, const Tag& tag) {
+    if (tag.edge == nullptr) return read_other(line, tag.word);
+    read_edge(line, *tag.edge, tag.lines);
   }
 
-  void read_edge(LineScanner& line, const EdgeType& type) {
+  void read_edge(LineScanner& line, const EdgeType& type, std::size_t lines) {
     last_batch_ = nullptr;  // a LOSS must not go to an earlier edge where this one is skipped
     const bool runtime = type.arity == EdgeType::kRuntimeArity;
     const std::int64_t arity = runtime ? line.integer({type.tag, "arity"}) : type.arity;
@@ -157,11 +170,18 @@ class GraphReader {
                 ": the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)");
     }
     try {
-      document_.graph.add_edge(type, vertices_, values_, information_);
+      last_batch_ = &document_.graph.add_edge(type, vertices_, values_, information_);
     } catch (const UsageError& error) {
       line.fail(error.what());
     }
-    last_batch_ = &document_.graph.batch(type);
+    if (!runtime && last_batch_->size() == 1) last_batch_->reserve(std::min(lines, most_lines(type)));
+  }
+
+  /// How many edges of a type the text has room for, whatever its tags promise.
+  [[nodiscard]] std::size_t most_lines(const EdgeType& type) const {
+    const int numbers =
+        type.arity + type.field_size() + type.error_dimension * (type.error_dimension + 1) / 2;
+    return text_.size() / static_cast<std::size_t>(2 * numbers);
   }
 
   void read_numbers(LineScanner& line, std::string_view tag, std::string_view field, Eigen::Index count) {
@@ -301,8 +321,8 @@ class GraphReader {
   // A file with edges only (SE-Sync's way): its vertices are those the edges name, in ascending order.
   void make_vertices_of_edges() {
     std::vector<std::pair<VertexId, const VertexType*>> named;
-    for_each_line([&](LineScanner& line, std::string_view tag) {
-      const EdgeType* type = registry_.find_edge(tag);
+    for_each_line({}, [&](LineScanner& line, std::string_view tag) {
+      const EdgeType* type = known_tag(tag).edge;
       if (type == nullptr || type->arity == EdgeType::kRuntimeArity) return;
       for (const std::string& vertex_tag : type->vertex_tags) {
         named.emplace_back(line.integer({tag, "vertex"}), registry_.find_vertex(vertex_tag));
@@ -328,9 +348,9 @@ class GraphReader {
   GraphDocument document_;
   bool is_waymark_ = false;
   std::vector<std::string> seen_;
-  const VertexType* last_vertex_ = nullptr;
-  const EdgeType* last_edge_ = nullptr;
-  std::string_view last_other_;
+  Place place_;  // of the line being read
+  std::vector<Tag> tags_;
+  std::size_t last_tag_ = 0;
   EdgeBatchBase* last_batch_ = nullptr;
   std::vector<VertexIndex> vertices_;
   std::vector<char> has_covariance_;  // per vertex

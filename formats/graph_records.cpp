@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include <Eigen/Eigenvalues>
@@ -16,15 +17,22 @@ int read_int(LineScanner& line, const Expected& expected) {
   return static_cast<int>(value);
 }
 
+/// No diagonal number below the sum of the others' magnitudes in its column: the usual case.
+bool is_diagonally_dominant(const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+    double rest = matrix(column, column);
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+      if (row != column) rest -= std::abs(matrix(row, column));
+    }
+    if (!(rest >= 0)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool is_positive_semidefinite(const Eigen::MatrixXd& information) {
-  const Eigen::VectorXd diagonal = information.diagonal();
-  if (diagonal.minCoeff() > 0) {
-    // Gershgorin settles the usual, diagonally dominant case.
-    const Eigen::VectorXd off = information.cwiseAbs().rowwise().sum() - diagonal;
-    if ((diagonal - off).minCoeff() >= 0) return true;
-  }
+  if (is_diagonally_dominant(information)) return true;  // by Gershgorin
   const Eigen::VectorXd eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(information, Eigen::EigenvaluesOnly).eigenvalues();
   const double largest = std::max(std::abs(eigenvalues[0]), eigenvalues[eigenvalues.size() - 1]);

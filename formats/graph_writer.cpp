@@ -1,4 +1,3 @@
-#include <charconv>
 #include <cmath>
 
 #include <waymark/core/error.hpp>
@@ -60,23 +59,19 @@ void write_upper_triangle(const Eigen::MatrixXd& matrix, TextBuilder& out) {
   }
 }
 
-void write_edges(const Graph& graph, TextBuilder& out) {
+void write_edges(const Graph& graph, const EdgeType& type, const EdgeBatchBase& batch, TextBuilder& out) {
   std::vector<double> fields;
-  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    const EdgeBatchBase& batch = graph.batch(b);
-    const EdgeType& type = graph.edge_type(b);
-    for (std::size_t e = 0; e < batch.size(); ++e) {
-      out.word(type.tag);
-      const auto vertices = batch.vertices(e);
-      if (type.arity == EdgeType::kRuntimeArity) out.integer(static_cast<std::int64_t>(vertices.size()));
-      for (const VertexIndex v : vertices) out.integer(graph.id(v));
-      fields.clear();
-      batch.fields(e, fields);
-      for (const double value : fields) out.number(value);
-      write_upper_triangle(batch.information(e), out);
-      out.end_line();
-      if (const Loss* loss = batch.loss(e)) out.word("LOSS").word(loss->name).number(loss->scale).end_line();
-    }
+  for (std::size_t e = 0; e < batch.size(); ++e) {
+    out.word(type.tag);
+    const auto vertices = batch.vertices(e);
+    if (type.arity == EdgeType::kRuntimeArity) out.integer(static_cast<std::int64_t>(vertices.size()));
+    for (const VertexIndex v : vertices) out.integer(graph.id(v));
+    fields.clear();
+    batch.fields(e, fields);
+    for (const double value : fields) out.number(value);
+    write_upper_triangle(batch.information(e), out);
+    out.end_line();
+    if (const Loss* loss = batch.loss(e)) out.word("LOSS").word(loss->name).number(loss->scale).end_line();
   }
 }
 
@@ -102,33 +97,44 @@ void write_fix(const Fix& fix, TextBuilder& out) {
 
 }  // namespace
 
-std::string write_graph(const GraphDocument& document, const TypeRegistry& registry) {
+void write_graph(const GraphDocument& document, const TypeRegistry& registry, const TextSink& sink) {
   const Graph& graph = document.graph;
-  TextBuilder out;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const std::string& tag = graph.edge_type(b).tag;
+    if (graph.batch(b).size() > 0 && registry.find_edge(tag) == nullptr) {
+      throw UsageError("cannot write edges of type " + tag + ": it is not registered");
+    }
+  }
+  TextBuilder out(sink);
   write_header(document, out);
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    const EdgeType& type = graph.edge_type(b);
     if (graph.batch(b).size() == 0) continue;
-    if (registry.find_edge(type.tag) == nullptr) {
-      throw UsageError("cannot write edges of type " + type.tag + ": it is not registered");
-    }
+    const EdgeType& type = graph.edge_type(b);
     out.word("TYPE").word(type.tag).word(describe_schema(type)).end_line();
   }
   write_vertices(graph, true, out);
-  write_edges(graph, out);
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    write_edges(graph, graph.edge_type(b), graph.batch(b), out);
+  }
   for (const Fix& fix : document.fixes) write_fix(fix, out);
   for (const VertexCovariance& block : document.covariances) {
     out.word("COVARIANCE").integer(graph.id(block.vertex));
     write_upper_triangle(block.covariance, out);
     out.end_line();
   }
-  return std::move(out).text();
+  out.finish();
+}
+
+std::string write_graph(const GraphDocument& document, const TypeRegistry& registry) {
+  return collect_text([&](const TextSink& sink) { write_graph(document, registry, sink); });
 }
 
 namespace {
 
 constexpr std::string_view kG2oTags[] = {"VERTEX_SE2", "VERTEX_XY", "EDGE_SE2", "EDGE_SE2_XY",
                                          "EDGE_PRIOR_SE2"};
+
+constexpr std::string_view kPosition = "EDGE_GNSS_POSITION";
 
 bool in_g2o(std::string_view tag) {
   for (const std::string_view known : kG2oTags) {
@@ -144,16 +150,23 @@ void refuse_losses(const EdgeBatchBase& batch, const std::string& tag) {
   }
 }
 
+void refuse_lever_arms(const EdgeBatchBase& batch) {
+  std::vector<double> fields;
+  for (std::size_t e = 0; e < batch.size(); ++e) {
+    fields.clear();
+    batch.fields(e, fields);
+    if (fields[2] == 0 && fields[3] == 0) continue;
+    throw UsageError("g2o has no position edge with an antenna lever arm (EDGE_GNSS_POSITION number " +
+                     std::to_string(e + 1) + "); write the .graph format instead");
+  }
+}
+
 // The same error as EDGE_SE2 with measurement (x, y, 0) and no information on the heading.
 void write_position_as_se2(const Graph& graph, const EdgeBatchBase& batch, TextBuilder& out) {
   std::vector<double> fields;
   for (std::size_t e = 0; e < batch.size(); ++e) {
     fields.clear();
     batch.fields(e, fields);
-    if (fields[2] != 0 || fields[3] != 0) {
-      throw UsageError("g2o has no position edge with an antenna lever arm (EDGE_GNSS_POSITION number " +
-                       std::to_string(e + 1) + "); write the .graph format instead");
-    }
     const Eigen::MatrixXd omega = batch.information(e);
     const auto vertices = batch.vertices(e);
     out.word("EDGE_SE2").integer(graph.id(vertices[0])).integer(graph.id(vertices[1]));
@@ -167,40 +180,44 @@ void write_position_as_se2(const Graph& graph, const EdgeBatchBase& batch, TextB
 
 }  // namespace
 
-std::string write_g2o(const GraphDocument& document) {
+void check_g2o(const GraphDocument& document) {
   const Graph& graph = document.graph;
-  TextBuilder out;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    if (!in_g2o(graph.vertex_type(v).tag)) {
-      throw UsageError("g2o has no vertex type " + graph.vertex_type(v).tag +
-                       "; write the .graph format instead");
+    if (in_g2o(graph.vertex_type(v).tag)) continue;
+    throw UsageError("g2o has no vertex type " + graph.vertex_type(v).tag +
+                     "; write the .graph format instead");
+  }
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const std::string& tag = graph.edge_type(b).tag;
+    const EdgeBatchBase& batch = graph.batch(b);
+    if (batch.size() == 0) continue;
+    refuse_losses(batch, tag);
+    if (tag == kPosition) {
+      refuse_lever_arms(batch);
+    } else if (!in_g2o(tag)) {
+      throw UsageError("g2o has no edge type " + tag + "; write the .graph format instead");
     }
   }
+}
+
+void write_g2o(const GraphDocument& document, const TextSink& sink) {
+  check_g2o(document);
+  const Graph& graph = document.graph;
+  TextBuilder out(sink);
   write_vertices(graph, false, out);
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     const EdgeType& type = graph.edge_type(b);
-    const EdgeBatchBase& batch = graph.batch(b);
-    if (batch.size() == 0) continue;
-    refuse_losses(batch, type.tag);
-    if (type.tag == "EDGE_GNSS_POSITION") {
-      write_position_as_se2(graph, batch, out);
-      continue;
-    }
-    if (!in_g2o(type.tag)) {
-      throw UsageError("g2o has no edge type " + type.tag + "; write the .graph format instead");
-    }
-    std::vector<double> fields;
-    for (std::size_t e = 0; e < batch.size(); ++e) {
-      out.word(type.tag);
-      for (const VertexIndex v : batch.vertices(e)) out.integer(graph.id(v));
-      fields.clear();
-      batch.fields(e, fields);
-      for (const double value : fields) out.number(value);
-      write_upper_triangle(batch.information(e), out);
-      out.end_line();
+    if (type.tag == kPosition) {
+      write_position_as_se2(graph, graph.batch(b), out);
+    } else {
+      write_edges(graph, type, graph.batch(b), out);
     }
   }
-  return std::move(out).text();
+  out.finish();
+}
+
+std::string write_g2o(const GraphDocument& document) {
+  return collect_text([&](const TextSink& sink) { write_g2o(document, sink); });
 }
 
 }  // namespace waymark

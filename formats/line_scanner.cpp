@@ -7,10 +7,6 @@
 namespace waymark {
 namespace {
 
-bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r';
-}
-
 /// from_chars knows no '+'; one sign at most.
 const char* skip_plus(const char* begin, const char* end) {
   const bool plus = end - begin > 1 && *begin == '+' && begin[1] != '-';
@@ -35,26 +31,24 @@ std::string quote_word(std::string_view word) {
   return text + (word.size() > kLongest ? "...'" : "'");
 }
 
-std::string_view LineScanner::word() {
-  while (cursor_ < line_.size() && is_blank(line_[cursor_])) ++cursor_;
-  word_start_ = cursor_;
-  while (cursor_ < line_.size() && !is_blank(line_[cursor_])) ++cursor_;
-  return line_.substr(word_start_, cursor_ - word_start_);
-}
-
 std::string_view LineScanner::rest() {
-  while (cursor_ < line_.size() && is_blank(line_[cursor_])) ++cursor_;
-  word_start_ = cursor_;
-  std::size_t end = line_.size();
-  while (end > cursor_ && is_blank(line_[end - 1])) --end;
-  cursor_ = line_.size();
-  return line_.substr(word_start_, end - word_start_);
+  skip_blanks();
+  const char* last = end_;
+  while (last != cursor_ && is_blank(last[-1])) --last;
+  cursor_ = end_;
+  return {word_, static_cast<std::size_t>(last - word_)};
 }
 
-double LineScanner::number(const Expected& expected) {
+double LineScanner::any_number(const Expected& expected) {
+  double value = 0;
+  // Without looking for the end of the word first; what does not succeed is looked at once more, by its word.
+  const auto [place, result] = std::from_chars(cursor_, end_, value);
+  if (result == std::errc() && (place == end_ || is_blank(*place)) && std::isfinite(value)) {
+    cursor_ = place;
+    return value;
+  }
   const std::string_view text = word();
   const char* end = text.data() + text.size();
-  double value = 0;
   const auto [stop, error] = std::from_chars(skip_plus(text.data(), end), end, value);
   if (error == std::errc::result_out_of_range) fail_expected("a number that fits a double", expected, text);
   if (error != std::errc() || stop != end) fail_expected("a number", expected, text);
@@ -63,13 +57,13 @@ double LineScanner::number(const Expected& expected) {
 }
 
 std::optional<double> LineScanner::optional_number(const Expected& expected) {
-  const std::size_t before = cursor_;
+  const char* before = cursor_;
   if (word() == "-") return std::nullopt;
   cursor_ = before;
   return number(expected);
 }
 
-std::int64_t LineScanner::integer(const Expected& expected) {
+std::int64_t LineScanner::any_integer(const Expected& expected) {
   const std::string_view text = word();
   const char* end = text.data() + text.size();
   std::int64_t value = 0;
@@ -79,16 +73,13 @@ std::int64_t LineScanner::integer(const Expected& expected) {
   return value;
 }
 
-void LineScanner::end(std::string_view tag) {
-  const std::string_view left = word();
-  if (!left.empty() && left.front() != '#') {
-    fail(std::string(tag) + ": expected the end of the line, got " + quote_word(left));
-  }
+void LineScanner::fail_end(std::string_view tag) {
+  fail(std::string(tag) + ": expected the end of the line, got " + quote_word(word()));
 }
 
 void LineScanner::fail(const std::string& message) const {
-  throw InputError(file_ + ":" + std::to_string(line_number_) + ":" + std::to_string(word_start_ + 1) + ": " +
-                   message);
+  throw InputError(file_ + ":" + std::to_string(line_number_) + ":" + std::to_string(word_ - begin_ + 1) +
+                   ": " + message);
 }
 
 void LineScanner::fail_expected(const char* what, const Expected& expected, std::string_view got) const {

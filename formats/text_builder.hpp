@@ -1,25 +1,42 @@
 /// Builds a text of words and numbers separated by blanks; numbers in the shortest form that reads back
-/// exactly.
+/// exactly (what std::to_chars writes).
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <string>
+#include <memory>
 #include <string_view>
+
+#include <waymark/formats/text_sink.hpp>
 
 namespace waymark {
 
 class TextBuilder {
  public:
+  /// @param sink takes the text in pieces that end anywhere. The last one comes with finish().
+  explicit TextBuilder(TextSink sink);
+
   TextBuilder& word(std::string_view text) {
     separate();
-    text_.append(text);
+    if (text.size() > room()) return long_word(text);
+    cursor_ = std::copy(text.begin(), text.end(), cursor_);
     return *this;
   }
-  TextBuilder& number(double value) { return append(value); }
-  TextBuilder& integer(std::int64_t value) { return append(value); }
+  TextBuilder& number(double value) {
+    separate();
+    cursor_ = write_number(cursor_, value);
+    return *this;
+  }
+  TextBuilder& integer(std::int64_t value) {
+    separate();
+    cursor_ = std::to_chars(cursor_, end(), value).ptr;
+    return *this;
+  }
   TextBuilder& end_line() {
-    text_.push_back('\n');
+    make_room();
+    *cursor_++ = '\n';
+    line_begins_ = true;
     return *this;
   }
   /// A line of a word and an integer.
@@ -27,21 +44,31 @@ class TextBuilder {
     return word(text).integer(value).end_line();
   }
 
-  [[nodiscard]] std::string text() && { return std::move(text_); }
+  /// Hands over what is left.
+  void finish() { flush(); }
 
  private:
-  void separate() {
-    if (!text_.empty() && text_.back() != '\n') text_.push_back(' ');
-  }
-  template <typename T>
-  TextBuilder& append(T value) {
-    separate();
-    char buffer[32];
-    text_.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
-    return *this;
-  }
+  static constexpr std::size_t kPiece = 1U << 18U;
+  static constexpr std::size_t kLongestNumber = 32;  // of 24 characters, and a blank
 
-  std::string text_;
+  [[nodiscard]] char* end() { return buffer_.get() + kPiece; }
+  [[nodiscard]] std::size_t room() { return static_cast<std::size_t>(end() - cursor_); }
+  void make_room() {
+    if (room() < kLongestNumber) flush();
+  }
+  void separate() {
+    make_room();
+    if (!line_begins_) *cursor_++ = ' ';
+    line_begins_ = false;
+  }
+  void flush();
+  TextBuilder& long_word(std::string_view text);
+  static char* write_number(char* place, double value);
+
+  TextSink sink_;
+  std::unique_ptr<char[]> buffer_;
+  char* cursor_;
+  bool line_begins_ = true;
 };
 
 }  // namespace waymark

@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t kChunk = 1U << 20U;
 constexpr int kAttempts = 1000;
 
+using Producer = std::function<void(const TextSink&)>;
+
 std::string reason(int error) {
   return std::generic_category().message(error);
 }
@@ -65,10 +67,17 @@ int write_all(int descriptor, std::string_view content) {
   return 0;
 }
 
-void write_directly(const std::string& path, std::string_view content) {
+/// Where the pieces of a text go. @throws OutputError naming `path`.
+TextSink sink_to(int descriptor, const std::string& path) {
+  return [descriptor, path](std::string_view piece) {
+    if (const int error = write_all(descriptor, piece); error != 0) fail_write(path, error);
+  };
+}
+
+void write_directly(const std::string& path, const Producer& produce) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (file.number() < 0) fail_write(path, errno);
-  if (const int error = write_all(file.number(), content); error != 0) fail_write(path, error);
+  produce(sink_to(file.number(), path));
   if (const int error = file.close(); error != 0) fail_write(path, error);
 }
 
@@ -78,33 +87,46 @@ std::string link_target(const std::string& path) {
   return resolved ? std::string(resolved.get()) : path;
 }
 
-struct PartialFile {
-  std::string path;
-  int descriptor = -1;
+/// A file under another name beside its place, which goes away with this object unless it was put there.
+class PartialFile {
+ public:
+  PartialFile(const std::string& path, const std::string& target) : path_(path) {
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      name_ = fmt::format("{}.partial-{}-{}", target, ::getpid(), attempt);
+      const int descriptor = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor >= 0) {
+        file_.emplace(descriptor);
+        return;
+      }
+      if (errno != EEXIST) fail_write(path, errno);
+    }
+    fail_write(path, EEXIST);
+  }
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+  ~PartialFile() {
+    if (!name_.empty()) ::unlink(name_.c_str());
+  }
+
+  [[nodiscard]] int number() const { return file_->number(); }
+  void put_at(const std::string& target) {
+    if (const int error = file_->close(); error != 0) fail_write(path_, error);
+    if (::rename(name_.c_str(), target.c_str()) != 0) fail_write(path_, errno);
+    name_.clear();
+  }
+
+ private:
+  const std::string& path_;  // for messages
+  std::string name_;
+  std::optional<Descriptor> file_;
 };
 
-PartialFile open_partial(const std::string& path, const std::string& target) {
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    std::string partial = fmt::format("{}.partial-{}-{}", target, ::getpid(), attempt);
-    const int descriptor = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0) return {std::move(partial), descriptor};
-    if (errno != EEXIST) fail_write(path, errno);
-  }
-  fail_write(path, EEXIST);
-}
-
-void write_aside(const std::string& path, std::string_view content, std::optional<mode_t> mode) {
+void write_aside(const std::string& path, const Producer& produce, std::optional<mode_t> mode) {
   const std::string target = mode ? link_target(path) : path;
-  const PartialFile partial = open_partial(path, target);
-  Descriptor file(partial.descriptor);
-  int error = 0;
-  if (mode && ::fchmod(file.number(), *mode) != 0) error = errno;
-  if (error == 0) error = write_all(file.number(), content);
-  if (const int at_close = file.close(); error == 0) error = at_close;
-  if (error == 0 && ::rename(partial.path.c_str(), target.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  ::unlink(partial.path.c_str());
-  fail_write(path, error);
+  PartialFile partial(path, target);
+  if (mode && ::fchmod(partial.number(), *mode) != 0) fail_write(path, errno);
+  produce(sink_to(partial.number(), path));
+  partial.put_at(target);
 }
 
 }  // namespace
@@ -116,11 +138,11 @@ std::string read_text_file(const std::string& path) {
   if (::fstat(file.number(), &status) != 0) fail_read(path, errno);
   if (S_ISDIR(status.st_mode)) fail_read(path, EISDIR);
 
-  std::string content;
-  const std::size_t expected = S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : 0;
+  const std::size_t expected = S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : kChunk;
+  std::string content(expected + 1, '\0');  // the byte more sees the end without growing
   std::size_t used = 0;
   while (true) {
-    content.resize(used < expected ? expected + 1 : used + kChunk);  // one byte more sees the end at once
+    if (used == content.size()) content.resize(used + kChunk);
     const ssize_t count = ::read(file.number(), content.data() + used, content.size() - used);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail_read(path, errno);
@@ -132,22 +154,24 @@ std::string read_text_file(const std::string& path) {
 }
 
 void write_file_atomically(const std::string& path, std::string_view content) {
+  write_file_atomically(path, [content](const TextSink& sink) { sink(content); });
+}
+
+void write_file_atomically(const std::string& path, const Producer& produce) {
   if (path == "-" || path == "/dev/stdout") {
-    if (const int error = write_all(STDOUT_FILENO, content); error != 0)
-      fail_write(path == "-" ? "standard output" : path, error);
-    return;
+    return produce(sink_to(STDOUT_FILENO, path == "-" ? "standard output" : path));
   }
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) {
     if (errno != ENOENT) fail_write(path, errno);
-    return write_aside(path, content, std::nullopt);
+    return write_aside(path, produce, std::nullopt);
   }
   if (S_ISDIR(status.st_mode)) fail_write(path, EISDIR);
-  if (!S_ISREG(status.st_mode)) return write_directly(path, content);
+  if (!S_ISREG(status.st_mode)) return write_directly(path, produce);
   // Through /dev/fd/N and the like a regular file is open already; putting another in its place would miss
   // it.
-  if (path.starts_with("/dev/") || path.starts_with("/proc/")) return write_directly(path, content);
-  write_aside(path, content, status.st_mode & 07777);
+  if (path.starts_with("/dev/") || path.starts_with("/proc/")) return write_directly(path, produce);
+  write_aside(path, produce, status.st_mode & 07777);
 }
 
 }  // namespace waymark

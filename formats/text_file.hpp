@@ -1,8 +1,11 @@
 /// Whole files in and out: read at once, written all or nothing.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
+
+#include <waymark/formats/text_sink.hpp>
 
 namespace waymark {
 
@@ -23,5 +26,9 @@ namespace waymark {
 /// @throws OutputError "out.graph: cannot write: No space left on device" and the like; nothing partial is
 /// left.
 void write_file_atomically(const std::string& path, std::string_view content);
+
+/// The same for a text that `produce` gives piece by piece to the sink that it is called with. What it throws
+/// leaves a regular file as it was; a pipe or device has the pieces that came before.
+void write_file_atomically(const std::string& path, const std::function<void(const TextSink&)>& produce);
 
 }  // namespace waymark

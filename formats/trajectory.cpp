@@ -130,15 +130,17 @@ std::string trajectory_csv(std::span<const TrajectoryPoint> points) {
 }
 
 std::string trajectory_tum(std::span<const TrajectoryPoint> points) {
-  TextBuilder out;
-  out.word("# t x y z qx qy qz qw").end_line();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    check_finite("TUM", i, points[i]);
-    const Eigen::Vector3d& pose = points[i].pose;
-    out.word(decimal_seconds(points[i].stamp)).number(pose.x()).number(pose.y()).number(0);
-    out.number(0).number(0).number(std::sin(0.5 * pose.z())).number(std::cos(0.5 * pose.z())).end_line();
-  }
-  return std::move(out).text();
+  return collect_text([points](const TextSink& sink) {
+    TextBuilder out(sink);
+    out.word("# t x y z qx qy qz qw").end_line();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      check_finite("TUM", i, points[i]);
+      const Eigen::Vector3d& pose = points[i].pose;
+      out.word(decimal_seconds(points[i].stamp)).number(pose.x()).number(pose.y()).number(0);
+      out.number(0).number(0).number(std::sin(0.5 * pose.z())).number(std::cos(0.5 * pose.z())).end_line();
+    }
+    out.finish();
+  });
 }
 
 std::string trajectory_geojson(std::span<const TrajectoryPoint> points, std::span<const FixPoint> fixes,

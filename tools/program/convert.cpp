@@ -28,7 +28,7 @@ ExitCode convert(const ConvertOptions& options) {
       build_document(loaded, loaded.modelings.front(),
                      known_options(loaded.modelings.front(), options.overrides, registry), registry);
   stop_if_interrupted();
-  write_file_atomically(options.output, write_graph(document, registry));
+  write_file_atomically(options.output, [&](const TextSink& sink) { write_graph(document, registry, sink); });
   if (options.common.json) {
     const GateSummary& gate = loaded.skeleton.gate;
     const nlohmann::ordered_json json = {{"output", options.output},

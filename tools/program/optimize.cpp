@@ -38,7 +38,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
         " vertices are not reached by relative edges (EDGE_SE2, EDGE_SE2_LOG) and start where they are");
   }
   const bool g2o = options.format == "g2o";
-  if (g2o) (void)write_g2o(document);  // refuses before the work what it cannot hold
+  if (g2o) check_g2o(document);  // before the work
   if (g2o && (document.frame || !document.fixes.empty())) {
     console.note("note: g2o has no place for the frame, stamps and GNSS records; they are left out");
   }
@@ -47,7 +47,9 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   const Summary summary = optimize_document(document, options.choice, registry, console);
   document.provenance.emplace_back("optimized", describe_optimization(summary));
   const bool to_stdout = is_stdout(options.output);
-  write_file_atomically(options.output, g2o ? write_g2o(document) : write_graph(document, registry));
+  write_file_atomically(options.output, [&](const TextSink& sink) {
+    g2o ? write_g2o(document, sink) : write_graph(document, registry, sink);
+  });
   if (options.common.json) {
     console.result(json_text(summary_json(summary)), to_stdout);
   } else {

@@ -31,7 +31,7 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, c
   GraphDocument document =
       build_document(loaded, modeling, known_options(modeling, options.overrides, registry), registry);
   const auto write = [&](const std::string& name) {
-    write_file_atomically(name, write_graph(document, registry));
+    write_file_atomically(name, [&](const TextSink& sink) { write_graph(document, registry, sink); });
     run.files.push_back(name);
   };
   write(prefix + ".graph");
