@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/decimal.hpp>
 #include <waymark/formats/line_scanner.hpp>
 
 namespace waymark {
@@ -39,16 +40,15 @@ std::string_view LineScanner::rest() {
   return {word_, static_cast<std::size_t>(last - word_)};
 }
 
-double LineScanner::any_number(const Expected& expected) {
-  double value = 0;
-  // Without looking for the end of the word first; what does not succeed is looked at once more, by its word.
-  const auto [place, result] = std::from_chars(cursor_, end_, value);
-  if (result == std::errc() && (place == end_ || is_blank(*place)) && std::isfinite(value)) {
-    cursor_ = place;
-    return value;
+double LineScanner::number(const Expected& expected) {
+  skip_blanks();
+  if (const Decimal plain = read_plain_decimal(cursor_, end_); plain.end != nullptr && ends_word(plain.end)) {
+    cursor_ = plain.end;
+    return plain.value;
   }
   const std::string_view text = word();
   const char* end = text.data() + text.size();
+  double value = 0;
   const auto [stop, error] = std::from_chars(skip_plus(text.data(), end), end, value);
   if (error == std::errc::result_out_of_range) fail_expected("a number that fits a double", expected, text);
   if (error != std::errc() || stop != end) fail_expected("a number", expected, text);
@@ -63,7 +63,7 @@ std::optional<double> LineScanner::optional_number(const Expected& expected) {
   return number(expected);
 }
 
-std::int64_t LineScanner::any_integer(const Expected& expected) {
+std::int64_t LineScanner::integer(const Expected& expected) {
   const std::string_view text = word();
   const char* end = text.data() + text.size();
   std::int64_t value = 0;

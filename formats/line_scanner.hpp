@@ -42,22 +42,10 @@ class LineScanner {
   [[nodiscard]] bool at_end() const { return LineScanner(*this).next_is_comment(); }
 
   /// A finite number. @throws InputError
-  double number(const Expected& expected) {
-    skip_blanks();
-    if (const Digits digits = plain_digits(); digits.found) {
-      const auto value = static_cast<double>(digits.value);  // exact
-      return digits.negative ? -value : value;
-    }
-    return any_number(expected);
-  }
+  double number(const Expected& expected);
   /// A finite number, or nothing for the word "-".
   std::optional<double> optional_number(const Expected& expected);
-  std::int64_t integer(const Expected& expected) {
-    skip_blanks();
-    if (const Digits digits = plain_digits(); digits.found)
-      return digits.negative ? -digits.value : digits.value;
-    return any_integer(expected);
-  }
+  std::int64_t integer(const Expected& expected);
   /// @throws InputError where anything but a comment is left.
   void end(std::string_view tag) {
     if (!next_is_comment()) fail_end(tag);
@@ -67,40 +55,13 @@ class LineScanner {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
-  /// A word of at most 15 digits behind an optional minus, which every double and int64 holds exactly: most
-  /// words of a graph file. Others go the long way.
-  struct Digits {
-    bool found = false;
-    bool negative = false;
-    std::int64_t value = 0;
-  };
-
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
   void skip_blanks() {
     while (cursor_ != end_ && is_blank(*cursor_)) ++cursor_;
     word_ = cursor_;
   }
-  /// Moves behind the word where it finds what it looks for, else not at all.
-  Digits plain_digits() {
-    constexpr std::ptrdiff_t kMost = 15;
-    const char* place = cursor_;
-    Digits digits;
-    digits.negative = place != end_ && *place == '-';
-    if (digits.negative) ++place;
-    const char* const first = place;
-    for (; place != end_ && place - first <= kMost; ++place) {
-      const auto digit = static_cast<unsigned char>(*place - '0');
-      if (digit > 9) break;
-      digits.value = 10 * digits.value + digit;
-    }
-    const bool whole = place == end_ || is_blank(*place);
-    digits.found = whole && place != first && place - first <= kMost;
-    if (digits.found) cursor_ = place;
-    return digits;
-  }
-  double any_number(const Expected& expected);
-  std::int64_t any_integer(const Expected& expected);
+  [[nodiscard]] bool ends_word(const char* place) const { return place == end_ || is_blank(*place); }
   bool next_is_comment() {
     skip_blanks();
     return cursor_ == end_ || *cursor_ == '#';

@@ -1,13 +1,12 @@
 #include <waymark/formats/text_builder.hpp>
 
+#include <bit>
 #include <cmath>
 
 #include <fmt/compile.h>
 
 namespace waymark {
 namespace {
-
-constexpr int kLongestDouble = 24;  // -2.2250738585072014e-308
 
 /// A whole number that to_chars writes without exponent: it has at most four zeros at its end.
 bool is_plain_integer(double value) {
@@ -18,10 +17,19 @@ bool is_plain_integer(double value) {
   return static_cast<double>(whole) == value && whole % kZeros != 0;
 }
 
-/// Where the shortest form of a number that is not whole has no exponent in fmt's reading and in to_chars'.
-bool is_plain_decimal(double value) {
+/// The shorter of plain and scientific notation with the fewest digits that read back exactly, as to_chars
+/// writes it. to_chars alone would do; fmt finds the same digits in a third of the time, and chooses the
+/// notation alike for numbers that are not whole and below 1e15, but for one digit at the fourth decimal
+/// (0.0002, 2e-04).
+char* write_shortest(char* begin, char* end, double value) {
+  if (is_plain_integer(value)) return std::to_chars(begin, end, static_cast<std::int64_t>(value)).ptr;
   const double magnitude = std::abs(value);
-  return magnitude >= 1e-3 && magnitude < 1e15;
+  if (magnitude < 1e15 && value != std::trunc(value)) {
+    char* const stop = fmt::format_to(begin, FMT_COMPILE("{}"), value);
+    const bool one_digit = magnitude >= 1e-4 && magnitude < 1e-3 && stop - begin == (value < 0 ? 7 : 6);
+    if (!one_digit) return stop;
+  }
+  return std::to_chars(begin, end, value).ptr;
 }
 
 }  // namespace
@@ -43,19 +51,18 @@ TextBuilder& TextBuilder::long_word(std::string_view text) {
   return *this;
 }
 
-// to_chars alone would do. fmt finds the same shortest digits in a third of the time (Dragonbox; the
-// library's Ryu is slower still at laying them out) and writes them alike in the range where neither uses an
-// exponent.
-char* TextBuilder::write_number(char* place, double value) {
-  if (value == 0 && !std::signbit(value)) {
-    *place = '0';
-    return place + 1;
+// Numbers come again and again: the information of one edge is that of the next.
+void TextBuilder::write_number(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 divided by the golden ratio: mixes all bits
+  Recent& recent = recent_[(bits * kSpread) >> (64U - kRecentBits)];
+  if (recent.bits != bits) {
+    char* const begin = recent.text.data();
+    recent.length = write_shortest(begin, begin + recent.text.size(), value) - begin;
+    recent.bits = bits;
   }
-  if (is_plain_integer(value))
-    return std::to_chars(place, place + kLongestDouble, static_cast<std::int64_t>(value)).ptr;
-  if (is_plain_decimal(value) && value != std::trunc(value))
-    return fmt::format_to(place, FMT_COMPILE("{}"), value);
-  return std::to_chars(place, place + kLongestDouble, value).ptr;
+  std::copy(recent.text.begin(), recent.text.end(), cursor_);  // the whole is faster than a part
+  cursor_ += recent.length;
 }
 
 }  // namespace waymark

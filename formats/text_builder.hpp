@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <memory>
@@ -25,7 +26,7 @@ class TextBuilder {
   }
   TextBuilder& number(double value) {
     separate();
-    cursor_ = write_number(cursor_, value);
+    write_number(value);
     return *this;
   }
   TextBuilder& integer(std::int64_t value) {
@@ -63,11 +64,20 @@ class TextBuilder {
   }
   void flush();
   TextBuilder& long_word(std::string_view text);
-  static char* write_number(char* place, double value);
+  void write_number(double value);
+
+  /// A number as it was written before.
+  struct Recent {
+    std::uint64_t bits = 0;
+    std::array<char, 24> text{'0'};  // as long as any
+    std::ptrdiff_t length = 1;
+  };
+  static constexpr unsigned kRecentBits = 6;
 
   TextSink sink_;
   std::unique_ptr<char[]> buffer_;
   char* cursor_;
+  std::array<Recent, 1U << kRecentBits> recent_;  // by hash; at first all hold the number 0
   bool line_begins_ = true;
 };
 
