@@ -92,6 +92,26 @@ TEST_CASE("a file size limit leaves the old file as it was") {
   CHECK(entries(folder) == 1);
 }
 
+TEST_CASE("a text that cannot be finished leaves the old file as it was") {
+  // Guards against half a graph where its writing fails or is interrupted between two pieces.
+  const fs::path folder = fresh_folder("unfinished");
+  const std::string path = (folder / "a.graph").string();
+  write_file_atomically(path, "old");
+  const auto fail_midway = [&](const TextSink& sink) {
+    sink("half");
+    throw UsageError("no more");
+  };
+  CHECK_THROWS_AS(write_file_atomically(path, fail_midway), UsageError);
+  CHECK_THROWS_AS(write_file_atomically((folder / "b.graph").string(), fail_midway), UsageError);
+  CHECK(read_text_file(path) == "old");
+  CHECK(entries(folder) == 1);
+  write_file_atomically(path, [](const TextSink& sink) {
+    sink("ne");
+    sink("w");
+  });
+  CHECK(read_text_file(path) == "new");
+}
+
 TEST_CASE("a symbolic link and the permissions of a file are kept") {
   const fs::path folder = fresh_folder("link");
   const fs::path file = folder / "real.graph";
