@@ -7,44 +7,12 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/evaluation/text_table.hpp>
+
 namespace waymark {
 namespace {
 
 using Row = std::vector<std::string>;
-
-/// Rows under a heading, columns as wide as their widest cell; the first is flush left, the others flush
-/// right.
-class Table {
- public:
-  explicit Table(Row heading) { rows_.push_back(std::move(heading)); }
-
-  /// A row whose numbers stand there already under another label is not added again.
-  void add_unless_known(Row row) {
-    const bool known = std::any_of(rows_.begin() + 1, rows_.end(), [&](const Row& other) {
-      return std::equal(row.begin() + 1, row.end(), other.begin() + 1, other.end());
-    });
-    if (!known) add(std::move(row));
-  }
-
-  void add(Row row) { rows_.push_back(std::move(row)); }
-  [[nodiscard]] bool empty() const { return rows_.size() < 2; }
-
-  [[nodiscard]] std::string text() const {
-    std::vector<std::size_t> widths(rows_.front().size(), 0);
-    for (const Row& row : rows_)
-      for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-    std::string out;
-    for (const Row& row : rows_) {
-      std::string line = fmt::format("{:<{}}", row[0], widths[0]);
-      for (std::size_t c = 1; c < row.size(); ++c) line += fmt::format("  {:>{}}", row[c], widths[c]);
-      out += line + "\n";
-    }
-    return out;
-  }
-
- private:
-  std::vector<Row> rows_;
-};
 
 std::string number(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
@@ -102,7 +70,7 @@ Row position_heading(std::string title) {
 
 /// The raw row of the first evaluation, and of every further one whose numbers differ.
 template <typename MakeRow>
-void add_raw_rows(Table& table, std::span<const LabelledEvaluation> evaluations, const std::string& name,
+void add_raw_rows(TextTable& table, std::span<const LabelledEvaluation> evaluations, const std::string& name,
                   const MakeRow& make_row) {
   bool any = false;
   for (const auto& [label, evaluation] : evaluations) {
@@ -114,9 +82,9 @@ void add_raw_rows(Table& table, std::span<const LabelledEvaluation> evaluations,
 }
 
 std::string truth_block(std::span<const LabelledEvaluation> evaluations) {
-  Table table(position_heading("against truth"));
-  Table better({"improvement over raw gnss", "Max [%]", "Acc [%]", "Prec [%]", "RMSE [%]", "median [%]",
-                "CEP50 [%]", "CEP95 [%]"});
+  TextTable table(position_heading("against truth"));
+  TextTable better({"improvement over raw gnss", "Max [%]", "Acc [%]", "Prec [%]", "RMSE [%]", "median [%]",
+                    "CEP50 [%]", "CEP95 [%]"});
   add_raw_rows(table, evaluations, "raw gnss", [](const std::string& label, const TruthEvaluation& t) {
     return position_row(label, t.gnss.position);
   });
@@ -133,8 +101,8 @@ std::string truth_block(std::span<const LabelledEvaluation> evaluations) {
 }
 
 std::string track_block(std::span<const LabelledEvaluation> evaluations) {
-  Table table({"along / across track", "n", "along mean [m]", "std [m]", "rms [m]", "across mean [m]",
-               "std [m]", "rms [m]", "heading rms [deg]", "max [deg]"});
+  TextTable table({"along / across track", "n", "along mean [m]", "std [m]", "rms [m]", "across mean [m]",
+                   "std [m]", "rms [m]", "heading rms [deg]", "max [deg]"});
   add_raw_rows(table, evaluations, "raw gnss",
                [](const std::string& label, const TruthEvaluation& t) { return track_row(label, t.gnss); });
   for (const auto& [label, evaluation] : evaluations)
@@ -143,21 +111,21 @@ std::string track_block(std::span<const LabelledEvaluation> evaluations) {
 }
 
 std::string withheld_block(std::span<const LabelledEvaluation> evaluations) {
-  Table table(position_heading("against withheld fixes"));
+  TextTable table(position_heading("against withheld fixes"));
   for (const auto& [label, evaluation] : evaluations)
     if (evaluation.withheld_fixes) table.add(position_row(label, evaluation.withheld_fixes->position));
   return table.empty() ? "" : table.text() + "\n";
 }
 
-void add_innovations(Table& table, const std::string& label, const InnovationStatistics& s) {
+void add_innovations(TextTable& table, const std::string& label, const InnovationStatistics& s) {
   if (s.count + s.undefined == 0) return;
   table.add({label + ", " + to_string(s.kind), std::to_string(s.count), number(s.mean, 3), "2",
              percent(100 * s.fraction_inside), "95", number(s.max, 1), std::to_string(s.undefined)});
 }
 
 std::string innovation_block(std::span<const LabelledEvaluation> evaluations) {
-  Table table({"normalised innovation squared", "n", "mean", "expected", "inside 5.991 [%]", "expected [%]",
-               "max", "undefined"});
+  TextTable table({"normalised innovation squared", "n", "mean", "expected", "inside 5.991 [%]",
+                   "expected [%]", "max", "undefined"});
   for (const auto& [label, evaluation] : evaluations) {
     add_innovations(table, label, evaluation.post_fit);
     add_innovations(table, label, evaluation.gated);
@@ -167,7 +135,7 @@ std::string innovation_block(std::span<const LabelledEvaluation> evaluations) {
 }
 
 std::string count_block(std::span<const LabelledEvaluation> evaluations) {
-  Table table(
+  TextTable table(
       {"epochs", "fixes", "accepted", "rejected", "withheld", "rejected [%]", "matched", "unmatched"});
   for (const auto& [label, e] : evaluations) {
     const double share =

@@ -75,16 +75,20 @@ void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_stopping_options(command, choice);
+  command
+      .add_option("--covariance", choice.covariance, "Covariances to write: of no, the fixes' or all poses")
+      ->check(CLI::IsMember({"none", "fixes", "all"}))
+      ->capture_default_str();
+}
+
+void add_stopping_options(CLI::App& command, OptimizationChoice& choice) {
   command.add_option("--max-iterations", choice.max_iterations, "Give up after so many steps")
       ->check(rule("must be at least 0", at_least_zero))
       ->capture_default_str();
   command
       .add_option("--tolerance", choice.tolerance, "Newton decrement relative to 1 + chi2 that ends the run")
       ->check(rule("must be above 0", [](double x) { return x > 0 && std::isfinite(x); }))
-      ->capture_default_str();
-  command
-      .add_option("--covariance", choice.covariance, "Covariances to write: of no, the fixes' or all poses")
-      ->check(CLI::IsMember({"none", "fixes", "all"}))
       ->capture_default_str();
 }
 

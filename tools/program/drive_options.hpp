@@ -10,5 +10,7 @@ namespace waymark {
 
 void add_drive_options(CLI::App& command, DriveOverrides& overrides);
 void add_optimization_options(CLI::App& command, OptimizationChoice& choice);
+/// Those of them that say when to stop; `bench` has these alone.
+void add_stopping_options(CLI::App& command, OptimizationChoice& choice);
 
 }  // namespace waymark

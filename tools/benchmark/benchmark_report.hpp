@@ -1,0 +1,70 @@
+/// What a benchmark found, file by file: statistics, and the table, CSV and JSON made of them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <waymark/tools/benchmark/known_optima.hpp>
+#include <waymark/tools/benchmark/measure.hpp>
+#include <waymark/tools/benchmark/statistics.hpp>
+
+namespace waymark {
+
+/// The statistics of one cell. Phases are those of its median run, so that they sum to that run's time.
+struct CellSummary {
+  std::string start;
+  std::string name;  ///< of the algorithm or the peer
+  std::string solver;
+  std::string solver_description;
+  bool peer = false;
+  std::vector<double> run_seconds;  ///< every repetition, in order
+  Spread seconds;
+  Spread setup_seconds;  ///< a peer's
+  double structure_seconds = 0;
+  double linearize_seconds = 0;
+  double solve_seconds = 0;
+  double rest_seconds = 0;
+  int iterations = 0;
+  bool converged = false;
+  std::string message;
+  std::vector<std::string> notes;
+  double initial_chi2 = 0;
+  double final_chi2 = 0;
+  std::optional<double> memory_before_mb;
+  std::optional<double> memory_peak_mb;
+  Optimality optimality = Optimality::above;
+  /// Peer's name -> median over the repetitions of (peer's seconds / this cell's seconds in that repetition).
+  std::vector<std::pair<std::string, double>> peer_ratios;
+};
+
+/// All cells of one file.
+struct FileSummary {
+  std::string file;         ///< without folder
+  std::string fingerprint;  ///< of its bytes
+  std::size_t vertices = 0;
+  std::size_t edges = 0;
+  double optimum = 0;
+  bool optimum_listed = false;  ///< false: the lowest chi2 of this run
+  std::vector<CellSummary> cells{};
+};
+
+/// What was asked for, and on what it ran: key, text.
+using BenchmarkHeader = std::vector<std::pair<std::string, std::string>>;
+
+/// The cells that were measured together, in turn. @param cells from measure(), not empty
+[[nodiscard]] std::vector<CellSummary> summarize_cells(const std::string& start,
+                                                       const std::vector<Cell>& cells);
+
+/// Sets the optimum (from the list, else the lowest chi2 of the cells) and judges every cell by it.
+void judge_cells(FileSummary& file, const KnownOptima& known);
+
+/// For the terminal, a table per file; what a reader must know of single cells follows it.
+[[nodiscard]] std::string benchmark_table(const std::vector<FileSummary>& files);
+/// One line per cell; empty fields where something is not known.
+[[nodiscard]] std::string benchmark_csv(const std::vector<FileSummary>& files);
+[[nodiscard]] std::string benchmark_json(const std::vector<FileSummary>& files,
+                                         const BenchmarkHeader& header);
+
+}  // namespace waymark

@@ -1,0 +1,103 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/benchmark/benchmark_report.hpp>
+#include <waymark/tools/evaluation/text_table.hpp>
+
+namespace waymark {
+namespace {
+
+std::string milliseconds(double seconds) {
+  return fmt::format("{:.1f}", 1e3 * seconds);
+}
+
+std::string megabytes(const std::optional<double>& value) {
+  return value ? fmt::format("{:.1f}", *value) : "-";
+}
+
+/// "reached", or how far off: "above by 3.1e-05" of the optimum.
+std::string describe_optimality(const CellSummary& cell, double optimum) {
+  std::string text(to_string(cell.optimality));
+  if (cell.optimality != Optimality::reached && optimum > 0)
+    text += fmt::format(" by {:.2g}", std::abs(cell.final_chi2 / optimum - 1));
+  return text;
+}
+
+/// The peers measured with the file, each once.
+std::vector<std::string> peers_of(const FileSummary& file) {
+  std::vector<std::string> names;
+  for (const CellSummary& cell : file.cells) {
+    if (cell.peer && std::find(names.begin(), names.end(), cell.name) == names.end())
+      names.push_back(cell.name);
+  }
+  return names;
+}
+
+std::string ratio_to(const CellSummary& cell, const std::string& peer) {
+  for (const auto& [name, ratio] : cell.peer_ratios)
+    if (name == peer) return fmt::format("{:.2f}", ratio);
+  return "";
+}
+
+std::string file_table(const FileSummary& file) {
+  const std::vector<std::string> peers = peers_of(file);
+  std::vector<std::string> heading = {"start", "algorithm", "solver",    "its",   "median ms", "min",
+                                      "max",   "structure", "linearise", "solve", "rest"};
+  if (!peers.empty()) heading.emplace_back("setup");
+  heading.insert(heading.end(), {"MB before", "peak", "chi2", "optimum"});
+  for (const std::string& peer : peers) heading.push_back(peer + "/this");
+  TextTable table(std::move(heading));
+  for (const CellSummary& c : file.cells) {
+    std::vector<std::string> row = {c.start,
+                                    c.name,
+                                    c.solver,
+                                    std::to_string(c.iterations) + (c.converged ? "" : "!"),
+                                    milliseconds(c.seconds.median),
+                                    milliseconds(c.seconds.least),
+                                    milliseconds(c.seconds.largest),
+                                    milliseconds(c.structure_seconds),
+                                    milliseconds(c.linearize_seconds),
+                                    milliseconds(c.solve_seconds),
+                                    milliseconds(c.rest_seconds)};
+    if (!peers.empty()) row.push_back(c.peer ? milliseconds(c.setup_seconds.median) : "");
+    row.push_back(megabytes(c.memory_before_mb));
+    row.push_back(megabytes(c.memory_peak_mb));
+    row.push_back(fmt::format("{:.9g}", c.final_chi2));
+    row.push_back(describe_optimality(c, file.optimum));
+    for (const std::string& peer : peers) row.push_back(ratio_to(c, peer));
+    table.add(std::move(row));
+  }
+  return table.text();
+}
+
+/// Each sentence once, however many cells it holds for.
+std::vector<std::string> remarks_of(const FileSummary& file) {
+  std::vector<std::string> remarks;
+  const auto add = [&](std::string text) {
+    if (std::find(remarks.begin(), remarks.end(), text) == remarks.end()) remarks.push_back(std::move(text));
+  };
+  for (const CellSummary& c : file.cells) {
+    for (const std::string& note : c.notes) add("note: " + note);
+    if (c.converged) continue;
+    const std::string who = c.solver.empty() ? c.name : c.name + " with " + c.solver;
+    add("! start " + c.start + ", " + who + ": " + c.message);
+  }
+  return remarks;
+}
+
+}  // namespace
+
+std::string benchmark_table(const std::vector<FileSummary>& files) {
+  std::string text;
+  for (const FileSummary& file : files) {
+    text += fmt::format("{}{}: {} vertices, {} edges; optimum {:.9g} ({})\n", text.empty() ? "" : "\n",
+                        file.file, file.vertices, file.edges, file.optimum,
+                        file.optimum_listed ? "listed" : "lowest chi2 of this run, none is listed");
+    text += file_table(file);
+    for (const std::string& remark : remarks_of(file)) text += remark + "\n";
+  }
+  return text;
+}
+
+}  // namespace waymark

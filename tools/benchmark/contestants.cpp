@@ -1,0 +1,71 @@
+#include <waymark/tools/benchmark/contestants.hpp>
+
+#include <array>
+#include <chrono>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/suggest.hpp>
+#ifdef WAYMARK_HAVE_CERES
+#include <waymark/tools/benchmark/ceres/ceres_peer.hpp>
+#endif
+
+namespace waymark {
+namespace {
+
+constexpr std::array<std::string_view, 2> kPeerNames = {"ceres", "ceres_dogleg"};
+
+RunOutcome run_waymark(Graph& graph, const std::string& algorithm_name, const std::string& solver_name,
+                       const OptimizerOptions& options, const TypeRegistry& registry) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto algorithm = registry.make_algorithm(algorithm_name);
+  const auto solver = registry.make_linear_solver(solver_name);
+  const Summary summary = optimize(graph, *algorithm, *solver, options);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  return {.total_seconds = elapsed.count(),
+          .structure_seconds = summary.structure_seconds,
+          .linearize_seconds = summary.linearize_seconds,
+          .solve_seconds = summary.solve_seconds,
+          .iterations = summary.iterations,
+          .initial_chi2 = summary.initial_chi2,
+          .final_chi2 = summary.final_chi2,
+          .converged = summary.converged(),
+          .message = summary.message,
+          .solver_description = summary.solver,
+          .notes = summary.notes};
+}
+
+}  // namespace
+
+Contestant waymark_contestant(const std::string& algorithm, const std::string& solver,
+                              const OptimizerOptions& options, const TypeRegistry& registry) {
+  (void)registry.make_algorithm(algorithm);
+  (void)registry.make_linear_solver(solver);
+  return {algorithm, solver, false,
+          [=, &registry](Graph& graph) { return run_waymark(graph, algorithm, solver, options, registry); }};
+}
+
+Contestant peer_contestant(std::string_view name, const OptimizerOptions& options) {
+  if (name != kPeerNames[0] && name != kPeerNames[1]) {
+    throw UsageError("unknown peer '" + std::string(name) + "'; there are: " + joined(kPeerNames));
+  }
+#ifdef WAYMARK_HAVE_CERES
+  const CeresOptions ceres{name == "ceres" ? CeresMethod::levenberg_marquardt : CeresMethod::dogleg,
+                           options.max_iterations, options.cancel};
+  return {std::string(name), "", true, [=](Graph& graph) { return optimize_with_ceres(graph, ceres); }};
+#else
+  (void)options;
+  throw UsageError("peer '" + std::string(name) +
+                   "': Ceres was not found when this program was built; install the Debian package "
+                   "libceres-dev and build again");
+#endif
+}
+
+std::vector<std::string> built_in_peers() {
+#ifdef WAYMARK_HAVE_CERES
+  return {ceres_version()};
+#else
+  return {};
+#endif
+}
+
+}  // namespace waymark

@@ -1,0 +1,28 @@
+/// The best chi2 known of benchmark graphs, and whether a result reaches it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace waymark {
+
+/// chi2 by file name without folder.
+using KnownOptima = std::map<std::string, double, std::less<>>;
+
+/// Reads "file,chi2" lines; '#' begins a comment line, the heading `file,chi2` comes first.
+/// @throws InputError "optima.csv:3:10: ..." for anything else, a chi2 below 0 or a file named twice.
+[[nodiscard]] KnownOptima read_known_optima(std::string_view text, const std::string& name);
+
+enum class Optimality {
+  reached,  ///< |chi2 - optimum| <= 1e-6 optimum
+  lower,    ///< below that: the optimum is not what it was taken for
+  above     ///< or not finite
+};
+
+inline constexpr double kOptimumTolerance = 1e-6;  ///< relative
+
+[[nodiscard]] Optimality compare_with_optimum(double chi2, double optimum);
+[[nodiscard]] std::string_view to_string(Optimality optimality);
+
+}  // namespace waymark

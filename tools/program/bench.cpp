@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/suggest.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/tools/benchmark/benchmark_report.hpp>
+#include <waymark/tools/benchmark/contestants.hpp>
+#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/hash.hpp>
+#include <waymark/tools/program/output.hpp>
+
+namespace waymark {
+namespace {
+
+using Names = std::vector<std::string>;
+
+struct BenchOptions {
+  CommonOptions common;
+  OptimizationChoice
+      choice;  ///< the defaults of `optimize`; here only the stopping rules are set from outside
+  Names files;
+  Names algorithms;
+  Names solvers;
+  Names starts = {"file"};
+  Names peers;
+  int repeat = 5;
+  std::string optima;
+  std::string folder;
+};
+
+/// A start puts values into a graph and says how many vertices it did not reach.
+struct Start {
+  std::string_view name;
+  std::size_t (*apply)(Graph& graph);
+};
+constexpr Start kStarts[] = {
+    {"file", [](Graph&) { return std::size_t{0}; }},
+    {"odometry", &start_from_odometry_chain},
+};
+
+/// @throws UsageError for an unknown name.
+const Start& find_start(const std::string& name) {
+  std::vector<std::string_view> known;
+  for (const Start& start : kStarts) {
+    if (start.name == name) return start;
+    known.push_back(start.name);
+  }
+  throw UsageError("unknown start '" + name + "'; there are: " + joined(known));
+}
+
+template <typename Type>
+Names all_names(const RegistryTable<Type>& table) {
+  Names names;
+  for (const auto& entry : table) names.push_back(entry.type.name);
+  return names;
+}
+
+/// Empty: what `optimize` takes; "all": every registered one.
+Names chosen(const Names& asked, const std::string& by_default, const Names& all) {
+  if (asked.empty()) return {by_default};
+  return std::find(asked.begin(), asked.end(), "all") == asked.end() ? asked : all;
+}
+
+std::vector<Contestant> make_contestants(const BenchOptions& options, const TypeRegistry& registry) {
+  OptimizerOptions rules;
+  rules.max_iterations = options.choice.max_iterations;
+  rules.decrement_tolerance = options.choice.tolerance;
+  rules.cancel = &interrupted;
+  const Names all_solvers = all_names(registry.linear_solvers());
+  const std::string& solver = options.choice.solver.empty() ? all_solvers.front() : options.choice.solver;
+  std::vector<Contestant> contestants;
+  for (const std::string& algorithm :
+       chosen(options.algorithms, options.choice.algorithm, all_names(registry.algorithms()))) {
+    for (const std::string& backend : chosen(options.solvers, solver, all_solvers))
+      contestants.push_back(waymark_contestant(algorithm, backend, rules, registry));
+  }
+  for (const std::string& peer : options.peers) contestants.push_back(peer_contestant(peer, rules));
+  return contestants;
+}
+
+/// A file as it was read.
+struct LoadedGraph {
+  std::string name;  ///< without folder
+  std::string fingerprint;
+  Graph graph;
+  bool edges_only = false;
+};
+
+LoadedGraph load(const std::string& path, const TypeRegistry& registry) {
+  const std::string text = read_text_file(path);
+  ReadReport report;
+  GraphDocument document = read_graph(text, path, registry, false, &report);
+  return {std::filesystem::path(path).filename().string(), fnv1a64_hex(text), std::move(document.graph),
+          report.edges_only};
+}
+
+/// All starts of a file. @return nothing when interrupted
+std::optional<FileSummary> bench_file(const std::string& path, const BenchOptions& options,
+                                      std::span<const Contestant> contestants, const TypeRegistry& registry,
+                                      const Console& console) {
+  console.progress("reading " + path);
+  const LoadedGraph loaded = load(path, registry);
+  FileSummary file{loaded.name, loaded.fingerprint, loaded.graph.vertex_count(), loaded.graph.edge_count()};
+  if (loaded.edges_only) console.note("note: " + path + " has edges only: 'file' is the odometry chain");
+  for (const std::string& name : options.starts) {
+    Graph graph = loaded.graph;
+    const std::size_t unreached = find_start(name).apply(graph);
+    if (unreached > 0) {
+      console.note("note: " + path + ", start " + name + ": " + std::to_string(unreached) +
+                   " vertices are not reached and start where they are");
+    }
+    MeasureOptions measuring{options.repeat, &interrupted, [&](const std::string& what) {
+                               console.progress(loaded.name + " from " + name + "  " + what);
+                             }};
+    const std::vector<Cell> cells = measure(graph, contestants, measuring);
+    if (cells.empty()) return std::nullopt;
+    for (CellSummary& cell : summarize_cells(name, cells)) file.cells.push_back(std::move(cell));
+  }
+  return file;
+}
+
+/// "model name : AMD EPYC" of /proc/cpuinfo; a time means nothing without it.
+std::string processor() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);) {
+    if (line.starts_with("model name")) return line.substr(std::min(line.find(':') + 2, line.size()));
+  }
+  return "unknown";
+}
+
+BenchmarkHeader make_header(const BenchOptions& options) {
+  const OptimizationChoice& choice = options.choice;
+  BenchmarkHeader header = {{"waymark", WAYMARK_VERSION},
+                            {"processor", processor()},
+                            {"repetitions", std::to_string(options.repeat)},
+                            {"max_iterations", std::to_string(choice.max_iterations)},
+                            {"decrement_tolerance", fmt::format("{}", choice.tolerance)}};
+  for (const std::string& peer : built_in_peers()) header.emplace_back("peer", peer);
+  return header;
+}
+
+ExitCode bench(const BenchOptions& options) {
+  const Console console(options.common);
+  const TypeRegistry registry = make_registry(options.common);
+  const std::vector<Contestant> contestants = make_contestants(options, registry);
+  for (const std::string& start : options.starts) (void)find_start(start);
+  KnownOptima known;
+  if (!options.optima.empty()) known = read_known_optima(read_text_file(options.optima), options.optima);
+  if (!options.folder.empty()) make_folder(options.folder);
+  // A wrong file at the end of the list is found before the hours are spent.
+  for (std::size_t i = 1; i < options.files.size(); ++i) {
+    console.progress("reading " + options.files[i]);
+    (void)load(options.files[i], registry);
+  }
+
+  std::vector<FileSummary> files;
+  for (const std::string& path : options.files) {
+    auto file = bench_file(path, options, contestants, registry, console);
+    if (!file) break;
+    judge_cells(*file, known);
+    files.push_back(std::move(*file));
+  }
+  if (files.empty()) throw Interrupted();
+  const std::string json = benchmark_json(files, make_header(options));
+  if (!options.folder.empty()) {
+    write_file_atomically(options.folder + "/bench.csv", benchmark_csv(files));
+    write_file_atomically(options.folder + "/bench.json", json);
+  }
+  console.result(options.common.json ? json : benchmark_table(files));
+  if (!interrupted) return kSuccess;
+  console.note("warning: interrupted; only files that were finished are reported");
+  return kInterrupted;
+}
+
+void add_name_list(CLI::App& command, const std::string& flags, Names& names, const std::string& about) {
+  command.add_option(flags, names, about)
+      ->delimiter(',')
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("NAME[,NAME]");
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("bench", "Measure algorithms, solvers and peers on a list of graphs");
+  const auto options = std::make_shared<BenchOptions>();
+  command->add_option("graphs", options->files, ".graph or g2o files")->required();
+  add_name_list(*command, "-a,--algorithm", options->algorithms,
+                "Algorithms, or 'all' (default: that of 'optimize')");
+  add_name_list(*command, "-s,--solver", options->solvers,
+                "Linear solvers, or 'all' (default: that of 'optimize')");
+  add_name_list(*command, "--start", options->starts, "Starts: file (default), odometry");
+  add_name_list(*command, "--peer", options->peers,
+                "Measure in turn with: ceres (Levenberg-Marquardt), ceres_dogleg");
+  command->add_option("--repeat", options->repeat, "Timed runs of each cell")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            int value = 0;
+            const bool number = CLI::detail::lexical_cast(text, value);
+            return number && value >= 1 ? std::string() : "must be at least 1, got " + text;
+          },
+          ""))
+      ->capture_default_str();
+  command
+      ->add_option("--optima", options->optima,
+                   "Known optima, CSV 'file,chi2' (examples/benchmarks/standard_graphs.csv)")
+      ->type_name("FILE");
+  add_stopping_options(*command, options->choice);
+  command->add_option("-o,--out", options->folder, "Folder for bench.csv and bench.json")->type_name("DIR");
+  add_common_options(*command, options->common);
+  command->footer(
+      "A cell that does not converge is marked '!' and does not change the exit code.\n"
+      "Example:\n  waymark bench city10000.g2o intel.g2o --start file,odometry --peer ceres --out results");
+  command->callback([options, &action] { action = [options] { return bench(*options); }; });
+}
+
+}  // namespace waymark
