@@ -23,9 +23,9 @@ struct RunOutcome {
   double initial_chi2 = 0;       ///< not halved, by Waymark's own error functions
   double final_chi2 = 0;
   bool converged = false;
-  std::string message;             ///< why it ended
-  std::string solver_description;  ///< what the solver chose inside
-  std::vector<std::string> notes;  ///< what the reader of the table must know
+  std::string message{};             ///< why it ended
+  std::string solver_description{};  ///< what the solver chose inside
+  std::vector<std::string> notes{};  ///< what the reader of the table must know
 };
 
 struct Contestant {

@@ -157,6 +157,7 @@ ExitCode bench(const BenchOptions& options) {
   }
 
   std::vector<FileSummary> files;
+  console.detail("measuring");
   for (const std::string& path : options.files) {
     auto file = bench_file(path, options, contestants, registry, console);
     if (!file) break;

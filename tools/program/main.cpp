@@ -5,6 +5,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/suggest.hpp>
+#include <waymark/tools/benchmark/contestants.hpp>
 #include <waymark/tools/program/commands.hpp>
 
 namespace waymark {
@@ -26,6 +27,7 @@ std::string version_text() {
   const TypeRegistry registry = make_registry({});
   for (const auto& [solver, origin] : registry.linear_solvers())
     text += "\n  " + solver.name + ": " + solver.license;
+  for (const std::string& peer : built_in_peers()) text += "\n  peer " + peer + ", for comparison";
   return text;
 }
 
