@@ -29,7 +29,8 @@ TEST_CASE("an optimum is reached within a millionth, below it the list is wrong"
   CHECK(compare_with_optimum(100.0002, 100) == Optimality::above);
   CHECK(compare_with_optimum(99.9998, 100) == Optimality::lower);
   CHECK(compare_with_optimum(std::numeric_limits<double>::quiet_NaN(), 100) == Optimality::above);
-  CHECK(compare_with_optimum(0, 0) == Optimality::reached);
+  CHECK(compare_with_optimum(7e-13, 5e-13) == Optimality::reached);
+  CHECK(compare_with_optimum(1e-6, 0) == Optimality::above);
 }
 
 TEST_CASE("phases are those of the median run, ratios are paired run by run") {

@@ -37,7 +37,7 @@ std::vector<std::string> peers_of(const FileSummary& file) {
 std::string ratio_to(const CellSummary& cell, const std::string& peer) {
   for (const auto& [name, ratio] : cell.peer_ratios)
     if (name == peer) return fmt::format("{:.2f}", ratio);
-  return "";
+  return "-";
 }
 
 std::string file_table(const FileSummary& file) {

@@ -1,5 +1,6 @@
 #include <waymark/tools/benchmark/known_optima.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <vector>
@@ -59,8 +60,9 @@ KnownOptima read_known_optima(std::string_view text, const std::string& name) {
 }
 
 Optimality compare_with_optimum(double chi2, double optimum) {
-  if (chi2 < optimum - kOptimumTolerance * optimum) return Optimality::lower;
-  return chi2 <= optimum + kOptimumTolerance * optimum ? Optimality::reached : Optimality::above;
+  const double tolerance = std::max(1e-6 * optimum, 1e-9);
+  if (chi2 < optimum - tolerance) return Optimality::lower;
+  return chi2 <= optimum + tolerance ? Optimality::reached : Optimality::above;
 }
 
 std::string_view to_string(Optimality optimality) {

@@ -15,12 +15,10 @@ using KnownOptima = std::map<std::string, double, std::less<>>;
 [[nodiscard]] KnownOptima read_known_optima(std::string_view text, const std::string& name);
 
 enum class Optimality {
-  reached,  ///< |chi2 - optimum| <= 1e-6 optimum
+  reached,  ///< |chi2 - optimum| <= 1e-6 optimum, or <= 1e-9 where the optimum is next to nothing
   lower,    ///< below that: the optimum is not what it was taken for
   above     ///< or not finite
 };
-
-inline constexpr double kOptimumTolerance = 1e-6;  ///< relative
 
 [[nodiscard]] Optimality compare_with_optimum(double chi2, double optimum);
 [[nodiscard]] std::string_view to_string(Optimality optimality);

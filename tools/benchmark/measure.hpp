@@ -42,7 +42,7 @@ struct Cell {
   std::string solver;
   bool peer = false;
   std::vector<RunOutcome> runs;              ///< one per repetition
-  std::optional<double> memory_before_mb{};  ///< resident before a run: the graph as read and its copy, ...
+  std::optional<double> memory_before_mb{};  ///< resident before a run: the graph and its copy, ...
   std::optional<double> memory_peak_mb{};    ///< ... and the largest during it
 };
 

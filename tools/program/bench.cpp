@@ -97,27 +97,39 @@ LoadedGraph load(const std::string& path, const TypeRegistry& registry) {
           report.edges_only};
 }
 
+/// The starts that differ for this file: one without vertices has no values of its own.
+Names starts_of(const LoadedGraph& loaded, const Names& asked, const Console& console) {
+  Names starts = asked;
+  const bool both = std::find(asked.begin(), asked.end(), "odometry") != asked.end();
+  if (loaded.edges_only) {
+    console.note("note: " + loaded.name + " has edges only: its start 'file' is the odometry chain");
+    if (both) starts.erase(std::remove(starts.begin(), starts.end(), "file"), starts.end());
+  }
+  return starts;
+}
+
 /// All starts of a file. @return nothing when interrupted
 std::optional<FileSummary> bench_file(const std::string& path, const BenchOptions& options,
                                       std::span<const Contestant> contestants, const TypeRegistry& registry,
                                       const Console& console) {
   console.progress("reading " + path);
-  const LoadedGraph loaded = load(path, registry);
+  LoadedGraph loaded = load(path, registry);
   FileSummary file{loaded.name, loaded.fingerprint, loaded.graph.vertex_count(), loaded.graph.edge_count()};
-  if (loaded.edges_only) console.note("note: " + path + " has edges only: 'file' is the odometry chain");
-  for (const std::string& name : options.starts) {
-    Graph graph = loaded.graph;
-    const std::size_t unreached = find_start(name).apply(graph);
+  const std::vector<double> values = loaded.graph.values();
+  for (const std::string& start : starts_of(loaded, options.starts, console)) {
+    loaded.graph.set_values(values);
+    const std::size_t unreached = find_start(start).apply(loaded.graph);
     if (unreached > 0) {
-      console.note("note: " + path + ", start " + name + ": " + std::to_string(unreached) +
+      console.note("note: " + loaded.name + ", start " + start + ": " + std::to_string(unreached) +
                    " vertices are not reached and start where they are");
     }
-    MeasureOptions measuring{options.repeat, &interrupted, [&](const std::string& what) {
-                               console.progress(loaded.name + " from " + name + "  " + what);
-                             }};
-    const std::vector<Cell> cells = measure(graph, contestants, measuring);
+    const std::string what = loaded.name + " from " + start;
+    console.detail("measuring " + what);
+    const MeasureOptions measuring{options.repeat, &interrupted,
+                                   [&](const std::string& run) { console.progress(what + "  " + run); }};
+    const std::vector<Cell> cells = measure(loaded.graph, contestants, measuring);
     if (cells.empty()) return std::nullopt;
-    for (CellSummary& cell : summarize_cells(name, cells)) file.cells.push_back(std::move(cell));
+    for (CellSummary& cell : summarize_cells(start, cells)) file.cells.push_back(std::move(cell));
   }
   return file;
 }
@@ -157,7 +169,6 @@ ExitCode bench(const BenchOptions& options) {
   }
 
   std::vector<FileSummary> files;
-  console.detail("measuring");
   for (const std::string& path : options.files) {
     auto file = bench_file(path, options, contestants, registry, console);
     if (!file) break;
