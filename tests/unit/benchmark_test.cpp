@@ -88,5 +88,5 @@ TEST_CASE("the peak of memory begins anew and sees what was taken and given back
   CHECK(*peak > *before + 45);
   const auto after = restart_peak_memory();
   REQUIRE(after);
-  CHECK(*peak_megabytes() < *before + 25);
+  CHECK(*peak_megabytes() < *after + 25);  // of what is resident then: a sanitizer keeps freed memory
 }
