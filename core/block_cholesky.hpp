@@ -13,6 +13,7 @@
 
 #include <waymark/core/block_symbolic.hpp>
 #include <waymark/core/dense_kernels.hpp>
+#include <waymark/core/large_array.hpp>
 #include <waymark/core/linear_solver.hpp>
 
 namespace waymark {
@@ -42,10 +43,10 @@ class BlockCholesky final : public LinearSolver {
   BlockSymbolic symbolic_;
   const DenseKernels* kernels_ = &dense_kernels();
   ThreadPool* pool_ = nullptr;
-  std::vector<double> factor_;
-  std::vector<double> updates_;
+  LargeArray<double> factor_;
+  LargeArray<double> updates_;
   std::vector<double> vectors_;
-  std::vector<double> work_;
+  LargeArray<double> work_;
 };
 
 }  // namespace waymark

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <waymark/core/dense_kernels.hpp>
+#include <waymark/core/processor.hpp>
 
 // Everything below is inlined into functions that are compiled for one instruction set each.
 #define WAYMARK_INLINE [[gnu::always_inline]] inline
@@ -146,9 +147,8 @@ WAYMARK_KERNELS(avx512, __attribute__((target("avx512f,avx512vl,avx2,fma"))), 8)
 
 const DenseKernels& choose() {
 #if defined(__x86_64__)
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return kKernels_avx512;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kKernels_avx2;
+  if (has_wide_vectors()) return kKernels_avx512;
+  if (has_fused_multiply()) return kKernels_avx2;
 #endif
   return kKernels_portable;
 }

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/edge.hpp>
+#include <waymark/core/large_array.hpp>
 #include <waymark/core/loss.hpp>
 
 namespace waymark {
@@ -35,8 +36,8 @@ struct EdgeRange {
 /// those of the last chunk write anywhere and come after all others. Chunks do not depend on the number of
 /// threads, so sums do not either.
 struct Scatter {
-  std::vector<std::uint32_t> gradient;
-  std::vector<BlockTarget> blocks;
+  LargeArray<std::uint32_t> gradient;
+  LargeArray<BlockTarget> blocks;
   std::vector<EdgeRange> ranges;
   std::vector<std::size_t> chunk{0};  ///< begin of each chunk in `ranges`; one more at the end
 };

@@ -101,11 +101,14 @@ void NormalEquations::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) con
 
 void NormalEquations::retract(const std::vector<double>& values, const Eigen::VectorXd& step,
                               std::vector<double>& moved) const {
-  moved = values;
+  if (moved.size() != values.size()) moved = values;  // what is no unknown never moves
   const BlockPattern& p = pattern();
   for (int j = 0; j < p.columns(); ++j) {
     const VertexIndex v = structure_.vertex_of(j);
-    graph_.vertex_type(v).retract(moved.data() + graph_.offsets()[at(v)], step.data() + p.start[at(j)]);
+    const VertexType& type = graph_.vertex_type(v);
+    const auto offset = at(graph_.offsets()[at(v)]);
+    std::copy_n(values.data() + offset, type.value_size, moved.data() + offset);
+    type.retract(moved.data() + offset, step.data() + p.start[at(j)]);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/graph.hpp>
+#include <waymark/core/large_array.hpp>
 #include <waymark/core/structure.hpp>
 #include <waymark/core/thread_pool.hpp>
 
@@ -41,7 +42,7 @@ class NormalEquations {
   void add_to_diagonal(const Eigen::VectorXd& extra, std::vector<double>& damped) const;
   /// H x, into `product`.
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& product) const;
-  /// values [+] step, into `moved`.
+  /// values [+] step, into `moved`: empty, or earlier filled by this function.
   void retract(const std::vector<double>& values, const Eigen::VectorXd& step,
                std::vector<double>& moved) const;
   /// The vertex that a scalar unknown belongs to.
@@ -56,8 +57,8 @@ class NormalEquations {
   const Graph& graph_;
   const Structure& structure_;
   ThreadPool* pool_ = nullptr;
-  std::vector<double> hessian_;
-  std::vector<double> gradient_;
+  LargeArray<double> hessian_;
+  LargeArray<double> gradient_;
   mutable std::vector<double> sums_;  // per chunk
   mutable Eigen::VectorXd diagonal_;
   mutable bool diagonal_known_ = false;

@@ -6,6 +6,7 @@
 
 #include <waymark/core/dual.hpp>
 #include <waymark/core/edge_batch.hpp>
+#include <waymark/core/processor.hpp>
 #include <waymark/core/unrolled.hpp>
 
 namespace waymark {
@@ -91,6 +92,9 @@ class EdgeBatch final : public EdgeBatchBase {
 
   double linearize(const ValueView& view, const Scatter& scatter, EdgeRange range,
                    const NormalView& normal) const override {
+#if defined(__x86_64__)
+    if (has_fused_multiply()) return linearize_fused(view, scatter, range, normal);
+#endif
     return has_loss() ? linearize_range<true>(view, scatter, range, normal)
                       : linearize_range<false>(view, scatter, range, normal);
   }
@@ -166,9 +170,18 @@ class EdgeBatch final : public EdgeBatchBase {
     return product;
   }
 
+#if defined(__x86_64__)
+  /// The same, compiled for processors with fused multiply-add.
+  [[gnu::target("avx2,fma")]] double linearize_fused(const ValueView& view, const Scatter& scatter,
+                                                     EdgeRange range, const NormalView& normal) const {
+    return has_loss() ? linearize_range<true>(view, scatter, range, normal)
+                      : linearize_range<false>(view, scatter, range, normal);
+  }
+#endif
+
   template <bool kRobust>
-  double linearize_range(const ValueView& view, const Scatter& scatter, EdgeRange range,
-                         const NormalView& normal) const {
+  [[gnu::always_inline]] double linearize_range(const ValueView& view, const Scatter& scatter,
+                                                EdgeRange range, const NormalView& normal) const {
     double sum = 0;
     const std::uint32_t* gradient = scatter.gradient.data() + std::size_t{range.first} * kArity;
     const BlockTarget* blocks = scatter.blocks.data() + std::size_t{range.first} * kPairs;

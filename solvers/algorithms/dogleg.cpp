@@ -22,13 +22,15 @@ class Dogleg final : public Algorithm {
 
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver, double,
                                        Step& step) override {
+    diagonal_ = &equations.diagonal();
     if (fresh_ && !compute_newton(equations, solver)) return ProposalStatus::singular;
     fresh_ = false;
     if (radius_ < 0) radius_ = initial_radius_ * newton_norm_;
     if (radius_ < kMinRadius * newton_norm_) return ProposalStatus::exhausted;
     step.control = radius_;
     if (newton_norm_ <= radius_ && damping_ == 0) {
-      take_newton_step(equations, newton_, step);
+      step.delta = newton_;
+      describe_newton_step(equations, step);
       length_ = newton_norm_;
     } else {
       truncate(equations, step);
@@ -55,17 +57,19 @@ class Dogleg final : public Algorithm {
   static constexpr double kMinRadius = 1e-18;
   static constexpr double kMaxDamping = 1;
 
+  /// D^2: the diagonal of H, but never nothing.
+  [[nodiscard]] auto scale() const { return diagonal_->array().max(floor_); }
+
   // The end of the path. Where H is singular to working precision it comes from the least damped matrix that
   // is not.
   bool compute_newton(const NormalEquations& equations, LinearSolver& solver) {
-    const Eigen::VectorXd& diagonal = equations.diagonal();
-    scale_ = diagonal.cwiseMax(1e-15 * diagonal.maxCoeff());
+    floor_ = 1e-15 * diagonal_->maxCoeff();
     damping_ = 0;
     extra_.resize(0);
     while (solve_step(equations, solver, extra_, scratch_, newton_) != FactorStatus::ok) {
       damping_ = damping_ == 0 ? 1e-12 : damping_ * 100;
       if (damping_ > kMaxDamping) return false;
-      extra_ = damping_ * scale_;
+      extra_ = damping_ * scale().matrix();
     }
     newton_norm_ = scaled_norm(newton_);
     cauchy_norm_ = -1;
@@ -74,7 +78,7 @@ class Dogleg final : public Algorithm {
 
   // Its bend, the minimum along the scaled gradient: only a truncated step needs it.
   void compute_cauchy(const NormalEquations& equations) {
-    cauchy_ = -(equations.gradient().array() / scale_.array()).matrix();
+    cauchy_ = -(equations.gradient().array() / scale()).matrix();
     equations.multiply(cauchy_, product_);
     const double curvature = cauchy_.dot(product_);
     const double slope = -equations.gradient().dot(cauchy_);
@@ -103,8 +107,8 @@ class Dogleg final : public Algorithm {
   /// Where the second leg leaves the trust region: |D (c + t (n - c))| = radius.
   [[nodiscard]] double crossing() const {
     const auto leg = (newton_ - cauchy_).array();
-    const double a = (scale_.array() * leg.square()).sum();
-    const double b = (scale_.array() * cauchy_.array() * leg).sum();
+    const double a = (scale() * leg.square()).sum();
+    const double b = (scale() * cauchy_.array() * leg).sum();
     const double c = radius_ * radius_ - cauchy_norm_ * cauchy_norm_;  // > 0 here
     const double root = std::sqrt(b * b + a * c);
     return b > 0 ? c / (b + root) : (root - b) / a;  // the form without cancellation
@@ -112,12 +116,13 @@ class Dogleg final : public Algorithm {
 
   /// |D v|.
   [[nodiscard]] double scaled_norm(const Eigen::VectorXd& v) const {
-    return std::sqrt((scale_.array() * v.array().square()).sum());
+    return std::sqrt((scale() * v.array().square()).sum());
   }
 
   double initial_radius_;
   std::vector<double> scratch_;
-  Eigen::VectorXd scale_;  // D^2
+  const Eigen::VectorXd* diagonal_ = nullptr;  // of the present H
+  double floor_ = 0;
   Eigen::VectorXd newton_;
   Eigen::VectorXd cauchy_;
   Eigen::VectorXd extra_;

@@ -13,9 +13,9 @@ class GaussNewton final : public Algorithm {
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver, double,
                                        Step& step) override {
     if (failed_) return ProposalStatus::exhausted;
-    if (solve_step(equations, solver, {}, scratch_, newton_) != FactorStatus::ok)
+    if (solve_step(equations, solver, {}, scratch_, step.delta) != FactorStatus::ok)
       return ProposalStatus::singular;
-    take_newton_step(equations, newton_, step);
+    describe_newton_step(equations, step);
     step.control = 0;
     return ProposalStatus::ok;
   }
@@ -26,7 +26,6 @@ class GaussNewton final : public Algorithm {
 
  private:
   std::vector<double> scratch_;
-  Eigen::VectorXd newton_;
   bool failed_ = false;
 };
 

@@ -50,7 +50,8 @@ class LevenbergMarquardt final : public Algorithm {
       if (step.predicted_decrease <= std::min(kLookAhead * tolerance, look_below_)) {
         promised_ = step.predicted_decrease;
         if (solve_step(equations, solver, {}, scratch_, newton_) == FactorStatus::ok) {
-          take_newton_step(equations, newton_, step);
+          step.delta.swap(newton_);
+          describe_newton_step(equations, step);
         }
       }
       return ProposalStatus::ok;
@@ -69,7 +70,8 @@ class LevenbergMarquardt final : public Algorithm {
 
   void rejected(const Step& step, double) override {
     if (step.full_newton) {
-      // It promised more than the model holds for; not before damped steps promise much less is it worth a look.
+      // It promised more than the model holds for; not before damped steps promise much less is it worth a
+      // look.
       look_below_ = 0.01 * promised_;
     } else {
       grow();

@@ -29,10 +29,10 @@ namespace waymark {
   return delta.allFinite() ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
-/// Makes `step` the full Newton step `newton`; its decrement g^T H^-1 g = -g^T d is what the model promises.
-inline void take_newton_step(const NormalEquations& equations, const Eigen::VectorXd& newton, Step& step) {
-  step.delta = newton;
-  step.newton_decrement = -equations.gradient().dot(newton);
+/// Says of a step whose delta is the full Newton step what it is; its decrement g^T H^-1 g = -g^T d is what
+/// the model promises.
+inline void describe_newton_step(const NormalEquations& equations, Step& step) {
+  step.newton_decrement = -equations.gradient().dot(step.delta);
   step.predicted_decrease = step.newton_decrement;
   step.full_newton = true;
   step.kind = "newton";

@@ -19,7 +19,7 @@ struct OptimizationChoice {
   std::string solver;                ///< empty: the first that was built in
   std::vector<std::string> options;  ///< name=value, for the algorithm
   int max_iterations = 500;
-  double tolerance = 1e-10;         ///< decrement_tolerance
+  double tolerance = 1e-6;         ///< decrement_tolerance
   std::string covariance = "none";  ///< none, fixes, all
 };
 

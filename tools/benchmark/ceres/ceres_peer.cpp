@@ -148,6 +148,7 @@ std::unique_ptr<ceres::CostFunction> make_typed_cost(const EdgeBatchBase& batch,
     std::copy_n(next, field.size, field.data(weighted.edge));
     next += field.size;
   }
+  if constexpr (requires { weighted.edge.prepare(); }) weighted.edge.prepare();
   return make_cost<E>(std::move(weighted), std::make_index_sequence<E::Vertices::kSize>());
 }
 

@@ -1,0 +1,52 @@
+/// A growing array of numbers for the largest data of an optimisation, on huge pages where the system gives
+/// them on request: touching fresh memory 4 KB at a time costs more than a factorisation of a chain.
+#pragma once
+
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace waymark {
+
+template <typename T>
+struct LargeAllocator {
+  using value_type = T;
+
+  LargeAllocator() = default;
+  template <typename U>
+  LargeAllocator(const LargeAllocator<U>&) {}
+
+  T* allocate(std::size_t count) {
+    const std::size_t bytes = count * sizeof(T);
+    if (bytes < kHugePage / 2) {
+      if (void* memory = std::malloc(bytes)) return static_cast<T*>(memory);
+      throw std::bad_alloc();
+    }
+    const std::size_t whole = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+    void* memory = std::aligned_alloc(kHugePage, whole);
+    if (memory == nullptr) throw std::bad_alloc();
+#if defined(__linux__)
+    (void)madvise(memory, whole, MADV_HUGEPAGE);  // advice only
+#endif
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t) {
+    std::free(memory);
+  }
+
+  friend bool operator==(const LargeAllocator&, const LargeAllocator&) {
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kHugePage = std::size_t{1} << 21;
+};
+
+template <typename T>
+using LargeArray = std::vector<T, LargeAllocator<T>>;
+
+}  // namespace waymark
