@@ -28,7 +28,7 @@ const Loss* EdgeBatchBase::loss(std::size_t edge) const {
 LossValue EdgeBatchBase::evaluate_loss(std::size_t edge, double squared) const {
   const Loss* chosen = loss(edge);
   if (chosen == nullptr) return {squared, 1, 0};
-  return chosen->evaluate(squared, chosen->scale);
+  return chosen->at(squared);
 }
 
 }  // namespace waymark

@@ -48,7 +48,8 @@ struct ValueView {
   const std::int64_t* offsets = nullptr;  ///< start of each vertex in `values`
 };
 
-/// What linearisation adds to: H += w J^T Omega J, g += w J^T Omega e.
+/// What linearisation adds to: H += J^T (w Omega + second-order term of the loss, robust_information.hpp) J,
+/// g += w J^T Omega e.
 struct NormalView {
   double* hessian = nullptr;
   double* gradient = nullptr;

@@ -2,6 +2,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/gaussian_prior.hpp>
+#include <waymark/core/robust_information.hpp>
 
 namespace waymark {
 
@@ -108,12 +109,15 @@ double GaussianPriorBatch::linearize(const ValueView& view, const Scatter& scatt
     const std::uint32_t* gradient = scatter.gradient.data() + record.first_gradient;
     const BlockTarget* block = scatter.blocks.data() + record.first_block;
     linearize_edge(i, view, e, jacobians);
-    const LossValue loss = evaluate_loss(i, e.dot(record.information * e));
+    const double squared = e.dot(record.information * e);
+    const LossValue loss = evaluate_loss(i, squared);
     sum += loss.rho;
-    const Eigen::MatrixXd information = loss.weight * record.information;
+    const Eigen::MatrixXd information = robust_information(loss, squared, record.information, e);
+    const Eigen::VectorXd weighted_error = loss.weight * (record.information * e);
     for (std::size_t k = 0; k < record.vertices.size(); ++k) {
       const Eigen::MatrixXd left = jacobians[k].transpose() * information;
-      Eigen::Map<Eigen::VectorXd>(normal.gradient + *gradient++, left.rows()) += left * e;
+      Eigen::Map<Eigen::VectorXd>(normal.gradient + *gradient++, left.rows()) +=
+          jacobians[k].transpose() * weighted_error;
       for (std::size_t l = 0; l <= k; ++l, ++block) {
         const Eigen::MatrixXd product = left * jacobians[l];
         const Eigen::MatrixXd& placed = block->stride < 0 ? Eigen::MatrixXd(product.transpose()) : product;

@@ -14,7 +14,7 @@ namespace waymark {
 struct LossValue {
   double rho = 0;
   double weight = 1;     ///< rho'(s), >= 0
-  double curvature = 0;  ///< rho''(s), <= 0; H leaves its term out, so that it stays positive semi-definite
+  double curvature = 0;  ///< rho''(s), <= 0; robust_information.hpp says what H has of it
 };
 
 /// A kind of loss. @param squared s >= 0; @param scale in standard deviations (DCS: Phi, in s), > 0.
@@ -24,13 +24,22 @@ struct LossType {
   std::string formula;  ///< for `waymark info`
 };
 
-/// A loss as attached to an edge or a batch.
+/// A loss as attached to an edge or a batch: m rho(s / m) with the stretch m.
 struct Loss {
   std::string name;
   LossValue (*evaluate)(double squared, double scale) = nullptr;
   double scale = 1;
+  /// Widens any loss by sqrt(m) in standard deviations, whatever its scale means: graduation.hpp narrows it
+  /// to 1. Files know no other.
+  double stretch = 1;
 
-  friend bool operator==(const Loss& a, const Loss& b) { return a.name == b.name && a.scale == b.scale; }
+  [[nodiscard]] LossValue at(double squared) const {
+    const LossValue value = evaluate(squared / stretch, scale);
+    return {stretch * value.rho, value.weight, value.curvature / stretch};
+  }
+  friend bool operator==(const Loss& a, const Loss& b) {
+    return a.name == b.name && a.scale == b.scale && a.stretch == b.stretch;
+  }
 };
 
 /// huber, cauchy, tukey, geman_mcclure, welsch, dcs.

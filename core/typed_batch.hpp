@@ -7,6 +7,7 @@
 #include <waymark/core/dual.hpp>
 #include <waymark/core/edge_batch.hpp>
 #include <waymark/core/processor.hpp>
+#include <waymark/core/robust_information.hpp>
 #include <waymark/core/unrolled.hpp>
 
 namespace waymark {
@@ -133,11 +134,19 @@ class EdgeBatch final : public EdgeBatchBase {
  private:
   using Triangle = std::array<double, kDimension*(kDimension + 1) / 2>;
 
-  static void finish(Record& record, const Eigen::Ref<const Eigen::MatrixXd>& information) {
+  template <typename Derived>
+  static Triangle triangle(const Eigen::MatrixBase<Derived>& matrix) {
+    Triangle lower;
     std::size_t next = 0;
     for (int r = 0; r < kDimension; ++r) {
-      for (int c = 0; c <= r; ++c) record.information[next++] = information(r, c);
+      for (int c = 0; c <= r; ++c) lower[next++] = matrix(r, c);
     }
+    return lower;
+  }
+
+  template <typename Derived>
+  static void finish(Record& record, const Eigen::MatrixBase<Derived>& information) {
+    record.information = triangle(information);
     if constexpr (requires { record.edge.prepare(); }) record.edge.prepare();
   }
 
@@ -205,9 +214,8 @@ class EdgeBatch final : public EdgeBatchBase {
       if constexpr (kRobust) {
         const LossValue loss = evaluate_loss(i, squared);
         sum += loss.rho;
-        Triangle weighted = record.information;
-        for (double& number : weighted) number *= loss.weight;
-        add_part(weighted, loss.weight * weighted_error);
+        const Information linearized = robust_information(loss, squared, square(record), e);
+        add_part(triangle(linearized), loss.weight * weighted_error);
       } else {
         sum += squared;
         add_part(record.information, weighted_error);

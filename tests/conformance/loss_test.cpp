@@ -1,10 +1,14 @@
 // Every registered loss: derivatives by differences, weights in [0, 1], continuity, the formulas of its
 // literature.
 #include <cmath>
+#include <random>
 
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
+#include <waymark/core/edge_selection.hpp>
 #include <waymark/core/normal_equations.hpp>
+#include <waymark/core/robust_information.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"
@@ -158,4 +162,111 @@ TEST_CASE("a loss on one edge leaves the others as they are") {
   const LossType dcs = find("dcs");
   graph.batch(0).set_loss(12, Loss{"dcs", dcs.evaluate, 0.5 * s});
   CHECK(graph.chi2() == Approx(plain - s + dcs.evaluate(s, 0.5 * s).rho).epsilon(1e-12));
+}
+
+namespace {
+
+/// Pseudo-Huber, as a plugin would bring it: 2 k^2 (sqrt(1 + s/k^2) - 1).
+LossValue pseudo_huber(double s, double k) {
+  const double root = std::sqrt(1 + s / (k * k));
+  return {2 * s / (root + 1), 1 / root, -0.5 / (k * k * root * root * root)};
+}
+
+/// The registered losses and one that is not.
+std::vector<LossType> losses_and_a_foreign_one() {
+  std::vector<LossType> result;
+  for (const auto& [loss, origin] : registry().losses()) result.push_back(loss);
+  result.push_back({"pseudo_huber", &pseudo_huber, ""});
+  return result;
+}
+
+/// A Gaussian over one pose: its error is linear in the pose, so nothing but the loss bends chi2.
+Graph gaussian_over_a_pose(const Loss& loss, const Eigen::Vector3d& away) {
+  Graph graph;
+  const VertexIndex v = graph.add_vertex<VertexSe2>(0, {away[0], away[1], away[2]});
+  Eigen::Matrix3d information;
+  information << 4, 1, 0.5, 1, 3, -0.4, 0.5, -0.4, 2;
+  graph.add_edge(gaussian_prior_type(), std::vector<VertexIndex>{v}, std::vector<double>(6, 0.0),
+                 information);
+  graph.batch(0).set_loss(loss);
+  return graph;
+}
+
+Eigen::Matrix3d hessian_of_one_pose(const Graph& graph, Eigen::Vector3d* gradient = nullptr) {
+  Structure structure;
+  structure.build(graph, std::vector<char>(1, 0));
+  NormalEquations equations(graph, structure);
+  equations.linearize(graph.values());
+  if (gradient != nullptr) *gradient = equations.gradient();
+  return Eigen::Map<const Eigen::Matrix3d>(equations.hessian().data());
+}
+
+}  // namespace
+
+TEST_CASE("every loss: H is the true Hessian of chi2 wherever the second-order term is kept") {
+  int kept = 0;
+  for (const LossType& type : losses_and_a_foreign_one()) {
+    for (const double scale : kScales) {
+      for (const double size : {0.02, 0.1, 0.3, 0.7, 1.5}) {
+        const Loss loss{type.name, type.evaluate, scale};
+        const Eigen::Vector3d place = size * Eigen::Vector3d(0.8, -0.5, 0.9);
+        const Graph graph = gaussian_over_a_pose(loss, place);
+        const double s = squared_error(graph, {0, 0});
+        const double factor = curvature_factor(loss.at(s), s);
+        INFO(type.name << " scale " << scale << " s " << s << " factor " << factor);
+        if (factor == 1) continue;  // left out, or no bend here
+        ++kept;
+        Eigen::Matrix3d by_differences;
+        constexpr double kStep = 1e-6;
+        for (int i = 0; i < 3; ++i) {
+          Eigen::Vector3d side[2];
+          for (const int sign : {0, 1}) {
+            const Eigen::Vector3d moved = place + (2 * sign - 1) * kStep * Eigen::Vector3d::Unit(i);
+            (void)hessian_of_one_pose(gaussian_over_a_pose(loss, moved), &side[sign]);
+          }
+          by_differences.col(i) = (side[1] - side[0]) / (2 * kStep);
+        }
+        CHECK(hessian_of_one_pose(graph).isApprox(by_differences, 1e-6));
+      }
+    }
+  }
+  CHECK(kept > 30);
+}
+
+TEST_CASE(
+    "every loss: the information with its second-order term is positive definite wherever the weight is") {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> unit(0, 1);
+  for (const LossType& type : losses_and_a_foreign_one()) {
+    for (const double scale : kScales) {
+      for (const double s : squares(scale)) {
+        Eigen::Matrix3d root;
+        for (double& x : root.reshaped()) x = unit(random);
+        const Eigen::Matrix3d information = root * root.transpose() + 0.1 * Eigen::Matrix3d::Identity();
+        Eigen::Vector3d e(unit(random), unit(random), unit(random));
+        e *= std::sqrt(s / e.dot(information * e));
+        const LossValue loss = type.evaluate(s, scale);
+        const Eigen::Matrix3d robust = robust_information(loss, s, information, e);
+        INFO(type.name << " scale " << scale << " s " << s);
+        const Eigen::Vector3d eigenvalues =
+            Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(robust).eigenvalues();
+        const double weakest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(information).eigenvalues()[0];
+        CHECK(eigenvalues[0] >= loss.weight * kLeastCurvature * weakest * (1 - 1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "every loss: a stretch m turns rho(s) into m rho(s / m), for Geman-McClure the scale into sqrt(m) c") {
+  for (const LossType& type : losses_and_a_foreign_one()) {
+    const Loss stretched{type.name, type.evaluate, 1.3, 9};
+    const LossValue at = stretched.at(7);
+    const LossValue plain = type.evaluate(7.0 / 9, 1.3);
+    CHECK(at.rho == Approx(9 * plain.rho));
+    CHECK(at.weight == plain.weight);
+    CHECK(at.curvature == Approx(plain.curvature / 9));
+  }
+  const LossType type = find("geman_mcclure");
+  CHECK(Loss{"geman_mcclure", type.evaluate, 2, 9}.at(7).rho == Approx(type.evaluate(7, 6).rho));
 }

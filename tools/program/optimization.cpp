@@ -56,7 +56,7 @@ void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry
 }
 
 Summary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
-                          const TypeRegistry& registry, const Console& console) {
+                          const TypeRegistry& registry, const Console& console, const Minimizer& minimize) {
   const auto algorithm = registry.make_algorithm(choice.algorithm, parse_options(choice.options));
   const std::string solver_name =
       choice.solver.empty() ? registry.linear_solvers().front().type.name : choice.solver;
@@ -72,7 +72,7 @@ Summary optimize_document(GraphDocument& document, const OptimizationChoice& cho
       console.progress(fmt::format("iteration {}  chi2 {:.8g}", record.iteration, record.chi2));
     }
   };
-  Summary summary = optimize(document.graph, *algorithm, *solver, options);
+  Summary summary = minimize(document.graph, *algorithm, *solver, options);
   summary.algorithm = choice.algorithm;
   console.end_progress();
   for (const std::string& note : summary.notes) console.note("note: " + note);

@@ -1,6 +1,7 @@
 /// Optimising a document from the command line: options, progress, outcome as text and JSON.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include <waymark/tools/program/exit_codes.hpp>
 
 namespace waymark {
+
+/// How a graph is minimised: optimize() itself, or a search around it (robust.hpp).
+using Minimizer = std::function<Summary(Graph&, Algorithm&, LinearSolver&, const OptimizerOptions&)>;
 
 /// What `optimize` and `run` let the user choose.
 struct OptimizationChoice {
@@ -26,7 +30,8 @@ struct OptimizationChoice {
 /// Optimises; fills document.covariances as asked. Iterations are shown by the console. A result that is no
 /// minimum is said on stderr.
 Summary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
-                          const TypeRegistry& registry, const Console& console);
+                          const TypeRegistry& registry, const Console& console,
+                          const Minimizer& minimize = &optimize);
 
 /// Whether algorithm, its options and solver exist, before anything is read. @throws UsageError
 void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry);

@@ -3,6 +3,7 @@
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/robust.hpp>
 
 namespace waymark {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 struct OptimizeOptions {
   CommonOptions common;
   OptimizationChoice choice;
+  RobustChoice robust;
   std::string input;
   std::string output;
   std::string format = "graph";
@@ -21,6 +23,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
   check_choice(options.choice, registry);
+  check_robust(options.robust, registry);
   require_output_place(options.output);
   ReadReport report;
   console.progress("reading " + options.input);
@@ -37,6 +40,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
         "note: " + std::to_string(report.unreached) +
         " vertices are not reached by relative edges (EDGE_SE2, EDGE_SE2_LOG) and start where they are");
   }
+  attach_losses(document.graph, options.robust, registry);
   const bool g2o = options.format == "g2o";
   if (g2o) check_g2o(document);  // before the work
   if (g2o && (document.frame || !document.fixes.empty())) {
@@ -44,16 +48,30 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   }
   stop_if_interrupted();
 
-  const Summary summary = optimize_document(document, options.choice, registry, console);
+  std::optional<Graduated> graduated;
+  const Minimizer minimizer = options.robust.method == "gnc"
+                                  ? graduating_minimizer(options.robust, registry, graduated)
+                                  : Minimizer(&optimize);
+  const Summary summary = optimize_document(document, options.choice, registry, console, minimizer);
   document.provenance.emplace_back("optimized", describe_optimization(summary));
-  const bool to_stdout = is_stdout(options.output);
+  if (graduated) {
+    document.provenance.emplace_back(
+        "outliers", std::to_string(graduated->result.outliers.size()) + " edges left out by gnc");
+    if (!options.robust.outliers.empty()) {
+      write_file_atomically(options.robust.outliers, graduated->outlier_lines);
+    }
+  }
+  const bool to_stdout = is_stdout(options.output) || is_stdout(options.robust.outliers);
   write_file_atomically(options.output, [&](const TextSink& sink) {
     g2o ? write_g2o(document, sink) : write_graph(document, registry, sink);
   });
   if (options.common.json) {
-    console.result(json_text(summary_json(summary)), to_stdout);
+    nlohmann::ordered_json json = summary_json(summary);
+    if (graduated) json["graduation"] = graduation_json(*graduated);
+    console.result(json_text(json), to_stdout);
   } else {
-    console.result(summary_text(summary) + "written     " + options.output + "\n", to_stdout);
+    const std::string outliers = graduated ? graduation_text(graduated->result) : "";
+    console.result(summary_text(summary) + outliers + "written     " + options.output + "\n", to_stdout);
   }
   return exit_code(summary);
 }
@@ -73,6 +91,7 @@ void add_optimize(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");
   add_optimization_options(*command, options->choice);
+  add_robust_options(*command, options->robust);
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark optimize drive.graph -o fused.graph --algorithm dogleg");
   command->callback([options, &action] { action = [options] { return optimize_file(*options); }; });
