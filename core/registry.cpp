@@ -69,6 +69,9 @@ void TypeRegistry::add_gnss_modeling(GnssModelingType type) {
 void TypeRegistry::add_log_reader(LogReaderType type) {
   add(log_readers_, std::move(type), origin_, "log reader");
 }
+void TypeRegistry::add_start(StartType type) {
+  add(starts_, std::move(type), origin_, "start");
+}
 
 const VertexType* TypeRegistry::find_vertex(std::string_view tag) const {
   return find(vertices_, tag);
@@ -86,6 +89,9 @@ const LogReader* TypeRegistry::find_log_reader(std::string_view name) const {
 
 std::unique_ptr<LinearSolver> TypeRegistry::make_linear_solver(std::string_view name) const {
   return require(linear_solvers_, name, "linear solver").make();
+}
+InitialValues TypeRegistry::make_start(std::string_view name, const Graph& graph) const {
+  return require(starts_, name, "start").make(graph);
 }
 std::unique_ptr<Algorithm> TypeRegistry::make_algorithm(std::string_view name, const Options& options) const {
   return require(algorithms_, name, "algorithm").make(options);

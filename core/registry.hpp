@@ -13,6 +13,7 @@
 #include <waymark/core/log_reader.hpp>
 #include <waymark/core/loss.hpp>
 #include <waymark/core/modeling.hpp>
+#include <waymark/core/start.hpp>
 #include <waymark/core/typed_batch.hpp>
 #include <waymark/core/vertex.hpp>
 
@@ -50,6 +51,7 @@ class TypeRegistry {
   void add_odometry_model(OdometryModelType type);
   void add_gnss_modeling(GnssModelingType type);
   void add_log_reader(LogReaderType type);
+  void add_start(StartType type);
   template <Vertex V>
   void add_vertex() {
     add_vertex(make_vertex_type<V>());
@@ -67,6 +69,7 @@ class TypeRegistry {
 
   /// Each throws UsageError for an unknown name, listing the names that exist.
   [[nodiscard]] std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) const;
+  [[nodiscard]] InitialValues make_start(std::string_view name, const Graph& graph) const;
   [[nodiscard]] std::unique_ptr<Algorithm> make_algorithm(std::string_view name,
                                                           const Options& options = {}) const;
   [[nodiscard]] std::unique_ptr<OdometryModel> make_odometry_model(std::string_view name,
@@ -82,6 +85,7 @@ class TypeRegistry {
   [[nodiscard]] const RegistryTable<OdometryModelType>& odometry_models() const { return odometry_models_; }
   [[nodiscard]] const RegistryTable<GnssModelingType>& gnss_modelings() const { return gnss_modelings_; }
   [[nodiscard]] const RegistryTable<LogReaderType>& log_readers() const { return log_readers_; }
+  [[nodiscard]] const RegistryTable<StartType>& starts() const { return starts_; }
 
  private:
   std::string origin_ = "waymark";
@@ -93,6 +97,7 @@ class TypeRegistry {
   RegistryTable<OdometryModelType> odometry_models_;
   RegistryTable<GnssModelingType> gnss_modelings_;
   RegistryTable<LogReaderType> log_readers_;
+  RegistryTable<StartType> starts_;
 };
 
 /// Registers what core itself brings: the run-time-arity Gaussian prior and the robust losses.

@@ -40,7 +40,7 @@ struct ReadReport {
   std::size_t skipped = 0;
   std::vector<std::string> examples;  ///< messages of the first ten
   bool edges_only = false;            ///< the file had no vertices; they were made along the odometry chain
-  std::size_t unreached = 0;  ///< those of them that the chain does not reach: they start at the origin
+  std::size_t apart = 0;  ///< those of them not joined to the first: each part of them starts at the origin
 };
 
 /// The schema of an edge type as the TYPE line states it: "vertices=A,B fields=measured:3 information=3
@@ -48,6 +48,7 @@ struct ReadReport {
 [[nodiscard]] std::string describe_schema(const EdgeType& type);
 
 /// Reads a .graph text (first line `GRAPH 1`) or a plain g2o SE(2) file (any other first line).
+/// A plain g2o file without vertices gets them along the registered start "odometry".
 /// @param name      for messages
 /// @param lenient   skip wrong lines and count them instead of failing at the first
 /// @throws InputError "run.graph:812:17: EDGE_SE2: expected a number for 'information[2]', got 'abc'"
@@ -71,11 +72,5 @@ void write_g2o(const GraphDocument& document, const TextSink& sink);
 
 /// @throws UsageError naming what g2o cannot express.
 void check_g2o(const GraphDocument& document);
-
-/// Gives poses to the vertices of an SE(2) graph from its relative edges (EDGE_SE2, EDGE_SE2_LOG): from the
-/// first vertex that has one, which keeps its pose, along the chain of consecutive vertices, then by breadth
-/// first search over the remaining edges. Fixed vertices stay where they are. Returns how many vertices were
-/// not reached; these keep their values.
-std::size_t start_from_odometry_chain(Graph& graph);
 
 }  // namespace waymark

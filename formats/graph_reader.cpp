@@ -48,7 +48,7 @@ class GraphReader {
         if (tag.vertex == nullptr) read_statement(line, tag);
       });
     }
-    if (report_.edges_only) report_.unreached = start_from_odometry_chain(document_.graph);
+    if (report_.edges_only) place_along_odometry();
     if (document_.graph.vertex_count() == 0) throw InputError(name_ + ": no vertices in it");
     return std::move(document_);
   }
@@ -66,6 +66,12 @@ class GraphReader {
     const EdgeType* edge = nullptr;
     std::size_t lines = 0;  // counted by the first pass
   };
+
+  void place_along_odometry() {
+    InitialValues start = registry_.make_start("odometry", document_.graph);
+    report_.apart = start.apart;
+    if (!start.values.empty()) document_.graph.set_values(std::move(start.values));
+  }
 
   void read_first_line() {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // the byte order mark of some editors
@@ -220,7 +226,9 @@ class GraphReader {
     }
     if (is_one_of(tag, kToroTags)) {
       line.fail("tag " + quote_word(tag) +
-                " of TORO, whose files are not read (order and meaning of their numbers differ)");
+                " of TORO or GTSAM, which are not guessed (order and meaning of their numbers differ); a "
+                "TORO file is "
+                "read with --input-format toro");
     }
     line.fail("unknown tag " + quote_word(tag) + "; if a plugin defines it, load it with --plugin");
   }

@@ -1,5 +1,6 @@
 #include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/register.hpp>
+#include <waymark/types_se2/start/starts.hpp>
 
 namespace waymark {
 
@@ -11,6 +12,9 @@ void register_se2_types(TypeRegistry& registry) {
   registry.add_edge<EdgeGnssPosition>();
   registry.add_edge<EdgePriorSe2>();
   registry.add_edge<EdgeSe2Xy>();
+  registry.add_start(linear_start());  // the first one is what the default configuration prefers
+  registry.add_start(spanning_tree_start());
+  registry.add_start(odometry_start());
 }
 
 }  // namespace waymark

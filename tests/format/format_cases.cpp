@@ -33,7 +33,7 @@ std::string outcome(const fs::path& input) {
                                               has_part(input, "lenient"), &report);
     std::string text =
         has_part(input, "to_g2o") ? write_g2o(document) : write_graph(document, test_registry());
-    if (report.edges_only) text += "edges only, " + std::to_string(report.unreached) + " not reached\n";
+    if (report.edges_only) text += "edges only, " + std::to_string(report.apart) + " apart\n";
     if (report.skipped > 0) text += "skipped " + std::to_string(report.skipped) + "\n";
     for (const std::string& example : report.examples) text += example + "\n";
     return text;

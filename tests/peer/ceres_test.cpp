@@ -16,6 +16,7 @@ TEST_CASE("peer: Ceres ends at the same minima") {
 #include <fstream>
 #include <iostream>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 #include <ceres/ceres.h>
@@ -23,6 +24,7 @@ TEST_CASE("peer: Ceres ends at the same minima") {
 
 #include <waymark/core/optimizer.hpp>
 #include <waymark/formats/graph_document.hpp>
+#include <waymark/formats/toro.hpp>
 
 #include "support/paths.hpp"
 #include "support/problems.hpp"
@@ -163,10 +165,12 @@ double minimise_with_ceres(const Graph& graph, std::vector<double>& poses) {
   return 2 * summary.final_cost;
 }
 
-void check_same_minimum(Graph graph) {
+/// @param figure what the minimum is, where the caller knows
+void check_same_minimum(Graph graph, std::optional<double> figure = {}) {
   const TypeRegistry registry = waymark_test::full_registry();
   std::vector<double> poses;
   const double peer = minimise_with_ceres(graph, poses);
+  if (figure) CHECK(peer == Approx(*figure).epsilon(1e-7));
   const Summary summary =
       optimize(graph, *registry.make_algorithm("dogleg"), *registry.make_linear_solver("eigen"), {});
   INFO(summary.message);
@@ -177,15 +181,21 @@ void check_same_minimum(Graph graph) {
   CHECK(graph.chi2() == Approx(peer).epsilon(1e-9));
 }
 
-void check_file(const char* name) {
-  std::ifstream file(waymark_test::shared_data_dir() / "graphs" / (std::string(name) + ".g2o"));
+/// A file of the shared data, or nothing, which is then said.
+std::optional<std::string> load(const std::string& name) {
+  std::ifstream file(waymark_test::shared_data_dir() / "graphs" / name);
   if (!file) {
-    std::cout << "SKIPPED: " << name << ".g2o is not in the shared data\n";
-    return;
+    std::cout << "SKIPPED: " << name << " is not in the shared data\n";
+    return std::nullopt;
   }
   std::ostringstream text;
   text << file.rdbuf();
-  check_same_minimum(read_graph(text.str(), name, waymark_test::full_registry()).graph);
+  return text.str();
+}
+
+void check_file(const char* name) {
+  const auto text = load(std::string(name) + ".g2o");
+  if (text) check_same_minimum(read_graph(*text, name, waymark_test::full_registry()).graph);
 }
 
 }  // namespace
@@ -208,6 +218,20 @@ TEST_CASE("peer: Ceres ends at the same minimum of ring, for which no figure is 
 
 TEST_CASE("peer: Ceres ends at the same minimum of manhattanOlson3500, for which no figure is published") {
   check_file("manhattanOlson3500");
+}
+
+TEST_CASE("peer: Ceres ends at the same minimum of MIT from the linear start, below every published figure") {
+  const auto text = load("MIT.g2o");
+  if (!text) return;
+  const TypeRegistry registry = waymark_test::full_registry();
+  Graph graph = read_graph(*text, "MIT", registry).graph;
+  graph.set_values(registry.make_start("linear", graph).values);
+  check_same_minimum(graph, 41.163269);
+}
+
+TEST_CASE("peer: Ceres ends at the same minimum of fr079, for which no figure is published") {
+  const auto text = load("fr079_toro.graph");
+  if (text) check_same_minimum(read_toro(*text, "fr079", waymark_test::full_registry()).graph, 37.599116);
 }
 
 TEST_CASE(

@@ -133,7 +133,54 @@ TEST_CASE("a file of edges only is started along its chain, and that is said") {
   CHECK(contains(result.err, "note: the file has edges only; started along the odometry chain\n"));
   CHECK(contains(read_text(folder + "b.graph"), "VERTEX_SE2 2 2 0 0\n"));
   const std::string apart = write_text(folder + "apart.g2o", edges + "EDGE_SE2 7 8 1 0 0 1 0 0 1 0 1\n");
-  CHECK(contains(run({"optimize", apart, "-o", folder + "c.graph"}).err, "note: 2 vertices are not reached"));
+  CHECK(contains(run({"optimize", apart, "-o", folder + "c.graph"}).err,
+                 "note: 2 vertices are not joined to the first"));
+}
+
+TEST_CASE("a TORO file is read where asked for, and never guessed") {
+  const std::string folder = fresh_folder();
+  const std::string input =
+      write_text(folder + "a.graph", "VERTEX2 0 0 0 0\nVERTEX2 1 9 9 0\nEDGE2 0 1 1 0 0 4 1 2 3 0 0\n");
+  const RunResult guessed = run({"optimize", input, "-o", folder + "b.graph"});
+  CHECK(guessed.code == 3);
+  CHECK(contains(guessed.err, "a TORO file is read with --input-format toro"));
+  CHECK(run({"optimize", input, "-o", folder + "b.graph", "--input-format", "toro"}).code == 0);
+  CHECK(contains(read_text(folder + "b.graph"), "EDGE_SE2 0 1 1 0 0 4 1 0 2 0 3\n"));
+}
+
+TEST_CASE("the start is chosen, and what was chosen is said") {
+  // The square's corners lie on one heap in the file: any start that reads the edges is exact.
+  const std::string folder = fresh_folder();
+  const std::string edges =
+      "EDGE_SE2 0 1 1 0 1.5707963267948966 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 1.5707963267948966 1 0 0 1 0 1\n"
+      "EDGE_SE2 2 3 1 0 1.5707963267948966 1 0 0 1 0 1\nEDGE_SE2 3 0 1 0 1.5707963267948966 1 0 0 1 0 1\n";
+  std::string text;
+  for (const char* id : {"0", "1", "2", "3"}) text += "VERTEX_SE2 " + std::string(id) + " 0 0 0\n";
+  const std::string input = write_text(folder + "a.g2o", text + edges);
+  for (const std::string start : {"linear", "spanning_tree", "odometry"}) {
+    const RunResult result = run({"optimize", input, "-o", folder + "b.graph", "--start", start, "--json"});
+    INFO(start << result.err);
+    CHECK(result.code == 0);
+    const auto json = nlohmann::json::parse(result.out);
+    CHECK(json.at("start") == start);
+    CHECK(json.at("initial_chi2") < 1e-20);
+  }
+  const RunResult by_default = run({"optimize", input, "-o", folder + "b.graph", "--json"});
+  const auto json = nlohmann::json::parse(by_default.out);
+  CHECK(json.at("starts").at(0).at("start") == json.at("start"));
+  CHECK(json.at("final_chi2") < 1e-12);
+  const RunResult as_is = run({"optimize", input, "-o", folder + "b.graph", "--start", "file", "--json"});
+  CHECK(nlohmann::json::parse(as_is.out).at("initial_chi2") > 1);
+  const RunResult unknown = run({"optimize", input, "-o", folder + "c.graph", "--start", "best"});
+  CHECK(unknown.code == 2);
+  CHECK(unknown.err ==
+        "waymark: error: unknown start 'best'; there are: auto file linear spanning_tree odometry\n");
+  const std::string alone = write_text(folder + "alone.g2o", "VERTEX_SE2 0 0 0 0\n");
+  const RunResult none = run({"optimize", alone, "-o", folder + "c.graph", "--start", "odometry"});
+  CHECK(none.code == 3);
+  CHECK(
+      contains(none.err, "start odometry cannot be made: no edge gives the motion from one pose to another"));
+  CHECK_FALSE(exists(folder + "c.graph"));
 }
 
 TEST_CASE("check names what is wrong with a graph, up to ten lines of it") {

@@ -31,31 +31,19 @@ struct BenchOptions {
   std::string folder;
 };
 
-/// A start puts values into a graph and says how many vertices it did not reach.
-struct Start {
-  std::string_view name;
-  std::size_t (*apply)(Graph& graph);
-};
-constexpr Start kStarts[] = {
-    {"file", [](Graph&) { return std::size_t{0}; }},
-    {"odometry", &start_from_odometry_chain},
-};
-
-/// @throws UsageError for an unknown name.
-const Start& find_start(const std::string& name) {
-  std::vector<std::string_view> known;
-  for (const Start& start : kStarts) {
-    if (start.name == name) return start;
-    known.push_back(start.name);
-  }
-  throw UsageError("unknown start '" + name + "'; there are: " + joined(known));
-}
-
 template <typename Type>
 Names all_names(const RegistryTable<Type>& table) {
   Names names;
   for (const auto& entry : table) names.push_back(entry.type.name);
   return names;
+}
+
+/// @throws UsageError for an unknown name.
+void check_start(const std::string& name, const TypeRegistry& registry) {
+  std::vector<std::string_view> known{"file"};
+  for (const auto& [start, origin] : registry.starts()) known.push_back(start.name);
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  throw UsageError("unknown start '" + name + "'; there are: " + joined(known));
 }
 
 /// Empty: what `optimize` takes; "all": every registered one.
@@ -68,6 +56,7 @@ std::vector<Contestant> make_contestants(const BenchOptions& options, const Type
   OptimizerOptions rules;
   rules.max_iterations = options.choice.max_iterations;
   rules.decrement_tolerance = options.choice.tolerance;
+  rules.threads = options.choice.threads;
   rules.cancel = &interrupted;
   const Names all_solvers = all_names(registry.linear_solvers());
   const std::string& solver = options.choice.solver.empty() ? all_solvers.front() : options.choice.solver;
@@ -97,6 +86,19 @@ LoadedGraph load(const std::string& path, const TypeRegistry& registry) {
           report.edges_only};
 }
 
+/// Puts the values of a start into the graph. @throws InputError where it cannot be made
+void apply_start(const std::string& name, LoadedGraph& loaded, const TypeRegistry& registry,
+                 const Console& console) {
+  if (name == "file") return;
+  InitialValues start = registry.make_start(name, loaded.graph);
+  if (start.values.empty()) {
+    throw InputError(loaded.name + ": start " + name + " cannot be made: " + start.note);
+  }
+  loaded.graph.set_values(std::move(start.values));
+  if (start.apart > 0)
+    console.note("note: " + loaded.name + ", start " + name + ": " + apart_note(start.apart));
+}
+
 /// The starts that differ for this file: one without vertices has no values of its own.
 Names starts_of(const LoadedGraph& loaded, const Names& asked, const Console& console) {
   Names starts = asked;
@@ -118,11 +120,7 @@ std::optional<FileSummary> bench_file(const std::string& path, const BenchOption
   const std::vector<double> values = loaded.graph.values();
   for (const std::string& start : starts_of(loaded, options.starts, console)) {
     loaded.graph.set_values(values);
-    const std::size_t unreached = find_start(start).apply(loaded.graph);
-    if (unreached > 0) {
-      console.note("note: " + loaded.name + ", start " + start + ": " + std::to_string(unreached) +
-                   " vertices are not reached and start where they are");
-    }
+    apply_start(start, loaded, registry, console);
     const std::string what = loaded.name + " from " + start;
     console.detail("measuring " + what);
     const MeasureOptions measuring{options.repeat, &interrupted,
@@ -158,7 +156,7 @@ ExitCode bench(const BenchOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
   const std::vector<Contestant> contestants = make_contestants(options, registry);
-  for (const std::string& start : options.starts) (void)find_start(start);
+  for (const std::string& start : options.starts) check_start(start, registry);
   KnownOptima known;
   if (!options.optima.empty()) known = read_known_optima(read_text_file(options.optima), options.optima);
   if (!options.folder.empty()) make_folder(options.folder);
@@ -206,7 +204,8 @@ void add_bench(CLI::App& app, Action& action) {
                 "Algorithms, or 'all' (default: that of 'optimize')");
   add_name_list(*command, "-s,--solver", options->solvers,
                 "Linear solvers, or 'all' (default: that of 'optimize')");
-  add_name_list(*command, "--start", options->starts, "Starts: file (default), odometry");
+  add_name_list(*command, "--start", options->starts,
+                "Starts: file (default), and those that `waymark info` lists");
   add_name_list(*command, "--peer", options->peers,
                 "Measure in turn with: ceres (Levenberg-Marquardt), ceres_dogleg");
   command->add_option("--repeat", options->repeat, "Timed runs of each cell")

@@ -83,6 +83,10 @@ void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
 }
 
 void add_stopping_options(CLI::App& command, OptimizationChoice& choice) {
+  command
+      .add_option("--threads", choice.threads, "Threads to work with; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
   command.add_option("--max-iterations", choice.max_iterations, "Give up after so many steps")
       ->check(rule("must be at least 0", at_least_zero))
       ->capture_default_str();

@@ -55,6 +55,9 @@ Json registry_json(const TypeRegistry& registry) {
                                {"origin", origin},
                                {"description", type.description + "; licence " + type.license}});
   }
+  for (const auto& [type, origin] : registry.starts()) {
+    json["starts"].push_back({{"name", type.name}, {"origin", origin}, {"description", type.description}});
+  }
   for (const auto& [type, origin] : registry.losses()) {
     json["losses"].push_back(
         {{"name", type.name}, {"origin", origin}, {"description", "rho(s) = " + type.formula}});
@@ -65,7 +68,8 @@ Json registry_json(const TypeRegistry& registry) {
   }
   json["graph_formats"] = {
       {{"name", "graph"}, {"origin", "waymark"}, {"description", "GRAPH 1; read and written"}},
-      {{"name", "g2o"}, {"origin", "waymark"}, {"description", "g2o SE(2); read and written"}}};
+      {{"name", "g2o"}, {"origin", "waymark"}, {"description", "g2o SE(2); read and written"}},
+      {{"name", "toro"}, {"origin", "waymark"}, {"description", "TORO SE(2); read where asked for"}}};
   json["trajectory_formats"] = {
       {{"name", "csv"}, {"origin", "waymark"}, {"description", "written; every column"}},
       {{"name", "tum"}, {"origin", "waymark"}, {"description", "written, read as truth; for evo"}},

@@ -32,6 +32,41 @@ std::vector<VertexIndex> covariance_vertices(const GraphDocument& document, cons
   return vertices;
 }
 
+constexpr std::string_view kAutoStart = "auto";
+constexpr std::string_view kFileStart = "file";
+
+void check_start(const std::string& start, const TypeRegistry& registry) {
+  std::string names = fmt::format("{} {}", kAutoStart, kFileStart);
+  bool known = start == kAutoStart || start == kFileStart;
+  for (const auto& [type, origin] : registry.starts()) {
+    known = known || start == type.name;
+    names += " " + type.name;
+  }
+  if (!known) throw UsageError("unknown start '" + start + "'; there are: " + names);
+}
+
+/// From the start that was asked for. A search for outliers begins at the values at hand: chi2 over all edges
+/// says nothing about a start where some of them are false.
+MultiStartSummary optimize_from(const std::string& start, Graph& graph, const TypeRegistry& registry,
+                                Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options,
+                                const Minimizer& minimize) {
+  if (start == kAutoStart && !minimize) {
+    return optimize_from_best_start(graph, registry.starts(), algorithm, solver, options);
+  }
+  InitialValues made;
+  if (start != kFileStart && start != kAutoStart) {
+    made = registry.make_start(start, graph);
+    if (made.values.empty()) throw InputError("start " + start + " cannot be made: " + made.note);
+    graph.set_values(std::move(made.values));
+  }
+  MultiStartSummary result;
+  result.summary = (minimize ? minimize : Minimizer(&optimize))(graph, algorithm, solver, options);
+  result.start = start == kAutoStart ? kFileStart : start;
+  result.total_seconds = result.summary.total_seconds;
+  if (made.apart > 0) result.summary.notes.push_back(apart_note(made.apart));
+  return result;
+}
+
 nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
@@ -53,10 +88,12 @@ Options parse_options(const std::vector<std::string>& pairs) {
 void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry) {
   (void)registry.make_algorithm(choice.algorithm, parse_options(choice.options));
   if (!choice.solver.empty()) (void)registry.make_linear_solver(choice.solver);
+  check_start(choice.start, registry);
 }
 
-Summary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
-                          const TypeRegistry& registry, const Console& console, const Minimizer& minimize) {
+MultiStartSummary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
+                                    const TypeRegistry& registry, const Console& console,
+                                    const Minimizer& minimize) {
   const auto algorithm = registry.make_algorithm(choice.algorithm, parse_options(choice.options));
   const std::string solver_name =
       choice.solver.empty() ? registry.linear_solvers().front().type.name : choice.solver;
@@ -64,6 +101,7 @@ Summary optimize_document(GraphDocument& document, const OptimizationChoice& cho
   OptimizerOptions options;
   options.max_iterations = choice.max_iterations;
   options.decrement_tolerance = choice.tolerance;
+  options.threads = choice.threads;
   options.cancel = &interrupted;
   options.observer = [&](const IterationRecord& record) {
     if (console.verbosity() > 0) {
@@ -72,7 +110,9 @@ Summary optimize_document(GraphDocument& document, const OptimizationChoice& cho
       console.progress(fmt::format("iteration {}  chi2 {:.8g}", record.iteration, record.chi2));
     }
   };
-  Summary summary = minimize(document.graph, *algorithm, *solver, options);
+  MultiStartSummary result =
+      optimize_from(choice.start, document.graph, registry, *algorithm, *solver, options, minimize);
+  Summary& summary = result.summary;
   summary.algorithm = choice.algorithm;
   console.end_progress();
   for (const std::string& note : summary.notes) console.note("note: " + note);
@@ -90,12 +130,20 @@ Summary optimize_document(GraphDocument& document, const OptimizationChoice& cho
       if (!blocks[i].isZero(0)) document.covariances.push_back({vertices[i], blocks[i]});
     }
   }
-  return summary;
+  return result;
 }
 
-std::string describe_optimization(const Summary& summary) {
-  return fmt::format("waymark {} algorithm {} solver {} {}", WAYMARK_VERSION, summary.algorithm,
-                     summary.solver, to_string(summary.termination));
+std::string describe_optimization(const MultiStartSummary& result) {
+  const Summary& summary = result.summary;
+  return fmt::format("waymark {} algorithm {} start {} solver {} {}", WAYMARK_VERSION, summary.algorithm,
+                     result.start, summary.solver, to_string(summary.termination));
+}
+
+std::string apart_note(std::size_t vertices) {
+  return fmt::format(
+      "{} vertices are not joined to the first one by relative edges; each part begins at its own "
+      "first vertex",
+      vertices);
 }
 
 ExitCode exit_code(const Summary& summary) {
@@ -103,21 +151,26 @@ ExitCode exit_code(const Summary& summary) {
   return summary.converged() ? kSuccess : kNotConverged;
 }
 
-std::string summary_text(const Summary& s) {
+std::string summary_text(const MultiStartSummary& result) {
+  const Summary& s = result.summary;
   std::string text;
   text += fmt::format("{}\n", s.message);
   text += fmt::format("chi2        {:.10g} -> {:.10g}   (errors: {})\n", s.initial_chi2, s.final_chi2,
                       s.error_forms);
-  text += fmt::format("iterations  {}   algorithm {}, solver {}, ordering {}\n", s.iterations, s.algorithm,
-                      s.solver, s.ordering);
+  text += fmt::format("iterations  {}   start {}, algorithm {}, solver {}, ordering {}\n", s.iterations,
+                      result.start, s.algorithm, s.solver, s.ordering);
   text += fmt::format("size        {} vertices, {} edges, {} unknowns, {} numbers in the factor\n",
                       s.vertices, s.edges, s.unknowns, s.factor_size);
   text += fmt::format("time        {:.3f} s (structure {:.3f}, linearise {:.3f}, solve {:.3f})\n",
                       s.total_seconds, s.structure_seconds, s.linearize_seconds, s.solve_seconds);
+  if (result.trials.size() > 1) {
+    text += fmt::format("all starts  {:.3f} s for {} of them\n", result.total_seconds, result.trials.size());
+  }
   return text;
 }
 
-nlohmann::ordered_json summary_json(const Summary& s) {
+nlohmann::ordered_json summary_json(const MultiStartSummary& result) {
+  const Summary& s = result.summary;
   nlohmann::ordered_json json = {{"termination", to_string(s.termination)},
                                  {"converged", s.converged()},
                                  {"message", s.message},
@@ -125,6 +178,7 @@ nlohmann::ordered_json summary_json(const Summary& s) {
                                  {"final_chi2", number_or_null(s.final_chi2)},
                                  {"error_forms", s.error_forms},
                                  {"iterations", s.iterations},
+                                 {"start", result.start},
                                  {"algorithm", s.algorithm},
                                  {"solver", s.solver},
                                  {"ordering", s.ordering},
@@ -137,6 +191,15 @@ nlohmann::ordered_json summary_json(const Summary& s) {
                                  {"solve_seconds", s.solve_seconds},
                                  {"total_seconds", s.total_seconds},
                                  {"notes", s.notes}};
+  json["starts"] = nlohmann::ordered_json::array();
+  for (const StartTrial& trial : result.trials) {
+    json["starts"].push_back({{"start", trial.start},
+                              {"termination", to_string(trial.termination)},
+                              {"initial_chi2", number_or_null(trial.initial_chi2)},
+                              {"final_chi2", number_or_null(trial.final_chi2)},
+                              {"iterations", trial.iterations},
+                              {"seconds", trial.seconds}});
+  }
   json["records"] = nlohmann::ordered_json::array();
   for (const IterationRecord& r : s.records) {
     json["records"].push_back({{"iteration", r.iteration},

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <waymark/core/optimizer.hpp>
+#include <waymark/core/multi_start.hpp>
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/tools/program/console.hpp>
 #include <waymark/tools/program/exit_codes.hpp>
@@ -19,25 +19,31 @@ using Minimizer = std::function<Summary(Graph&, Algorithm&, LinearSolver&, const
 
 /// What `optimize` and `run` let the user choose.
 struct OptimizationChoice {
+  std::string start = "file";  ///< "auto", "file" or the name of a registered start
   std::string algorithm = "dogleg";
   std::string solver;                ///< empty: the first that was built in
   std::vector<std::string> options;  ///< name=value, for the algorithm
+  int threads = 1;
   int max_iterations = 500;
   double tolerance = 1e-6;         ///< decrement_tolerance
   std::string covariance = "none";  ///< none, fixes, all
 };
 
 /// Optimises; fills document.covariances as asked. Iterations are shown by the console. A result that is no
-/// minimum is said on stderr.
-Summary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
-                          const TypeRegistry& registry, const Console& console,
-                          const Minimizer& minimize = &optimize);
+/// minimum is said on stderr. @param minimize instead of optimize(). @throws InputError where the start asked
+/// for cannot be made
+MultiStartSummary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
+                                    const TypeRegistry& registry, const Console& console,
+                                    const Minimizer& minimize = {});
 
-/// Whether algorithm, its options and solver exist, before anything is read. @throws UsageError
+/// Whether start, algorithm, its options and solver exist, before anything is read. @throws UsageError
 void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry);
 
 /// What the header of an optimised graph says of it.
-[[nodiscard]] std::string describe_optimization(const Summary& summary);
+[[nodiscard]] std::string describe_optimization(const MultiStartSummary& result);
+
+/// What the user is told of vertices that are not joined to the rest.
+[[nodiscard]] std::string apart_note(std::size_t vertices);
 
 /// 0, 4 or 130.
 [[nodiscard]] ExitCode exit_code(const Summary& summary);
@@ -46,8 +52,8 @@ void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry
 [[nodiscard]] Options parse_options(const std::vector<std::string>& pairs);
 
 /// A few lines for the terminal.
-[[nodiscard]] std::string summary_text(const Summary& summary);
+[[nodiscard]] std::string summary_text(const MultiStartSummary& result);
 /// The same and the iterations, for --json.
-[[nodiscard]] nlohmann::ordered_json summary_json(const Summary& summary);
+[[nodiscard]] nlohmann::ordered_json summary_json(const MultiStartSummary& result);
 
 }  // namespace waymark

@@ -1,5 +1,6 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
+#include <waymark/formats/toro.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/output.hpp>
@@ -14,8 +15,8 @@ struct OptimizeOptions {
   RobustChoice robust;
   std::string input;
   std::string output;
+  std::string input_format = "graph";
   std::string format = "graph";
-  std::string start = "file";
   bool lenient = false;
 };
 
@@ -27,19 +28,16 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   require_output_place(options.output);
   ReadReport report;
   console.progress("reading " + options.input);
-  GraphDocument document =
-      read_graph(read_text_file(options.input), options.input, registry, options.lenient, &report);
+  const std::string text = read_text_file(options.input);
+  GraphDocument document = options.input_format == "toro"
+                               ? read_toro(text, options.input, registry)
+                               : read_graph(text, options.input, registry, options.lenient, &report);
   if (report.skipped > 0) {
     console.note("warning: " + std::to_string(report.skipped) + " lines were skipped; the first ones:");
     for (const std::string& example : report.examples) console.note("  " + example);
   }
   if (report.edges_only) console.note("note: the file has edges only; started along the odometry chain");
-  if (options.start == "odometry") report.unreached = start_from_odometry_chain(document.graph);
-  if (report.unreached > 0) {
-    console.note(
-        "note: " + std::to_string(report.unreached) +
-        " vertices are not reached by relative edges (EDGE_SE2, EDGE_SE2_LOG) and start where they are");
-  }
+  if (report.apart > 0) console.note("note: " + apart_note(report.apart));
   attach_losses(document.graph, options.robust, registry);
   const bool g2o = options.format == "g2o";
   if (g2o) check_g2o(document);  // before the work
@@ -51,9 +49,10 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   std::optional<Graduated> graduated;
   const Minimizer minimizer = options.robust.method == "gnc"
                                   ? graduating_minimizer(options.robust, registry, graduated)
-                                  : Minimizer(&optimize);
-  const Summary summary = optimize_document(document, options.choice, registry, console, minimizer);
-  document.provenance.emplace_back("optimized", describe_optimization(summary));
+                                  : Minimizer();
+  const MultiStartSummary result =
+      optimize_document(document, options.choice, registry, console, minimizer);
+  document.provenance.emplace_back("optimized", describe_optimization(result));
   if (graduated) {
     document.provenance.emplace_back(
         "outliers", std::to_string(graduated->result.outliers.size()) + " edges left out by gnc");
@@ -66,14 +65,14 @@ ExitCode optimize_file(const OptimizeOptions& options) {
     g2o ? write_g2o(document, sink) : write_graph(document, registry, sink);
   });
   if (options.common.json) {
-    nlohmann::ordered_json json = summary_json(summary);
+    nlohmann::ordered_json json = summary_json(result);
     if (graduated) json["graduation"] = graduation_json(*graduated);
     console.result(json_text(json), to_stdout);
   } else {
     const std::string outliers = graduated ? graduation_text(graduated->result) : "";
-    console.result(summary_text(summary) + outliers + "written     " + options.output + "\n", to_stdout);
+    console.result(summary_text(result) + outliers + "written     " + options.output + "\n", to_stdout);
   }
-  return exit_code(summary);
+  return exit_code(result.summary);
 }
 
 }  // namespace
@@ -83,13 +82,21 @@ void add_optimize(CLI::App& app, Action& action) {
   const auto options = std::make_shared<OptimizeOptions>();
   command->add_option("graph", options->input, ".graph or g2o file")->required();
   command->add_option("-o,--output", options->output, "File to write ('-': standard output)")->required();
+  command
+      ->add_option("--input-format", options->input_format,
+                   "graph (also reads g2o), or toro, which cannot be told from GTSAM's files")
+      ->check(CLI::IsMember({"graph", "toro"}))
+      ->capture_default_str();
   command->add_option("--format", options->format, "Format to write")
       ->check(CLI::IsMember({"graph", "g2o"}))
       ->capture_default_str();
-  command->add_option("--start", options->start, "Start from the file's values or from the odometry chain")
-      ->check(CLI::IsMember({"file", "odometry"}))
+  options->choice.start = "auto";
+  command
+      ->add_option("--start", options->choice.start,
+                   "Where to begin: 'file' (its values), a start that `waymark info` lists, or 'auto': what "
+                   "promises most, and others where the minimum found is implausible")
       ->capture_default_str();
-  command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");
+  command->add_flag("--lenient", options->lenient, "Skip and count wrong lines (not with TORO)");
   add_optimization_options(*command, options->choice);
   add_robust_options(*command, options->robust);
   add_common_options(*command, options->common);

@@ -20,7 +20,7 @@ struct RunOptions {
 /// One modeling of the drive: graph, optimum, evaluation, files.
 struct ModelingRun {
   LabelledEvaluation evaluation;
-  Summary summary;
+  MultiStartSummary result;
   std::vector<std::string> files;
 };
 
@@ -35,8 +35,8 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, c
     run.files.push_back(name);
   };
   write(prefix + ".graph");
-  run.summary = optimize_document(document, options.choice, registry, console);
-  document.provenance.emplace_back("optimized", describe_optimization(run.summary));
+  run.result = optimize_document(document, options.choice, registry, console);
+  document.provenance.emplace_back("optimized", describe_optimization(run.result));
   write(prefix + ".fused.graph");
   for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
   run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth)};
@@ -65,11 +65,11 @@ ExitCode run_drive(const RunOptions& options) {
   ExitCode code = kSuccess;
   for (const std::string& modeling : loaded.modelings) {
     ModelingRun run = run_modeling(options, loaded, modeling, registry, console, header);
-    text += run_line(modeling, run.summary);
-    summaries[modeling] = summary_json(run.summary);
+    text += run_line(modeling, run.result.summary);
+    summaries[modeling] = summary_json(run.result);
     evaluations.push_back(std::move(run.evaluation));
     files.insert(files.end(), run.files.begin(), run.files.end());
-    if (exit_code(run.summary) != kSuccess) code = exit_code(run.summary);
+    if (exit_code(run.result.summary) != kSuccess) code = exit_code(run.result.summary);
     if (code == kInterrupted) break;
   }
   const std::string metrics_file = options.folder + "/metrics.json";

@@ -1,0 +1,34 @@
+/// The key workload of the convergence tables: a drive of 105,000 poses, written by `make_drive.py DIR`; the
+/// environment variable WAYMARK_KEY_WORKLOAD names DIR.
+#pragma once
+
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include <waymark/formats/graph_document.hpp>
+
+namespace waymark_test {
+
+inline constexpr waymark::VertexId kFirstGnssNode = 1000000;  ///< G2's and G3's nodes take ids from here
+
+/// Under "G1", "G2" or "G3", dead-reckoned, in UTM coordinates. Nothing where it is absent, which is then
+/// said.
+[[nodiscard]] inline std::optional<waymark::Graph> key_workload(const std::string& modeling,
+                                                                const waymark::TypeRegistry& registry) {
+  const char* folder = std::getenv("WAYMARK_KEY_WORKLOAD");
+  const std::string name = "drive_" + modeling + "_utm_h0.g2o";
+  std::ifstream file(std::string(folder != nullptr ? folder : ".") + "/" + name, std::ios::binary);
+  if (!file) {
+    std::cout << "SKIPPED: WAYMARK_KEY_WORKLOAD names no folder with " << name << '\n';
+    return std::nullopt;
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  return waymark::read_graph(text.str(), name, registry).graph;
+}
+
+}  // namespace waymark_test

@@ -1,0 +1,253 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <waymark/core/structure.hpp>
+#include <waymark/types_se2/start/least_squares.hpp>
+#include <waymark/types_se2/start/relations.hpp>
+#include <waymark/types_se2/start/starts.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
+
+namespace waymark {
+namespace {
+
+using namespace linear_start_detail;
+
+std::size_t at(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+Complex complex(const Eigen::Vector2d& v) {
+  return {v[0], v[1]};
+}
+
+/// Sets of vertices joined by relations; the name of a set is its first vertex.
+class Parts {
+ public:
+  explicit Parts(std::size_t vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+  [[nodiscard]] VertexIndex of(VertexIndex v) {
+    while (parent_[at(v)] != v) v = parent_[at(v)] = parent_[at(parent_[at(v)])];
+    return v;
+  }
+  void join(VertexIndex a, VertexIndex b) {
+    const VertexIndex ra = of(a);
+    const VertexIndex rb = of(b);
+    parent_[at(std::max(ra, rb))] = std::min(ra, rb);
+  }
+
+ private:
+  std::vector<VertexIndex> parent_;
+};
+
+/// One aspect of the graph (headings or positions): which free vertices its relations join, and to what.
+struct Aspect {
+  explicit Aspect(std::size_t vertices) : parts(vertices), related(vertices, 0), anchored(vertices, 0) {}
+  Parts parts;
+  std::vector<char> related;   ///< per vertex: some relation speaks of it
+  std::vector<char> anchored;  ///< per part's first vertex: a relation ties it to what is known
+};
+
+class LinearStart {
+ public:
+  explicit LinearStart(const Graph& graph)
+      : graph_(graph),
+        relations_(planar_relations(graph)),
+        headings_(graph.vertex_count()),
+        positions_(graph.vertex_count()),
+        fixed_by_places_(graph.vertex_count(), 0),
+        c_(graph.vertex_count()),
+        p_(graph.vertex_count()) {}
+
+  InitialValues make() {
+    InitialValues start;
+    find_parts();
+    find_order();
+    centre_ = find_centre();
+    read_values();
+    if (!solve_headings()) {
+      start.note = "the edges do not determine all headings";
+    } else if (!solve_positions()) {
+      start.note = "the edges do not determine all positions";
+    } else {
+      start.values = values();
+    }
+    return start;
+  }
+
+ private:
+  [[nodiscard]] bool known(VertexIndex v) const { return v == Relation::kWorld || graph_.fixed(v); }
+  [[nodiscard]] bool is_pose(VertexIndex v) const { return graph_.vertex_type(v).tag == VertexSe2::kTag; }
+
+  void note(Aspect& aspect, const Relation& relation) {
+    for (const VertexIndex v : {relation.from, relation.to}) {
+      if (!known(v)) aspect.related[at(v)] = 1;
+    }
+    if (!known(relation.from) && !known(relation.to)) aspect.parts.join(relation.from, relation.to);
+  }
+
+  void anchor(Aspect& aspect, const Relation& relation) {
+    if (known(relation.from) == known(relation.to)) return;
+    aspect.anchored[at(aspect.parts.of(known(relation.from) ? relation.to : relation.from))] = 1;
+  }
+
+  void find_parts() {
+    for (const Relation& relation : relations_) {
+      if (relation.heading_weight > 0) note(headings_, relation);
+      if (relation.position_weight > 0) note(positions_, relation);
+    }
+    for (const Relation& relation : relations_) {
+      if (relation.heading_weight > 0) anchor(headings_, relation);
+      if (relation.position_weight > 0) anchor(positions_, relation);
+    }
+    // A place without a heading: the headings of its part must come from the positions.
+    for (const Relation& relation : relations_) {
+      if (relation.heading_weight > 0 || !(relation.position_weight > 0)) continue;
+      if (known(relation.from) == known(relation.to)) continue;
+      fixed_by_places_[at(positions_.parts.of(known(relation.from) ? relation.to : relation.from))] = 1;
+    }
+  }
+
+  /// One elimination order of the free vertices, for both systems.
+  void find_order() {
+    std::vector<std::vector<int>> above(
+        c_.size());  // per vertex its neighbours before it: the upper triangle
+    for (const Relation& relation : relations_) {
+      if (known(relation.from) || known(relation.to)) continue;
+      const VertexIndex first = std::min(relation.from, relation.to);
+      above[at(std::max(relation.from, relation.to))].push_back(first);
+    }
+    std::vector<std::int64_t> begin{0};
+    std::vector<int> rows;
+    for (std::vector<int>& column : above) {
+      std::sort(column.begin(), column.end());
+      column.erase(std::unique(column.begin(), column.end()), column.end());
+      rows.insert(rows.end(), column.begin(), column.end());
+      begin.push_back(static_cast<std::int64_t>(rows.size()));
+    }
+    const std::vector<char> dense(c_.size(), 0);
+    order_ = order_blocks(begin, rows, dense).order;
+  }
+
+  [[nodiscard]] bool in_places(VertexIndex v) {
+    return !known(v) && fixed_by_places_[at(positions_.parts.of(v))] != 0;
+  }
+
+  /// Some known place: numbers relative to it keep their digits where the frame's origin is far away.
+  [[nodiscard]] Complex find_centre() const {
+    for (const Relation& relation : relations_) {
+      if (!(relation.position_weight > 0) || !known(relation.from)) continue;
+      if (relation.from == Relation::kWorld) return complex(relation.translation);
+      const auto pose = graph_.value(relation.from);
+      return complex(Eigen::Vector2d(pose[0], pose[1]) + rotate(pose[2], relation.translation));
+    }
+    return 0;
+  }
+
+  void read_values() {
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(c_.size()); ++v) {
+      const auto value = graph_.value(v);
+      if (graph_.vertex_type(v).position == nullptr) continue;
+      p_[at(v)].value = Complex(value[0], value[1]) - centre_;
+      if (is_pose(v)) c_[at(v)].value = std::polar(1.0, value[2]);
+    }
+  }
+
+  [[nodiscard]] Quantity c(VertexIndex v) const {
+    return v == Relation::kWorld ? Quantity{-1, 1} : c_[at(v)];
+  }
+  [[nodiscard]] Quantity p(VertexIndex v) const {
+    return v == Relation::kWorld ? Quantity{-1, -centre_} : p_[at(v)];
+  }
+
+  bool solve_headings() {
+    LeastSquares<Complex> system;
+    // Whose headings the positions see at least in part.
+    std::vector<char> seen(c_.size(), 0);
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(c_.size()); ++v) {
+      if (headings_.related[at(v)] && in_places(v)) seen[at(headings_.parts.of(v))] = 1;
+    }
+    for (const VertexIndex v : order_) {
+      if (in_places(v) && positions_.related[at(v)]) p_[at(v)].index = system.add_unknown();
+      if (!headings_.related[at(v)]) continue;
+      const VertexIndex part = headings_.parts.of(v);
+      const bool held = v == part && !headings_.anchored[at(part)] && !seen[at(part)];
+      if (!held) c_[at(v)].index = system.add_unknown();
+    }
+    for (const Relation& r : relations_) {
+      if (r.heading_weight > 0) {
+        system.add_equation<2>(r.heading_weight, {1, -std::polar(1.0, r.turn)}, {c(r.to), c(r.from)});
+      }
+      const bool placed = in_places(r.to) || (r.from != Relation::kWorld && in_places(r.from));
+      if (r.position_weight > 0 && placed) {
+        system.add_equation<4>(r.position_weight, {1, complex(r.lever), -1, -complex(r.translation)},
+                               {p(r.to), c(r.to), p(r.from), c(r.from)});
+      }
+    }
+    const auto solution = system.solve();
+    if (!solution) return false;
+    for (Quantity& c : c_) {
+      if (c.index < 0) continue;
+      const Complex relaxed = (*solution)[at(c.index)];
+      if (!(std::abs(relaxed) > kVanished)) return false;
+      c = {-1, relaxed / std::abs(relaxed)};
+    }
+    for (Quantity& p : p_) p.index = -1;
+    return true;
+  }
+
+  bool solve_positions() {
+    LeastSquares<double> system;
+    for (const VertexIndex v : order_) {
+      if (!positions_.related[at(v)]) continue;
+      const VertexIndex part = positions_.parts.of(v);
+      if (v != part || positions_.anchored[at(part)]) p_[at(v)].index = system.add_unknown();
+    }
+    for (const Relation& r : relations_) {
+      if (!(r.position_weight > 0)) continue;
+      const Complex offset = c(r.from).value * complex(r.translation) - c(r.to).value * complex(r.lever);
+      system.add_equation<2>(r.position_weight, {1, -1}, {p(r.to), p(r.from)}, offset);
+    }
+    const auto solution = system.solve();
+    if (!solution) return false;
+    for (Quantity& p : p_) {
+      if (p.index >= 0) p.value = (*solution)[at(p.index)];
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::vector<double> values() const {
+    std::vector<double> values = graph_.values();
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(p_.size()); ++v) {
+      double* value = values.data() + graph_.offsets()[at(v)];
+      if (!graph_.fixed(v) && positions_.related[at(v)]) {
+        value[0] = (p_[at(v)].value + centre_).real();
+        value[1] = (p_[at(v)].value + centre_).imag();
+      }
+      if (!graph_.fixed(v) && headings_.related[at(v)]) value[2] = std::arg(c_[at(v)].value);
+    }
+    return values;
+  }
+
+  /// A relaxed heading shorter than this points nowhere.
+  static constexpr double kVanished = 1e-6;
+
+  const Graph& graph_;
+  std::vector<Relation> relations_;
+  Aspect headings_;
+  Aspect positions_;
+  std::vector<char> fixed_by_places_;  // per position part's first vertex
+  std::vector<VertexIndex> order_;
+  Complex centre_ = 0;
+  std::vector<Quantity> c_;  // per vertex
+  std::vector<Quantity> p_;  // per vertex, relative to centre_
+};
+
+}  // namespace
+
+StartType linear_start() {
+  return {"linear",
+          "headings from a linear system (anchored by positions where there are any), then positions",
+          [](const Graph& graph) { return LinearStart(graph).make(); }};
+}
+
+}  // namespace waymark

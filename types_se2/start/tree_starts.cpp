@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <queue>
+#include <tuple>
+
+#include <waymark/types_se2/start/relations.hpp>
+#include <waymark/types_se2/start/starts.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
+
+namespace waymark {
+namespace {
+
+std::size_t at(VertexIndex v) {
+  return static_cast<std::size_t>(v);
+}
+
+/// A motion as seen from one of its ends.
+struct Branch {
+  VertexIndex to = -1;
+  Pose2<double> motion;
+  double heading_variance = 0;
+};
+
+/// Grows poses over a graph: each is placed once, from one that is placed already.
+class Tree {
+ public:
+  explicit Tree(const Graph& graph)
+      : graph_(graph),
+        values_(graph.values()),
+        branches_(graph.vertex_count()),
+        placed_(graph.vertex_count()) {
+    for (const Relation& relation : planar_relations(graph)) {
+      if (relation.from == Relation::kWorld) continue;
+      if (!relation.is_motion()) {
+        if (graph.vertex_type(relation.to).tag == VertexXy::kTag) sightings_.push_back(relation);
+        continue;
+      }
+      const Pose2<double> motion(relation.translation, relation.turn);
+      const double variance = 1 / relation.heading_weight;
+      branches_[at(relation.from)].push_back({relation.to, motion, variance});
+      branches_[at(relation.to)].push_back({relation.from, inverse(motion), variance});
+    }
+  }
+
+  [[nodiscard]] const std::vector<Branch>& branches(VertexIndex v) const { return branches_[at(v)]; }
+  [[nodiscard]] bool placed(VertexIndex v) const { return placed_[at(v)] != 0; }
+  [[nodiscard]] VertexIndex vertex_count() const { return static_cast<VertexIndex>(placed_.size()); }
+
+  /// The vertices that parts may begin at: fixed ones first, then by insertion order.
+  [[nodiscard]] std::vector<VertexIndex> roots() const {
+    std::vector<VertexIndex> roots;
+    for (const bool fixed : {true, false}) {
+      for (VertexIndex v = 0; v < vertex_count(); ++v) {
+        if (!branches(v).empty() && graph_.fixed(v) == fixed) roots.push_back(v);
+      }
+    }
+    return roots;
+  }
+
+  /// Begins a part of the graph: the vertex stays where it is.
+  void begin_at(VertexIndex root) { placed_[at(root)] = 1; }
+
+  void grow(VertexIndex from, const Branch& branch) {
+    placed_[at(branch.to)] = 1;
+    if (graph_.fixed(branch.to)) return;
+    const double* base = value(from);
+    const Pose2<double> pose = compose(Pose2<double>(base[0], base[1], base[2]), branch.motion);
+    double* moved = value(branch.to);
+    moved[0] = pose.position[0];
+    moved[1] = pose.position[1];
+    moved[2] = wrap_angle(pose.heading);
+  }
+
+  /// Puts the points where the first placed pose saw them.
+  void place_points() {
+    for (const Relation& sighting : sightings_) {
+      if (placed(sighting.to) || !placed(sighting.from)) continue;
+      placed_[at(sighting.to)] = 1;
+      if (graph_.fixed(sighting.to)) continue;
+      const double* pose = value(sighting.from);
+      const Eigen::Vector2d offset = rotate(pose[2], sighting.translation);
+      value(sighting.to)[0] = pose[0] + offset[0];
+      value(sighting.to)[1] = pose[1] + offset[1];
+    }
+  }
+
+  /// Free poses that could be placed and are not yet.
+  [[nodiscard]] std::size_t waiting() const {
+    std::size_t count = 0;
+    for (VertexIndex v = 0; v < vertex_count(); ++v) {
+      count += !placed(v) && !branches(v).empty() && !graph_.fixed(v) ? 1 : 0;
+    }
+    return count;
+  }
+
+  std::vector<double> take_values() { return std::move(values_); }
+
+ private:
+  [[nodiscard]] double* value(VertexIndex v) { return values_.data() + graph_.offsets()[at(v)]; }
+
+  const Graph& graph_;
+  std::vector<double> values_;
+  std::vector<std::vector<Branch>> branches_;
+  std::vector<char> placed_;
+  std::vector<Relation> sightings_;
+};
+
+/// Along the vertices next in number, both ways from the root, then by the fewest edges.
+void spread_along_chain(Tree& tree, VertexIndex root) {
+  std::vector<VertexIndex> queue{root};
+  for (const VertexIndex direction : {1, -1}) {
+    bool on = true;
+    for (VertexIndex v = root; on; v += direction) {
+      const auto& branches = tree.branches(v);
+      const auto next = std::find_if(branches.begin(), branches.end(), [&](const Branch& branch) {
+        return branch.to == v + direction && !tree.placed(branch.to);
+      });
+      on = next != branches.end();
+      if (!on) break;
+      tree.grow(v, *next);
+      queue.push_back(next->to);
+    }
+  }
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const VertexIndex from = queue[next];
+    for (const Branch& branch : tree.branches(from)) {
+      if (tree.placed(branch.to)) continue;
+      tree.grow(from, branch);
+      queue.push_back(branch.to);
+    }
+  }
+}
+
+/// Dijkstra's tree of the least heading variance from the root.
+void spread_by_heading(Tree& tree, VertexIndex root) {
+  struct Reach {
+    double variance;
+    std::size_t number;  // in order of discovery: equal variances are settled by it
+    VertexIndex from;
+    const Branch* branch;
+  };
+  const auto later = [](const Reach& a, const Reach& b) {
+    return std::tie(a.variance, a.number) > std::tie(b.variance, b.number);
+  };
+  std::priority_queue<Reach, std::vector<Reach>, decltype(later)> open(later);
+  std::size_t number = 0;
+  const auto discover = [&](VertexIndex from, double variance) {
+    for (const Branch& branch : tree.branches(from)) {
+      if (!tree.placed(branch.to)) open.push({variance + branch.heading_variance, number++, from, &branch});
+    }
+  };
+  discover(root, 0);
+  while (!open.empty()) {
+    const Reach reach = open.top();
+    open.pop();
+    if (tree.placed(reach.branch->to)) continue;
+    tree.grow(reach.from, *reach.branch);
+    discover(reach.branch->to, reach.variance);
+  }
+}
+
+InitialValues grow_tree(const Graph& graph, void (*spread)(Tree&, VertexIndex)) {
+  InitialValues start;
+  Tree tree(graph);
+  bool first = true;
+  for (const VertexIndex root : tree.roots()) {
+    if (tree.placed(root)) continue;
+    tree.begin_at(root);
+    spread(tree, root);
+    if (first) start.apart = tree.waiting();
+    first = false;
+  }
+  if (first) {
+    start.note = "no edge gives the motion from one pose to another";
+    return start;
+  }
+  tree.place_points();
+  start.values = tree.take_values();
+  return start;
+}
+
+}  // namespace
+
+StartType odometry_start() {
+  return {"odometry", "relative edges chained along consecutive vertices",
+          [](const Graph& graph) { return grow_tree(graph, spread_along_chain); }};
+}
+
+StartType spanning_tree_start() {
+  return {"spanning_tree", "relative edges chained along the tree of least heading variance",
+          [](const Graph& graph) { return grow_tree(graph, spread_by_heading); }};
+}
+
+}  // namespace waymark
