@@ -119,7 +119,7 @@ TEST_CASE("From dead reckoning no failure passes for a success") {
       CHECK(document.graph.chi2() == Approx(summary.final_chi2).epsilon(1e-9));
       if (!summary.converged()) continue;
       // Declared converged: no step from here promises more than the tolerance.
-      CHECK(solve(document, "gauss_newton", registry).final_chi2 == Approx(summary.final_chi2).epsilon(1e-6));
+      CHECK(solve(document, "gauss_newton", registry).final_chi2 == Approx(summary.final_chi2).epsilon(1e-5));
     }
   }
 }
