@@ -483,7 +483,8 @@ void BlockCholesky::for_each_subtree(Work work) {
 void BlockCholesky::analyze(const BlockPattern& pattern) {
   symbolic_ = analyze_blocks(pattern);
   const auto streams = static_cast<std::int64_t>(symbolic_.subtrees.size()) + 1;
-  factor_.assign(at(symbolic_.factor_size + kSlack), 0.0);
+  factor_.resize(at(symbolic_.factor_size + kSlack));
+  std::fill(factor_.end() - kSlack, factor_.end(), 0.0);
   updates_.assign(at(symbolic_.update_size + kSlack), 0.0);
   vectors_.assign(at(symbolic_.vector_size), 0.0);
   work_.assign(at(symbolic_.start.back() + streams * (symbolic_.largest_front + kSlack)), 0.0);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <Eigen/Eigenvalues>
@@ -84,8 +85,9 @@ Components describe_components(const Graph& graph) {
   // At least a metre: below, a turn of the component means only turning its poses.
   for_each_position(graph, result, [&](std::size_t c, const Eigen::Vector2d& position) {
     RigidMotionView::Place& place = result.places[c];
-    place.extent = std::max(place.extent, (position - place.centre).norm());
+    place.extent = std::max(place.extent, (position - place.centre).squaredNorm());
   });
+  for (RigidMotionView::Place& place : result.places) place.extent = std::sqrt(place.extent);
   return result;
 }
 

@@ -64,7 +64,7 @@ class Loop {
   void prepare();
   bool converged_at_gradient();
   bool step_once();
-  bool converged_by(const Step& step);
+  bool converged_by(const Step& step, double step_size);
   void finish(Termination termination, std::string message);
   double linearize(const std::vector<double>& values);
   void accept(double trial_chi2);
@@ -136,7 +136,7 @@ bool Loop::converged_at_gradient() {
   return true;
 }
 
-bool Loop::converged_by(const Step& step) {
+bool Loop::converged_by(const Step& step, double step_size) {
   if (!step.full_newton) return false;
   const double bound = options_.decrement_tolerance * (1 + chi2_);
   if (step.newton_decrement <= bound) {
@@ -148,7 +148,6 @@ bool Loop::converged_by(const Step& step) {
       Eigen::Map<const Eigen::VectorXd>(values_.data(), static_cast<Eigen::Index>(values_.size()))
           .lpNorm<Eigen::Infinity>();
   const double step_bound = options_.step_tolerance * (1 + largest);
-  const double step_size = step.delta.lpNorm<Eigen::Infinity>();
   if (step_size > step_bound) return false;
   finish(Termination::converged_step, text("converged: full Newton step ", step_size, " <= ", step_bound));
   return true;
@@ -191,7 +190,7 @@ bool Loop::step_once() {
   record.kind = step_.kind;
 
   // 2. Test convergence, on full Newton steps only; the last step is still taken where it does not climb.
-  const bool converged = converged_by(step_);
+  const bool converged = converged_by(step_, record.step);
 
   // 3. Try it. A step is mostly taken: then its chi2 comes with the next linearisation. After a rejection,
   // and for the last step, chi2 alone is computed.

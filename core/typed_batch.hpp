@@ -80,15 +80,10 @@ class EdgeBatch final : public EdgeBatchBase {
 
   using EdgeBatchBase::chi2;
   [[nodiscard]] double chi2(const ValueView& view, EdgeRange range) const override {
-    double sum = 0;
-    const bool robust = has_loss();
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      const Record& record = records_[i];
-      const ErrorVector<kDimension> e = error(record, view, std::make_index_sequence<kArity>());
-      const double squared = e.dot(times(record.information, e));
-      sum += robust ? evaluate_loss(i, squared).rho : squared;
-    }
-    return sum;
+#if defined(__x86_64__)
+    if (has_fused_multiply()) return chi2_fused(view, range);
+#endif
+    return chi2_range(view, range);
   }
 
   double linearize(const ValueView& view, const Scatter& scatter, EdgeRange range,
@@ -179,8 +174,23 @@ class EdgeBatch final : public EdgeBatchBase {
     return product;
   }
 
+  [[gnu::always_inline]] double chi2_range(const ValueView& view, EdgeRange range) const {
+    double sum = 0;
+    const bool robust = has_loss();
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const Record& record = records_[i];
+      const ErrorVector<kDimension> e = error(record, view, std::make_index_sequence<kArity>());
+      const double squared = e.dot(times(record.information, e));
+      sum += robust ? evaluate_loss(i, squared).rho : squared;
+    }
+    return sum;
+  }
+
 #if defined(__x86_64__)
-  /// The same, compiled for processors with fused multiply-add.
+  // The same, compiled for processors with fused multiply-add.
+  [[gnu::target("avx2,fma")]] double chi2_fused(const ValueView& view, EdgeRange range) const {
+    return chi2_range(view, range);
+  }
   [[gnu::target("avx2,fma")]] double linearize_fused(const ValueView& view, const Scatter& scatter,
                                                      EdgeRange range, const NormalView& normal) const {
     return has_loss() ? linearize_range<true>(view, scatter, range, normal)

@@ -60,7 +60,7 @@ template <typename T>
 namespace detail {
 
 template <typename T>
-void sin_cos_of(const T& angle, T& s, T& c) {
+[[gnu::always_inline]] inline void sin_cos_of(const T& angle, T& s, T& c) {
   if constexpr (std::is_same_v<T, double>) {
     const SinCos both = sin_cos(angle);
     s = both.sin;
@@ -75,7 +75,7 @@ void sin_cos_of(const T& angle, T& s, T& c) {
 
 /// R(angle) v.
 template <typename T>
-[[nodiscard]] Vector2<T> rotate(const T& angle, const Vector2<T>& v) {
+[[nodiscard]] [[gnu::always_inline]] inline Vector2<T> rotate(const T& angle, const Vector2<T>& v) {
   T s;
   T c;
   detail::sin_cos_of(angle, s, c);
@@ -84,7 +84,7 @@ template <typename T>
 
 /// R(angle)^T v.
 template <typename T>
-[[nodiscard]] Vector2<T> rotate_back(const T& angle, const Vector2<T>& v) {
+[[nodiscard]] [[gnu::always_inline]] inline Vector2<T> rotate_back(const T& angle, const Vector2<T>& v) {
   T s;
   T c;
   detail::sin_cos_of(angle, s, c);
@@ -93,13 +93,13 @@ template <typename T>
 
 /// a * b: the motion b seen from a. The heading is the plain sum, so windings are kept.
 template <typename T>
-[[nodiscard]] Pose2<T> compose(const Pose2<T>& a, const Pose2<T>& b) {
+[[nodiscard]] [[gnu::always_inline]] inline Pose2<T> compose(const Pose2<T>& a, const Pose2<T>& b) {
   return Pose2<T>(Vector2<T>(a.position + rotate(a.heading, b.position)), T(a.heading + b.heading));
 }
 
 /// a^-1 * b: the pose b expressed in the frame of a; heading difference not normalised.
 template <typename T>
-[[nodiscard]] Pose2<T> between(const Pose2<T>& a, const Pose2<T>& b) {
+[[nodiscard]] [[gnu::always_inline]] inline Pose2<T> between(const Pose2<T>& a, const Pose2<T>& b) {
   return Pose2<T>(rotate_back(a.heading, Vector2<T>(b.position - a.position)), T(b.heading - a.heading));
 }
 

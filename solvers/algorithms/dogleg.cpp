@@ -30,7 +30,7 @@ class Dogleg final : public Algorithm {
     step.control = radius_;
     if (newton_norm_ <= radius_ && damping_ == 0) {
       step.delta = newton_;
-      describe_newton_step(equations, step);
+      describe_newton_step(slope_, step);
       length_ = newton_norm_;
     } else {
       truncate(equations, step);
@@ -66,7 +66,7 @@ class Dogleg final : public Algorithm {
     floor_ = 1e-15 * diagonal_->maxCoeff();
     damping_ = 0;
     extra_.resize(0);
-    while (solve_step(equations, solver, extra_, scratch_, newton_) != FactorStatus::ok) {
+    while (solve_step(equations, solver, extra_, scratch_, newton_, slope_) != FactorStatus::ok) {
       damping_ = damping_ == 0 ? 1e-12 : damping_ * 100;
       if (damping_ > kMaxDamping) return false;
       extra_ = damping_ * scale().matrix();
@@ -101,7 +101,7 @@ class Dogleg final : public Algorithm {
     equations.multiply(step.delta, product_);
     step.predicted_decrease = -2 * equations.gradient().dot(step.delta) - step.delta.dot(product_);
     step.full_newton = false;
-    step.newton_decrement = damping_ == 0 ? -equations.gradient().dot(newton_) : std::nan("");
+    step.newton_decrement = damping_ == 0 ? -slope_ : std::nan("");
   }
 
   /// Where the second leg leaves the trust region: |D (c + t (n - c))| = radius.
@@ -127,6 +127,7 @@ class Dogleg final : public Algorithm {
   Eigen::VectorXd cauchy_;
   Eigen::VectorXd extra_;
   Eigen::VectorXd product_;
+  double slope_ = 0;  // g^T newton_
   double newton_norm_ = 0;
   double cauchy_norm_ = -1;  // -1: not computed
   double length_ = 0;        // of the last proposal

@@ -13,9 +13,10 @@ class GaussNewton final : public Algorithm {
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver, double,
                                        Step& step) override {
     if (failed_) return ProposalStatus::exhausted;
-    if (solve_step(equations, solver, {}, scratch_, step.delta) != FactorStatus::ok)
+    double slope = 0;
+    if (solve_step(equations, solver, {}, scratch_, step.delta, slope) != FactorStatus::ok)
       return ProposalStatus::singular;
-    describe_newton_step(equations, step);
+    describe_newton_step(slope, step);
     step.control = 0;
     return ProposalStatus::ok;
   }

@@ -35,12 +35,12 @@ class LevenbergMarquardt final : public Algorithm {
       damping_ = options_.initial_damping * (options_.scale_by_diagonal ? 1 : scale_of_identity_);
     while (damping_ <= kMaxDamping * scale_of_identity_) {
       extra_ = damping_ * scale_;
-      if (solve_step(equations, solver, extra_, scratch_, step.delta) != FactorStatus::ok) {
+      double slope = 0;
+      if (solve_step(equations, solver, extra_, scratch_, step.delta, slope) != FactorStatus::ok) {
         grow();
         continue;
       }
-      step.predicted_decrease =
-          (extra_.array() * step.delta.array().square()).sum() - step.delta.dot(equations.gradient());
+      step.predicted_decrease = (extra_.array() * step.delta.array().square()).sum() - slope;
       step.newton_decrement = std::numeric_limits<double>::quiet_NaN();
       step.full_newton = false;
       step.kind = "damped";
@@ -49,9 +49,9 @@ class LevenbergMarquardt final : public Algorithm {
       // tells.
       if (step.predicted_decrease <= std::min(kLookAhead * tolerance, look_below_)) {
         promised_ = step.predicted_decrease;
-        if (solve_step(equations, solver, {}, scratch_, newton_) == FactorStatus::ok) {
+        if (solve_step(equations, solver, {}, scratch_, newton_, slope) == FactorStatus::ok) {
           step.delta.swap(newton_);
-          describe_newton_step(equations, step);
+          describe_newton_step(slope, step);
         }
       }
       return ProposalStatus::ok;
