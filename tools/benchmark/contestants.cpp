@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/multi_start.hpp>
 #include <waymark/formats/suggest.hpp>
 #ifdef WAYMARK_HAVE_CERES
 #include <waymark/tools/benchmark/ceres/ceres_peer.hpp>
@@ -14,12 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kPeerNames = {"ceres", "ceres_dogleg"};
 
-RunOutcome run_waymark(Graph& graph, const std::string& algorithm_name, const std::string& solver_name,
-                       const OptimizerOptions& options, const TypeRegistry& registry) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto algorithm = registry.make_algorithm(algorithm_name);
-  const auto solver = registry.make_linear_solver(solver_name);
-  const Summary summary = optimize(graph, *algorithm, *solver, options);
+RunOutcome describe(const Summary& summary, std::chrono::steady_clock::time_point begin) {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   return {.total_seconds = elapsed.count(),
           .structure_seconds = summary.structure_seconds,
@@ -40,8 +36,26 @@ Contestant waymark_contestant(const std::string& algorithm, const std::string& s
                               const OptimizerOptions& options, const TypeRegistry& registry) {
   (void)registry.make_algorithm(algorithm);
   (void)registry.make_linear_solver(solver);
-  return {algorithm, solver, false,
-          [=, &registry](Graph& graph) { return run_waymark(graph, algorithm, solver, options, registry); }};
+  return {algorithm, solver, false, [=, &registry](Graph& graph) {
+            const auto begin = std::chrono::steady_clock::now();
+            const auto method = registry.make_algorithm(algorithm);
+            const auto backend = registry.make_linear_solver(solver);
+            return describe(optimize(graph, *method, *backend, options), begin);
+          }};
+}
+
+Contestant default_contestant(const std::string& algorithm, const std::string& solver,
+                              const OptimizerOptions& options, const TypeRegistry& registry) {
+  Contestant contestant = waymark_contestant(algorithm, solver, options, registry);
+  contestant.name = std::string(kDefaultContestant);
+  contestant.run = [=, &registry](Graph& graph) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto method = registry.make_algorithm(algorithm);
+    const auto backend = registry.make_linear_solver(solver);
+    return describe(optimize_from_best_start(graph, registry.starts(), *method, *backend, options).summary,
+                    begin);
+  };
+  return contestant;
 }
 
 Contestant peer_contestant(std::string_view name, const OptimizerOptions& options) {

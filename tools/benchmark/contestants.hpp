@@ -15,6 +15,14 @@ namespace waymark {
 [[nodiscard]] Contestant waymark_contestant(const std::string& algorithm, const std::string& solver,
                                             const OptimizerOptions& options, const TypeRegistry& registry);
 
+/// The name of the default configuration.
+inline constexpr std::string_view kDefaultContestant = "default";
+
+/// The default configuration, as `optimize` runs it: the values at hand or a better start, and further ones
+/// where the minimum is implausible; making starts is timed with the rest.
+[[nodiscard]] Contestant default_contestant(const std::string& algorithm, const std::string& solver,
+                                            const OptimizerOptions& options, const TypeRegistry& registry);
+
 /// "ceres": Levenberg-Marquardt; "ceres_dogleg". Both stop by Ceres's own rule (see ceres_peer.hpp); of the
 /// options they take max_iterations and cancel.
 /// @throws UsageError for an unknown name, or where the peer was not built in.

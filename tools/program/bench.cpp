@@ -59,12 +59,17 @@ std::vector<Contestant> make_contestants(const BenchOptions& options, const Type
   rules.threads = options.choice.threads;
   rules.cancel = &interrupted;
   const Names all_solvers = all_names(registry.linear_solvers());
-  const std::string& solver = options.choice.solver.empty() ? all_solvers.front() : options.choice.solver;
+  const std::string solver = solver_name(options.choice, registry);
+  Names backends = chosen(options.solvers, solver, all_solvers);
+  std::replace(backends.begin(), backends.end(), std::string("auto"), solver);
   std::vector<Contestant> contestants;
   for (const std::string& algorithm :
-       chosen(options.algorithms, options.choice.algorithm, all_names(registry.algorithms()))) {
-    for (const std::string& backend : chosen(options.solvers, solver, all_solvers))
-      contestants.push_back(waymark_contestant(algorithm, backend, rules, registry));
+       chosen(options.algorithms, std::string(kDefaultContestant), all_names(registry.algorithms()))) {
+    for (const std::string& backend : backends) {
+      contestants.push_back(algorithm == kDefaultContestant
+                                ? default_contestant(options.choice.algorithm, backend, rules, registry)
+                                : waymark_contestant(algorithm, backend, rules, registry));
+    }
   }
   for (const std::string& peer : options.peers) contestants.push_back(peer_contestant(peer, rules));
   return contestants;
@@ -200,10 +205,10 @@ void add_bench(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("bench", "Measure algorithms, solvers and peers on a list of graphs");
   const auto options = std::make_shared<BenchOptions>();
   command->add_option("graphs", options->files, ".graph or g2o files")->required();
-  add_name_list(*command, "-a,--algorithm", options->algorithms,
-                "Algorithms, or 'all' (default: that of 'optimize')");
-  add_name_list(*command, "-s,--solver", options->solvers,
-                "Linear solvers, or 'all' (default: that of 'optimize')");
+  add_name_list(
+      *command, "-a,--algorithm", options->algorithms,
+      "Algorithms, 'all', or 'default': the configuration of 'optimize', starts included (default)");
+  add_name_list(*command, "-s,--solver", options->solvers, "Linear solvers, 'all' or 'auto' (default)");
   add_name_list(*command, "--start", options->starts,
                 "Starts: file (default), and those that `waymark info` lists");
   add_name_list(*command, "--peer", options->peers,

@@ -70,7 +70,8 @@ void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
   command.add_option("-a,--algorithm", choice.algorithm, "gauss_newton, levenberg_marquardt or dogleg")
       ->capture_default_str();
   command.add_option("-s,--solver", choice.solver,
-                     "Linear solver, see 'waymark info' (default: the first listed)");
+                     "Linear solver, see 'waymark info'; auto: the fastest by measurement")
+      ->capture_default_str();
   command.add_option("--algorithm-option", choice.options, "Option of the algorithm, see 'waymark info'")
       ->type_name("NAME=VALUE")
       ->expected(1)

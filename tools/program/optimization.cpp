@@ -85,9 +85,14 @@ Options parse_options(const std::vector<std::string>& pairs) {
   return options;
 }
 
+// The backends are registered fastest first: on every graph measured the first was the fastest.
+std::string solver_name(const OptimizationChoice& choice, const TypeRegistry& registry) {
+  return choice.solver == "auto" ? registry.linear_solvers().front().type.name : choice.solver;
+}
+
 void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry) {
   (void)registry.make_algorithm(choice.algorithm, parse_options(choice.options));
-  if (!choice.solver.empty()) (void)registry.make_linear_solver(choice.solver);
+  (void)registry.make_linear_solver(solver_name(choice, registry));
   check_start(choice.start, registry);
 }
 
@@ -95,9 +100,7 @@ MultiStartSummary optimize_document(GraphDocument& document, const OptimizationC
                                     const TypeRegistry& registry, const Console& console,
                                     const Minimizer& minimize) {
   const auto algorithm = registry.make_algorithm(choice.algorithm, parse_options(choice.options));
-  const std::string solver_name =
-      choice.solver.empty() ? registry.linear_solvers().front().type.name : choice.solver;
-  const auto solver = registry.make_linear_solver(solver_name);
+  const auto solver = registry.make_linear_solver(solver_name(choice, registry));
   OptimizerOptions options;
   options.max_iterations = choice.max_iterations;
   options.decrement_tolerance = choice.tolerance;

@@ -21,7 +21,7 @@ using Minimizer = std::function<Summary(Graph&, Algorithm&, LinearSolver&, const
 struct OptimizationChoice {
   std::string start = "file";  ///< "auto", "file" or the name of a registered start
   std::string algorithm = "dogleg";
-  std::string solver;                ///< empty: the first that was built in
+  std::string solver = "auto";       ///< auto: the fastest by measurement (solvers/README.md)
   std::vector<std::string> options;  ///< name=value, for the algorithm
   int threads = 1;
   int max_iterations = 500;
@@ -35,6 +35,9 @@ struct OptimizationChoice {
 MultiStartSummary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
                                     const TypeRegistry& registry, const Console& console,
                                     const Minimizer& minimize = {});
+
+/// Name of the linear solver that was chosen.
+[[nodiscard]] std::string solver_name(const OptimizationChoice& choice, const TypeRegistry& registry);
 
 /// Whether start, algorithm, its options and solver exist, before anything is read. @throws UsageError
 void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry);

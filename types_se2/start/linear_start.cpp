@@ -160,7 +160,7 @@ class LinearStart {
   }
 
   bool solve_headings() {
-    LeastSquares<Complex> system;
+    LeastSquares system;
     // Whose headings the positions see at least in part.
     std::vector<char> seen(c_.size(), 0);
     for (VertexIndex v = 0; v < static_cast<VertexIndex>(c_.size()); ++v) {
@@ -196,7 +196,7 @@ class LinearStart {
   }
 
   bool solve_positions() {
-    LeastSquares<double> system;
+    LeastSquares system;
     for (const VertexIndex v : order_) {
       if (!positions_.related[at(v)]) continue;
       const VertexIndex part = positions_.parts.of(v);
