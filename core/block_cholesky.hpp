@@ -29,13 +29,15 @@ class BlockCholesky final : public LinearSolver {
   [[nodiscard]] std::string description() const override;
   void set_threads(ThreadPool* pool) override { pool_ = pool; }
 
-  /// Diagonal blocks of the inverse, by selected inversion: all blocks on the pattern of the factor are
-  /// passed, so that all cost as much as one. `take(column, block)` is called once for each block column of
-  /// the pattern given to analyze(); the factor must be ok.
-  void invert_diagonal(const std::function<void(int, const Eigen::Ref<const Eigen::MatrixXd>&)>& take);
+  /// Diagonal blocks of the inverse, from the last factor, which must be ok (block_inverse.cpp).
+  /// @param blocks for each block column of the pattern given to analyze() where its block goes, whole and
+  /// column by column; null: not wanted. All wanted cost about as much as a factorisation; a subtree without
+  /// a wanted one costs nothing.
+  void invert_diagonal(std::span<double* const> blocks) const;
 
  private:
   class Stream;
+  class DiagonalInverse;
 
   template <typename Work>
   void for_each_subtree(Work work);

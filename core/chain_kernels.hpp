@@ -87,4 +87,45 @@ template <typename T>
   next = x;
 }
 
+/// A symmetric block of three, its lower triangle column by column.
+using LinkInverse = std::array<double, 6>;
+
+/// The inverse's block of a link from that of the next one: with M = L^-T G^T, from which the link's unknowns
+/// are -M times the next link's and an independent rest, Z := L^-T D^-1 L^-1 + M Z M^T. What is coupled by
+/// zeros only stays zero exactly.
+[[gnu::always_inline]] inline void invert_link(const double* f, LinkInverse& z) {
+  const double m20 = f[12];
+  const double m21 = f[13];
+  const double m22 = f[14];
+  const double m10 = f[8] - f[7] * m20;
+  const double m11 = f[9] - f[7] * m21;
+  const double m12 = f[10] - f[7] * m22;
+  const double m00 = (f[3] - f[2] * m20) - f[1] * m10;
+  const double m01 = (f[4] - f[2] * m21) - f[1] * m11;
+  const double m02 = (f[5] - f[2] * m22) - f[1] * m12;
+  // W = M Z
+  const double w00 = (m00 * z[0] + m01 * z[1]) + m02 * z[2];
+  const double w01 = (m00 * z[1] + m01 * z[3]) + m02 * z[4];
+  const double w02 = (m00 * z[2] + m01 * z[4]) + m02 * z[5];
+  const double w10 = (m10 * z[0] + m11 * z[1]) + m12 * z[2];
+  const double w11 = (m10 * z[1] + m11 * z[3]) + m12 * z[4];
+  const double w12 = (m10 * z[2] + m11 * z[4]) + m12 * z[5];
+  const double w20 = (m20 * z[0] + m21 * z[1]) + m22 * z[2];
+  const double w21 = (m20 * z[1] + m21 * z[3]) + m22 * z[4];
+  const double w22 = (m20 * z[2] + m21 * z[4]) + m22 * z[5];
+  // U = L^-T, S = U D^-1 U^T
+  const double u02 = f[1] * f[7] - f[2];
+  const double s02 = u02 * f[11];
+  const double s12 = -f[7] * f[11];
+  const double s01 = u02 * s12 - f[1] * f[6];
+  const double s11 = f[6] - f[7] * s12;
+  const double s00 = (f[0] + f[1] * f[1] * f[6]) + u02 * s02;
+  z[0] = s00 + ((w00 * m00 + w01 * m01) + w02 * m02);
+  z[1] = s01 + ((w10 * m00 + w11 * m01) + w12 * m02);
+  z[2] = s02 + ((w20 * m00 + w21 * m01) + w22 * m02);
+  z[3] = s11 + ((w10 * m10 + w11 * m11) + w12 * m12);
+  z[4] = s12 + ((w20 * m10 + w21 * m11) + w22 * m12);
+  z[5] = f[11] + ((w20 * m20 + w21 * m21) + w22 * m22);
+}
+
 }  // namespace waymark

@@ -37,7 +37,7 @@ void check_against_inverse(const Graph& graph) {
   const Eigen::MatrixXd inverse = system.hessian.inverse();
   std::vector<VertexIndex> all(graph.vertex_count());
   std::iota(all.begin(), all.end(), 0);
-  const std::vector<Eigen::MatrixXd> covariances = marginal_covariances(graph, all);
+  const CovarianceBlocks covariances = marginal_covariances(graph, all);
   REQUIRE(covariances.size() == all.size());
   for (std::size_t v = 0; v < all.size(); ++v) {
     INFO("vertex " << graph.id(all[v]));

@@ -126,7 +126,7 @@ MultiStartSummary optimize_document(GraphDocument& document, const OptimizationC
   document.covariances.clear();
   const std::vector<VertexIndex> vertices = covariance_vertices(document, choice.covariance);
   if (!vertices.empty() && summary.converged()) {
-    const std::vector<Eigen::MatrixXd> blocks = marginal_covariances(document.graph, vertices);
+    const CovarianceBlocks blocks = marginal_covariances(document.graph, vertices);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       // Zero: not estimated (held, or without edges). No line is honester than a line that reads as
       // certainty.
