@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/core/marginals.hpp>
+#include <waymark/tools/program/covariance.hpp>
 #include <waymark/tools/program/optimization.hpp>
 
 namespace waymark {
@@ -14,22 +14,6 @@ std::string iteration_line(const IterationRecord& r) {
       "{:4d}  {:<7} chi2 {:<16.10g} decrease {:<12.5g} predicted {:<12.5g} gradient {:<10.3g} {}",
       r.iteration, r.kind, r.chi2, r.decrease, r.predicted_decrease, r.gradient,
       r.accepted ? "" : "rejected");
-}
-
-std::vector<VertexIndex> covariance_vertices(const GraphDocument& document, const std::string& which) {
-  std::vector<VertexIndex> vertices;
-  if (which == "fixes") {
-    for (const Fix& fix : document.fixes) {  // fixes of several receivers may share a vertex
-      if (const auto vertex = document.graph.find(fix.vertex)) vertices.push_back(*vertex);
-    }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  } else if (which == "all") {
-    for (VertexIndex v = 0; v < static_cast<VertexIndex>(document.graph.vertex_count()); ++v) {
-      if (!document.graph.fixed(v)) vertices.push_back(v);
-    }
-  }
-  return vertices;
 }
 
 constexpr std::string_view kAutoStart = "auto";
@@ -124,15 +108,7 @@ MultiStartSummary optimize_document(GraphDocument& document, const OptimizationC
                  (summary.termination == Termination::interrupted ? "; the best state so far is kept" : ""));
   }
   document.covariances.clear();
-  const std::vector<VertexIndex> vertices = covariance_vertices(document, choice.covariance);
-  if (!vertices.empty() && summary.converged()) {
-    const CovarianceBlocks blocks = marginal_covariances(document.graph, vertices);
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      // Zero: not estimated (held, or without edges). No line is honester than a line that reads as
-      // certainty.
-      if (!blocks[i].isZero(0)) document.covariances.push_back({vertices[i], blocks[i]});
-    }
-  }
+  if (summary.converged()) add_covariances(document, choice.covariance);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include <waymark/formats/text_file.hpp>
 #include <waymark/formats/toro.hpp>
 #include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/covariance.hpp>
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/robust.hpp>
@@ -15,6 +16,7 @@ struct OptimizeOptions {
   RobustChoice robust;
   std::string input;
   std::string output;
+  std::string covariance_file;
   std::string input_format = "graph";
   std::string format = "graph";
   bool lenient = false;
@@ -26,6 +28,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   check_choice(options.choice, registry);
   check_robust(options.robust, registry);
   require_output_place(options.output);
+  check_covariance_file(options.covariance_file, options.choice.covariance);
   ReadReport report;
   console.progress("reading " + options.input);
   const std::string text = read_text_file(options.input);
@@ -50,8 +53,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   const Minimizer minimizer = options.robust.method == "gnc"
                                   ? graduating_minimizer(options.robust, registry, graduated)
                                   : Minimizer();
-  const MultiStartSummary result =
-      optimize_document(document, options.choice, registry, console, minimizer);
+  const MultiStartSummary result = optimize_document(document, options.choice, registry, console, minimizer);
   document.provenance.emplace_back("optimized", describe_optimization(result));
   if (graduated) {
     document.provenance.emplace_back(
@@ -64,13 +66,20 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   write_file_atomically(options.output, [&](const TextSink& sink) {
     g2o ? write_g2o(document, sink) : write_graph(document, registry, sink);
   });
+  std::string written = options.output;
+  if (!options.covariance_file.empty()) {
+    if (document.covariances.empty())
+      console.note("note: " + options.covariance_file + " has no covariances");
+    write_covariances(options.covariance_file, document, result.summary);
+    written += " " + options.covariance_file;
+  }
   if (options.common.json) {
     nlohmann::ordered_json json = summary_json(result);
     if (graduated) json["graduation"] = graduation_json(*graduated);
     console.result(json_text(json), to_stdout);
   } else {
     const std::string outliers = graduated ? graduation_text(graduated->result) : "";
-    console.result(summary_text(result) + outliers + "written     " + options.output + "\n", to_stdout);
+    console.result(summary_text(result) + outliers + "written     " + written + "\n", to_stdout);
   }
   return exit_code(result.summary);
 }
@@ -98,6 +107,8 @@ void add_optimize(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--lenient", options->lenient, "Skip and count wrong lines (not with TORO)");
   add_optimization_options(*command, options->choice);
+  command->add_option("--covariance-file", options->covariance_file,
+                      "The covariances as a table too: FILE.csv or FILE.json");
   add_robust_options(*command, options->robust);
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark optimize drive.graph -o fused.graph --algorithm dogleg");
