@@ -49,8 +49,8 @@ class Marginals {
   /// @throws InputError where H is not positive definite, or as find_gauge does.
   explicit Marginals(const Graph& graph);
 
-  /// The covariance of each vertex asked for, by selected inversion: all of them cost about as much as a
-  /// factorisation.
+  /// The covariance of each vertex asked for, by selected inversion: all of them cost as much as a few
+  /// factorisations.
   [[nodiscard]] CovarianceBlocks blocks(std::span<const VertexIndex> vertices) const;
 
   /// The joint covariance of these vertices, adjacent or not: their tangents one after the other, in the
