@@ -32,8 +32,7 @@ class BlockCholesky final : public LinearSolver {
   /// Diagonal blocks of the inverse, from the last factor, which must be ok (block_inverse.cpp).
   /// @param blocks for each block column of the pattern given to analyze() where its block goes, whole and
   /// column by column; null: not wanted. For all of them chains cost about as much as their factorisation,
-  /// dense fronts about four times as much; a subtree without
-  /// a wanted one costs nothing.
+  /// dense fronts about four times as much; a subtree without a wanted one costs nothing.
   void invert_diagonal(std::span<double* const> blocks) const;
 
  private:

@@ -16,7 +16,7 @@ std::size_t at(std::int64_t i) {
 Marginals::Marginals(const Graph& graph) : graph_(graph), gauge_(find_gauge(graph)) {
   structure_.build(graph, gauge_.held);
   NormalEquations equations(graph, structure_);
-  chi2_ = equations.linearize(graph.values());
+  (void)equations.linearize(graph.values());
   cholesky_.analyze(structure_.pattern());
   if (cholesky_.factorize(equations.hessian()) != FactorStatus::ok) {
     throw InputError(

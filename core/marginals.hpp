@@ -61,15 +61,12 @@ class Marginals {
   [[nodiscard]] const Gauge& gauge() const { return gauge_; }
   /// Whether a vertex is estimated: not held, not fixed, not without edges.
   [[nodiscard]] bool estimated(VertexIndex v) const { return structure_.column_of(v) >= 0; }
-  /// chi2 = sum rho(e^T Omega e) at the present values.
-  [[nodiscard]] double chi2() const { return chi2_; }
 
  private:
   const Graph& graph_;
   Gauge gauge_;
   Structure structure_;
   BlockCholesky cholesky_;
-  double chi2_ = 0;
 };
 
 /// Marginals(graph).blocks(vertices).
