@@ -208,15 +208,17 @@ void Structure::make_pattern(const Graph& graph, int first_column, std::span<con
   }
 }
 
-// Each chunk has a slot behind the numbers: a place where what concerns held vertices is thrown, and one for
-// the blocks among dense columns, which all chunks write to and which are summed afterwards.
+// Each chunk has a slot behind the numbers: a place where what concerns held vertices is thrown, as large as
+// the largest block that an edge makes of a held vertex and any other, and one for the blocks among dense
+// columns, which all chunks write to and which are summed afterwards.
 void Structure::size_slots(const Graph& graph) {
   int longest = 0;
+  bool any_held = false;
   for (std::size_t v = 0; v < column_of_.size(); ++v) {
-    if (column_of_[v] < 0)
-      longest = std::max(longest, graph.vertex_type(static_cast<VertexIndex>(v)).tangent_size);
+    any_held = any_held || column_of_[v] < 0;
+    longest = std::max(longest, graph.vertex_type(static_cast<VertexIndex>(v)).tangent_size);
   }
-  scratch_ = longest;
+  scratch_ = any_held ? longest : 0;
   chunks_ = static_cast<int>((graph.vertex_count() + kChunkVertices - 1) / kChunkVertices) + 1;
   dense_size_ =
       static_cast<int>(pattern_.dimension() - pattern_.start[pattern_.size.size() - at(dense_columns_)]);

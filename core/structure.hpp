@@ -65,7 +65,7 @@ class Structure {
   std::vector<VertexIndex> vertex_of_;
   int dense_columns_ = 0;
   int chunks_ = 1;
-  int scratch_ = 0;     // rows of the largest held vertex
+  int scratch_ = 0;     // rows of the largest vertex, where any is held
   int dense_size_ = 0;  // scalar rows of all dense columns
   std::int64_t slot_block_ = 0;
   std::int64_t slot_row_ = 0;

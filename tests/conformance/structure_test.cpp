@@ -93,6 +93,30 @@ TEST_CASE("structure: with fixed vertices, vertices without edges, two component
   check_against_dense(graph, structure, held);
 }
 
+TEST_CASE("structure: held vertices smaller than their neighbours write nowhere else") {
+  // What concerns a held vertex is thrown away, in blocks as large as those of its largest neighbour: into a
+  // place that must hold them, or the sums of dense columns just behind it would be spoilt.
+  Graph graph = calibrated_chain(20);
+  for (int i = 0; i < 20; i += 3) {
+    const VertexIndex point = graph.add_vertex<VertexXy>(2000 + i, {0.5 * i, 1});
+    graph.set_fixed(point, true);
+    graph.add_edge(EdgeSe2Xy{{0.3, 0.7}}, {*graph.find(i), point}, Eigen::Matrix2d::Identity());
+  }
+  Structure structure;
+  structure.build(graph, nobody(graph));
+  REQUIRE(structure.dense_columns() == 1);
+  check_against_dense(graph, structure, nobody(graph));
+
+  // The calibration state itself held: a block of 1 x 1 beside poses.
+  Graph calibrated = calibrated_chain(20);
+  calibrated.set_fixed(0, true);
+  const VertexIndex second = calibrated.add_vertex<VertexScale>(3000, {1});
+  calibrated.add_edge(EdgeScaledOdometry{1.0, 0.05}, {1, second, 2}, Eigen::Matrix3d::Identity());
+  structure.build(calibrated, nobody(calibrated));
+  REQUIRE(structure.dense_columns() == 1);
+  check_against_dense(calibrated, structure, nobody(calibrated));
+}
+
 TEST_CASE("structure: two edges between the same vertices, in both directions, share one block") {
   Graph graph = noisy_circle(10);
   graph.add_edge(EdgeSe2{{1, 0, 0.1}}, {4, 3}, pose_information(1, 2));
