@@ -22,6 +22,9 @@ class ThreadPool;
 
 class BlockCholesky final : public LinearSolver {
  public:
+  /// @param kernels must outlive this object; results of other ones differ by rounding
+  explicit BlockCholesky(const DenseKernels& kernels = dense_kernels()) : kernels_(&kernels) {}
+
   void analyze(const BlockPattern& pattern) override;
   [[nodiscard]] FactorStatus factorize(std::span<const double> values) override;
   void solve(std::span<const double> b, std::span<double> x) override;
@@ -43,7 +46,7 @@ class BlockCholesky final : public LinearSolver {
   void for_each_subtree(Work work);
 
   BlockSymbolic symbolic_;
-  const DenseKernels* kernels_ = &dense_kernels();
+  const DenseKernels* kernels_;
   ThreadPool* pool_ = nullptr;
   LargeArray<double> factor_;
   LargeArray<double> updates_;

@@ -136,8 +136,7 @@ WAYMARK_INLINE void subtract_product(const double* b, int stride, int rows, int 
   attribute void subtract_product_##name(const double* b, int stride, int rows, int columns, double* update, \
                                          int update_stride) {                                                \
     subtract_product<width>(b, stride, rows, columns, update, update_stride);                                \
-  }                                                                                                          \
-  constexpr DenseKernels kKernels_##name = {&factorize_panel_##name, &subtract_product_##name, #name};
+  }
 
 WAYMARK_KERNELS(portable, , 2)
 #if defined(__x86_64__)
@@ -145,19 +144,27 @@ WAYMARK_KERNELS(avx2, __attribute__((target("avx2,fma"))), 4)
 WAYMARK_KERNELS(avx512, __attribute__((target("avx512f,avx512vl,avx2,fma"))), 8)
 #endif
 
-const DenseKernels& choose() {
 #if defined(__x86_64__)
-  if (has_wide_vectors()) return kKernels_avx512;
-  if (has_fused_multiply()) return kKernels_avx2;
+constexpr DenseKernels kKernels[] = {
+    {&factorize_panel_portable, &subtract_product_portable, "portable"},
+    {&factorize_panel_avx2, &subtract_product_avx2, "avx2"},
+    {&factorize_panel_avx512, &subtract_product_avx512, "avx512"},
+};
+#else
+constexpr DenseKernels kKernels[] = {{&factorize_panel_portable, &subtract_product_portable, "portable"}};
 #endif
-  return kKernels_portable;
-}
 
 }  // namespace
 
+std::span<const DenseKernels> all_dense_kernels() {
+  std::size_t count = 1;
+  if (has_fused_multiply()) count = 2;
+  if (has_wide_vectors()) count = 3;
+  return {kKernels, count};
+}
+
 const DenseKernels& dense_kernels() {
-  static const DenseKernels& kernels = choose();
-  return kernels;
+  return all_dense_kernels().back();
 }
 
 }  // namespace waymark

@@ -3,6 +3,8 @@
 /// so.
 #pragma once
 
+#include <span>
+
 namespace waymark {
 
 /// Lower triangles are in and out; what stands above diagonals is arbitrary.
@@ -15,10 +17,12 @@ struct DenseKernels {
   /// column of B, writes rows up to the next multiple of 4. @param update_stride a multiple of 4, >= rows
   void (*subtract_product)(const double* b, int stride, int rows, int columns, double* update,
                            int update_stride);
-  const char* name;  ///< "sse2", "avx2", "avx512"
+  const char* name;  ///< "portable", "avx2", "avx512"
 };
 
-/// The widest that this processor runs; on other architectures a portable one.
+/// All that this processor runs, the widest last; the portable one is always there.
+[[nodiscard]] std::span<const DenseKernels> all_dense_kernels();
+/// The widest of them.
 [[nodiscard]] const DenseKernels& dense_kernels();
 
 }  // namespace waymark

@@ -1,75 +1,19 @@
 // Every registered linear solver against dense algebra: positive definite, singular, indefinite, tiny,
 // refactored, analysed anew, blocks of mixed sizes.
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <random>
-#include <set>
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
+#include "support/block_matrices.hpp"
 #include "support/registry.hpp"
 
 using namespace waymark;
+using namespace waymark_test;
 
 namespace {
-
-using Pairs = std::set<std::pair<int, int>>;
-
-/// The pattern of blocks of these sizes, with the off-diagonal blocks (row < column) named.
-BlockPattern make_pattern(const std::vector<int>& sizes, const Pairs& pairs, std::uint64_t version = 1) {
-  BlockPattern pattern;
-  pattern.version = version;
-  for (int j = 0; j < static_cast<int>(sizes.size()); ++j) {
-    const int size = sizes[static_cast<std::size_t>(j)];
-    pattern.size.push_back(size);
-    pattern.start.push_back(pattern.start.back() + size);
-    int height = 0;
-    for (int i = 0; i <= j; ++i) {
-      if (i < j && !pairs.contains({i, j})) continue;
-      pattern.row.push_back(i);
-      pattern.row_offset.push_back(height);
-      height += sizes[static_cast<std::size_t>(i)];
-    }
-    pattern.column.push_back(static_cast<std::int64_t>(pattern.row.size()));
-    pattern.height.push_back(height);
-    pattern.value.push_back(pattern.value.back() + std::int64_t{height} * size);
-  }
-  return pattern;
-}
-
-/// The numbers of a symmetric matrix on the pattern.
-std::vector<double> gather(const BlockPattern& pattern, const Eigen::MatrixXd& matrix) {
-  const ScalarPattern<int> scalar = to_scalar<int>(pattern);
-  std::vector<double> values;
-  for (std::size_t j = 0; j + 1 < scalar.column.size(); ++j) {
-    for (int k = scalar.column[j]; k < scalar.column[j + 1]; ++k)
-      values.push_back(matrix(scalar.row[static_cast<std::size_t>(k)], static_cast<Eigen::Index>(j)));
-  }
-  return values;
-}
-
-/// A symmetric positive definite matrix on the pattern: the sum of small ones over its blocks.
-Eigen::MatrixXd random_spd(const BlockPattern& pattern, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> unit(-1, 1);
-  const auto n = static_cast<Eigen::Index>(pattern.dimension());
-  Eigen::MatrixXd matrix = 0.1 * Eigen::MatrixXd::Identity(n, n);
-  for (std::size_t j = 0; j < pattern.size.size(); ++j) {
-    for (auto k = pattern.column[j]; k < pattern.column[j + 1]; ++k) {
-      const auto i = static_cast<std::size_t>(pattern.row[static_cast<std::size_t>(k)]);
-      std::vector<Eigen::Index> place;
-      for (int c = 0; c < pattern.size[i]; ++c) place.push_back(pattern.start[i] + c);
-      for (int c = 0; c < pattern.size[j] && i != j; ++c) place.push_back(pattern.start[j] + c);
-      const auto m = static_cast<Eigen::Index>(place.size());
-      const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(m, m, [&] { return unit(random); });
-      matrix(place, place) += root * root.transpose();
-    }
-  }
-  return 0.5 * (matrix + matrix.transpose());
-}
 
 Eigen::VectorXd right_side(Eigen::Index n) {
   return Eigen::VectorXd::NullaryExpr(n,
@@ -98,7 +42,7 @@ void check_solves(LinearSolver& solver, const BlockPattern& pattern, const Eigen
 
 template <typename Visit>
 void for_each_solver(Visit visit) {
-  const TypeRegistry registry = waymark_test::full_registry();
+  const TypeRegistry registry = full_registry();
   REQUIRE_FALSE(registry.linear_solvers().empty());
   for (const auto& [type, origin] : registry.linear_solvers()) {
     INFO(type.name);
@@ -108,18 +52,6 @@ void for_each_solver(Visit visit) {
 
 const BlockPattern kOne = make_pattern({1}, {});
 const BlockPattern kTwo = make_pattern({1, 1}, {{0, 1}});
-
-Pairs random_pairs(int blocks, int count, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  Pairs pairs;
-  for (int j = 1; j < blocks; ++j) pairs.insert({j - 1, j});
-  for (int k = 0; k < count; ++k) {
-    const int a = static_cast<int>(random() % static_cast<unsigned>(blocks));
-    const int b = static_cast<int>(random() % static_cast<unsigned>(blocks));
-    if (a != b) pairs.insert({std::min(a, b), std::max(a, b)});
-  }
-  return pairs;
-}
 
 }  // namespace
 
