@@ -331,7 +331,9 @@ class Layout {
   void lay_out_front(Supernode& node) {
     const int height = node.columns + node.below;
     node.stride = (height + 3) / 4 * 4;
-    symbolic_.factor_size += std::int64_t{node.stride} * node.columns;
+    // Kernels read whole registers: up to 3 numbers behind the last column, which must not be those of
+    // another subtree that a thread is writing.
+    symbolic_.factor_size += std::int64_t{node.stride} * node.columns + (node.below + 3) / 4 * 4 - node.below;
     symbolic_.largest_front = std::max(symbolic_.largest_front, height);
     int row = 0;
     const auto place = [&](int k) {
@@ -430,7 +432,7 @@ void find_subtrees(BlockSymbolic& symbolic) {
   };
   std::vector<int> roots;
   for (int s = 0; s < n; ++s) {
-    if (parent[at(s)] < 0) roots.push_back(s);
+    if (parent[at(s)] < 0 && weight[at(s)] >= kSmallestSubtree) roots.push_back(s);
   }
   while (roots.size() < kMostSubtrees) {
     std::sort(roots.begin(), roots.end(), [&](int a, int b) { return weight[at(a)] > weight[at(b)]; });
