@@ -1,9 +1,15 @@
+#include <system_error>
+
 #include <waymark/core/thread_pool.hpp>
 
 namespace waymark {
 
 ThreadPool::ThreadPool(int threads) {
-  for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { wait_for_work(); });
+  try {
+    for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { wait_for_work(); });
+  } catch (const std::system_error&) {
+    // Out of threads: results do not depend on their number.
+  }
 }
 
 ThreadPool::~ThreadPool() {

@@ -13,7 +13,8 @@ namespace waymark {
 
 class ThreadPool {
  public:
-  /// @param threads number of threads that work, the caller's among them; >= 1
+  /// @param threads number of threads that work, the caller's among them; >= 1. Where the system gives fewer,
+  /// these do the work.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -46,7 +47,7 @@ void run_parallel(ThreadPool* pool, int count, const Work& work) {
   if (pool == nullptr || pool->threads() == 1 || count == 1) {
     for (int i = 0; i < count; ++i) work(i);
   } else {
-    pool->run(count, work);
+    pool->run(count, std::cref(work));  // a copy would be allocated
   }
 }
 
