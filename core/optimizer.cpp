@@ -240,6 +240,7 @@ Summary Loop::run() {
   prepare();
   summary_.records.reserve(static_cast<std::size_t>(std::min(options_.max_iterations, 1000)));
   values_ = graph_.values();
+  best_.reserve(values_.size());  // not in an iteration; pages untouched are no memory yet
   chi2_ = best_chi2_ = summary_.initial_chi2 = linearize(values_);
   if (!std::isfinite(chi2_)) {
     finish(Termination::non_finite, "chi2 is not finite at the start");
