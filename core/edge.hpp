@@ -2,8 +2,9 @@
 ///
 ///   struct EdgeRange {
 ///     static constexpr std::string_view kTag = "EDGE_RANGE";
-///     static constexpr std::string_view kForm = "range";      // how the error is formed, printed beside
-///     chi2 static constexpr int kErrorDimension = 1; using Vertices = VertexList<VertexSe2, VertexXy>;
+///     static constexpr std::string_view kForm = "range";  // how the error is formed, printed beside chi2
+///     static constexpr int kErrorDimension = 1;
+///     using Vertices = VertexList<VertexSe2, VertexXy>;
 ///     static constexpr auto fields() { return std::array{field<&EdgeRange::measured>("measured")}; }
 ///     template <typename T>
 ///     Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose, const Vector2<T>& landmark) const;
@@ -15,11 +16,10 @@
 ///   const;
 /// with J_k the derivative of the error by the tangent vector of vertex k. The conformance tests compare the
 /// two. Two more things may be told:
-///   static constexpr bool kRelative = true;    the error stays when all vertices undergo one rigid motion of
-///                                              the plane: the gauge test then need not look (tested)
-///   void prepare();                            called once when the fields are set: keeps what depends on
-///   the
-///                                              measurement alone
+///   static constexpr bool kRelative = true;
+///       the error stays when all vertices undergo one rigid motion of the plane (tested): the gauge test need
+///       not look, and between two vertices that can carry (vertex.hpp) J_1 alone gives the normal equations
+///   void prepare();  called once when the fields are set: keeps what depends on the measurement alone
 #pragma once
 
 #include <concepts>

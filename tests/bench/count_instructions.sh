@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Instructions of each step per edge, pose or line: count_instructions.sh PROGRAM drive|grid SOLVER...
+# Instructions of each step per edge, pose or line: count_instructions.sh PROGRAM drive|grid|FILE SOLVER...
 set -euo pipefail
 program=$(realpath "$1")
 shift

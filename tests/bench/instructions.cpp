@@ -1,7 +1,9 @@
 // Steps of an optimisation, each marked for callgrind: see README.md, "Instructions".
-//   waymark_instructions drive|grid SOLVER...
+//   waymark_instructions drive|grid|FILE SOLVER...
 #include <cmath>
+#include <fstream>
 #include <iostream>
+#include <sstream>
 #include <string>
 
 #include <valgrind/callgrind.h>
@@ -32,16 +34,22 @@ void count(const std::string& name, std::size_t units, const char* unit, const W
 
 Graph make_problem(const std::string& name, const TypeRegistry& registry) {
   if (name == "grid") return waymark_test::grid_walk(20'000, static_cast<int>(std::sqrt(20'000.0)));
-  waymark_test::Drive drive = waymark_test::make_drive(registry, 105'000);
-  drive.add_fixes(registry, "g1");
-  return std::move(drive.graph);
+  if (name == "drive") {
+    waymark_test::Drive drive = waymark_test::make_drive(registry, 105'000);
+    drive.add_fixes(registry, "g1");
+    return std::move(drive.graph);
+  }
+  std::ifstream file(name, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return read_graph(text.str(), name, registry).graph;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: waymark_instructions drive|grid SOLVER...\n";
+    std::cerr << "usage: waymark_instructions drive|grid|FILE SOLVER...\n";
     return 2;
   }
   const TypeRegistry registry = waymark_test::full_registry();
