@@ -17,8 +17,8 @@
 /// with J_k the derivative of the error by the tangent vector of vertex k. The conformance tests compare the
 /// two. Two more things may be told:
 ///   static constexpr bool kRelative = true;
-///       the error stays when all vertices undergo one rigid motion of the plane (tested): the gauge test need
-///       not look, and between two vertices that can carry (vertex.hpp) J_1 alone gives the normal equations
+///       the error stays when all vertices undergo one rigid motion of the plane (tested): the gauge test
+///       need not look, and between two vertices that carry (vertex.hpp) J_1 alone gives H and g
 ///   void prepare();  called once when the fields are set: keeps what depends on the measurement alone
 #pragma once
 
