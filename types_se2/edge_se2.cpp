@@ -6,6 +6,10 @@ void EdgeSe2::prepare() {
   turned = rotate_back(measured[2], Eigen::Vector2d(measured.head<2>()));
 }
 
+void EdgeSe2Log::prepare() {
+  relative = RelativeMeasurement(Pose2<double>(measured[0], measured[1], measured[2]));
+}
+
 void EdgeGnssPosition::linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<2>& e,
                                  JacobianMatrix<2, 3>& by_from, JacobianMatrix<2, 3>& by_to) const {
   const auto [s, c] = sin_cos(from.heading);
@@ -40,29 +44,6 @@ void EdgeSe2Xy::linearize(const Pose2<double>& pose, const Vector2<double>& land
   e << seen_x - measured[0], seen_y - measured[1];
   by_pose << -c, -s, seen_y, s, -c, -seen_x;
   by_landmark << c, s, -s, c;
-}
-
-// With D = Z^-1 X_from^-1 X_to and e = log(D): moving X_to in world axes by (dp, dtheta) is a body-frame
-// motion (R_to^T dp, dtheta), so de = Jr^-1(e) of it; moving X_from likewise enters through -Ad(X_to^-1
-// X_from).
-void linearize_log_error(const Pose2<double>& measured, const Pose2<double>& from, const Pose2<double>& to,
-                         ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) {
-  e = se2_log(between(measured, between(from, to)));
-  const Eigen::Matrix3d inverse = se2_right_jacobian_inverse(e);
-  const auto to_body = [](double heading) {
-    const double c = std::cos(heading);
-    const double s = std::sin(heading);
-    Eigen::Matrix3d rotation;
-    rotation << c, s, 0, -s, c, 0, 0, 0, 1;
-    return rotation;
-  };
-  by_to = inverse * to_body(to.heading);
-  by_from = -inverse * se2_adjoint(between(to, from)) * to_body(from.heading);
-}
-
-void EdgeSe2Log::linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
-                           JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const {
-  linearize_log_error(Pose2<double>(measured[0], measured[1], measured[2]), from, to, e, by_from, by_to);
 }
 
 template class EdgeBatch<EdgeSe2>;

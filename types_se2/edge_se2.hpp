@@ -37,6 +37,52 @@ struct EdgeSe2 {
   Eigen::Vector2d turned = Eigen::Vector2d::Zero();  ///< R(heading)^T translation of Z, by prepare()
 };
 
+/// What the linearisation of a relative error needs of its measurement Z.
+struct RelativeMeasurement {
+  RelativeMeasurement() = default;
+  explicit RelativeMeasurement(const Pose2<double>& z)
+      : heading(z.heading), turned(rotate_back(z.heading, z.position)) {}
+
+  double heading = 0;
+  Eigen::Vector2d turned = Eigen::Vector2d::Zero();  ///< R(heading)^T translation
+};
+
+/// e = log(Z^-1 (X_from^-1 X_to)) with its exact Jacobians, for every edge of that form. With D = (t, theta)
+/// = Z^-1 X_from^-1 X_to and a = theta_from + theta_Z: t = R(a)^T (p_to - p_from) - R(theta_Z)^T t_Z, and e =
+/// (V^-1 t, theta), V^-1 = [h, theta/2; -theta/2, h]. So de/dp_to = V^-1 R(a)^T and de/dtheta_to =
+/// (dV^-1/dtheta t, 1); the other Jacobian follows, since e stays when both poses move together.
+[[gnu::always_inline]] inline void linearize_log_error(const RelativeMeasurement& z,
+                                                       const Pose2<double>& from, const Pose2<double>& to,
+                                                       ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from,
+                                                       JacobianMatrix<3, 3>& by_to) {
+  const double a = from.heading + z.heading;
+  const auto [s, c] = sin_cos(a);
+  const double dx = to.position[0] - from.position[0];
+  const double dy = to.position[1] - from.position[1];
+  const double tx = c * dx + s * dy - z.turned[0];
+  const double ty = c * dy - s * dx - z.turned[1];
+  const double theta = wrap_angle(to.heading - a);
+  const double half = 0.5 * theta;
+  const double h = detail::half_cot(theta);
+  const double slope = detail::half_cot_slope(theta);
+  e[0] = h * tx + half * ty;
+  e[1] = h * ty - half * tx;
+  e[2] = theta;
+  by_to(0, 0) = h * c - half * s;
+  by_to(0, 1) = h * s + half * c;
+  by_to(1, 0) = -by_to(0, 1);
+  by_to(1, 1) = by_to(0, 0);
+  by_to(0, 2) = slope * tx + 0.5 * ty;
+  by_to(1, 2) = slope * ty - 0.5 * tx;
+  by_to(2, 0) = by_to(2, 1) = 0;
+  by_to(2, 2) = 1;
+  for (int row = 0; row < 3; ++row) {
+    by_from(row, 0) = -by_to(row, 0);
+    by_from(row, 1) = -by_to(row, 1);
+    by_from(row, 2) = by_to(row, 0) * dy - by_to(row, 1) * dx - by_to(row, 2);
+  }
+}
+
 /// Relative pose, logarithmic form, the paper's equation (1): e = log(Z^-1 (X_from^-1 X_to)), ordered (rho,
 /// theta).
 struct EdgeSe2Log {
@@ -52,15 +98,15 @@ struct EdgeSe2Log {
     return se2_log(between(constant_pose<T>(measured), between(from, to)));
   }
 
+  void prepare();
   void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
-                 JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const;
+                 JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const {
+    linearize_log_error(relative, from, to, e, by_from, by_to);
+  }
 
   Eigen::Vector3d measured = Eigen::Vector3d::Zero();
+  RelativeMeasurement relative{};  ///< of measured, by prepare()
 };
-
-/// e = log(Z^-1 (X_from^-1 X_to)) with its exact Jacobians, for every edge of that form.
-void linearize_log_error(const Pose2<double>& measured, const Pose2<double>& from, const Pose2<double>& to,
-                         ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to);
 
 /// Position of an antenna as seen from a reference pose (for GNSS: the fixed origin of the frame, or a fixed
 /// GNSS node): e = R_from^T (p_to + R_to antenna - p_from) - measured. With the origin as reference that is

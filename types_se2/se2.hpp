@@ -158,6 +158,14 @@ template <typename T>
   return half * cos(half) / sin(half);
 }
 
+/// Its derivative by theta.
+[[nodiscard]] inline double half_cot_slope(double theta) {
+  const double t2 = theta * theta;
+  if (is_small(theta)) return -theta * (1.0 / 6 + t2 * (1.0 / 180 + t2 / 5040));
+  const SinCos half = sin_cos(0.5 * theta);
+  return (half.cos * half.sin - 0.5 * theta) / (2 * half.sin * half.sin);
+}
+
 }  // namespace detail
 
 /// Group exponential: the motion of a body that follows the constant twist xi = (rho, theta) for unit time.

@@ -32,12 +32,14 @@ struct EdgeSe2Odometry {
 
   void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
                  JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const {
-    linearize_log_error(se2_exp(twist()), from, to, e, by_from, by_to);
+    linearize_log_error(relative, from, to, e, by_from, by_to);
   }
+  void prepare() { relative = RelativeMeasurement(se2_exp(twist())); }
 
   double speed = 0;
   double yaw_rate = 0;
   double dt = 0;
+  RelativeMeasurement relative{};  ///< of exp([speed dt, 0, yaw_rate dt]), by prepare()
 };
 
 /// The vehicle stood: whatever the sensors read, Z is the identity; e = log(X_from^-1 X_to). The readings are
@@ -60,7 +62,7 @@ struct EdgeSe2Standstill {
 
   void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
                  JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const {
-    linearize_log_error(Pose2<double>(), from, to, e, by_from, by_to);
+    linearize_log_error(RelativeMeasurement(), from, to, e, by_from, by_to);
   }
 
   double speed = 0;
