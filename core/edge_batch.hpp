@@ -95,6 +95,10 @@ class EdgeBatchBase {
                       std::span<const double> fields, const Eigen::MatrixXd& information) = 0;
   /// Makes room for this many edges in all; only a matter of speed.
   virtual void reserve(std::size_t) {}
+  /// Drops edges and renumbers the vertices of the others; their order, numbers and losses stay.
+  /// @param gone per edge: not zero drops it
+  /// @param new_index per vertex: its new index, >= 0 for every vertex of an edge that stays
+  void remove(std::span<const char> gone, std::span<const VertexIndex> new_index);
   /// The numbers of an edge, in schema order, appended to `out`.
   virtual void fields(std::size_t edge, std::vector<double>& out) const = 0;
   [[nodiscard]] virtual Eigen::MatrixXd information(std::size_t edge) const = 0;
@@ -137,6 +141,9 @@ class EdgeBatchBase {
   [[nodiscard]] LossValue evaluate_loss(std::size_t edge, double squared) const;
 
  private:
+  /// remove() without the losses.
+  virtual void remove_records(std::span<const char> gone, std::span<const VertexIndex> new_index) = 0;
+
   Loss batch_loss_;
   std::vector<Loss> losses_;  // those attached to single edges, each once
   std::vector<std::int32_t>

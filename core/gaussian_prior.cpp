@@ -1,7 +1,9 @@
 #include <cstdlib>
+#include <utility>
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/gaussian_prior.hpp>
+#include <waymark/core/information_root.hpp>
 #include <waymark/core/robust_information.hpp>
 
 namespace waymark {
@@ -36,6 +38,12 @@ void GaussianPriorBatch::append(std::span<const VertexIndex> vertices,
   record.reference.assign(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(values));
   record.offset = Eigen::Map<const Eigen::VectorXd>(fields.data() + values, dimension);
   record.information = information;
+  add_record(std::move(record));
+}
+
+void GaussianPriorBatch::add_record(Record record) {
+  record.first_gradient = 0;
+  record.first_block = 0;
   if (!records_.empty()) {
     const Record& before = records_.back();
     const std::size_t arity = before.vertices.size();
@@ -43,6 +51,15 @@ void GaussianPriorBatch::append(std::span<const VertexIndex> vertices,
     record.first_block = before.first_block + arity * (arity + 1) / 2;
   }
   records_.push_back(std::move(record));
+}
+
+void GaussianPriorBatch::remove_records(std::span<const char> gone, std::span<const VertexIndex> new_index) {
+  std::vector<Record> before = std::exchange(records_, {});
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (gone[i] != 0) continue;
+    for (VertexIndex& v : before[i].vertices) v = new_index[static_cast<std::size_t>(v)];
+    add_record(std::move(before[i]));
+  }
 }
 
 void GaussianPriorBatch::fields(std::size_t i, std::vector<double>& out) const {
@@ -154,7 +171,10 @@ void GaussianPriorBatch::add_rigid_information(const ValueView& view, const Rigi
   std::vector<Eigen::MatrixXd> jacobians;
   for (std::size_t i = 0; i < records_.size(); ++i) {
     linearize_edge(i, view, e, jacobians);
-    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(e.size(), 3);
+    // A prior that knows nothing of where it is has an information that cancels to rounding only; its root,
+    // cleaned of rounding, cancels before it is squared.
+    const Eigen::MatrixXd root = information_root(records_[i].information);
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(root.rows(), 3);
     std::int32_t component = -1;
     for (std::size_t k = 0; k < jacobians.size(); ++k) {
       const VertexIndex vertex = records_[i].vertices[k];
@@ -164,9 +184,9 @@ void GaussianPriorBatch::add_rigid_information(const ValueView& view, const Rigi
       Eigen::MatrixXd columns(jacobians[k].cols(), 3);
       records_[i].types[k].rigid_motion(view.values + view.offsets[vertex], motion.places[own].centre,
                                         motion.places[own].extent, columns.data());
-      moved += jacobians[k] * columns;
+      moved += root * (jacobians[k] * columns);
     }
-    if (component >= 0) motion.information[component] += moved.transpose() * records_[i].information * moved;
+    if (component >= 0) motion.information[component] += moved.transpose() * moved;
   }
 }
 

@@ -46,6 +46,8 @@ class GaussianPriorBatch final : public EdgeBatchBase {
     std::size_t first_block = 0;
   };
 
+  void remove_records(std::span<const char> gone, std::span<const VertexIndex> new_index) override;
+  void add_record(Record record);
   static Eigen::VectorXd error(const Record& record, const ValueView& view);
   static Eigen::MatrixXd jacobian(const Record& record, std::size_t vertex, const ValueView& view);
 

@@ -23,7 +23,15 @@ void VertexIds::insert(VertexId id, VertexIndex index) {
     if (place >= array_.size()) array_.resize(std::max(place + 1, array_.size() * 2), -1);
     array_[place] = index;
   } else {
-    map_.emplace(id, index);
+    map_.insert_or_assign(id, index);
+  }
+}
+
+void VertexIds::erase(VertexId id) {
+  if (id >= 0 && id < kArrayLimit) {
+    array_[static_cast<std::size_t>(id)] = -1;
+  } else {
+    map_.erase(id);
   }
 }
 
@@ -98,6 +106,51 @@ std::optional<Stamp> Graph::stamp(VertexIndex v) const {
 void Graph::set_values(std::vector<double> values) {
   if (values.size() != values_.size()) throw UsageError("set_values: the snapshot is of another graph");
   values_ = std::move(values);
+}
+
+Removal Graph::remove_vertices(std::span<const char> gone) {
+  if (gone.size() != ids_.size()) throw UsageError("remove_vertices: one mark per vertex is needed");
+  Removal removal;
+  removal.new_index.reserve(ids_.size());
+  std::size_t kept = 0;
+  std::int64_t numbers = 0;
+  for (std::size_t v = 0; v < ids_.size(); ++v) {
+    if (gone[v] != 0) {
+      by_id_.erase(ids_[v]);
+      removal.new_index.push_back(-1);
+      continue;
+    }
+    const auto now = static_cast<VertexIndex>(kept);
+    removal.new_index.push_back(now);
+    by_id_.insert(ids_[v], now);
+    const std::span<const double> from = value(static_cast<VertexIndex>(v));
+    std::copy(from.begin(), from.end(), values_.begin() + numbers);
+    offsets_[kept] = numbers;
+    numbers += static_cast<std::int64_t>(from.size());
+    ids_[kept] = ids_[v];
+    type_of_[kept] = type_of_[v];
+    fixed_[kept] = fixed_[v];
+    if (!stamps_.empty()) stamps_[kept] = stamps_[v];
+    ++kept;
+  }
+  ids_.resize(kept);
+  type_of_.resize(kept);
+  offsets_.resize(kept);
+  fixed_.resize(kept);
+  if (!stamps_.empty()) stamps_.resize(kept);
+  values_.resize(static_cast<std::size_t>(numbers));
+  std::vector<char> gone_edges;
+  for (const Batch& batch : batches_) {
+    gone_edges.clear();
+    for_each_edge(*batch.edges, [&](std::span<const VertexIndex> vertices) {
+      gone_edges.push_back(
+          std::any_of(vertices.begin(), vertices.end(), [&](VertexIndex v) { return gone[index(v)] != 0; }));
+    });
+    batch.edges->remove(gone_edges, removal.new_index);
+    removal.kept_edges.push_back(batch.edges->size());
+  }
+  ++structure_version_;
+  return removal;
 }
 
 EdgeBatchBase& Graph::batch(const EdgeType& type) {

@@ -29,12 +29,19 @@ class VertexIds {
     return place < array_.size() ? array_[place] : -1;
   }
   void insert(VertexId id, VertexIndex index);
+  void erase(VertexId id);
 
  private:
   static constexpr VertexId kArrayLimit = VertexId{1} << 24;
   [[nodiscard]] VertexIndex find_in_map(VertexId id) const;
   std::vector<VertexIndex> array_;
   std::unordered_map<VertexId, VertexIndex> map_;
+};
+
+/// What Graph::remove_vertices left, in terms of the graph as it was.
+struct Removal {
+  std::vector<VertexIndex> new_index;   ///< per vertex; -1: it is gone
+  std::vector<std::size_t> kept_edges;  ///< per batch: edges that stayed; they come first in it
 };
 
 class Graph {
@@ -75,6 +82,11 @@ class Graph {
   void set_stamp(VertexIndex v, Stamp stamp);
   [[nodiscard]] std::optional<Stamp> stamp(VertexIndex v) const;
 
+  /// Removes vertices and every edge that touches one of them. What stays keeps its order, so that indices
+  /// close up; batches stay even when they are empty.
+  /// @param gone per vertex: not zero removes it
+  Removal remove_vertices(std::span<const char> gone);
+
   /// All values at once; offsets()[v] is where vertex v begins.
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
   [[nodiscard]] const std::vector<std::int64_t>& offsets() const { return offsets_; }
@@ -111,7 +123,7 @@ class Graph {
     ++structure_version_;
   }
 
-  /// Changes whenever a vertex or an edge is added or a vertex is fixed or freed.
+  /// Changes whenever a vertex or an edge is added or removed or a vertex is fixed or freed.
   [[nodiscard]] std::uint64_t structure_version() const { return structure_version_; }
 
   /// Sum over all edges of rho(e^T Omega e) at the present values.

@@ -44,11 +44,14 @@ constexpr double kChi2Rounding = 1e-12;
 
 class Loop {
  public:
-  Loop(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options)
+  /// @param kept a structure that follows the graph, analysed by the solver; null: both are made
+  Loop(Graph& graph, const Structure* kept, Algorithm& algorithm, LinearSolver& solver,
+       const OptimizerOptions& options)
       : graph_(graph),
         algorithm_(algorithm),
         solver_(solver),
         options_(options),
+        structure_(kept == nullptr ? made_ : *kept),
         equations_(graph, structure_) {
     if (options.threads > 1) pool_.emplace(options.threads);
     equations_.set_threads(pool());
@@ -76,7 +79,8 @@ class Loop {
   LinearSolver& solver_;
   const OptimizerOptions& options_;
   std::optional<ThreadPool> pool_;
-  Structure structure_;
+  Structure made_;
+  const Structure& structure_;
   NormalEquations equations_;
   Summary summary_;
   Clock::time_point start_ = Clock::now();
@@ -101,9 +105,12 @@ void Loop::finish(Termination termination, std::string message) {
 
 void Loop::prepare() {
   const Timer timer(summary_.structure_seconds);
-  Gauge gauge = find_gauge(graph_);
-  summary_.notes = gauge.messages;
-  structure_.build(graph_, gauge.held);
+  if (&structure_ == &made_) {
+    Gauge gauge = find_gauge(graph_);
+    summary_.notes = gauge.messages;
+    made_.build(graph_, gauge.held);
+    if (made_.pattern().dimension() > 0) solver_.analyze(made_.pattern());
+  }
   summary_.ordering = structure_.ordering();
   summary_.vertices = graph_.vertex_count();
   summary_.edges = graph_.edge_count();
@@ -113,7 +120,6 @@ void Loop::prepare() {
     const EdgeType& type = graph_.edge_type(b);
     summary_.error_forms += (summary_.error_forms.empty() ? "" : ", ") + type.tag + " " + type.form;
   }
-  if (summary_.unknowns > 0) solver_.analyze(structure_.pattern());
 }
 
 double Loop::linearize(const std::vector<double>& values) {
@@ -296,7 +302,13 @@ void OptimizerOptions::check() const {
 
 Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options) {
   options.check();
-  return Loop(graph, algorithm, solver, options).run();
+  return Loop(graph, nullptr, algorithm, solver, options).run();
+}
+
+Summary optimize(Graph& graph, const Structure& structure, Algorithm& algorithm, LinearSolver& solver,
+                 const OptimizerOptions& options) {
+  options.check();
+  return Loop(graph, &structure, algorithm, solver, options).run();
 }
 
 Algorithm::~Algorithm() = default;

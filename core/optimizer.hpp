@@ -41,4 +41,10 @@ struct OptimizerOptions {
 /// @throws UsageError for invalid options; InputError where the gauge is undetermined (see find_gauge).
 Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options);
 
+/// The same with a structure and a symbolic analysis that are kept between calls.
+/// @param structure follows the graph; who built it has looked at the gauge
+/// @param solver has analysed the structure's present pattern
+Summary optimize(Graph& graph, const Structure& structure, Algorithm& algorithm, LinearSolver& solver,
+                 const OptimizerOptions& options);
+
 }  // namespace waymark

@@ -124,6 +124,10 @@ void Structure::build(const Graph& graph, std::span<const char> held) {
 void Structure::extend(const Graph& graph, std::span<const char> held) {
   const int old_columns = static_cast<int>(vertex_of_.size());
   const std::size_t old_vertices = column_of_.size();
+  bool grown = old_vertices < graph.vertex_count();
+  for (std::size_t b = 0; b < graph.batch_count(); ++b)
+    grown = grown || b >= scattered_edges_.size() || scattered_edges_[b] < graph.batch(b).size();
+  if (!grown) return;
   bool append_only = dense_columns_ == 0;
   for (std::size_t v = old_vertices; v < graph.vertex_count(); ++v) {
     append_only = append_only && !graph.vertex_type(static_cast<VertexIndex>(v)).dense;  // goes last
@@ -154,26 +158,35 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
     return;
   }
   const std::vector<VertexIndex> old_order = vertex_of_;
-  const auto first_dense = old_order.end() - dense_columns_;
   column_of_.clear();
   vertex_of_.clear();
   choose_unknowns(graph, held);
-  std::vector<VertexIndex> vertices(old_order.begin(), first_dense);
-  std::vector<char> placed(graph.vertex_count(), 0);
-  for (const VertexIndex v : old_order) placed[at(v)] = 1;
-  std::vector<VertexIndex> new_dense;
-  for (const VertexIndex v : vertex_of_) {
-    if (!placed[at(v)]) (graph.vertex_type(v).dense ? new_dense : vertices).push_back(v);
-  }
-  vertices.insert(vertices.end(), first_dense, old_order.end());
-  vertices.insert(vertices.end(), new_dense.begin(), new_dense.end());
-  dense_columns_ += static_cast<int>(new_dense.size());
-  vertex_of_ = std::move(vertices);
-  for (std::size_t j = 0; j < vertex_of_.size(); ++j) column_of_[at(vertex_of_[j])] = static_cast<int>(j);
+  keep_order(graph, old_order);
   const Columns upper = collect_columns(graph, column_of_, 0, static_cast<int>(vertex_of_.size()));
   make_pattern(graph, 0, upper.begin, upper.rows);
   size_slots(graph);
   make_scatter(graph, false);
+}
+
+// Orders the chosen unknowns: old ones as they were, new ones before the dense, new dense ones last.
+void Structure::keep_order(const Graph& graph, std::span<const VertexIndex> old_order) {
+  const std::size_t first_dense = old_order.size() - at(dense_columns_);
+  std::vector<VertexIndex> vertices;
+  std::vector<VertexIndex> dense;
+  std::vector<char> placed(graph.vertex_count(), 0);
+  for (std::size_t j = 0; j < old_order.size(); ++j) {
+    const VertexIndex v = old_order[j];
+    if (v < 0 || column_of_[at(v)] < 0) continue;
+    (j < first_dense ? vertices : dense).push_back(v);
+    placed[at(v)] = 1;
+  }
+  for (const VertexIndex v : vertex_of_) {
+    if (!placed[at(v)]) (graph.vertex_type(v).dense ? dense : vertices).push_back(v);
+  }
+  dense_columns_ = static_cast<int>(dense.size());
+  vertices.insert(vertices.end(), dense.begin(), dense.end());
+  vertex_of_ = std::move(vertices);
+  for (std::size_t j = 0; j < vertex_of_.size(); ++j) column_of_[at(vertex_of_[j])] = static_cast<int>(j);
 }
 
 void Structure::make_pattern(const Graph& graph, int first_column, std::span<const std::int64_t> begin,

@@ -25,6 +25,15 @@ class Structure {
   /// @param held as in build, for all vertices; it must not change for old ones.
   void extend(const Graph& graph, std::span<const char> held);
 
+  /// Follows a graph that has lost vertices, and has since then at most gained edges among those that stayed
+  /// (marginalisation priors). What stays keeps its order; old columns lose the rows that are gone and gain
+  /// those the new edges need, without looking at the other edges. A block that no edge needs any more stays,
+  /// as zeros, until one of its vertices goes.
+  /// @param removal what Graph::remove_vertices said; the structure had followed the graph until then
+  /// @param held as in build, for the vertices that stayed
+  /// @throws UsageError where the structure had not followed the graph
+  void remove(const Graph& graph, const Removal& removal, std::span<const char> held);
+
   [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
   [[nodiscard]] const Scatter& scatter(std::size_t batch) const { return scatters_[batch]; }
   /// Block column of a vertex, -1 where it is no unknown.
@@ -50,6 +59,7 @@ class Structure {
   static constexpr std::size_t kChunkVertices = 4096;
 
   void choose_unknowns(const Graph& graph, std::span<const char> held);
+  void keep_order(const Graph& graph, std::span<const VertexIndex> old_order);
   void make_pattern(const Graph& graph, int first_column, std::span<const std::int64_t> begin,
                     std::span<const int> rows);
   void make_scatter(const Graph& graph, bool only_new);

@@ -127,6 +127,17 @@ class EdgeBatch final : public EdgeBatchBase {
   }
 
  private:
+  void remove_records(std::span<const char> gone, std::span<const VertexIndex> new_index) override {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+      if (gone[i] != 0) continue;
+      Record& record = records_[kept++];
+      record = records_[i];
+      for (VertexIndex& v : record.vertices) v = new_index[static_cast<std::size_t>(v)];
+    }
+    records_.resize(kept);
+  }
+
   using Triangle = std::array<double, kDimension*(kDimension + 1) / 2>;
 
   template <typename Derived>
