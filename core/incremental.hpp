@@ -19,7 +19,7 @@ namespace waymark {
 ///   for (...) {
 ///     graph.add_vertex(...); graph.add_edge(...);       // at will between calls
 ///     optimizer.update();                               // a few steps from the present values
-///     if (graph.vertex_count() > window) optimizer.drop_prefix(1);
+///     optimizer.drop_prefix(*graph.find(oldest_id));    // what lies before the oldest pose to keep
 ///   }
 ///
 /// Between calls the graph may be appended to, values may be set, and vertices that are new may be fixed;

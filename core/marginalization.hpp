@@ -37,8 +37,8 @@ struct Marginalization {
 /// (robust_information.hpp); from then on they are frozen.
 ///
 /// @param held per vertex, or empty: known beside the fixed ones, as find_gauge says. Without it a graph that
-///   nothing anchors stays so, and the prior, quadratic as it is, holds against turns of more than a few
-///   degrees.
+///   nothing anchors stays so, to first order: the prior is quadratic in the frame's axes, and later turns of
+///   the whole graph by more than a little would strain it.
 /// @throws UsageError for a count that is not in 0..vertex_count(), and where the batch EDGE_GAUSSIAN_PRIOR
 ///   as a whole has a loss; InputError where the removed edges do not determine a removed vertex, or are not
 ///   finite. The graph is then unchanged.

@@ -1,21 +1,25 @@
 // Benchmarks of the hot paths by name: see README.md.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include <benchmark/benchmark.h>
 
 #include <waymark/core/gauge.hpp>
+#include <waymark/core/incremental.hpp>
 #include <waymark/core/marginals.hpp>
 #include <waymark/core/optimizer.hpp>
 #include <waymark/formats/graph_document.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"
+#include "support/replay.hpp"
 
 using namespace waymark;
 
@@ -183,6 +187,36 @@ void copy_graph(benchmark::State& state, Problem kind) {
   for (auto _ : state) benchmark::DoNotOptimize(Graph(graph));
 }
 
+/// One pose more, one step of Gauss-Newton, and the oldest pose marginalised, in a window of so many poses:
+/// with the structure that follows, or started over at every pose.
+void window(benchmark::State& state, Problem kind, const std::string& how) {
+  const Graph& source = problem(kind, 105'000);
+  std::vector<VertexIndex> order(source.vertex_count());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_partition(order.begin(), order.end(), [&](VertexIndex v) { return source.fixed(v); });
+  const auto last = static_cast<VertexIndex>(state.range(0));
+  OptimizerOptions options;
+  options.max_iterations = 1;
+  waymark_test::Replay replay(source, order);
+  Graph graph;
+  const auto make = [&] {
+    return IncrementalOptimizer(graph, registry().make_algorithm("gauss_newton"),
+                                registry().make_linear_solver("block_cholesky"), options);
+  };
+  std::optional<IncrementalOptimizer> optimizer(make());
+  while (static_cast<VertexIndex>(graph.vertex_count()) <= last) replay.append_to(graph);
+  for (auto _ : state) {
+    (void)replay.append_to(graph);
+    if (how == "anew") optimizer.emplace(make());
+    if (!std::isfinite(optimizer->update().final_chi2)) state.SkipWithError("not finite");
+    optimizer->drop_prefix(static_cast<VertexIndex>(graph.vertex_count()) - last);
+    if (replay.done()) {
+      state.SkipWithError("the drive is over");
+      break;
+    }
+  }
+}
+
 /// NAME/PROBLEM[/PARAMETERS]/POSES, each at a small size and at that of the key workload.
 void register_all() {
   struct Sized {
@@ -220,6 +254,12 @@ void register_all() {
     for (const auto& [solver, origin] : registry().linear_solvers()) {
       if (solver.name != "eigen") add("optimize", &run_optimizer, std::string("gauss_newton"), solver.name);
     }
+  }
+  for (const std::string how : {"follow", "anew"}) {
+    auto* made =
+        benchmark::RegisterBenchmark(("window/drive/" + how).c_str(),
+                                     [how](benchmark::State& state) { window(state, Problem::drive, how); });
+    made->Unit(benchmark::kMillisecond)->Arg(1000)->Arg(2000);
   }
 }
 
