@@ -16,6 +16,7 @@ IncrementalOptimizer::IncrementalOptimizer(Graph& graph, std::unique_ptr<Algorit
 }
 
 void IncrementalOptimizer::follow() {
+  if (structure_.pattern().version > 0 && followed_version_ == graph_.structure_version()) return;
   Gauge gauge = find_gauge(graph_);
   notes_ = std::move(gauge.messages);
   // An old vertex that is held, or no longer, changes its column: the structure starts over.
@@ -27,6 +28,7 @@ void IncrementalOptimizer::follow() {
   } else {
     structure_.build(graph_, held_);
   }
+  followed_version_ = graph_.structure_version();
 }
 
 Summary IncrementalOptimizer::update() {
@@ -52,6 +54,7 @@ Marginalization IncrementalOptimizer::drop_prefix(VertexIndex count) {
   }
   held_ = std::move(held);
   structure_.remove(graph_, result.removal, held_);
+  followed_version_ = graph_.structure_version();
   return result;
 }
 

@@ -56,6 +56,7 @@ class IncrementalOptimizer {
   Structure structure_;
   std::vector<char> held_;              // per vertex that the structure knows
   std::vector<std::string> notes_;      // of the gauge
+  std::uint64_t followed_version_ = 0;  // of the graph
   std::uint64_t analysed_version_ = 0;  // of the pattern; a pattern that was made has version 1 or more
   double dropped_chi2_ = 0;
 };

@@ -124,10 +124,6 @@ void Structure::build(const Graph& graph, std::span<const char> held) {
 void Structure::extend(const Graph& graph, std::span<const char> held) {
   const int old_columns = static_cast<int>(vertex_of_.size());
   const std::size_t old_vertices = column_of_.size();
-  bool grown = old_vertices < graph.vertex_count();
-  for (std::size_t b = 0; b < graph.batch_count(); ++b)
-    grown = grown || b >= scattered_edges_.size() || scattered_edges_[b] < graph.batch(b).size();
-  if (!grown) return;
   bool append_only = dense_columns_ == 0;
   for (std::size_t v = old_vertices; v < graph.vertex_count(); ++v) {
     append_only = append_only && !graph.vertex_type(static_cast<VertexIndex>(v)).dense;  // goes last
