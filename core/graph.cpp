@@ -139,9 +139,9 @@ Removal Graph::remove_vertices(std::span<const char> gone) {
   fixed_.resize(kept);
   if (!stamps_.empty()) stamps_.resize(kept);
   values_.resize(static_cast<std::size_t>(numbers));
-  std::vector<char> gone_edges;
   for (const Batch& batch : batches_) {
-    gone_edges.clear();
+    std::vector<char>& gone_edges = removal.gone_edges.emplace_back();
+    gone_edges.reserve(batch.edges->size());
     for_each_edge(*batch.edges, [&](std::span<const VertexIndex> vertices) {
       gone_edges.push_back(
           std::any_of(vertices.begin(), vertices.end(), [&](VertexIndex v) { return gone[index(v)] != 0; }));

@@ -40,8 +40,9 @@ class VertexIds {
 
 /// What Graph::remove_vertices left, in terms of the graph as it was.
 struct Removal {
-  std::vector<VertexIndex> new_index;   ///< per vertex; -1: it is gone
-  std::vector<std::size_t> kept_edges;  ///< per batch: edges that stayed; they come first in it
+  std::vector<VertexIndex> new_index;         ///< per vertex; -1: it is gone
+  std::vector<std::vector<char>> gone_edges;  ///< per batch and edge; not zero: it is gone
+  std::vector<std::size_t> kept_edges;        ///< per batch: edges that stayed; they come first in it now
 };
 
 class Graph {

@@ -147,10 +147,9 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
     const Columns upper =
         collect_columns(graph, column_of_, old_columns, static_cast<int>(vertex_of_.size()));
     make_pattern(graph, old_columns, upper.begin, upper.rows);
-    const bool had_slots = slot_block_ > 0;
     size_slots(graph);
-    // Slots lie behind the numbers, which have grown: where there are any, all offsets are made again.
-    make_scatter(graph, !had_slots && slot_block_ == 0);
+    retarget_held(graph);  // slots lie behind the numbers, which have grown
+    make_scatter(graph, true);
     return;
   }
   const std::vector<VertexIndex> old_order = vertex_of_;
@@ -318,13 +317,7 @@ void Structure::make_scatter(const Graph& graph, bool only_new) {
         batch,
         [&](std::span<const VertexIndex> vertices) {
           const int chunk = chunk_of(vertices);
-          std::vector<EdgeRange>& list = ranges[at(chunk)];
-          if (!list.empty() && list.back().last == edge) {
-            ++list.back().last;
-          } else {
-            list.push_back({edge, edge + 1});
-          }
-          ++edge;
+          add_to_ranges(edge++, ranges[at(chunk)]);
           for (std::size_t k = 0; k < vertices.size(); ++k) {
             const int column = column_of(vertices[k]);
             scatter.gradient.push_back(static_cast<std::uint32_t>(gradient_target(chunk, column)));
@@ -335,12 +328,24 @@ void Structure::make_scatter(const Graph& graph, bool only_new) {
         },
         scattered_edges_[b]);
     scattered_edges_[b] = batch.size();
-    scatter.ranges.clear();
-    scatter.chunk.assign(1, 0);
-    for (const auto& list : ranges) {
-      scatter.ranges.insert(scatter.ranges.end(), list.begin(), list.end());
-      scatter.chunk.push_back(scatter.ranges.size());
-    }
+    set_ranges(ranges, scatter);
+  }
+}
+
+void Structure::add_to_ranges(std::uint32_t edge, std::vector<EdgeRange>& ranges) {
+  if (!ranges.empty() && ranges.back().last == edge) {
+    ++ranges.back().last;
+  } else {
+    ranges.push_back({edge, edge + 1});
+  }
+}
+
+void Structure::set_ranges(std::span<const std::vector<EdgeRange>> of_chunks, Scatter& scatter) {
+  scatter.ranges.clear();
+  scatter.chunk.assign(1, 0);
+  for (const auto& ranges : of_chunks) {
+    scatter.ranges.insert(scatter.ranges.end(), ranges.begin(), ranges.end());
+    scatter.chunk.push_back(scatter.ranges.size());
   }
 }
 

@@ -2,6 +2,7 @@
 /// eliminated, the block pattern, and where each edge adds its part.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,6 +64,11 @@ class Structure {
   void make_pattern(const Graph& graph, int first_column, std::span<const std::int64_t> begin,
                     std::span<const int> rows);
   void make_scatter(const Graph& graph, bool only_new);
+  void move_scatter(const Graph& graph, const Removal& removal,
+                    std::span<const std::optional<std::int64_t>> shifts);
+  void retarget_held(const Graph& graph);
+  static void add_to_ranges(std::uint32_t edge, std::vector<EdgeRange>& ranges);
+  static void set_ranges(std::span<const std::vector<EdgeRange>> of_chunks, Scatter& scatter);
   void size_slots(const Graph& graph);
   [[nodiscard]] int chunk_of(std::span<const VertexIndex> vertices) const;
   [[nodiscard]] std::int64_t gradient_target(int chunk, int column) const;
