@@ -39,6 +39,42 @@ std::vector<Block> blocks_of_new_edges(const Graph& graph, const std::vector<int
   return blocks;
 }
 
+/// The blocks above the diagonal, by column.
+struct Columns {
+  std::vector<std::int64_t> begin{0};
+  std::vector<int> rows;     // ascending in a column
+  std::vector<char> intact;  // per column: it has the rows that it had
+};
+
+/// What stays of a pattern, and the added blocks. @param old_column of each new one, new_column of each old
+/// one; -1: there is none
+Columns follow_columns(const BlockPattern& pattern, std::span<const int> new_column,
+                       std::span<const int> old_column, std::span<const Block> added) {
+  Columns result;
+  std::vector<int>& rows = result.rows;
+  rows.reserve(pattern.row.size() + added.size());
+  auto next = added.begin();
+  for (std::size_t j = 0; j < old_column.size(); ++j) {
+    const auto first = static_cast<std::ptrdiff_t>(rows.size());
+    std::int64_t had = -1;
+    if (const int old = old_column[j]; old >= 0) {
+      const std::int64_t diagonal = pattern.column[at(old) + 1] - 1;
+      had = diagonal - pattern.column[at(old)];
+      for (auto k = pattern.column[at(old)]; k < diagonal; ++k) {
+        const int row = new_column[at(pattern.row[at(k)])];
+        if (row >= 0) rows.push_back(row);  // ascending, as the order stays
+      }
+    }
+    const auto kept = static_cast<std::ptrdiff_t>(rows.size());
+    for (; next != added.end() && next->column == static_cast<int>(j); ++next) rows.push_back(next->row);
+    std::inplace_merge(rows.begin() + first, rows.begin() + kept, rows.end());
+    rows.erase(std::unique(rows.begin() + first, rows.end()), rows.end());
+    result.intact.push_back(kept - first == had && static_cast<std::ptrdiff_t>(rows.size()) == kept);
+    result.begin.push_back(static_cast<std::int64_t>(rows.size()));
+  }
+  return result;
+}
+
 }  // namespace
 
 void Structure::remove(const Graph& graph, const Removal& removal, std::span<const char> held) {
@@ -61,37 +97,13 @@ void Structure::remove(const Graph& graph, const Removal& removal, std::span<con
     old_column[at(new_column[j])] = static_cast<int>(j);
   }
   const std::vector<Block> added = blocks_of_new_edges(graph, column_of_, removal.kept_edges);
-  std::vector<char> intact(vertex_of_.size(), 0);  // the column has the rows that it had
-  std::vector<std::int64_t> begin{0};
-  std::vector<int> rows;
-  rows.reserve(pattern_.row.size() + added.size());
-  auto next = added.begin();
-  for (std::size_t j = 0; j < vertex_of_.size(); ++j) {
-    const auto first = static_cast<std::ptrdiff_t>(rows.size());
-    if (const int old = old_column[j]; old >= 0) {
-      for (auto k = pattern_.column[at(old)]; k < pattern_.column[at(old) + 1] - 1; ++k) {
-        const int row = new_column[at(pattern_.row[at(k)])];
-        if (row >= 0) rows.push_back(row);  // ascending, as the order stays
-      }
-    }
-    const auto kept = static_cast<std::ptrdiff_t>(rows.size());
-    for (; next != added.end() && next->column == static_cast<int>(j); ++next) rows.push_back(next->row);
-    if (static_cast<std::ptrdiff_t>(rows.size()) > kept) {
-      std::inplace_merge(rows.begin() + first, rows.begin() + kept, rows.end());
-      rows.erase(std::unique(rows.begin() + first, rows.end()), rows.end());
-    }
-    if (const int old = old_column[j]; old >= 0) {
-      const std::int64_t had = pattern_.column[at(old) + 1] - pattern_.column[at(old)] - 1;
-      intact[j] = kept - first == had && static_cast<std::ptrdiff_t>(rows.size()) == kept;
-    }
-    begin.push_back(static_cast<std::int64_t>(rows.size()));
-  }
+  const Columns upper = follow_columns(pattern_, new_column, old_column, added);
   const std::vector<std::int64_t> old_value = pattern_.value;
-  make_pattern(graph, 0, begin, rows);
+  make_pattern(graph, 0, upper.begin, upper.rows);
   size_slots(graph);
   std::vector<std::optional<std::int64_t>> shifts(vertex_of_.size());
   for (std::size_t j = 0; j < shifts.size() - at(dense_columns_); ++j) {
-    if (intact[j] != 0) shifts[j] = pattern_.value[j] - old_value[at(old_column[j])];
+    if (upper.intact[j] != 0) shifts[j] = pattern_.value[j] - old_value[at(old_column[j])];
   }
   move_scatter(graph, removal, shifts);
 }
