@@ -32,7 +32,8 @@ struct Marginalization {
 ///
 /// What of the prefix stays: vertices of a dense type (calibration states belong to no time), and fixed
 /// vertices that remaining edges touch. Fixed vertices count as known, and so do those in `held`; a held one
-/// goes with the prefix, and the prior then anchors the rest where it stood.
+/// goes with the prefix, and the prior then anchors the rest where it stood. A fixed origin that no edge of
+/// the window touches any more (GNSS outage) goes too; who needs it later adds it again, under the same id.
 /// Robust losses count with their weights and second-order terms at the present values
 /// (robust_information.hpp); from then on they are frozen.
 ///
