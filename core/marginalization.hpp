@@ -24,7 +24,8 @@ struct Marginalization {
 /// one for each group of vertices that the removed edges join. Where Lambda is singular (nothing removed
 /// knows the position) the pseudo-inverse keeps form and gradient all the same, as h lies in its range.
 /// Computed from square roots, vertex by vertex in their order (QR), so that nothing is squared before it
-/// cancels; the cost does not grow with the number of vertices that stay, but for moving their numbers up.
+/// cancels. The cost does not grow with what stays, but for one look at every edge's vertices and for moving
+/// up what stays.
 ///
 /// Exact where errors are linear. Elsewhere exact to second order at the present values, which therefore
 /// should be near the minimum: the step, the minimum found from there, and its covariances are those of the
