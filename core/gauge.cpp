@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/gauge.hpp>
@@ -50,44 +51,33 @@ struct Components {
   std::vector<RigidMotionView::Place> places;
 };
 
-template <typename Visit>
-void for_each_position(const Graph& graph, const Components& components, Visit visit) {
-  for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
-    if (components.of[v] < 0) continue;
-    const auto vertex = static_cast<VertexIndex>(v);
-    visit(at(components.of[v]), graph.vertex_type(vertex).position(graph.value(vertex).data()));
-  }
-}
-
 Components describe_components(const Graph& graph) {
   const std::vector<std::int32_t> root = find_components(graph);
   const std::vector<char> has_edge = vertices_with_edges(graph);
   Components result;
   result.of.assign(graph.vertex_count(), -1);
   std::vector<std::int32_t> number(graph.vertex_count(), -1);  // of the component with that root
+  std::vector<Eigen::AlignedBox2d> boxes;
   for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
     const auto vertex = static_cast<VertexIndex>(v);
-    if (!has_edge[v] || graph.fixed(vertex) || graph.vertex_type(vertex).rigid_motion == nullptr) continue;
+    if (!has_edge[v] || graph.fixed(vertex)) continue;
+    const VertexType& type = graph.vertex_type(vertex);
+    if (type.rigid_motion == nullptr) continue;
     std::int32_t& component = number[at(root[v])];
     if (component < 0) {
       component = static_cast<std::int32_t>(result.first.size());
       result.first.push_back(vertex);
       result.count.push_back(0);
+      boxes.emplace_back();
     }
     result.of[v] = component;
     ++result.count[at(component)];
+    boxes[at(component)].extend(type.position(graph.values().data() + graph.offsets()[v]));
   }
-  result.places.resize(result.first.size());
-  for_each_position(graph, result, [&](std::size_t c, const Eigen::Vector2d& position) {
-    result.places[c].centre += position;
-  });
-  for (std::size_t c = 0; c < result.places.size(); ++c) result.places[c].centre /= result.count[c];
   // At least a metre: below, a turn of the component means only turning its poses.
-  for_each_position(graph, result, [&](std::size_t c, const Eigen::Vector2d& position) {
-    RigidMotionView::Place& place = result.places[c];
-    place.extent = std::max(place.extent, (position - place.centre).squaredNorm());
-  });
-  for (RigidMotionView::Place& place : result.places) place.extent = std::sqrt(place.extent);
+  for (const Eigen::AlignedBox2d& box : boxes) {
+    result.places.push_back({box.center(), std::max(1.0, 0.5 * box.diagonal().norm())});
+  }
   return result;
 }
 

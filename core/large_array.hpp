@@ -2,7 +2,10 @@
 /// them on request: touching fresh memory 4 KB at a time costs more than a factorisation of a chain.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <utility>
 #include <vector>
@@ -22,6 +25,7 @@ struct LargeAllocator {
   LargeAllocator(const LargeAllocator<U>&) {}
 
   T* allocate(std::size_t count) {
+    if (count > (std::numeric_limits<std::ptrdiff_t>::max() - kHugePage) / sizeof(T)) throw std::bad_alloc();
     const std::size_t bytes = count * sizeof(T);
     if (bytes < kHugePage / 2) {
       if (void* memory = std::malloc(bytes)) return static_cast<T*>(memory);
@@ -31,7 +35,8 @@ struct LargeAllocator {
     void* memory = std::aligned_alloc(kHugePage, whole);
     if (memory == nullptr) throw std::bad_alloc();
 #if defined(__linux__)
-    (void)madvise(memory, whole, MADV_HUGEPAGE);  // advice only
+    // Advice only; not for the rest behind the last whole page, which would be cleared for nothing.
+    (void)madvise(memory, std::max(bytes / kHugePage, std::size_t{1}) * kHugePage, MADV_HUGEPAGE);
 #endif
     return static_cast<T*>(memory);
   }

@@ -41,12 +41,14 @@ Size measure(const Graph& graph) {
     const EdgeBatchBase& batch = graph.batch(b);
     const int dimension = graph.edge_type(b).error_dimension;  // 0: each edge has its own
     size.equations += dimension * static_cast<std::int64_t>(batch.size());
-    for (std::size_t e = 0; e < batch.size(); ++e) {
-      if (dimension == 0) size.equations += batch.error_dimension(e);
-      std::int64_t free = 0;
-      for (const VertexIndex v : batch.vertices(e)) free += graph.fixed(v) ? 0 : 1;
-      joints += std::max<std::int64_t>(free - 1, 0);
+    if (dimension == 0) {
+      for (std::size_t e = 0; e < batch.size(); ++e) size.equations += batch.error_dimension(e);
     }
+    for_each_edge(batch, [&](std::span<const VertexIndex> vertices) {
+      std::int64_t free = 0;
+      for (const VertexIndex v : vertices) free += graph.fixed(v) ? 0 : 1;
+      joints += std::max<std::int64_t>(free - 1, 0);
+    });
   }
   size.loops = joints - (size.vertices - 1);
   return size;

@@ -138,7 +138,7 @@ void check_minimum_stays(Graph graph, std::initializer_list<VertexIndex> counts)
   const std::vector<char> held = find_gauge(whole).held;
   std::vector<VertexIndex> all(whole.vertex_count());
   std::iota(all.begin(), all.end(), 0);
-  const std::vector<Eigen::MatrixXd> covariances = marginal_covariances(whole, all);
+  const CovarianceBlocks covariances = marginal_covariances(whole, all);
   double constant = 0;
   std::vector<char> known = held;
   for (const VertexIndex count : counts) {

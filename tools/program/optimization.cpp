@@ -44,7 +44,8 @@ MultiStartSummary optimize_from(const std::string& start, Graph& graph, const Ty
     graph.set_values(std::move(made.values));
   }
   MultiStartSummary result;
-  result.summary = (minimize ? minimize : Minimizer(&optimize))(graph, algorithm, solver, options);
+  result.summary = minimize ? minimize(graph, algorithm, solver, options)
+                            : optimize(graph, algorithm, solver, options);
   result.start = start == kAutoStart ? kFileStart : start;
   result.total_seconds = result.summary.total_seconds;
   if (made.apart > 0) result.summary.notes.push_back(apart_note(made.apart));
