@@ -29,7 +29,7 @@ class Dogleg final : public Algorithm {
     if (radius_ < kMinRadius * newton_norm_) return ProposalStatus::exhausted;
     step.control = radius_;
     if (newton_norm_ <= radius_ && damping_ == 0) {
-      step.delta.swap(newton_);  // back in rejected(), where it is needed again
+      step.delta = newton_;
       describe_newton_step(slope_, step);
       length_ = newton_norm_;
     } else {
@@ -51,10 +51,7 @@ class Dogleg final : public Algorithm {
     fresh_ = true;
   }
 
-  void rejected(const Step& step, double) override {
-    radius_ = 0.25 * std::min(radius_, length_);
-    if (step.full_newton) newton_ = step.delta;
-  }
+  void rejected(const Step&, double) override { radius_ = 0.25 * std::min(radius_, length_); }
 
  private:
   static constexpr double kMinRadius = 1e-18;
