@@ -66,106 +66,89 @@ class BlockCholesky::Stream {
     }
   }
 
-  [[nodiscard]] bool done() const { return next_ == end_; }
-  [[nodiscard]] bool at_chain() const { return node().links > 0; }
-  [[nodiscard]] int links_left() const { return node().links - walk_.link; }
   [[nodiscard]] bool failed() const { return failed_; }
 
-  // ---- Factorisation, supernodes ascending
-
-  void factorize_next(const double* values) {
-    if (at_chain()) {
-      open_chain();
-      factorize_links<double>(values, links_left(), *this);
-      close_chain();
-    } else {
-      factorize_front(values);
-      ++next_;
-    }
-  }
-
-  /// Both streams to their ends; where both stand at chains, link by link together.
-  static void factorize_both(Stream& a, Stream& b, const double* values) {
-    while (!a.done() && !b.done()) {
-      if (!a.at_chain()) {
-        a.factorize_next(values);
-      } else if (!b.at_chain()) {
-        b.factorize_next(values);
+  /// Takes one stream to its end, or two: where both stand at chains, link by link together.
+  template <typename Pass>
+  static void walk(const Pass& pass, Stream& one, Stream* two) {
+    while (two != nullptr && one.goes_on() && two->goes_on()) {
+      if (!pass.at_chain(one)) {
+        pass.front(one);
+      } else if (!pass.at_chain(*two)) {
+        pass.front(*two);
       } else {
-        a.open_chain();
-        b.open_chain();
-        factorize_links<NumberPair>(values, std::min(a.links_left(), b.links_left()), a, b);
-        a.close_chain();
-        b.close_chain();
+        pass.open(one);
+        pass.open(*two);
+        pass.template links<NumberPair>(std::min(pass.links_left(one), pass.links_left(*two)), one, *two);
+        pass.close(one);
+        pass.close(*two);
       }
     }
-    while (!a.done()) a.factorize_next(values);
-    while (!b.done()) b.factorize_next(values);
+    while (one.goes_on()) step(pass, one);
+    while (two != nullptr && two->goes_on()) step(pass, *two);
   }
 
-  // ---- Forward substitution, supernodes ascending
-
-  void solve_next(const double* b) {
-    if (at_chain()) {
-      open_solve();
-      solve_links<double>(b, links_left(), *this);
-      close_solve();
-    } else {
-      solve_front(b);
-      ++next_;
+  /// What a walk does at each supernode. Factorisation and forward substitution take them ascending.
+  struct Ascending {
+    [[nodiscard]] bool at_chain(const Stream& s) const { return s.node().links > 0; }
+    [[nodiscard]] int links_left(const Stream& s) const { return s.node().links - s.walk_.link; }
+  };
+  struct Factorization : Ascending {
+    const double* values;
+    explicit Factorization(const double* numbers) : values(numbers) {}
+    void front(Stream& s) const {
+      s.factorize_front(values);
+      ++s.next_;
     }
-  }
-
-  static void solve_both(Stream& one, Stream& two, const double* b) {
-    while (!one.done() && !two.done()) {
-      if (!one.at_chain()) {
-        one.solve_next(b);
-      } else if (!two.at_chain()) {
-        two.solve_next(b);
-      } else {
-        one.open_solve();
-        two.open_solve();
-        solve_links<NumberPair>(b, std::min(one.links_left(), two.links_left()), one, two);
-        one.close_solve();
-        two.close_solve();
-      }
+    void open(Stream& s) const { s.open_chain(); }
+    void close(Stream& s) const { s.close_chain(); }
+    template <typename T, typename... S>
+    void links(int count, S&... stream) const {
+      factorize_links<T>(values, count, stream...);
     }
-    while (!one.done()) one.solve_next(b);
-    while (!two.done()) two.solve_next(b);
-  }
-
-  // ---- Backward substitution, supernodes descending: `next_` stays, `end_` moves
-
-  void solve_back_next(double* x) {
-    if (last_node().links > 0) {
-      open_back(x);
-      solve_links_back<double>(x, links_left_back(), *this);
-      close_back();
-    } else {
-      solve_front_back(x);
-      --end_;
+  };
+  struct Forward : Ascending {
+    const double* b;
+    explicit Forward(const double* right) : b(right) {}
+    void front(Stream& s) const {
+      s.solve_front(b);
+      ++s.next_;
     }
-  }
-
-  static void solve_back_both(Stream& one, Stream& two, double* x) {
-    while (!one.done() && !two.done()) {
-      if (one.last_node().links == 0) {
-        one.solve_back_next(x);
-      } else if (two.last_node().links == 0) {
-        two.solve_back_next(x);
-      } else {
-        one.open_back(x);
-        two.open_back(x);
-        solve_links_back<NumberPair>(x, std::min(one.links_left_back(), two.links_left_back()), one, two);
-        one.close_back();
-        two.close_back();
-      }
+    void open(Stream& s) const { s.open_solve(); }
+    void close(Stream& s) const { s.close_solve(); }
+    template <typename T, typename... S>
+    void links(int count, S&... stream) const {
+      solve_links<T>(b, count, stream...);
     }
-    while (!one.done()) one.solve_back_next(x);
-    while (!two.done()) two.solve_back_next(x);
-  }
+  };
+  /// Backward substitution takes them descending: `next_` stays, `end_` moves.
+  struct Backward {
+    double* x;
+    [[nodiscard]] bool at_chain(const Stream& s) const { return s.last_node().links > 0; }
+    [[nodiscard]] int links_left(const Stream& s) const { return s.last_node().links - s.walk_.link; }
+    void front(Stream& s) const {
+      s.solve_front_back(x);
+      --s.end_;
+    }
+    void open(Stream& s) const { s.open_back(x); }
+    void close(Stream& s) const { s.close_back(); }
+    template <typename T, typename... S>
+    void links(int count, S&... stream) const {
+      solve_links_back<T>(x, count, stream...);
+    }
+  };
 
  private:
+  [[nodiscard]] bool goes_on() const { return next_ != end_ && !failed_; }
+
+  template <typename Pass>
+  static void step(const Pass& pass, Stream& stream) {
+    if (!pass.at_chain(stream)) return pass.front(stream);
+    pass.open(stream);
+    pass.template links<double>(pass.links_left(stream), stream);
+    pass.close(stream);
+  }
+
   [[nodiscard]] int index_of(int i) const { return list_ == nullptr ? i : list_[i]; }
   [[nodiscard]] const Supernode& node() const { return symbolic_.nodes[at(index_of(next_))]; }
   [[nodiscard]] const Supernode& last_node() const { return symbolic_.nodes[at(index_of(end_ - 1))]; }
@@ -180,13 +163,15 @@ class BlockCholesky::Stream {
       visit(symbolic_.nodes[at(c)]);
   }
 
+  /// Where the lower triangle of a chain's update stands: columns of a stride of 4.
+  static constexpr std::array<int, 6> kLower = {0, 1, 2, 5, 6, 10};
+
   void open_chain() {
     const int index = index_of(next_);
     if (walk_.node == index) return;
     walk_ = Walk{index, 0, {}};
     for_each_child(node(), [&](const Supernode& child) {
       const double* update = owner_.updates_.data() + child.update;
-      constexpr std::array<int, 6> kLower = {0, 1, 2, 5, 6, 10};  // of a stride of 4
       for (unsigned i = 0; i < 6; ++i)
         walk_.carry[i] -= update[kLower[i]];  // updates are to be added, carries subtracted
     });
@@ -196,7 +181,6 @@ class BlockCholesky::Stream {
     const Supernode& chain = node();
     if (walk_.link < chain.links) return;
     double* update = owner_.updates_.data() + chain.update;
-    constexpr std::array<int, 6> kLower = {0, 1, 2, 5, 6, 10};
     for (unsigned i = 0; i < 6; ++i) update[kLower[i]] = -walk_.carry[i];
     walk_.node = -1;
     ++next_;
@@ -385,8 +369,6 @@ class BlockCholesky::Stream {
     std::copy_n(t + front.columns, front.below, owner_.vectors_.data() + front.vector);
   }
 
-  [[nodiscard]] int links_left_back() const { return last_node().links - walk_.link; }
-
   // The walk counts links from the end of the chain.
   void open_back(const double* x) {
     const int index = index_of(end_ - 1);
@@ -490,51 +472,43 @@ void BlockCholesky::analyze(const BlockPattern& pattern) {
   work_.assign(at(symbolic_.start.back() + streams * (symbolic_.largest_front + kSlack)), 0.0);
 }
 
-FactorStatus BlockCholesky::factorize(std::span<const double> values) {
-  std::atomic<bool> failed = false;
+template <typename Pass>
+bool BlockCholesky::walk_subtrees(const Pass& pass) {
+  std::atomic<bool> ok = true;
   for_each_subtree([&](int one, int two) {
     Stream a(*this, one);
     if (two < 0) {
-      while (!a.done() && !a.failed()) a.factorize_next(values.data());
+      Stream::walk(pass, a, nullptr);
     } else {
       Stream b(*this, two);
-      Stream::factorize_both(a, b, values.data());
-      if (b.failed()) failed = true;
+      Stream::walk(pass, a, &b);
+      if (b.failed()) ok = false;
     }
-    if (a.failed()) failed = true;
+    if (a.failed()) ok = false;
   });
+  return ok;
+}
+
+template <typename Pass>
+bool BlockCholesky::walk_top(const Pass& pass) {
   Stream top(*this, static_cast<int>(symbolic_.subtrees.size()));
-  while (!failed && !top.done()) {
-    top.factorize_next(values.data());
-    if (top.failed()) failed = true;
-  }
-  return failed ? FactorStatus::not_positive_definite : FactorStatus::ok;
+  Stream::walk(pass, top, nullptr);
+  return !top.failed();
+}
+
+FactorStatus BlockCholesky::factorize(std::span<const double> values) {
+  const Stream::Factorization pass(values.data());
+  const bool ok = walk_subtrees(pass) && walk_top(pass);
+  return ok ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
 void BlockCholesky::solve(std::span<const double> b, std::span<double> x) {
-  const int top_index = static_cast<int>(symbolic_.subtrees.size());
-  for_each_subtree([&](int one, int two) {
-    Stream a(*this, one);
-    if (two < 0) {
-      while (!a.done()) a.solve_next(b.data());
-    } else {
-      Stream second(*this, two);
-      Stream::solve_both(a, second, b.data());
-    }
-  });
-  Stream top(*this, top_index);
-  while (!top.done()) top.solve_next(b.data());
-  Stream top_back(*this, top_index);
-  while (!top_back.done()) top_back.solve_back_next(x.data());
-  for_each_subtree([&](int one, int two) {
-    Stream a(*this, one);
-    if (two < 0) {
-      while (!a.done()) a.solve_back_next(x.data());
-    } else {
-      Stream second(*this, two);
-      Stream::solve_back_both(a, second, x.data());
-    }
-  });
+  const Stream::Forward forward(b.data());
+  walk_subtrees(forward);
+  walk_top(forward);
+  const Stream::Backward backward{x.data()};
+  walk_top(backward);
+  walk_subtrees(backward);
 }
 
 std::string BlockCholesky::description() const {

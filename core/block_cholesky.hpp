@@ -42,6 +42,11 @@ class BlockCholesky final : public LinearSolver {
   class Stream;
   class DiagonalInverse;
 
+  /// A pass over all subtrees, side by side, and one over what is above them; false: a pivot failed.
+  template <typename Pass>
+  bool walk_subtrees(const Pass& pass);
+  template <typename Pass>
+  bool walk_top(const Pass& pass);
   template <typename Work>
   void for_each_subtree(Work work);
 

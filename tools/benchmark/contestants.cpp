@@ -30,32 +30,37 @@ RunOutcome describe(const Summary& summary, std::chrono::steady_clock::time_poin
           .notes = summary.notes};
 }
 
+/// @param minimize (graph, algorithm, solver) -> Summary; making the latter two is timed with it
+template <typename Minimize>
+Contestant make_contestant(std::string name, const std::string& algorithm, const std::string& solver,
+                           const TypeRegistry& registry, Minimize minimize) {
+  (void)registry.make_algorithm(algorithm);  // an unknown name is said before anything is measured
+  (void)registry.make_linear_solver(solver);
+  return {std::move(name), solver, false, [=, &registry](Graph& graph) {
+            const auto begin = std::chrono::steady_clock::now();
+            const auto method = registry.make_algorithm(algorithm);
+            const auto backend = registry.make_linear_solver(solver);
+            return describe(minimize(graph, *method, *backend), begin);
+          }};
+}
+
 }  // namespace
 
 Contestant waymark_contestant(const std::string& algorithm, const std::string& solver,
                               const OptimizerOptions& options, const TypeRegistry& registry) {
-  (void)registry.make_algorithm(algorithm);
-  (void)registry.make_linear_solver(solver);
-  return {algorithm, solver, false, [=, &registry](Graph& graph) {
-            const auto begin = std::chrono::steady_clock::now();
-            const auto method = registry.make_algorithm(algorithm);
-            const auto backend = registry.make_linear_solver(solver);
-            return describe(optimize(graph, *method, *backend, options), begin);
-          }};
+  return make_contestant(algorithm, algorithm, solver, registry,
+                         [=](Graph& graph, Algorithm& method, LinearSolver& backend) {
+                           return optimize(graph, method, backend, options);
+                         });
 }
 
 Contestant default_contestant(const std::string& algorithm, const std::string& solver,
                               const OptimizerOptions& options, const TypeRegistry& registry) {
-  Contestant contestant = waymark_contestant(algorithm, solver, options, registry);
-  contestant.name = std::string(kDefaultContestant);
-  contestant.run = [=, &registry](Graph& graph) {
-    const auto begin = std::chrono::steady_clock::now();
-    const auto method = registry.make_algorithm(algorithm);
-    const auto backend = registry.make_linear_solver(solver);
-    return describe(optimize_from_best_start(graph, registry.starts(), *method, *backend, options).summary,
-                    begin);
-  };
-  return contestant;
+  return make_contestant(
+      std::string(kDefaultContestant), algorithm, solver, registry,
+      [=, &registry](Graph& graph, Algorithm& method, LinearSolver& backend) {
+        return optimize_from_best_start(graph, registry.starts(), method, backend, options).summary;
+      });
 }
 
 Contestant peer_contestant(std::string_view name, const OptimizerOptions& options) {

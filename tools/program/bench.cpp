@@ -53,11 +53,7 @@ Names chosen(const Names& asked, const std::string& by_default, const Names& all
 }
 
 std::vector<Contestant> make_contestants(const BenchOptions& options, const TypeRegistry& registry) {
-  OptimizerOptions rules;
-  rules.max_iterations = options.choice.max_iterations;
-  rules.decrement_tolerance = options.choice.tolerance;
-  rules.threads = options.choice.threads;
-  rules.cancel = &interrupted;
+  const OptimizerOptions rules = optimizer_options(options.choice);
   const Names all_solvers = all_names(registry.linear_solvers());
   const std::string solver = solver_name(options.choice, registry);
   Names backends = chosen(options.solvers, solver, all_solvers);

@@ -44,8 +44,8 @@ MultiStartSummary optimize_from(const std::string& start, Graph& graph, const Ty
     graph.set_values(std::move(made.values));
   }
   MultiStartSummary result;
-  result.summary = minimize ? minimize(graph, algorithm, solver, options)
-                            : optimize(graph, algorithm, solver, options);
+  result.summary =
+      minimize ? minimize(graph, algorithm, solver, options) : optimize(graph, algorithm, solver, options);
   result.start = start == kAutoStart ? kFileStart : start;
   result.total_seconds = result.summary.total_seconds;
   if (made.apart > 0) result.summary.notes.push_back(apart_note(made.apart));
@@ -75,6 +75,15 @@ std::string solver_name(const OptimizationChoice& choice, const TypeRegistry& re
   return choice.solver == "auto" ? registry.linear_solvers().front().type.name : choice.solver;
 }
 
+OptimizerOptions optimizer_options(const OptimizationChoice& choice) {
+  OptimizerOptions options;
+  options.max_iterations = choice.max_iterations;
+  options.decrement_tolerance = choice.tolerance;
+  options.threads = choice.threads;
+  options.cancel = &interrupted;
+  return options;
+}
+
 void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry) {
   (void)registry.make_algorithm(choice.algorithm, parse_options(choice.options));
   (void)registry.make_linear_solver(solver_name(choice, registry));
@@ -86,11 +95,7 @@ MultiStartSummary optimize_document(GraphDocument& document, const OptimizationC
                                     const Minimizer& minimize) {
   const auto algorithm = registry.make_algorithm(choice.algorithm, parse_options(choice.options));
   const auto solver = registry.make_linear_solver(solver_name(choice, registry));
-  OptimizerOptions options;
-  options.max_iterations = choice.max_iterations;
-  options.decrement_tolerance = choice.tolerance;
-  options.threads = choice.threads;
-  options.cancel = &interrupted;
+  OptimizerOptions options = optimizer_options(choice);
   options.observer = [&](const IterationRecord& record) {
     if (console.verbosity() > 0) {
       console.detail(iteration_line(record));

@@ -25,7 +25,7 @@ struct OptimizationChoice {
   std::vector<std::string> options;  ///< name=value, for the algorithm
   int threads = 1;
   int max_iterations = 500;
-  double tolerance = 1e-6;         ///< decrement_tolerance
+  double tolerance = 1e-6;          ///< decrement_tolerance
   std::string covariance = "none";  ///< none, fixes, all
 };
 
@@ -38,6 +38,9 @@ MultiStartSummary optimize_document(GraphDocument& document, const OptimizationC
 
 /// Name of the linear solver that was chosen.
 [[nodiscard]] std::string solver_name(const OptimizationChoice& choice, const TypeRegistry& registry);
+
+/// Stopping rules and threads that were chosen; an interrupt of the program cancels.
+[[nodiscard]] OptimizerOptions optimizer_options(const OptimizationChoice& choice);
 
 /// Whether start, algorithm, its options and solver exist, before anything is read. @throws UsageError
 void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry);
