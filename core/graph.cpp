@@ -44,6 +44,7 @@ Graph::Graph(const Graph& other)
       fixed_(other.fixed_),
       stamps_(other.stamps_),
       by_id_(other.by_id_),
+      free_id_(other.free_id_),
       structure_version_(other.structure_version_) {
   for (const Batch& batch : other.batches_) batches_.push_back({batch.type, batch.edges->clone()});
 }
@@ -77,6 +78,7 @@ VertexIndex Graph::add_vertex(const VertexType& type, VertexId id, std::span<con
   fixed_.push_back(0);
   if (!stamps_.empty()) stamps_.push_back(kNoStamp);
   by_id_.insert(id, v);
+  if (id >= free_id_ && id < std::numeric_limits<VertexId>::max()) free_id_ = id + 1;
   ++structure_version_;
   return v;
 }

@@ -69,6 +69,8 @@ class Graph {
     return v < 0 ? std::nullopt : std::optional(v);
   }
   [[nodiscard]] VertexId id(VertexIndex v) const { return ids_[index(v)]; }
+  /// An id that no vertex ever had: one above the largest so far, at least 1.
+  [[nodiscard]] VertexId free_id() const { return free_id_; }
   [[nodiscard]] const VertexType& vertex_type(VertexIndex v) const {
     return vertex_types_[type_of_[index(v)]];
   }
@@ -160,6 +162,7 @@ class Graph {
   std::vector<char> fixed_;
   std::vector<Stamp> stamps_;  // empty until the first is set; kNoStamp where a vertex has none
   VertexIds by_id_;
+  VertexId free_id_ = 1;
   std::vector<Batch> batches_;
   std::uint64_t structure_version_ = 0;
 };

@@ -13,7 +13,7 @@
 namespace waymark {
 
 /// Which samples are wanted from a log.
-enum class StreamKind { odometry, gnss, truth };
+enum class StreamKind { odometry, gnss, truth, sensor };
 
 /// What the accuracy figure of a log means (see formats/README.md). `automatic` is resolved by the reader and
 /// noted.
@@ -36,6 +36,7 @@ struct ColumnRequest {
 struct LogRequest {
   StreamKind stream = StreamKind::gnss;
   std::map<std::string, ColumnRequest> columns;  ///< by quantity (CSV); see formats/csv_log.hpp
+  std::vector<SensorColumn> readings;            ///< the quantities of a sensor stream, beside `time`
   char separator = ',';                          ///< CSV field separator; ' ': any run of blanks and tabs
   AccuracyMeaning accuracy = AccuracyMeaning::automatic;
   double default_sigma_m = 0;  ///< per-axis sigma where the log gives none; 0: such a fix is corrupt
@@ -52,6 +53,7 @@ struct LogData {
   std::vector<OdometrySample> odometry;
   std::vector<GeodeticFix> fixes;
   std::vector<GeodeticTruth> truth;
+  SensorTable readings;                       ///< columns as LogRequest::readings
   std::vector<std::string> notes;             ///< assumptions made, one sentence each
   std::size_t records = 0;                    ///< records that could have held a sample
   std::size_t corrupt = 0;                    ///< records that should have held one and could not be used

@@ -66,11 +66,23 @@ void TypeRegistry::add_odometry_model(OdometryModelType type) {
 void TypeRegistry::add_gnss_modeling(GnssModelingType type) {
   add(gnss_modelings_, std::move(type), origin_, "GNSS modeling");
 }
+void TypeRegistry::add_sensor_model(SensorModelType type) {
+  add(sensor_models_, std::move(type), origin_, "sensor model");
+}
 void TypeRegistry::add_log_reader(LogReaderType type) {
   add(log_readers_, std::move(type), origin_, "log reader");
 }
 void TypeRegistry::add_start(StartType type) {
   add(starts_, std::move(type), origin_, "start");
+}
+
+void TypeRegistry::add_plugin(PluginRecord plugin) {
+  for (const PluginRecord& other : plugins_) {
+    if (other.name != plugin.name) continue;
+    throw UsageError("plugin '" + plugin.name + "' (" + plugin.place + ") is already there (" + other.place +
+                     "); load only one of them, or rename it in its WAYMARK_PLUGIN line");
+  }
+  plugins_.push_back(std::move(plugin));
 }
 
 const VertexType* TypeRegistry::find_vertex(std::string_view tag) const {
@@ -98,11 +110,25 @@ std::unique_ptr<Algorithm> TypeRegistry::make_algorithm(std::string_view name, c
 }
 std::unique_ptr<OdometryModel> TypeRegistry::make_odometry_model(std::string_view name,
                                                                  const Options& options) const {
-  return require(odometry_models_, name, "odometry model").make(options);
+  return odometry_model(name).make(options);
 }
 std::unique_ptr<GnssModeling> TypeRegistry::make_gnss_modeling(std::string_view name,
                                                                const Options& options) const {
-  return require(gnss_modelings_, name, "GNSS modeling").make(options);
+  return gnss_modeling(name).make(options);
+}
+std::unique_ptr<SensorModel> TypeRegistry::make_sensor_model(std::string_view name,
+                                                             const Options& options) const {
+  return sensor_model(name).make(options);
+}
+
+const OdometryModelType& TypeRegistry::odometry_model(std::string_view name) const {
+  return require(odometry_models_, name, "odometry model");
+}
+const GnssModelingType& TypeRegistry::gnss_modeling(std::string_view name) const {
+  return require(gnss_modelings_, name, "GNSS modeling");
+}
+const SensorModelType& TypeRegistry::sensor_model(std::string_view name) const {
+  return require(sensor_models_, name, "sensor model");
 }
 
 void register_core_types(TypeRegistry& registry) {

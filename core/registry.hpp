@@ -26,6 +26,13 @@ struct LogReaderType {
   const LogReader* reader = nullptr;  ///< stateless, lives as long as the code that registered it
 };
 
+/// A plugin whose types are in the registry.
+struct PluginRecord {
+  std::string name;
+  std::string version;
+  std::string place;  ///< file of a module, "built in"
+};
+
 /// An entry and who registered it.
 template <typename T>
 struct Registered {
@@ -50,8 +57,10 @@ class TypeRegistry {
   void add_algorithm(AlgorithmType type);
   void add_odometry_model(OdometryModelType type);
   void add_gnss_modeling(GnssModelingType type);
+  void add_sensor_model(SensorModelType type);
   void add_log_reader(LogReaderType type);
   void add_start(StartType type);
+  void add_plugin(PluginRecord plugin);
   template <Vertex V>
   void add_vertex() {
     add_vertex(make_vertex_type<V>());
@@ -76,6 +85,12 @@ class TypeRegistry {
                                                                    const Options& options = {}) const;
   [[nodiscard]] std::unique_ptr<GnssModeling> make_gnss_modeling(std::string_view name,
                                                                  const Options& options = {}) const;
+  [[nodiscard]] std::unique_ptr<SensorModel> make_sensor_model(std::string_view name,
+                                                               const Options& options = {}) const;
+  /// The type by name. @throws UsageError for an unknown one, listing the names that exist
+  [[nodiscard]] const OdometryModelType& odometry_model(std::string_view name) const;
+  [[nodiscard]] const GnssModelingType& gnss_modeling(std::string_view name) const;
+  [[nodiscard]] const SensorModelType& sensor_model(std::string_view name) const;
 
   [[nodiscard]] const RegistryTable<VertexType>& vertices() const { return vertices_; }
   [[nodiscard]] const RegistryTable<EdgeType>& edges() const { return edges_; }
@@ -84,8 +99,11 @@ class TypeRegistry {
   [[nodiscard]] const RegistryTable<AlgorithmType>& algorithms() const { return algorithms_; }
   [[nodiscard]] const RegistryTable<OdometryModelType>& odometry_models() const { return odometry_models_; }
   [[nodiscard]] const RegistryTable<GnssModelingType>& gnss_modelings() const { return gnss_modelings_; }
+  [[nodiscard]] const RegistryTable<SensorModelType>& sensor_models() const { return sensor_models_; }
   [[nodiscard]] const RegistryTable<LogReaderType>& log_readers() const { return log_readers_; }
   [[nodiscard]] const RegistryTable<StartType>& starts() const { return starts_; }
+  /// In the order in which they were entered.
+  [[nodiscard]] const std::vector<PluginRecord>& plugins() const { return plugins_; }
 
  private:
   std::string origin_ = "waymark";
@@ -96,8 +114,10 @@ class TypeRegistry {
   RegistryTable<AlgorithmType> algorithms_;
   RegistryTable<OdometryModelType> odometry_models_;
   RegistryTable<GnssModelingType> gnss_modelings_;
+  RegistryTable<SensorModelType> sensor_models_;
   RegistryTable<LogReaderType> log_readers_;
   RegistryTable<StartType> starts_;
+  std::vector<PluginRecord> plugins_;
 };
 
 /// Registers what core itself brings: the run-time-arity Gaussian prior and the robust losses.

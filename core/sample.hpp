@@ -97,6 +97,28 @@ struct TruthPose {
   std::optional<double> heading_rad;                   ///< counter-clockwise from grid east
 };
 
+/// A column that a sensor's log must or may have.
+struct SensorColumn {
+  std::string name;      ///< quantity, and the column's default name
+  std::string unit;      ///< the SI unit its numbers come in: "m", "m/s", "s", "rad", "rad/s" or "1"
+  std::string sense;     ///< of rad: "" a size, "ccw" an angle or turn, "ccw_from_east" a heading (given from
+                         ///< true east, it comes as one in the frame); of rad/s: "ccw"; else ""
+  bool required = true;  ///< where it is not, NaN stands for a missing column or value
+  std::string description;  ///< one sentence
+};
+
+/// The log of a sensor: rows of readings in time, one number per SensorColumn.
+struct SensorTable {
+  std::vector<Stamp> stamps;   ///< sorted
+  std::vector<double> values;  ///< row by row, `columns` numbers each; SI units
+  std::size_t columns = 0;
+
+  [[nodiscard]] std::size_t size() const { return stamps.size(); }
+  [[nodiscard]] double at(std::size_t row, std::size_t column) const {
+    return values[row * columns + column];
+  }
+};
+
 /// An estimated pose of the body point at a stamp: (x, y, heading) in the frame.
 struct StampedPose {
   Stamp stamp;

@@ -27,8 +27,10 @@ using VertexIndex = std::int32_t;
 ///   V::local(const double* from, const double* to, double* delta)    delta with from [+] delta == to
 /// Invariants (tested for every registered type): retract by 0 is the identity on normalised values;
 /// local(v, v) = 0; local(v, retract(v, d)) = d for small d.
-/// Optional: V::kDense = true for states that touch very many edges (calibration); their columns are ordered
-/// last. Optional: V::position(const double*) -> Vector2d and
+/// Optional: V::value_units(), the unit of each of them, for types whose numbers are no coordinates: a state
+/// with units and without a place in the plane is reported with its sigma after a run. V::kDense = true for
+/// states that touch very many edges (calibration); their columns are ordered last. Optional:
+/// V::position(const double*) -> Vector2d and
 ///   V::rigid_motion(const double* value, const Vector2d& centre, double extent, double* columns): how the
 ///   value moves under a rigid motion of the plane, kTangentSize x 3 column-major: along x, along y, a turn
 ///   about centre by 1/extent rad. Types without it do not take part in the gauge test. And
@@ -52,6 +54,7 @@ struct VertexType {
   int value_size = 0;
   int tangent_size = 0;
   std::vector<std::string> value_names;
+  std::vector<std::string> value_units;  ///< empty: not stated
   bool dense = false;
   bool linear_chart = false;  ///< local(r, x [+] d) = local(r, x) + d: true for additive types
 
@@ -69,6 +72,9 @@ template <Vertex V>
   type.value_size = V::kValueSize;
   type.tangent_size = V::kTangentSize;
   for (const auto& name : V::value_names()) type.value_names.emplace_back(name);
+  if constexpr (requires { V::value_units(); }) {
+    for (const auto& unit : V::value_units()) type.value_units.emplace_back(unit);
+  }
   if constexpr (requires { V::kDense; }) type.dense = V::kDense;
   if constexpr (requires { V::kLinearChart; }) type.linear_chart = V::kLinearChart;
   type.retract = &V::retract;

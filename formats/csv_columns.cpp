@@ -51,18 +51,6 @@ bool holds_values(const std::vector<std::string_view>& fields, const LogRequest&
   return stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
 }
 
-void check_request(const std::string& place, const LogRequest& request) {
-  const std::vector<std::string_view> known = quantity_names(request.stream);
-  for (const auto& [name, wanted] : request.columns) {
-    const Quantity* quantity = find_quantity(request.stream, name);
-    if (quantity == nullptr)
-      throw InputError(fmt::format("{}'{}' is no quantity of the {} stream{}", place, name,
-                                   to_string(request.stream), did_you_mean(name, known)));
-    if (const std::string error = column_request_error(*quantity, wanted); !error.empty())
-      throw InputError(place + error);
-  }
-}
-
 }  // namespace
 
 std::optional<double> number_from_field(std::string_view field) {
@@ -94,13 +82,29 @@ std::string column_request_error(const Quantity& quantity, const ColumnRequest& 
                      did_you_mean(request.convention, known), joined(known));
 }
 
-CsvColumns::CsvColumns(const CsvLines& lines, const std::string& path, const LogRequest& request) {
+CsvColumns::CsvColumns(const CsvLines& lines, const std::string& path, const LogRequest& request)
+    : quantities_(quantities(request)) {
   check_request(path + ": ", request);
   find_header(lines, path, request);
   const std::string place = fmt::format("{}:{}:1: ", path, lines.number());
-  for (const Quantity& quantity : quantities(request.stream)) {
+  for (const Quantity& quantity : quantities_) {
     const auto wanted = request.columns.find(std::string(quantity.name));
     bind(quantity, wanted == request.columns.end() ? nullptr : &wanted->second, place);
+  }
+}
+
+void CsvColumns::check_request(const std::string& place, const LogRequest& request) const {
+  const std::vector<std::string_view> known = names_of(quantities_);
+  for (const auto& [name, wanted] : request.columns) {
+    const Quantity* quantity = find_quantity(quantities_, name);
+    if (quantity == nullptr) {
+      const std::string nearest = did_you_mean(name, known);
+      throw InputError(fmt::format("{}'{}' is no quantity of the {} stream{}", place, name,
+                                   to_string(request.stream),
+                                   nearest.empty() ? "; there are: " + joined(known) : nearest));
+    }
+    if (const std::string error = column_request_error(*quantity, wanted); !error.empty())
+      throw InputError(place + error);
   }
 }
 

@@ -31,6 +31,8 @@ class CsvColumns {
   /// @param lines  standing on the first line of the table; its text must outlive the columns
   /// @throws InputError see CsvLogReader
   CsvColumns(const CsvLines& lines, const std::string& path, const LogRequest& request);
+  CsvColumns(const CsvColumns&) = delete;  // columns point to the quantities
+  CsvColumns& operator=(const CsvColumns&) = delete;
 
   [[nodiscard]] bool first_line_is_header() const { return first_line_is_header_; }
   [[nodiscard]] std::size_t field_count() const { return field_count_; }
@@ -39,11 +41,13 @@ class CsvColumns {
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:
+  void check_request(const std::string& place, const LogRequest& request) const;
   void find_header(const CsvLines& lines, const std::string& path, const LogRequest& request);
   void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
   [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
   [[nodiscard]] std::string columns_present() const;
 
+  std::vector<Quantity> quantities_;
   std::vector<std::string_view> names_;  ///< of the header; empty where there is none
   std::size_t field_count_ = 0;
   bool first_line_is_header_ = false;

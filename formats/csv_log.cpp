@@ -42,6 +42,8 @@ class TableReader {
       : bound_(columns), field_count_(columns.field_count()), path_(path), request_(request), data_(data) {
     offset_ = request.gps_week * kNanosecondsPerWeek + std::llround(request.time_offset_s * 1e9);
     if (request.stream == StreamKind::gnss) choose_accuracy();
+    for (const SensorColumn& column : request.readings) readings_.push_back(columns.find(column.name));
+    data.readings.columns = request.readings.size();
   }
 
   void read_line(const CsvLines& lines) {
@@ -68,6 +70,7 @@ class TableReader {
   void choose_accuracy();
   bool check_fields();
   void read_sample();
+  void read_readings(Stamp at);
   [[nodiscard]] std::optional<Stamp> stamp();
   [[nodiscard]] double number(const BoundColumn* column, bool required);
   [[nodiscard]] std::optional<double> optional_number(const BoundColumn* column);
@@ -77,6 +80,7 @@ class TableReader {
   void complain(const BoundColumn& column, std::string what);
 
   Bindings bound_;
+  std::vector<const BoundColumn*> readings_;  ///< of a sensor, as LogRequest::readings; null: no such column
   std::size_t field_count_;
   const std::string& path_;
   const LogRequest& request_;
@@ -137,6 +141,7 @@ void TableReader::read_sample() {
     if (complaint_.column == 0) data_.odometry.push_back(sample);
     return;
   }
+  if (request_.stream == StreamKind::sensor) return read_readings(*at);
   const double latitude = number(bound_.latitude, true);
   const double longitude = number(bound_.longitude, true);
   const double height = number(bound_.height, false);
@@ -158,6 +163,15 @@ void TableReader::read_sample() {
   fix.source = request_.source;
   fix.line = number_;
   if (complaint_.column == 0) data_.fixes.push_back(fix);
+}
+
+void TableReader::read_readings(Stamp at) {
+  std::vector<double> row;
+  for (std::size_t i = 0; i < request_.readings.size(); ++i)
+    row.push_back(number(readings_[i], request_.readings[i].required));
+  if (complaint_.column != 0) return;
+  data_.readings.stamps.push_back(at);
+  data_.readings.values.insert(data_.readings.values.end(), row.begin(), row.end());
 }
 
 std::optional<Stamp> TableReader::stamp() {

@@ -17,7 +17,7 @@ void add_corrupt(LogData& data, const std::string& path, std::size_t line, std::
 }
 
 void require_samples(const LogData& data, const std::string& path, std::size_t without_fix) {
-  if (data.odometry.size() + data.fixes.size() + data.truth.size() > 0) return;
+  if (data.odometry.size() + data.fixes.size() + data.truth.size() + data.readings.size() > 0) return;
   if (data.records == 0) throw InputError(fmt::format("{}: the log holds no records", path));
   if (data.corrupt > 0)
     throw InputError(fmt::format("{}: none of {} records could be used; first: {}", path, data.records,

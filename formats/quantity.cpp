@@ -4,6 +4,8 @@
 #include <limits>
 #include <numbers>
 
+#include <waymark/core/error.hpp>
+
 namespace waymark {
 namespace {
 
@@ -61,6 +63,24 @@ constexpr std::array kTruth{
     kTime, kLatitude, kLongitude, kHeight,
     Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -200 * pi, 200 * pi}};
 
+// What a sensor may ask for: its SI unit and, of an angle or a rate, its sense (SensorColumn).
+struct SensorKind {
+  std::string_view unit;
+  std::string_view sense;
+  std::span<const Unit> units;
+  std::span<const Convention> conventions;
+};
+constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
+constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", kDegree}};
+constexpr std::array<SensorKind, 8> kSensorKinds{{{"1", "", kFlags, {}},
+                                                  {"m", "", kLengths, {}},
+                                                  {"m/s", "", kSpeeds, {}},
+                                                  {"s", "", kDurations, {}},
+                                                  {"rad", "", kAngles, {}},
+                                                  {"rad", "ccw_from_east", kHeadings, kHeadingSenses},
+                                                  {"rad", "ccw", kHeadings, kTurns},
+                                                  {"rad/s", "ccw", kRates, kTurns}}};
+
 template <typename Item>
 const Item* find_named(std::span<const Item> items, std::string_view name) {
   for (const Item& item : items) {
@@ -69,28 +89,41 @@ const Item* find_named(std::span<const Item> items, std::string_view name) {
   return nullptr;
 }
 
-}  // namespace
-
-std::span<const Quantity> quantities(StreamKind stream) {
-  switch (stream) {
-    case StreamKind::odometry:
-      return kOdometry;
-    case StreamKind::gnss:
-      return kGnss;
-    case StreamKind::truth:
-      return kTruth;
+Quantity sensor_quantity(const SensorColumn& column) {
+  for (const SensorKind& kind : kSensorKinds) {
+    if (kind.unit != column.unit || kind.sense != column.sense) continue;
+    return {column.name, column.name, column.required, kind.units, kind.conventions, -kInfinity, kInfinity};
   }
-  return kGnss;
+  throw UsageError("sensor column '" + column.name + "': no unit '" + column.unit + "' of sense '" +
+                   column.sense + "'; SensorColumn in core/sample.hpp lists those there are");
 }
 
-std::vector<std::string_view> quantity_names(StreamKind stream) {
+}  // namespace
+
+std::vector<Quantity> quantities(const LogRequest& request) {
+  switch (request.stream) {
+    case StreamKind::odometry:
+      return {kOdometry.begin(), kOdometry.end()};
+    case StreamKind::gnss:
+      return {kGnss.begin(), kGnss.end()};
+    case StreamKind::truth:
+      return {kTruth.begin(), kTruth.end()};
+    case StreamKind::sensor:
+      break;
+  }
+  std::vector<Quantity> own{kTime};
+  for (const SensorColumn& column : request.readings) own.push_back(sensor_quantity(column));
+  return own;
+}
+
+std::vector<std::string_view> names_of(std::span<const Quantity> quantities) {
   std::vector<std::string_view> names;
-  for (const Quantity& quantity : quantities(stream)) names.push_back(quantity.name);
+  for (const Quantity& quantity : quantities) names.push_back(quantity.name);
   return names;
 }
 
-const Quantity* find_quantity(StreamKind stream, std::string_view name) {
-  return find_named(quantities(stream), name);
+const Quantity* find_quantity(std::span<const Quantity> quantities, std::string_view name) {
+  return find_named(quantities, name);
 }
 
 const Unit* find_unit(const Quantity& quantity, std::string_view name) {
@@ -111,6 +144,8 @@ std::string_view to_string(StreamKind stream) {
       return "gnss";
     case StreamKind::truth:
       return "truth";
+    case StreamKind::sensor:
+      return "sensor";
   }
   return "gnss";
 }

@@ -38,17 +38,19 @@ struct Quantity {
 /// Unit of times written as ISO 8601 dates.
 inline constexpr std::string_view kIso8601 = "iso8601";
 
-/// The quantities of a stream, `time` first. formats/logs.md has the same as a table.
-[[nodiscard]] std::span<const Quantity> quantities(StreamKind stream);
-[[nodiscard]] std::vector<std::string_view> quantity_names(StreamKind stream);
+/// The quantities of a stream, `time` first. formats/logs.md has the same as a table; those of a sensor
+/// stream are the request's own, whose text must outlive them.
+/// @throws UsageError where a sensor asks for a unit or sense that is not known
+[[nodiscard]] std::vector<Quantity> quantities(const LogRequest& request);
+[[nodiscard]] std::vector<std::string_view> names_of(std::span<const Quantity> quantities);
 /// Null for an unknown name.
-[[nodiscard]] const Quantity* find_quantity(StreamKind stream, std::string_view name);
+[[nodiscard]] const Quantity* find_quantity(std::span<const Quantity> quantities, std::string_view name);
 
 /// Null for an unknown name; the default for an empty one.
 [[nodiscard]] const Unit* find_unit(const Quantity& quantity, std::string_view name);
 [[nodiscard]] const Convention* find_convention(const Quantity& quantity, std::string_view name);
 
-/// "odometry", "gnss", "truth".
+/// "odometry", "gnss", "truth", "sensor".
 [[nodiscard]] std::string_view to_string(StreamKind stream);
 
 }  // namespace waymark

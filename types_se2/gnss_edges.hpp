@@ -11,6 +11,7 @@
 #include <waymark/core/modeling.hpp>
 #include <waymark/core/options.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/time_offset.hpp>
 
 namespace waymark {
 
@@ -36,20 +37,66 @@ namespace waymark {
 }
 
 /// The fixed node at the frame's origin, "UTM origin" of the paper.
-inline VertexIndex add_origin(VertexId id, Graph& graph) {
-  const VertexIndex origin = graph.add_vertex<VertexSe2>(id, {0, 0, 0});
+inline VertexIndex add_origin(Graph& graph) {
+  const VertexIndex origin = graph.add_vertex<VertexSe2>(graph.free_id(), {0, 0, 0});
   graph.set_fixed(origin, true);
   return origin;
 }
 
-/// The option that all modelings share: which error a fix has.
-[[nodiscard]] inline OptionInfo gnss_error_option() {
-  return {"error", "decoupled", "",
-          "'decoupled': p - z in frame axes; 'literal': the paper's log with heading 0"};
+/// The options that all modelings share: which error a fix has, whether its time offset is estimated.
+[[nodiscard]] inline std::vector<OptionInfo> gnss_options() {
+  return {{"error", "decoupled", "",
+           "'decoupled': p - z in frame axes; 'literal': the paper's log with heading 0"},
+          {"time_offset", "off", "",
+           "how late the fixes are against the odometry: 'off', or estimated 'constant'"},
+          {"time_offset_sigma", "0.3", "s", "sigma of its prior about 0; in [1e-6, 100]"}};
 }
 [[nodiscard]] inline bool is_literal(std::string_view modeling, const Options& given) {
   constexpr std::array<std::string_view, 2> kErrors = {"decoupled", "literal"};
-  return word_option(modeling, given, std::array{gnss_error_option()}, "error", kErrors) == "literal";
+  return word_option(modeling, given, gnss_options(), "error", kErrors) == "literal";
+}
+
+/// Adds position edges of fixes, with one time offset for all of them where it is to be estimated.
+class PositionEdges {
+ public:
+  /// @param prior_sigma_s  of the time offset; 0: it is not estimated
+  /// @throws UsageError where it is, and the motion at the fixes is not given
+  PositionEdges(const GnssInput& input, double prior_sigma_s, Graph& graph) : input_(input), graph_(graph) {
+    if (prior_sigma_s == 0) return;
+    if (input.motion.size() != input.fixes.size())
+      throw UsageError("a time offset needs the motion at each fix (GnssInput::motion)");
+    offset_ = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
+    graph.add_edge(gaussian_prior_type(), std::array{offset_}, std::array{0.0, 0.0},
+                   Eigen::MatrixXd::Constant(1, 1, 1 / (prior_sigma_s * prior_sigma_s)));
+  }
+
+  /// The edge of fix i. @param vertices  the reference pose and the pose that carries the antenna
+  void add(std::size_t i, const Eigen::Vector2d& measured, const Eigen::Vector2d& antenna,
+           const std::array<VertexIndex, 2>& vertices) {
+    const Eigen::Matrix2d information = position_information(input_.fixes[i]);
+    if (offset_ < 0) {
+      graph_.add_edge(EdgeGnssPosition{measured, antenna}, vertices, information);
+      return;
+    }
+    const Interval& motion = input_.motion[i];
+    graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, motion.speed_mps, motion.yaw_rate_radps},
+                    {vertices[0], vertices[1], offset_}, information);
+  }
+
+ private:
+  const GnssInput& input_;
+  Graph& graph_;
+  VertexIndex offset_ = -1;
+};
+
+/// Sigma of the time offset's prior; 0 where it is not estimated. @throws UsageError
+[[nodiscard]] inline double time_offset_sigma(std::string_view modeling, const Options& given) {
+  constexpr std::array<std::string_view, 2> kModels = {"off", "constant"};
+  if (word_option(modeling, given, gnss_options(), "time_offset", kModels) == "off") return 0;
+  if (is_literal(modeling, given))
+    throw UsageError(std::string(modeling) +
+                     ": the paper's literal error has no time offset; use error: decoupled");
+  return number_option(modeling, given, gnss_options(), "time_offset_sigma", 1e-6, 100);
 }
 
 /// The literal error knows nothing of lever arms. @throws UsageError

@@ -1,15 +1,18 @@
 #include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/register.hpp>
 #include <waymark/types_se2/start/starts.hpp>
+#include <waymark/types_se2/time_offset.hpp>
 
 namespace waymark {
 
 void register_se2_types(TypeRegistry& registry) {
   registry.add_vertex<VertexSe2>();
   registry.add_vertex<VertexXy>();
+  registry.add_vertex<VertexTimeOffset>();
   registry.add_edge<EdgeSe2>();
   registry.add_edge<EdgeSe2Log>();
   registry.add_edge<EdgeGnssPosition>();
+  registry.add_edge<EdgeGnssPositionDelayed>();
   registry.add_edge<EdgePriorSe2>();
   registry.add_edge<EdgeSe2Xy>();
   registry.add_start(linear_start());  // the first one is what the default configuration prefers

@@ -10,33 +10,37 @@ namespace {
 /// The paper's G1: a fix is a measurement, an edge from the fixed origin to the pose.
 class GnssG1 final : public GnssModeling {
  public:
-  explicit GnssG1(bool literal) : literal_(literal) {}
+  GnssG1(bool literal, double time_offset_sigma_s)
+      : literal_(literal), time_offset_sigma_s_(time_offset_sigma_s) {}
 
   void build(const GnssInput& input, Graph& graph) const override {
     if (literal_) require_no_lever_arm(input, "g1");
-    const VertexIndex origin = add_origin(input.first_free_id, graph);
-    for (const Fix& fix : input.fixes) {
+    const VertexIndex origin = add_origin(graph);
+    PositionEdges positions(input, time_offset_sigma_s_, graph);
+    for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+      const Fix& fix = input.fixes[i];
       const std::array<VertexIndex, 2> vertices = {origin, pose_vertex(fix, graph)};
       if (literal_) {
         graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, vertices, pose_information(fix));
       } else {
-        graph.add_edge(EdgeGnssPosition{fix.position, input.antenna}, vertices, position_information(fix));
+        positions.add(i, fix.position, input.antenna, vertices);
       }
     }
   }
 
  private:
   bool literal_;
+  double time_offset_sigma_s_;
 };
 
 std::vector<OptionInfo> options() {
-  return {gnss_error_option()};
+  return gnss_options();
 }
 
 std::unique_ptr<GnssModeling> make(const Options& given) {
   const std::vector<OptionInfo> known = options();
   check_option_names("g1", given, known);
-  return std::make_unique<GnssG1>(is_literal("g1", given));
+  return std::make_unique<GnssG1>(is_literal("g1", given), time_offset_sigma("g1", given));
 }
 
 void register_types(TypeRegistry& registry) {

@@ -12,23 +12,25 @@ namespace {
 /// there is one.
 class GnssG2 final : public GnssModeling {
  public:
-  GnssG2(bool literal, double identity_information) : literal_(literal), identity_(identity_information) {}
+  GnssG2(bool literal, double identity_information, double time_offset_sigma_s)
+      : literal_(literal), identity_(identity_information), time_offset_sigma_s_(time_offset_sigma_s) {}
 
   void build(const GnssInput& input, Graph& graph) const override {
     if (literal_) require_no_lever_arm(input, "g2");
-    VertexId id = input.first_free_id;
-    const VertexIndex origin = add_origin(id++, graph);
+    const VertexIndex origin = add_origin(graph);
     const Eigen::Matrix3d identity = identity_ * Eigen::Matrix3d::Identity();
-    for (const Fix& fix : input.fixes) {
+    PositionEdges positions(input, time_offset_sigma_s_, graph);
+    for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+      const Fix& fix = input.fixes[i];
       const VertexIndex pose = pose_vertex(fix, graph);
-      const VertexIndex node =
-          graph.add_vertex<VertexSe2>(id++, {fix.position[0], fix.position[1], graph.value(pose)[2]});
+      const VertexIndex node = graph.add_vertex<VertexSe2>(
+          graph.free_id(), {fix.position[0], fix.position[1], graph.value(pose)[2]});
       if (literal_) {
         graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, {origin, node},
                        pose_information(fix));
         graph.add_edge(EdgeSe2Log{}, {node, pose}, identity);
       } else {
-        graph.add_edge(EdgeGnssPosition{fix.position, {0, 0}}, {origin, node}, position_information(fix));
+        positions.add(i, fix.position, {0, 0}, {origin, node});
         graph.add_edge(EdgeSe2{{-input.antenna[0], -input.antenna[1], 0}}, {node, pose}, identity);
       }
     }
@@ -37,18 +39,22 @@ class GnssG2 final : public GnssModeling {
  private:
   bool literal_;
   double identity_;
+  double time_offset_sigma_s_;
 };
 
 std::vector<OptionInfo> options() {
-  return {gnss_error_option(),
-          {"identity_information", "1e6", "1/m^2, 1/rad^2", "of the (virtual) identity edges; in [1, 1e12]"}};
+  std::vector<OptionInfo> all = gnss_options();
+  all.push_back(
+      {"identity_information", "1e6", "1/m^2, 1/rad^2", "of the (virtual) identity edges; in [1, 1e12]"});
+  return all;
 }
 
 std::unique_ptr<GnssModeling> make(const Options& given) {
   const std::vector<OptionInfo> known = options();
   check_option_names("g2", given, known);
   return std::make_unique<GnssG2>(is_literal("g2", given),
-                                  number_option("g2", given, known, "identity_information", 1, 1e12));
+                                  number_option("g2", given, known, "identity_information", 1, 1e12),
+                                  time_offset_sigma("g2", given));
 }
 
 void register_types(TypeRegistry& registry) {

@@ -11,36 +11,40 @@ namespace {
 /// information.
 class GnssG3 final : public GnssModeling {
  public:
-  explicit GnssG3(bool literal) : literal_(literal) {}
+  GnssG3(bool literal, double time_offset_sigma_s)
+      : literal_(literal), time_offset_sigma_s_(time_offset_sigma_s) {}
 
   void build(const GnssInput& input, Graph& graph) const override {
     if (literal_) require_no_lever_arm(input, "g3");
-    VertexId id = input.first_free_id;
-    for (const Fix& fix : input.fixes) {
+    PositionEdges positions(input, time_offset_sigma_s_, graph);
+    for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+      const Fix& fix = input.fixes[i];
       const VertexIndex pose = pose_vertex(fix, graph);
       // Heading 0: the error of the identity edge is then p - z in frame axes.
-      const VertexIndex node = graph.add_vertex<VertexSe2>(id++, {fix.position[0], fix.position[1], 0});
+      const VertexIndex node =
+          graph.add_vertex<VertexSe2>(graph.free_id(), {fix.position[0], fix.position[1], 0});
       graph.set_fixed(node, true);
       if (literal_) {
         graph.add_edge(EdgeSe2Log{}, {node, pose}, pose_information(fix));
       } else {
-        graph.add_edge(EdgeGnssPosition{{0, 0}, input.antenna}, {node, pose}, position_information(fix));
+        positions.add(i, {0, 0}, input.antenna, {node, pose});
       }
     }
   }
 
  private:
   bool literal_;
+  double time_offset_sigma_s_;
 };
 
 std::vector<OptionInfo> options() {
-  return {gnss_error_option()};
+  return gnss_options();
 }
 
 std::unique_ptr<GnssModeling> make(const Options& given) {
   const std::vector<OptionInfo> known = options();
   check_option_names("g3", given, known);
-  return std::make_unique<GnssG3>(is_literal("g3", given));
+  return std::make_unique<GnssG3>(is_literal("g3", given), time_offset_sigma("g3", given));
 }
 
 void register_types(TypeRegistry& registry) {

@@ -6,65 +6,87 @@
 #include <waymark/core/error.hpp>
 #include <waymark/core/options.hpp>
 #include <waymark/core/plugin.hpp>
+#include <waymark/plugins/odometry/calibration.hpp>
 #include <waymark/plugins/odometry/edge_odometry.hpp>
 #include <waymark/plugins/odometry/noise.hpp>
+#include <waymark/plugins/odometry/states.hpp>
 
 namespace waymark {
 namespace {
 
-/// One edge per interval: EDGE_SE2_ODOMETRY while driving, EDGE_SE2_STANDSTILL while standing.
+/// One edge per interval: EDGE_SE2_ODOMETRY while driving, EDGE_SE2_STANDSTILL while standing. Where a state
+/// is calibrated, EDGE_SE2_ODOMETRY_CALIBRATED, and EDGE_GYRO_AT_REST beside the standstill.
 class ConstantTwist final : public OdometryModel {
  public:
-  ConstantTwist(const ProcessNoise& noise, const StandstillNoise& standstill, double standstill_speed,
-                bool paper)
-      : noise_(noise), standstill_(standstill), standstill_speed_(standstill_speed), paper_(paper) {}
+  struct Configuration {
+    ProcessNoise noise;
+    StandstillNoise standstill;
+    double standstill_speed = 0;
+    bool paper = false;
+    StateOptions gyro_bias;
+    StateOptions speed_scale;
+  };
 
-  void build(std::span<const Interval> intervals, std::span<const VertexIndex> poses,
-             Graph& graph) const override {
-    if (poses.size() != intervals.size() + 1)
+  explicit ConstantTwist(const Configuration& configuration) : given_(configuration) {}
+
+  void build(const DriveNodes& nodes, Graph& graph) const override {
+    if (nodes.poses.size() != nodes.intervals.size() + 1)
       throw UsageError("odometry: one pose more than intervals is needed");
-    for (std::size_t i = 0; i < intervals.size(); ++i) {
-      const Interval& interval = intervals[i];
-      const std::array<VertexIndex, 2> vertices = {poses[i], poses[i + 1]};
-      if (std::abs(interval.speed_mps) < standstill_speed_ && !interval.bridged) {
-        EdgeSe2Standstill edge;
-        edge.speed = interval.speed_mps;
-        edge.yaw_rate = interval.yaw_rate_radps;
-        edge.dt = interval.dt_s;
-        graph.add_edge(edge, vertices, standstill_information(interval));
+    StateAlongDrive<VertexGyroBias, EdgeGyroBiasWalk> bias(given_.gyro_bias, graph);
+    StateAlongDrive<VertexSpeedScale, EdgeSpeedScaleWalk> scale(given_.speed_scale, graph);
+    const bool calibrates_bias = given_.gyro_bias.model != StateModel::off;
+    const bool calibrates = calibrates_bias || given_.speed_scale.model != StateModel::off;
+    for (std::size_t i = 0; i < nodes.intervals.size(); ++i) {
+      const Interval& interval = nodes.intervals[i];
+      const std::array<VertexIndex, 2> poses = {nodes.poses[i], nodes.poses[i + 1]};
+      if (std::abs(interval.speed_mps) < given_.standstill_speed && !interval.bridged) {
+        graph.add_edge(reading<EdgeSe2Standstill>(interval), poses, standstill_information(interval));
+        if (calibrates_bias) add_gyro_at_rest(interval, bias.at(nodes.stamps[i]), graph);
+      } else if (calibrates) {
+        graph.add_edge(reading<EdgeSe2OdometryCalibrated>(interval),
+                       {poses[0], poses[1], scale.at(nodes.stamps[i]), bias.at(nodes.stamps[i])},
+                       motion_information(interval));
       } else {
-        EdgeSe2Odometry edge;
-        edge.speed = interval.speed_mps;
-        edge.yaw_rate = interval.yaw_rate_radps;
-        edge.dt = interval.dt_s;
-        const Eigen::Matrix3d covariance =
-            paper_ ? paper_covariance(interval) : process_covariance(interval, noise_);
-        graph.add_edge(edge, vertices, symmetric_inverse(covariance));
+        graph.add_edge(reading<EdgeSe2Odometry>(interval), poses, motion_information(interval));
       }
     }
   }
 
-  [[nodiscard]] double standstill_speed() const override { return standstill_speed_; }
+  [[nodiscard]] double standstill_speed() const override { return given_.standstill_speed; }
 
  private:
-  static Eigen::Matrix3d symmetric_inverse(const Eigen::Matrix3d& covariance) {
+  template <typename E>
+  static E reading(const Interval& interval) {
+    E edge;
+    edge.speed = interval.speed_mps;
+    edge.yaw_rate = interval.yaw_rate_radps;
+    edge.dt = interval.dt_s;
+    return edge;
+  }
+
+  [[nodiscard]] Eigen::Matrix3d motion_information(const Interval& interval) const {
+    const Eigen::Matrix3d covariance =
+        given_.paper ? paper_covariance(interval) : process_covariance(interval, given_.noise);
     const Eigen::Matrix3d inverse = covariance.inverse();
     return 0.5 * (inverse + inverse.transpose());
   }
 
   [[nodiscard]] Eigen::Matrix3d standstill_information(const Interval& interval) const {
-    if (paper_) return 1e5 * Eigen::Matrix3d::Identity();  // Sec. II-C
-    return standstill_covariance(interval.dt_s, standstill_).diagonal().cwiseInverse().asDiagonal();
+    if (given_.paper) return 1e5 * Eigen::Matrix3d::Identity();  // Sec. II-C
+    return standstill_covariance(interval.dt_s, given_.standstill).diagonal().cwiseInverse().asDiagonal();
   }
 
-  ProcessNoise noise_;
-  StandstillNoise standstill_;
-  double standstill_speed_;
-  bool paper_;
+  /// The mean of a white yaw rate of density q over dt has the variance q / dt.
+  void add_gyro_at_rest(const Interval& interval, VertexIndex bias, Graph& graph) const {
+    graph.add_edge(EdgeGyroAtRest{interval.yaw_rate_radps}, {bias},
+                   Eigen::Matrix<double, 1, 1>(interval.dt_s / given_.noise.heading_per_s));
+  }
+
+  Configuration given_;
 };
 
 std::vector<OptionInfo> options() {
-  return {
+  std::vector<OptionInfo> all = {
       {"noise", "process", "",
        "'process': additive process noise; 'paper': 1.1 % per edge, at least 1e-5 m^2 and 1e-6 rad^2, gaps "
        "alike"},
@@ -81,6 +103,28 @@ std::vector<OptionInfo> options() {
       {"standstill_largest_variance", "1e-5", "m^2, rad^2",
        "per edge, so that information is at least 1e5; in [1e-9, 1]"},
   };
+  for (const OptionInfo& option :
+       state_options("gyro_bias", "rad/s", "0.01", "2e-6", "what the gyro reads while nothing turns"))
+    all.push_back(option);
+  for (const OptionInfo& option :
+       state_options("speed_scale", "1", "0.01", "1e-4", "part of the speed that the odometry does not show"))
+    all.push_back(option);
+  all.push_back({"calibration_period", "10", "s", "of the values of a random walk; in [0.1, 1e4]"});
+  return all;
+}
+
+StateOptions state(std::string_view owner, const Options& given, std::span<const OptionInfo> known,
+                   const std::string& name) {
+  constexpr std::array<std::string_view, 3> kModels = {"off", "constant", "random_walk"};
+  const std::string model = word_option(owner, given, known, name, kModels);
+  StateOptions options;
+  options.model = model == "off"        ? StateModel::off
+                  : model == "constant" ? StateModel::constant
+                                        : StateModel::random_walk;
+  options.prior_sigma = number_option(owner, given, known, name + "_sigma", 1e-9, 10);
+  options.walk_sigma = number_option(owner, given, known, name + "_walk", 1e-12, 1);
+  options.period_s = number_option(owner, given, known, "calibration_period", 0.1, 1e4);
+  return options;
 }
 
 std::unique_ptr<OdometryModel> make(const Options& given) {
@@ -91,24 +135,34 @@ std::unique_ptr<OdometryModel> make(const Options& given) {
     return number_option(kOwner, given, known, name, low, high);
   };
   constexpr std::array<std::string_view, 2> kNoises = {"process", "paper"};
-  ProcessNoise noise;
+  ConstantTwist::Configuration configuration;
+  ProcessNoise& noise = configuration.noise;
   noise.longitudinal_per_m = number("longitudinal_variance_per_m", 1e-9, 1);
   noise.lateral_per_m = number("lateral_variance_per_m", 1e-9, 1);
   noise.position_per_s = number("position_variance_per_s", 1e-9, 1);
   noise.heading_per_m = number("heading_variance_per_m", 0, 1);
   noise.heading_per_s = number("heading_variance_per_s", 1e-12, 1);
   noise.gap_factor = number("gap_noise_factor", 1, 1e6);
-  StandstillNoise standstill;
+  StandstillNoise& standstill = configuration.standstill;
   standstill.position_per_s = number("standstill_position_variance_per_s", 1e-9, 1);
   standstill.heading_per_s = number("standstill_heading_variance_per_s", 1e-12, 1);
   standstill.largest = number("standstill_largest_variance", 1e-9, 1);
-  return std::make_unique<ConstantTwist>(noise, standstill, number("standstill_speed", 0, 1),
-                                         word_option(kOwner, given, known, "noise", kNoises) == "paper");
+  configuration.standstill_speed = number("standstill_speed", 0, 1);
+  configuration.paper = word_option(kOwner, given, known, "noise", kNoises) == "paper";
+  configuration.gyro_bias = state(kOwner, given, known, "gyro_bias");
+  configuration.speed_scale = state(kOwner, given, known, "speed_scale");
+  return std::make_unique<ConstantTwist>(configuration);
 }
 
 void register_types(TypeRegistry& registry) {
+  registry.add_vertex<VertexGyroBias>();
+  registry.add_vertex<VertexSpeedScale>();
   registry.add_edge<EdgeSe2Odometry>();
   registry.add_edge<EdgeSe2Standstill>();
+  registry.add_edge<EdgeSe2OdometryCalibrated>();
+  registry.add_edge<EdgeGyroAtRest>();
+  registry.add_edge<EdgeGyroBiasWalk>();
+  registry.add_edge<EdgeSpeedScaleWalk>();
   registry.add_odometry_model(
       {"constant_twist", "exact constant-twist integration of speed and yaw rate", options(), make});
 }

@@ -153,7 +153,8 @@ TEST_CASE("optimizer: convergence is declared on full Newton steps or at the gra
       } else {
         REQUIRE_FALSE(summary.records.empty());
         CHECK(summary.records.back().kind == "newton");
-        CHECK(summary.records.back().newton_decrement <= OptimizerOptions().decrement_tolerance * (1 + summary.final_chi2) * 1.0001);
+        CHECK(summary.records.back().newton_decrement <=
+              OptimizerOptions().decrement_tolerance * (1 + summary.final_chi2) * 1.0001);
       }
     }
     Graph circle = noisy_circle(40);

@@ -45,7 +45,11 @@ std::string graph_text(const TypeRegistry& registry, const char* modeling) {
 int entered = 0;
 
 PluginDescriptor sound_descriptor() {
-  return {kPluginMagic, kPluginAbi, build_traits(), "sample", "1.0", [](TypeRegistry&) { ++entered; }};
+  return describe_plugin("sample", "1.0");
+}
+
+void count_entry(TypeRegistry&) {
+  ++entered;
 }
 
 }  // namespace
@@ -86,9 +90,9 @@ TEST_CASE(
     "plugins: a second registration of a name is refused, naming both origins, and leaves nothing behind") {
   TypeRegistry registry = full_registry();
   const std::size_t modelings = registry.gnss_modelings().size();
-  CHECK_THROWS_WITH(load_plugin(module_file("gnss_g1"), registry), Contains("gnss_g1.so") &&
-                                                                       Contains("'g1' of gnss_g1") &&
-                                                                       Contains("registered by gnss_g1"));
+  CHECK_THROWS_WITH(load_plugin(module_file("gnss_g1"), registry),
+                    Contains("plugin 'gnss_g1'") && Contains("gnss_g1.so") && Contains("(built in)") &&
+                        Contains("load only one"));
   CHECK(registry.gnss_modelings().size() == modelings);
 
   TypeRegistry own = bare_registry();
@@ -100,15 +104,21 @@ TEST_CASE(
 }
 
 TEST_CASE("plugins: a registration that fails half-way leaves no types behind") {
-  PluginDescriptor descriptor = sound_descriptor();
-  descriptor.enter = [](TypeRegistry& registry) {
-    registry.add_loss({"half", nullptr, ""});
+  const PluginEntry throws_error = [](TypeRegistry& extended) {
+    extended.add_loss({"half", nullptr, ""});
     throw UsageError("out of paper");
   };
   TypeRegistry registry = bare_registry();
-  CHECK_THROWS_WITH(enter_plugin(descriptor, "sample.so", registry),
+  CHECK_THROWS_WITH(enter_plugin(sound_descriptor(), throws_error, "sample.so", registry),
                     Contains("sample.so") && Contains("plugin 'sample'") && Contains("out of paper"));
+  const PluginEntry throws_number = [](TypeRegistry& extended) {
+    extended.add_loss({"half", nullptr, ""});
+    throw 42;
+  };
+  CHECK_THROWS_WITH(enter_plugin(sound_descriptor(), throws_number, "sample.so", registry),
+                    Contains("sample.so") && Contains("plugin 'sample'") && Contains("no std::exception"));
   CHECK(registry.find_loss("half") == nullptr);
+  CHECK(registry.plugins().empty());
 }
 
 TEST_CASE("plugins: every difference of build is named with both values, and no code of the plugin runs") {
@@ -125,6 +135,7 @@ TEST_CASE("plugins: every difference of build is named with both values, and no 
       {[](PluginDescriptor& d) { d.traits.eigen_max_align *= 2; }, "alignment"},
       {[](PluginDescriptor& d) { d.traits.fast_math = 1; }, "-ffast-math"},
       {[](PluginDescriptor& d) { d.traits.debug_stl = 1; }, "_GLIBCXX_DEBUG"},
+      {[](PluginDescriptor& d) { ++d.traits.layout; }, "size of types"},
   };
   entered = 0;
   TypeRegistry registry = bare_registry();
@@ -132,11 +143,11 @@ TEST_CASE("plugins: every difference of build is named with both values, and no 
     PluginDescriptor descriptor = sound_descriptor();
     wrong.spoil(descriptor);
     INFO(wrong.said);
-    CHECK_THROWS_WITH(enter_plugin(descriptor, "dir/sample.so", registry),
+    CHECK_THROWS_WITH(enter_plugin(descriptor, count_entry, "dir/sample.so", registry),
                       Contains("dir/sample.so: ") && Contains(wrong.said));
   }
   CHECK(entered == 0);
-  enter_plugin(sound_descriptor(), "dir/sample.so", registry);
+  enter_plugin(sound_descriptor(), count_entry, "dir/sample.so", registry);
   CHECK(entered == 1);
 }
 

@@ -107,7 +107,7 @@ TEST_CASE("starts: an edge type of a plugin is followed without knowing it") {
     chain.push_back(i);
     if (i > 0) intervals.push_back({.speed_mps = 8, .yaw_rate_radps = 3.0 + 0.02 * i, .dt_s = 0.4});
   }
-  registry.make_odometry_model("constant_twist")->build(intervals, chain, graph);
+  registry.make_odometry_model("constant_twist")->build({{}, chain, intervals}, graph);
   REQUIRE(graph.edge_type(0).tag == "EDGE_SE2_ODOMETRY");
   for (const std::string& name : start_names(registry)) {
     INFO(name);
@@ -189,7 +189,7 @@ TEST_CASE("starts: the linear start finds a drive's headings from its fixes, und
   }
   for (const auto& [modeling, origin] : registry.gnss_modelings()) {
     Graph graph = wild_track(track);
-    registry.make_gnss_modeling(modeling.name)->build({fixes, antenna, 5000}, graph);
+    registry.make_gnss_modeling(modeling.name)->build({fixes, {}, antenna}, graph);
     const Graph start = started(graph, registry, "linear");
     INFO(modeling.name);
     double worst = 0;

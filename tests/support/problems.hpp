@@ -111,8 +111,12 @@ struct Drive {
   /// Adds the fixes by a modeling of the registry.
   void add_fixes(const waymark::TypeRegistry& registry, std::string_view modeling,
                  const waymark::Options& options = {}) {
-    const auto vertices = static_cast<waymark::VertexId>(graph.vertex_count());
-    registry.make_gnss_modeling(modeling, options)->build({fixes, antenna_m, vertices}, graph);
+    std::vector<waymark::Interval> motion;
+    for (const waymark::Fix& fix : fixes) {
+      const auto node = static_cast<std::size_t>(fix.vertex);
+      motion.push_back(intervals[std::min(node, intervals.size() - 1)]);
+    }
+    registry.make_gnss_modeling(modeling, options)->build({fixes, motion, antenna_m}, graph);
   }
 };
 
@@ -158,7 +162,9 @@ struct Drive {
                                                              interval.yaw_rate_radps * kDt)));
     }
   }
-  registry.make_odometry_model("constant_twist")->build(drive.intervals, chain, drive.graph);
+  std::vector<Stamp> stamps;
+  for (int i = 0; i < poses; ++i) stamps.push_back(Stamp{std::int64_t{i} * 40'000'000});
+  registry.make_odometry_model("constant_twist")->build({stamps, chain, drive.intervals}, drive.graph);
   return drive;
 }
 

@@ -1,27 +1,68 @@
+#include <algorithm>
 #include <cmath>
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/options.hpp>
 #include <waymark/tools/drive/assemble.hpp>
 #include <waymark/tools/drive/plausibility.hpp>
+#include <waymark/tools/drive/sensors.hpp>
 #include <waymark/tools/drive/timeline.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark {
 namespace {
 
+std::string place_of(const DriveConfig& config, const std::string& key) {
+  const auto place = config.places.find(key);
+  return place == config.places.end() ? config.path + ": " : place->second;
+}
+
+bool has_option(const std::vector<OptionInfo>& known, const std::string& name) {
+  return std::any_of(known.begin(), known.end(), [&](const OptionInfo& info) { return info.name == name; });
+}
+
 std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, const TypeRegistry& registry) {
-  Options options = config.odometry_options;
-  options.try_emplace("gap_noise_factor", shortest(config.timeline.gap_noise_factor));
   try {
-    return registry.make_odometry_model("constant_twist", options);
+    const OdometryModelType& type = registry.odometry_model(config.odometry_model);
+    Options options = with_calibration(config.odometry_options, config, type.options);
+    if (has_option(type.options, "gap_noise_factor"))
+      options.try_emplace("gap_noise_factor", shortest(config.timeline.gap_noise_factor));
+    return type.make(options);
   } catch (const UsageError& error) {
-    if (config.odometry_options.empty()) throw;
-    throw InputError(config.path + ": odometry.noise: " + error.what());
+    throw InputError(place_of(config, "odometry.model") + "odometry: " + error.what());
   }
 }
 
+std::vector<Fix> accepted_fixes(const std::vector<Fix>& fixes) {
+  std::vector<Fix> accepted;
+  for (const Fix& fix : fixes) {
+    if (fix.status == FixStatus::accepted) accepted.push_back(fix);
+  }
+  return accepted;
+}
+
 }  // namespace
+
+Options with_calibration(Options options, const DriveConfig& config, const std::vector<OptionInfo>& known) {
+  for (const auto& [name, value] : config.calibration) {
+    if (has_option(known, name)) options.try_emplace(name, value);
+  }
+  return options;
+}
+
+void check_calibration(const DriveConfig& config, const std::vector<std::string>& modelings,
+                       const TypeRegistry& registry) {
+  for (const auto& entry : config.calibration) {
+    const std::string& name = entry.first;
+    bool known = has_option(registry.odometry_model(config.odometry_model).options, name);
+    for (const std::string& modeling : modelings)
+      known = known || has_option(registry.gnss_modeling(modeling).options, name);
+    if (known) continue;
+    throw InputError(place_of(config, "calibration." + name) + "calibration: neither odometry model '" +
+                     config.odometry_model + "' nor the GNSS modeling knows '" + name +
+                     "'; `waymark info` lists their options");
+  }
+}
 
 DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& config,
                              const TypeRegistry& registry) {
@@ -51,10 +92,13 @@ DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& conf
     poses.push_back(document.graph.add_vertex<VertexSe2>(id, {pose[0], pose[1], pose[2]}));
     document.graph.set_stamp(poses.back(), timeline.stamps[i]);
   }
-  odometry->build(timeline.intervals, poses, document.graph);
+  const DriveNodes nodes{timeline.stamps, poses, timeline.intervals};
+  odometry->build(nodes, document.graph);
   for (std::size_t i = 0; i < document.fixes.size(); ++i) {
     document.fixes[i].vertex = static_cast<VertexId>(timeline.fix_node[i]) + 1;
+    skeleton.motion_at_fixes.push_back(motion_at(nodes, timeline.fix_node[i]));
   }
+  add_sensors(config, drive, nodes, accepted_fixes(document.fixes), registry, document.graph);
   for (const Interval& interval : timeline.intervals) {
     skeleton.distance_m += std::abs(interval.speed_mps) * interval.dt_s;
   }
@@ -65,14 +109,14 @@ GraphDocument add_modeling(const DriveSkeleton& skeleton, const std::string& mod
                            const TypeRegistry& registry) {
   GraphDocument document = skeleton.document;
   std::vector<Fix> accepted;
-  for (const Fix& fix : document.fixes) {
-    if (fix.status == FixStatus::accepted) accepted.push_back(fix);
+  std::vector<Interval> motion;
+  for (std::size_t i = 0; i < document.fixes.size(); ++i) {
+    if (document.fixes[i].status != FixStatus::accepted) continue;
+    accepted.push_back(document.fixes[i]);
+    motion.push_back(skeleton.motion_at_fixes[i]);
   }
-  GnssInput input;
-  input.fixes = accepted;
-  input.antenna = document.antenna_m;
-  input.first_free_id = static_cast<VertexId>(document.graph.vertex_count()) + 1;
-  registry.make_gnss_modeling(modeling, options)->build(input, document.graph);
+  registry.make_gnss_modeling(modeling, options)
+      ->build({accepted, motion, document.antenna_m}, document.graph);
   return document;
 }
 

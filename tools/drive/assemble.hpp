@@ -15,14 +15,27 @@ struct DriveSkeleton {
   GraphDocument document;  ///< poses with stamps, odometry edges, records of all fixes; no GNSS edges yet
   GateSummary gate;
   Start start;
-  std::vector<std::string> warnings;  ///< what looks wrong about units and signs of the logs
-  double distance_m = 0;              ///< driven, by the odometry
+  std::vector<Interval> motion_at_fixes;  ///< the odometry's motion at each fix of the document
+  std::vector<std::string> warnings;      ///< what looks wrong about units and signs of the logs
+  double distance_m = 0;                  ///< driven, by the odometry
 };
 
-/// Builds nodes, odometry edges and the start, and runs the gate. Pose ids are 1, 2, ... in order of time.
+/// Builds nodes, odometry edges, the further sensors' part and the start, and runs the gate. Pose ids are 1,
+/// 2,
+/// ... in order of time.
 /// @throws InputError where the gate leaves no fix; what the steps throw.
 [[nodiscard]] DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& config,
                                            const TypeRegistry& registry);
+
+/// The options of the chosen odometry model or GNSS modeling with the calibration states that it knows.
+/// @param known  the options that it has
+[[nodiscard]] Options with_calibration(Options options, const DriveConfig& config,
+                                       const std::vector<OptionInfo>& known);
+
+/// @throws InputError with its place for a calibration state that neither the odometry model nor one of the
+/// modelings knows
+void check_calibration(const DriveConfig& config, const std::vector<std::string>& modelings,
+                       const TypeRegistry& registry);
 
 /// The skeleton's document with the modeling's vertices and edges for the accepted fixes.
 /// @throws UsageError for an unknown modeling or option

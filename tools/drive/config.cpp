@@ -75,16 +75,25 @@ void read_frame(const YamlSection& top, DriveConfig& config) {
   config.utm_origin = origin;
 }
 
+/// Options that only a plugin can check: name and value as they stand, with their places.
+void read_options(const YamlSection& section, std::string_view key, const std::string& name,
+                  std::map<std::string, std::string>& options, DriveConfig& config) {
+  const auto free = section.free_section(key);
+  if (!free) return;
+  for (const std::string& option : free->keys()) {
+    free->read(option, options[option]);
+    config.places[name + option] = free->place(option);
+  }
+}
+
 void read_odometry(const YamlSection& top, DriveConfig& config) {
-  const auto section = top.section("odometry", {"file", "format", "separator", "columns", "time", "noise"});
+  const auto section =
+      top.section("odometry", {"file", "format", "separator", "columns", "time", "model", "noise"});
   if (!section) throw InputError(top.place() + "'odometry' is missing");
   config.odometry = read_log_config(*section, StreamKind::odometry, config.folder, config.time_scale);
-  const auto noise = section->free_section("noise");
-  if (!noise) return;
-  for (const std::string& key : noise->keys()) {
-    noise->read(key, config.odometry_options[key]);
-    config.places["odometry.noise." + key] = noise->place(key);
-  }
+  section->read("model", config.odometry_model);
+  if (section->has("model")) config.places["odometry.model"] = section->place("model");
+  read_options(*section, "noise", "odometry.noise.", config.odometry_options, config);
 }
 
 Receiver read_receiver(const YamlSection& section) {
@@ -103,15 +112,19 @@ Receiver read_receiver(const YamlSection& section) {
   return receiver;
 }
 
-void read_gnss(const YamlSection& top, DriveConfig& config) {
-  if (!top.has("gnss")) throw InputError(top.place() + "'gnss' is missing");
-  const YAML::Node node = top.node("gnss");
+std::vector<YAML::Node> entries_of(const YAML::Node& node) {
   std::vector<YAML::Node> entries;
   if (node.IsSequence()) {
     for (const auto& entry : node) entries.push_back(entry);
   } else {
     entries.push_back(node);
   }
+  return entries;
+}
+
+void read_gnss(const YamlSection& top, DriveConfig& config) {
+  if (!top.has("gnss")) throw InputError(top.place() + "'gnss' is missing");
+  const std::vector<YAML::Node> entries = entries_of(top.node("gnss"));
   if (entries.empty()) top.fail("gnss", "at least one log is needed");
   std::optional<Receiver> first;
   for (const YAML::Node& entry : entries) {
@@ -173,11 +186,45 @@ void read_modeling(const YamlSection& top, DriveConfig& config) {
   if (!top.node("modeling").IsMap()) return top.read("modeling", config.modeling);
   const YamlSection modeling = *top.section("modeling", {"name", "options"});
   modeling.read("name", config.modeling);
-  const auto options = modeling.free_section("options");
-  if (!options) return;
-  for (const std::string& key : options->keys()) {
-    options->read(key, config.modeling_options[key]);
-    config.places["modeling.options." + key] = options->place(key);
+  read_options(modeling, "options", "modeling.options.", config.modeling_options, config);
+}
+
+/// `calibration: on`, `off`, or the states one by one.
+void read_calibration(const YamlSection& top, DriveConfig& config) {
+  if (!top.has("calibration")) return;
+  if (top.node("calibration").IsMap())
+    return read_options(top, "calibration", "calibration.", config.calibration, config);
+  bool on = false;
+  top.read("calibration", on);
+  if (on) config.calibration = default_calibration();
+}
+
+void read_sensors(const YamlSection& top, DriveConfig& config) {
+  if (!top.has("sensors")) return;
+  for (const YAML::Node& entry : entries_of(top.node("sensors"))) {
+    const YamlSection section(entry, "sensors", top.file(),
+                              {"name", "file", "format", "separator", "columns", "time", "options"});
+    SensorConfig sensor;
+    sensor.place = section.place();
+    section.read("name", sensor.name);
+    if (sensor.name.empty()) throw InputError(sensor.place + "sensors: 'name' is missing");
+    if (section.has("file"))
+      sensor.log = read_log_config(section, StreamKind::sensor, config.folder, config.time_scale);
+    read_options(section, "options", "sensors." + sensor.name + ".", sensor.options, config);
+    config.sensors.push_back(std::move(sensor));
+  }
+}
+
+/// Names with a slash or an ending are files, beside the drive.yaml; others are looked up by whoever loads
+/// them.
+void read_plugins(const YamlSection& top, DriveConfig& config) {
+  if (!top.has("plugins")) return;
+  const auto beside = std::filesystem::path(config.path).parent_path();
+  for (const YAML::Node& entry : entries_of(top.node("plugins"))) {
+    if (!entry.IsScalar()) top.fail_value("plugins", "a list of plugin files");
+    const std::filesystem::path file(entry.Scalar());
+    const bool is_file = file.has_parent_path() || file.has_extension();
+    config.plugins.push_back(is_file ? (beside / file).lexically_normal().string() : file.string());
   }
 }
 
@@ -201,7 +248,7 @@ DriveConfig parse_drive_config(const std::string& text, const std::string& path,
   }
   const YamlSection top(root, "", path,
                         {"name", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap",
-                         "snap", "start", "modeling"});
+                         "snap", "start", "modeling", "calibration", "sensors", "plugins"});
   DriveConfig config;
   config.path = path;
   config.name = std::filesystem::path(path).stem().string();
@@ -217,7 +264,14 @@ DriveConfig parse_drive_config(const std::string& text, const std::string& path,
   if (const auto start = top.read_word("start", kStarts))
     config.start.method = *start == 0 ? StartMethod::anchored : StartMethod::dead_reckoning;
   read_modeling(top, config);
+  read_calibration(top, config);
+  read_sensors(top, config);
+  read_plugins(top, config);
   return config;
+}
+
+std::map<std::string, std::string> default_calibration() {
+  return {{"gyro_bias", "random_walk"}, {"speed_scale", "random_walk"}, {"time_offset", "constant"}};
 }
 
 DriveConfig load_drive_config(const std::string& path, const std::string& data_folder) {

@@ -25,6 +25,14 @@ struct LogConfig {
   std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
 };
 
+/// A further sensor of the vehicle.
+struct SensorConfig {
+  std::string name;              ///< of a registered sensor model
+  std::optional<LogConfig> log;  ///< where it has one
+  std::map<std::string, std::string> options;
+  std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
+};
+
 /// A drive to be fused.
 struct DriveConfig {
   std::string path;    ///< of the drive.yaml itself
@@ -33,6 +41,8 @@ struct DriveConfig {
   std::optional<LogConfig> odometry;
   std::vector<LogConfig> gnss;  ///< at least one
   std::optional<LogConfig> truth;
+  std::vector<SensorConfig> sensors;
+  std::vector<std::string> plugins;  ///< modules to load, resolved against the drive.yaml's own folder
 
   TimeScale time_scale = TimeScale::gps;  ///< the drive's own scale; logs on others are converted
   bool time_scale_stated = false;         ///< where it is not, what is assumed is told
@@ -52,11 +62,18 @@ struct DriveConfig {
   StartOptions start;
   std::string modeling = "g1";  ///< registered GNSS modeling
   std::map<std::string, std::string> modeling_options;
+  std::string odometry_model = "constant_twist";        ///< registered odometry model
   std::map<std::string, std::string> odometry_options;  ///< of the odometry model, checked by its plugin
+  /// States to estimate with the poses: options that go to the odometry model or the GNSS modeling, whichever
+  /// has them.
+  std::map<std::string, std::string> calibration;
   /// "drive.yaml:12:5: " of what only a plugin can check: "modeling", "modeling.options.NAME",
-  /// "odometry.noise.NAME".
+  /// "odometry.model", "odometry.noise.NAME", "calibration.NAME".
   std::map<std::string, std::string> places;
 };
+
+/// What `calibration: on` stands for: all states that the built-in plugins know.
+[[nodiscard]] std::map<std::string, std::string> default_calibration();
 
 /// Reads and checks a drive.yaml (schema: tools/drive/README.md). Logs are not opened.
 /// @param data_folder  where relative log names are looked up, instead of the file's own `folder` (empty:

@@ -38,11 +38,15 @@ ColumnRequest read_column(const YamlSection& columns, const std::string& key) {
 
 void read_columns(const YamlSection& section, LogRequest& request) {
   if (!section.has("columns")) return;
-  const std::vector<std::string_view> known = quantity_names(request.stream);
-  const YamlSection columns(section.node("columns"), "columns", section.file(), known);
+  const bool of_sensor = request.stream == StreamKind::sensor;  // only its plugin knows the quantities
+  const std::vector<Quantity> known = quantities(request);
+  const YamlSection columns =
+      of_sensor ? *section.free_section("columns")
+                : YamlSection(section.node("columns"), "columns", section.file(), names_of(known));
   for (const std::string& key : columns.keys()) {
     request.columns[key] = read_column(columns, key);
-    const Quantity& quantity = *find_quantity(request.stream, key);
+    if (of_sensor) continue;
+    const Quantity& quantity = *find_quantity(known, key);
     if (const std::string error = column_request_error(quantity, request.columns[key]); !error.empty())
       throw InputError(columns.place(key) + error);
   }

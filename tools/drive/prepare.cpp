@@ -9,12 +9,11 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/stamp_text.hpp>
 #include <waymark/tools/drive/projection.hpp>
+#include <waymark/tools/drive/sensors.hpp>
 #include <waymark/tools/drive/streams.hpp>
 
 namespace waymark {
 namespace {
-
-constexpr std::int64_t kTwoWeeks = 2 * 604'800'000'000'000;
 
 std::int64_t nanoseconds(double seconds) {
   return std::llround(seconds * 1e9);
@@ -24,16 +23,9 @@ std::int64_t nanoseconds(double seconds) {
 template <typename Sample>
 void append_log(const std::vector<Sample>& from, const DriveLogs::Log& log, TimeScale scale,
                 std::vector<Sample>& to, StreamReport& stream, PrepareReport& report) {
-  const bool changes_scale = convert(Stamp{}, log.scale, scale) != Stamp{};
-  for (Sample sample : from) {
-    if (changes_scale && log.scale == TimeScale::gps && sample.stamp.nanoseconds < kTwoWeeks)
-      throw InputError(
-          fmt::format("{}: seconds of week cannot be put onto the scale '{}' of the drive; state the "
-                      "log's 'time: {{week: ...}}'",
-                      log.file, to_string(scale)));
-    sample.stamp = convert(sample.stamp, log.scale, scale);
-    to.push_back(sample);
-  }
+  std::vector<Sample> samples = from;
+  put_on_scale(samples, log, scale, [](Sample& sample) -> Stamp& { return sample.stamp; });
+  to.insert(to.end(), samples.begin(), samples.end());
   stream.records += log.data.records;
   stream.corrupt += log.data.corrupt;
   report.notes.insert(report.notes.end(), log.data.notes.begin(), log.data.notes.end());
@@ -208,6 +200,12 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveConfig& config) {
   for (const GeodeticFix& fix : fixes) drive.fixes.push_back(projection.project(fix));
   for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection.project(pose));
   number_epochs(drive.fixes, config.withhold_every, drive.report);
+  for (std::size_t i = 0; i < logs.sensors.size(); ++i) {
+    const auto& log = config.sensors[i].log;
+    drive.sensors.push_back(log ? prepare_readings(logs.sensors[i], log->request.readings, config.time_scale,
+                                                   fixes, projection, drive.report)
+                                : SensorTable());
+  }
   return drive;
 }
 

@@ -41,6 +41,7 @@ struct PrepareReport {
   StreamReport odometry;
   StreamReport gnss;
   StreamReport truth;
+  StreamReport sensor;        ///< of all further sensors: records and corrupt ones
   std::size_t reversing = 0;  ///< odometry samples with negative speed: no error
   std::size_t odometry_outside_window = 0;
   std::size_t fixes_outside_odometry =
@@ -59,6 +60,7 @@ struct PreparedDrive {
   std::vector<OdometrySample> odometry;     ///< stamps unique; at least 2
   std::vector<Fix> fixes;                   ///< stamp and source unique; at least 1; `epoch` counts from 0
   std::vector<TruthPose> truth;             ///< stamps unique; may be empty
+  std::vector<SensorTable> sensors;         ///< as DriveConfig::sensors; empty for one without a log
   Eigen::Vector2d antenna_m{0, 0};          ///< body frame
   Eigen::Vector2d truth_reference_m{0, 0};  ///< body frame
   PrepareReport report;
@@ -72,8 +74,9 @@ struct DriveLogs {
     std::string file;  ///< for messages
   };
   Log odometry;
-  std::vector<Log> gnss;   ///< in the order of DriveConfig::gnss
-  std::vector<Log> truth;  ///< none or one
+  std::vector<Log> gnss;     ///< in the order of DriveConfig::gnss
+  std::vector<Log> truth;    ///< none or one
+  std::vector<Log> sensors;  ///< as DriveConfig::sensors; nothing in it for one without a log
 };
 
 /// Puts logs onto one clock and into one frame. Pure.

@@ -24,6 +24,8 @@ DriveLogs read_drive_logs(const DriveConfig& config, const LogReaderLookup& find
   logs.odometry = read_log(*config.odometry, find_reader);
   for (const LogConfig& log : config.gnss) logs.gnss.push_back(read_log(log, find_reader));
   if (config.truth) logs.truth.push_back(read_log(*config.truth, find_reader));
+  for (const SensorConfig& sensor : config.sensors)
+    logs.sensors.push_back(sensor.log ? read_log(*sensor.log, find_reader) : DriveLogs::Log{});
   return logs;
 }
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include <waymark/core/error.hpp>
 #include <waymark/core/stamp.hpp>
 #include <waymark/tools/drive/prepare.hpp>
 
@@ -39,6 +41,22 @@ void clean_stream(std::vector<Sample>& samples, StreamReport& report, IsFinite i
     }
   }
   samples = std::move(kept);
+}
+
+/// Puts the stamps of a log onto the drive's scale. @param stamp_of  Stamp&(Sample&)
+/// @throws InputError for seconds of week that would need a date
+template <typename Sample, typename StampOf>
+void put_on_scale(std::vector<Sample>& samples, const DriveLogs::Log& log, TimeScale scale,
+                  StampOf stamp_of) {
+  constexpr std::int64_t kTwoWeeks = 2 * 604'800'000'000'000;
+  const bool changes_scale = convert(Stamp{}, log.scale, scale) != Stamp{};
+  for (Sample& sample : samples) {
+    Stamp& stamp = stamp_of(sample);
+    if (changes_scale && log.scale == TimeScale::gps && stamp.nanoseconds < kTwoWeeks)
+      throw InputError(log.file + ": seconds of week cannot be put onto the scale '" +
+                       std::string(to_string(scale)) + "' of the drive; state the log's 'time: {week: ...}'");
+    stamp = convert(stamp, log.scale, scale);
+  }
 }
 
 /// Fills used, median_interval_s and gaps.

@@ -1,0 +1,31 @@
+/// Looking into a shared object without loading it (ELF, System V ABI).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace waymark {
+
+/// The bytes of a shared object for this processor.
+class ModuleFile {
+ public:
+  /// @throws UsageError where the file cannot be read or is no 64-bit shared object for this processor
+  explicit ModuleFile(const std::string& path);
+
+  /// The bytes of a dynamic symbol as they lie in the file, before any relocation; empty where the file has
+  /// no such symbol or does not hold all of it.
+  [[nodiscard]] std::optional<std::span<const std::byte>> symbol(std::string_view name) const;
+
+  /// Whether its code switches the processor to flush denormal numbers to zero, as the start-up file that
+  /// -ffast-math links does: `orl $0x8040` right before `ldmxcsr`. Always false on other processors.
+  [[nodiscard]] bool sets_flush_to_zero() const;
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+}  // namespace waymark

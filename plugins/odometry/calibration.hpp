@@ -1,0 +1,114 @@
+/// Calibration of the odometry: gyro bias and speed scale as states of the graph, constant over a drive or
+/// slowly wandering.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include <waymark/types_se2/edge_se2.hpp>
+
+namespace waymark {
+
+/// What the gyro reads while nothing turns: true yaw rate = reading - bias. rad/s, counter-clockwise.
+struct VertexGyroBias {
+  static constexpr std::string_view kTag = "VERTEX_GYRO_BIAS";
+  static constexpr int kValueSize = 1;
+  static constexpr int kTangentSize = 1;
+  static constexpr bool kLinearChart = true;
+  static constexpr std::array<std::string_view, 1> value_names() { return {"gyro_bias"}; }
+  static constexpr std::array<std::string_view, 1> value_units() { return {"rad/s"}; }
+
+  template <typename T>
+  static T at(const double* value, const T* delta) {
+    return delta[0] + T(value[0]);
+  }
+  static void retract(double* value, const double* delta) { value[0] += delta[0]; }
+  static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
+};
+
+/// How much more than the odometry says the vehicle really drives: true speed = (1 + scale) reading.
+struct VertexSpeedScale : VertexGyroBias {
+  static constexpr std::string_view kTag = "VERTEX_SPEED_SCALE";
+  static constexpr std::array<std::string_view, 1> value_names() { return {"speed_scale"}; }
+  static constexpr std::array<std::string_view, 1> value_units() { return {"1"}; }
+};
+
+/// EDGE_SE2_ODOMETRY with calibrated readings: Z = exp([(1 + s) speed dt, 0, (yaw_rate - b) dt]), e =
+/// log(Z^-1 (X_from^-1 X_to)).
+struct EdgeSe2OdometryCalibrated {
+  static constexpr std::string_view kTag = "EDGE_SE2_ODOMETRY_CALIBRATED";
+  static constexpr std::string_view kForm = "log";
+  static constexpr int kErrorDimension = 3;
+  using Vertices = VertexList<VertexSe2, VertexSe2, VertexSpeedScale, VertexGyroBias>;
+  static constexpr bool kRelative = true;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeSe2OdometryCalibrated::speed>("speed"),
+                      field<&EdgeSe2OdometryCalibrated::yaw_rate>("yaw_rate"),
+                      field<&EdgeSe2OdometryCalibrated::dt>("dt")};
+  }
+
+  template <typename T>
+  Vector3<T> error(const Pose2<T>& from, const Pose2<T>& to, const T& scale, const T& bias) const {
+    const Vector3<T> xi(T((T(1.0) + scale) * T(speed * dt)), T(0.0), T((T(yaw_rate) - bias) * T(dt)));
+    return se2_log(between(se2_exp(xi), between(from, to)));
+  }
+
+  /// With E = exp(e): a change d of the twist xi changes e by -Jl(e)^-1 Jr(xi) d, and Jl(e) = Jr(-e).
+  void linearize(const Pose2<double>& from, const Pose2<double>& to, double scale, double bias,
+                 ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to,
+                 JacobianMatrix<3, 1>& by_scale, JacobianMatrix<3, 1>& by_bias) const {
+    const Eigen::Vector3d xi((1 + scale) * speed * dt, 0, (yaw_rate - bias) * dt);
+    linearize_log_error(RelativeMeasurement(se2_exp(xi)), from, to, e, by_from, by_to);
+    const Eigen::Matrix3d by_twist = -se2_right_jacobian_inverse(-e) * se2_right_jacobian(xi);
+    by_scale = by_twist.col(0) * (speed * dt);
+    by_bias = by_twist.col(2) * -dt;
+  }
+
+  double speed = 0;
+  double yaw_rate = 0;
+  double dt = 0;
+};
+
+/// The gyro's reading while the vehicle stands is its bias: e = yaw_rate - b. rad/s.
+struct EdgeGyroAtRest {
+  static constexpr std::string_view kTag = "EDGE_GYRO_AT_REST";
+  static constexpr std::string_view kForm = "difference";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexGyroBias>;
+  static constexpr auto fields() { return std::array{field<&EdgeGyroAtRest::yaw_rate>("yaw_rate")}; }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const T& bias) const {
+    return Eigen::Matrix<T, 1, 1>(T(yaw_rate) - bias);
+  }
+
+  double yaw_rate = 0;
+};
+
+/// A step of a random walk: e = b_to - b_from - change.
+struct EdgeGyroBiasWalk {
+  static constexpr std::string_view kTag = "EDGE_GYRO_BIAS_WALK";
+  static constexpr std::string_view kForm = "difference";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexGyroBias, VertexGyroBias>;
+  static constexpr auto fields() { return std::array{field<&EdgeGyroBiasWalk::change>("change")}; }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const T& from, const T& to) const {
+    return Eigen::Matrix<T, 1, 1>(to - from - T(change));
+  }
+
+  double change = 0;  ///< expected, mostly 0
+};
+
+/// The same for the speed scale.
+struct EdgeSpeedScaleWalk : EdgeGyroBiasWalk {
+  static constexpr std::string_view kTag = "EDGE_SPEED_SCALE_WALK";
+  using Vertices = VertexList<VertexSpeedScale, VertexSpeedScale>;
+  static constexpr auto fields() {
+    return std::array{Field<EdgeSpeedScaleWalk>{
+        "change", 1, [](EdgeSpeedScaleWalk& edge) -> double* { return &edge.change; }}};
+  }
+};
+
+}  // namespace waymark

@@ -1,0 +1,14 @@
+#include <waymark/plugins/odometry/states.hpp>
+
+namespace waymark {
+
+std::vector<OptionInfo> state_options(const std::string& name, const std::string& unit,
+                                      const std::string& prior_sigma, const std::string& walk_sigma,
+                                      const std::string& what) {
+  const std::string rate = unit == "1" ? "1/sqrt(s)" : unit + "/sqrt(s)";
+  return {{name, "off", "", what + ", estimated: 'off', 'constant' or 'random_walk'"},
+          {name + "_sigma", prior_sigma, unit, "sigma of its prior about 0; in [1e-9, 10]"},
+          {name + "_walk", walk_sigma, rate, "sigma of its change after one second; in [1e-12, 1]"}};
+}
+
+}  // namespace waymark

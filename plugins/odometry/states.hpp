@@ -1,0 +1,76 @@
+/// The calibration states of a drive: which vertex an interval uses, and what ties the vertices together.
+#pragma once
+
+#include <string>
+
+#include <waymark/core/graph.hpp>
+#include <waymark/core/modeling.hpp>
+
+namespace waymark {
+
+/// How a state is estimated.
+enum class StateModel {
+  off,         ///< held at 0
+  constant,    ///< one value for the drive
+  random_walk  ///< one value per period, each near the one before
+};
+
+struct StateOptions {
+  StateModel model = StateModel::off;
+  double prior_sigma = 0;  ///< of the (first) value about 0, in the state's unit
+  double walk_sigma = 0;   ///< of the change after one second, unit / sqrt(s)
+  double period_s = 10;    ///< of a random walk's values
+};
+
+/// One state along a drive, made as the intervals are walked through in order.
+template <Vertex V, Edge Walk>
+class StateAlongDrive {
+ public:
+  StateAlongDrive(const StateOptions& options, Graph& graph) : options_(options), graph_(graph) {}
+
+  /// The vertex of the interval that begins at `stamp`; stamps must not decrease.
+  [[nodiscard]] VertexIndex at(Stamp stamp) {
+    if (vertex_ < 0) {
+      begin(stamp);
+    } else if (options_.model == StateModel::random_walk &&
+               seconds_between(since_, stamp) >= options_.period_s) {
+      step(stamp);
+    }
+    return vertex_;
+  }
+
+ private:
+  void begin(Stamp stamp) {
+    vertex_ = graph_.add_vertex<V>(graph_.free_id(), {0});
+    since_ = stamp;
+    if (options_.model == StateModel::off) {
+      graph_.set_fixed(vertex_, true);
+      return;
+    }
+    graph_.set_stamp(vertex_, stamp);
+    const double sigma = options_.prior_sigma;
+    graph_.add_edge(gaussian_prior_type(), std::array{vertex_}, std::array{0.0, 0.0},
+                    Eigen::MatrixXd::Constant(1, 1, 1 / (sigma * sigma)));
+  }
+
+  void step(Stamp stamp) {
+    const VertexIndex next = graph_.add_vertex<V>(graph_.free_id(), {0});
+    graph_.set_stamp(next, stamp);
+    const double variance = options_.walk_sigma * options_.walk_sigma * seconds_between(since_, stamp);
+    graph_.add_edge(Walk{}, {vertex_, next}, Eigen::Matrix<double, 1, 1>(1 / variance));
+    vertex_ = next;
+    since_ = stamp;
+  }
+
+  const StateOptions& options_;
+  Graph& graph_;
+  VertexIndex vertex_ = -1;  // none yet
+  Stamp since_;
+};
+
+/// The options of a state NAME: NAME (off, constant, random_walk), NAME_sigma, NAME_walk.
+[[nodiscard]] std::vector<OptionInfo> state_options(const std::string& name, const std::string& unit,
+                                                    const std::string& prior_sigma,
+                                                    const std::string& walk_sigma, const std::string& what);
+
+}  // namespace waymark

@@ -1,0 +1,60 @@
+/// The time offset between GNSS and odometry as a state of the graph.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include <waymark/types_se2/edge_se2.hpp>
+
+namespace waymark {
+
+/// How late a receiver's stamps are on the odometry's clock, s: a fix stamped t shows the antenna as it was
+/// at t - offset. The same number as `delay` of a drive.yaml.
+struct VertexTimeOffset {
+  static constexpr std::string_view kTag = "VERTEX_TIME_OFFSET";
+  static constexpr int kValueSize = 1;
+  static constexpr int kTangentSize = 1;
+  static constexpr bool kLinearChart = true;
+  static constexpr std::array<std::string_view, 1> value_names() { return {"time_offset"}; }
+  static constexpr std::array<std::string_view, 1> value_units() { return {"s"}; }
+
+  template <typename T>
+  static T at(const double* value, const T* delta) {
+    return delta[0] + T(value[0]);
+  }
+  static void retract(double* value, const double* delta) { value[0] += delta[0]; }
+  static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
+};
+
+/// EDGE_GNSS_POSITION of a fix that is late: with the motion at the fix, the body was at X exp(-offset
+/// [speed, 0, yaw_rate]) when the antenna was measured. e = R_from^T (p_then + R_then antenna - p_from) -
+/// measured. Metres; speed in (grid) m/s, yaw rate in rad/s, both of `to`.
+struct EdgeGnssPositionDelayed {
+  static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_DELAYED";
+  static constexpr std::string_view kForm = "position";
+  static constexpr int kErrorDimension = 2;
+  using Vertices = VertexList<VertexSe2, VertexSe2, VertexTimeOffset>;
+  static constexpr bool kRelative = true;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeGnssPositionDelayed::measured>("measured"),
+                      field<&EdgeGnssPositionDelayed::antenna>("antenna"),
+                      field<&EdgeGnssPositionDelayed::speed>("speed"),
+                      field<&EdgeGnssPositionDelayed::yaw_rate>("yaw_rate")};
+  }
+
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& from, const Pose2<T>& to, const T& offset) const {
+    const Vector3<T> back(T(-offset * T(speed)), T(0.0), T(-offset * T(yaw_rate)));
+    const Pose2<T> then = compose(to, se2_exp(back));
+    const Vector2<T> place = then.position + rotate(then.heading, constant_vector<T>(antenna));
+    const Vector2<T> seen = rotate_back(from.heading, Vector2<T>(place - from.position));
+    return seen - constant_vector<T>(measured);
+  }
+
+  Eigen::Vector2d measured = Eigen::Vector2d::Zero();
+  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();  ///< in the body frame: x forward, y left
+  double speed = 0;
+  double yaw_rate = 0;
+};
+
+}  // namespace waymark
