@@ -112,8 +112,8 @@ class Graph {
   EdgeBatchBase& add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
                           std::span<const double> fields, const Eigen::MatrixXd& information);
   template <Edge E>
-  void add_edge(const E& edge, const typename EdgeBatch<E>::Indices& vertices,
-                const typename EdgeBatch<E>::Information& information) {
+  EdgeBatchBase& add_edge(const E& edge, const typename EdgeBatch<E>::Indices& vertices,
+                          const typename EdgeBatch<E>::Information& information) {
     static const EdgeType type = make_edge_type<E>();
     // A batch of this tag may live in another library; then its own append is the way in.
     EdgeBatchBase& target = batch(type);
@@ -124,6 +124,7 @@ class Graph {
       append_untyped(target, E(edge), vertices, information);
     }
     ++structure_version_;
+    return target;
   }
 
   /// Changes whenever a vertex or an edge is added or removed or a vertex is fixed or freed.

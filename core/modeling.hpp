@@ -52,6 +52,7 @@ struct GnssInput {
   std::span<const Fix> fixes;        ///< accepted ones only; Fix::vertex names the pose at the epoch
   std::span<const Interval> motion;  ///< the odometry's motion at each of them
   Eigen::Vector2d antenna = {0, 0};  ///< antenna in the body frame, m
+  std::optional<Loss> loss = {};     ///< robust loss of the edges that carry the fixes' information
 };
 
 /// Ties the poses to the fixes (the paper's G1, G2, G3, and what plugins bring).

@@ -56,6 +56,11 @@ inline VertexIndex add_origin(Graph& graph) {
   return word_option(modeling, given, gnss_options(), "error", kErrors) == "literal";
 }
 
+/// Gives the last edge of a batch the loss of the fixes, where they have one.
+inline void attach_loss(EdgeBatchBase& batch, const GnssInput& input) {
+  if (input.loss) batch.set_loss(batch.size() - 1, *input.loss);
+}
+
 /// Adds position edges of fixes, with one time offset for all of them where it is to be estimated.
 class PositionEdges {
  public:
@@ -75,12 +80,14 @@ class PositionEdges {
            const std::array<VertexIndex, 2>& vertices) {
     const Eigen::Matrix2d information = position_information(input_.fixes[i]);
     if (offset_ < 0) {
-      graph_.add_edge(EdgeGnssPosition{measured, antenna}, vertices, information);
+      attach_loss(graph_.add_edge(EdgeGnssPosition{measured, antenna}, vertices, information), input_);
       return;
     }
     const Interval& motion = input_.motion[i];
-    graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, motion.speed_mps, motion.yaw_rate_radps},
-                    {vertices[0], vertices[1], offset_}, information);
+    attach_loss(
+        graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, motion.speed_mps, motion.yaw_rate_radps},
+                        {vertices[0], vertices[1], offset_}, information),
+        input_);
   }
 
  private:

@@ -26,8 +26,9 @@ class GnssG2 final : public GnssModeling {
       const VertexIndex node = graph.add_vertex<VertexSe2>(
           graph.free_id(), {fix.position[0], fix.position[1], graph.value(pose)[2]});
       if (literal_) {
-        graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, {origin, node},
-                       pose_information(fix));
+        attach_loss(graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, {origin, node},
+                                   pose_information(fix)),
+                    input);
         graph.add_edge(EdgeSe2Log{}, {node, pose}, identity);
       } else {
         positions.add(i, fix.position, {0, 0}, {origin, node});

@@ -106,7 +106,7 @@ DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& conf
 }
 
 GraphDocument add_modeling(const DriveSkeleton& skeleton, const std::string& modeling, const Options& options,
-                           const TypeRegistry& registry) {
+                           const TypeRegistry& registry, const std::optional<Loss>& loss) {
   GraphDocument document = skeleton.document;
   std::vector<Fix> accepted;
   std::vector<Interval> motion;
@@ -116,7 +116,7 @@ GraphDocument add_modeling(const DriveSkeleton& skeleton, const std::string& mod
     motion.push_back(skeleton.motion_at_fixes[i]);
   }
   registry.make_gnss_modeling(modeling, options)
-      ->build({accepted, motion, document.antenna_m}, document.graph);
+      ->build({accepted, motion, document.antenna_m, loss}, document.graph);
   return document;
 }
 

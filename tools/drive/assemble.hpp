@@ -38,9 +38,11 @@ void check_calibration(const DriveConfig& config, const std::vector<std::string>
                        const TypeRegistry& registry);
 
 /// The skeleton's document with the modeling's vertices and edges for the accepted fixes.
+/// @param loss  of the fixes; none: their errors are squared
 /// @throws UsageError for an unknown modeling or option
 [[nodiscard]] GraphDocument add_modeling(const DriveSkeleton& skeleton, const std::string& modeling,
-                                         const Options& options, const TypeRegistry& registry);
+                                         const Options& options, const TypeRegistry& registry,
+                                         const std::optional<Loss>& loss = std::nullopt);
 
 /// The poses at the fixes, in their order. @throws InputError where a fix's vertex is no pose, or has no
 /// stamp or another than the fix.

@@ -184,8 +184,10 @@ void read_modeling(const YamlSection& top, DriveConfig& config) {
   if (!top.has("modeling")) return;
   config.places["modeling"] = top.place("modeling");
   if (!top.node("modeling").IsMap()) return top.read("modeling", config.modeling);
-  const YamlSection modeling = *top.section("modeling", {"name", "options"});
+  const YamlSection modeling = *top.section("modeling", {"name", "loss", "options"});
   modeling.read("name", config.modeling);
+  modeling.read("loss", config.loss);
+  if (modeling.has("loss")) config.places["modeling.loss"] = modeling.place("loss");
   read_options(modeling, "options", "modeling.options.", config.modeling_options, config);
 }
 

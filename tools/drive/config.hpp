@@ -62,13 +62,14 @@ struct DriveConfig {
   StartOptions start;
   std::string modeling = "g1";  ///< registered GNSS modeling
   std::map<std::string, std::string> modeling_options;
+  std::string loss;  ///< of the fixes, "cauchy:1": a registered loss and its scale; empty: none
   std::string odometry_model = "constant_twist";        ///< registered odometry model
   std::map<std::string, std::string> odometry_options;  ///< of the odometry model, checked by its plugin
   /// States to estimate with the poses: options that go to the odometry model or the GNSS modeling, whichever
   /// has them.
   std::map<std::string, std::string> calibration;
   /// "drive.yaml:12:5: " of what only a plugin can check: "modeling", "modeling.options.NAME",
-  /// "odometry.model", "odometry.noise.NAME", "calibration.NAME".
+  /// "modeling.loss", "odometry.model", "odometry.noise.NAME", "calibration.NAME".
   std::map<std::string, std::string> places;
 };
 

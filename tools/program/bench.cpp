@@ -11,6 +11,7 @@
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/hash.hpp>
 #include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/program_registry.hpp>
 
 namespace waymark {
 namespace {

@@ -9,6 +9,7 @@
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/program_registry.hpp>
 
 namespace waymark {
 namespace {

@@ -3,13 +3,8 @@
 #include <cstdio>
 
 #include <waymark/core/error.hpp>
-#include <waymark/core/plugin_loader.hpp>
-#include <waymark/formats/log_readers.hpp>
 #include <waymark/formats/text_file.hpp>
-#include <waymark/plugins/builtin.hpp>
-#include <waymark/solvers/register.hpp>
 #include <waymark/tools/program/console.hpp>
-#include <waymark/types_se2/register.hpp>
 
 namespace waymark {
 
@@ -66,19 +61,6 @@ void Console::progress(const std::string& text) const {
 
 void Console::end_progress() const {
   if (show_progress_) std::fputs("\r\033[K", stderr);
-}
-
-TypeRegistry make_registry(const CommonOptions& options) {
-  TypeRegistry registry;
-  register_core_types(registry);
-  register_se2_types(registry);
-  register_solvers(registry);
-  register_builtin_plugins(registry);
-  for (const NamedLogReader& reader : builtin_log_readers()) {
-    registry.add_log_reader({std::string(reader.name), std::string(reader.about), reader.reader});
-  }
-  for (const std::string& file : options.plugins) load_plugin(file, registry);
-  return registry;
 }
 
 }  // namespace waymark

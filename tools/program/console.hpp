@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <waymark/core/error.hpp>
-#include <waymark/core/registry.hpp>
 #include <waymark/core/summary.hpp>
 
 namespace waymark {
@@ -17,7 +16,7 @@ struct CommonOptions {
   bool quiet = false;
   bool json = false;
   int verbosity = 0;
-  std::vector<std::string> plugins;  ///< module files
+  std::vector<std::string> plugins;  ///< files or names of modules
 };
 
 /// Set by Ctrl-C; the optimizer looks at it before every step.
@@ -55,8 +54,5 @@ class Console {
   CommonOptions options_;
   bool show_progress_;
 };
-
-/// Core, SE(2), solvers, built-in plugins and log readers, then the modules asked for.
-[[nodiscard]] TypeRegistry make_registry(const CommonOptions& options);
 
 }  // namespace waymark

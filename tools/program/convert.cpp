@@ -6,6 +6,7 @@
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/program_registry.hpp>
 
 namespace waymark {
 namespace {
@@ -19,7 +20,7 @@ struct ConvertOptions {
 
 ExitCode convert(const ConvertOptions& options) {
   const Console console(options.common);
-  const TypeRegistry registry = make_registry(options.common);
+  const TypeRegistry registry = make_registry_for(options.input, options.common);
   require_output_place(options.output);
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
   if (loaded.modelings.size() != 1)

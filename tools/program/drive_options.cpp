@@ -27,7 +27,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("-q,--quiet", options.quiet, "Print errors only (and what --json asks for)");
   command.add_flag("-v,--verbose", options.verbosity, "Print what is done (iterations, files)");
   command.add_flag("--json", options.json, "Print the result as JSON on standard output");
-  command.add_option("--plugin", options.plugins, "Load a plugin module (may be repeated)")
+  command
+      .add_option(
+          "--plugin", options.plugins,
+          "Load a plugin module: a file, or a name looked up in WAYMARK_PLUGIN_PATH (may be repeated)")
       ->type_name("FILE.so")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -63,14 +66,25 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
       ->check(rule("must be 0 (none) or at least 2", [](double n) { return n == 0 || n >= 2; }));
   command.add_option("--start", overrides.start, "Where the optimisation starts")
       ->check(CLI::IsMember({"anchored", "dead_reckoning"}));
+  command.add_option("--loss", overrides.loss, "Robust loss of the fixes, or 'none'")
+      ->type_name("NAME:SCALE");
+  command
+      .add_option("--calibrate", overrides.calibrate,
+                  "States to estimate with the poses: 'on' (gyro_bias, speed_scale, time_offset), 'off', or "
+                  "options of the odometry model or the modeling, such as gyro_bias=constant")
+      ->type_name("on|off|NAME=VALUE")
+      ->delimiter(',')
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_flag("--no-gate", overrides.no_gate, "Accept every fix");
 }
 
 void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
   command.add_option("-a,--algorithm", choice.algorithm, "gauss_newton, levenberg_marquardt or dogleg")
       ->capture_default_str();
-  command.add_option("-s,--solver", choice.solver,
-                     "Linear solver, see 'waymark info'; auto: the fastest by measurement")
+  command
+      .add_option("-s,--solver", choice.solver,
+                  "Linear solver, see 'waymark info'; auto: the fastest by measurement")
       ->capture_default_str();
   command.add_option("--algorithm-option", choice.options, "Option of the algorithm, see 'waymark info'")
       ->type_name("NAME=VALUE")

@@ -6,6 +6,7 @@
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/pipeline.hpp>
+#include <waymark/tools/program/program_registry.hpp>
 
 namespace waymark {
 namespace {
@@ -34,7 +35,7 @@ std::vector<std::string> labels_of(const std::vector<std::string>& paths) {
 
 ExitCode evaluate_files(const EvaluateOptions& options) {
   const Console console(options.common);
-  const TypeRegistry registry = make_registry(options.common);
+  const TypeRegistry registry = make_registry_for(options.truth, options.common);
   std::vector<LabelledEvaluation> evaluations;
   ReportHeader header;
   const std::vector<std::string> labels = labels_of(options.inputs);

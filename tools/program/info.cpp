@@ -4,6 +4,7 @@
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/program_registry.hpp>
 
 namespace waymark {
 namespace {

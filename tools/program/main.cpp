@@ -7,6 +7,7 @@
 #include <waymark/formats/suggest.hpp>
 #include <waymark/tools/benchmark/contestants.hpp>
 #include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/program_registry.hpp>
 
 namespace waymark {
 namespace {

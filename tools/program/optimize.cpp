@@ -5,7 +5,9 @@
 #include <waymark/tools/program/covariance.hpp>
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/program_registry.hpp>
 #include <waymark/tools/program/robust.hpp>
+#include <waymark/tools/program/state_report.hpp>
 
 namespace waymark {
 namespace {
@@ -62,6 +64,8 @@ ExitCode optimize_file(const OptimizeOptions& options) {
       write_file_atomically(options.robust.outliers, graduated->outlier_lines);
     }
   }
+  const std::vector<StateReport> states =
+      result.summary.converged() ? report_states(document) : std::vector<StateReport>();
   const bool to_stdout = is_stdout(options.output) || is_stdout(options.robust.outliers);
   write_file_atomically(options.output, [&](const TextSink& sink) {
     g2o ? write_g2o(document, sink) : write_graph(document, registry, sink);
@@ -75,11 +79,13 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   }
   if (options.common.json) {
     nlohmann::ordered_json json = summary_json(result);
+    json["states"] = states_json(states);
     if (graduated) json["graduation"] = graduation_json(*graduated);
     console.result(json_text(json), to_stdout);
   } else {
     const std::string outliers = graduated ? graduation_text(graduated->result) : "";
-    console.result(summary_text(result) + outliers + "written     " + written + "\n", to_stdout);
+    console.result(summary_text(result) + states_text(states) + outliers + "written     " + written + "\n",
+                   to_stdout);
   }
   return exit_code(result.summary);
 }

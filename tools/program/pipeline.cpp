@@ -8,13 +8,28 @@
 #include <waymark/formats/text_file.hpp>
 #include <waymark/formats/trajectory.hpp>
 #include <waymark/tools/drive/projection.hpp>
+#include <waymark/tools/drive/sensors.hpp>
 #include <waymark/tools/program/hash.hpp>
 #include <waymark/tools/program/optimization.hpp>
 #include <waymark/tools/program/pipeline.hpp>
+#include <waymark/tools/program/robust.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark {
 namespace {
+
+/// "on", "off", or NAME=VALUE pairs over what the drive.yaml says.
+void apply_calibration(const std::vector<std::string>& words, DriveConfig& config) {
+  for (const std::string& word : words) {
+    if (word == "on") {
+      config.calibration = default_calibration();
+    } else if (word == "off") {
+      config.calibration.clear();
+    } else {
+      for (const auto& [name, value] : parse_options({word})) config.calibration[name] = value;
+    }
+  }
+}
 
 void apply(const DriveOverrides& overrides, DriveConfig& config) {
   if (overrides.from_s) config.from_s = overrides.from_s;
@@ -28,17 +43,33 @@ void apply(const DriveOverrides& overrides, DriveConfig& config) {
   if (overrides.no_gate) config.gate.enabled = false;
   if (overrides.start == "dead_reckoning") config.start.method = StartMethod::dead_reckoning;
   if (overrides.start == "anchored") config.start.method = StartMethod::anchored;
+  apply_calibration(overrides.calibrate, config);
+  if (overrides.loss) config.loss = *overrides.loss;
+}
+
+/// The loss of the fixes as the drive.yaml or the command line names it.
+std::optional<Loss> loss_of_fixes(const DriveConfig& config, bool overridden, const TypeRegistry& registry) {
+  if (config.loss.empty() || config.loss == "none") return std::nullopt;
+  const auto place = config.places.find("modeling.loss");
+  if (overridden || place == config.places.end()) return named_loss(config.loss, "--loss", registry);
+  try {
+    return named_loss(config.loss, "modeling.loss", registry);
+  } catch (const UsageError& error) {
+    throw InputError(place->second + error.what());
+  }
 }
 
 LogReaderLookup reader_lookup(const TypeRegistry& registry) {
   return [&registry](std::string_view name) { return registry.find_log_reader(name); };
 }
 
-/// The drive.yaml's options where it names this modeling, and those of the command line over them.
-Options options_of(const std::string& modeling, const DriveConfig& config, const Options& given) {
+/// The drive.yaml's options where it names this modeling, those of the command line over them, and the
+/// calibration that this modeling knows.
+Options options_of(const std::string& modeling, const DriveConfig& config, const Options& given,
+                   const TypeRegistry& registry) {
   Options all(config.modeling == modeling ? config.modeling_options : Options());
   for (const auto& [name, value] : given) all[name] = value;
-  return all;
+  return with_calibration(all, config, registry.gnss_modeling(modeling).options);
 }
 
 bool has_option(const std::string& modeling, const std::string& option, const TypeRegistry& registry) {
@@ -78,8 +109,8 @@ std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const
     if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
   }
   for (const std::string& name : once) {  // what is wrong with them shows before the work
-    (void)registry.make_gnss_modeling(name,
-                                      options_of(name, config, known_options(name, overrides, registry)));
+    (void)registry.make_gnss_modeling(
+        name, options_of(name, config, known_options(name, overrides, registry), registry));
   }
   check_options_are_used(once, overrides, registry);
   return once;
@@ -87,7 +118,8 @@ std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const
 
 void tell(const PrepareReport& report, const Console& console) {
   for (const std::string& note : report.notes) console.note("note: " + note);
-  const std::size_t corrupt = report.odometry.corrupt + report.gnss.corrupt + report.truth.corrupt;
+  const std::size_t corrupt =
+      report.odometry.corrupt + report.gnss.corrupt + report.truth.corrupt + report.sensor.corrupt;
   if (corrupt > 0) {
     console.note(fmt::format("warning: {} corrupt records were left out; the first ones:", corrupt));
     for (const std::string& example : report.corrupt_examples) console.note("  " + example);
@@ -99,6 +131,9 @@ std::vector<const LogConfig*> logs_of(const DriveConfig& config) {
   if (config.odometry) logs.push_back(&*config.odometry);
   for (const LogConfig& log : config.gnss) logs.push_back(&log);
   if (config.truth) logs.push_back(&*config.truth);
+  for (const SensorConfig& sensor : config.sensors) {
+    if (sensor.log) logs.push_back(&*sensor.log);
+  }
   return logs;
 }
 
@@ -114,6 +149,9 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   loaded.config = load_drive_config(path, overrides.data_folder);
   apply(overrides, loaded.config);
   loaded.modelings = chosen_modelings(overrides, loaded.config, registry);
+  check_calibration(loaded.config, loaded.modelings, registry);
+  loaded.loss = loss_of_fixes(loaded.config, overrides.loss.has_value(), registry);
+  resolve_sensors(loaded.config, registry);
   console.progress("reading logs");
   loaded.drive = load_drive(loaded.config, reader_lookup(registry));
   if (!loaded.config.time_scale_stated) {
@@ -133,13 +171,22 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
 
 GraphDocument build_document(const LoadedDrive& loaded, const std::string& modeling, const Options& options,
                              const TypeRegistry& registry) {
-  const Options all = options_of(modeling, loaded.config, options);
-  GraphDocument document = add_modeling(loaded.skeleton, modeling, all, registry);
+  const Options all = options_of(modeling, loaded.config, options, registry);
+  GraphDocument document = add_modeling(loaded.skeleton, modeling, all, registry, loaded.loss);
   document.provenance = {{"program", "waymark " WAYMARK_VERSION}, {"drive", loaded.config.name}};
   for (const std::string& input : loaded.inputs) document.provenance.emplace_back("input", input);
   document.provenance.emplace_back("modeling", modeling);
   for (const auto& [name, value] : all)
     document.provenance.emplace_back("modeling_option", name + "=" + value);
+  if (loaded.loss) document.provenance.emplace_back("loss", loaded.config.loss);
+  for (const auto& [name, value] : loaded.config.calibration)
+    document.provenance.emplace_back("calibration", name + "=" + value);
+  for (const SensorConfig& sensor : loaded.config.sensors)
+    document.provenance.emplace_back("sensor", sensor.name);
+  for (const PluginRecord& plugin : registry.plugins()) {
+    if (plugin.place != "built in")
+      document.provenance.emplace_back("plugin", plugin.name + " " + plugin.version);
+  }
   const GateOptions& gate = loaded.config.gate;
   document.provenance.emplace_back(
       "gate", gate.enabled ? fmt::format("angle {:.6g} deg displacement {:.6g} m",
@@ -221,6 +268,7 @@ std::vector<TruthPose> read_truth(const std::string& path, const std::string& da
     }
     config.utm_zone = document.frame->north ? document.frame->zone : -document.frame->zone;
     config.utm_origin = {document.frame->origin_easting_m, document.frame->origin_northing_m};
+    config.sensors.clear();  // nothing of them is needed
     return load_drive(config, reader_lookup(registry)).truth;
   }
   std::vector<TruthPose> truth;

@@ -21,7 +21,9 @@ struct DriveOverrides {
   std::optional<double> from_s;
   std::optional<double> to_s;
   std::optional<int> withhold_every;
-  std::optional<std::string> start;  ///< anchored, dead_reckoning
+  std::optional<std::string> start;    ///< anchored, dead_reckoning
+  std::optional<std::string> loss;     ///< of the fixes, NAME:SCALE or "none"
+  std::vector<std::string> calibrate;  ///< "on", "off", or NAME=MODEL pairs
   bool no_gate = false;
 };
 
@@ -31,6 +33,7 @@ struct LoadedDrive {
   PreparedDrive drive;
   DriveSkeleton skeleton;
   std::vector<std::string> modelings;
+  std::optional<Loss> loss;         ///< of the fixes
   std::vector<std::string> inputs;  ///< name and fingerprint of each log
 };
 

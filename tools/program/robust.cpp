@@ -31,23 +31,7 @@ LossRequest parse_loss(const std::string& text, const TypeRegistry& registry) {
     request.tag = text.substr(0, equals);
     require_edge(registry, request.tag, "--loss");
   }
-  const std::string rest = equals == std::string::npos ? text : text.substr(equals + 1);
-  const auto colon = rest.find(':');
-  const std::string name = rest.substr(0, colon);
-  const LossType* type = registry.find_loss(name);
-  if (type == nullptr) {
-    std::vector<std::string_view> names;
-    for (const auto& [known, origin] : registry.losses()) names.push_back(known.name);
-    throw UsageError("--loss: unknown loss '" + name + "'; there are: " + joined(names));
-  }
-  double scale = 0;
-  const char* first = rest.data() + (colon == std::string::npos ? rest.size() : colon + 1);
-  const char* last = rest.data() + rest.size();
-  const auto [end, error] = std::from_chars(first, last, scale);
-  if (error != std::errc() || end != last || !(scale > 0) || !(scale < 1e300)) {
-    throw UsageError("--loss: expected [TAG=]NAME:SCALE with a scale above 0, got '" + text + "'");
-  }
-  request.loss = Loss{type->name, type->evaluate, scale};
+  request.loss = named_loss(equals == std::string::npos ? text : text.substr(equals + 1), "--loss", registry);
   return request;
 }
 
@@ -84,6 +68,25 @@ void describe(const Graph& graph, EdgePlace place, TextBuilder& lines, nlohmann:
 }
 
 }  // namespace
+
+Loss named_loss(const std::string& text, const std::string& place, const TypeRegistry& registry) {
+  const auto colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  const LossType* type = registry.find_loss(name);
+  if (type == nullptr) {
+    std::vector<std::string_view> names;
+    for (const auto& [known, origin] : registry.losses()) names.push_back(known.name);
+    throw UsageError(place + ": unknown loss '" + name + "'; there are: " + joined(names));
+  }
+  double scale = 0;
+  const char* first = text.data() + (colon == std::string::npos ? text.size() : colon + 1);
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, scale);
+  if (error != std::errc() || end != last || !(scale > 0) || !(scale < 1e300)) {
+    throw UsageError(place + ": expected [TAG=]NAME:SCALE with a scale above 0, got '" + text + "'");
+  }
+  return Loss{type->name, type->evaluate, scale};
+}
 
 void add_robust_options(CLI::App& command, RobustChoice& choice) {
   command

@@ -24,6 +24,10 @@ struct RobustChoice {
 /// --loss, --robust, --trusted, --outliers.
 void add_robust_options(CLI::App& command, RobustChoice& choice);
 
+/// "cauchy:1": a registered loss with its scale. @param place  of the text, for messages @throws UsageError
+[[nodiscard]] Loss named_loss(const std::string& text, const std::string& place,
+                              const TypeRegistry& registry);
+
 /// Whether losses and tags exist and fit together, before anything is read. @throws UsageError
 void check_robust(const RobustChoice& choice, const TypeRegistry& registry);
 

@@ -5,6 +5,8 @@
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/program_registry.hpp>
+#include <waymark/tools/program/state_report.hpp>
 
 namespace waymark {
 namespace {
@@ -21,6 +23,7 @@ struct RunOptions {
 struct ModelingRun {
   LabelledEvaluation evaluation;
   MultiStartSummary result;
+  std::vector<StateReport> states;
   std::vector<std::string> files;
 };
 
@@ -37,6 +40,7 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, c
   write(prefix + ".graph");
   run.result = optimize_document(document, options.choice, registry, console);
   document.provenance.emplace_back("optimized", describe_optimization(run.result));
+  if (run.result.summary.converged()) run.states = report_states(document);
   write(prefix + ".fused.graph");
   for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
   run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth)};
@@ -52,7 +56,7 @@ std::string run_line(const std::string& modeling, const Summary& s) {
 
 ExitCode run_drive(const RunOptions& options) {
   const Console console(options.common);
-  const TypeRegistry registry = make_registry(options.common);
+  const TypeRegistry registry = make_registry(options.common, load_drive_config(options.input).plugins);
   check_choice(options.choice, registry);
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
   stop_if_interrupted();
@@ -65,8 +69,9 @@ ExitCode run_drive(const RunOptions& options) {
   ExitCode code = kSuccess;
   for (const std::string& modeling : loaded.modelings) {
     ModelingRun run = run_modeling(options, loaded, modeling, registry, console, header);
-    text += run_line(modeling, run.result.summary);
+    text += run_line(modeling, run.result.summary) + states_text(run.states);
     summaries[modeling] = summary_json(run.result);
+    summaries[modeling]["states"] = states_json(run.states);
     evaluations.push_back(std::move(run.evaluation));
     files.insert(files.end(), run.files.begin(), run.files.end());
     if (exit_code(run.result.summary) != kSuccess) code = exit_code(run.result.summary);

@@ -1,0 +1,96 @@
+#include <waymark/tools/program/state_report.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/core/marginals.hpp>
+#include <waymark/tools/evaluation/text_table.hpp>
+
+namespace waymark {
+namespace {
+
+bool is_state(const VertexType& type) {
+  return !type.value_units.empty() && type.position == nullptr && type.value_size == type.tangent_size;
+}
+
+/// The estimated vertices of one type, in their order.
+struct StateVertices {
+  const VertexType* type = nullptr;
+  std::vector<VertexIndex> vertices;
+};
+
+std::vector<StateVertices> states_of(const Graph& graph) {
+  std::vector<StateVertices> states;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const VertexType& type = graph.vertex_type(v);
+    if (!is_state(type) || graph.fixed(v)) continue;
+    auto known = std::find_if(states.begin(), states.end(),
+                              [&](const StateVertices& other) { return other.type->tag == type.tag; });
+    if (known == states.end()) known = states.insert(states.end(), {&type, {}});
+    known->vertices.push_back(v);
+  }
+  return states;
+}
+
+StateReport report(const Graph& graph, const StateVertices& state, int axis,
+                   const Eigen::MatrixXd& last_covariance) {
+  const auto value = [&](VertexIndex v) { return graph.value(v)[static_cast<std::size_t>(axis)]; };
+  const auto less = [&](VertexIndex a, VertexIndex b) { return value(a) < value(b); };
+  const auto [smallest, largest] = std::minmax_element(state.vertices.begin(), state.vertices.end(), less);
+  StateReport result;
+  result.name = state.type->value_names[static_cast<std::size_t>(axis)];
+  result.unit = state.type->value_units[static_cast<std::size_t>(axis)];
+  result.values = state.vertices.size();
+  result.first = value(state.vertices.front());
+  result.last = value(state.vertices.back());
+  result.smallest = value(*smallest);
+  result.largest = value(*largest);
+  result.sigma = std::sqrt(last_covariance(axis, axis));
+  return result;
+}
+
+}  // namespace
+
+std::vector<StateReport> report_states(const GraphDocument& document) {
+  const std::vector<StateVertices> states = states_of(document.graph);
+  if (states.empty()) return {};
+  std::vector<VertexIndex> last;
+  for (const StateVertices& state : states) last.push_back(state.vertices.back());
+  const auto covariances = marginal_covariances(document.graph, last);
+  std::vector<StateReport> reports;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    for (int axis = 0; axis < states[i].type->value_size; ++axis)
+      reports.push_back(report(document.graph, states[i], axis, covariances[i]));
+  }
+  return reports;
+}
+
+std::string states_text(const std::vector<StateReport>& states) {
+  if (states.empty()) return {};
+  TextTable table({"estimated state", "unit", "values", "first", "last", "smallest", "largest", "sigma"});
+  for (const StateReport& s : states) {
+    const auto number = [](double x) { return fmt::format("{:.4g}", x); };
+    table.add({s.name, s.unit, fmt::to_string(s.values), number(s.first), number(s.last), number(s.smallest),
+               number(s.largest), number(s.sigma)});
+  }
+  return table.text();
+}
+
+nlohmann::ordered_json states_json(const std::vector<StateReport>& states) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const StateReport& s : states) {
+    json.push_back({{"name", s.name},
+                    {"unit", s.unit},
+                    {"values", s.values},
+                    {"first", s.first},
+                    {"last", s.last},
+                    {"smallest", s.smallest},
+                    {"largest", s.largest},
+                    {"sigma", s.sigma}});
+  }
+  return json;
+}
+
+}  // namespace waymark

@@ -1,0 +1,34 @@
+/// Estimated states that are no poses and no landmarks: what the calibration of a drive came out as.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <waymark/formats/graph_document.hpp>
+
+namespace waymark {
+
+/// One number of one kind of state over a drive.
+struct StateReport {
+  std::string name;  ///< of the number: "gyro_bias"
+  std::string unit;
+  std::size_t values = 0;  ///< vertices: 1 for a constant
+  double first = 0;
+  double last = 0;
+  double smallest = 0;
+  double largest = 0;
+  double sigma = 0;  ///< of the last value, from the marginal covariance; NaN where it is not known
+};
+
+/// Vertices of types that state units and have no place in the plane, as far as they were estimated, in the
+/// order of their types' first vertices.
+/// Sigmas are those at the document's values. @throws what marginal_covariances throws
+[[nodiscard]] std::vector<StateReport> report_states(const GraphDocument& document);
+
+/// A table for the terminal; empty where there are no states.
+[[nodiscard]] std::string states_text(const std::vector<StateReport>& states);
+[[nodiscard]] nlohmann::ordered_json states_json(const std::vector<StateReport>& states);
+
+}  // namespace waymark
