@@ -7,7 +7,7 @@
 #include <waymark/tools/drive/plausibility.hpp>
 #include <waymark/tools/drive/sensors.hpp>
 #include <waymark/tools/drive/timeline.hpp>
-#include <waymark/types_se2/vertex_se2.hpp>
+#include <waymark/types_se2/time_offset.hpp>
 
 namespace waymark {
 namespace {
@@ -39,6 +39,42 @@ std::vector<Fix> accepted_fixes(const std::vector<Fix>& fixes) {
     if (fix.status == FixStatus::accepted) accepted.push_back(fix);
   }
   return accepted;
+}
+
+std::optional<double> estimated_time_offset(const Graph& graph) {
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (graph.vertex_type(v).tag == VertexTimeOffset::kTag && !graph.fixed(v)) return graph.value(v)[0];
+  }
+  return std::nullopt;
+}
+
+/// All poses with a stamp, by time.
+std::vector<StampedPose> stamped_poses(const Graph& graph) {
+  std::vector<StampedPose> poses;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const auto stamp = graph.stamp(v);
+    if (!stamp || graph.vertex_type(v).tag != VertexSe2::kTag) continue;
+    poses.push_back({*stamp, Eigen::Vector3d(graph.value(v)[0], graph.value(v)[1], graph.value(v)[2])});
+  }
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
+  return poses;
+}
+
+Pose2<double> as_pose(const StampedPose& pose) {
+  return {pose.pose[0], pose.pose[1], pose.pose[2]};
+}
+
+/// The pose `later_s` seconds after a stamp, on the twist between the two poses beside; beyond the ends that
+/// of the last two goes on. @param nodes at least two
+Eigen::Vector3d pose_at(const std::vector<StampedPose>& nodes, Stamp stamp, double later_s) {
+  const Stamp moment{stamp.nanoseconds + std::llround(later_s * 1e9)};
+  auto after = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, moment,
+                                [](Stamp time, const StampedPose& pose) { return time < pose.stamp; });
+  const StampedPose& before = *(after - 1);
+  const double part = seconds_between(before.stamp, moment) / seconds_between(before.stamp, after->stamp);
+  const Vector3<double> twist = se2_log(between(as_pose(before), as_pose(*after)));
+  return compose(as_pose(before), se2_exp<double>(part * twist)).vector();
 }
 
 }  // namespace
@@ -118,6 +154,15 @@ GraphDocument add_modeling(const DriveSkeleton& skeleton, const std::string& mod
   registry.make_gnss_modeling(modeling, options)
       ->build({accepted, motion, document.antenna_m, loss}, document.graph);
   return document;
+}
+
+std::vector<Eigen::Vector3d> poses_when_measured(const GraphDocument& document) {
+  const std::optional<double> offset = estimated_time_offset(document.graph);
+  if (!offset) return {};
+  const std::vector<StampedPose> nodes = stamped_poses(document.graph);
+  std::vector<Eigen::Vector3d> poses;
+  for (const Fix& fix : document.fixes) poses.push_back(pose_at(nodes, fix.stamp, -*offset));
+  return poses;
 }
 
 std::vector<StampedPose> poses_at_fixes(const GraphDocument& document) {

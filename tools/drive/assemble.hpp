@@ -48,4 +48,8 @@ void check_calibration(const DriveConfig& config, const std::vector<std::string>
 /// stamp or another than the fix.
 [[nodiscard]] std::vector<StampedPose> poses_at_fixes(const GraphDocument& document);
 
+/// The poses when the fixes were really measured: at their stamps minus the estimated time offset, along the
+/// constant twist between the nodes beside. Empty where the graph estimates none.
+[[nodiscard]] std::vector<Eigen::Vector3d> poses_when_measured(const GraphDocument& document);
+
 }  // namespace waymark

@@ -33,6 +33,12 @@ struct SensorConfig {
   std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
 };
 
+/// Artificial outages: of every `every_s` seconds after the first fix the last `length_s` have no fix.
+struct OutagePattern {
+  double length_s = 0;  ///< 0: none
+  double every_s = 0;   ///< above length_s
+};
+
 /// A drive to be fused.
 struct DriveConfig {
   std::string path;    ///< of the drive.yaml itself
@@ -54,6 +60,7 @@ struct DriveConfig {
   double gnss_period_s = 0;                 ///< thin fixes to one per period (0: keep all)
   double gnss_delay_s = 0;                  ///< subtracted from fix stamps: how late the receiver stamps
   int withhold_every = 0;                   ///< every n-th fix is kept out of the graph (0: none)
+  OutagePattern outage;                     ///< fixes in it are kept out of the graph too
   std::optional<double> from_s;             ///< seconds after the drive's first stamp
   std::optional<double> to_s;
 

@@ -169,13 +169,18 @@ std::vector<GeodeticTruth> prepare_truth(const DriveLogs& logs, const DriveConfi
   return truth;
 }
 
-/// Numbers the epochs and withholds every n-th: fixes of one stamp are one epoch.
-void number_epochs(std::vector<Fix>& fixes, int withhold_every, PrepareReport& report) {
+bool in_outage(const OutagePattern& outage, double after_first_s) {
+  return outage.length_s > 0 && std::fmod(after_first_s, outage.every_s) >= outage.every_s - outage.length_s;
+}
+
+/// Numbers the epochs and withholds what is asked for: fixes of one stamp are one epoch.
+void number_epochs(std::vector<Fix>& fixes, const DriveConfig& config, PrepareReport& report) {
   int epoch = -1;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (i == 0 || fixes[i].stamp != fixes[i - 1].stamp) ++epoch;
     fixes[i].epoch = epoch;
-    if (withhold_every < 2 || (epoch + 1) % withhold_every != 0) continue;
+    const bool nth = config.withhold_every >= 2 && (epoch + 1) % config.withhold_every == 0;
+    if (!nth && !in_outage(config.outage, seconds_between(fixes.front().stamp, fixes[i].stamp))) continue;
     fixes[i].status = FixStatus::withheld;
     fixes[i].reason = "withheld";
     ++report.fixes_withheld;
@@ -199,7 +204,7 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveConfig& config) {
   const Projection projection(drive.frame);
   for (const GeodeticFix& fix : fixes) drive.fixes.push_back(projection.project(fix));
   for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection.project(pose));
-  number_epochs(drive.fixes, config.withhold_every, drive.report);
+  number_epochs(drive.fixes, config, drive.report);
   for (std::size_t i = 0; i < logs.sensors.size(); ++i) {
     const auto& log = config.sensors[i].log;
     drive.sensors.push_back(log ? prepare_readings(logs.sensors[i], log->request.readings, config.time_scale,

@@ -86,7 +86,7 @@ struct DriveLogs {
 /// subtracted; the odometry cut to [from_s, to_s] after its first stamp; fixes outside the odometry's span
 /// dropped; fixes thinned per source to the one nearest to each whole multiple of gnss_period_s on the
 /// drive's scale (the earlier of two equally near); epochs numbered; epochs n-1, 2n-1, ... withheld for
-/// withhold_every = n (one epoch: fixes of one stamp); all projected.
+/// withhold_every = n (one epoch: fixes of one stamp), and those in an outage; all projected.
 /// @throws InputError with the remedy for: fewer than two odometry samples, no fix, no fix within the
 /// odometry's span, truth that does not overlap the odometry, a log of seconds of week that would need a
 /// date.

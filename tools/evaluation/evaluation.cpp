@@ -15,6 +15,9 @@ void check(const EvaluationInput& input) {
   const std::size_t n = input.fixes.size();
   if (input.fused.size() != n)
     throw UsageError(fmt::format("evaluate: {} fused poses for {} fixes", input.fused.size(), n));
+  if (!input.when_measured.empty() && input.when_measured.size() != n)
+    throw UsageError(
+        fmt::format("evaluate: {} poses when measured for {} fixes", input.when_measured.size(), n));
   if (!input.position_covariances.empty() && input.position_covariances.size() != n)
     throw UsageError(
         fmt::format("evaluate: {} covariances for {} poses", input.position_covariances.size(), n));
@@ -44,9 +47,10 @@ ResidualKind residual_kind(FixStatus status) {
   return ResidualKind::post_fit;
 }
 
-/// Where the fused pose puts the antenna.
-Eigen::Vector2d predicted_antenna(const StampedPose& fused, const Eigen::Vector2d& antenna_m) {
-  return fused.pose.head<2>() + rotate(fused.pose[2], antenna_m);
+/// Where the fused trajectory puts the antenna of fix i.
+Eigen::Vector2d predicted_antenna(const EvaluationInput& input, std::size_t i) {
+  const Eigen::Vector3d& pose = input.when_measured.empty() ? input.fused[i].pose : input.when_measured[i];
+  return pose.head<2>() + rotate(pose[2], input.antenna_m);
 }
 
 /// Offsets of one system, gathered over the epochs.
@@ -116,7 +120,7 @@ void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
   for (std::size_t i = 0; i < input.fixes.size(); ++i) {
     const Fix& fix = input.fixes[i];
     const ResidualKind kind = residual_kind(fix.status);
-    const Eigen::Vector2d residual = fix.position - predicted_antenna(input.fused[i], input.antenna_m);
+    const Eigen::Vector2d residual = fix.position - predicted_antenna(input, i);
     const Eigen::Matrix2d* pose_covariance =
         input.position_covariances.empty() ? nullptr : &input.position_covariances[i];
     const double nu =

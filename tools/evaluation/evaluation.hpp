@@ -24,6 +24,9 @@ namespace waymark {
 struct EvaluationInput {
   /// The pose at each fix: same length, same order, stamps within max_stamp_offset_s.
   std::vector<StampedPose> fused;
+  /// The pose when each fix was really measured, where a time offset was estimated; empty: `fused`. Residuals
+  /// of the fixes are formed with it.
+  std::vector<Eigen::Vector3d> when_measured;
   std::vector<Fix> fixes;                   ///< all that entered the drive, whatever became of them
   std::vector<TruthPose> truth;             ///< empty: no truth
   Eigen::Vector2d antenna_m{0, 0};          ///< GNSS antenna in the body frame (x forward, y left)

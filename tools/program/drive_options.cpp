@@ -64,6 +64,11 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
                   "Keep the fixes of every N-th epoch out of the graph, to evaluate against")
       ->type_name("N")
       ->check(rule("must be 0 (none) or at least 2", [](double n) { return n == 0 || n >= 2; }));
+  command
+      .add_option(
+          "--outage", overrides.outage,
+          "Keep the last LENGTH of every EVERY seconds of fixes out of the graph, to evaluate against")
+      ->type_name("LENGTH/EVERY");
   command.add_option("--start", overrides.start, "Where the optimisation starts")
       ->check(CLI::IsMember({"anchored", "dead_reckoning"}));
   command.add_option("--loss", overrides.loss, "Robust loss of the fixes, or 'none'")

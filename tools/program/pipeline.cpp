@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -17,6 +18,21 @@
 
 namespace waymark {
 namespace {
+
+/// "60/240". @throws UsageError
+OutagePattern parse_outage(const std::string& text) {
+  OutagePattern outage;
+  const char* last = text.data() + text.size();
+  const auto [slash, first_error] = std::from_chars(text.data(), last, outage.length_s);
+  const bool parted = first_error == std::errc() && slash != last && *slash == '/';
+  const auto [end, second_error] = std::from_chars(parted ? slash + 1 : last, last, outage.every_s);
+  if (!parted || second_error != std::errc() || end != last || !(outage.length_s > 0) ||
+      !(outage.every_s > outage.length_s) || !std::isfinite(outage.every_s)) {
+    throw UsageError("--outage: expected LENGTH/EVERY in seconds with 0 < LENGTH < EVERY, got '" + text +
+                     "'");
+  }
+  return outage;
+}
 
 /// "on", "off", or NAME=VALUE pairs over what the drive.yaml says.
 void apply_calibration(const std::vector<std::string>& words, DriveConfig& config) {
@@ -39,6 +55,7 @@ void apply(const DriveOverrides& overrides, DriveConfig& config) {
     throw UsageError(
         fmt::format("--from {} and --to {} leave nothing between them", *config.from_s, *config.to_s));
   }
+  if (!overrides.outage.empty()) config.outage = parse_outage(overrides.outage);
   if (overrides.withhold_every) config.withhold_every = *overrides.withhold_every;
   if (overrides.no_gate) config.gate.enabled = false;
   if (overrides.start == "dead_reckoning") config.start.method = StartMethod::dead_reckoning;
@@ -236,6 +253,7 @@ std::string describe_drive(const LoadedDrive& loaded) {
 Evaluation evaluate_document(const GraphDocument& document, const std::vector<TruthPose>& truth) {
   EvaluationInput input;
   input.fused = poses_at_fixes(document);
+  input.when_measured = poses_when_measured(document);
   input.fixes = document.fixes;
   input.truth = truth;
   input.antenna_m = document.antenna_m;

@@ -21,6 +21,7 @@ struct DriveOverrides {
   std::optional<double> from_s;
   std::optional<double> to_s;
   std::optional<int> withhold_every;
+  std::string outage;                  ///< "LENGTH/EVERY" in seconds; empty: none
   std::optional<std::string> start;    ///< anchored, dead_reckoning
   std::optional<std::string> loss;     ///< of the fixes, NAME:SCALE or "none"
   std::vector<std::string> calibrate;  ///< "on", "off", or NAME=MODEL pairs
