@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <waymark/core/plugin.hpp>
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/output.hpp>
@@ -18,6 +19,65 @@ Json options_json(const std::vector<OptionInfo>& options) {
         {{"name", o.name}, {"default", o.value}, {"unit", o.unit}, {"description", o.description}});
   }
   return json;
+}
+
+Json sensor_json(const SensorModelType& type, const std::string& origin) {
+  Json columns = Json::array();
+  for (const SensorColumn& c : type.columns) {
+    columns.push_back({{"name", c.name},
+                       {"unit", c.unit},
+                       {"sense", c.sense},
+                       {"required", c.required},
+                       {"description", c.description}});
+  }
+  return {{"name", type.name},
+          {"origin", origin},
+          {"description", type.description},
+          {"columns", columns},
+          {"options", options_json(type.options)}};
+}
+
+/// Names of the entries of one table that come from a plugin, appended.
+template <typename T, typename NameOf>
+void add_names(const RegistryTable<T>& table, const std::string& origin, NameOf name_of, Json& names) {
+  for (const Registered<T>& entry : table) {
+    if (entry.origin == origin) names.push_back(name_of(entry.type));
+  }
+}
+
+/// Every plugin with what it registered.
+Json plugins_json(const TypeRegistry& registry) {
+  const auto tag_of = [](const auto& type) { return type.tag; };
+  const auto name_of = [](const auto& type) { return type.name; };
+  Json plugins = Json::array();
+  for (const PluginRecord& plugin : registry.plugins()) {
+    Json brings = Json::array();
+    add_names(registry.vertices(), plugin.name, tag_of, brings);
+    add_names(registry.edges(), plugin.name, tag_of, brings);
+    add_names(registry.gnss_modelings(), plugin.name, name_of, brings);
+    add_names(registry.odometry_models(), plugin.name, name_of, brings);
+    add_names(registry.sensor_models(), plugin.name, name_of, brings);
+    add_names(registry.log_readers(), plugin.name, name_of, brings);
+    add_names(registry.losses(), plugin.name, name_of, brings);
+    add_names(registry.linear_solvers(), plugin.name, name_of, brings);
+    add_names(registry.algorithms(), plugin.name, name_of, brings);
+    add_names(registry.starts(), plugin.name, name_of, brings);
+    plugins.push_back(
+        {{"name", plugin.name}, {"version", plugin.version}, {"place", plugin.place}, {"brings", brings}});
+  }
+  return plugins;
+}
+
+std::string plugins_text(const Json& plugins) {
+  const BuildTraits traits = build_traits();
+  std::string text = fmt::format("plugin ABI {}, Eigen {} with alignment {}, layout {:08x}\n", kPluginAbi,
+                                 traits.eigen_version, traits.eigen_max_align, traits.layout);
+  for (const Json& plugin : plugins) {
+    text += fmt::format("{} {}, {}\n", plugin["name"].get<std::string>(),
+                        plugin["version"].get<std::string>(), plugin["place"].get<std::string>());
+    for (const Json& name : plugin["brings"]) text += "  " + name.get<std::string>() + "\n";
+  }
+  return text;
 }
 
 /// Everything that is registered, as JSON; the text is made from the same.
@@ -45,6 +105,8 @@ Json registry_json(const TypeRegistry& registry) {
                                        {"description", type.description},
                                        {"options", options_json(type.options)}});
   }
+  for (const auto& [type, origin] : registry.sensor_models())
+    json["sensors"].push_back(sensor_json(type, origin));
   for (const auto& [type, origin] : registry.algorithms()) {
     json["algorithms"].push_back({{"name", type.name},
                                   {"origin", origin},
@@ -88,6 +150,11 @@ std::string registry_text(const Json& json) {
       text += fmt::format("  {:<22} {}{}\n", entry["name"].get<std::string>(),
                           entry["description"].get<std::string>(),
                           origin == "waymark" ? "" : "  [" + origin + "]");
+      for (const Json& column : entry.value("columns", Json::array())) {
+        text += fmt::format("    column {:<27} {:<10} {}{}\n", column["name"].get<std::string>(),
+                            column["unit"].get<std::string>(), column["description"].get<std::string>(),
+                            column["required"].get<bool>() ? "" : " (may lack)");
+      }
       for (const Json& option : entry.value("options", Json::array())) {
         const std::string unit = option["unit"];
         text += fmt::format(
@@ -102,15 +169,22 @@ std::string registry_text(const Json& json) {
 }  // namespace
 
 void add_info(CLI::App& app, Action& action) {
+  struct InfoOptions {
+    CommonOptions common;
+    bool plugins = false;
+  };
   auto* command =
       app.add_subcommand("info", "Types, modelings, solvers, algorithms, formats, with their fields");
-  const auto options = std::make_shared<CommonOptions>();
-  add_common_options(*command, *options);
-  command->footer("Example:\n  waymark info --plugin my_sensor.so");
+  const auto options = std::make_shared<InfoOptions>();
+  command->add_flag("--plugins", options->plugins, "Only the plugins: where each is from and what it brings");
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  waymark info --plugins --plugin ./my_sensor.so");
   command->callback([options, &action] {
     action = [options] {
-      const Json json = registry_json(make_registry(*options));
-      Console(*options).result(options->json ? json_text(json) : registry_text(json));
+      const TypeRegistry registry = make_registry(options->common);
+      const Json json = options->plugins ? plugins_json(registry) : registry_json(registry);
+      const std::string text = options->plugins ? plugins_text(json) : registry_text(json);
+      Console(options->common).result(options->common.json ? json_text(json) : text);
       return kSuccess;
     };
   });

@@ -1,0 +1,40 @@
+#include <waymark/tools/program/derivatives.hpp>
+
+#include <fmt/format.h>
+
+#include <waymark/core/edge_type_check.hpp>
+
+namespace waymark {
+namespace {
+
+std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const std::string& origin) {
+  if (check.worst.error > kGradientTolerance) {
+    return fmt::format("{} of {}, scenario '{}': {}", tag, origin, check.scenario,
+                       describe(check.graph, 0, check.worst));
+  }
+  return fmt::format("{} of {}: error or Jacobian is no number in {} of {} trials; let the error stay finite",
+                     tag, origin, check.not_finite, check.trials);
+}
+
+}  // namespace
+
+DerivativeReport check_derivatives(const TypeRegistry& registry) {
+  DerivativeReport report;
+  report.text = "Jacobians against differences of the error\n";
+  report.json = nlohmann::ordered_json::array();
+  for (const auto& [type, origin] : registry.edges()) {
+    const EdgeTypeCheck check = check_edge_type(registry, type);
+    report.text += fmt::format("  {:<30} {:<16} {:>4} trials, off by {:.1e}{}\n", type.tag, origin,
+                               check.trials, check.worst.error, check.sound() ? "" : "  WRONG");
+    report.json.push_back({{"type", type.tag},
+                           {"origin", origin},
+                           {"trials", check.trials},
+                           {"not_finite", check.not_finite},
+                           {"jacobian_error", check.worst.error},
+                           {"sound", check.sound()}});
+    if (!check.sound()) report.problems.push_back(problem_of(check, type.tag, origin));
+  }
+  return report;
+}
+
+}  // namespace waymark
