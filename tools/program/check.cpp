@@ -8,6 +8,7 @@
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/derivatives.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 
@@ -17,15 +18,24 @@ namespace {
 struct CheckOptions {
   CommonOptions common;
   std::string input;
+  bool derivatives = false;
 };
 
 constexpr std::size_t kCheckedEdges = 50;  // per type
-constexpr double kGradientTolerance =
-    1e-5;  // differences are good to 1e-7; a wrong Jacobian is off by far more
 
-ExitCode check(const CheckOptions& options) {
+/// Of every registered edge type, without a graph.
+ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) {
+  const DerivativeReport report = check_derivatives(registry);
+  std::string text = report.text;
+  for (const std::string& problem : report.problems) text += "problem: " + problem + "\n";
+  if (report.problems.empty()) text += "no problems found\n";
+  const nlohmann::ordered_json json = {{"derivatives", report.json}, {"problems", report.problems}};
+  Console(options.common).result(options.common.json ? json_text(json) : text);
+  return report.problems.empty() ? kSuccess : kInputError;
+}
+
+ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
   const Console console(options.common);
-  const TypeRegistry registry = make_registry(options.common);
   ReadReport report;
   constexpr bool kLenient = true;  // to name the first ten wrong lines, not only one
   const GraphDocument document =
@@ -49,12 +59,7 @@ ExitCode check(const CheckOptions& options) {
                              {"count", graph.batch(b).size()},
                              {"chi2", graph.batch(b).chi2(graph.view())},
                              {"jacobian_error", gradients.error}});
-    if (gradients.error > kGradientTolerance) {
-      problems.push_back(fmt::format(
-          "{} number {}: Jacobian of vertex {} row {} column {} is {:.10g}, central differences give {:.10g}",
-          type.tag, gradients.edge + 1, gradients.vertex + 1, gradients.row, gradients.column,
-          gradients.given, gradients.reference));
-    }
+    if (gradients.error > kGradientTolerance) problems.push_back(describe(graph, b, gradients));
   }
   try {
     (void)marginal_covariances(graph, {});  // factorises without damping
@@ -72,12 +77,26 @@ ExitCode check(const CheckOptions& options) {
   return problems.empty() ? kSuccess : kInputError;
 }
 
+ExitCode check(const CheckOptions& options) {
+  const TypeRegistry registry = make_registry(options.common);
+  if (options.derivatives) {
+    if (!options.input.empty())
+      throw UsageError("--derivatives tries the types by themselves and takes no graph; leave out " +
+                       options.input);
+    return check_types(options, registry);
+  }
+  if (options.input.empty()) throw UsageError("graph is required (or --derivatives, to check the types)");
+  return check_file(options, registry);
+}
+
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("check", "Look a graph file over: lines, gauge, Jacobians");
   const auto options = std::make_shared<CheckOptions>();
-  command->add_option("graph", options->input, ".graph or g2o file")->required();
+  command->add_option("graph", options->input, ".graph or g2o file");
+  command->add_flag("--derivatives", options->derivatives,
+                    "Instead of a graph: the Jacobians of every registered edge type, plugins included");
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark check drive.graph");
   command->callback([options, &action] { action = [options] { return check(*options); }; });

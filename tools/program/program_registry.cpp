@@ -72,8 +72,9 @@ class Loader {
   void load(const fs::path& file) {
     std::error_code missing;
     const fs::path place = fs::canonical(file, missing);
-    if (!missing && !loaded_.insert(place).second) return;
+    if (!missing && loaded_.contains(place)) return;
     load_plugin(file.string(), registry_);
+    loaded_.insert(place);
   }
 
  private:
