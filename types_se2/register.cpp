@@ -1,4 +1,5 @@
 #include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
 #include <waymark/types_se2/register.hpp>
 #include <waymark/types_se2/start/starts.hpp>
 #include <waymark/types_se2/time_offset.hpp>
@@ -15,6 +16,11 @@ void register_se2_types(TypeRegistry& registry) {
   registry.add_edge<EdgeGnssPositionDelayed>();
   registry.add_edge<EdgePriorSe2>();
   registry.add_edge<EdgeSe2Xy>();
+  registry.add_edge<EdgePriorSe2Xy>();
+  registry.add_edge<EdgePriorXy>();
+  registry.add_edge<EdgeBearingSe2Xy>();
+  registry.add_edge<EdgeSe2Offset>();
+  registry.add_edge<EdgeSe2PointXyOffset>();
   registry.add_start(linear_start());  // the first one is what the default configuration prefers
   registry.add_start(spanning_tree_start());
   registry.add_start(odometry_start());

@@ -5,8 +5,8 @@
 
 namespace waymark {
 
-/// VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_LOG, EDGE_GNSS_POSITION, EDGE_PRIOR_SE2, EDGE_SE2_XY; the starts
-/// odometry, spanning_tree, linear.
+/// VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_LOG, EDGE_GNSS_POSITION, EDGE_PRIOR_SE2, EDGE_SE2_XY; the rest
+/// of g2o's plane edges (g2o_edges.hpp); the starts odometry, spanning_tree, linear.
 void register_se2_types(TypeRegistry& registry);
 
 }  // namespace waymark

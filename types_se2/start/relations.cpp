@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
 
 namespace waymark {
 namespace {
@@ -50,6 +51,19 @@ Relation point_seen(std::span<const VertexIndex> v, const std::vector<double>& f
           .position_weight = position_weight(information)};
 }
 
+Relation position_prior(std::span<const VertexIndex> v, const std::vector<double>& fields,
+                        const Eigen::MatrixXd& information) {
+  return {.to = v[0], .translation = {fields[0], fields[1]}, .position_weight = position_weight(information)};
+}
+
+/// measured, offset: the point as the body would have seen it.
+Relation point_seen_by_sensor(std::span<const VertexIndex> v, const std::vector<double>& fields,
+                              const Eigen::MatrixXd& information) {
+  Relation relation = point_seen(v, fields, information);
+  relation.translation = Eigen::Vector2d(fields[2], fields[3]) + rotate(fields[4], relation.translation);
+  return relation;
+}
+
 using ReadFields = Relation (*)(std::span<const VertexIndex>, const std::vector<double>&,
                                 const Eigen::MatrixXd&);
 
@@ -59,6 +73,8 @@ ReadFields known_type(const std::string& tag) {
   if (tag == EdgeGnssPosition::kTag) return gnss_position;
   if (tag == EdgePriorSe2::kTag) return pose_prior;
   if (tag == EdgeSe2Xy::kTag) return point_seen;
+  if (tag == EdgePriorSe2Xy::kTag || tag == EdgePriorXy::kTag) return position_prior;
+  if (tag == EdgeSe2PointXyOffset::kTag) return point_seen_by_sensor;
   return nullptr;
 }
 

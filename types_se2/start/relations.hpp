@@ -29,10 +29,11 @@ struct Relation {
   [[nodiscard]] bool is_motion() const { return position_weight > 0 && heading_weight > 0; }
 };
 
-/// The relations of a graph, batch by batch. EDGE_SE2, EDGE_SE2_LOG, EDGE_GNSS_POSITION, EDGE_PRIOR_SE2 and
-/// EDGE_SE2_XY are read from their fields. Of any other type, edges over two poses (and perhaps vertices that
-/// are no pose, at their present values) with a three-dimensional error count: their motion is where the
-/// error vanishes, found by Newton's method. All else says nothing here. Losses are ignored.
+/// The relations of a graph, batch by batch. EDGE_SE2, EDGE_SE2_LOG, EDGE_GNSS_POSITION, EDGE_PRIOR_SE2,
+/// EDGE_SE2_XY, EDGE_PRIOR_SE2_XY, EDGE_PRIOR_XY and EDGE_SE2_POINTXY_OFFSET are read from their fields. Of
+/// any other type, edges over two poses (and perhaps vertices that are no pose, at their present values) with
+/// a three-dimensional error count: their motion is where the error vanishes, found by Newton's method. All
+/// else says nothing here. Losses are ignored.
 [[nodiscard]] std::vector<Relation> planar_relations(const Graph& graph);
 
 }  // namespace waymark
