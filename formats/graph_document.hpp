@@ -47,8 +47,9 @@ struct ReadReport {
 /// error=log".
 [[nodiscard]] std::string describe_schema(const EdgeType& type);
 
-/// Reads a .graph text (first line `GRAPH 1`) or a plain g2o SE(2) file (any other first line).
-/// A plain g2o file without vertices gets them along the registered start "odometry".
+/// Reads a .graph text (first line `GRAPH 1`) or a plain g2o SE(2) file (any other first line). Other
+/// formats: graph_format.hpp, foreign_graph.hpp. A plain g2o file without vertices gets them along the
+/// registered start "odometry".
 /// @param name      for messages
 /// @param lenient   skip wrong lines and count them instead of failing at the first
 /// @throws InputError "run.graph:812:17: EDGE_SE2: expected a number for 'information[2]', got 'abc'"
@@ -62,15 +63,5 @@ struct ReadReport {
 /// would be lost).
 void write_graph(const GraphDocument& document, const TypeRegistry& registry, const TextSink& sink);
 [[nodiscard]] std::string write_graph(const GraphDocument& document, const TypeRegistry& registry);
-
-/// Writes a plain g2o file: vertices, FIX and edges of g2o's SE(2) vocabulary, in exact numbers.
-/// EDGE_GNSS_POSITION without lever arm becomes the equal EDGE_SE2 without heading information.
-/// Header, stamps, GNSS records and covariances have no place in it and are left out.
-/// @throws UsageError before the first piece, as check_g2o does.
-void write_g2o(const GraphDocument& document, const TextSink& sink);
-[[nodiscard]] std::string write_g2o(const GraphDocument& document);
-
-/// @throws UsageError naming what g2o cannot express.
-void check_g2o(const GraphDocument& document);
 
 }  // namespace waymark

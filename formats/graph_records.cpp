@@ -39,6 +39,13 @@ bool is_positive_semidefinite(const Eigen::MatrixXd& information) {
   return eigenvalues[0] >= -1e-9 * largest;
 }
 
+VertexIndex read_vertex_id(LineScanner& line, const Graph& graph, std::string_view tag) {
+  const VertexId id = line.integer({tag, "vertex"});
+  const auto found = graph.find(id);
+  if (!found) line.fail(std::string(tag) + ": vertex " + std::to_string(id) + " is not defined");
+  return *found;
+}
+
 Frame read_frame(LineScanner& line) {
   Frame frame;
   const std::string_view kind = line.word();

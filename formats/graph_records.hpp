@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/frame.hpp>
+#include <waymark/core/graph.hpp>
 #include <waymark/core/sample.hpp>
 #include <waymark/formats/line_scanner.hpp>
 
@@ -11,6 +12,9 @@ namespace waymark {
 
 /// Smallest eigenvalue not below -1e-9 of the largest; zeros are legal (no information on an axis).
 [[nodiscard]] bool is_positive_semidefinite(const Eigen::MatrixXd& matrix);
+
+/// The next word as the id of a vertex of the graph. @throws InputError where it is none
+[[nodiscard]] VertexIndex read_vertex_id(LineScanner& line, const Graph& graph, std::string_view tag);
 
 /// The rest of a FRAME line. @throws InputError
 [[nodiscard]] Frame read_frame(LineScanner& line);

@@ -39,12 +39,12 @@ void write_header(const GraphDocument& document, TextBuilder& out) {
   write_lever("truth", document.truth_reference_m);
 }
 
-void write_vertices(const Graph& graph, bool stamps, TextBuilder& out) {
+void write_vertices(const Graph& graph, TextBuilder& out) {
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
     out.word(graph.vertex_type(v).tag).integer(graph.id(v));
     for (const double value : graph.value(v)) out.number(value);
     out.end_line();
-    if (const auto stamp = graph.stamp(v); stamp && stamps) {
+    if (const auto stamp = graph.stamp(v)) {
       out.word("STAMP").integer(graph.id(v)).integer(stamp->nanoseconds).end_line();
     }
   }
@@ -112,7 +112,7 @@ void write_graph(const GraphDocument& document, const TypeRegistry& registry, co
     const EdgeType& type = graph.edge_type(b);
     out.word("TYPE").word(type.tag).word(describe_schema(type)).end_line();
   }
-  write_vertices(graph, true, out);
+  write_vertices(graph, out);
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     write_edges(graph, graph.edge_type(b), graph.batch(b), out);
   }
@@ -127,97 +127,6 @@ void write_graph(const GraphDocument& document, const TypeRegistry& registry, co
 
 std::string write_graph(const GraphDocument& document, const TypeRegistry& registry) {
   return collect_text([&](const TextSink& sink) { write_graph(document, registry, sink); });
-}
-
-namespace {
-
-constexpr std::string_view kG2oTags[] = {"VERTEX_SE2", "VERTEX_XY", "EDGE_SE2", "EDGE_SE2_XY",
-                                         "EDGE_PRIOR_SE2"};
-
-constexpr std::string_view kPosition = "EDGE_GNSS_POSITION";
-
-bool in_g2o(std::string_view tag) {
-  for (const std::string_view known : kG2oTags) {
-    if (tag == known) return true;
-  }
-  return false;
-}
-
-void refuse_losses(const EdgeBatchBase& batch, const std::string& tag) {
-  for (std::size_t e = 0; e < batch.size(); ++e) {
-    if (batch.loss(e) == nullptr) continue;
-    throw UsageError("g2o files cannot hold robust losses (" + tag + "); write the .graph format instead");
-  }
-}
-
-void refuse_lever_arms(const EdgeBatchBase& batch) {
-  std::vector<double> fields;
-  for (std::size_t e = 0; e < batch.size(); ++e) {
-    fields.clear();
-    batch.fields(e, fields);
-    if (fields[2] == 0 && fields[3] == 0) continue;
-    throw UsageError("g2o has no position edge with an antenna lever arm (EDGE_GNSS_POSITION number " +
-                     std::to_string(e + 1) + "); write the .graph format instead");
-  }
-}
-
-// The same error as EDGE_SE2 with measurement (x, y, 0) and no information on the heading.
-void write_position_as_se2(const Graph& graph, const EdgeBatchBase& batch, TextBuilder& out) {
-  std::vector<double> fields;
-  for (std::size_t e = 0; e < batch.size(); ++e) {
-    fields.clear();
-    batch.fields(e, fields);
-    const Eigen::MatrixXd omega = batch.information(e);
-    const auto vertices = batch.vertices(e);
-    out.word("EDGE_SE2").integer(graph.id(vertices[0])).integer(graph.id(vertices[1]));
-    for (const double value :
-         {fields[0], fields[1], 0.0, omega(0, 0), omega(0, 1), 0.0, omega(1, 1), 0.0, 0.0}) {
-      out.number(value);
-    }
-    out.end_line();
-  }
-}
-
-}  // namespace
-
-void check_g2o(const GraphDocument& document) {
-  const Graph& graph = document.graph;
-  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    if (in_g2o(graph.vertex_type(v).tag)) continue;
-    throw UsageError("g2o has no vertex type " + graph.vertex_type(v).tag +
-                     "; write the .graph format instead");
-  }
-  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    const std::string& tag = graph.edge_type(b).tag;
-    const EdgeBatchBase& batch = graph.batch(b);
-    if (batch.size() == 0) continue;
-    refuse_losses(batch, tag);
-    if (tag == kPosition) {
-      refuse_lever_arms(batch);
-    } else if (!in_g2o(tag)) {
-      throw UsageError("g2o has no edge type " + tag + "; write the .graph format instead");
-    }
-  }
-}
-
-void write_g2o(const GraphDocument& document, const TextSink& sink) {
-  check_g2o(document);
-  const Graph& graph = document.graph;
-  TextBuilder out(sink);
-  write_vertices(graph, false, out);
-  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    const EdgeType& type = graph.edge_type(b);
-    if (type.tag == kPosition) {
-      write_position_as_se2(graph, graph.batch(b), out);
-    } else {
-      write_edges(graph, type, graph.batch(b), out);
-    }
-  }
-  out.finish();
-}
-
-std::string write_g2o(const GraphDocument& document) {
-  return collect_text([&](const TextSink& sink) { write_g2o(document, sink); });
 }
 
 }  // namespace waymark

@@ -1,21 +1,31 @@
-/// TORO's plane graphs: `VERTEX2 id x y heading`, `EDGE2 from to x y heading` and six numbers of the
-/// information matrix in TORO's order, I_ff I_fs I_ss I_rr I_fr I_sr (f forward, s sideward, r rotation).
-///
-/// GTSAM writes the same tags with a covariance in the same order, and nothing in the file tells one from the
-/// other: so this format is never guessed, only asked for.
+/// TORO's words for plane graphs: `VERTEX2 id x y heading`, `EDGE2 from to x y heading` and six numbers of a
+/// matrix in the order I_ff I_fs I_ss I_rr I_fr I_sr (f forward, s sideward, r rotation). TORO itself writes
+/// VERTEX and EDGE and reads both. GTSAM has the same tags, and ODOMETRY for EDGE2, with a covariance in that
+/// order.
 #pragma once
 
-#include <string>
+#include <array>
 #include <string_view>
 
-#include <waymark/formats/graph_document.hpp>
+#include <Eigen/Core>
+
+#include <waymark/formats/graph_format.hpp>
+#include <waymark/formats/line_scanner.hpp>
+#include <waymark/formats/text_builder.hpp>
 
 namespace waymark {
 
-/// Reads a TORO file into VERTEX_SE2 and EDGE_SE2. Vertices may stand below the edges that join them.
-/// @param name for messages
-/// @throws InputError with line and column; UsageError where the registry lacks the two types
-[[nodiscard]] GraphDocument read_toro(std::string_view text, const std::string& name,
-                                      const TypeRegistry& registry);
+/// Row and column of the six numbers.
+inline constexpr std::array<std::array<int, 2>, 6> kToroOrder = {
+    {{0, 0}, {0, 1}, {1, 1}, {2, 2}, {0, 2}, {1, 2}}};
+
+/// Our tag for a word of a TORO file (`format` toro) or a GTSAM one (covariance); empty where it has none.
+[[nodiscard]] std::string_view own_tag_of_toro(std::string_view word, GraphFormat format);
+
+/// The next six numbers of a line. @param matrix 3 x 3. @throws InputError
+void read_toro_matrix(LineScanner& line, std::string_view tag, GraphFormat format, Eigen::MatrixXd& matrix);
+
+/// @param matrix 3 x 3, symmetric
+void write_toro_matrix(const Eigen::MatrixXd& matrix, TextBuilder& out);
 
 }  // namespace waymark

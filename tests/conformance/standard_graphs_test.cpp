@@ -12,7 +12,7 @@
 #include <waymark/core/gauge.hpp>
 #include <waymark/core/multi_start.hpp>
 #include <waymark/formats/graph_document.hpp>
-#include <waymark/formats/toro.hpp>
+#include <waymark/formats/graph_format.hpp>
 
 #include "support/dense.hpp"
 #include "support/paths.hpp"
@@ -34,7 +34,8 @@ std::optional<Graph> load(const std::string& name, const TypeRegistry& registry,
   }
   std::ostringstream text;
   text << file.rdbuf();
-  Graph graph = (toro ? read_toro(text.str(), name, registry) : read_graph(text.str(), name, registry)).graph;
+  Graph graph =
+      read_graph_as(toro ? GraphFormat::toro : GraphFormat::graph, text.str(), name, registry).graph;
   if (odometry_start) graph.set_values(registry.make_start("odometry", graph).values);
   return graph;
 }

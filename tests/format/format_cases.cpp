@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/foreign_graph.hpp>
 #include <waymark/formats/text_file.hpp>
 
 #include "format/read_helpers.hpp"
@@ -23,16 +24,40 @@ bool has_part(const fs::path& input, const std::string& part) {
   return input.filename().string().find("." + part + ".") != std::string::npos;
 }
 
-/// "X.lenient.graph" is read leniently, of "X.to_g2o.graph" the g2o file is written; else the canonical
-/// .graph.
+/// The format that "X.toro.graph" is read as.
+GraphFormat input_format(const fs::path& input) {
+  if (has_part(input, "toro")) return GraphFormat::toro;
+  return has_part(input, "covariance") ? GraphFormat::covariance : GraphFormat::graph;
+}
+
+/// "X.to_g2o.graph": the file that a reader of that format or profile gets, and what is noted beside it.
+std::string written(const GraphDocument& document, const fs::path& input) {
+  const auto write = [&](const Recipient& recipient, GraphFormat format) {
+    const ForeignGraph foreign(document, input.filename().string(), recipient, format);
+    std::string text = collect_text([&](const TextSink& sink) { foreign.write(sink); });
+    for (const std::string& change : foreign.changes()) text += "changed: " + change + "\n";
+    if (const std::string left_out = foreign.left_out(); !left_out.empty()) {
+      text += "left out: " + left_out + "\n";
+    }
+    return text;
+  };
+  for (const GraphFormat format : {GraphFormat::g2o, GraphFormat::toro, GraphFormat::covariance}) {
+    if (has_part(input, "to_" + std::string(to_string(format)))) return write(any_reader(format), format);
+  }
+  for (const Recipient& profile : profiles()) {
+    if (has_part(input, "for_" + std::string(profile.name))) return write(profile, profile.formats.front());
+  }
+  return write_graph(document, test_registry());
+}
+
+/// "X.lenient.graph" is read leniently; without a part that says otherwise the canonical .graph is written.
 std::string outcome(const fs::path& input) {
   const std::string name = input.filename().string();
   try {
     ReadReport report;
-    const GraphDocument document = read_graph(read_text_file(input.string()), name, test_registry(),
-                                              has_part(input, "lenient"), &report);
-    std::string text =
-        has_part(input, "to_g2o") ? write_g2o(document) : write_graph(document, test_registry());
+    const GraphDocument document = read_graph_as(input_format(input), read_text_file(input.string()), name,
+                                                 test_registry(), has_part(input, "lenient"), &report);
+    std::string text = written(document, input);
     if (report.edges_only) text += "edges only, " + std::to_string(report.apart) + " apart\n";
     if (report.skipped > 0) text += "skipped " + std::to_string(report.skipped) + "\n";
     for (const std::string& example : report.examples) text += example + "\n";

@@ -26,7 +26,7 @@ std::uint64_t bits(double value) {
 
 /// The file of examples in the specification, formats/README.md.
 std::string specification_example() {
-  const std::string readme = read_text_file(std::string(WAYMARK_SOURCE_DIR) + "/formats/README.md");
+  const std::string readme = read_text_file(WAYMARK_SOURCE_DIR "/formats/README.md");
   const auto begin = readme.find("```graph\n");
   REQUIRE(begin != std::string::npos);
   const auto end = readme.find("\n```", begin);
@@ -66,8 +66,7 @@ TEST_CASE("stamps and ids at the ends of their range come back") {
 }
 
 TEST_CASE("writing is a fixed point after the first reading") {
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(WAYMARK_SOURCE_DIR) + "/tests/format/cases")) {
+  for (const auto& entry : std::filesystem::directory_iterator(WAYMARK_SOURCE_DIR "/tests/format/cases")) {
     if (entry.path().extension() != ".graph" && entry.path().extension() != ".g2o") continue;
     std::string once;
     try {
@@ -114,7 +113,7 @@ TEST_CASE("a position edge written as EDGE_SE2 has the same chi2") {
   Eigen::Matrix2d omega;
   omega << 4, 1.5, 1.5, 9;
   document.graph.add_edge(EdgeGnssPosition{{11, 18}, {0, 0}}, {origin, pose}, omega);
-  const GraphDocument g2o = read(write_g2o(document));
+  const GraphDocument g2o = read(write_as(GraphFormat::g2o, document));
   CHECK(g2o.graph.edge_type(0).tag == "EDGE_SE2");
   CHECK(g2o.graph.chi2() == Approx(document.graph.chi2()).epsilon(1e-14));
 }
@@ -128,7 +127,7 @@ TEST_CASE("the standard g2o files come back exactly") {
   for (const char* name : {"intel.g2o", "manhattanOlson3500.g2o", "MIT.g2o"}) {
     const GraphDocument document =
         read_graph(read_text_file((folder / name).string()), name, test_registry());
-    const GraphDocument back = read_graph(write_g2o(document), name, test_registry());
+    const GraphDocument back = read_graph(write_as(GraphFormat::g2o, document), name, test_registry());
     INFO(name);
     CHECK(back.graph.values() == document.graph.values());
     CHECK(back.graph.edge_count() == document.graph.edge_count());

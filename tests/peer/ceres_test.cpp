@@ -25,7 +25,7 @@ TEST_CASE("peer: Ceres ends at the same minima") {
 
 #include <waymark/core/optimizer.hpp>
 #include <waymark/formats/graph_document.hpp>
-#include <waymark/formats/toro.hpp>
+#include <waymark/formats/graph_format.hpp>
 
 #include "support/paths.hpp"
 #include "support/problems.hpp"
@@ -234,7 +234,9 @@ TEST_CASE("peer: Ceres ends at the same minimum of MIT from the linear start, be
 
 TEST_CASE("peer: Ceres ends at the same minimum of fr079, for which no figure is published") {
   const auto text = load("fr079_toro.graph");
-  if (text) check_same_minimum(read_toro(*text, "fr079", waymark_test::full_registry()).graph, 37.599116);
+  if (text)
+    check_same_minimum(read_graph_as(GraphFormat::toro, *text, "fr079", waymark_test::full_registry()).graph,
+                       37.599116);
 }
 
 TEST_CASE(

@@ -89,5 +89,5 @@ std::string write_drive(const std::string& folder, const DriveRecipe& recipe) {
 }
 
 std::string bundled_drive() {
-  return std::string(WAYMARK_SOURCE_DIR) + "/examples/berlin_potsdamer_platz/drive.yaml";
+  return WAYMARK_SOURCE_DIR "/examples/berlin_potsdamer_platz/drive.yaml";
 }

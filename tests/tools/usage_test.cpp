@@ -59,7 +59,7 @@ TEST_CASE("wrong words on the command line are usage errors that name them") {
        "--max-iterations: must be at least 0, got many"},
       {{"optimize", graph, "-o", out, "--tolerance", "0"}, "--tolerance: must be above 0, got 0"},
       {{"optimize", graph, "-o", out, "--tolerance", "nan"}, "--tolerance: must be above 0, got nan"},
-      {{"optimize", graph, "-o", out, "--format", "toro"}, "--format: toro not in {graph,g2o}"},
+      {{"optimize", graph, "-o", out, "--format", "kml"}, "--format: kml not in {graph,g2o,toro,covariance}"},
       {{"optimize", graph, "-o", out, "--covariance", "some"}, "--covariance: some not in {none,fixes,all}"},
       {{"run", drive, "--out", out, "-m", "g9"}, "unknown GNSS modeling 'g9'; there are: g1 g2 g3"},
       {{"run", drive, "--out", out, "--modeling-option", "error=perfect"}, "perfect"},

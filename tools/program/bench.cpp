@@ -9,6 +9,7 @@
 #include <waymark/tools/benchmark/contestants.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/graph_files.hpp>
 #include <waymark/tools/program/hash.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
@@ -23,6 +24,7 @@ struct BenchOptions {
   OptimizationChoice
       choice;  ///< the defaults of `optimize`; here only the stopping rules are set from outside
   Names files;
+  std::string input_format = "graph";
   Names algorithms;
   Names solvers;
   Names starts = {"file"};
@@ -80,10 +82,11 @@ struct LoadedGraph {
   bool edges_only = false;
 };
 
-LoadedGraph load(const std::string& path, const TypeRegistry& registry) {
+LoadedGraph load(const std::string& path, const std::string& format, const TypeRegistry& registry) {
   const std::string text = read_text_file(path);
   ReadReport report;
-  GraphDocument document = read_graph(text, path, registry, false, &report);
+  GraphDocument document =
+      read_graph_as(*graph_format_from_string(format), text, path, registry, false, &report);
   return {std::filesystem::path(path).filename().string(), fnv1a64_hex(text), std::move(document.graph),
           report.edges_only};
 }
@@ -117,7 +120,7 @@ std::optional<FileSummary> bench_file(const std::string& path, const BenchOption
                                       std::span<const Contestant> contestants, const TypeRegistry& registry,
                                       const Console& console) {
   console.progress("reading " + path);
-  LoadedGraph loaded = load(path, registry);
+  LoadedGraph loaded = load(path, options.input_format, registry);
   FileSummary file{loaded.name, loaded.fingerprint, loaded.graph.vertex_count(), loaded.graph.edge_count()};
   const std::vector<double> values = loaded.graph.values();
   for (const std::string& start : starts_of(loaded, options.starts, console)) {
@@ -165,7 +168,7 @@ ExitCode bench(const BenchOptions& options) {
   // A wrong file at the end of the list is found before the hours are spent.
   for (std::size_t i = 1; i < options.files.size(); ++i) {
     console.progress("reading " + options.files[i]);
-    (void)load(options.files[i], registry);
+    (void)load(options.files[i], options.input_format, registry);
   }
 
   std::vector<FileSummary> files;
@@ -201,7 +204,9 @@ void add_name_list(CLI::App& command, const std::string& flags, Names& names, co
 void add_bench(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("bench", "Measure algorithms, solvers and peers on a list of graphs");
   const auto options = std::make_shared<BenchOptions>();
-  command->add_option("graphs", options->files, ".graph or g2o files")->required();
+  command->add_option("graphs", options->files, "Graph files: .graph, g2o, or as --input-format says")
+      ->required();
+  add_input_format(*command, options->input_format);
   add_name_list(
       *command, "-a,--algorithm", options->algorithms,
       "Algorithms, 'all', or 'default': the configuration of 'optimize', starts included (default)");

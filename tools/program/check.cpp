@@ -5,10 +5,11 @@
 #include <waymark/core/gauge.hpp>
 #include <waymark/core/gradient_check.hpp>
 #include <waymark/core/marginals.hpp>
-#include <waymark/formats/graph_document.hpp>
+#include <waymark/formats/graph_format.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/derivatives.hpp>
+#include <waymark/tools/program/graph_files.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 
@@ -19,6 +20,7 @@ struct CheckOptions {
   CommonOptions common;
   std::string input;
   bool derivatives = false;
+  std::string input_format = "graph";
 };
 
 constexpr std::size_t kCheckedEdges = 50;  // per type
@@ -39,7 +41,8 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
   ReadReport report;
   constexpr bool kLenient = true;  // to name the first ten wrong lines, not only one
   const GraphDocument document =
-      read_graph(read_text_file(options.input), options.input, registry, kLenient, &report);
+      read_graph_as(*graph_format_from_string(options.input_format), read_text_file(options.input),
+                    options.input, registry, kLenient, &report);
   const Graph& graph = document.graph;
   std::vector<std::string> problems = report.examples;
   if (report.skipped > problems.size()) {
@@ -94,7 +97,8 @@ ExitCode check(const CheckOptions& options) {
 void add_check(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("check", "Look a graph file over: lines, gauge, Jacobians");
   const auto options = std::make_shared<CheckOptions>();
-  command->add_option("graph", options->input, ".graph or g2o file");
+  command->add_option("graph", options->input, "Graph file: .graph, g2o, or as --input-format says");
+  add_input_format(*command, options->input_format);
   command->add_flag("--derivatives", options->derivatives,
                     "Instead of a graph: the Jacobians of every registered edge type, plugins included");
   add_common_options(*command, options->common);

@@ -1,10 +1,15 @@
+#include <filesystem>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/suggest.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/graph_files.hpp>
+#include <waymark/tools/program/hash.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 
@@ -16,12 +21,42 @@ struct ConvertOptions {
   DriveOverrides overrides;
   std::string input;
   std::string output;
+  std::string input_format = "graph";
+  OutputFormat format;
+  bool lenient = false;
+  std::vector<std::string> of_drives;  ///< options given that speak of logs only
+  std::vector<std::string> of_graphs;  ///< options given that speak of graph files only
 };
 
-ExitCode convert(const ConvertOptions& options) {
-  const Console console(options.common);
-  const TypeRegistry registry = make_registry_for(options.input, options.common);
-  require_output_place(options.output);
+/// A drive is known by its suffix: a graph file never has it, whatever its format.
+bool is_drive(const std::string& path) {
+  return path.ends_with(".yaml") || path.ends_with(".yml");
+}
+
+void refuse_options(const std::vector<std::string>& given, const std::string& what) {
+  if (given.empty()) return;
+  const std::vector<std::string_view> names(given.begin(), given.end());
+  throw UsageError(joined(names) + ": the input is " + what +
+                   " (a file whose name ends in .yaml or .yml is a drive, any other a graph)");
+}
+
+/// "graph", or "g2o for GTSAM's load2D".
+std::string describe(const OutputFormat& output) {
+  const std::string format(to_string(chosen_format(output)));
+  const Recipient* profile = find_profile(output.profile);
+  return profile == nullptr ? format : format + " for " + std::string(profile->reader);
+}
+
+nlohmann::ordered_json graph_json(const ConvertOptions& options, const GraphDocument& document) {
+  return {{"output", options.output},
+          {"format", to_string(chosen_format(options.format))},
+          {"vertices", document.graph.vertex_count()},
+          {"edges", document.graph.edge_count()},
+          {"fixes", document.fixes.size()}};
+}
+
+ExitCode convert_drive(const ConvertOptions& options, const TypeRegistry& registry, const Console& console) {
+  refuse_options(options.of_graphs, "a drive");
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
   if (loaded.modelings.size() != 1)
     throw UsageError("convert writes one graph: name one modeling ('run' takes many)");
@@ -29,20 +64,18 @@ ExitCode convert(const ConvertOptions& options) {
       build_document(loaded, loaded.modelings.front(),
                      known_options(loaded.modelings.front(), options.overrides, registry), registry);
   stop_if_interrupted();
-  write_file_atomically(options.output, [&](const TextSink& sink) { write_graph(document, registry, sink); });
+  announce_output(options.format, document, options.input, console);
+  write_graph_file(options.output, options.format, document, options.input, registry);
   if (options.common.json) {
     const GateSummary& gate = loaded.skeleton.gate;
-    const nlohmann::ordered_json json = {{"output", options.output},
-                                         {"modeling", loaded.modelings.front()},
-                                         {"vertices", document.graph.vertex_count()},
-                                         {"edges", document.graph.edge_count()},
-                                         {"fixes", document.fixes.size()},
-                                         {"accepted", gate.accepted},
-                                         {"rejected", gate.rejected},
-                                         {"withheld", gate.withheld},
-                                         {"reasons", gate.reasons},
-                                         {"distance_m", loaded.skeleton.distance_m},
-                                         {"start_chi2", document.graph.chi2()}};
+    nlohmann::ordered_json json = graph_json(options, document);
+    json["modeling"] = loaded.modelings.front();
+    json["accepted"] = gate.accepted;
+    json["rejected"] = gate.rejected;
+    json["withheld"] = gate.withheld;
+    json["reasons"] = gate.reasons;
+    json["distance_m"] = loaded.skeleton.distance_m;
+    json["start_chi2"] = document.graph.chi2();
     console.result(json_text(json), is_stdout(options.output));
     return kSuccess;
   }
@@ -53,19 +86,88 @@ ExitCode convert(const ConvertOptions& options) {
   return kSuccess;
 }
 
+ExitCode convert_graph(const ConvertOptions& options, const TypeRegistry& registry, const Console& console) {
+  refuse_options(options.of_drives, "a graph file");
+  console.progress("reading " + options.input);
+  const std::string text = read_text_file(options.input);
+  GraphDocument document =
+      read_graph_file(text, options.input, options.input_format, options.lenient, registry, console);
+  stop_if_interrupted();
+  announce_output(options.format, document, options.input, console);
+  document.provenance.emplace_back(
+      "converted", fmt::format("waymark {} from {} fnv1a64:{} read as {}", WAYMARK_VERSION,
+                               std::filesystem::path(options.input).filename().string(), fnv1a64_hex(text),
+                               options.input_format));
+  write_graph_file(options.output, options.format, document, options.input, registry);
+  if (options.common.json) {
+    nlohmann::ordered_json json = graph_json(options, document);
+    json["input_format"] = options.input_format;
+    if (!options.format.profile.empty()) json["profile"] = options.format.profile;
+    json["chi2"] = document.graph.chi2();
+    console.result(json_text(json), is_stdout(options.output));
+    return kSuccess;
+  }
+  console.result(fmt::format("written     {}: {} vertices, {} edges, chi2 {:.10g}, format {}\n",
+                             options.output, document.graph.vertex_count(), document.graph.edge_count(),
+                             document.graph.chi2(), describe(options.format)),
+                 is_stdout(options.output));
+  return kSuccess;
+}
+
+ExitCode convert(const ConvertOptions& options) {
+  const Console console(options.common);
+  const TypeRegistry registry = make_registry_for(options.input, options.common);
+  (void)chosen_format(options.format);
+  require_output_place(options.output);
+  return is_drive(options.input) ? convert_drive(options, registry, console)
+                                 : convert_graph(options, registry, console);
+}
+
+/// The options that `add` adds to a command.
+template <typename Add>
+std::vector<const CLI::Option*> added_by(CLI::App& command, Add add) {
+  const std::size_t before = command.get_options().size();
+  add();
+  const std::vector<CLI::Option*> all = command.get_options();
+  return {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()};
+}
+
+/// The names of those of them that stand on the command line.
+std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options) {
+  std::vector<std::string> given;
+  for (const CLI::Option* option : options) {
+    if (option->count() > 0) given.push_back(option->get_name());
+  }
+  return given;
+}
+
 }  // namespace
 
 void add_convert(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("convert", "Raw logs to a .graph file");
+  auto* command =
+      app.add_subcommand("convert", "Raw logs to a graph file, or a graph file to another format");
   const auto options = std::make_shared<ConvertOptions>();
-  command->add_option("drive", options->input, "Description of the drive and its logs (drive.yaml)")
+  command
+      ->add_option("input", options->input,
+                   "Description of a drive and its logs (drive.yaml), or a graph file (any other name)")
       ->required();
   command->add_option("-o,--output", options->output, "Graph file to write ('-': standard output)")
       ->required();
-  add_drive_options(*command, options->overrides);
+  const auto of_graphs = added_by(*command, [&] {
+    add_input_format(*command, options->input_format);
+    command->add_flag("--lenient", options->lenient, "Skip and count wrong lines of a graph file");
+  });
+  add_output_format(*command, options->format, true);
+  const auto of_drives = added_by(*command, [&] { add_drive_options(*command, options->overrides); });
   add_common_options(*command, options->common);
-  command->footer("Example:\n  waymark convert drive.yaml -o drive.graph --modeling g2");
-  command->callback([options, &action] { action = [options] { return convert(*options); }; });
+  command->footer(
+      "Example:\n  waymark convert drive.yaml -o drive.graph --modeling g2\n"
+      "  waymark convert toro.graph --input-format toro -o for_gtsam.g2o --profile gtsam");
+  command->callback([options, of_drives, of_graphs, &action] {
+    options->of_drives = given_of(of_drives);
+    options->of_graphs = given_of(of_graphs);
+    action = [options] { return convert(*options); };
+  });
 }
 
 }  // namespace waymark

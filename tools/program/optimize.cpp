@@ -1,9 +1,9 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
-#include <waymark/formats/toro.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/covariance.hpp>
 #include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/graph_files.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 #include <waymark/tools/program/robust.hpp>
@@ -20,7 +20,7 @@ struct OptimizeOptions {
   std::string output;
   std::string covariance_file;
   std::string input_format = "graph";
-  std::string format = "graph";
+  OutputFormat format;
   bool lenient = false;
 };
 
@@ -31,24 +31,11 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   check_robust(options.robust, registry);
   require_output_place(options.output);
   check_covariance_file(options.covariance_file, options.choice.covariance);
-  ReadReport report;
   console.progress("reading " + options.input);
-  const std::string text = read_text_file(options.input);
-  GraphDocument document = options.input_format == "toro"
-                               ? read_toro(text, options.input, registry)
-                               : read_graph(text, options.input, registry, options.lenient, &report);
-  if (report.skipped > 0) {
-    console.note("warning: " + std::to_string(report.skipped) + " lines were skipped; the first ones:");
-    for (const std::string& example : report.examples) console.note("  " + example);
-  }
-  if (report.edges_only) console.note("note: the file has edges only; started along the odometry chain");
-  if (report.apart > 0) console.note("note: " + apart_note(report.apart));
+  GraphDocument document = read_graph_file(read_text_file(options.input), options.input, options.input_format,
+                                           options.lenient, registry, console);
   attach_losses(document.graph, options.robust, registry);
-  const bool g2o = options.format == "g2o";
-  if (g2o) check_g2o(document);  // before the work
-  if (g2o && (document.frame || !document.fixes.empty())) {
-    console.note("note: g2o has no place for the frame, stamps and GNSS records; they are left out");
-  }
+  announce_output(options.format, document, options.input, console);  // before the work
   stop_if_interrupted();
 
   std::optional<Graduated> graduated;
@@ -67,9 +54,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   const std::vector<StateReport> states =
       result.summary.converged() ? report_states(document) : std::vector<StateReport>();
   const bool to_stdout = is_stdout(options.output) || is_stdout(options.robust.outliers);
-  write_file_atomically(options.output, [&](const TextSink& sink) {
-    g2o ? write_g2o(document, sink) : write_graph(document, registry, sink);
-  });
+  write_graph_file(options.output, options.format, document, options.input, registry);
   std::string written = options.output;
   if (!options.covariance_file.empty()) {
     if (document.covariances.empty())
@@ -95,23 +80,18 @@ ExitCode optimize_file(const OptimizeOptions& options) {
 void add_optimize(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("optimize", "Minimise chi2 of a graph");
   const auto options = std::make_shared<OptimizeOptions>();
-  command->add_option("graph", options->input, ".graph or g2o file")->required();
+  command->add_option("graph", options->input, "Graph file: .graph, g2o, or as --input-format says")
+      ->required();
   command->add_option("-o,--output", options->output, "File to write ('-': standard output)")->required();
-  command
-      ->add_option("--input-format", options->input_format,
-                   "graph (also reads g2o), or toro, which cannot be told from GTSAM's files")
-      ->check(CLI::IsMember({"graph", "toro"}))
-      ->capture_default_str();
-  command->add_option("--format", options->format, "Format to write")
-      ->check(CLI::IsMember({"graph", "g2o"}))
-      ->capture_default_str();
+  add_input_format(*command, options->input_format);
+  add_output_format(*command, options->format, false);
   options->choice.start = "auto";
   command
       ->add_option("--start", options->choice.start,
                    "Where to begin: 'file' (its values), a start that `waymark info` lists, or 'auto': what "
                    "promises most, and others where the minimum found is implausible")
       ->capture_default_str();
-  command->add_flag("--lenient", options->lenient, "Skip and count wrong lines (not with TORO)");
+  command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");
   add_optimization_options(*command, options->choice);
   command->add_option("--covariance-file", options->covariance_file,
                       "The covariances as a table too: FILE.csv or FILE.json");

@@ -1,0 +1,100 @@
+#include <waymark/core/error.hpp>
+#include <waymark/formats/graph_format.hpp>
+#include <waymark/formats/text_file.hpp>
+#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/graph_files.hpp>
+#include <waymark/tools/program/optimization.hpp>
+
+namespace waymark {
+namespace {
+
+std::vector<std::string> format_names() {
+  return {kGraphFormats.begin(), kGraphFormats.end()};
+}
+
+std::vector<std::string> profile_names() {
+  std::vector<std::string> names;
+  for (const Recipient& profile : profiles()) names.emplace_back(profile.name);
+  return names;
+}
+
+/// Who is written for; not for our own format.
+const Recipient& recipient_of(const OutputFormat& output, GraphFormat format) {
+  const Recipient* profile = find_profile(output.profile);
+  return profile != nullptr ? *profile : any_reader(format);
+}
+
+}  // namespace
+
+void add_input_format(CLI::App& command, std::string& format) {
+  command
+      .add_option("--input-format", format,
+                  "graph and g2o are told apart by the first line; toro and covariance (GTSAM's .graph) look "
+                  "alike, so they are never guessed")
+      ->check(CLI::IsMember(format_names()))
+      ->capture_default_str();
+}
+
+void add_output_format(CLI::App& command, OutputFormat& output, bool with_profile) {
+  command.add_option("--format", output.format, "Format to write: graph (default), g2o, toro, covariance")
+      ->check(CLI::IsMember(format_names()));
+  if (!with_profile) return;
+  command
+      .add_option(
+          "--profile", output.profile,
+          "Write what this program's reader understands, and refuse what would move the minimum there")
+      ->check(CLI::IsMember(profile_names()));
+}
+
+GraphFormat chosen_format(const OutputFormat& output) {
+  const Recipient* profile = find_profile(output.profile);
+  if (output.format.empty()) return profile != nullptr ? profile->formats.front() : GraphFormat::graph;
+  const GraphFormat format = *graph_format_from_string(output.format);
+  if (profile == nullptr) return format;
+  std::string known;
+  for (const GraphFormat candidate : profile->formats) {
+    if (candidate == format) return format;
+    known += (known.empty() ? "" : ", ") + std::string(to_string(candidate));
+  }
+  throw UsageError("--profile " + output.profile + ": " + std::string(profile->reader) +
+                   " does not read the format " + output.format + "; it reads: " + known);
+}
+
+GraphDocument read_graph_file(const std::string& text, const std::string& name, const std::string& format,
+                              bool lenient, const TypeRegistry& registry, const Console& console) {
+  ReadReport report;
+  GraphDocument document =
+      read_graph_as(*graph_format_from_string(format), text, name, registry, lenient, &report);
+  if (report.skipped > 0) {
+    console.note("warning: " + std::to_string(report.skipped) + " lines were skipped; the first ones:");
+    for (const std::string& example : report.examples) console.note("  " + example);
+  }
+  if (report.edges_only) console.note("note: the file has edges only; started along the odometry chain");
+  if (report.apart > 0) console.note("note: " + apart_note(report.apart));
+  return document;
+}
+
+void announce_output(const OutputFormat& output, const GraphDocument& document, const std::string& name,
+                     const Console& console) {
+  const GraphFormat format = chosen_format(output);
+  if (format == GraphFormat::graph) return;
+  const Recipient& recipient = recipient_of(output, format);
+  const ForeignGraph foreign(document, name, recipient, format);
+  for (const std::string& change : foreign.changes()) console.note("note: " + change);
+  if (const std::string left_out = foreign.left_out(); !left_out.empty()) {
+    console.note("note: left out, as " + std::string(recipient.reader) + " has no place for it: " + left_out);
+  }
+}
+
+void write_graph_file(const std::string& path, const OutputFormat& output, const GraphDocument& document,
+                      const std::string& name, const TypeRegistry& registry) {
+  const GraphFormat format = chosen_format(output);
+  if (format == GraphFormat::graph) {
+    write_file_atomically(path, [&](const TextSink& sink) { write_graph(document, registry, sink); });
+    return;
+  }
+  const ForeignGraph foreign(document, name, recipient_of(output, format), format);
+  write_file_atomically(path, [&](const TextSink& sink) { foreign.write(sink); });
+}
+
+}  // namespace waymark
