@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_builder.hpp>
@@ -15,9 +14,7 @@
 namespace waymark {
 namespace {
 
-constexpr std::string_view kRelativePose = "EDGE_SE2";
 constexpr std::string_view kSensorPose = "EDGE_SE2_OFFSET";
-constexpr std::string_view kPointSeen = "EDGE_SE2_XY";
 constexpr std::string_view kPointSeenBySensor = "EDGE_SE2_POINTXY_OFFSET";
 constexpr std::string_view kGnssPosition = "EDGE_GNSS_POSITION";
 constexpr const char* kHoldsAll = "write --format graph, which holds everything";
@@ -25,10 +22,6 @@ constexpr const char* kFixRemedy = "free the vertex, or write --profile g2o";
 
 std::size_t at(VertexIndex v) {
   return static_cast<std::size_t>(v);
-}
-
-Eigen::Matrix2d rotation(double angle) {
-  return Eigen::Rotation2Dd(angle).toRotationMatrix();
 }
 
 /// Sets of vertices joined by edges; the name of a set is one of its vertices.
@@ -50,34 +43,6 @@ class Parts {
  private:
   std::vector<VertexIndex> parent_;
 };
-
-/// measured x y, antenna x y: as a relative pose of heading 0 that says nothing of the heading. The antenna
-/// is a sensor at the second pose.
-void say_position_as_pose(ForeignEdge& edge) {
-  const std::vector<double> given = edge.fields;
-  const bool lever = given[2] != 0 || given[3] != 0;
-  edge.tag = lever ? kSensorPose : kRelativePose;
-  edge.fields = {given[0], given[1], 0};
-  if (lever) edge.fields.insert(edge.fields.end(), {0, 0, 0, given[2], given[3], 0});
-  edge.information.conservativeResizeLike(Eigen::MatrixXd::Zero(3, 3));
-}
-
-/// measured x y, offset x y heading: what the body itself would have measured, t + R z, and the information
-/// in its axes, R Omega R^T.
-void say_sensor_as_body(ForeignEdge& edge) {
-  const Eigen::Matrix2d r = rotation(edge.fields[4]);
-  const Eigen::Vector2d seen =
-      Eigen::Vector2d(edge.fields[2], edge.fields[3]) + r * Eigen::Vector2d(edge.fields[0], edge.fields[1]);
-  edge.tag = kPointSeen;
-  edge.fields = {seen[0], seen[1]};
-  edge.information = Eigen::MatrixXd(r * edge.information * r.transpose());
-}
-
-/// Whether off-diagonal numbers are no more than rounding.
-bool is_diagonal(const Eigen::MatrixXd& matrix) {
-  const Eigen::MatrixXd rest = matrix - Eigen::MatrixXd(matrix.diagonal().asDiagonal());
-  return rest.cwiseAbs().maxCoeff() <= 1e-12 * matrix.diagonal().cwiseAbs().maxCoeff();
-}
 
 }  // namespace
 
@@ -125,19 +90,18 @@ void ForeignGraph::choose_ids() {
   ids_.resize(graph_.vertex_count());
   VertexId next = std::max<VertexId>(recipient_.least_id, 0);
   std::size_t changed = 0;
-  std::string example;
+  std::string first;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(ids_.size()); ++v) {
     const VertexId id = graph_.id(v);
     ids_[at(v)] = id;
     if (id >= recipient_.least_id && id <= recipient_.most_id) continue;
     while (graph_.find(next)) ++next;
-    if (changed++ == 0) example = std::to_string(id) + " is " + std::to_string(next);
+    if (changed++ == 0) first = "vertex " + std::to_string(id) + " is " + std::to_string(next) + " there";
     ids_[at(v)] = next++;
   }
-  if (changed > 0) {
-    changes_.push_back(std::to_string(changed) + " vertices have new ids, as " +
-                       std::string(recipient_.reader) + " does not take theirs: " + example);
-  }
+  if (changed == 0) return;
+  if (changed > 1) first += ", and so on for " + std::to_string(changed - 1) + " more";
+  changes_.push_back(first + ": " + std::string(recipient_.reader) + " does not take such ids");
 }
 
 void ForeignGraph::check_edges() {
@@ -154,7 +118,7 @@ void ForeignGraph::check_edges() {
       if (!look) continue;
       express(b, e, said);
       if (has_offsets(said.tag)) offsets_.collect(said.tag, said.fields);
-      if (!recipient_.error_turned_by_measurement) {
+      if (recipient_.evaluates_as_example) {
         const Eigen::MatrixXd before = batch.information(e).topLeftCorner<2, 2>();
         const double change = (said.information.topLeftCorner<2, 2>() - before).cwiseAbs().maxCoeff();
         turned += change > 1e-9 * before.cwiseAbs().maxCoeff() ? 1 : 0;
@@ -172,7 +136,7 @@ void ForeignGraph::check_edges() {
 /// Whether edges of this type are said otherwise, or may be refused one by one.
 bool ForeignGraph::needs_look(const std::string& tag) const {
   return tag == kGnssPosition || has_offsets(tag) || format_ == GraphFormat::covariance ||
-         !recipient_.zero_information || !recipient_.correlations || !recipient_.error_turned_by_measurement;
+         !recipient_.zero_information || recipient_.evaluates_as_example;
 }
 
 void ForeignGraph::express(std::size_t batch, std::size_t edge, ForeignEdge& out) const {
@@ -188,8 +152,8 @@ void ForeignGraph::express(std::size_t batch, std::size_t edge, ForeignEdge& out
   if (tag == kPointSeenBySensor && !recipient_.applies_point_offset) say_sensor_as_body(out);
   if (tag == kGnssPosition && !takes(out.tag))
     refuse(place(batch, edge), "has no antenna lever arms", kHoldsAll);
-  if (!recipient_.error_turned_by_measurement || !recipient_.correlations) {
-    express_for_example(out, place(batch, edge));
+  if (recipient_.evaluates_as_example) {
+    if (const auto refusal = say_for_example(out)) refuse(place(batch, edge), refusal->why, refusal->remedy);
   }
   const bool zero = !(out.information.diagonal().minCoeff() > 0);
   if (zero && !recipient_.zero_information) {
@@ -206,31 +170,6 @@ void ForeignGraph::express(std::size_t batch, std::size_t edge, ForeignEdge& out
     }
     out.information = 0.5 * (covariance + covariance.transpose());
   }
-}
-
-// Ceres' example takes e = (R_i^T (p_j - p_i) - t_Z, wrapped heading), which is EDGE_SE2's error turned by
-// the measured heading, and minimises |L e|^2 with the Cholesky factor L of the file's matrix: for a diagonal
-// one that is e^T Omega e, as long as nothing but the last entry is zero (the factorisation ends at a zero).
-void ForeignGraph::express_for_example(ForeignEdge& edge, const std::string& place) const {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = rotation(edge.fields[2]);
-  Eigen::MatrixXd turned = turn * edge.information * turn.transpose();
-  if (!is_diagonal(turned)) {
-    refuse(place,
-           "weighs an error by L where the information is L L^T, so that edges with axes that are "
-           "correlated, as "
-           "seen from the first pose, would have another minimum",
-           "for a reader that weighs by L^T write --format g2o");
-  }
-  turned = Eigen::MatrixXd(turned.diagonal().asDiagonal());
-  if (!(turned(0, 0) > 0 && turned(1, 1) > 0)) {
-    refuse(place, "cannot factorise the information of an edge that has none on x or y",
-           "write --format g2o");
-  }
-  // Where turning changed no more than the last digits, they stay as they were.
-  if ((turned - edge.information).cwiseAbs().maxCoeff() > 1e-12 * turned.maxCoeff())
-    edge.information = turned;
-  edge.information = Eigen::MatrixXd(edge.information.diagonal().asDiagonal());
 }
 
 void ForeignGraph::check_fixing() {

@@ -4,21 +4,12 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include <waymark/formats/foreign_edge.hpp>
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/formats/recipient.hpp>
 #include <waymark/formats/sensor_offsets.hpp>
 
 namespace waymark {
-
-/// One edge in the recipient's words.
-struct ForeignEdge {
-  std::string_view tag;  ///< one of the recipient's, in our words
-  std::vector<VertexIndex> vertices;
-  std::vector<double> fields;
-  Eigen::MatrixXd information;
-};
 
 /// Equal re-expressions, each with the same chi2 at all values of the vertices:
 /// - EDGE_GNSS_POSITION becomes EDGE_SE2 without heading information, with a lever arm EDGE_SE2_OFFSET;
@@ -54,7 +45,6 @@ class ForeignGraph {
   [[nodiscard]] bool needs_look(const std::string& tag) const;
   [[nodiscard]] bool takes(std::string_view tag) const;
   void express(std::size_t batch, std::size_t edge, ForeignEdge& out) const;
-  void express_for_example(ForeignEdge& edge, const std::string& place) const;
   [[nodiscard]] std::string place(std::size_t batch, std::size_t edge) const;
   [[noreturn]] void refuse(const std::string& place, const std::string& why, const char* remedy) const;
   void write_edge(const ForeignEdge& edge, TextBuilder& out) const;

@@ -56,9 +56,7 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .least_id = 0,
      .most_id = kMostKey,
      .zero_information = false},
-    // examples/slam: two tags, any other ends the reading. The error is not turned by the measured heading,
-    // and
-    // weighed by L instead of L^T where the information is L L^T.
+    // examples/slam: two tags, any other ends the reading; the lowest id is held.
     {.name = "ceres",
      .reader = "Ceres' pose_graph_2d",
      .formats = kG2o,
@@ -66,11 +64,9 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .fixing = Fixing::lowest_id,
      .least_id = kLeastInt,
      .most_id = kMostInt,
-     .error_turned_by_measurement = false,
-     .correlations = false},
-    // posegraph2.cpp and posegraph.hxx: a second edge from one vertex to another is dropped, the tree of all
-    // poses
-    // has one root, the vertex of the lowest id, which stays.
+     .evaluates_as_example = true},
+    // posegraph2.cpp and posegraph.hxx: a second edge from one vertex to another is dropped; the tree of all
+    // poses has one root, the vertex of the lowest id, which stays.
     {.name = "toro",
      .reader = "TORO",
      .formats = kToro,

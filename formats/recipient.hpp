@@ -27,13 +27,11 @@ struct Recipient {
   Fixing fixing = Fixing::none;
   VertexId least_id = std::numeric_limits<VertexId>::min();
   VertexId most_id = std::numeric_limits<VertexId>::max();
-  bool zero_information = true;             ///< an axis without information is read as that
-  bool parallel_edges = true;               ///< a second edge between two vertices counts
-  bool separate_parts = true;               ///< vertices that no edges join may be in one file
-  bool applies_point_offset = true;         ///< the offset of EDGE_SE2_POINTXY_OFFSET enters its error
-  bool error_turned_by_measurement = true;  ///< EDGE_SE2's translation error is in the axes of the measured
-                                            ///< pose; else in those of the first pose
-  bool correlations = true;  ///< information off the diagonal is used rightly
+  bool zero_information = true;       ///< an axis without information is read as that
+  bool parallel_edges = true;         ///< a second edge between two vertices counts
+  bool separate_parts = true;         ///< vertices that no edges join may be in one file
+  bool applies_point_offset = true;   ///< the offset of EDGE_SE2_POINTXY_OFFSET enters its error
+  bool evaluates_as_example = false;  ///< EDGE_SE2 means what Ceres' example makes of it: say_for_example()
 };
 
 /// The reader of any file of this format. @param format not our own

@@ -62,7 +62,7 @@ TEST_CASE("convert: a profile writes what its reader takes, and counts what it l
   const RunResult gtsam = run({"convert", graph, "-o", folder + "gtsam.g2o", "--profile", "gtsam"});
   CHECK(gtsam.code == 0);
   CHECK(gtsam.err ==
-        "note: 1 vertices have new ids, as GTSAM's load2D does not take theirs: -1 is 0\n"
+        "note: vertex -1 is 0 there: GTSAM's load2D does not take such ids\n"
         "note: FIX -1 is left out: GTSAM's load2D has none; chi2 and shape of the minimum are the same, its "
         "place may be another\n"
         "note: left out, as GTSAM's load2D has no place for it: frame, stamps (1), covariances (1)\n");
