@@ -14,7 +14,6 @@
 namespace waymark {
 namespace {
 
-constexpr std::string_view kSensorPose = "EDGE_SE2_OFFSET";
 constexpr std::string_view kPointSeenBySensor = "EDGE_SE2_POINTXY_OFFSET";
 constexpr std::string_view kGnssPosition = "EDGE_GNSS_POSITION";
 constexpr const char* kHoldsAll = "write --format graph, which holds everything";

@@ -88,9 +88,9 @@ struct EdgeSe2Offset {
 
   template <typename T>
   Vector3<T> error(const Pose2<T>& from, const Pose2<T>& to) const {
-    const Pose2<T> sensor_from = compose(from, constant_pose<T>(offset_from));
-    const Pose2<T> sensor_to = compose(to, constant_pose<T>(offset_to));
-    const Pose2<T> d = between(constant_pose<T>(measured), between(sensor_from, sensor_to));
+    // From pose to pose first: nothing is added to large coordinates.
+    const Pose2<T> moved = compose(between(from, to), constant_pose<T>(offset_to));
+    const Pose2<T> d = between(constant_pose<T>(measured), between(constant_pose<T>(offset_from), moved));
     return Vector3<T>(d.position[0], d.position[1], wrap_angle(d.heading));
   }
 
@@ -113,8 +113,9 @@ struct EdgeSe2PointXyOffset {
 
   template <typename T>
   Vector2<T> error(const Pose2<T>& pose, const Vector2<T>& point) const {
-    const Pose2<T> sensor = compose(pose, constant_pose<T>(offset));
-    const Vector2<T> seen = rotate_back(sensor.heading, Vector2<T>(point - sensor.position));
+    const Vector2<T> by_body = rotate_back(pose.heading, Vector2<T>(point - pose.position));
+    const Pose2<T> sensor = constant_pose<T>(offset);
+    const Vector2<T> seen = rotate_back(sensor.heading, Vector2<T>(by_body - sensor.position));
     return seen - constant_vector<T>(measured);
   }
   void linearize(const Pose2<double>& pose, const Vector2<double>& point, ErrorVector<2>& e,
