@@ -61,6 +61,13 @@ GraphDocument mixed_document() {
   return document;
 }
 
+/// A pose or a motion as a matrix, as g2o's caches multiply them.
+Eigen::Isometry2d motion(double x, double y, double heading) {
+  Eigen::Isometry2d result = Eigen::Isometry2d::Identity();
+  result.translate(Eigen::Vector2d(x, y)).rotate(heading);
+  return result;
+}
+
 /// chi2 of a file as Ceres' example evaluates it: e = (R_a^T (p_b - p_a) - p_ab, wrapped yaw), weighed by the
 /// lower Cholesky factor of the information (pose_graph_2d.cc and pose_graph_2d_error_term.h).
 double chi2_of_example(const std::string& text) {
@@ -102,6 +109,27 @@ TEST_CASE("g2o: lever arms as offsets have the same chi2, and offsets come back 
   CHECK(back.graph.edge_count() == document.graph.edge_count());
   const std::string again = write_as(GraphFormat::g2o, back);
   CHECK(write_as(GraphFormat::g2o, read(again)) == again);
+}
+
+TEST_CASE("g2o: offset edges are formed as its caches form them, Z^-1 (X O)^-1 (Y P), and (X O)^-1 l") {
+  // EdgeSE2Offset::computeError; for points what its initialEstimate and its name mean.
+  const Graph graph = read(
+                          "PARAMS_SE2OFFSET 3 1.2 -0.3 0.4\nPARAMS_SE2OFFSET 5 -0.5 0.1 2\n"
+                          "VERTEX_SE2 0 1 2 0.5\nVERTEX_SE2 1 3 1 -1.1\nVERTEX_XY 2 4 5\n"
+                          "EDGE_SE2_OFFSET 0 1 3 5 0.7 0.2 0.1 4 1 0.5 9 0.25 16\n"
+                          "EDGE_SE2_POINTXY_OFFSET 1 2 3 0.7 0.2 4 1 9\n")
+                          .graph;
+  const Eigen::Isometry2d from = motion(1, 2, 0.5) * motion(1.2, -0.3, 0.4);
+  const Eigen::Isometry2d to = motion(3, 1, -1.1) * motion(-0.5, 0.1, 2);
+  const Eigen::Isometry2d delta = motion(0.7, 0.2, 0.1).inverse() * from.inverse() * to;
+  const Eigen::Vector3d error(delta.translation()[0], delta.translation()[1],
+                              std::atan2(delta.linear()(1, 0), delta.linear()(0, 0)));
+  const Eigen::Matrix3d omega = (Eigen::Matrix3d() << 4, 1, 0.5, 1, 9, 0.25, 0.5, 0.25, 16).finished();
+  CHECK(graph.batch(0).chi2(graph.view()) == Approx(error.dot(omega * error)).epsilon(1e-13));
+  const Eigen::Isometry2d sensor = motion(3, 1, -1.1) * motion(1.2, -0.3, 0.4);
+  const Eigen::Vector2d seen = sensor.inverse() * Eigen::Vector2d(4, 5) - Eigen::Vector2d(0.7, 0.2);
+  CHECK(graph.batch(1).chi2(graph.view()) ==
+        Approx(seen.dot(omega.topLeftCorner<2, 2>() * seen)).epsilon(1e-13));
 }
 
 TEST_CASE("g2o itself: no edge is left whose error it forms without the offset") {

@@ -56,7 +56,7 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
     const GradientCheck gradients = check_gradients(graph, b, kCheckedEdges);
     const EdgeType& type = graph.edge_type(b);
     text +=
-        fmt::format("  {:<22} {:>8} edges   chi2 {:<14.8g} error {:<12} Jacobians off by {:.1e}\n", type.tag,
+        fmt::format("  {:<24} {:>8} edges   chi2 {:<14.8g} error {:<12} Jacobians off by {:.1e}\n", type.tag,
                     graph.batch(b).size(), graph.batch(b).chi2(graph.view()), type.form, gradients.error);
     json["edges"].push_back({{"type", type.tag},
                              {"count", graph.batch(b).size()},
