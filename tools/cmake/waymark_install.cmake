@@ -1,0 +1,71 @@
+# What `cmake --install` puts where. Components: runtime (program, shared library), dev (headers, static libraries, CMake
+# and pkg-config files, plugin template), plugins (modules that are not built into the program).
+include(CMakePackageConfigHelpers)
+
+set(rooms core types_se2 solvers formats plugins)
+set(cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/waymark")
+set(plugin_libraries "")
+foreach(name ${WAYMARK_BUILTIN_NAMES})
+  list(APPEND plugin_libraries waymark_plugin_${name})
+  set_target_properties(waymark_plugin_${name} PROPERTIES EXPORT_NAME plugin_${name})
+endforeach()
+
+# While the version is 0.x, each minor version may break the ABI (plugins/README.md, "ABI and versions").
+set_target_properties(waymark_core PROPERTIES
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+# The program finds the library beside it, wherever the prefix is; packages set CMAKE_SKIP_INSTALL_RPATH.
+file(RELATIVE_PATH bin_to_lib "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
+set_target_properties(waymark PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
+
+install(TARGETS waymark RUNTIME COMPONENT runtime)
+install(TARGETS waymark_core waymark_types_se2 waymark_solvers waymark_formats waymark_plugins ${plugin_libraries}
+                waymark_settings EXPORT waymark_targets
+  LIBRARY COMPONENT runtime NAMELINK_COMPONENT dev
+  ARCHIVE COMPONENT dev)
+foreach(name ${WAYMARK_MODULE_NAMES})
+  install(TARGETS waymark_module_${name} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/waymark/plugins" COMPONENT plugins)
+endforeach()
+
+# Headers under the spelling of the build tree, <waymark/core/graph.hpp>.
+foreach(room ${rooms})
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/${room}/*.hpp")
+  foreach(header ${headers})
+    get_filename_component(folder "${header}" DIRECTORY)
+    install(FILES "${PROJECT_SOURCE_DIR}/${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/waymark/${folder}" COMPONENT dev)
+  endforeach()
+endforeach()
+
+string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
+set(WAYMARK_CXX_FLAGS "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}}")
+set(WAYMARK_PLUGIN_FOLDER "${CMAKE_INSTALL_LIBDIR}/waymark/plugins")
+configure_package_config_file(tools/cmake/waymark_config.cmake.in "${PROJECT_BINARY_DIR}/package/waymark-config.cmake"
+  INSTALL_DESTINATION "${cmake_folder}" PATH_VARS WAYMARK_PLUGIN_FOLDER)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/package/waymark-config-version.cmake" COMPATIBILITY SameMinorVersion)
+install(EXPORT waymark_targets NAMESPACE waymark:: DESTINATION "${cmake_folder}" COMPONENT dev)
+install(FILES
+  "${PROJECT_BINARY_DIR}/package/waymark-config.cmake" "${PROJECT_BINARY_DIR}/package/waymark-config-version.cmake"
+  tools/cmake/waymark_add_plugin.cmake tools/cmake/FindCholmod.cmake tools/cmake/FindCXSparse.cmake
+  DESTINATION "${cmake_folder}" COMPONENT dev)
+
+# pkg-config: static libraries in link order, then what the backends need.
+set(WAYMARK_PC_LIBRARIES -lwaymark_plugins)
+foreach(name ${WAYMARK_BUILTIN_NAMES})
+  list(APPEND WAYMARK_PC_LIBRARIES -lwaymark_plugin_${name})
+endforeach()
+list(APPEND WAYMARK_PC_LIBRARIES -lwaymark_formats -lwaymark_solvers)
+if(WAYMARK_WITH_CHOLMOD)
+  list(APPEND WAYMARK_PC_LIBRARIES -lcholmod)
+endif()
+if(WAYMARK_WITH_CSPARSE)
+  list(APPEND WAYMARK_PC_LIBRARIES -lcxsparse)
+endif()
+list(JOIN WAYMARK_PC_LIBRARIES " " WAYMARK_PC_LIBRARIES)
+set(pc_folder "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+file(RELATIVE_PATH WAYMARK_PC_TO_PREFIX "/prefix/${pc_folder}" "/prefix")
+string(REGEX REPLACE "/$" "" WAYMARK_PC_TO_PREFIX "${WAYMARK_PC_TO_PREFIX}")
+configure_file(tools/cmake/waymark_core.pc.in "${PROJECT_BINARY_DIR}/package/waymark-core.pc" @ONLY)
+configure_file(tools/cmake/waymark.pc.in "${PROJECT_BINARY_DIR}/package/waymark.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/package/waymark-core.pc" "${PROJECT_BINARY_DIR}/package/waymark.pc"
+  DESTINATION "${pc_folder}" COMPONENT dev)
+
+install(DIRECTORY examples/plugin_template DESTINATION "${CMAKE_INSTALL_DATADIR}/waymark" COMPONENT dev)
