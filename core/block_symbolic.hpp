@@ -43,9 +43,10 @@ struct Supernode {
   int parent = -1;       ///< supernode that takes its update; -1: none
   int first_child = -1;  ///< supernodes whose update it takes, ascending by next_sibling
   int next_sibling = -1;
-  int row_count = 0;         ///< block rows below
-  std::int64_t rows = 0;     ///< begin of its block rows in BlockSymbolic::rows, and in `position`
-  std::int64_t entries = 0;  ///< begin of its blocks of the matrix: in BlockSymbolic::entries or ::links
+  int row_count = 0;      ///< block rows below
+  std::int64_t rows = 0;  ///< begin of its block rows in BlockSymbolic::rows, and in `position`
+  std::int64_t entries =
+      0;  ///< begin of its blocks of the matrix: in BlockSymbolic::entries or BlockSymbolic::links
   std::int64_t entries_end = 0;
   std::int64_t start = 0;     ///< first scalar column, in the order of BlockSymbolic::column
   std::int64_t panel = 0;     ///< begin of its numbers in the factor

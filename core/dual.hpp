@@ -85,6 +85,7 @@ struct Dual {
 
 }  // namespace waymark
 
+/// @cond  Doxygen knows no template that it has not read.
 template <int N>
 struct Eigen::NumTraits<waymark::Dual<N>> : Eigen::NumTraits<double> {
   using Real = waymark::Dual<N>;
@@ -100,3 +101,4 @@ struct Eigen::NumTraits<waymark::Dual<N>> : Eigen::NumTraits<double> {
     MulCost = 5
   };
 };
+/// @endcond

@@ -1,5 +1,5 @@
 /// Edges: what was measured. The author of an edge type writes one function and a field list.
-///
+/// @code
 ///   struct EdgeRange {
 ///     static constexpr std::string_view kTag = "EDGE_RANGE";
 ///     static constexpr std::string_view kForm = "range";  // how the error is formed, printed beside chi2
@@ -10,16 +10,18 @@
 ///     Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose, const Vector2<T>& landmark) const;
 ///     double measured = 0;
 ///   };
-///
+/// @endcode
 /// Derivatives are taken by dual numbers unless the type also gives
+/// @code
 ///   void linearize(const Pose2<double>&, const Vector2<double>&, Error& e, Jacobian<3>& J0, Jacobian<2>& J1)
 ///   const;
+/// @endcode
 /// with J_k the derivative of the error by the tangent vector of vertex k. The conformance tests compare the
 /// two. Two more things may be told:
-///   static constexpr bool kRelative = true;
+/// - `static constexpr bool kRelative = true;`
 ///       the error stays when all vertices undergo one rigid motion of the plane (tested): the gauge test
 ///       need not look, and between two vertices that carry (vertex.hpp) J_1 alone gives H and g
-///   void prepare();  called once when the fields are set: keeps what depends on the measurement alone
+/// - `void prepare();` called once when the fields are set: keeps what depends on the measurement alone
 #pragma once
 
 #include <concepts>

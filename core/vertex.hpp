@@ -18,6 +18,7 @@ using VertexId = std::int64_t;
 using VertexIndex = std::int32_t;
 
 /// What a vertex type V gives:
+/// @code
 ///   V::kTag            std::string_view, its word in .graph files
 ///   V::kValueSize      doubles that hold a value;  V::kTangentSize  degrees of freedom
 ///   V::value_names()   names of the value's numbers, container of strings
@@ -25,16 +26,17 @@ using VertexIndex = std::int32_t;
 ///   V::at<T>(const double* value, const T* delta) -> Value<T>: the value retracted by delta
 ///   V::retract(double* value, const double* delta)            value := value [+] delta, normalised
 ///   V::local(const double* from, const double* to, double* delta)    delta with from [+] delta == to
+/// @endcode
 /// Invariants (tested for every registered type): retract by 0 is the identity on normalised values;
 /// local(v, v) = 0; local(v, retract(v, d)) = d for small d.
-/// Optional: V::value_units(), the unit of each of them, for types whose numbers are no coordinates: a state
-/// with units and without a place in the plane is reported with its sigma after a run. V::kDense = true for
-/// states that touch very many edges (calibration); their columns are ordered last. Optional:
-/// V::position(const double*) -> Vector2d and
-///   V::rigid_motion(const double* value, const Vector2d& centre, double extent, double* columns): how the
+/// Optional: `V::value_units()`, the unit of each of them, for types whose numbers are no coordinates: a
+/// state with units and without a place in the plane is reported with its sigma after a run. V::kDense = true
+/// for states that touch very many edges (calibration); their columns are ordered last. Optional:
+/// `V::position(const double*) -> Vector2d` and
+/// `V::rigid_motion(const double* value, const Vector2d& centre, double extent, double* columns)`: how the
 ///   value moves under a rigid motion of the plane, kTangentSize x 3 column-major: along x, along y, a turn
 ///   about centre by 1/extent rad. Types without it do not take part in the gauge test. And
-///   V::carry<R>(const double* from, const double* to, Matrix<double, R, kTangentSize>& m): m := m T, where T
+/// `V::carry<R>(const double* from, const double* to, Matrix<double, R, kTangentSize>& m)`: m := m T, where T
 ///   takes the change of `from` to that of `to` when both move rigidly together; edges between two of them
 ///   that are relative (kRelative) are then linearised in half the time.
 template <typename V>

@@ -10,7 +10,7 @@
 namespace waymark {
 
 /// A word of a file as a message shows it: in quotes, cut after 40 characters, bytes that a terminal could
-/// take for a command (and all beyond ASCII) as \xNN; an empty one is "the end of the line".
+/// take for a command (and all beyond ASCII) as `\xNN`; an empty one is "the end of the line".
 [[nodiscard]] std::string quote_word(std::string_view word);
 
 /// What the scanner expected, made into text only when it fails.

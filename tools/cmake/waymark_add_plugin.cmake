@@ -1,6 +1,7 @@
 # waymark_add_plugin(NAME SOURCES...): the plugin module NAME.so, for `waymark --plugin`. The same function makes the
 # modules of this repository and is installed for plugins built elsewhere.
 include_guard(GLOBAL)
+cmake_policy(VERSION 3.25)
 
 # waymark_refused_flag(FLAG RESULT): why the loader would refuse a plugin built with this flag, empty where it would not.
 function(waymark_refused_flag flag result)

@@ -35,8 +35,6 @@ foreach(room ${rooms})
   endforeach()
 endforeach()
 
-string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
-set(WAYMARK_CXX_FLAGS "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}}")
 set(WAYMARK_PLUGIN_FOLDER "${CMAKE_INSTALL_LIBDIR}/waymark/plugins")
 configure_package_config_file(tools/cmake/waymark_config.cmake.in "${PROJECT_BINARY_DIR}/package/waymark-config.cmake"
   INSTALL_DESTINATION "${cmake_folder}" PATH_VARS WAYMARK_PLUGIN_FOLDER)

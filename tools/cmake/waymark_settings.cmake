@@ -32,6 +32,13 @@ if(WAYMARK_WARNINGS_AS_ERRORS)
   target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()
 
+# What everything here is compiled with: a plugin may be compiled with the same (waymark_add_plugin.cmake).
+string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
+get_directory_property(options COMPILE_OPTIONS)
+list(JOIN options " " options)
+string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}} ${options}" WAYMARK_CXX_FLAGS)
+set_property(GLOBAL PROPERTY WAYMARK_CXX_FLAGS "${WAYMARK_CXX_FLAGS}")
+
 # A fast linker and a compiler cache where present: neither changes what is built.
 find_program(WAYMARK_MOLD mold)
 if(WAYMARK_MOLD)

@@ -1,0 +1,77 @@
+// tools/packaging/check_abi.sh: what a next version of a library may change, and what it may not.
+#include <filesystem>
+#include <iostream>
+
+#include <catch2/catch.hpp>
+
+#include "tools/program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kScript = WAYMARK_SOURCE_DIR "/tools/packaging/check_abi.sh";
+const std::string kSource = WAYMARK_SOURCE_DIR "/tests/consumer/abi";
+
+/// The sample library with one of the header's changes; its file.
+std::string build(const std::string& change) {
+  const std::string folder = fresh_folder();
+  fs::copy(kSource + "/include", folder + "include", fs::copy_options::recursive);
+  const std::string library = folder + "libsensor.so";
+  const RunResult built = run({"-g", "-shared", "-fPIC", "-D" + change, "-I" + folder + "include",
+                               kSource + "/sensor.cpp", "-o", library},
+                              {.program = COMPILER});
+  INFO(built.err);
+  REQUIRE(built.code == 0);
+  return library;
+}
+
+RunResult check_abi(const std::string& before, const std::string& after) {
+  return run({before, after}, {.program = kScript});
+}
+
+bool no_abidiff() {
+  if (fs::exists("/usr/bin/abidiff")) return false;
+  std::cout << "SKIPPED: no abidiff (Debian package abigail-tools)\n";
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("ABI: a changed layout and an added virtual function are reported") {
+  if (no_abidiff()) return;
+  const std::string before = build("NOTHING");
+  for (const auto& [change, said] :
+       {std::pair{"CHANGED_LAYOUT", "double sigma"}, std::pair{"ADDED_VIRTUAL", "Sensor::reset"}}) {
+    const RunResult result = check_abi(before, build(change));
+    INFO(change << "\n" << result.out << result.err);
+    CHECK(result.code == 1);
+    CHECK(contains(result.out, said));
+    CHECK(contains(result.out, "not compatible"));
+  }
+}
+
+TEST_CASE("ABI: an added function and a change of what no public header shows pass") {
+  if (no_abidiff()) return;
+  const std::string before = build("NOTHING");
+  for (const char* change : {"NOTHING", "ADDED_FUNCTION", "CHANGED_PRIVATE"}) {
+    const RunResult result = check_abi(before, build(change));
+    INFO(change << "\n" << result.out << result.err);
+    CHECK(result.code == 0);
+    CHECK(contains(result.out, "compatible"));
+  }
+}
+
+TEST_CASE("ABI: the installed library is compatible with itself") {
+  if (no_abidiff()) return;
+  const std::string library = INSTALLED_LIBDIR "/libwaymark_core.so";
+  const RunResult result = check_abi(library, library);
+  INFO(result.out << result.err);
+  CHECK(result.code == 0);
+}
+
+TEST_CASE("ABI: a file that is not there is a wrong use") {
+  const RunResult result = check_abi("/nowhere/old.so", "/nowhere/new.so");
+  CHECK(result.code == 2);
+  CHECK(contains(result.err, "usage"));
+}

@@ -1,0 +1,96 @@
+// What the installed tree must be, and which flags a plugin may not be built with.
+#include <filesystem>
+
+#include <catch2/catch.hpp>
+
+#include "tools/program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kPrefix = INSTALLED_PREFIX;
+
+/// RPATH and RUNPATH of a binary, as the linker's section shows them.
+std::string run_path(const std::string& file) {
+  const RunResult result = run({"-d", file}, {.program = "/usr/bin/readelf"});
+  REQUIRE(result.code == 0);
+  const auto at = result.out.find("PATH)");
+  return at == std::string::npos ? "" : result.out.substr(at, result.out.find('\n', at) - at);
+}
+
+/// waymark_add_plugin's look at the flags, without a compiler.
+RunResult check_flags(const std::string& variable, const std::string& flags,
+                      const std::string& of_waymark = "") {
+  const std::string script =
+      write_text(fresh_folder() + "flags.cmake", "set_property(GLOBAL PROPERTY WAYMARK_CXX_FLAGS \"" +
+                                                     of_waymark + "\")\ninclude(" + INSTALLED_LIBDIR +
+                                                     "/cmake/waymark/waymark_add_plugin.cmake)\n"
+                                                     "waymark_check_plugin_flags(antenna)\n");
+  return run({"-D" + variable + "=" + flags, "-DCMAKE_BUILD_TYPE=Release", "-P", script}, {.program = CMAKE});
+}
+
+}  // namespace
+
+TEST_CASE("installed: the program runs from any prefix, and nothing points into the build") {
+  const RunResult result = run({"--version"}, {.program = kPrefix + "/bin/waymark"});
+  CHECK(result.code == 0);
+  CHECK(result.out.starts_with("waymark "));
+  CHECK(contains(run_path(kPrefix + "/bin/waymark"), "[$ORIGIN/../lib"));
+  for (const auto& entry : fs::recursive_directory_iterator(kPrefix)) {
+    if (entry.path().extension() == ".so") CHECK(run_path(entry.path()) == "");
+    const std::string suffix = entry.path().extension();
+    if (suffix == ".cmake" || suffix == ".pc") {
+      INFO(entry.path());
+      CHECK_FALSE(contains(read_text(entry.path()), WAYMARK_SOURCE_DIR));
+    }
+  }
+}
+
+TEST_CASE("installed: the shared library has a version and a soname") {
+  CHECK(fs::is_symlink(INSTALLED_LIBDIR "/libwaymark_core.so"));
+  const RunResult result =
+      run({"-d", INSTALLED_LIBDIR "/libwaymark_core.so"}, {.program = "/usr/bin/readelf"});
+  CHECK(contains(result.out, "soname: [libwaymark_core.so.0.1]"));
+}
+
+TEST_CASE("installed: only headers of rooms that are libraries") {
+  CHECK(names_in(kPrefix + "/include/waymark") ==
+        std::vector<std::string>{"core", "formats", "plugins", "solvers", "types_se2"});
+}
+
+TEST_CASE("waymark_add_plugin refuses flags with which the plugin would be refused, with the reason") {
+  struct Case {
+    const char* flag;
+    const char* reason;
+  };
+  for (const auto& [flag, reason] :
+       {Case{"-march=native", "alignment"}, Case{"-mavx", "alignment"}, Case{"-mavx2", "alignment"},
+        Case{"-mavx512f", "alignment"}, Case{"-march=x86-64-v3", "alignment"},
+        Case{"-ffast-math", "flush-to-zero"}, Case{"-Ofast", "flush-to-zero"},
+        Case{"-D_GLIBCXX_DEBUG", "containers"}}) {
+    for (const char* variable : {"CMAKE_CXX_FLAGS", "CMAKE_CXX_FLAGS_RELEASE", "CMAKE_MODULE_LINKER_FLAGS"}) {
+      const RunResult result = check_flags(variable, flag);
+      INFO(variable << " " << result.err);
+      CHECK(result.code == 1);
+      std::string message;  // CMake breaks lines
+      for (const char c : result.err)
+        if (c != '\n' || message.back() != ' ') message += c == '\n' ? ' ' : c;
+      CHECK(contains(message, "waymark_add_plugin(antenna)"));
+      CHECK(contains(message, flag));
+      CHECK(contains(message, reason));
+      CHECK(contains(message, variable));
+    }
+  }
+}
+
+TEST_CASE("waymark_add_plugin lets other flags pass, and those that waymark was built with") {
+  for (const char* flags : {"", "-O3 -g -Wall", "-march=x86-64 -mno-avx", "-D_GLIBCXX_ASSERTIONS",
+                            "-fno-fast-math", "-fsanitize=address"}) {
+    const RunResult result = check_flags("CMAKE_CXX_FLAGS", flags);
+    INFO(flags << result.err);
+    CHECK(result.code == 0);
+  }
+  CHECK(check_flags("CMAKE_CXX_FLAGS", "-O2 -mavx2", "-mavx2").code == 0);
+  CHECK(check_flags("CMAKE_CXX_FLAGS", "-mavx512f", "-mavx2").code == 1);
+}

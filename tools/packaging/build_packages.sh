@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# The Debian packages, built from this tree and looked over by lintian: build_packages.sh OUTDIR
+set -euo pipefail
+[[ $# -eq 1 ]] || { echo "usage: build_packages.sh OUTDIR" >&2; exit 2; }
+mkdir -p "$1"
+out=$(realpath "$1")
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+# The same sources give the same packages: times are those of the last commit.
+if [[ -z ${SOURCE_DATE_EPOCH-} ]] && time=$(git log -1 --format=%ct 2>/dev/null); then
+  export SOURCE_DATE_EPOCH=$time
+fi
+umask 022
+cmake --preset package >/dev/null
+cmake --build --preset package
+cpack --config build/package/CPackConfig.cmake -B build/package/cpack
+mv build/package/cpack/*.deb "$out"
+if command -v lintian >/dev/null; then
+  lintian --fail-on error --tag-display-limit 0 "$out"/*.deb
+else
+  echo "note: no lintian, the packages were not looked over" >&2
+fi
+ls -l "$out"/*.deb
