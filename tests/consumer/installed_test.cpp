@@ -51,7 +51,7 @@ TEST_CASE("installed: the shared library has a version and a soname") {
   CHECK(fs::is_symlink(INSTALLED_LIBDIR "/libwaymark_core.so"));
   const RunResult result =
       run({"-d", INSTALLED_LIBDIR "/libwaymark_core.so"}, {.program = "/usr/bin/readelf"});
-  CHECK(contains(result.out, "soname: [libwaymark_core.so.0.1]"));
+  CHECK(contains(result.out, "soname: [" INSTALLED_SONAME "]"));
 }
 
 TEST_CASE("installed: only headers of rooms that are libraries") {

@@ -15,6 +15,7 @@ if [[ ! -e $root/etc/debian_version ]]; then
   debootstrap --variant=minbase bookworm "$root" http://deb.debian.org/debian >"$scratch/debootstrap.log"
 fi
 cp /etc/resolv.conf "$root/etc/resolv.conf"
+echo 'Dpkg::Use-Pty "0";' >"$root/etc/apt/apt.conf.d/99scratch"  # there is no /dev/pts
 
 # The commands: every ```sh block of the tutorial's section, in order, nothing added.
 rm -rf "$root/root/tutorial"
@@ -43,4 +44,5 @@ chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin DEB
   apt-get purge -y -qq "*waymark*" >/dev/null
   left=$(find /usr /etc /var/lib/dpkg/info -name "*waymark*")
   [[ -z $left ]] || { echo "left behind: $left" >&2; exit 1; }'
+rm "$root/etc/apt/apt.conf.d/99scratch"
 echo "the clean machine's path is clear"
