@@ -34,11 +34,13 @@ for line in "EDGE_MY_ANTENNA .*\[gnss_lever_arm\]" "no problems found" "-> 0.18 
   grep -qe "$line" "$scratch/tutorial.log" || { echo "not found: $line" >&2; exit 1; }
   echo "found: $line"
 done
+[[ $(grep -c "no problems found" "$scratch/tutorial.log") -eq 2 ]] || { echo "the installed plugin was not loaded by itself" >&2; exit 1; }
 
 echo "== the other packages, and out again without a trace"
 chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C bash -c '
   set -euo pipefail
   cd /root/tutorial
+  rm -r /usr/lib/*/waymark/plugins  # what the tutorial has installed
   apt-get install -y -qq ./*.deb >/dev/null
   waymark info >/dev/null
   apt-get purge -y -qq "*waymark*" >/dev/null
