@@ -40,7 +40,7 @@ echo "== the other packages, and out again without a trace"
 chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C bash -c '
   set -euo pipefail
   cd /root/tutorial
-  rm -r /usr/lib/*/waymark/plugins  # what the tutorial has installed
+  rm -r /usr/lib/*/waymark  # what the tutorial has installed
   apt-get install -y -qq ./*.deb >/dev/null
   waymark info >/dev/null
   apt-get purge -y -qq "*waymark*" >/dev/null
