@@ -145,13 +145,18 @@ class Graph {
 
   template <Edge E>
   void append_untyped(EdgeBatchBase& target, E edge, std::span<const VertexIndex> vertices,
-                      const Eigen::MatrixXd& information) {
+                      const typename EdgeBatch<E>::Information& information) {
     std::vector<double> fields;
     for (const auto& f : E::fields()) {
       const double* data = f.data(edge);
       fields.insert(fields.end(), data, data + f.size);
     }
-    target.append(vertices, types_of(vertices), fields, information);
+    // Number by number: of a 1 x 1 matrix g++ 12 warns that a packet would not fit.
+    Eigen::MatrixXd dynamic(E::kErrorDimension, E::kErrorDimension);
+    for (int r = 0; r < E::kErrorDimension; ++r) {
+      for (int c = 0; c < E::kErrorDimension; ++c) dynamic(r, c) = information(r, c);
+    }
+    target.append(vertices, types_of(vertices), fields, dynamic);
   }
   [[nodiscard]] std::vector<const VertexType*> types_of(std::span<const VertexIndex> vertices) const;
 

@@ -67,11 +67,17 @@ TEST_CASE("plugins: loaded as modules they give the same graph text as built in"
 }
 
 TEST_CASE("plugins: loading leaves the floating-point environment as it was") {
+  struct Upward {
+    Upward() { std::fesetround(FE_UPWARD); }
+    ~Upward() { std::fesetround(FE_TONEAREST); }  // also where loading throws
+  };
   TypeRegistry registry = bare_registry();
-  std::fesetround(FE_UPWARD);
-  load_plugin(module_file("gnss_g1"), registry);
-  const int rounding = std::fegetround();
-  std::fesetround(FE_TONEAREST);
+  int rounding = 0;
+  {
+    const Upward upward;
+    load_plugin(module_file("gnss_g1"), registry);
+    rounding = std::fegetround();
+  }
   CHECK(rounding == FE_UPWARD);
 }
 

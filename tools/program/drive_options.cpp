@@ -33,6 +33,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
           "Load a plugin module: a file, or a name looked up in WAYMARK_PLUGIN_PATH (may be repeated)")
       ->type_name("FILE.so")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
@@ -52,6 +53,7 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
                   "Option of the modeling, see 'waymark info'")
       ->type_name("NAME=VALUE")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--from", overrides.from_s, "Begin so many seconds after the first odometry sample")
       ->type_name("SECONDS")
@@ -80,6 +82,7 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
       ->type_name("on|off|NAME=VALUE")
       ->delimiter(',')
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_flag("--no-gate", overrides.no_gate, "Accept every fix");
 }
@@ -94,6 +97,7 @@ void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
   command.add_option("--algorithm-option", choice.options, "Option of the algorithm, see 'waymark info'")
       ->type_name("NAME=VALUE")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_stopping_options(command, choice);
   command

@@ -93,6 +93,7 @@ void add_robust_options(CLI::App& command, RobustChoice& choice) {
       .add_option("--loss", choice.losses, "Robust loss of all edges that are not trusted, or of one type")
       ->type_name("[TAG=]NAME:SCALE")
       ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--robust", choice.method,
