@@ -91,6 +91,14 @@ template <typename T>
   return Vector2<T>(c * v[0] + s * v[1], c * v[1] - s * v[0]);
 }
 
+/// |v|, with no derivative at 0, where it has none.
+template <typename T>
+[[nodiscard]] T length(const Vector2<T>& v) {
+  using std::hypot;
+  if (v[0] == T(0.0) && v[1] == T(0.0)) return T(0.0);
+  return hypot(v[0], v[1]);
+}
+
 /// a * b: the motion b seen from a. The heading is the plain sum, so windings are kept.
 template <typename T>
 [[nodiscard]] [[gnu::always_inline]] inline Pose2<T> compose(const Pose2<T>& a, const Pose2<T>& b) {

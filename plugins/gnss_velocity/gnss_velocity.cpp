@@ -1,0 +1,114 @@
+#include <waymark/plugins/gnss_velocity/gnss_velocity.hpp>
+
+#include <algorithm>
+#include <numbers>
+
+#include <waymark/core/error.hpp>
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/sensor_readings.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::string_view kOwner = "gnss_velocity";
+/// A speed is that of one moment: over a longer way between poses (a gap) it says too little.
+constexpr double kLongestWay_s = 0.5;
+
+std::vector<OptionInfo> options() {
+  return {{"course", "on", "", "use the course: 'on' or 'off'"},
+          {"speed", "on", "", "use the Doppler speed: 'on' or 'off'"},
+          {"min_speed", "3", "m/s", "below this |speed| of the odometry neither is used; in [0.1, 100]"},
+          {"course_sigma_deg", "2", "deg", "sigma of courses that come without; in [1e-3, 180]"},
+          {"speed_sigma", "0.2", "m/s", "sigma of speeds that come without; in [1e-4, 100]"}};
+}
+
+class GnssVelocity final : public SensorModel {
+ public:
+  explicit GnssVelocity(const Options& given) {
+    const std::vector<OptionInfo> known = options();
+    check_option_names(kOwner, given, known);
+    constexpr std::array<std::string_view, 2> kSwitch = {"on", "off"};
+    uses_course_ = word_option(kOwner, given, known, "course", kSwitch) == "on";
+    uses_speed_ = word_option(kOwner, given, known, "speed", kSwitch) == "on";
+    min_speed_ = number_option(kOwner, given, known, "min_speed", 0.1, 100);
+    course_sigma_ = kDegree * number_option(kOwner, given, known, "course_sigma_deg", 1e-3, 180);
+    speed_sigma_ = number_option(kOwner, given, known, "speed_sigma", 1e-4, 100);
+    if (!uses_course_ && !uses_speed_)
+      throw UsageError("gnss_velocity: course and speed are both off; leave the sensor out");
+  }
+
+  void build(const SensorInput& input, Graph& graph) const override {
+    require_velocities(input);
+    for (const Fix& fix : input.fixes) {
+      const auto place = find_place(input.nodes, fix.stamp);
+      if (!place) continue;
+      const Interval& motion = motion_at(input.nodes, place->node);
+      if (std::abs(motion.speed_mps) < min_speed_) continue;
+      if (uses_course_ && fix.heading_rad) add_course(input, fix, *place, motion, graph);
+      if (uses_speed_ && fix.speed_mps) add_speed(input, fix, place->node, graph);
+    }
+  }
+
+ private:
+  void require_velocities(const SensorInput& input) const {
+    const bool any = std::any_of(input.fixes.begin(), input.fixes.end(), [&](const Fix& fix) {
+      return (uses_course_ && fix.heading_rad) || (uses_speed_ && fix.speed_mps);
+    });
+    if (any) return;
+    throw InputError("no accepted fix has " +
+                     std::string(!uses_speed_    ? "a course; does the gnss log have a column 'course'?"
+                                 : !uses_course_ ? "a speed; does the gnss log have a column 'speed'?"
+                                                 : "a course or a speed; does the gnss log have columns "
+                                                   "'course' and 'speed'?"));
+  }
+
+  void add_course(const SensorInput& input, const Fix& fix, const ReadingPlace& place, const Interval& motion,
+                  Graph& graph) const {
+    const double sigma = fix.heading_sigma_rad.value_or(course_sigma_);
+    EdgeGnssCourse edge;
+    edge.course = wrap_angle(*fix.heading_rad - place.ahead.heading);
+    edge.speed = motion.speed_mps;
+    edge.yaw_rate = motion.yaw_rate_radps;
+    edge.antenna = input.antenna;
+    graph.add_edge(edge, {place.pose}, Eigen::Matrix<double, 1, 1>(1 / (sigma * sigma)));
+  }
+
+  /// From the node before the fix to the one after it: the mean speed between them is that in the middle.
+  void add_speed(const SensorInput& input, const Fix& fix, std::size_t node, Graph& graph) const {
+    const DriveNodes& nodes = input.nodes;
+    const std::size_t from = node > 0 ? node - 1 : 0;
+    const std::size_t to = std::min(node + 1, nodes.poses.size() - 1);
+    const double dt = seconds_between(nodes.stamps[from], nodes.stamps[to]);
+    if (from == to || dt > kLongestWay_s) return;
+    EdgeGnssSpeed edge;
+    edge.speed = fix.grid_scale * *fix.speed_mps;
+    edge.dt = dt;
+    edge.antenna = input.antenna;
+    const double sigma_m = fix.speed_sigma_mps.value_or(speed_sigma_) * dt;
+    graph.add_edge(edge, {nodes.poses[from], nodes.poses[to]},
+                   Eigen::Matrix<double, 1, 1>(1 / (sigma_m * sigma_m)));
+  }
+
+  bool uses_course_ = true;
+  bool uses_speed_ = true;
+  double min_speed_ = 0;
+  double course_sigma_ = 0;
+  double speed_sigma_ = 0;
+};
+
+void register_types(TypeRegistry& registry) {
+  registry.add_edge<EdgeGnssCourse>();
+  registry.add_edge<EdgeGnssSpeed>();
+  registry.add_sensor_model({"gnss_velocity",
+                             "course and Doppler speed of the GNSS fixes",
+                             {},
+                             options(),
+                             [](const Options& given) { return std::make_unique<GnssVelocity>(given); }});
+}
+
+}  // namespace
+}  // namespace waymark
+
+WAYMARK_PLUGIN(gnss_velocity, "0.1.0", waymark::register_types);

@@ -1,0 +1,88 @@
+#include <waymark/plugins/heading/heading.hpp>
+
+#include <array>
+#include <numbers>
+
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/sensor_readings.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::string_view kOwner = "heading";
+
+enum Column : std::size_t { kHeading, kSigma };
+
+std::vector<SensorColumn> columns() {
+  return {{"heading", "rad", "ccw_from_east", true, "direction in which the sensor points"},
+          {"sigma", "rad", "", false, "its standard deviation"}};
+}
+
+std::vector<OptionInfo> options() {
+  return {
+      {"mounting_deg", "0", "deg",
+       "direction of the sensor's zero in the body, counter-clockwise from straight ahead; in [-360, 360]"},
+      {"sigma_deg", "1", "deg", "sigma of readings that state none; in [1e-4, 180]"},
+      {"offset", "off", "",
+       "reading minus heading beyond the mounting, one value for the drive: 'off' (0) or 'constant' "
+       "(estimated)"},
+      {"offset_sigma_deg", "20", "deg", "sigma of its prior about 0; in [1e-4, 1000]"}};
+}
+
+class Heading final : public SensorModel {
+ public:
+  explicit Heading(const Options& given) {
+    const std::vector<OptionInfo> known = options();
+    check_option_names(kOwner, given, known);
+    constexpr std::array<std::string_view, 2> kModels = {"off", "constant"};
+    mounting_ = kDegree * number_option(kOwner, given, known, "mounting_deg", -360, 360);
+    sigma_ = kDegree * number_option(kOwner, given, known, "sigma_deg", 1e-4, 180);
+    estimates_offset_ = word_option(kOwner, given, known, "offset", kModels) == "constant";
+    offset_sigma_ = kDegree * number_option(kOwner, given, known, "offset_sigma_deg", 1e-4, 1000);
+  }
+
+  void build(const SensorInput& input, Graph& graph) const override {
+    const VertexIndex offset = estimates_offset_ ? add_offset(graph) : -1;
+    for (std::size_t row = 0; row < input.readings.size(); ++row) {
+      const double sigma = sigma_of_reading(input.readings, row, kSigma, "sigma", sigma_);
+      const auto place = find_place(input.nodes, input.readings.stamps[row]);
+      if (!place) continue;
+      const double measured = wrap_angle(input.readings.at(row, kHeading) - mounting_ - place->ahead.heading);
+      const Eigen::Matrix<double, 1, 1> information(1 / (sigma * sigma));
+      if (estimates_offset_) {
+        graph.add_edge(EdgeHeadingOffset{measured}, {place->pose, offset}, information);
+      } else {
+        graph.add_edge(EdgeHeading{measured}, {place->pose}, information);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] VertexIndex add_offset(Graph& graph) const {
+    const VertexIndex offset = graph.add_vertex<VertexHeadingOffset>(graph.free_id(), {0});
+    graph.add_edge(gaussian_prior_type(), std::array{offset}, std::array{0.0, 0.0},
+                   Eigen::MatrixXd::Constant(1, 1, 1 / (offset_sigma_ * offset_sigma_)));
+    return offset;
+  }
+
+  double mounting_ = 0;
+  double sigma_ = 0;
+  bool estimates_offset_ = false;
+  double offset_sigma_ = 0;
+};
+
+void register_types(TypeRegistry& registry) {
+  registry.add_vertex<VertexHeadingOffset>();
+  registry.add_edge<EdgeHeading>();
+  registry.add_edge<EdgeHeadingOffset>();
+  registry.add_sensor_model({"heading", "absolute heading of a dual antenna or a compass", columns(),
+                             options(),
+                             [](const Options& given) { return std::make_unique<Heading>(given); }});
+}
+
+}  // namespace
+}  // namespace waymark
+
+WAYMARK_PLUGIN(heading, "0.1.0", waymark::register_types);

@@ -1,0 +1,74 @@
+/// Absolute headings: what a dual antenna or a compass reads, plain or with a constant deviation that is
+/// estimated.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include <waymark/types_se2/edge_se2.hpp>
+
+namespace waymark {
+
+/// How much more than the heading a sensor reads, rad, counter-clockwise: reading = heading + offset. The
+/// deviation of a magnetometer (declination and the vehicle's iron), or how a baseline was mounted.
+struct VertexHeadingOffset {
+  static constexpr std::string_view kTag = "VERTEX_HEADING_OFFSET";
+  static constexpr int kValueSize = 1;
+  static constexpr int kTangentSize = 1;
+  static constexpr bool kLinearChart = true;
+  static constexpr std::array<std::string_view, 1> value_names() { return {"heading_offset"}; }
+  static constexpr std::array<std::string_view, 1> value_units() { return {"rad"}; }
+
+  template <typename T>
+  static T at(const double* value, const T* delta) {
+    return delta[0] + T(value[0]);
+  }
+  static void retract(double* value, const double* delta) { value[0] = wrap_angle(value[0] + delta[0]); }
+  static void local(const double* from, const double* to, double* delta) {
+    delta[0] = wrap_angle(to[0] - from[0]);
+  }
+};
+
+/// e = wrap(heading - measured). Radians, counter-clockwise from the frame's x axis (grid east).
+struct EdgeHeading {
+  static constexpr std::string_view kTag = "EDGE_HEADING";
+  static constexpr std::string_view kForm = "angle";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexSe2>;
+  static constexpr auto fields() { return std::array{field<&EdgeHeading::measured>("measured")}; }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose) const {
+    return Eigen::Matrix<T, 1, 1>(wrap_angle(T(pose.heading - T(measured))));
+  }
+  void linearize(const Pose2<double>& pose, ErrorVector<1>& e, JacobianMatrix<1, 3>& by_pose) const {
+    e = error(pose);
+    by_pose << 0, 0, 1;
+  }
+
+  double measured = 0;
+};
+
+/// e = wrap(heading + offset - measured).
+struct EdgeHeadingOffset {
+  static constexpr std::string_view kTag = "EDGE_HEADING_OFFSET";
+  static constexpr std::string_view kForm = "angle";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexSe2, VertexHeadingOffset>;
+  static constexpr auto fields() { return std::array{field<&EdgeHeadingOffset::measured>("measured")}; }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose, const T& offset) const {
+    return Eigen::Matrix<T, 1, 1>(wrap_angle(T(pose.heading + offset - T(measured))));
+  }
+  void linearize(const Pose2<double>& pose, double offset, ErrorVector<1>& e, JacobianMatrix<1, 3>& by_pose,
+                 JacobianMatrix<1, 1>& by_offset) const {
+    e = error(pose, offset);
+    by_pose << 0, 0, 1;
+    by_offset << 1;
+  }
+
+  double measured = 0;
+};
+
+}  // namespace waymark

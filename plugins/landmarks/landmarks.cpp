@@ -1,0 +1,177 @@
+#include <waymark/plugins/landmarks/landmarks.hpp>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/sensor_readings.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::string_view kOwner = "landmarks";
+
+enum Column : std::size_t { kId, kX, kY, kRange, kBearing, kSigma, kSigmaBearing, kMapX, kMapY };
+
+std::vector<SensorColumn> columns() {
+  return {{"id", "1", "", true, "which landmark: a whole number"},
+          {"x", "m", "", false, "seen from the sensor: forward"},
+          {"y", "m", "", false, "to the left"},
+          {"range", "m", "", false, "distance, instead of x and y"},
+          {"bearing", "rad", "ccw", false, "direction from straight ahead, with range"},
+          {"sigma", "m", "", false, "standard deviation of x and y, or of the range"},
+          {"sigma_bearing", "rad", "", false, "standard deviation of the bearing"},
+          {"map_x", "m", "", false, "where the landmark is known to be, in the frame: x"},
+          {"map_y", "m", "", false, "y"}};
+}
+
+std::vector<OptionInfo> options() {
+  return {
+      {"sigma", "0.2", "m", "sigma of x and y, or of the range, where the row gives none; in [1e-6, 1e4]"},
+      {"sigma_bearing_deg", "0.5", "deg", "sigma of bearings that state none; in [1e-4, 180]"},
+      {"mount_x", "0", "m", "the sensor in the body frame, forward; in [-100, 100]"},
+      {"mount_y", "0", "m", "to the left; in [-100, 100]"},
+      {"mount_deg", "0", "deg", "its heading in the body frame; in [-360, 360]"}};
+}
+
+/// The landmarks of a drive by their ids.
+class Landmarks {
+ public:
+  Landmarks(const SensorTable& readings, Graph& graph) : graph_(graph) { read_map(readings); }
+
+  /// The vertex of a landmark, made at its first sight: where the map says, and fixed, or where it is seen.
+  VertexIndex vertex(std::int64_t id, const Eigen::Vector2d& seen_at) {
+    const auto [entry, is_new] = vertices_.try_emplace(id, -1);
+    if (!is_new) return entry->second;
+    const auto known = map_.find(id);
+    const Eigen::Vector2d place = known == map_.end() ? seen_at : known->second;
+    entry->second = graph_.add_vertex<VertexXy>(graph_.free_id(), {place[0], place[1]});
+    graph_.set_fixed(entry->second, known != map_.end());
+    return entry->second;
+  }
+
+  static std::int64_t id_of(const SensorTable& readings, std::size_t row) {
+    constexpr double kLargest = 9e15;  // whole numbers are exact in a double up to here
+    const double id = readings.at(row, kId);
+    if (id != std::floor(id) || std::abs(id) > kLargest)
+      fail_reading(readings, row, "id", "expected a whole number, got " + shortest(id));
+    return static_cast<std::int64_t>(id);
+  }
+
+ private:
+  void read_map(const SensorTable& readings) {
+    for (std::size_t row = 0; row < readings.size(); ++row) {
+      const Eigen::Vector2d place(readings.at(row, kMapX), readings.at(row, kMapY));
+      const bool has_x = !std::isnan(place[0]);
+      const bool has_y = !std::isnan(place[1]);
+      if (!has_x && !has_y) continue;
+      if (has_x != has_y)
+        fail_reading(readings, row, has_x ? "map_y" : "map_x", "map_x and map_y go together");
+      const auto [entry, is_new] = map_.try_emplace(id_of(readings, row), place);
+      if (!is_new && entry->second != place)
+        fail_reading(readings, row, "map_x", "another row has this landmark at another place");
+    }
+  }
+
+  Graph& graph_;
+  std::map<std::int64_t, VertexIndex> vertices_;
+  std::map<std::int64_t, Eigen::Vector2d> map_;
+};
+
+class LandmarkSensor final : public SensorModel {
+ public:
+  explicit LandmarkSensor(const Options& given) {
+    const std::vector<OptionInfo> known = options();
+    check_option_names(kOwner, given, known);
+    const auto number = [&](const char* name, double low, double high) {
+      return number_option(kOwner, given, known, name, low, high);
+    };
+    sigma_ = number("sigma", 1e-6, 1e4);
+    sigma_bearing_ = kDegree * number("sigma_bearing_deg", 1e-4, 180);
+    mount_ = Pose2<double>(number("mount_x", -100, 100), number("mount_y", -100, 100),
+                           kDegree * number("mount_deg", -360, 360));
+  }
+
+  void build(const SensorInput& input, Graph& graph) const override {
+    Landmarks landmarks(input.readings, graph);
+    for (std::size_t row = 0; row < input.readings.size(); ++row) {
+      const std::int64_t id = Landmarks::id_of(input.readings, row);
+      const bool polar = is_polar(input.readings, row);
+      const double sigma = sigma_of_reading(input.readings, row, kSigma, "sigma", sigma_);
+      const double sigma_bearing =
+          sigma_of_reading(input.readings, row, kSigmaBearing, "sigma_bearing", sigma_bearing_);
+      const auto place = find_place(input.nodes, input.readings.stamps[row]);
+      if (!place) continue;
+      const double scale = grid_scale_at(input, input.readings.stamps[row]);
+      if (polar) {
+        add_polar(input.readings, row, scale, *place, {sigma, sigma_bearing}, id, landmarks, graph);
+      } else {
+        add_cartesian(input.readings, row, scale, *place, sigma, id, landmarks, graph);
+      }
+    }
+  }
+
+ private:
+  /// Whether a row gives range and bearing, not x and y.
+  static bool is_polar(const SensorTable& readings, std::size_t row) {
+    const auto has = [&](Column column) { return !std::isnan(readings.at(row, column)); };
+    if (!has(kRange) && !has(kBearing)) {
+      if (!has(kX)) fail_reading(readings, row, "x", "no value: give x and y, or range and bearing");
+      if (!has(kY)) fail_reading(readings, row, "y", "no value: x and y go together");
+      return false;
+    }
+    if (has(kX) || has(kY))
+      fail_reading(readings, row, "range", "give x and y, or range and bearing, not both");
+    if (!has(kRange)) fail_reading(readings, row, "range", "no value: range and bearing go together");
+    if (!has(kBearing)) fail_reading(readings, row, "bearing", "no value: range and bearing go together");
+    if (!(readings.at(row, kRange) > 0))
+      fail_reading(readings, row, "range", "must be above 0, got " + shortest(readings.at(row, kRange)));
+    return true;
+  }
+
+  void add_polar(const SensorTable& readings, std::size_t row, double scale, const ReadingPlace& place,
+                 const Eigen::Vector2d& sigmas, std::int64_t id, Landmarks& landmarks, Graph& graph) const {
+    const Pose2<double> sensor = compose(place.ahead, mount_);
+    EdgeSe2XyRangeBearing edge;
+    edge.measured = {scale * readings.at(row, kRange),
+                     wrap_angle(readings.at(row, kBearing) + sensor.heading)};
+    edge.sensor = sensor.position;
+    const Eigen::Vector2d along(edge.measured[0], 0);
+    const Eigen::Vector2d seen = sensor.position + rotate(edge.measured[1], along);
+    graph.add_edge(edge, {place.pose, landmarks.vertex(id, in_frame(graph, place.pose, seen))},
+                   sigmas.cwiseAbs2().cwiseInverse().asDiagonal());
+  }
+
+  void add_cartesian(const SensorTable& readings, std::size_t row, double scale, const ReadingPlace& place,
+                     double sigma, std::int64_t id, Landmarks& landmarks, Graph& graph) const {
+    const Pose2<double> sensor = compose(place.ahead, mount_);
+    const Eigen::Vector2d z(scale * readings.at(row, kX), scale * readings.at(row, kY));
+    const Eigen::Vector2d seen = sensor.position + rotate(sensor.heading, z);
+    graph.add_edge(EdgeSe2Xy{seen}, {place.pose, landmarks.vertex(id, in_frame(graph, place.pose, seen))},
+                   Eigen::Matrix2d::Identity() / (sigma * sigma));
+  }
+
+  static Eigen::Vector2d in_frame(const Graph& graph, VertexIndex pose, const Eigen::Vector2d& seen) {
+    const auto value = graph.value(pose);
+    return Eigen::Vector2d(value[0], value[1]) + rotate(value[2], seen);
+  }
+
+  double sigma_ = 0;
+  double sigma_bearing_ = 0;
+  Pose2<double> mount_;
+};
+
+void register_types(TypeRegistry& registry) {
+  registry.add_edge<EdgeSe2XyRangeBearing>();
+  registry.add_sensor_model({"landmarks", "landmarks by id, seen as x and y or as range and bearing",
+                             columns(), options(),
+                             [](const Options& given) { return std::make_unique<LandmarkSensor>(given); }});
+}
+
+}  // namespace
+}  // namespace waymark
+
+WAYMARK_PLUGIN(landmarks, "0.1.0", waymark::register_types);

@@ -1,0 +1,43 @@
+/// Landmarks by range and bearing. Landmarks by x and y are EDGE_SE2_XY of types_se2.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <waymark/types_se2/edge_se2.hpp>
+
+namespace waymark {
+
+/// A landmark seen at a distance and in a direction from a sensor at a fixed place in the body frame:
+///   d = R^T (p_landmark - p) - sensor,  e = (|d| - range, wrap(atan2(d.y, d.x) - bearing)).
+/// Metres and radians; the bearing counts counter-clockwise from straight ahead of the body. At the sensor
+/// itself a landmark has no direction: both parts are then errors of a landmark straight ahead at distance 0,
+/// with no derivative.
+struct EdgeSe2XyRangeBearing {
+  static constexpr std::string_view kTag = "EDGE_SE2_XY_RANGE_BEARING";
+  static constexpr std::string_view kForm = "range, bearing";
+  static constexpr int kErrorDimension = 2;
+  using Vertices = VertexList<VertexSe2, VertexXy>;
+  static constexpr bool kRelative = true;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeSe2XyRangeBearing::measured>("measured"),
+                      field<&EdgeSe2XyRangeBearing::sensor>("sensor")};
+  }
+
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& pose, const Vector2<T>& landmark) const {
+    using std::atan2;
+    const Vector2<T> seen = rotate_back(pose.heading, Vector2<T>(landmark - pose.position));
+    const Vector2<T> d = seen - constant_vector<T>(sensor);
+    const T range = length(d);
+    const bool has_direction = range * range > T(0.0);
+    const T bearing = has_direction ? T(atan2(d[1], d[0])) : T(0.0);
+    return Vector2<T>(range - T(measured[0]), wrap_angle(T(bearing - T(measured[1]))));
+  }
+
+  Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< range, bearing
+  Eigen::Vector2d sensor = Eigen::Vector2d::Zero();    ///< in the body frame: x forward, y left
+};
+
+}  // namespace waymark

@@ -1,0 +1,73 @@
+#include <waymark/plugins/lane/lane.hpp>
+
+#include <cmath>
+
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/sensor_readings.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr std::string_view kOwner = "lane";
+
+enum Column : std::size_t { kOffset, kAx, kAy, kBx, kBy, kSigma };
+
+std::vector<SensorColumn> columns() {
+  return {{"offset", "m", "", true, "how far the vehicle is to the left of the line from a to b"},
+          {"ax", "m", "", true, "a point of the line in the frame: x"},
+          {"ay", "m", "", true, "y"},
+          {"bx", "m", "", true, "another point, in the direction of the line: x"},
+          {"by", "m", "", true, "y"},
+          {"sigma", "m", "", false, "standard deviation of the offset"}};
+}
+
+std::vector<OptionInfo> options() {
+  return {{"sigma", "0.2", "m", "sigma of offsets that state none; in [1e-6, 1e4]"},
+          {"lever_x", "0", "m", "the vehicle's measured point in the body frame, forward; in [-100, 100]"},
+          {"lever_y", "0", "m", "to the left; in [-100, 100]"}};
+}
+
+class Lane final : public SensorModel {
+ public:
+  explicit Lane(const Options& given) {
+    const std::vector<OptionInfo> known = options();
+    check_option_names(kOwner, given, known);
+    sigma_ = number_option(kOwner, given, known, "sigma", 1e-6, 1e4);
+    lever_ = {number_option(kOwner, given, known, "lever_x", -100, 100),
+              number_option(kOwner, given, known, "lever_y", -100, 100)};
+  }
+
+  void build(const SensorInput& input, Graph& graph) const override {
+    const SensorTable& readings = input.readings;
+    for (std::size_t row = 0; row < readings.size(); ++row) {
+      const double sigma = sigma_of_reading(readings, row, kSigma, "sigma", sigma_);
+      const Eigen::Vector2d a(readings.at(row, kAx), readings.at(row, kAy));
+      const Eigen::Vector2d b(readings.at(row, kBx), readings.at(row, kBy));
+      if (a == b) fail_reading(readings, row, "bx", "a and b are one point: they give no line");
+      const auto place = find_place(input.nodes, readings.stamps[row]);
+      if (!place) continue;
+      EdgeLateralOffset edge;
+      edge.offset = grid_scale_at(input, readings.stamps[row]) * readings.at(row, kOffset);
+      edge.point = a;
+      edge.heading = std::atan2(b[1] - a[1], b[0] - a[0]);
+      edge.lever = place->ahead.position + rotate(place->ahead.heading, lever_);
+      graph.add_edge(edge, {place->pose}, Eigen::Matrix<double, 1, 1>(1 / (sigma * sigma)));
+    }
+  }
+
+ private:
+  double sigma_ = 0;
+  Eigen::Vector2d lever_{0, 0};
+};
+
+void register_types(TypeRegistry& registry) {
+  registry.add_edge<EdgeLateralOffset>();
+  registry.add_sensor_model({"lane", "lateral offsets to straight lines of a map", columns(), options(),
+                             [](const Options& given) { return std::make_unique<Lane>(given); }});
+}
+
+}  // namespace
+}  // namespace waymark
+
+WAYMARK_PLUGIN(lane, "0.1.0", waymark::register_types);

@@ -1,0 +1,105 @@
+#include <cmath>
+#include <numbers>
+
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/sensor_readings.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::string_view kOwner = "loop_closure";
+
+enum Column : std::size_t { kDt, kX, kY, kHeading, kSigma, kSigmaHeading };
+
+std::vector<SensorColumn> columns() {
+  return {{"dt", "s", "", true, "time of the second pose minus that of the first; may be negative"},
+          {"x", "m", "", true, "second pose seen from the first: forward"},
+          {"y", "m", "", true, "to the left"},
+          {"heading", "rad", "ccw", true, "turn from the first to the second"},
+          {"sigma", "m", "", false, "standard deviation of x and of y"},
+          {"sigma_heading", "rad", "", false, "standard deviation of the heading"}};
+}
+
+std::vector<OptionInfo> options() {
+  return {
+      {"sigma", "0.1", "m", "sigma of x and y where the row gives none; in [1e-6, 1e4]"},
+      {"sigma_heading_deg", "0.5", "deg", "sigma of the heading where the row gives none; in [1e-4, 180]"},
+      {"mount_x", "0", "m", "the matching sensor in the body frame, forward; in [-100, 100]"},
+      {"mount_y", "0", "m", "to the left; in [-100, 100]"},
+      {"mount_deg", "0", "deg", "its heading in the body frame; in [-360, 360]"}};
+}
+
+class LoopClosure final : public SensorModel {
+ public:
+  explicit LoopClosure(const Options& given) {
+    const std::vector<OptionInfo> known = options();
+    check_option_names(kOwner, given, known);
+    const auto number = [&](const char* name, double low, double high) {
+      return number_option(kOwner, given, known, name, low, high);
+    };
+    sigma_ = number("sigma", 1e-6, 1e4);
+    sigma_heading_ = kDegree * number("sigma_heading_deg", 1e-4, 180);
+    mount_ = Pose2<double>(number("mount_x", -100, 100), number("mount_y", -100, 100),
+                           kDegree * number("mount_deg", -360, 360));
+  }
+
+  void build(const SensorInput& input, Graph& graph) const override {
+    const SensorTable& readings = input.readings;
+    for (std::size_t row = 0; row < readings.size(); ++row) {
+      const double sigma = sigma_of_reading(readings, row, kSigma, "sigma", sigma_);
+      const double sigma_heading =
+          sigma_of_reading(readings, row, kSigmaHeading, "sigma_heading", sigma_heading_);
+      const Stamp moment = readings.stamps[row];
+      const auto from = find_place(input.nodes, moment);
+      const auto to = find_place(input.nodes, moment_later(readings, row));
+      if (!from || !to) continue;
+      if (from->node == to->node)
+        fail_reading(readings, row, "dt",
+                     "both poses fall on one node of the drive: the odometry's interval is longer");
+      const double scale = grid_scale_at(input, moment);
+      const Pose2<double> seen(scale * readings.at(row, kX), scale * readings.at(row, kY),
+                               readings.at(row, kHeading));
+      add_edge(*from, *to, seen, Eigen::Vector3d(sigma, sigma, sigma_heading), graph);
+    }
+  }
+
+ private:
+  static Stamp moment_later(const SensorTable& readings, std::size_t row) {
+    constexpr double kLongest_s = 1e7;
+    const double dt = readings.at(row, kDt);
+    if (!(std::abs(dt) < kLongest_s)) fail_reading(readings, row, "dt", "too long: " + shortest(dt) + " s");
+    return Stamp{readings.stamps[row].nanoseconds + std::llround(dt * 1e9)};
+  }
+
+  /// The sensor at the two moments stood at A = ahead_from mount and B = ahead_to mount in the frames of the
+  /// nodes, so the nodes' relative pose is A Z B^-1, and its error is Ad(B) times that of Z.
+  void add_edge(const ReadingPlace& from, const ReadingPlace& to, const Pose2<double>& seen,
+                const Eigen::Vector3d& sigmas, Graph& graph) const {
+    const Pose2<double> sensor_from = compose(from.ahead, mount_);
+    const Pose2<double> sensor_to = compose(to.ahead, mount_);
+    const Pose2<double> z = compose(compose(sensor_from, seen), inverse(sensor_to));
+    const Eigen::Matrix3d back = se2_adjoint(inverse(sensor_to));
+    const Eigen::Vector3d weights = sigmas.cwiseAbs2().cwiseInverse();
+    const Eigen::Matrix3d information = back.transpose() * weights.asDiagonal() * back;
+    graph.add_edge(EdgeSe2{{z.position[0], z.position[1], wrap_angle(z.heading)}}, {from.pose, to.pose},
+                   0.5 * (information + information.transpose()));
+  }
+
+  double sigma_ = 0;
+  double sigma_heading_ = 0;
+  Pose2<double> mount_;
+};
+
+void register_types(TypeRegistry& registry) {
+  registry.add_sensor_model({"loop_closure", "relative poses between two moments, from scan matching",
+                             columns(), options(),
+                             [](const Options& given) { return std::make_unique<LoopClosure>(given); }});
+}
+
+}  // namespace
+}  // namespace waymark
+
+WAYMARK_PLUGIN(loop_closure, "0.1.0", waymark::register_types);

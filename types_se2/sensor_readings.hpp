@@ -1,0 +1,37 @@
+/// Small steps that every sensor model takes: where a reading meets the poses, what its row says, what is
+/// wrong with it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <waymark/core/modeling.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark {
+
+/// The pose that a reading is tied to.
+struct ReadingPlace {
+  std::size_t node = 0;
+  VertexIndex pose = -1;
+  Pose2<double> ahead;  ///< from the node to the body at the reading's own moment, by the odometry
+};
+
+/// The nearest node of a moment. Empty outside the drive, and where the next node is more than half a second
+/// away: in a gap of the odometry no motion is known.
+[[nodiscard]] std::optional<ReadingPlace> find_place(const DriveNodes& nodes, Stamp moment);
+
+/// Grid metres per metre on the ground at a moment: that of the fix nearest in time; 1 without fixes.
+[[nodiscard]] double grid_scale_at(const SensorInput& input, Stamp moment);
+
+/// @throws InputError "row 3 (time 1003.2): column 'id': " and what is wrong; rows count from 1, in order of
+/// time
+[[noreturn]] void fail_reading(const SensorTable& readings, std::size_t row, std::string_view column,
+                               const std::string& what);
+
+/// A standard deviation of a row, or `otherwise` where the row gives none. @throws InputError: not above 0
+[[nodiscard]] double sigma_of_reading(const SensorTable& readings, std::size_t row, std::size_t column,
+                                      std::string_view name, double otherwise);
+
+}  // namespace waymark
