@@ -147,9 +147,12 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
     field = field_named(quantity.name);
     if (!field) field = field_named(quantity.default_column);
     if (!field && quantity.required)
-      throw InputError(fmt::format("{}no column for {} (neither '{}' nor '{}'): name it under columns{}",
-                                   place, quantity.name, quantity.name, quantity.default_column,
-                                   columns_present()));
+      throw InputError(
+          fmt::format("{}no column for {} ({}): name it under columns{}", place, quantity.name,
+                      quantity.name == quantity.default_column
+                          ? fmt::format("no '{}'", quantity.name)
+                          : fmt::format("neither '{}' nor '{}'", quantity.name, quantity.default_column),
+                      columns_present()));
     if (!field) return;
     notes_.push_back(fmt::format("{}{} is column '{}' by default", place, quantity.name, names_[*field]));
   }

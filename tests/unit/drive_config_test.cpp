@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
 
+#include <map>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <waymark/core/error.hpp>
 #include <waymark/tools/drive/config.hpp>
@@ -184,6 +186,88 @@ TEST_CASE("drive.yaml: wrong types and ranges") {
         "kn, mm/s");
   CHECK(error_of_gnss("  columns:\n    course: {unit: deg}\n") ==
         "tours/drive.yaml:5:13: no column is given for course");
+}
+
+TEST_CASE("drive.yaml: calibration is on, off, or stated state by state") {
+  const auto calibration = [](const std::string& more) {
+    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n" + more).calibration;
+  };
+  using Map = std::map<std::string, std::string>;
+  CHECK(calibration("").empty());
+  CHECK(calibration("calibration: off\n").empty());
+  CHECK(calibration("calibration: on\n") == default_calibration());
+  CHECK(default_calibration().count("gyro_bias") == 1);
+  CHECK(default_calibration().count("speed_scale") == 1);
+  CHECK(calibration("calibration: {gyro_bias: constant, gyro_bias_sigma: 0.02}\n") ==
+        Map{{"gyro_bias", "constant"}, {"gyro_bias_sigma", "0.02"}});
+  CHECK(error_of("calibration: maybe\n") ==
+        "tours/drive.yaml:3:14: calibration: expected true or false, got 'maybe'");
+  const DriveConfig config =
+      parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\ncalibration: {time_offset: constant}\n");
+  CHECK(config.places.at("calibration.time_offset") == "tours/drive.yaml:3:28: ");
+}
+
+TEST_CASE("drive.yaml: the odometry's model") {
+  const DriveConfig config = parse("odometry: {file: o.csv, model: bicycle}\ngnss: {file: g.csv}\n");
+  CHECK(config.odometry_model == "bicycle");
+  CHECK(config.places.at("odometry.model") == "tours/drive.yaml:1:32: ");
+  CHECK(parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n").odometry_model == "constant_twist");
+}
+
+TEST_CASE("drive.yaml: sensors are a list or a single one, with logs and options of their own") {
+  const DriveConfig config = parse(R"(
+folder: logs
+odometry: {file: o.csv}
+gnss: {file: g.csv}
+sensors:
+  - name: heading
+    file: compass.csv
+    separator: ";"
+    columns: {heading: {column: hdg, unit: deg, convention: cw_from_north}}
+    time: {scale: unix, offset: 0.1}
+    options: {sigma_deg: 0.5}
+  - {name: gnss_velocity}
+)");
+  REQUIRE(config.sensors.size() == 2);
+  const SensorConfig& compass = config.sensors[0];
+  CHECK(compass.name == "heading");
+  CHECK(compass.place == "tours/drive.yaml:6:5: ");
+  CHECK(compass.log->file == "tours/logs/compass.csv");
+  CHECK(compass.log->request.stream == StreamKind::sensor);
+  CHECK(compass.log->request.separator == ';');
+  CHECK(compass.log->request.columns.at("heading").convention == "cw_from_north");
+  CHECK(compass.log->request.time_scale == TimeScale::unix_time);
+  CHECK(compass.log->request.time_offset_s == 0.1);
+  CHECK(compass.options.at("sigma_deg") == "0.5");
+  CHECK(!config.sensors[1].log);
+
+  const DriveConfig single =
+      parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\nsensors: {name: lane, file: m.csv}\n");
+  REQUIRE(single.sensors.size() == 1);
+  CHECK(single.sensors[0].name == "lane");
+
+  CHECK(error_of("sensors: [{file: m.csv}]\n") == "tours/drive.yaml:3:11: sensors: 'name' is missing");
+  CHECK(error_of("sensors: heading\n") ==
+        "tours/drive.yaml:3:10: sensors: expected a mapping (key: value), got 'heading'");
+  CHECK(error_of("sensors: [{name: lane, option: {}}]\n") ==
+        "tours/drive.yaml:3:24: unknown key 'option' in sensors; did you mean 'options'?");
+  CHECK(error_of("sensors: [{name: lane, antenna: [1, 2]}]\n").find("unknown key 'antenna' in sensors") !=
+        std::string::npos);
+  CHECK(error_of("sensor: {name: lane}\n") ==
+        "tours/drive.yaml:3:1: unknown key 'sensor'; did you mean 'sensors'?");
+}
+
+TEST_CASE("drive.yaml: plugins are names, or files beside the drive.yaml") {
+  const auto plugins = [](const std::string& value) {
+    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\nplugins: " + value + "\n", "/data").plugins;
+  };
+  using Names = std::vector<std::string>;
+  CHECK(plugins("[my_sensor.so, lib/other, named, /opt/third.so]") ==
+        Names{"tours/my_sensor.so", "tours/lib/other", "named", "/opt/third.so"});
+  CHECK(plugins("my_sensor.so") == Names{"tours/my_sensor.so"});
+  CHECK(plugins("[]").empty());
+  CHECK(error_of("plugins: [[a.so]]\n") ==
+        "tours/drive.yaml:3:10: plugins: expected a list of plugin files, got a list of 1");
 }
 
 TEST_CASE("drive.yaml: what is missing, doubled or no YAML") {
