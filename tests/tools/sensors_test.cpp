@@ -110,7 +110,7 @@ TEST_CASE("sensors: course and Doppler speed come from the gnss log") {
   const std::string folder = fresh_folder();
   write_sensor_drive(folder, "  - {name: gnss_velocity, options: {speed_sigma: 0.05}}\n");
   check_refused(folder,
-                "drive.yaml:5:5: sensor gnss_velocity: no accepted fix has a course or a speed; does the "
+                "drive.yaml:6:5: sensor gnss_velocity: no accepted fix has a course or a speed; does the "
                 "gnss log have columns 'course' and 'speed'?");
   // The fixes once more, with course (cw from north, degrees) and speed.
   std::istringstream plain(read_text(folder + "gnss.csv"));
@@ -169,7 +169,7 @@ TEST_CASE(
   write_log(folder + "poles.csv", "time,id,range,azimuth",
             [](int t) { return t == 7 ? ",4.5,200,-90" : ",4,200,-90"; });
   check_refused(folder,
-                "drive.yaml:5:5: sensor landmarks: row 7 (time 1007): column 'id': expected a whole number, "
+                "drive.yaml:6:5: sensor landmarks: row 7 (time 1007): column 'id': expected a whole number, "
                 "got 4.5");
 }
 
@@ -192,17 +192,17 @@ TEST_CASE("sensors: offsets to a line of the map, in a frame that is stated") {
 TEST_CASE("sensors: what is wrong is said with its place") {
   const std::string folder = fresh_folder();
   write_sensor_drive(folder, "  - {name: compass, file: compass.csv}\n");
-  check_refused(folder, "drive.yaml:5:5: sensor compass: unknown sensor model 'compass'; there are: ");
+  check_refused(folder, "drive.yaml:6:5: sensor compass: unknown sensor model 'compass'; there are: ");
 
   write_sensor_drive(folder, "  - {name: heading}\n");
-  check_refused(folder, "drive.yaml:5:5: sensor heading: needs a log: name it with 'file: ...'");
+  check_refused(folder, "drive.yaml:6:5: sensor heading: needs a log: name it with 'file: ...'");
 
   write_sensor_drive(folder, "  - {name: gnss_velocity, file: compass.csv}\n");
-  check_refused(folder, "drive.yaml:5:5: sensor gnss_velocity: takes no log; leave out 'file'");
+  check_refused(folder, "drive.yaml:6:5: sensor gnss_velocity: takes no log; leave out 'file'");
 
   write_sensor_drive(folder, "  - {name: heading, file: compass.csv, options: {sigma: 1}}\n");
   check_refused(folder,
-                "drive.yaml:5:5: sensor heading: heading: unknown option 'sigma'; it has mounting_deg, "
+                "drive.yaml:6:5: sensor heading: heading: unknown option 'sigma'; it has mounting_deg, "
                 "sigma_deg, offset, offset_sigma_deg");
 
   write_sensor_drive(folder, "  - {name: heading, file: compass.csv}\n");

@@ -81,7 +81,7 @@ gate: {enabled: false, max_angle_deg: 2, max_displacement_m: 20}
 gap: {longer_than: 1, policy: error, noise_factor: 10}
 snap: 0.002
 start: dead_reckoning
-modeling: {name: g2, options: {weight: 1e6}}
+modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
 )");
   CHECK(config.name == "Somewhere");
   CHECK(config.time_scale == TimeScale::utc);
@@ -122,6 +122,7 @@ modeling: {name: g2, options: {weight: 1e6}}
   CHECK(config.timeline.snap_s == 0.002);
   CHECK(config.start.method == StartMethod::dead_reckoning);
   CHECK(config.modeling == "g2");
+  CHECK(config.loss == "cauchy:1");
   CHECK(config.modeling_options.at("weight") == "1e6");
 }
 
@@ -195,13 +196,15 @@ TEST_CASE("drive.yaml: calibration is on, off, or stated state by state") {
   using Map = std::map<std::string, std::string>;
   CHECK(calibration("").empty());
   CHECK(calibration("calibration: off\n").empty());
+  CHECK(calibration("calibration: false\n").empty());
   CHECK(calibration("calibration: on\n") == default_calibration());
+  CHECK(calibration("calibration: true\n") == default_calibration());
   CHECK(default_calibration().count("gyro_bias") == 1);
   CHECK(default_calibration().count("speed_scale") == 1);
   CHECK(calibration("calibration: {gyro_bias: constant, gyro_bias_sigma: 0.02}\n") ==
         Map{{"gyro_bias", "constant"}, {"gyro_bias_sigma", "0.02"}});
   CHECK(error_of("calibration: maybe\n") ==
-        "tours/drive.yaml:3:14: calibration: expected true or false, got 'maybe'");
+        "tours/drive.yaml:3:14: calibration: expected one of on, off, true, false, got 'maybe'");
   const DriveConfig config =
       parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\ncalibration: {time_offset: constant}\n");
   CHECK(config.places.at("calibration.time_offset") == "tours/drive.yaml:3:28: ");

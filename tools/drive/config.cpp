@@ -19,6 +19,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 3> kScales{"gps", "utc", "unix"};
 constexpr std::array<std::string_view, 2> kGapPolicies{"bridge", "error"};
 constexpr std::array<std::string_view, 2> kStarts{"anchored", "dead_reckoning"};
+constexpr std::array<std::string_view, 4> kSwitch{"on", "off", "true", "false"};
+constexpr std::array kSwitchValues{true, false, true, false};
 constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
 constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
 constexpr NumberRule kAngle{std::numeric_limits<double>::min(), 180, "degrees above 0, up to 180"};
@@ -196,9 +198,8 @@ void read_calibration(const YamlSection& top, DriveConfig& config) {
   if (!top.has("calibration")) return;
   if (top.node("calibration").IsMap())
     return read_options(top, "calibration", "calibration.", config.calibration, config);
-  bool on = false;
-  top.read("calibration", on);
-  if (on) config.calibration = default_calibration();
+  const std::size_t word = *top.read_word("calibration", kSwitch);
+  if (kSwitchValues[word]) config.calibration = default_calibration();
 }
 
 void read_sensors(const YamlSection& top, DriveConfig& config) {
