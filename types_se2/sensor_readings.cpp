@@ -69,11 +69,20 @@ void fail_reading(const SensorTable& readings, std::size_t row, std::string_view
   throw InputError(message);
 }
 
+double number_of_reading(const SensorTable& readings, std::size_t row, std::size_t column,
+                         std::string_view name, double largest) {
+  const double given = readings.at(row, column);
+  if (std::abs(given) <= largest) return given;
+  fail_reading(readings, row, name,
+               "must lie in [-" + shortest(largest) + ", " + shortest(largest) + "], got " + shortest(given));
+}
+
 double sigma_of_reading(const SensorTable& readings, std::size_t row, std::size_t column,
                         std::string_view name, double otherwise) {
   const double given = readings.at(row, column);
   if (std::isnan(given)) return otherwise;
-  if (!(given > 0)) fail_reading(readings, row, name, "a sigma must be above 0, got " + shortest(given));
+  if (!(given >= 1e-9 && given <= 1e9))
+    fail_reading(readings, row, name, "a sigma must lie in [1e-9, 1e9], got " + shortest(given));
   return given;
 }
 

@@ -30,7 +30,16 @@ struct ReadingPlace {
 [[noreturn]] void fail_reading(const SensorTable& readings, std::size_t row, std::string_view column,
                                const std::string& what);
 
-/// A standard deviation of a row, or `otherwise` where the row gives none. @throws InputError: not above 0
+/// Bounds of what a reading can be: beyond them a number is garbage or in another unit.
+inline constexpr double kLargestLength_m = 1e7;
+inline constexpr double kLargestAngle_rad = 1e4;
+
+/// A number of a row. @throws InputError: beyond +-largest
+[[nodiscard]] double number_of_reading(const SensorTable& readings, std::size_t row, std::size_t column,
+                                       std::string_view name, double largest);
+
+/// A standard deviation of a row, or `otherwise` where the row gives none. @throws InputError: outside
+/// [1e-9, 1e9]
 [[nodiscard]] double sigma_of_reading(const SensorTable& readings, std::size_t row, std::size_t column,
                                       std::string_view name, double otherwise);
 

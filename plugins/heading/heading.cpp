@@ -47,9 +47,10 @@ class Heading final : public SensorModel {
     const VertexIndex offset = estimates_offset_ ? add_offset(graph) : -1;
     for (std::size_t row = 0; row < input.readings.size(); ++row) {
       const double sigma = sigma_of_reading(input.readings, row, kSigma, "sigma", sigma_);
+      const double reading = number_of_reading(input.readings, row, kHeading, "heading", kLargestAngle_rad);
       const auto place = find_place(input.nodes, input.readings.stamps[row]);
       if (!place) continue;
-      const double measured = wrap_angle(input.readings.at(row, kHeading) - mounting_ - place->ahead.heading);
+      const double measured = wrap_angle(reading - mounting_ - place->ahead.heading);
       const Eigen::Matrix<double, 1, 1> information(1 / (sigma * sigma));
       if (estimates_offset_) {
         graph.add_edge(EdgeHeadingOffset{measured}, {place->pose, offset}, information);

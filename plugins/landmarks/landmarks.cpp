@@ -70,6 +70,8 @@ class Landmarks {
       if (!has_x && !has_y) continue;
       if (has_x != has_y)
         fail_reading(readings, row, has_x ? "map_y" : "map_x", "map_x and map_y go together");
+      (void)number_of_reading(readings, row, kMapX, "map_x", kLargestLength_m);
+      (void)number_of_reading(readings, row, kMapY, "map_y", kLargestLength_m);
       const auto [entry, is_new] = map_.try_emplace(id_of(readings, row), place);
       if (!is_new && entry->second != place)
         fail_reading(readings, row, "map_x", "another row has this landmark at another place");
@@ -127,7 +129,7 @@ class LandmarkSensor final : public SensorModel {
       fail_reading(readings, row, "range", "give x and y, or range and bearing, not both");
     if (!has(kRange)) fail_reading(readings, row, "range", "no value: range and bearing go together");
     if (!has(kBearing)) fail_reading(readings, row, "bearing", "no value: range and bearing go together");
-    if (!(readings.at(row, kRange) > 0))
+    if (!(number_of_reading(readings, row, kRange, "range", kLargestLength_m) > 0))
       fail_reading(readings, row, "range", "must be above 0, got " + shortest(readings.at(row, kRange)));
     return true;
   }
@@ -137,7 +139,8 @@ class LandmarkSensor final : public SensorModel {
     const Pose2<double> sensor = compose(place.ahead, mount_);
     EdgeSe2XyRangeBearing edge;
     edge.measured = {scale * readings.at(row, kRange),
-                     wrap_angle(readings.at(row, kBearing) + sensor.heading)};
+                     wrap_angle(number_of_reading(readings, row, kBearing, "bearing", kLargestAngle_rad) +
+                                sensor.heading)};
     edge.sensor = sensor.position;
     const Eigen::Vector2d along(edge.measured[0], 0);
     const Eigen::Vector2d seen = sensor.position + rotate(edge.measured[1], along);
@@ -148,7 +151,8 @@ class LandmarkSensor final : public SensorModel {
   void add_cartesian(const SensorTable& readings, std::size_t row, double scale, const ReadingPlace& place,
                      double sigma, std::int64_t id, Landmarks& landmarks, Graph& graph) const {
     const Pose2<double> sensor = compose(place.ahead, mount_);
-    const Eigen::Vector2d z(scale * readings.at(row, kX), scale * readings.at(row, kY));
+    const Eigen::Vector2d z(scale * number_of_reading(readings, row, kX, "x", kLargestLength_m),
+                            scale * number_of_reading(readings, row, kY, "y", kLargestLength_m));
     const Eigen::Vector2d seen = sensor.position + rotate(sensor.heading, z);
     graph.add_edge(EdgeSe2Xy{seen}, {place.pose, landmarks.vertex(id, in_frame(graph, place.pose, seen))},
                    Eigen::Matrix2d::Identity() / (sigma * sigma));

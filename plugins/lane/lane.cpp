@@ -42,13 +42,17 @@ class Lane final : public SensorModel {
     const SensorTable& readings = input.readings;
     for (std::size_t row = 0; row < readings.size(); ++row) {
       const double sigma = sigma_of_reading(readings, row, kSigma, "sigma", sigma_);
-      const Eigen::Vector2d a(readings.at(row, kAx), readings.at(row, kAy));
-      const Eigen::Vector2d b(readings.at(row, kBx), readings.at(row, kBy));
+      const auto length = [&](Column column, const char* name) {
+        return number_of_reading(readings, row, column, name, kLargestLength_m);
+      };
+      const Eigen::Vector2d a(length(kAx, "ax"), length(kAy, "ay"));
+      const Eigen::Vector2d b(length(kBx, "bx"), length(kBy, "by"));
+      const double offset = length(kOffset, "offset");
       if (a == b) fail_reading(readings, row, "bx", "a and b are one point: they give no line");
       const auto place = find_place(input.nodes, readings.stamps[row]);
       if (!place) continue;
       EdgeLateralOffset edge;
-      edge.offset = grid_scale_at(input, readings.stamps[row]) * readings.at(row, kOffset);
+      edge.offset = grid_scale_at(input, readings.stamps[row]) * offset;
       edge.point = a;
       edge.heading = std::atan2(b[1] - a[1], b[0] - a[0]);
       edge.lever = place->ahead.position + rotate(place->ahead.heading, lever_);

@@ -60,8 +60,9 @@ class LoopClosure final : public SensorModel {
         fail_reading(readings, row, "dt",
                      "both poses fall on one node of the drive: the odometry's interval is longer");
       const double scale = grid_scale_at(input, moment);
-      const Pose2<double> seen(scale * readings.at(row, kX), scale * readings.at(row, kY),
-                               readings.at(row, kHeading));
+      const Pose2<double> seen(scale * number_of_reading(readings, row, kX, "x", kLargestLength_m),
+                               scale * number_of_reading(readings, row, kY, "y", kLargestLength_m),
+                               number_of_reading(readings, row, kHeading, "heading", kLargestAngle_rad));
       add_edge(*from, *to, seen, Eigen::Vector3d(sigma, sigma, sigma_heading), graph);
     }
   }
@@ -69,8 +70,7 @@ class LoopClosure final : public SensorModel {
  private:
   static Stamp moment_later(const SensorTable& readings, std::size_t row) {
     constexpr double kLongest_s = 1e7;
-    const double dt = readings.at(row, kDt);
-    if (!(std::abs(dt) < kLongest_s)) fail_reading(readings, row, "dt", "too long: " + shortest(dt) + " s");
+    const double dt = number_of_reading(readings, row, kDt, "dt", kLongest_s);
     return Stamp{readings.stamps[row].nanoseconds + std::llround(dt * 1e9)};
   }
 

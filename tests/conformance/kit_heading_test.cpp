@@ -131,7 +131,7 @@ TEST_CASE("heading: rows that make no sense are named, those outside the drive o
   readings.add(kit_stamp(-5), {{"heading", 0}});
   readings.add(kit_stamp(0.5), {{"heading", 0}, {"sigma", -0.1}});
   CHECK_THROWS_WITH(drive.add_sensor("heading", readings.table()),
-                    "row 2 (time 1000.5): column 'sigma': a sigma must be above 0, got -0.1");
+                    "row 2 (time 1000.5): column 'sigma': a sigma must lie in [1e-9, 1e9], got -0.1");
   Readings outside("heading");
   outside.add(kit_stamp(-5), {{"heading", 0}});
   outside.add(kit_stamp(8), {{"heading", 0}});

@@ -193,6 +193,8 @@ TEST_CASE("landmarks: rows that make no sense are named by row and column") {
         place + "'range': give x and y, or range and bearing, not both");
   CHECK(error_of({{"id", 1}, {"x", 1}, {"y", 1}, {"map_x", 1}}) ==
         place + "'map_y': map_x and map_y go together");
+  CHECK(error_of({{"id", 1}, {"x", 1}, {"y", -1e8}}) ==
+        place + "'y': must lie in [-1e+07, 1e+07], got -1e+08");
   CHECK(error_of({{"id", 1}, {"x", 1}, {"y", 1}, {"sigma", 0}}) ==
-        place + "'sigma': a sigma must be above 0, got 0");
+        place + "'sigma': a sigma must lie in [1e-9, 1e9], got 0");
 }

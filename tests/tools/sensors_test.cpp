@@ -223,8 +223,15 @@ TEST_CASE("sensors: what is wrong is said with its place") {
   check_refused(folder,
                 "compass.csv:1:1: no column for heading (no 'heading'): name it under columns; columns "
                 "present: time, hdg");
+  write_text(folder + "compass.csv", "time,heading\n99,0\n98,0\n");
+  const auto apart = run({"convert", folder + "drive.yaml", "-o", folder + "apart.graph"});
+  CHECK(apart.code == 0);
+  CHECK(contains(apart.err, "warning: " + folder +
+                                "drive.yaml:6:5: sensor heading: none of its 2 readings lies within "
+                                "the drive; is its clock (time: scale, week, offset) right?"));
   write_text(folder + "compass.csv", "time,heading,sigma\n1001,0.05,0.01\n1002,0.1,0\n");
-  check_refused(folder, "sensor heading: row 2 (time 1002): column 'sigma': a sigma must be above 0, got 0");
+  check_refused(folder,
+                "sensor heading: row 2 (time 1002): column 'sigma': a sigma must lie in [1e-9, 1e9], got 0");
 
   write_sensor_drive(folder,
                      "  - {name: heading, file: compass.csv, columns: {heading: {column: heading, unit: "

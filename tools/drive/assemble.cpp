@@ -134,7 +134,9 @@ DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& conf
     document.fixes[i].vertex = static_cast<VertexId>(timeline.fix_node[i]) + 1;
     skeleton.motion_at_fixes.push_back(motion_at(nodes, timeline.fix_node[i]));
   }
-  add_sensors(config, drive, nodes, accepted_fixes(document.fixes), registry, document.graph);
+  for (std::string& warning :
+       add_sensors(config, drive, nodes, accepted_fixes(document.fixes), registry, document.graph))
+    skeleton.warnings.push_back(std::move(warning));
   for (const Interval& interval : timeline.intervals) {
     skeleton.distance_m += std::abs(interval.speed_mps) * interval.dt_s;
   }

@@ -45,6 +45,11 @@ SensorTable sorted(const SensorTable& table) {
   return result;
 }
 
+bool lie_apart(const SensorTable& readings, const DriveNodes& nodes) {
+  return readings.size() > 0 && std::none_of(readings.stamps.begin(), readings.stamps.end(),
+                                             [&](Stamp s) { return nearest_node(nodes, s).has_value(); });
+}
+
 }  // namespace
 
 void resolve_sensors(DriveConfig& config, const TypeRegistry& registry) {
@@ -83,17 +88,25 @@ SensorTable prepare_readings(const DriveLogs::Log& log, std::span<const SensorCo
   return table;
 }
 
-void add_sensors(const DriveConfig& config, const PreparedDrive& drive, const DriveNodes& nodes,
-                 std::span<const Fix> fixes, const TypeRegistry& registry, Graph& graph) {
+std::vector<std::string> add_sensors(const DriveConfig& config, const PreparedDrive& drive,
+                                     const DriveNodes& nodes, std::span<const Fix> fixes,
+                                     const TypeRegistry& registry, Graph& graph) {
   static const SensorTable kNone;
+  std::vector<std::string> warnings;
   for (std::size_t i = 0; i < config.sensors.size(); ++i) {
     const SensorConfig& sensor = config.sensors[i];
     at_place_of(sensor, [&] {
       const SensorTable& readings = i < drive.sensors.size() ? drive.sensors[i] : kNone;
       registry.make_sensor_model(sensor.name, sensor.options)
           ->build({nodes, fixes, drive.antenna_m, readings}, graph);
+      if (lie_apart(readings, nodes))
+        warnings.push_back(
+            fmt::format("{}sensor {}: none of its {} readings lies within the drive; is its "
+                        "clock (time: scale, week, offset) right?",
+                        sensor.place, sensor.name, readings.size()));
     });
   }
+  return warnings;
 }
 
 }  // namespace waymark

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include <waymark/core/registry.hpp>
@@ -26,8 +27,10 @@ void resolve_sensors(DriveConfig& config, const TypeRegistry& registry);
 
 /// Lets every sensor add its vertices and edges.
 /// @param fixes  accepted ones
+/// @return warnings: sensors none of whose readings lies within the drive
 /// @throws InputError what a model throws, with the sensor's place in the drive.yaml
-void add_sensors(const DriveConfig& config, const PreparedDrive& drive, const DriveNodes& nodes,
-                 std::span<const Fix> fixes, const TypeRegistry& registry, Graph& graph);
+[[nodiscard]] std::vector<std::string> add_sensors(const DriveConfig& config, const PreparedDrive& drive,
+                                                   const DriveNodes& nodes, std::span<const Fix> fixes,
+                                                   const TypeRegistry& registry, Graph& graph);
 
 }  // namespace waymark
