@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/options.hpp>
@@ -43,6 +44,20 @@ std::optional<ReadingPlace> find_place(const DriveNodes& nodes, Stamp moment) {
     place.ahead = se2_exp<double>(nearest->ahead_s * twist);
   }
   return place;
+}
+
+std::vector<OptionInfo> mount_options() {
+  return {{"mount_x", "0", "m", "the sensor in the body frame, forward; in [-100, 100]"},
+          {"mount_y", "0", "m", "to the left; in [-100, 100]"},
+          {"mount_deg", "0", "deg", "its heading in the body frame; in [-360, 360]"}};
+}
+
+Pose2<double> read_mount(std::string_view owner, const Options& given) {
+  const std::vector<OptionInfo> known = mount_options();
+  const double x = number_option(owner, given, known, "mount_x", -100, 100);
+  const double y = number_option(owner, given, known, "mount_y", -100, 100);
+  const double heading = number_option(owner, given, known, "mount_deg", -360, 360);
+  return {x, y, heading * std::numbers::pi / 180};
 }
 
 double grid_scale_at(const SensorInput& input, Stamp moment) {

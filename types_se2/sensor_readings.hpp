@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <waymark/core/modeling.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -21,6 +22,11 @@ struct ReadingPlace {
 /// The nearest node of a moment. Empty outside the drive, and where the next node is more than half a second
 /// away: in a gap of the odometry no motion is known.
 [[nodiscard]] std::optional<ReadingPlace> find_place(const DriveNodes& nodes, Stamp moment);
+
+/// The options mount_x, mount_y (m) and mount_deg: where a sensor sits in the body frame, and its heading.
+[[nodiscard]] std::vector<OptionInfo> mount_options();
+/// @throws UsageError
+[[nodiscard]] Pose2<double> read_mount(std::string_view owner, const Options& given);
 
 /// Grid metres per metre on the ground at a moment: that of the fix nearest in time; 1 without fixes.
 [[nodiscard]] double grid_scale_at(const SensorInput& input, Stamp moment);

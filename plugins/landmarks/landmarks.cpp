@@ -29,12 +29,11 @@ std::vector<SensorColumn> columns() {
 }
 
 std::vector<OptionInfo> options() {
-  return {
+  std::vector<OptionInfo> all = {
       {"sigma", "0.2", "m", "sigma of x and y, or of the range, where the row gives none; in [1e-6, 1e4]"},
-      {"sigma_bearing_deg", "0.5", "deg", "sigma of bearings that state none; in [1e-4, 180]"},
-      {"mount_x", "0", "m", "the sensor in the body frame, forward; in [-100, 100]"},
-      {"mount_y", "0", "m", "to the left; in [-100, 100]"},
-      {"mount_deg", "0", "deg", "its heading in the body frame; in [-360, 360]"}};
+      {"sigma_bearing_deg", "0.5", "deg", "sigma of bearings that state none; in [1e-4, 180]"}};
+  for (const OptionInfo& option : mount_options()) all.push_back(option);
+  return all;
 }
 
 /// The landmarks of a drive by their ids.
@@ -93,8 +92,7 @@ class LandmarkSensor final : public SensorModel {
     };
     sigma_ = number("sigma", 1e-6, 1e4);
     sigma_bearing_ = kDegree * number("sigma_bearing_deg", 1e-4, 180);
-    mount_ = Pose2<double>(number("mount_x", -100, 100), number("mount_y", -100, 100),
-                           kDegree * number("mount_deg", -360, 360));
+    mount_ = read_mount(kOwner, given);
   }
 
   void build(const SensorInput& input, Graph& graph) const override {
