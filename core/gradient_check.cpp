@@ -62,15 +62,17 @@ class ErrorAlongVertex {
   std::vector<Eigen::MatrixXd> unused_;
 };
 
-/// Takes over the largest disagreement of one Jacobian, beyond what the differences are good to.
+/// Takes over the largest disagreement of one Jacobian. Where the differences themselves are good to less
+/// than the tolerance, agreeing within that says nothing.
 void compare(const Eigen::MatrixXd& given, const NumericJacobian& numeric, std::size_t edge, std::size_t k,
              GradientCheck& result) {
   const Eigen::MatrixXd& reference = numeric.jacobian;
   for (Eigen::Index row = 0; row < reference.rows(); ++row) {
     for (Eigen::Index column = 0; column < reference.cols(); ++column) {
       const double expected = reference(row, column);
-      const double beyond = std::abs(given(row, column) - expected) - numeric.tolerance;
-      double off = std::max(beyond, 0.0) / (1 + std::abs(expected));  // NaN stays NaN
+      const double size = 1 + std::abs(expected);
+      double off = std::abs(given(row, column) - expected) / size;
+      if (numeric.tolerance > kGradientTolerance * size && off * size <= numeric.tolerance) continue;
       if (std::isnan(off)) off = std::numeric_limits<double>::infinity();
       if (off <= result.error) continue;
       result = {result.edges,       off,     edge, k, static_cast<int>(row), static_cast<int>(column),

@@ -23,8 +23,8 @@ struct NumericJacobian {
 /// The largest disagreement found.
 struct GradientCheck {
   std::size_t edges = 0;   ///< compared
-  double error = 0;        ///< (|given - reference| - what differences are good to) / (1 + |reference|),
-                           ///< largest over all entries; 0 where none is beyond
+  double error = 0;        ///< |given - reference| / (1 + |reference|), largest over all entries that
+                           ///< differences can judge
   std::size_t edge = 0;    ///< where
   std::size_t vertex = 0;  ///< which of the edge's vertices
   int row = 0;
