@@ -18,7 +18,8 @@ class EigenCholesky final : public LinearSolver {
   [[nodiscard]] FactorStatus factorize(std::span<const double> values) override {
     if (!all_finite(values)) return FactorStatus::not_positive_definite;
     factor_.factorize(view(values.data()));
-    return factor_.info() == Eigen::Success ? FactorStatus::ok : FactorStatus::not_positive_definite;
+    factorized_ = factor_.info() == Eigen::Success;
+    return factorized_ ? FactorStatus::ok : FactorStatus::not_positive_definite;
   }
 
   void solve(std::span<const double> b, std::span<double> x) override {
@@ -28,7 +29,7 @@ class EigenCholesky final : public LinearSolver {
   }
 
   [[nodiscard]] std::int64_t factor_size() const override {
-    return factor_.matrixL().nestedExpression().nonZeros();
+    return factorized_ ? factor_.matrixL().nestedExpression().nonZeros() : 0;
   }
   [[nodiscard]] std::string description() const override { return "eigen, simplicial"; }
 
@@ -48,6 +49,7 @@ class EigenCholesky final : public LinearSolver {
 
   ScalarPattern<int> scalar_;
   std::vector<double> pattern_only_;
+  bool factorized_ = false;
   Eigen::SimplicialLLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<int>> factor_;
 };
 

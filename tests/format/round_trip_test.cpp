@@ -89,6 +89,7 @@ TEST_CASE("the example of the specification is read and holds every statement") 
     CHECK(("\n" + example).find(std::string("\n") + statement + " ") != std::string::npos);
   }
   for (const auto& entry : test_registry().edges()) {
+    if (entry.origin != "waymark") continue;  // those of plugins are specified in their READMEs
     INFO(entry.type.tag);
     CHECK(example.find(entry.type.tag + " ") != std::string::npos);
   }

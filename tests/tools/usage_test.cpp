@@ -86,12 +86,12 @@ TEST_CASE("a plugin that cannot be loaded is a usage error that names the file")
   const std::string folder = fresh_folder();
   const RunResult missing = run({"info", "--plugin", "missing.so"}, {.folder = folder});
   CHECK(missing.code == 2);
-  CHECK(contains(missing.err, "cannot load plugin: ./missing.so: cannot open shared object file"));
+  CHECK(contains(missing.err, "missing.so: cannot read the plugin: No such file or directory"));
 
   write_text(folder + "text.so", "no library");
   const RunResult text = run({"info", "--plugin", folder + "text.so"});
   CHECK(text.code == 2);
-  CHECK(contains(text.err, "text.so"));
+  CHECK(contains(text.err, "text.so: is no shared object for this machine"));
 
   const RunResult other = run({"info", "--plugin", "libm.so.6"}, {.folder = "/lib/x86_64-linux-gnu"});
   if (!exists("/lib/x86_64-linux-gnu/libm.so.6")) {

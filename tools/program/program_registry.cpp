@@ -52,7 +52,7 @@ std::vector<fs::path> modules_in(const fs::path& folder) {
 /// A file as it stands; a name is looked up in the folders. @throws UsageError
 fs::path find_plugin(const std::string& wanted, const std::vector<fs::path>& folders) {
   const fs::path given(wanted);
-  if (given.has_parent_path() || given.extension() == ".so") return given;
+  if (given.has_parent_path() || given.has_extension()) return given;
   std::string looked;
   for (const fs::path& folder : folders) {
     const fs::path file = folder / (wanted + ".so");
