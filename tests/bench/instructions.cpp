@@ -1,5 +1,6 @@
 // Steps of an optimisation, each marked for callgrind: see README.md, "Instructions".
-//   waymark_instructions drive|grid|FILE SOLVER...
+//   waymark_instructions [--modules FOLDER] drive|grid|FILE SOLVER...
+// With --modules the plugins are loaded from there instead of those built in.
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -10,6 +11,7 @@
 
 #include <waymark/core/gauge.hpp>
 #include <waymark/core/normal_equations.hpp>
+#include <waymark/core/plugin_loader.hpp>
 #include <waymark/formats/graph_document.hpp>
 
 #include "support/problems.hpp"
@@ -32,6 +34,15 @@ void count(const std::string& name, std::size_t units, const char* unit, const W
   CALLGRIND_DUMP_STATS_AT(label.c_str());
 }
 
+TypeRegistry registry_with_modules(const std::string& folder) {
+  TypeRegistry registry;
+  register_core_types(registry);
+  register_se2_types(registry);
+  register_solvers(registry);
+  for (const char* name : {"odometry", "gnss_g1"}) load_plugin(folder + "/" + name + ".so", registry);
+  return registry;
+}
+
 Graph make_problem(const std::string& name, const TypeRegistry& registry) {
   if (name == "grid") return waymark_test::grid_walk(20'000, static_cast<int>(std::sqrt(20'000.0)));
   if (name == "drive") {
@@ -48,13 +59,16 @@ Graph make_problem(const std::string& name, const TypeRegistry& registry) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::cerr << "usage: waymark_instructions drive|grid|FILE SOLVER...\n";
+  const bool with_modules = argc > 3 && std::string_view(argv[1]) == "--modules";
+  const int first = with_modules ? 3 : 1;
+  if (argc <= first) {
+    std::cerr << "usage: waymark_instructions [--modules FOLDER] drive|grid|FILE SOLVER...\n";
     return 2;
   }
-  const TypeRegistry registry = waymark_test::full_registry();
+  const TypeRegistry registry =
+      with_modules ? registry_with_modules(argv[2]) : waymark_test::full_registry();
   GraphDocument document;
-  document.graph = make_problem(argv[1], registry);
+  document.graph = make_problem(argv[first], registry);
   const Graph& graph = document.graph;
   const std::size_t edges = graph.edge_count();
   const std::size_t poses = graph.vertex_count();
@@ -70,7 +84,7 @@ int main(int argc, char** argv) {
   NormalEquations equations(graph, structure);
   count("linearize", edges, "edge", [&] { sum += equations.linearize(graph.values()); });
   count("chi2", edges, "edge", [&] { sum += equations.chi2(graph.values()); });
-  for (int i = 2; i < argc; ++i) {
+  for (int i = first + 1; i < argc; ++i) {
     const std::string name = argv[i];
     const auto solver = registry.make_linear_solver(name);
     count(name + "_analyze", poses, "pose", [&] { solver->analyze(structure.pattern()); });
