@@ -118,7 +118,8 @@ void Loop::prepare() {
   for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
     if (graph_.batch(b).size() == 0) continue;
     const EdgeType& type = graph_.edge_type(b);
-    summary_.error_forms += (summary_.error_forms.empty() ? "" : ", ") + type.tag + " " + type.form;
+    if (!summary_.error_forms.empty()) summary_.error_forms += ", ";
+    summary_.error_forms += type.form.empty() ? type.tag : type.tag + " " + type.form;
   }
 }
 

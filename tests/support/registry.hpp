@@ -1,6 +1,11 @@
 /// The registry that the program uses, for tests.
 #pragma once
 
+#include <cstdlib>
+#include <sstream>
+#include <string>
+
+#include <waymark/core/plugin_loader.hpp>
 #include <waymark/core/registry.hpp>
 #include <waymark/plugins/builtin.hpp>
 #include <waymark/solvers/register.hpp>
@@ -8,13 +13,17 @@
 
 namespace waymark_test {
 
-/// Core, SE(2), all solvers and algorithms, all built-in plugins.
+/// Core, SE(2), all solvers and algorithms, all built-in plugins; and the modules whose files the environment
+/// variable WAYMARK_TEST_PLUGINS names, separated by colons: so the tests of every type judge theirs, too.
 [[nodiscard]] inline waymark::TypeRegistry full_registry() {
   waymark::TypeRegistry registry;
   waymark::register_core_types(registry);
   waymark::register_se2_types(registry);
   waymark::register_solvers(registry);
   waymark::register_builtin_plugins(registry);
+  const char* named = std::getenv("WAYMARK_TEST_PLUGINS");
+  std::istringstream modules(named == nullptr ? "" : named);
+  for (std::string file; std::getline(modules, file, ':');) waymark::load_plugin(file, registry);
   return registry;
 }
 

@@ -66,4 +66,4 @@ configure_file(tools/cmake/waymark.pc.in "${PROJECT_BINARY_DIR}/package/waymark.
 install(FILES "${PROJECT_BINARY_DIR}/package/waymark-core.pc" "${PROJECT_BINARY_DIR}/package/waymark.pc"
   DESTINATION "${pc_folder}" COMPONENT dev)
 
-install(DIRECTORY examples/plugin_template DESTINATION "${CMAKE_INSTALL_DATADIR}/waymark" COMPONENT dev)
+install(DIRECTORY examples/plugin_template examples/extensions DESTINATION "${CMAKE_INSTALL_DATADIR}/waymark" COMPONENT dev)

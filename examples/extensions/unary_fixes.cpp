@@ -1,0 +1,43 @@
+// A GNSS modeling: how fixes become vertices and edges. This one ties each fix to its pose by an edge on that
+// pose alone. It has the minimum of g1, whose edges begin at a fixed origin.
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/g2o_edges.hpp>
+#include <waymark/types_se2/gnss_edges.hpp>
+
+using namespace waymark;
+
+class UnaryFixes final : public GnssModeling {
+ public:
+  explicit UnaryFixes(double sigma_factor) : sigma_factor_(sigma_factor) {}
+
+  /// Called once per drive, with the poses in the graph already. Only accepted fixes come here.
+  void build(const GnssInput& input, Graph& graph) const override {
+    // What a modeling cannot take into account it refuses: the user would never know.
+    if (!input.antenna.isZero(0)) throw UsageError("unary: this modeling has no antenna lever arm; use g1");
+    for (const Fix& fix : input.fixes) {
+      const Eigen::Matrix2d information = position_information(fix) / (sigma_factor_ * sigma_factor_);
+      attach_loss(graph.add_edge(EdgePriorSe2Xy{fix.position}, {pose_vertex(fix, graph)}, information),
+                  input);
+    }
+  }
+
+ private:
+  double sigma_factor_;
+};
+
+/// Options: name, default, unit, and what is allowed. `waymark info` shows them.
+static std::vector<OptionInfo> options() {
+  return {{"sigma_factor", "1", "", "what the sigmas of the fixes are multiplied by; in [0.01, 100]"}};
+}
+
+static std::unique_ptr<GnssModeling> make(const Options& given) {
+  const std::vector<OptionInfo> known = options();
+  check_option_names("unary", given, known);
+  return std::make_unique<UnaryFixes>(number_option("unary", given, known, "sigma_factor", 0.01, 100));
+}
+
+static void register_types(TypeRegistry& registry) {
+  registry.add_gnss_modeling({"unary", "fixes are edges on one pose each", options(), make});
+}
+WAYMARK_PLUGIN(unary_fixes, "1.0.0", register_types);
