@@ -1,7 +1,6 @@
 // A log reader: the text of a log becomes time-stamped samples. The format, one record per line:
 //   O MILLISECONDS SPEED YAW_RATE               odometry, m/s and rad/s (counter-clockwise)
 //   F MILLISECONDS LATITUDE LONGITUDE SIGMA     a fix, degrees (WGS84) and m per axis
-//   T MILLISECONDS LATITUDE LONGITUDE           the reference system
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -23,38 +22,28 @@ static bool take(std::string_view& line, Number& number) {
 /// Adds the sample of a line; false where the line is no record of this format.
 static bool add_sample(std::string_view line, std::size_t line_number, const LogRequest& request,
                        LogData& data) {
-  const char letter = line[0];
+  const bool is_fix = line[0] == 'F';
   line.remove_prefix(1);
   std::int64_t milliseconds = 0;
   std::array<double, 3> n{};
-  const std::size_t count = letter == 'F' ? 3 : 2;
-  if (!take(line, milliseconds)) return false;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!take(line, n[i])) return false;
-  }
-  if (line.find_first_not_of(" \r") != line.npos) return false;
+  bool sound = take(line, milliseconds) && std::abs(milliseconds) < 3'000'000'000'000;  // no overflow
+  for (std::size_t i = 0; i < (is_fix ? 3U : 2U); ++i) sound = sound && take(line, n[i]);
+  if (!sound || line.find_first_not_of(" \r") != line.npos) return false;
+  if (is_fix && (std::abs(n[0]) > 90 || std::abs(n[1]) > 360 || n[2] <= 0)) return false;
   // The week and the offset that the drive.yaml states for this log.
   const std::int64_t week = request.gps_week * std::int64_t{604'800'000'000'000};
   const Stamp stamp{milliseconds * 1'000'000 + week + std::llround(request.time_offset_s * 1e9)};
-  if (letter == 'O') {
+  if (!is_fix) {
     data.odometry.push_back({stamp, n[0], n[1]});
     return true;
   }
-  if (std::abs(n[0]) > 90 || std::abs(n[1]) > 360 || (letter == 'F' && n[2] <= 0)) return false;
-  if (letter == 'F') {
-    GeodeticFix& fix = data.fixes.emplace_back();
-    fix.stamp = stamp;
-    fix.latitude_deg = n[0];
-    fix.longitude_deg = n[1];
-    fix.covariance_en = n[2] * n[2] * Eigen::Matrix2d::Identity();
-    fix.source = request.source;
-    fix.line = line_number;
-  } else {
-    GeodeticTruth& truth = data.truth.emplace_back();
-    truth.stamp = stamp;
-    truth.latitude_deg = n[0];
-    truth.longitude_deg = n[1];
-  }
+  GeodeticFix& fix = data.fixes.emplace_back();
+  fix.stamp = stamp;
+  fix.latitude_deg = n[0];
+  fix.longitude_deg = n[1];
+  fix.covariance_en = n[2] * n[2] * Eigen::Matrix2d::Identity();
+  fix.source = request.source;
+  fix.line = line_number;
   return true;
 }
 
@@ -63,8 +52,10 @@ class LineLog final : public LogReader {
  public:
   [[nodiscard]] LogData read(std::string_view text, const std::string& path,
                              const LogRequest& request) const override {
-    // A log may hold several streams: the request says which is wanted now. It has none for further sensors.
-    const char wanted = std::array{'O', 'F', 'T', '\n'}[static_cast<std::size_t>(request.stream)];
+    // A log may hold several streams: the request says which is wanted now.
+    if (request.stream != StreamKind::odometry && request.stream != StreamKind::gnss)
+      throw InputError(path + ": line_log holds odometry and fixes only");
+    const char wanted = request.stream == StreamKind::odometry ? 'O' : 'F';
     LogData data;
     for (std::size_t number = 1; !text.empty(); ++number) {
       const std::string_view line = text.substr(0, text.find('\n'));
@@ -76,14 +67,14 @@ class LineLog final : public LogReader {
       if (++data.corrupt <= 5)
         data.corrupt_examples.push_back(path + ":" + std::to_string(number) + ":1: not a record of line_log");
     }
-    if (data.corrupt == data.records) throw InputError(path + ": line_log: no record that could be used");
+    if (data.records == 0) throw InputError(path + ": no record begins with " + wanted);
+    if (data.corrupt == data.records) throw InputError(data.corrupt_examples.front());
     return data;
   }
 };
 
 static void register_types(TypeRegistry& registry) {
   static const LineLog reader;
-  registry.add_log_reader(
-      {"line_log", "lines of a letter and numbers: O odometry, F fixes, T truth", &reader});
+  registry.add_log_reader({"line_log", "lines of a letter and numbers: O odometry, F fixes", &reader});
 }
 WAYMARK_PLUGIN(line_log, "1.0.0", register_types);

@@ -10,6 +10,7 @@ using namespace waymark;
 /// Unary: the clock was set to this, m. e = clock - measured.
 struct EdgeClockSet {
   static constexpr std::string_view kTag = "EDGE_CLOCK_SET";
+  static constexpr std::string_view kForm = "difference";  // printed beside chi2
   static constexpr int kErrorDimension = 1;
   using Vertices = VertexList<VertexClockBias>;
   static constexpr auto fields() { return std::array{field<&EdgeClockSet::measured>("measured")}; }
@@ -23,6 +24,7 @@ struct EdgeClockSet {
 /// Binary: the clock runs fast by a known rate, m/s. e = to - from - rate dt.
 struct EdgeClockDrift {
   static constexpr std::string_view kTag = "EDGE_CLOCK_DRIFT";
+  static constexpr std::string_view kForm = "difference";
   static constexpr int kErrorDimension = 1;
   using Vertices = VertexList<VertexClockBias, VertexClockBias>;
   static constexpr auto fields() {
@@ -38,7 +40,7 @@ struct EdgeClockDrift {
 /// Ternary, three types of vertices: a pose hears a beacon. e = |p_beacon - p| + clock - measured, m.
 struct EdgePseudorange {
   static constexpr std::string_view kTag = "EDGE_PSEUDORANGE";
-  static constexpr std::string_view kForm = "range";  // printed beside chi2
+  static constexpr std::string_view kForm = "range";
   static constexpr int kErrorDimension = 1;
   using Vertices = VertexList<VertexSe2, VertexXy, VertexClockBias>;
   static constexpr bool kRelative = true;  // stays when pose and beacon undergo one rigid motion

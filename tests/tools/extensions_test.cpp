@@ -172,21 +172,19 @@ TEST_CASE("extensions: what a modeling cannot do, and options it does not have, 
 TEST_CASE("extensions: the line log gives the graph that CSV gives") {
   if (!are_built()) return;
   const std::string folder = fresh_folder();
-  const std::string drive = wavering_drive(folder);
+  const std::string drive = write_drive(folder, {.with_truth = false});
   std::string yaml = read_text(drive);
   yaml.replace(yaml.find("drms"), 4, "1sigma");
   write_text(drive, yaml);
   const RunResult csv = run({"convert", drive, "-o", folder + "csv.graph"});
   INFO(csv.err);
   REQUIRE(csv.code == 0);
-  write_text(folder + "all.log", as_line_log(read_text(folder + "truth.csv"), 'T') +
-                                     as_line_log(read_text(folder + "odometry.csv"), 'O') +
+  write_text(folder + "all.log", as_line_log(read_text(folder + "odometry.csv"), 'O') +
                                      as_line_log(read_text(folder + "gnss.csv"), 'F'));
   const std::string own = write_text(folder + "own.yaml",
                                      "name: circle\n"
                                      "odometry: {file: all.log, format: line_log}\n"
                                      "gnss: {file: all.log, format: line_log}\n"
-                                     "truth: {file: all.log, format: line_log}\n"
                                      "plugins: [" +
                                          extension("line_log") + "]\n");
   const RunResult lines = run({"convert", own, "-o", folder + "lines.graph"});
@@ -217,8 +215,11 @@ TEST_CASE("extensions: the line log counts what it cannot use, and says where") 
   CHECK(data.corrupt == 6);
   CHECK(data.corrupt_examples.size() == 5);
   CHECK(data.corrupt_examples.front() == "x.log:4:1: not a record of line_log");
-  CHECK_THROWS_AS(reader->read("", "x.log", fixes), waymark::InputError);
-  CHECK_THROWS_AS(reader->read("F 1", "x.log", fixes), waymark::InputError);
+  CHECK_THROWS_WITH(reader->read("O 1 2 3", "x.log", fixes), "x.log: no record begins with F");
+  CHECK_THROWS_WITH(reader->read("\nF 1", "x.log", fixes), "x.log:2:1: not a record of line_log");
+  waymark::LogRequest truth;
+  truth.stream = waymark::StreamKind::truth;
+  CHECK_THROWS_AS(reader->read("F 1 2 3 4", "x.log", truth), waymark::InputError);
 }
 
 TEST_CASE("extensions: weight and curvature of pseudo-Huber are the derivatives of its rho") {
