@@ -88,7 +88,9 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
 }
 
 void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
-  command.add_option("-a,--algorithm", choice.algorithm, "gauss_newton, levenberg_marquardt or dogleg")
+  command
+      .add_option("-a,--algorithm", choice.algorithm,
+                  "gauss_newton, levenberg_marquardt, dogleg or a plugin's")
       ->capture_default_str();
   command
       .add_option("-s,--solver", choice.solver,
