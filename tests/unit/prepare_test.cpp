@@ -252,9 +252,9 @@ TEST_CASE("prepare: reading the logs of a config") {
   config.odometry.emplace();
   config.odometry->place = "drive.yaml:2:3: ";
   config.odometry->format = "cvs";
-  CHECK_THROWS_MATCHES(
-      load_drive(config, builtin_log_reader), InputError,
-      Message("drive.yaml:2:3: unknown log format 'cvs'; `waymark info` lists those there are"));
+  CHECK_THROWS_MATCHES(load_drive(config, builtin_log_reader), InputError,
+                       Message("drive.yaml:2:3: unknown log format 'cvs'; `waymark info` lists those there "
+                               "are; a plugin that brings it is loaded with --plugin"));
 }
 
 TEST_CASE("prepare: the real drives that come as configs") {

@@ -10,8 +10,10 @@ namespace {
 DriveLogs::Log read_log(const LogConfig& log, const LogReaderLookup& find_reader) {
   const LogReader* reader = find_reader(log.format);
   if (reader == nullptr)
-    throw InputError(fmt::format("{}unknown log format '{}'; `waymark info` lists those there are", log.place,
-                                 log.format));
+    throw InputError(
+        fmt::format("{}unknown log format '{}'; `waymark info` lists those there are; a plugin that brings "
+                    "it is loaded with --plugin",
+                    log.place, log.format));
   const std::string text = read_text_file(log.file);
   return {reader->read(text, log.file, log.request), log.request.time_scale, log.file};
 }
