@@ -22,7 +22,7 @@ using Catch::Contains;
 namespace {
 
 std::string module_file(const std::string& name) {
-  return WAYMARK_PLUGIN_DIR "/" + name + ".so";
+  return std::string(WAYMARK_PLUGIN_DIR) + "/" + name + ".so";
 }
 
 /// Core, SE(2) and solvers only: everything else must come from modules.

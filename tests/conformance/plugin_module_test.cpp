@@ -22,7 +22,7 @@ using Catch::Contains;
 namespace {
 
 std::string module_file(const std::string& name) {
-  return WAYMARK_TEST_MODULES "/" + name + ".so";
+  return std::string(WAYMARK_TEST_MODULES) + "/" + name + ".so";
 }
 
 /// Loads a module and says whether any of its code ran.

@@ -11,7 +11,7 @@
 namespace {
 
 std::string module_file(const std::string& name) {
-  return WAYMARK_TEST_MODULES "/" + name + ".so";
+  return std::string(WAYMARK_TEST_MODULES) + "/" + name + ".so";
 }
 
 /// Sets WAYMARK_PLUGIN_PATH for one test.
