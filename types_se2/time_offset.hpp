@@ -4,26 +4,17 @@
 #include <array>
 #include <string_view>
 
+#include <waymark/core/scalar_state.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace waymark {
 
 /// How late a receiver's stamps are on the odometry's clock, s: a fix stamped t shows the antenna as it was
 /// at t - offset. The same number as `delay` of a drive.yaml.
-struct VertexTimeOffset {
+struct VertexTimeOffset : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_TIME_OFFSET";
-  static constexpr int kValueSize = 1;
-  static constexpr int kTangentSize = 1;
-  static constexpr bool kLinearChart = true;
   static constexpr std::array<std::string_view, 1> value_names() { return {"time_offset"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"s"}; }
-
-  template <typename T>
-  static T at(const double* value, const T* delta) {
-    return delta[0] + T(value[0]);
-  }
-  static void retract(double* value, const double* delta) { value[0] += delta[0]; }
-  static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
 };
 
 /// EDGE_GNSS_POSITION of a fix that is late: with the motion at the fix, the body was at X exp(-offset

@@ -5,29 +5,20 @@
 #include <array>
 #include <string_view>
 
+#include <waymark/core/scalar_state.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace waymark {
 
 /// What the gyro reads while nothing turns: true yaw rate = reading - bias. rad/s, counter-clockwise.
-struct VertexGyroBias {
+struct VertexGyroBias : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_GYRO_BIAS";
-  static constexpr int kValueSize = 1;
-  static constexpr int kTangentSize = 1;
-  static constexpr bool kLinearChart = true;
   static constexpr std::array<std::string_view, 1> value_names() { return {"gyro_bias"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"rad/s"}; }
-
-  template <typename T>
-  static T at(const double* value, const T* delta) {
-    return delta[0] + T(value[0]);
-  }
-  static void retract(double* value, const double* delta) { value[0] += delta[0]; }
-  static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
 };
 
 /// How much more than the odometry says the vehicle really drives: true speed = (1 + scale) reading.
-struct VertexSpeedScale : VertexGyroBias {
+struct VertexSpeedScale : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_SPEED_SCALE";
   static constexpr std::array<std::string_view, 1> value_names() { return {"speed_scale"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"1"}; }

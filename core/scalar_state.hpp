@@ -1,0 +1,22 @@
+/// The part that all vertices of one plain number share: biases, scales, offsets.
+#pragma once
+
+namespace waymark {
+
+/// Derive from it and add kTag, value_names() and, for a report with units, value_units():
+///   struct VertexClockBias : ScalarState { static constexpr std::string_view kTag = "VERTEX_CLOCK_BIAS"; ... };
+/// An edge's error takes the number as a scalar T.
+struct ScalarState {
+  static constexpr int kValueSize = 1;
+  static constexpr int kTangentSize = 1;
+  static constexpr bool kLinearChart = true;
+
+  template <typename T>
+  static T at(const double* value, const T* delta) {
+    return delta[0] + T(value[0]);
+  }
+  static void retract(double* value, const double* delta) { value[0] += delta[0]; }
+  static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
+};
+
+}  // namespace waymark
