@@ -95,6 +95,7 @@ EdgeTypeCheck check_edge_type(const TypeRegistry& registry, const EdgeType& type
         continue;
       }
       const GradientCheck found = check_gradients(graph, 0, 1);
+      result.judged += found.judged;
       if (!result.scenario.empty() && found.error <= result.worst.error) continue;
       result.worst = found;
       result.scenario = scenario.name;

@@ -35,8 +35,11 @@ struct EdgeTypeCheck {
   Graph graph;                 ///< the edge it was found at
   std::size_t not_finite = 0;  ///< trials whose error or Jacobians are no numbers
   std::size_t trials = 0;
+  std::size_t judged = 0;  ///< Jacobians that differences could say something of
 
-  [[nodiscard]] bool sound() const { return worst.error <= kGradientTolerance && not_finite == 0; }
+  [[nodiscard]] bool sound() const {
+    return worst.error <= kGradientTolerance && not_finite == 0 && judged > 0;
+  }
 };
 
 /// Deterministic. @param repetitions  trials per scenario

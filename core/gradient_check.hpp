@@ -22,7 +22,8 @@ struct NumericJacobian {
 
 /// The largest disagreement found.
 struct GradientCheck {
-  std::size_t edges = 0;   ///< compared
+  std::size_t edges = 0;   ///< looked at
+  std::size_t judged = 0;  ///< Jacobians that differences could say something of
   double error = 0;        ///< |given - reference| / (1 + |reference|), largest over all entries that
                            ///< differences can judge
   std::size_t edge = 0;    ///< where

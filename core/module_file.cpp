@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include <waymark/core/error.hpp>
@@ -82,6 +84,10 @@ bool sets_flush_to_zero_in(std::span<const std::byte> code) {
 }  // namespace
 
 ModuleFile::ModuleFile(const std::string& path) {
+  std::error_code unknown;
+  const auto kind = std::filesystem::status(path, unknown).type();
+  if (kind != std::filesystem::file_type::regular && kind != std::filesystem::file_type::not_found)
+    throw UsageError(path + ": is no regular file; give the plugin's module");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw UsageError(path + ": cannot read the plugin: " + std::strerror(errno));
   const std::string text{std::istreambuf_iterator<char>(file), {}};

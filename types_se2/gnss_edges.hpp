@@ -76,18 +76,19 @@ class PositionEdges {
   }
 
   /// The edge of fix i. @param vertices  the reference pose and the pose that carries the antenna
+  /// @param place  of the latter in the body frame: 0, or the antenna where the node is that
   void add(std::size_t i, const Eigen::Vector2d& measured, const Eigen::Vector2d& antenna,
-           const std::array<VertexIndex, 2>& vertices) {
+           const std::array<VertexIndex, 2>& vertices, const Eigen::Vector2d& place = {0, 0}) {
     const Eigen::Matrix2d information = position_information(input_.fixes[i]);
     if (offset_ < 0) {
       attach_loss(graph_.add_edge(EdgeGnssPosition{measured, antenna}, vertices, information), input_);
       return;
     }
-    const Interval& motion = input_.motion[i];
-    attach_loss(
-        graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, motion.speed_mps, motion.yaw_rate_radps},
-                        {vertices[0], vertices[1], offset_}, information),
-        input_);
+    const double turn = input_.motion[i].yaw_rate_radps;
+    const Eigen::Vector2d velocity(input_.motion[i].speed_mps - turn * place[1], turn * place[0]);
+    attach_loss(graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, velocity, turn},
+                                {vertices[0], vertices[1], offset_}, information),
+                input_);
   }
 
  private:

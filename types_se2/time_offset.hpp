@@ -29,13 +29,13 @@ struct EdgeGnssPositionDelayed {
   static constexpr auto fields() {
     return std::array{field<&EdgeGnssPositionDelayed::measured>("measured"),
                       field<&EdgeGnssPositionDelayed::antenna>("antenna"),
-                      field<&EdgeGnssPositionDelayed::speed>("speed"),
+                      field<&EdgeGnssPositionDelayed::velocity>("velocity"),
                       field<&EdgeGnssPositionDelayed::yaw_rate>("yaw_rate")};
   }
 
   template <typename T>
   Vector2<T> error(const Pose2<T>& from, const Pose2<T>& to, const T& offset) const {
-    const Vector3<T> back(T(-offset * T(speed)), T(0.0), T(-offset * T(yaw_rate)));
+    const Vector3<T> back(T(-offset * T(velocity[0])), T(-offset * T(velocity[1])), T(-offset * T(yaw_rate)));
     const Pose2<T> then = compose(to, se2_exp(back));
     const Vector2<T> place = then.position + rotate(then.heading, constant_vector<T>(antenna));
     const Vector2<T> seen = rotate_back(from.heading, Vector2<T>(place - from.position));
@@ -44,7 +44,7 @@ struct EdgeGnssPositionDelayed {
 
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
   Eigen::Vector2d antenna = Eigen::Vector2d::Zero();  ///< in the body frame: x forward, y left
-  double speed = 0;
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
   double yaw_rate = 0;
 };
 

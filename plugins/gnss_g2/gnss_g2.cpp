@@ -31,7 +31,7 @@ class GnssG2 final : public GnssModeling {
                     input);
         graph.add_edge(EdgeSe2Log{}, {node, pose}, identity);
       } else {
-        positions.add(i, fix.position, {0, 0}, {origin, node});
+        positions.add(i, fix.position, {0, 0}, {origin, node}, input.antenna);
         graph.add_edge(EdgeSe2{{-input.antenna[0], -input.antenna[1], 0}}, {node, pose}, identity);
       }
     }

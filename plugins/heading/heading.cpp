@@ -22,7 +22,7 @@ std::vector<SensorColumn> columns() {
 
 std::vector<OptionInfo> options() {
   return {
-      {"mounting_deg", "0", "deg",
+      {"mount_deg", "0", "deg",
        "direction of the sensor's zero in the body, counter-clockwise from straight ahead; in [-360, 360]"},
       {"sigma_deg", "1", "deg", "sigma of readings that state none; in [1e-4, 180]"},
       {"offset", "off", "",
@@ -37,7 +37,7 @@ class Heading final : public SensorModel {
     const std::vector<OptionInfo> known = options();
     check_option_names(kOwner, given, known);
     constexpr std::array<std::string_view, 2> kModels = {"off", "constant"};
-    mounting_ = kDegree * number_option(kOwner, given, known, "mounting_deg", -360, 360);
+    mounting_ = kDegree * number_option(kOwner, given, known, "mount_deg", -360, 360);
     sigma_ = kDegree * number_option(kOwner, given, known, "sigma_deg", 1e-4, 180);
     estimates_offset_ = word_option(kOwner, given, known, "offset", kModels) == "constant";
     offset_sigma_ = kDegree * number_option(kOwner, given, known, "offset_sigma_deg", 1e-4, 1000);

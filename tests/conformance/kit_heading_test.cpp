@@ -54,7 +54,7 @@ TEST_CASE("heading: mounting is subtracted, and the turn from the node to the re
     KitDrive drive = make_kit_drive(recipe, 1);
     Readings readings("heading");
     readings.add(kit_stamp(0.1 + ahead), {{"heading", 0.45 + 0.5 * ahead + kPi / 2}});
-    drive.add_sensor("heading", readings.table(), {{"mounting_deg", "90"}});
+    drive.add_sensor("heading", readings.table(), {{"mount_deg", "90"}});
     const std::size_t batch = drive.graph.batch_count() - 1;
     REQUIRE(drive.graph.edge_type(batch).tag == "EDGE_HEADING");
     std::vector<double> fields;
@@ -140,5 +140,5 @@ TEST_CASE("heading: rows that make no sense are named, those outside the drive o
   CHECK_THROWS_WITH(kit_registry().make_sensor_model("heading", {{"offset", "maybe"}}),
                     "heading: option 'offset' must be 'off' or 'constant', got 'maybe'");
   CHECK_THROWS_WITH(kit_registry().make_sensor_model("heading", {{"mounting", "3"}}),
-                    Contains("heading: unknown option 'mounting'; it has mounting_deg, sigma_deg"));
+                    Contains("heading: unknown option 'mounting'; it has mount_deg, sigma_deg"));
 }

@@ -214,7 +214,7 @@ TEST_CASE("sensors: what is wrong is said with its place") {
 
   write_sensor_drive(folder, "  - {name: heading, file: compass.csv, options: {sigma: 1}}\n");
   check_refused(folder,
-                "drive.yaml:6:5: sensor heading: heading: unknown option 'sigma'; it has mounting_deg, "
+                "drive.yaml:6:5: sensor heading: heading: unknown option 'sigma'; it has mount_deg, "
                 "sigma_deg, offset, offset_sigma_deg");
 
   write_sensor_drive(folder, "  - {name: heading, file: compass.csv}\n");

@@ -21,6 +21,16 @@ bool has_option(const std::vector<OptionInfo>& known, const std::string& name) {
   return std::any_of(known.begin(), known.end(), [&](const OptionInfo& info) { return info.name == name; });
 }
 
+/// Where the option that a plugin complains of stands: its message names it in quotes.
+std::string place_of_option(const DriveConfig& config, const std::string& message) {
+  for (const auto& [key, place] : config.places) {
+    const std::string name = key.substr(key.rfind('.') + 1);
+    const bool of_odometry = key.starts_with("odometry.noise.") || key.starts_with("calibration.");
+    if (of_odometry && message.find("'" + name + "'") != std::string::npos) return place;
+  }
+  return place_of(config, "odometry.model");
+}
+
 std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, const TypeRegistry& registry) {
   try {
     const OdometryModelType& type = registry.odometry_model(config.odometry_model);
@@ -29,7 +39,7 @@ std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, co
       options.try_emplace("gap_noise_factor", shortest(config.timeline.gap_noise_factor));
     return type.make(options);
   } catch (const UsageError& error) {
-    throw InputError(place_of(config, "odometry.model") + "odometry: " + error.what());
+    throw InputError(place_of_option(config, error.what()) + error.what());
   }
 }
 
@@ -48,7 +58,7 @@ std::optional<double> estimated_time_offset(const Graph& graph) {
   return std::nullopt;
 }
 
-/// All poses with a stamp, by time.
+/// All poses with a stamp, by time; one of each stamp.
 std::vector<StampedPose> stamped_poses(const Graph& graph) {
   std::vector<StampedPose> poses;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
@@ -58,6 +68,8 @@ std::vector<StampedPose> stamped_poses(const Graph& graph) {
   }
   std::stable_sort(poses.begin(), poses.end(),
                    [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
+  const auto same = [](const auto& a, const auto& b) { return a.stamp == b.stamp; };
+  poses.erase(std::unique(poses.begin(), poses.end(), same), poses.end());
   return poses;
 }
 
@@ -162,6 +174,8 @@ std::vector<Eigen::Vector3d> poses_when_measured(const GraphDocument& document) 
   const std::optional<double> offset = estimated_time_offset(document.graph);
   if (!offset) return {};
   const std::vector<StampedPose> nodes = stamped_poses(document.graph);
+  if (nodes.size() < 2)
+    throw InputError("a time offset is estimated, but fewer than two poses have stamps of their own");
   std::vector<Eigen::Vector3d> poses;
   for (const Fix& fix : document.fixes) poses.push_back(pose_at(nodes, fix.stamp, -*offset));
   return poses;

@@ -7,6 +7,16 @@
 namespace waymark {
 namespace {
 
+/// Not every format knows sensors, and a plugin's reader may be wrong.
+void check_readings(const SensorTable& readings, const LogConfig& log) {
+  const std::size_t columns = log.request.readings.size();
+  if (readings.size() > 0 && readings.columns == columns &&
+      readings.values.size() == readings.size() * columns)
+    return;
+  throw InputError(fmt::format("{}{}: format '{}' gives no readings of a sensor; use csv", log.place,
+                               log.file, log.format));
+}
+
 DriveLogs::Log read_log(const LogConfig& log, const LogReaderLookup& find_reader) {
   const LogReader* reader = find_reader(log.format);
   if (reader == nullptr)
@@ -15,7 +25,9 @@ DriveLogs::Log read_log(const LogConfig& log, const LogReaderLookup& find_reader
                     "it is loaded with --plugin",
                     log.place, log.format));
   const std::string text = read_text_file(log.file);
-  return {reader->read(text, log.file, log.request), log.request.time_scale, log.file};
+  DriveLogs::Log result{reader->read(text, log.file, log.request), log.request.time_scale, log.file};
+  if (log.request.stream == StreamKind::sensor) check_readings(result.data.readings, log);
+  return result;
 }
 
 }  // namespace

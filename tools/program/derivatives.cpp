@@ -12,6 +12,11 @@ std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const
     return fmt::format("{} of {}, scenario '{}': {}", tag, origin, check.scenario,
                        describe(check.graph, 0, check.worst));
   }
+  if (check.not_finite == 0) {
+    return fmt::format(
+        "{} of {}: differences of the error say nothing in any trial; is it smooth, and computed in double?",
+        tag, origin);
+  }
   return fmt::format("{} of {}: error or Jacobian is no number in {} of {} trials; let the error stay finite",
                      tag, origin, check.not_finite, check.trials);
 }

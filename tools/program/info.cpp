@@ -132,7 +132,12 @@ Json registry_json(const TypeRegistry& registry) {
   json["graph_formats"] = {
       {{"name", "graph"}, {"origin", "waymark"}, {"description", "GRAPH 1; read and written"}},
       {{"name", "g2o"}, {"origin", "waymark"}, {"description", "g2o SE(2); read and written"}},
-      {{"name", "toro"}, {"origin", "waymark"}, {"description", "TORO SE(2); read where asked for"}}};
+      {{"name", "toro"},
+       {"origin", "waymark"},
+       {"description", "TORO SE(2); read and written where asked for"}},
+      {{"name", "covariance"},
+       {"origin", "waymark"},
+       {"description", "GTSAM's covariance .graph; read and written where asked for"}}};
   json["trajectory_formats"] = {
       {{"name", "csv"}, {"origin", "waymark"}, {"description", "written; every column"}},
       {{"name", "tum"}, {"origin", "waymark"}, {"description", "written, read as truth; for evo"}},

@@ -51,8 +51,6 @@ ExitCode optimize_file(const OptimizeOptions& options) {
       write_file_atomically(options.robust.outliers, graduated->outlier_lines);
     }
   }
-  const std::vector<StateReport> states =
-      result.summary.converged() ? report_states(document) : std::vector<StateReport>();
   const bool to_stdout = is_stdout(options.output) || is_stdout(options.robust.outliers);
   write_graph_file(options.output, options.format, document, options.input, registry);
   std::string written = options.output;
@@ -62,6 +60,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
     write_covariances(options.covariance_file, document, result.summary);
     written += " " + options.covariance_file;
   }
+  const std::vector<StateReport> states = report_states(document, result.summary, console);
   if (options.common.json) {
     nlohmann::ordered_json json = summary_json(result);
     json["states"] = states_json(states);

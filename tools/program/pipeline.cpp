@@ -168,6 +168,11 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   loaded.modelings = chosen_modelings(overrides, loaded.config, registry);
   check_calibration(loaded.config, loaded.modelings, registry);
   loaded.loss = loss_of_fixes(loaded.config, overrides.loss.has_value(), registry);
+  const auto scale = loaded.config.calibration.find("speed_scale");
+  if (scale != loaded.config.calibration.end() && scale->second != "off" && !loaded.loss) {
+    console.note(
+        "note: squared errors let biased fixes bend speed_scale; a robust loss protects it: --loss cauchy:1");
+  }
   resolve_sensors(loaded.config, registry);
   console.progress("reading logs");
   loaded.drive = load_drive(loaded.config, reader_lookup(registry));

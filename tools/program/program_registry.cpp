@@ -19,11 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Empty where the program is not to be installed.
+fs::path installed_folder() {
+#ifdef WAYMARK_PLUGIN_FOLDER
+  return WAYMARK_PLUGIN_FOLDER;
+#else
+  return {};
+#endif
+}
+
 std::vector<fs::path> plugin_folders() {
   std::vector<fs::path> folders;
-#ifdef WAYMARK_PLUGIN_FOLDER
-  folders.emplace_back(WAYMARK_PLUGIN_FOLDER);
-#endif
+  if (!installed_folder().empty()) folders.push_back(installed_folder());
   const char* variable = std::getenv("WAYMARK_PLUGIN_PATH");
   std::string rest = variable == nullptr ? "" : variable;
   while (!rest.empty()) {
@@ -35,10 +42,13 @@ std::vector<fs::path> plugin_folders() {
 }
 
 /// The plugins of a folder by name; other shared objects are none of ours.
-std::vector<fs::path> modules_in(const fs::path& folder) {
+std::vector<fs::path> modules_in(const fs::path& folder, const Console& console) {
   std::vector<fs::path> modules;
   std::error_code missing;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, missing)) {
+  fs::directory_iterator entries(folder, missing);
+  if (missing && folder != installed_folder())
+    console.note("warning: no plugins from " + folder.string() + ": " + missing.message());
+  for (const fs::directory_entry& entry : entries) {
     if (entry.path().extension() != ".so") continue;
     try {
       if (ModuleFile(entry.path()).symbol("waymark_plugin")) modules.push_back(entry.path());
@@ -100,17 +110,18 @@ TypeRegistry make_registry(const CommonOptions& options, const std::vector<std::
   TypeRegistry registry = own_registry();
   Loader loader(registry);
   const std::vector<fs::path> folders = plugin_folders();
+  for (const std::vector<std::string>* list : {&options.plugins, &plugins}) {
+    for (const std::string& wanted : *list) loader.load(find_plugin(wanted, folders));
+  }
+  const Console console(options);
   for (const fs::path& folder : folders) {
-    for (const fs::path& file : modules_in(folder)) {
+    for (const fs::path& file : modules_in(folder, console)) {
       try {
         loader.load(file);
       } catch (const UsageError& error) {
-        Console(options).note("warning: plugin left out: " + std::string(error.what()));
+        console.note("warning: plugin left out: " + std::string(error.what()));
       }
     }
-  }
-  for (const std::vector<std::string>* list : {&options.plugins, &plugins}) {
-    for (const std::string& wanted : *list) loader.load(find_plugin(wanted, folders));
   }
   return registry;
 }

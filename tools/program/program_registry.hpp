@@ -10,13 +10,13 @@
 namespace waymark {
 
 /// Core, SE(2), solvers, built-in plugins and log readers; then, each file once,
-///   1. the modules of the folder of installed plugins and of every folder of WAYMARK_PLUGIN_PATH (separated
+///   1. the modules of --plugin, then those of a drive.yaml: a file, or a name that is looked up in the
+///   folders,
+///   2. the modules of the folder of installed plugins and of every folder of WAYMARK_PLUGIN_PATH (separated
 ///   by
-///      ':'), by name; one that does not fit is left out with a warning,
-///   2. the modules of --plugin, then those of a drive.yaml: a file, or a name that is looked up in these
-///   folders.
+///      ':'), by name; one that does not fit, or whose name was loaded before, is left out with a warning.
 /// @param plugins  of a drive.yaml
-/// @throws UsageError for a module of the second kind that cannot be found or does not fit
+/// @throws UsageError for a module of the first kind that cannot be found or does not fit
 [[nodiscard]] TypeRegistry make_registry(const CommonOptions& options,
                                          const std::vector<std::string>& plugins = {});
 

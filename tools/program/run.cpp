@@ -40,8 +40,8 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, c
   write(prefix + ".graph");
   run.result = optimize_document(document, options.choice, registry, console);
   document.provenance.emplace_back("optimized", describe_optimization(run.result));
-  if (run.result.summary.converged()) run.states = report_states(document);
   write(prefix + ".fused.graph");
+  run.states = report_states(document, run.result.summary, console);
   for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
   run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth)};
   add_provenance(document, modeling, header);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
+#include <waymark/core/error.hpp>
 #include <waymark/core/marginals.hpp>
 #include <waymark/tools/evaluation/text_table.hpp>
 
@@ -21,13 +23,20 @@ struct StateVertices {
   std::vector<VertexIndex> vertices;
 };
 
+/// Whether a vertex goes on with a state: a later value of the same type.
+bool goes_on(const Graph& graph, const StateVertices& state, VertexIndex v) {
+  const auto before = graph.stamp(state.vertices.back());
+  const auto now = graph.stamp(v);
+  return state.type->tag == graph.vertex_type(v).tag && before && now && *before < *now;
+}
+
 std::vector<StateVertices> states_of(const Graph& graph) {
   std::vector<StateVertices> states;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
     const VertexType& type = graph.vertex_type(v);
     if (!is_state(type) || graph.fixed(v)) continue;
     auto known = std::find_if(states.begin(), states.end(),
-                              [&](const StateVertices& other) { return other.type->tag == type.tag; });
+                              [&](const StateVertices& other) { return goes_on(graph, other, v); });
     if (known == states.end()) known = states.insert(states.end(), {&type, {}});
     known->vertices.push_back(v);
   }
@@ -47,7 +56,8 @@ StateReport report(const Graph& graph, const StateVertices& state, int axis,
   result.last = value(state.vertices.back());
   result.smallest = value(*smallest);
   result.largest = value(*largest);
-  result.sigma = std::sqrt(last_covariance(axis, axis));
+  const double variance = last_covariance(axis, axis);  // 0: not estimated, no edge touches it
+  result.sigma = variance > 0 ? std::sqrt(variance) : std::numeric_limits<double>::quiet_NaN();
   return result;
 }
 
@@ -67,11 +77,22 @@ std::vector<StateReport> report_states(const GraphDocument& document) {
   return reports;
 }
 
+std::vector<StateReport> report_states(const GraphDocument& document, const Summary& summary,
+                                       const Console& console) {
+  if (!summary.converged()) return {};
+  try {
+    return report_states(document);
+  } catch (const InputError& error) {
+    console.note("warning: the estimated states have no sigmas: " + std::string(error.what()));
+    return {};
+  }
+}
+
 std::string states_text(const std::vector<StateReport>& states) {
   if (states.empty()) return {};
   TextTable table({"estimated state", "unit", "values", "first", "last", "smallest", "largest", "sigma"});
   for (const StateReport& s : states) {
-    const auto number = [](double x) { return fmt::format("{:.4g}", x); };
+    const auto number = [](double x) { return std::isnan(x) ? "-" : fmt::format("{:.4g}", x); };
     table.add({s.name, s.unit, fmt::to_string(s.values), number(s.first), number(s.last), number(s.smallest),
                number(s.largest), number(s.sigma)});
   }
@@ -81,14 +102,15 @@ std::string states_text(const std::vector<StateReport>& states) {
 nlohmann::ordered_json states_json(const std::vector<StateReport>& states) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const StateReport& s : states) {
-    json.push_back({{"name", s.name},
-                    {"unit", s.unit},
-                    {"values", s.values},
-                    {"first", s.first},
-                    {"last", s.last},
-                    {"smallest", s.smallest},
-                    {"largest", s.largest},
-                    {"sigma", s.sigma}});
+    json.push_back(
+        {{"name", s.name},
+         {"unit", s.unit},
+         {"values", s.values},
+         {"first", s.first},
+         {"last", s.last},
+         {"smallest", s.smallest},
+         {"largest", s.largest},
+         {"sigma", std::isnan(s.sigma) ? nlohmann::ordered_json() : nlohmann::ordered_json(s.sigma)}});
   }
   return json;
 }

@@ -6,11 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include <waymark/core/summary.hpp>
 #include <waymark/formats/graph_document.hpp>
+#include <waymark/tools/program/console.hpp>
 
 namespace waymark {
 
-/// One number of one kind of state over a drive.
+/// One number of a state, over a drive where it wanders.
 struct StateReport {
   std::string name;  ///< of the number: "gyro_bias"
   std::string unit;
@@ -19,13 +21,17 @@ struct StateReport {
   double last = 0;
   double smallest = 0;
   double largest = 0;
-  double sigma = 0;  ///< of the last value, from the marginal covariance; NaN where it is not known
+  double sigma = 0;  ///< of the last value, from the marginal covariance; NaN where it is not determined
 };
 
 /// Vertices of types that state units and have no place in the plane, as far as they were estimated, in the
-/// order of their types' first vertices.
+/// order of their types' first vertices. Vertices of one type with increasing stamps are one state that
+/// wanders, others are states of their own.
 /// Sigmas are those at the document's values. @throws what marginal_covariances throws
 [[nodiscard]] std::vector<StateReport> report_states(const GraphDocument& document);
+/// The same after an optimisation: empty without a minimum; where the sigmas cannot be had, that is told.
+[[nodiscard]] std::vector<StateReport> report_states(const GraphDocument& document, const Summary& summary,
+                                                     const Console& console);
 
 /// A table for the terminal; empty where there are no states.
 [[nodiscard]] std::string states_text(const std::vector<StateReport>& states);
