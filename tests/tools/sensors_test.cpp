@@ -87,8 +87,9 @@ TEST_CASE("sensors: compass headings clockwise from north in degrees become head
                      "  - name: heading\n"
                      "    file: compass.csv\n"
                      "    columns: {heading: {column: hdg, unit: deg, convention: cw_from_north}}\n");
-  write_log(folder + "compass.csv", "time,hdg",
-            [](int t) { return "," + std::to_string(std::fmod(90 - t * kYawRate / kDegree + 360, 360.0)); });
+  write_log(folder + "compass.csv", "time,hdg", [](int t) {
+    return std::string(",").append(std::to_string(std::fmod(90 - t * kYawRate / kDegree + 360, 360.0)));
+  });
   const auto found = converted(folder, "EDGE_HEADING");
   REQUIRE(found.size() == 38);
   // Zone 33 has its meridian at 15 degrees: west of it grid north lies to the east of true north, so that
@@ -111,7 +112,7 @@ TEST_CASE("sensors: a compass with a deviation is calibrated by the drive, and t
                      "  columns: {heading: {column: hdg, unit: deg}}\n"
                      "  options: {offset: constant, sigma_deg: 0.5}\n");
   write_log(folder + "compass.csv", "time,hdg",
-            [](int t) { return "," + std::to_string(t * kYawRate / kDegree + 12); });
+            [](int t) { return std::string(",").append(std::to_string(t * kYawRate / kDegree + 12)); });
   (void)ran(folder);
   const auto state = edges(folder + "results/g1.fused.graph", "VERTEX_HEADING_OFFSET");
   REQUIRE(state.size() == 1);
