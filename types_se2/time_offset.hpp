@@ -48,4 +48,7 @@ struct EdgeGnssPositionDelayed {
   double yaw_rate = 0;
 };
 
+// Compiled once, in time_offset.cpp.
+extern template class EdgeBatch<EdgeGnssPositionDelayed>;
+
 }  // namespace waymark

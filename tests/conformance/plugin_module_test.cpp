@@ -1,5 +1,6 @@
 // Modules as files: what does not fit is refused, with the reason, before any of its code runs; nothing that
 // a module does while it registers can leave half of it behind.
+#include <sys/stat.h>
 #include <xmmintrin.h>
 #include <cstdlib>
 #include <filesystem>
@@ -134,6 +135,17 @@ TEST_CASE("modules: a wrong Jacobian of a plugin is reported with the entry, bot
   CHECK_THAT(describe(check.graph, 0, check.worst),
              Contains("EDGE_SAMPLE") && Contains("vertex 1 (VERTEX_SE2") && Contains("row 1, column 1 (y)") &&
                  Contains("given -1, differences of the error say 1"));
+}
+
+TEST_CASE("modules: a folder or a pipe of a plugin's name is refused without being read") {
+  TypeRegistry registry = full_registry();
+  const std::filesystem::path folder = scratch_dir() / "folder.so";
+  std::filesystem::create_directories(folder);
+  CHECK_THAT(attempt(folder, registry).error, Contains("folder.so: is no regular file"));
+  const std::filesystem::path pipe = scratch_dir() / "pipe.so";
+  std::filesystem::remove(pipe);
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_THAT(attempt(pipe, registry).error, Contains("pipe.so: is no regular file"));
 }
 
 TEST_CASE("modules: a file that is damaged anywhere is refused or loaded, never a crash of the reader") {

@@ -105,3 +105,27 @@ TEST_CASE("outages: the fixes of every period's end are kept out, and the patter
     CHECK(contains(refused.err, "--outage: expected LENGTH/EVERY in seconds with 0 < LENGTH < EVERY"));
   }
 }
+
+TEST_CASE("states that nothing determines: the result is written, and what lacks is said") {
+  const std::string folder = fresh_folder();
+  const std::string graph = write_text(
+      folder + "a.graph",
+      "GRAPH 1\nVERTEX_SE2 1 0 0 0\nVERTEX_SE2 2 1 0 0\nFIX 1\nVERTEX_SPEED_SCALE 3 0\nVERTEX_GYRO_BIAS 4 0\n"
+      "EDGE_SE2_ODOMETRY_CALIBRATED 1 2 3 4 10 0.01 0.1 400 0 0 400 0 90000\n");
+  const RunResult result =
+      run({"optimize", graph, "-o", folder + "b.graph", "--start", "file", "-a", "levenberg_marquardt"});
+  INFO(result.err);
+  CHECK(exists(folder + "b.graph"));
+  CHECK(contains(result.err, "warning: the estimated states have no sigmas"));
+}
+
+TEST_CASE("a time offset without two stamped poses cannot be evaluated, and that is said") {
+  const std::string folder = fresh_folder();
+  const std::string graph =
+      write_text(folder + "a.graph",
+                 "GRAPH 1\nVERTEX_SE2 1 0 0 0\nSTAMP 1 1000000000\nVERTEX_TIME_OFFSET 2 0.1\n"
+                 "GNSS 1 1000000000 0 0 1 0 1 - - - - - 1 0 0 accepted ok - -\n");
+  const RunResult result = run({"evaluate", graph});
+  CHECK(result.code == 3);
+  CHECK(contains(result.err, "fewer than two poses have stamps of their own"));
+}

@@ -87,8 +87,11 @@ std::string as_line_log(const std::string& csv, char letter) {
   while (std::getline(lines, line)) {
     const auto comma = line.find(',');
     std::replace(line.begin(), line.end(), ',', ' ');
-    records += letter + (" " + std::to_string(std::llround(1000 * std::stod(line.substr(0, comma))))) +
-               line.substr(comma) + "\n";
+    records += letter;
+    records += ' ';
+    records += std::to_string(std::llround(1000 * std::stod(line.substr(0, comma))));
+    records += line.substr(comma);
+    records += '\n';
   }
   return records;
 }

@@ -73,6 +73,17 @@ TEST_CASE("plugins: folders of WAYMARK_PLUGIN_PATH are searched for names, and t
   CHECK(run({"info", "--plugin", "old"}).code == 2);
 }
 
+TEST_CASE("plugins: one that is asked for comes before the installed one of its name") {
+  const std::string folder = fresh_folder();
+  std::filesystem::copy(module_file("sound"), folder + "sound.so");
+  const PluginPath path(folder);
+  const RunResult result = run({"info", "--plugins", "--plugin", module_file("sound")});
+  CHECK(result.code == 0);
+  CHECK(contains(result.out, "sample 1.2.3, " + module_file("sound")));
+  CHECK(contains(result.err,
+                 "warning: plugin left out: plugin 'sample' (" + folder + "sound.so) is already there"));
+}
+
 TEST_CASE("plugins: a drive.yaml names its plugins, beside itself or by name") {
   const std::string folder = fresh_folder();
   std::filesystem::copy(module_file("sound"), folder + "sound.so");

@@ -281,3 +281,14 @@ TEST_CASE("sensors: an imitated dual antenna on the bundled drive") {
   CHECK(without > 1);
   CHECK(with < 0.5);  // better than one reading: the gyro averages them
 }
+
+TEST_CASE("sensors: a format that knows no sensors is refused instead of giving nothing") {
+  const std::string folder = fresh_folder();
+  write_sensor_drive(folder, "  - {name: heading, file: compass.json, format: gpsd_json}\n");
+  write_text(folder + "compass.json",
+             "{\"class\":\"TPV\",\"mode\":3,\"time\":\"2020-01-01T00:00:00.000Z\",\"lat\":52.5,\"lon\":13.4,"
+             "\"epx\":2.0,\"epy\":2.0}\n");
+  const RunResult result = run({"convert", folder + "drive.yaml", "-o", folder + "out.graph"});
+  CHECK(result.code == 3);
+  CHECK(contains(result.err, "format 'gpsd_json' gives no readings of a sensor; use csv"));
+}
