@@ -29,11 +29,14 @@ std::string shortest(double value) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
+bool has_option(std::span<const OptionInfo> known, std::string_view name) {
+  return std::any_of(known.begin(), known.end(), [&](const OptionInfo& o) { return o.name == name; });
+}
+
 void check_option_names(std::string_view owner, const Options& given, std::span<const OptionInfo> known) {
   for (const auto& entry : given) {
     const std::string& name = entry.first;
-    if (std::any_of(known.begin(), known.end(), [&](const OptionInfo& o) { return o.name == name; }))
-      continue;
+    if (has_option(known, name)) continue;
     std::string message = std::string(owner) + ": unknown option '" + name + "'; it has";
     if (known.empty()) message += " none";
     for (std::size_t i = 0; i < known.size(); ++i) message += (i > 0 ? ", " : " ") + known[i].name;

@@ -12,6 +12,8 @@ namespace waymark {
 /// A number as the value of an option: the shortest text that reads back exactly.
 [[nodiscard]] std::string shortest(double value);
 
+[[nodiscard]] bool has_option(std::span<const OptionInfo> known, std::string_view name);
+
 /// @throws UsageError naming the unknown option, its owner and the options that exist.
 void check_option_names(std::string_view owner, const Options& given, std::span<const OptionInfo> known);
 

@@ -17,10 +17,6 @@ std::string place_of(const DriveConfig& config, const std::string& key) {
   return place == config.places.end() ? config.path + ": " : place->second;
 }
 
-bool has_option(const std::vector<OptionInfo>& known, const std::string& name) {
-  return std::any_of(known.begin(), known.end(), [&](const OptionInfo& info) { return info.name == name; });
-}
-
 /// Where the option that a plugin complains of stands: its message names it in quotes.
 std::string place_of_option(const DriveConfig& config, const std::string& message) {
   for (const auto& [key, place] : config.places) {

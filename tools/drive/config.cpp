@@ -218,16 +218,14 @@ void read_sensors(const YamlSection& top, DriveConfig& config) {
   }
 }
 
-/// Names with a slash or an ending are files, beside the drive.yaml; others are looked up by whoever loads
-/// them.
+/// Files lie beside the drive.yaml.
 void read_plugins(const YamlSection& top, DriveConfig& config) {
   if (!top.has("plugins")) return;
   const auto beside = std::filesystem::path(config.path).parent_path();
   for (const YAML::Node& entry : entries_of(top.node("plugins"))) {
     if (!entry.IsScalar()) top.fail_value("plugins", "a list of plugin files");
-    const std::filesystem::path file(entry.Scalar());
-    const bool is_file = file.has_parent_path() || file.has_extension();
-    config.plugins.push_back(is_file ? (beside / file).lexically_normal().string() : file.string());
+    const std::string plugin = entry.Scalar();
+    config.plugins.push_back(is_plugin_file(plugin) ? (beside / plugin).lexically_normal().string() : plugin);
   }
 }
 
@@ -271,6 +269,15 @@ DriveConfig parse_drive_config(const std::string& text, const std::string& path,
   read_sensors(top, config);
   read_plugins(top, config);
   return config;
+}
+
+bool is_drive_file(std::string_view path) {
+  return path.ends_with(".yaml") || path.ends_with(".yml");
+}
+
+bool is_plugin_file(std::string_view plugin) {
+  const std::filesystem::path path(plugin);
+  return path.has_parent_path() || path.has_extension();
 }
 
 std::map<std::string, std::string> default_calibration() {

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -79,6 +80,11 @@ struct DriveConfig {
   /// "modeling.loss", "odometry.model", "odometry.noise.NAME", "calibration.NAME".
   std::map<std::string, std::string> places;
 };
+
+/// A drive is known by its name, .yaml or .yml: a graph or truth file never has it, whatever its format.
+[[nodiscard]] bool is_drive_file(std::string_view path);
+/// Whether a plugin is named by its file; a word without folder and ending is looked up by whoever loads it.
+[[nodiscard]] bool is_plugin_file(std::string_view plugin);
 
 /// What `calibration: on` stands for: all states that the built-in plugins know.
 [[nodiscard]] std::map<std::string, std::string> default_calibration();

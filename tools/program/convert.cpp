@@ -28,11 +28,6 @@ struct ConvertOptions {
   std::vector<std::string> of_graphs;  ///< options given that speak of graph files only
 };
 
-/// A drive is known by its suffix: a graph file never has it, whatever its format.
-bool is_drive(const std::string& path) {
-  return path.ends_with(".yaml") || path.ends_with(".yml");
-}
-
 void refuse_options(const std::vector<std::string>& given, const std::string& what) {
   if (given.empty()) return;
   const std::vector<std::string_view> names(given.begin(), given.end());
@@ -119,8 +114,8 @@ ExitCode convert(const ConvertOptions& options) {
   const TypeRegistry registry = make_registry_for(options.input, options.common);
   (void)chosen_format(options.format);
   require_output_place(options.output);
-  return is_drive(options.input) ? convert_drive(options, registry, console)
-                                 : convert_graph(options, registry, console);
+  return is_drive_file(options.input) ? convert_drive(options, registry, console)
+                                      : convert_graph(options, registry, console);
 }
 
 /// The options that `add` adds to a command.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/options.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/formats/trajectory.hpp>
 #include <waymark/tools/drive/projection.hpp>
@@ -89,21 +90,13 @@ Options options_of(const std::string& modeling, const DriveConfig& config, const
   return with_calibration(all, config, registry.gnss_modeling(modeling).options);
 }
 
-bool has_option(const std::string& modeling, const std::string& option, const TypeRegistry& registry) {
-  for (const auto& [type, origin] : registry.gnss_modelings()) {
-    if (type.name != modeling) continue;
-    for (const OptionInfo& info : type.options) {
-      if (info.name == option) return true;
-    }
-  }
-  return false;
-}
-
 /// @throws UsageError for an option that no chosen modeling has
 void check_options_are_used(const std::vector<std::string>& modelings, const DriveOverrides& overrides,
                             const TypeRegistry& registry) {
   for (const auto& entry : parse_options(overrides.modeling_options)) {
-    const auto has = [&](const std::string& modeling) { return has_option(modeling, entry.first, registry); };
+    const auto has = [&](const std::string& modeling) {
+      return has_option(registry.gnss_modeling(modeling).options, entry.first);
+    };
     if (std::any_of(modelings.begin(), modelings.end(), has)) continue;
     // Its own message names the options that exist.
     (void)registry.make_gnss_modeling(modelings.front(), {{entry.first, entry.second}});
@@ -224,7 +217,7 @@ Options known_options(const std::string& modeling, const DriveOverrides& overrid
                       const TypeRegistry& registry) {
   Options known;
   for (const auto& [name, value] : parse_options(overrides.modeling_options)) {
-    if (has_option(modeling, name, registry)) known[name] = value;
+    if (has_option(registry.gnss_modeling(modeling).options, name)) known[name] = value;
   }
   return known;
 }
@@ -283,7 +276,7 @@ Evaluation evaluate_document(const GraphDocument& document, const std::vector<Tr
 
 std::vector<TruthPose> read_truth(const std::string& path, const std::string& data_folder,
                                   const GraphDocument& document, const TypeRegistry& registry) {
-  if (path.ends_with(".yaml") || path.ends_with(".yml")) {
+  if (is_drive_file(path)) {
     DriveConfig config = load_drive_config(path, data_folder);
     if (!config.truth) throw InputError(path + ": has no 'truth' section");
     if (!document.frame || document.frame->zone == 0) {

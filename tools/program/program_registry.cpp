@@ -61,8 +61,7 @@ std::vector<fs::path> modules_in(const fs::path& folder, const Console& console)
 
 /// A file as it stands; a name is looked up in the folders. @throws UsageError
 fs::path find_plugin(const std::string& wanted, const std::vector<fs::path>& folders) {
-  const fs::path given(wanted);
-  if (given.has_parent_path() || given.has_extension()) return given;
+  if (is_plugin_file(wanted)) return wanted;
   std::string looked;
   for (const fs::path& folder : folders) {
     const fs::path file = folder / (wanted + ".so");
@@ -127,8 +126,8 @@ TypeRegistry make_registry(const CommonOptions& options, const std::vector<std::
 }
 
 TypeRegistry make_registry_for(const std::string& input, const CommonOptions& options) {
-  const bool is_drive = input.ends_with(".yaml") || input.ends_with(".yml");
-  return make_registry(options, is_drive ? load_drive_config(input).plugins : std::vector<std::string>());
+  return make_registry(options,
+                       is_drive_file(input) ? load_drive_config(input).plugins : std::vector<std::string>());
 }
 
 }  // namespace waymark
