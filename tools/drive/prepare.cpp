@@ -26,11 +26,7 @@ void append_log(const std::vector<Sample>& from, const DriveLogs::Log& log, Time
   std::vector<Sample> samples = from;
   put_on_scale(samples, log, scale, [](Sample& sample) -> Stamp& { return sample.stamp; });
   to.insert(to.end(), samples.begin(), samples.end());
-  stream.records += log.data.records;
-  stream.corrupt += log.data.corrupt;
-  report.notes.insert(report.notes.end(), log.data.notes.begin(), log.data.notes.end());
-  report.corrupt_examples.insert(report.corrupt_examples.end(), log.data.corrupt_examples.begin(),
-                                 log.data.corrupt_examples.end());
+  add_log_report(log.data, stream, report);
 }
 
 bool same_number(double a, double b) {

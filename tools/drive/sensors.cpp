@@ -70,11 +70,7 @@ SensorTable prepare_readings(const DriveLogs::Log& log, std::span<const SensorCo
                              const Projection& projection, PrepareReport& report) {
   SensorTable table = log.data.readings;
   put_on_scale(table.stamps, log, scale, [](Stamp& stamp) -> Stamp& { return stamp; });
-  report.notes.insert(report.notes.end(), log.data.notes.begin(), log.data.notes.end());
-  report.sensor.records += log.data.records;
-  report.sensor.corrupt += log.data.corrupt;
-  report.corrupt_examples.insert(report.corrupt_examples.end(), log.data.corrupt_examples.begin(),
-                                 log.data.corrupt_examples.end());
+  add_log_report(log.data, report.sensor, report);
   table = sorted(table);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (columns[c].sense != "ccw_from_east") continue;

@@ -43,6 +43,15 @@ void clean_stream(std::vector<Sample>& samples, StreamReport& report, IsFinite i
   samples = std::move(kept);
 }
 
+/// Adds what a log's reader counted and noted.
+inline void add_log_report(const LogData& data, StreamReport& stream, PrepareReport& report) {
+  stream.records += data.records;
+  stream.corrupt += data.corrupt;
+  report.notes.insert(report.notes.end(), data.notes.begin(), data.notes.end());
+  report.corrupt_examples.insert(report.corrupt_examples.end(), data.corrupt_examples.begin(),
+                                 data.corrupt_examples.end());
+}
+
 /// Puts the stamps of a log onto the drive's scale. @param stamp_of  Stamp&(Sample&)
 /// @throws InputError for seconds of week that would need a date
 template <typename Sample, typename StampOf>
