@@ -71,8 +71,7 @@ class PositionEdges {
     if (input.motion.size() != input.fixes.size())
       throw UsageError("a time offset needs the motion at each fix (GnssInput::motion)");
     offset_ = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
-    graph.add_edge(gaussian_prior_type(), std::array{offset_}, std::array{0.0, 0.0},
-                   Eigen::MatrixXd::Constant(1, 1, 1 / (prior_sigma_s * prior_sigma_s)));
+    add_prior_about_zero(graph, offset_, prior_sigma_s);
   }
 
   /// The edge of fix i. @param vertices  the reference pose and the pose that carries the antenna

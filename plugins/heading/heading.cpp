@@ -63,8 +63,7 @@ class Heading final : public SensorModel {
  private:
   [[nodiscard]] VertexIndex add_offset(Graph& graph) const {
     const VertexIndex offset = graph.add_vertex<VertexHeadingOffset>(graph.free_id(), {0});
-    graph.add_edge(gaussian_prior_type(), std::array{offset}, std::array{0.0, 0.0},
-                   Eigen::MatrixXd::Constant(1, 1, 1 / (offset_sigma_ * offset_sigma_)));
+    add_prior_about_zero(graph, offset, offset_sigma_);
     return offset;
   }
 

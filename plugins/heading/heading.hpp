@@ -5,24 +5,18 @@
 #include <array>
 #include <string_view>
 
+#include <waymark/core/scalar_state.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace waymark {
 
 /// How much more than the heading a sensor reads, rad, counter-clockwise: reading = heading + offset. The
 /// deviation of a magnetometer (declination and the vehicle's iron), or how a baseline was mounted.
-struct VertexHeadingOffset {
+struct VertexHeadingOffset : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_HEADING_OFFSET";
-  static constexpr int kValueSize = 1;
-  static constexpr int kTangentSize = 1;
-  static constexpr bool kLinearChart = true;
   static constexpr std::array<std::string_view, 1> value_names() { return {"heading_offset"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"rad"}; }
 
-  template <typename T>
-  static T at(const double* value, const T* delta) {
-    return delta[0] + T(value[0]);
-  }
   static void retract(double* value, const double* delta) { value[0] = wrap_angle(value[0] + delta[0]); }
   static void local(const double* from, const double* to, double* delta) {
     delta[0] = wrap_angle(to[0] - from[0]);

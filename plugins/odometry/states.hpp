@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include <waymark/core/graph.hpp>
 #include <waymark/core/modeling.hpp>
+#include <waymark/core/scalar_state.hpp>
 
 namespace waymark {
 
@@ -48,9 +48,7 @@ class StateAlongDrive {
       return;
     }
     graph_.set_stamp(vertex_, stamp);
-    const double sigma = options_.prior_sigma;
-    graph_.add_edge(gaussian_prior_type(), std::array{vertex_}, std::array{0.0, 0.0},
-                    Eigen::MatrixXd::Constant(1, 1, 1 / (sigma * sigma)));
+    add_prior_about_zero(graph_, vertex_, options_.prior_sigma);
   }
 
   void step(Stamp stamp) {
