@@ -177,6 +177,19 @@ std::vector<Eigen::Vector3d> poses_when_measured(const GraphDocument& document) 
   return poses;
 }
 
+std::vector<std::optional<Eigen::Matrix2d>> position_covariances_at_fixes(const GraphDocument& document) {
+  std::vector<const VertexCovariance*> of_vertex(document.graph.vertex_count(), nullptr);
+  for (const VertexCovariance& block : document.covariances)
+    of_vertex[static_cast<std::size_t>(block.vertex)] = &block;
+  std::vector<std::optional<Eigen::Matrix2d>> covariances(document.fixes.size());
+  for (std::size_t i = 0; i < document.fixes.size(); ++i) {
+    const auto vertex = document.graph.find(document.fixes[i].vertex);
+    const VertexCovariance* block = vertex ? of_vertex[static_cast<std::size_t>(*vertex)] : nullptr;
+    if (block != nullptr) covariances[i] = block->covariance.topLeftCorner<2, 2>();
+  }
+  return covariances;
+}
+
 std::vector<StampedPose> poses_at_fixes(const GraphDocument& document) {
   std::vector<StampedPose> poses;
   poses.reserve(document.fixes.size());

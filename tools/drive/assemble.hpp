@@ -48,6 +48,11 @@ void check_calibration(const DriveConfig& config, const std::vector<std::string>
 /// stamp or another than the fix.
 [[nodiscard]] std::vector<StampedPose> poses_at_fixes(const GraphDocument& document);
 
+/// The covariances of their positions, m^2, frame axes, in the order of the fixes; empty where the document
+/// has none of a pose.
+[[nodiscard]] std::vector<std::optional<Eigen::Matrix2d>> position_covariances_at_fixes(
+    const GraphDocument& document);
+
 /// The poses when the fixes were really measured: at their stamps minus the estimated time offset, along the
 /// constant twist between the nodes beside. Empty where the graph estimates none.
 [[nodiscard]] std::vector<Eigen::Vector3d> poses_when_measured(const GraphDocument& document);

@@ -47,19 +47,26 @@ ResidualKind residual_kind(FixStatus status) {
   return ResidualKind::post_fit;
 }
 
+/// The fused pose when fix i was measured.
+const Eigen::Vector3d& pose_when_measured(const EvaluationInput& input, std::size_t i) {
+  return input.when_measured.empty() ? input.fused[i].pose : input.when_measured[i];
+}
+
 /// Where the fused trajectory puts the antenna of fix i.
 Eigen::Vector2d predicted_antenna(const EvaluationInput& input, std::size_t i) {
-  const Eigen::Vector3d& pose = input.when_measured.empty() ? input.fused[i].pose : input.when_measured[i];
+  const Eigen::Vector3d& pose = pose_when_measured(input, i);
   return pose.head<2>() + rotate(pose[2], input.antenna_m);
 }
 
 /// Offsets of one system, gathered over the epochs.
 struct Gathered {
+  std::vector<Stamp> stamps;
   std::vector<Eigen::Vector2d> offsets;
   std::vector<std::optional<double>> directions;
   std::vector<double> heading_errors;
 
-  void add(const Eigen::Vector2d& offset, const std::optional<double>& direction) {
+  void add(Stamp stamp, const Eigen::Vector2d& offset, const std::optional<double>& direction) {
+    stamps.push_back(stamp);
     offsets.push_back(offset);
     directions.push_back(direction);
   }
@@ -68,6 +75,10 @@ struct Gathered {
     return SystemMetrics{.position = position_metrics(offsets),
                          .track = track_metrics(offsets, directions),
                          .heading = scalar_statistics(heading_errors)};
+  }
+
+  [[nodiscard]] std::vector<double> autocorrelation() const {
+    return error_autocorrelation(stamps, offsets, kAutocorrelationLags);
   }
 };
 
@@ -92,6 +103,7 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
   Gathered gnss;
   Gathered gnss_accepted;
   Gathered fused;
+  std::vector<Eigen::Matrix2d> covariances;
   for (std::size_t i = 0; i < input.fixes.size(); ++i) {
     const std::optional<TruthAtEpoch>& truth = evaluation.match.at[i];
     if (!truth) continue;
@@ -99,15 +111,20 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
     compare_with_truth(input, i, truth->pose, epoch);
     const std::optional<double> direction =
         truth->pose.heading_rad ? truth->pose.heading_rad : truth->direction_rad;
-    gnss.add(*epoch.gnss_offset_m, direction);
-    fused.add(*epoch.fused_offset_m, direction);
-    if (epoch.status == FixStatus::accepted) gnss_accepted.add(*epoch.gnss_offset_m, direction);
+    gnss.add(epoch.stamp, *epoch.gnss_offset_m, direction);
+    fused.add(epoch.stamp, *epoch.fused_offset_m, direction);
+    if (!input.position_covariances.empty()) covariances.push_back(input.position_covariances[i]);
+    if (epoch.status == FixStatus::accepted) gnss_accepted.add(epoch.stamp, *epoch.gnss_offset_m, direction);
     if (epoch.heading_error_rad) fused.heading_errors.push_back(*epoch.heading_error_rad);
   }
   evaluation.gnss = gnss.metrics();
   evaluation.gnss_accepted = gnss_accepted.metrics();
   evaluation.fused = fused.metrics();
   evaluation.improvement = improvement(evaluation.gnss.position, evaluation.fused.position);
+  evaluation.gnss_autocorrelation = gnss.autocorrelation();
+  evaluation.fused_autocorrelation = fused.autocorrelation();
+  if (!input.position_covariances.empty())
+    evaluation.consistency = consistency_statistics(fused.stamps, fused.offsets, covariances);
   return evaluation;
 }
 
@@ -130,7 +147,7 @@ void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
     if (kind == ResidualKind::gated) gated.push_back(nu);
     if (kind == ResidualKind::prediction) {
       prediction.push_back(nu);
-      withheld.add(-residual, input.fused[i].pose[2]);
+      withheld.add(fix.stamp, -residual, input.fused[i].pose[2]);
     }
   }
   evaluation.accepted = post_fit.size();
@@ -140,6 +157,25 @@ void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
   evaluation.gated = innovation_statistics(ResidualKind::gated, gated);
   evaluation.prediction = innovation_statistics(ResidualKind::prediction, prediction);
   if (!withheld.offsets.empty()) evaluation.withheld_fixes = withheld.metrics();
+}
+
+/// The fused poses as one of the predictions.
+Prediction fused_prediction(const EvaluationInput& input) {
+  Prediction fused{.label = "fused", .poses = {}, .position_covariances = {}};
+  for (std::size_t i = 0; i < input.fixes.size(); ++i) fused.poses.emplace_back(pose_when_measured(input, i));
+  for (const Eigen::Matrix2d& covariance : input.position_covariances)
+    fused.position_covariances.emplace_back(covariance);
+  return fused;
+}
+
+void compare_at_withheld(const EvaluationInput& input, Evaluation& evaluation) {
+  evaluation.withheld_runs = withheld_runs(input.fixes);
+  if (evaluation.withheld_runs == 0) return;
+  const auto add = [&](const Prediction& prediction) {
+    evaluation.at_withheld.push_back(withheld_metrics(prediction, input.fixes, input.antenna_m));
+  };
+  add(fused_prediction(input));
+  for (const Prediction& prediction : input.predictions) add(prediction);
 }
 
 }  // namespace
@@ -156,6 +192,7 @@ Evaluation evaluate(const EvaluationInput& input) {
                                             .fused_offset_m = {},
                                             .heading_error_rad = {}});
   evaluate_residuals(input, evaluation);
+  compare_at_withheld(input, evaluation);
   if (!input.truth.empty()) evaluation.truth = evaluate_truth(input, evaluation.epochs);
   return evaluation;
 }

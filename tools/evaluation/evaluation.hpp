@@ -15,9 +15,12 @@
 
 #include <waymark/core/frame.hpp>
 #include <waymark/core/sample.hpp>
+#include <waymark/tools/evaluation/autocorrelation.hpp>
+#include <waymark/tools/evaluation/consistency.hpp>
 #include <waymark/tools/evaluation/innovation.hpp>
 #include <waymark/tools/evaluation/metrics.hpp>
 #include <waymark/tools/evaluation/truth_interpolation.hpp>
+#include <waymark/tools/evaluation/withheld.hpp>
 
 namespace waymark {
 
@@ -33,6 +36,7 @@ struct EvaluationInput {
   Eigen::Vector2d truth_reference_m{0, 0};  ///< truth reference point in the body frame
   /// Of the fused poses, m^2, frame axes; empty or one per pose.
   std::vector<Eigen::Matrix2d> position_covariances;
+  std::vector<Prediction> predictions;  ///< what the fused poses are compared with at withheld fixes
   Frame frame;
   TruthOptions truth_options;
   double max_stamp_offset_s = 0.001;  ///< a fix may share a pose this far from it in time (timeline's snap_s)
@@ -65,6 +69,11 @@ struct TruthEvaluation {
   SystemMetrics gnss_accepted;
   SystemMetrics fused;      ///< at the very epochs of `gnss`
   Improvement improvement;  ///< of `fused` relative to `gnss`
+  /// Stated against actual error of the fused poses; empty where no covariances were given.
+  std::optional<ConsistencyStatistics> consistency;
+  /// error_autocorrelation at kAutocorrelationLags.
+  std::vector<double> gnss_autocorrelation;
+  std::vector<double> fused_autocorrelation;
 };
 
 struct Evaluation {
@@ -75,9 +84,11 @@ struct Evaluation {
   /// Fused antenna - withheld fix, along the fused heading; the noise of the fixes is in it. Empty where none
   /// was withheld.
   std::optional<SystemMetrics> withheld_fixes;
-  InnovationStatistics post_fit;    ///< accepted fixes: residuals after the fit, not innovations
-  InnovationStatistics gated;       ///< rejected fixes
-  InnovationStatistics prediction;  ///< withheld fixes: innovations proper
+  std::size_t withheld_runs = 0;             ///< outages, or single fixes where every n-th was withheld
+  std::vector<WithheldMetrics> at_withheld;  ///< the fused poses ("fused") and each prediction
+  InnovationStatistics post_fit;             ///< accepted fixes: residuals after the fit, not innovations
+  InnovationStatistics gated;                ///< rejected fixes
+  InnovationStatistics prediction;           ///< withheld fixes: innovations proper
   Frame frame;
   std::vector<EpochResult> epochs;  ///< one per fix
 

@@ -7,15 +7,13 @@
 #include <waymark/core/error.hpp>
 
 namespace waymark {
-namespace {
 
-double median(std::span<const double> sorted) {
+double sorted_median(std::span<const double> sorted) {
   const std::size_t n = sorted.size();
+  if (n == 0) return kUndefined;
   const std::size_t middle = n / 2;
   return n % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
 }
-
-}  // namespace
 
 double nearest_rank_quantile(std::span<const double> sorted, double probability) {
   if (sorted.empty()) return kUndefined;
@@ -46,7 +44,7 @@ PositionMetrics position_metrics(std::span<const Eigen::Vector2d> offsets) {
   metrics.accuracy_m = metrics.mean_m.norm();
   metrics.rmse_m = std::sqrt(squares / n);
   metrics.max_m = radii.back();
-  metrics.median_m = median(radii);
+  metrics.median_m = sorted_median(radii);
   metrics.cep50_m = nearest_rank_quantile(radii, 0.50);
   metrics.cep95_m = nearest_rank_quantile(radii, 0.95);
   if (offsets.size() > 1) {

@@ -72,6 +72,9 @@ struct Improvement {
 
 [[nodiscard]] Improvement improvement(const PositionMetrics& raw, const PositionMetrics& fused);
 
+/// The middle one, or the mean of the two middle ones. @param sorted ascending. @return NaN for no values.
+[[nodiscard]] double sorted_median(std::span<const double> sorted);
+
 /// Nearest-rank quantile: the smallest of the values that is >= at least a share `probability` of them.
 /// @param sorted       ascending.
 /// @param probability  in (0, 1].

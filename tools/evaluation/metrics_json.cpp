@@ -74,12 +74,50 @@ Json to_json(const TruthMatch& m) {
           {"longest_interpolated_s", number(m.longest_interpolated_s)}};
 }
 
+Json to_json(const Interval95& i) {
+  return Json::array({number(i.low), number(i.high)});
+}
+
+Json to_json(const ConsistencyStatistics& s) {
+  return {{"n", s.count},
+          {"undefined", s.undefined},
+          {"effective_n", number(s.effective_samples)},
+          {"nees_mean", number(s.nees_mean)},
+          {"expected_nees_mean", ConsistencyStatistics::kExpectedMean},
+          {"honest_nees_mean", to_json(s.nees_mean_honest)},
+          {"coverage_95", number(s.coverage)},
+          {"expected_coverage_95", ConsistencyStatistics::kExpectedCoverage},
+          {"honest_coverage_95", to_json(s.coverage_honest)},
+          {"median_error_ratio", number(s.median_error_ratio)}};
+}
+
+Json numbers(std::span<const double> values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(value));
+  return list;
+}
+
 Json to_json(const TruthEvaluation& t) {
   return {{"match", to_json(t.match)},
           {"gnss", to_json(t.gnss)},
           {"gnss_accepted", to_json(t.gnss_accepted)},
           {"fused", to_json(t.fused)},
-          {"improvement_percent", to_json(t.improvement)}};
+          {"improvement_percent", to_json(t.improvement)},
+          {"consistency", t.consistency ? to_json(*t.consistency) : Json(nullptr)},
+          {"autocorrelation",
+           {{"lags_s", Json(kAutocorrelationLags)},
+            {"gnss", numbers(t.gnss_autocorrelation)},
+            {"fused", numbers(t.fused_autocorrelation)}}}};
+}
+
+/// What is predicted at withheld fixes, by label.
+Json predictions_json(const Evaluation& e) {
+  Json predictions = Json::object();
+  for (const WithheldMetrics& w : e.at_withheld)
+    predictions[w.label] = {{"at_fixes", to_json(w.at_fixes)},
+                            {"at_ends", to_json(w.at_ends)},
+                            {"innovation", to_json(w.innovation)}};
+  return {{"runs", e.withheld_runs}, {"predictions", std::move(predictions)}};
 }
 
 Json to_json(const Frame& frame) {
@@ -98,6 +136,7 @@ Json to_json(const LabelledEvaluation& labelled) {
        {{"total", e.fixes()}, {"accepted", e.accepted}, {"rejected", e.rejected}, {"withheld", e.withheld}}},
       {"truth", e.truth ? to_json(*e.truth) : Json(nullptr)},
       {"withheld_fixes", e.withheld_fixes ? to_json(*e.withheld_fixes) : Json(nullptr)},
+      {"withheld_runs", e.withheld_runs == 0 ? Json(nullptr) : predictions_json(e)},
       {"innovation",
        {{"accepted", to_json(e.post_fit)},
         {"rejected", to_json(e.gated)},

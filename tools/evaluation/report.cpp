@@ -110,11 +110,58 @@ std::string track_block(std::span<const LabelledEvaluation> evaluations) {
   return table.empty() ? "" : table.text() + "\n";
 }
 
-std::string withheld_block(std::span<const LabelledEvaluation> evaluations) {
-  TextTable table(position_heading("against withheld fixes"));
-  for (const auto& [label, evaluation] : evaluations)
-    if (evaluation.withheld_fixes) table.add(position_row(label, evaluation.withheld_fixes->position));
+std::string interval(const Interval95& i, double factor, int decimals) {
+  return number(factor * i.low, decimals) + " - " + number(factor * i.high, decimals);
+}
+
+std::string consistency_block(std::span<const LabelledEvaluation> evaluations) {
+  TextTable table({"stated against actual error", "n", "effective n", "NEES mean", "honest",
+                   "inside 95 % [%]", "honest [%]", "actual / stated"});
+  for (const auto& [label, evaluation] : evaluations) {
+    if (!evaluation.truth || !evaluation.truth->consistency) continue;
+    const ConsistencyStatistics& s = *evaluation.truth->consistency;
+    table.add({label, std::to_string(s.count), number(s.effective_samples, 1), number(s.nees_mean, 2),
+               interval(s.nees_mean_honest, 1, 2), number(100 * s.coverage, 1),
+               interval(s.coverage_honest, 100, 1), number(s.median_error_ratio, 2)});
+  }
   return table.empty() ? "" : table.text() + "\n";
+}
+
+std::string autocorrelation_block(std::span<const LabelledEvaluation> evaluations) {
+  Row heading{"error autocorrelation"};
+  for (const double lag_s : kAutocorrelationLags) heading.push_back(fmt::format("{} s", lag_s));
+  TextTable table(std::move(heading));
+  const auto row = [](const std::string& label, std::span<const double> correlations) {
+    Row cells{label};
+    for (const double correlation : correlations) cells.push_back(number(correlation, 2));
+    return cells;
+  };
+  add_raw_rows(table, evaluations, "raw gnss", [&](const std::string& label, const TruthEvaluation& t) {
+    return row(label, t.gnss_autocorrelation);
+  });
+  for (const auto& [label, evaluation] : evaluations)
+    if (evaluation.truth) table.add(row(label, evaluation.truth->fused_autocorrelation));
+  return table.empty() ? "" : table.text() + "\n";
+}
+
+/// Rows of the fused poses ("g1") and of each prediction beside them ("g1, dead reckoning").
+std::string withheld_block(std::span<const LabelledEvaluation> evaluations) {
+  Row heading = position_heading("against withheld fixes");
+  heading.push_back("inside 95 % [%]");
+  TextTable table(std::move(heading));
+  TextTable ends(position_heading("at the end of each outage"));
+  for (const auto& [label, evaluation] : evaluations) {
+    for (const WithheldMetrics& w : evaluation.at_withheld) {
+      const bool fused = &w == &evaluation.at_withheld.front();
+      const std::string row_label = fused ? label : label + ", " + w.label;
+      Row row = position_row(row_label, w.at_fixes);
+      row.push_back(percent(100 * w.innovation.fraction_inside));
+      table.add(std::move(row));
+      if (evaluation.withheld_runs < evaluation.withheld) ends.add(position_row(row_label, w.at_ends));
+    }
+  }
+  if (table.empty()) return "";
+  return table.text() + "\n" + (ends.empty() ? "" : ends.text() + "\n");
 }
 
 void add_innovations(TextTable& table, const std::string& label, const InnovationStatistics& s) {
@@ -152,8 +199,9 @@ std::string count_block(std::span<const LabelledEvaluation> evaluations) {
 }  // namespace
 
 std::string metrics_table(std::span<const LabelledEvaluation> evaluations) {
-  return truth_block(evaluations) + track_block(evaluations) + withheld_block(evaluations) +
-         innovation_block(evaluations) + count_block(evaluations);
+  return truth_block(evaluations) + track_block(evaluations) + consistency_block(evaluations) +
+         autocorrelation_block(evaluations) + withheld_block(evaluations) + innovation_block(evaluations) +
+         count_block(evaluations);
 }
 
 }  // namespace waymark

@@ -22,7 +22,8 @@ struct ReportHeader {
 };
 
 /// The table for the terminal: raw GNSS, then every evaluation, against truth; improvement over raw GNSS;
-/// along and across track and heading; withheld fixes; normalised innovations; counts. A block without data
+/// along and across track and heading; stated against actual error; autocorrelation; withheld fixes;
+/// normalised innovations; counts. A block without data
 /// is left out. Raw GNSS rows that differ between the evaluations (another gate, other epochs) are printed
 /// for each. Metres and degrees as headed, "-" where a number is not defined. UTF-8 is not needed. Lines end
 /// with "\n".

@@ -248,7 +248,14 @@ std::string describe_drive(const LoadedDrive& loaded) {
   return text;
 }
 
-Evaluation evaluate_document(const GraphDocument& document, const std::vector<TruthPose>& truth) {
+Prediction as_prediction(std::string label, PosesAtWithheld at) {
+  return {.label = std::move(label),
+          .poses = std::move(at.poses),
+          .position_covariances = std::move(at.position_covariances)};
+}
+
+Evaluation evaluate_document(const GraphDocument& document, const std::vector<TruthPose>& truth,
+                             const std::vector<Prediction>& further) {
   EvaluationInput input;
   input.fused = poses_at_fixes(document);
   input.when_measured = poses_when_measured(document);
@@ -258,19 +265,12 @@ Evaluation evaluate_document(const GraphDocument& document, const std::vector<Tr
   input.truth_reference_m = document.truth_reference_m;
   input.frame = document.frame.value_or(Frame());
   input.max_stamp_offset_s = kLargestSnap;  // a fix may share the node of an odometry sample
-  std::vector<std::ptrdiff_t> block_of(document.graph.vertex_count(), -1);
-  for (std::size_t i = 0; i < document.covariances.size(); ++i) {
-    block_of[static_cast<std::size_t>(document.covariances[i].vertex)] = static_cast<std::ptrdiff_t>(i);
+  const auto covariances = position_covariances_at_fixes(document);
+  if (std::all_of(covariances.begin(), covariances.end(), [](const auto& c) { return c.has_value(); })) {
+    for (const auto& covariance : covariances) input.position_covariances.push_back(*covariance);
   }
-  for (const Fix& fix : document.fixes) {
-    const auto block = block_of[static_cast<std::size_t>(*document.graph.find(fix.vertex))];
-    if (block < 0) {
-      input.position_covariances.clear();
-      break;
-    }
-    input.position_covariances.emplace_back(
-        document.covariances[static_cast<std::size_t>(block)].covariance.topLeftCorner<2, 2>());
-  }
+  input.predictions = {as_prediction("dead reckoning", dead_reckoned_at_withheld(document))};
+  for (const Prediction& prediction : further) input.predictions.push_back(prediction);
   return evaluate(input);
 }
 

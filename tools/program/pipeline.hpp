@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <waymark/tools/drive/assemble.hpp>
+#include <waymark/tools/drive/outages.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
 #include <waymark/tools/evaluation/report.hpp>
 #include <waymark/tools/program/console.hpp>
@@ -59,8 +60,11 @@ void add_provenance(const GraphDocument& document, const std::string& label, Rep
 [[nodiscard]] std::string describe_drive(const LoadedDrive& loaded);
 
 /// Evaluates a document at its fixes. @param truth may be empty
-[[nodiscard]] Evaluation evaluate_document(const GraphDocument& document,
-                                           const std::vector<TruthPose>& truth);
+/// @param further  predictions of its withheld fixes, beside the fused poses and dead reckoning
+[[nodiscard]] Evaluation evaluate_document(const GraphDocument& document, const std::vector<TruthPose>& truth,
+                                           const std::vector<Prediction>& further = {});
+
+[[nodiscard]] Prediction as_prediction(std::string label, PosesAtWithheld at);
 
 /// Truth for a document from a drive.yaml or a TUM file, in the document's frame and on its clock.
 [[nodiscard]] std::vector<TruthPose> read_truth(const std::string& path, const std::string& data_folder,

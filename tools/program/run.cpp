@@ -3,6 +3,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/covariance.hpp>
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
@@ -17,6 +18,7 @@ struct RunOptions {
   OptimizationChoice choice;
   std::string input;
   std::string folder;
+  bool causal = false;
 };
 
 /// One modeling of the drive: graph, optimum, evaluation, files.
@@ -26,6 +28,39 @@ struct ModelingRun {
   std::vector<StateReport> states;
   std::vector<std::string> files;
 };
+
+/// Covariances of the poses at the fixes, for the evaluation; said where there are none.
+void add_covariances_at_fixes(GraphDocument& document, const Summary& summary, const Console& console) {
+  if (!summary.converged() || !document.covariances.empty()) return;
+  try {
+    add_covariances(document, "fixes");
+  } catch (const InputError& error) {
+    console.note("warning: stated errors cannot be judged: " + std::string(error.what()));
+  }
+}
+
+/// What was known of the withheld fixes before each outage's end: the same settings on the drive so far.
+Prediction predict_causally(const RunOptions& options, const LoadedDrive& loaded, const std::string& modeling,
+                            const TypeRegistry& registry, const Console& console) {
+  OptimizationChoice choice = options.choice;
+  choice.covariance = "fixes";
+  const FuseDrive fuse = [&](const PreparedDrive& known) -> std::optional<GraphDocument> {
+    stop_if_interrupted();
+    LoadedDrive so_far{loaded.config, known, {}, loaded.modelings, loaded.loss, loaded.inputs};
+    try {
+      so_far.skeleton = build_skeleton(known, loaded.config, registry);
+      GraphDocument document =
+          build_document(so_far, modeling, known_options(modeling, options.overrides, registry), registry);
+      optimize_document(document, choice, registry, console);
+      return document;
+    } catch (const InputError& error) {
+      console.note(fmt::format("warning: nothing is known causally of the outage that ends with epoch {}: {}",
+                               known.fixes.back().epoch, error.what()));
+      return std::nullopt;
+    }
+  };
+  return as_prediction("causal", causal_at_withheld(loaded.drive, fuse));
+}
 
 ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, const std::string& modeling,
                          const TypeRegistry& registry, const Console& console, ReportHeader& header) {
@@ -43,7 +78,10 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, c
   write(prefix + ".fused.graph");
   run.states = report_states(document, run.result.summary, console);
   for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
-  run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth)};
+  add_covariances_at_fixes(document, run.result.summary, console);
+  std::vector<Prediction> further;
+  if (options.causal) further.push_back(predict_causally(options, loaded, modeling, registry, console));
+  run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth, further)};
   add_provenance(document, modeling, header);
   return run;
 }
@@ -59,6 +97,8 @@ ExitCode run_drive(const RunOptions& options) {
   const TypeRegistry registry = make_registry(options.common, load_drive_config(options.input).plugins);
   check_choice(options.choice, registry);
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
+  if (options.causal && loaded.config.outage.length_s == 0)
+    throw UsageError("--causal: there are no outages to be predicted; name them with --outage LENGTH/EVERY");
   stop_if_interrupted();
   make_folder(options.folder);
   std::vector<LabelledEvaluation> evaluations;
@@ -103,6 +143,8 @@ void add_run(CLI::App& app, Action& action) {
       ->required();
   command->add_option("-o,--out", options->folder, "Folder for all results")->required();
   add_drive_options(*command, options->overrides);
+  command->add_flag("--causal", options->causal,
+                    "Also predict each outage of --outage from what was known before its end");
   add_optimization_options(*command, options->choice);
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark run drive.yaml --out results --modeling all");
