@@ -74,7 +74,7 @@ TEST_CASE("the table has track, heading, innovation and counts", "[report]") {
 
 TEST_CASE("raw rows appear once unless they differ", "[report]") {
   const std::vector<LabelledEvaluation> same{{"g1", drive(1)}, {"g2", drive(0)}};
-  CHECK(count_lines_starting(metrics_table(same), "raw gnss") == 2);  // one block each: truth, track
+  CHECK(count_lines_starting(metrics_table(same), "raw gnss") == 3);  // truth, track, autocorrelation
   const std::vector<LabelledEvaluation> gated{{"g1", drive(1)}, {"g2", drive(0, FixStatus::rejected)}};
   const std::string text = metrics_table(gated);
   CHECK_THAT(text, Contains("raw gnss, accepted (g2)  2"));
