@@ -84,14 +84,14 @@ TEST_CASE("outages: fused, dead reckoned and causal errors at the withheld fixes
   INFO(result.err);
   REQUIRE(result.code == 0);
   const Json evaluation = Json::parse(read_text(folder + "r/metrics.json"))["evaluations"][0];
-  const Json& withheld = evaluation["withheld_runs"];
-  CHECK(withheld["runs"] == 4);  // 170 s
-  CHECK(withheld["predictions"]["fused"]["at_fixes"] == evaluation["withheld_fixes"]["position"]);
+  const Json& predictions = evaluation["withheld_predictions"];
+  CHECK(evaluation["outages"] == 4);  // 170 s
+  CHECK(predictions["fused"]["at_fixes"] == evaluation["withheld_fixes"]["position"]);
   for (const auto& [label, key] :
        {std::pair("g1", "fused"), std::pair("g1, dead reckoning", "dead reckoning"),
         std::pair("g1, causal", "causal")}) {
     INFO(label);
-    const Json& prediction = withheld["predictions"][key];
+    const Json& prediction = predictions[key];
     const auto at_fixes = row(result.out, "against withheld fixes", label);
     const auto at_ends = row(result.out, "at the end of each outage", label);
     REQUIRE(at_fixes.size() == 9);
@@ -108,7 +108,7 @@ TEST_CASE("outages: fused, dead reckoned and causal errors at the withheld fixes
       check_cell(at_fixes[8], 100 * inside.get<double>());
     }
   }
-  CHECK(withheld["predictions"]["dead reckoning"]["innovation"]["fraction_inside"].is_null());
+  CHECK(predictions["dead reckoning"]["innovation"]["fraction_inside"].is_null());
 }
 
 TEST_CASE("the last outage of a drive is predicted causally as the whole drive is fused") {
@@ -117,7 +117,7 @@ TEST_CASE("the last outage of a drive is predicted causally as the whole drive i
   const RunResult result = run({"run", bundled_drive(), "--out", folder + "r", "--outage", "20/100", "--to",
                                 "99.9", "--causal", "--json", "--tolerance", "1e-12"});
   REQUIRE(result.code == 0);
-  const Json predictions = Json::parse(result.out)["evaluations"][0]["withheld_runs"]["predictions"];
+  const Json predictions = Json::parse(result.out)["evaluations"][0]["withheld_predictions"];
   CHECK(predictions["causal"]["at_fixes"]["rmse_m"].get<double>() ==
         Approx(predictions["fused"]["at_fixes"]["rmse_m"].get<double>()).epsilon(1e-6));
 }

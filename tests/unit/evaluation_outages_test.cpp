@@ -136,27 +136,30 @@ TEST_CASE("dead reckoning stands where the vehicle stood, and ends where the cha
   CHECK(result.poses[3]->isApprox(Eigen::Vector3d(20 * std::cos(1.0), 20 * std::sin(1.0), 1)));
 }
 
-TEST_CASE("a drive is cut at the end of each outage", "[outages]") {
-  const PreparedDrive drive = prepared("wwaawwaawaww");
-  const std::vector<KnownDrive> known = known_at_outages(drive);
-  REQUIRE(known.size() == 3);  // the run at the front has nothing before it
-  CHECK(known[0].begin == 4);
-  CHECK(known[0].end == 6);
-  CHECK(known[1].begin == 8);
-  CHECK(known[2].end == 12);
-  const PreparedDrive& first = known[0].drive;
-  CHECK(first.fixes.size() == 6);
-  CHECK(first.truth.empty());
-  // Samples at 0.03 s + k 0.1 s: the first one at or after the last fix at 5 s closes its interval.
-  CHECK(first.odometry.back().stamp == Stamp{5'030'000'000});
-  CHECK(first.sensors[0].size() == 6);
-  CHECK(first.sensors[0].values.size() == 12);
-  CHECK(known_at_outages(prepared("aaa")).empty());
-  CHECK(known_at_outages(prepared("ww")).empty());
+TEST_CASE("runs of withheld fixes", "[outages]") {
+  const std::vector<Fix> fixes = fixes_of("wwaawwraww");
+  const std::vector<WithheldRun> runs = withheld_runs(fixes);
+  REQUIRE(runs.size() == 3);
+  CHECK(runs[0].begin == 0);
+  CHECK(runs[0].end == 2);
+  CHECK(runs[1].begin == 4);
+  CHECK(runs[1].end == 6);
+  CHECK(runs[2].end == 10);
+  CHECK(withheld_runs(fixes_of("ara")).empty());
+}
+
+TEST_CASE("a drive as it was known ends with the fix and the odometry that closes its interval",
+          "[outages]") {
+  const PreparedDrive known = known_until(prepared("aaaawwaaww"), 6);
+  CHECK(known.fixes.size() == 6);
+  CHECK(known.truth.empty());
+  CHECK(known.odometry.back().stamp == Stamp{5'030'000'000});  // samples at 0.03 s + k 0.1 s
+  CHECK(known.sensors[0].size() == 6);
+  CHECK(known.sensors[0].values.size() == 12);
 }
 
 TEST_CASE("causal poses come from one fusion per outage that never sees what follows", "[outages]") {
-  const PreparedDrive drive = prepared("aawwaaw");
+  const PreparedDrive drive = prepared("waawwaaw");
   std::vector<std::size_t> seen;
   const PosesAtWithheld result = causal_at_withheld(drive, [&](const PreparedDrive& known) {
     seen.push_back(known.fixes.size());
@@ -166,28 +169,36 @@ TEST_CASE("causal poses come from one fusion per outage that never sees what fol
       const auto v = document.graph.add_vertex<VertexSe2>(
           fix.vertex, {static_cast<double>(known.fixes.size()), 0, 0});  // says which fusion it was
       document.graph.set_stamp(v, fix.stamp);
-      if (fix.epoch == 3) document.covariances.push_back({v, 2 * Eigen::Matrix3d::Identity()});
+      if (fix.epoch == 4) document.covariances.push_back({v, 2 * Eigen::Matrix3d::Identity()});
     }
     return std::optional(document);
   });
-  CHECK(seen == std::vector<std::size_t>{4, 7});
-  CHECK_FALSE(result.poses[1]);
-  CHECK(result.poses[2]->x() == 4);
-  CHECK(result.poses[3]->x() == 4);
-  CHECK_FALSE(result.poses[5]);
-  CHECK(result.poses[6]->x() == 7);
-  CHECK_FALSE(result.position_covariances[2]);
-  CHECK((*result.position_covariances[3])(0, 0) == 2);
+  CHECK(seen == std::vector<std::size_t>{5, 8});
+  CHECK_FALSE(result.poses[0]);  // nothing was known before it
+  CHECK_FALSE(result.poses[2]);
+  CHECK(result.poses[3]->x() == 5);
+  CHECK(result.poses[4]->x() == 5);
+  CHECK_FALSE(result.poses[6]);
+  CHECK(result.poses[7]->x() == 8);
+  CHECK_FALSE(result.position_covariances[3]);
+  CHECK((*result.position_covariances[4])(0, 0) == 2);
 
   const auto nothing = causal_at_withheld(drive, [](const PreparedDrive&) { return std::nullopt; });
-  CHECK_FALSE(nothing.poses[2]);
+  CHECK_FALSE(nothing.poses[3]);
   const auto other = [](const PreparedDrive&) { return std::optional(GraphDocument()); };
   CHECK_THROWS_AS(causal_at_withheld(drive, other), UsageError);
 }
 
-TEST_CASE("errors at withheld fixes and at the end of each run of them", "[outages]") {
+TEST_CASE("an outage is a run of withheld epochs", "[outages]") {
+  CHECK(outage_ends(fixes_of("awwawarwww")) == std::vector<std::size_t>{2, 9});
+  CHECK(outage_ends(fixes_of("awawr")).empty());
+  std::vector<Fix> two_receivers = fixes_of("aww");
+  two_receivers[2].stamp = two_receivers[1].stamp;
+  CHECK(outage_ends(two_receivers).empty());
+}
+
+TEST_CASE("errors at withheld fixes and at the end of each outage", "[outages]") {
   const std::vector<Fix> fixes = fixes_of("awwaw");
-  CHECK(withheld_runs(fixes) == 2);
   Prediction prediction{.label = "drifting", .poses = {}, .position_covariances = {}};
   for (const Fix& fix : fixes)  // off to the left by 2 m per second; heading north, the antenna 1 m ahead
     prediction.poses.emplace_back(
@@ -199,8 +210,8 @@ TEST_CASE("errors at withheld fixes and at the end of each run of them", "[outag
   CHECK(w.at_fixes.count == 3);
   CHECK(w.at_fixes.median_m == Approx(4));
   CHECK(w.at_fixes.max_m == Approx(8));
-  CHECK(w.at_ends.count == 2);
-  CHECK(w.at_ends.rmse_m == Approx(std::sqrt((16 + 64) / 2.0)));
+  CHECK(w.at_ends.count == 1);
+  CHECK(w.at_ends.max_m == Approx(4));
   CHECK(w.innovation.count == 2);  // S = 12 + 4
   CHECK(w.innovation.mean == Approx((4.0 + 16.0) / 16 / 2));
 

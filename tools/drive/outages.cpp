@@ -73,23 +73,6 @@ class OdometryChain {
   std::vector<double> zeros_;
 };
 
-/// Everything later than the end of a run of withheld fixes is cut off.
-PreparedDrive known_until(const PreparedDrive& drive, std::size_t fix_count) {
-  PreparedDrive known = drive;
-  known.truth.clear();
-  known.fixes.resize(fix_count);
-  const Stamp end = known.fixes.back().stamp;
-  const auto last = std::find_if(known.odometry.begin(), known.odometry.end(),
-                                 [&](const OdometrySample& sample) { return sample.stamp >= end; });
-  if (last != known.odometry.end()) known.odometry.erase(last + 1, known.odometry.end());
-  for (SensorTable& sensor : known.sensors) {
-    const auto first_later = std::upper_bound(sensor.stamps.begin(), sensor.stamps.end(), end);
-    sensor.stamps.erase(first_later, sensor.stamps.end());
-    sensor.values.resize(sensor.stamps.size() * sensor.columns);
-  }
-  return known;
-}
-
 void require_fixes_of(const PreparedDrive& drive, const GraphDocument& document) {
   const auto same = [](const Fix& a, const Fix& b) { return a.stamp == b.stamp && a.source == b.source; };
   if (!std::equal(drive.fixes.begin(), drive.fixes.end(), document.fixes.begin(), document.fixes.end(), same))
@@ -120,32 +103,47 @@ PosesAtWithheld dead_reckoned_at_withheld(const GraphDocument& document) {
   return result;
 }
 
-std::vector<KnownDrive> known_at_outages(const PreparedDrive& drive) {
-  std::vector<KnownDrive> outages;
-  const auto withheld = [&](std::size_t i) { return drive.fixes[i].status == FixStatus::withheld; };
-  for (std::size_t begin = 0; begin < drive.fixes.size();) {
-    std::size_t end = begin;
-    while (end < drive.fixes.size() && withheld(end)) ++end;
-    const bool anything_before = begin > 0;  // the run at the very front is the only one that has nothing
-    if (end > begin && anything_before)
-      outages.push_back({.drive = known_until(drive, end), .begin = begin, .end = end});
-    begin = end + 1;
+std::vector<WithheldRun> withheld_runs(std::span<const Fix> fixes) {
+  std::vector<WithheldRun> runs;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    if (fixes[i].status != FixStatus::withheld) continue;
+    const bool goes_on = !runs.empty() && runs.back().end == i;
+    if (!goes_on) runs.push_back({i, i});
+    runs.back().end = i + 1;
   }
-  return outages;
+  return runs;
+}
+
+PreparedDrive known_until(const PreparedDrive& drive, std::size_t end) {
+  PreparedDrive known = drive;
+  known.truth.clear();
+  known.fixes.resize(end);
+  const Stamp last_fix = known.fixes.back().stamp;
+  const auto last = std::find_if(known.odometry.begin(), known.odometry.end(),
+                                 [&](const OdometrySample& sample) { return sample.stamp >= last_fix; });
+  if (last != known.odometry.end()) known.odometry.erase(last + 1, known.odometry.end());
+  for (SensorTable& sensor : known.sensors) {
+    const auto first_later = std::upper_bound(sensor.stamps.begin(), sensor.stamps.end(), last_fix);
+    sensor.stamps.erase(first_later, sensor.stamps.end());
+    sensor.values.resize(sensor.stamps.size() * sensor.columns);
+  }
+  return known;
 }
 
 PosesAtWithheld causal_at_withheld(const PreparedDrive& drive, const FuseDrive& fuse) {
   PosesAtWithheld result;
   result.poses.resize(drive.fixes.size());
   result.position_covariances.resize(drive.fixes.size());
-  for (const KnownDrive& known : known_at_outages(drive)) {
-    const std::optional<GraphDocument> document = fuse(known.drive);
+  for (const WithheldRun& run : withheld_runs(drive.fixes)) {
+    if (run.begin == 0) continue;
+    const PreparedDrive known = known_until(drive, run.end);
+    const std::optional<GraphDocument> document = fuse(known);
     if (!document) continue;
-    require_fixes_of(known.drive, *document);
+    require_fixes_of(known, *document);
     const std::vector<StampedPose> at_stamps = poses_at_fixes(*document);
     const std::vector<Eigen::Vector3d> when_measured = poses_when_measured(*document);
     const auto covariances = position_covariances_at_fixes(*document);
-    for (std::size_t i = known.begin; i < known.end; ++i) {
+    for (std::size_t i = run.begin; i < run.end; ++i) {
       result.poses[i] = when_measured.empty() ? at_stamps[i].pose : when_measured[i];
       result.position_covariances[i] = covariances[i];
     }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,25 +28,26 @@ struct PosesAtWithheld {
 /// states are zero is the negative of its measured motion. Fixes must be in order of time, as a drive's are.
 [[nodiscard]] PosesAtWithheld dead_reckoned_at_withheld(const GraphDocument& document);
 
-/// A drive cut off at the end of an outage.
-struct KnownDrive {
-  PreparedDrive drive;    ///< no fix later than the outage, odometry to its end, no truth
-  std::size_t begin = 0;  ///< fixes [begin, end) of `drive` are those of the outage, withheld
-  std::size_t end = 0;    ///< number of fixes
+/// Fixes [begin, end) of a drive, all withheld, with none withheld beside them.
+struct WithheldRun {
+  std::size_t begin = 0;
+  std::size_t end = 0;
 };
 
-/// The drive as it was known at the end of each run of withheld fixes. Fixes withheld before stay withheld;
-/// the odometry and other sensors end with the first reading at or after the last withheld fix. Runs before
-/// which every fix was withheld are left out.
-[[nodiscard]] std::vector<KnownDrive> known_at_outages(const PreparedDrive& drive);
+/// The runs of withheld fixes, in order.
+[[nodiscard]] std::vector<WithheldRun> withheld_runs(std::span<const Fix> fixes);
+
+/// The drive as it was known at its fix number end - 1: no later fix, the odometry to its first reading at or
+/// after that fix, other sensors up to it, no truth. What is withheld stays so.
+[[nodiscard]] PreparedDrive known_until(const PreparedDrive& drive, std::size_t end);
 
 /// Builds the graph of a drive and optimises it; nothing where that cannot be done. Document fixes are those
 /// of the drive, in their order; covariances of poses are used where it has them.
 using FuseDrive = std::function<std::optional<GraphDocument>(const PreparedDrive& known)>;
 
 /// What a vehicle would have known on its way: for each run of withheld fixes the drive is fused from nothing
-/// but what came before the run's end, and no fix of the run. One call of `fuse` per run; empty where it gave
-/// nothing.
+/// but known_until its end. One call of `fuse` per run, none for a run with no fix before it; empty where it
+/// gave nothing.
 /// @throws UsageError for a document with other fixes; what `fuse` throws.
 [[nodiscard]] PosesAtWithheld causal_at_withheld(const PreparedDrive& drive, const FuseDrive& fuse);
 

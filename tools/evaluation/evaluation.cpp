@@ -169,8 +169,8 @@ Prediction fused_prediction(const EvaluationInput& input) {
 }
 
 void compare_at_withheld(const EvaluationInput& input, Evaluation& evaluation) {
-  evaluation.withheld_runs = withheld_runs(input.fixes);
-  if (evaluation.withheld_runs == 0) return;
+  if (evaluation.withheld == 0) return;
+  evaluation.outages = outage_ends(input.fixes).size();
   const auto add = [&](const Prediction& prediction) {
     evaluation.at_withheld.push_back(withheld_metrics(prediction, input.fixes, input.antenna_m));
   };

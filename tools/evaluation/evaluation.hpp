@@ -84,7 +84,7 @@ struct Evaluation {
   /// Fused antenna - withheld fix, along the fused heading; the noise of the fixes is in it. Empty where none
   /// was withheld.
   std::optional<SystemMetrics> withheld_fixes;
-  std::size_t withheld_runs = 0;             ///< outages, or single fixes where every n-th was withheld
+  std::size_t outages = 0;                   ///< runs of withheld fixes over more than one epoch
   std::vector<WithheldMetrics> at_withheld;  ///< the fused poses ("fused") and each prediction
   InnovationStatistics post_fit;             ///< accepted fixes: residuals after the fit, not innovations
   InnovationStatistics gated;                ///< rejected fixes

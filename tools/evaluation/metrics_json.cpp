@@ -117,7 +117,7 @@ Json predictions_json(const Evaluation& e) {
     predictions[w.label] = {{"at_fixes", to_json(w.at_fixes)},
                             {"at_ends", to_json(w.at_ends)},
                             {"innovation", to_json(w.innovation)}};
-  return {{"runs", e.withheld_runs}, {"predictions", std::move(predictions)}};
+  return predictions;
 }
 
 Json to_json(const Frame& frame) {
@@ -136,7 +136,8 @@ Json to_json(const LabelledEvaluation& labelled) {
        {{"total", e.fixes()}, {"accepted", e.accepted}, {"rejected", e.rejected}, {"withheld", e.withheld}}},
       {"truth", e.truth ? to_json(*e.truth) : Json(nullptr)},
       {"withheld_fixes", e.withheld_fixes ? to_json(*e.withheld_fixes) : Json(nullptr)},
-      {"withheld_runs", e.withheld_runs == 0 ? Json(nullptr) : predictions_json(e)},
+      {"outages", e.outages},
+      {"withheld_predictions", predictions_json(e)},
       {"innovation",
        {{"accepted", to_json(e.post_fit)},
         {"rejected", to_json(e.gated)},

@@ -157,7 +157,7 @@ std::string withheld_block(std::span<const LabelledEvaluation> evaluations) {
       Row row = position_row(row_label, w.at_fixes);
       row.push_back(percent(100 * w.innovation.fraction_inside));
       table.add(std::move(row));
-      if (evaluation.withheld_runs < evaluation.withheld) ends.add(position_row(row_label, w.at_ends));
+      if (evaluation.outages > 0) ends.add(position_row(row_label, w.at_ends));
     }
   }
   if (table.empty()) return "";

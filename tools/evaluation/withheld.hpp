@@ -27,13 +27,14 @@ struct Prediction {
 struct WithheldMetrics {
   std::string label;
   PositionMetrics at_fixes;  ///< at every withheld fix
-  PositionMetrics at_ends;   ///< at the last one of each run of withheld fixes: the end of an outage
+  PositionMetrics at_ends;   ///< at the last withheld fix of each outage
   /// With S = R + P, at the fixes whose prediction has a covariance; count 0 where none has.
   InnovationStatistics innovation;
 };
 
-/// How many runs of withheld fixes there are: outages, or single fixes where every n-th is withheld.
-[[nodiscard]] std::size_t withheld_runs(std::span<const Fix> fixes);
+/// The last withheld fix of each outage. An outage is a run of withheld fixes over more than one epoch: every
+/// n-th epoch withheld makes none. @param fixes in order of time
+[[nodiscard]] std::vector<std::size_t> outage_ends(std::span<const Fix> fixes);
 
 /// @param fixes      in order of time
 /// @param antenna_m  GNSS antenna in the body frame
