@@ -14,6 +14,9 @@
 namespace waymark {
 namespace {
 
+/// From here on neighbouring lags are taken together, a part of their lag at a time.
+constexpr std::int64_t kFirstWideLag = 32;
+
 /// Products of the pairs at one lag, added up.
 struct LagSum {
   double products = 0;
@@ -35,6 +38,7 @@ class Series {
       errors_.push_back(errors[i]);
     }
     find_interval();
+    add_up();
   }
 
   [[nodiscard]] std::size_t size() const { return times_.size(); }
@@ -53,22 +57,35 @@ class Series {
     for (const Eigen::Vector2d& error : errors_) mean += error;
     mean /= static_cast<double>(errors_.size());
     for (Eigen::Vector2d& error : errors_) error -= mean;
+    add_up();
   }
 
-  /// Half-open at the far end, so that every pair belongs to one multiple of the interval.
-  [[nodiscard]] LagSum at_lag(std::int64_t lag) const {
-    const std::int64_t low = lag - interval_ / 2;
-    const std::int64_t high = low + interval_;
+  /// The pairs from `low` to, but not, `high` apart, so that neighbouring ranges share none. O(n).
+  [[nodiscard]] LagSum between(std::int64_t low, std::int64_t high) const {
     LagSum sum;
     std::size_t first = 0;
+    std::size_t end = 0;
     for (std::size_t i = 0; i < times_.size(); ++i) {
       while (first < times_.size() && times_[first] - times_[i] < low) ++first;
-      for (std::size_t j = std::max(first, i + 1); j < times_.size() && times_[j] - times_[i] < high; ++j) {
-        sum.products += errors_[i].dot(errors_[j]);
-        ++sum.pairs;
-      }
+      while (end < times_.size() && times_[end] - times_[i] < high) ++end;
+      const std::size_t begin = std::max(first, i + 1);
+      if (begin >= end) continue;
+      sum.products += errors_[i].dot(sums_[end] - sums_[begin]);
+      sum.pairs += end - begin;
     }
     return sum;
+  }
+
+  /// The pairs so far apart to within half an interval.
+  [[nodiscard]] LagSum at_lag(std::int64_t lag) const {
+    const std::int64_t low = lag - interval_ / 2;
+    return between(low, low + interval_);
+  }
+
+  /// The pairs k, k + 1, ... k + count - 1 intervals apart, rounded.
+  [[nodiscard]] LagSum at_multiples(std::int64_t k, std::int64_t count) const {
+    const std::int64_t low = k * interval_ - interval_ / 2;
+    return between(low, low + count * interval_);
   }
 
  private:
@@ -83,8 +100,14 @@ class Series {
     interval_ = *middle;
   }
 
+  void add_up() {
+    sums_.assign(1, Eigen::Vector2d::Zero());
+    for (const Eigen::Vector2d& error : errors_) sums_.push_back(sums_.back() + error);
+  }
+
   std::vector<std::int64_t> times_;
   std::vector<Eigen::Vector2d> errors_;
+  std::vector<Eigen::Vector2d> sums_;  // of the errors before each
   std::int64_t interval_ = 0;
 };
 
@@ -140,15 +163,18 @@ double effective_sample_size(std::span<const Stamp> stamps, std::span<const Eige
   const std::int64_t lags = series.span() / series.interval() + 1;
   CorrelationTime tau;
   double inflation = 0;  // 1 + 2 sum rho_k
-  for (std::int64_t k = 0; k <= lags; k += 2) {
-    double group = 0;
+  std::int64_t width = 1;
+  for (std::int64_t k = 0; k <= lags; k += 2 * width) {
+    width = std::max(std::int64_t{1}, k / kFirstWideLag);
+    double group = k == 0 ? 1 : 0;
     std::size_t pairs = 0;
-    for (const std::int64_t lag : {k, k + 1}) {
-      const LagSum sum = series.at_lag(lag * series.interval());
-      group += (lag == 0 ? 1 : 0) + 2 * sum.products / squares;
+    for (const std::int64_t lag : {k, k + width}) {
+      const LagSum sum = series.at_multiples(lag, width);
+      group += 2 * sum.products / squares;
       pairs += sum.pairs;
       if (lag > 0 && sum.pairs > 0)
-        tau.see(static_cast<double>(lag), sum.products / static_cast<double>(sum.pairs) * n / squares);
+        tau.see(static_cast<double>(lag) + 0.5 * static_cast<double>(width - 1),
+                sum.products / static_cast<double>(sum.pairs) * n / squares);
     }
     if (pairs == 0) continue;  // a gap of the series says nothing of its correlation
     if (group <= 0) break;

@@ -19,7 +19,7 @@ inline constexpr std::array<double, 3> kAutocorrelationLags = {1, 10, 60};
 /// Autocorrelation of an error series about its mean: the mean product of the pairs whose stamps are `lag`
 /// apart, to within half a median interval of the series, over the mean square. 1: the same error still; 0:
 /// forgotten. The mean is the series' own, so errors that last longer than the series count as its mean.
-/// NaN where no pair is that far apart or nothing varies. O(pairs).
+/// NaN where no pair is that far apart or nothing varies. O(n) per lag.
 /// @param offsets  one per stamp, finite
 /// @param lags_s   > 0
 /// @throws UsageError where the lengths differ.
@@ -36,7 +36,7 @@ inline constexpr std::array<double, 3> kAutocorrelationLags = {1, 10, 60};
 /// (the initial positive sequence: Geyer, Practical Markov Chain Monte Carlo, Statistical Science 7, 1992,
 /// Sec. 3.3), and at most duration / tau, tau being where the correlation has fallen to 1/e. About zero, not
 /// about the mean: a bias that lasts the whole drive is one sample of it, however long the drive. 0 for no
-/// errors. O(n) per lag until the cut, at worst O(n^2).
+/// errors. Lags from 32 intervals on are taken together in wider and wider groups: O(n log n).
 /// @throws UsageError where the lengths differ.
 [[nodiscard]] double effective_sample_size(std::span<const Stamp> stamps,
                                            std::span<const Eigen::Vector2d> errors);
