@@ -45,13 +45,14 @@ Prediction predict_causally(const RunOptions& options, const LoadedDrive& loaded
   OptimizationChoice choice = options.choice;
   choice.covariance = "fixes";
   const FuseDrive fuse = [&](const PreparedDrive& known) -> std::optional<GraphDocument> {
-    stop_if_interrupted();
+    if (interrupted) return std::nullopt;
     LoadedDrive so_far{loaded.config, known, {}, loaded.modelings, loaded.loss, loaded.inputs};
     try {
       so_far.skeleton = build_skeleton(known, loaded.config, registry);
       GraphDocument document =
           build_document(so_far, modeling, known_options(modeling, options.overrides, registry), registry);
-      optimize_document(document, choice, registry, console);
+      const Summary summary = optimize_document(document, choice, registry, console).summary;
+      if (summary.termination == Termination::interrupted) return std::nullopt;
       return document;
     } catch (const InputError& error) {
       console.note(fmt::format("warning: nothing is known causally of the outage that ends with epoch {}: {}",
@@ -59,7 +60,9 @@ Prediction predict_causally(const RunOptions& options, const LoadedDrive& loaded
       return std::nullopt;
     }
   };
-  return as_prediction("causal", causal_at_withheld(loaded.drive, fuse));
+  Prediction causal = as_prediction("causal", causal_at_withheld(loaded.drive, fuse));
+  if (interrupted) console.note("warning: interrupted: the causal predictions end early");
+  return causal;
 }
 
 ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, const std::string& modeling,
@@ -115,6 +118,7 @@ ExitCode run_drive(const RunOptions& options) {
     evaluations.push_back(std::move(run.evaluation));
     files.insert(files.end(), run.files.begin(), run.files.end());
     if (exit_code(run.result.summary) != kSuccess) code = exit_code(run.result.summary);
+    if (interrupted) code = kInterrupted;
     if (code == kInterrupted) break;
   }
   const std::string metrics_file = options.folder + "/metrics.json";
