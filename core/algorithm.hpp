@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,12 +51,21 @@ class Algorithm {
   virtual void rejected(const Step& step, double gain_ratio) = 0;
 };
 
+/// What is known beforehand of a noise parameter: a normal distribution of it, or of its natural logarithm.
+struct NoisePrior {
+  double mean = 0;       ///< of the parameter itself, in the option's unit
+  double deviation = 1;  ///< of its logarithm; where it is linear, of the parameter
+  bool linear = false;
+};
+
 /// An option of a registered type, as `waymark info` shows it.
 struct OptionInfo {
   std::string name;
   std::string value;        ///< default
   std::string unit;         ///< empty: none
   std::string description;  ///< one sentence with the validity rule
+  /// Where given, the option is a noise parameter that can be estimated from a drive (core/evidence.hpp).
+  std::optional<NoisePrior> prior = {};
 };
 
 /// Option name -> value as given by the user.

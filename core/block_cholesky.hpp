@@ -38,6 +38,9 @@ class BlockCholesky final : public LinearSolver {
   /// dense fronts about four times as much; a subtree without a wanted one costs nothing.
   void invert_diagonal(std::span<double* const> blocks) const;
 
+  /// log det of the matrix, from the last factor, which must be ok.
+  [[nodiscard]] double log_determinant() const;
+
  private:
   class Stream;
   class DiagonalInverse;

@@ -53,6 +53,7 @@ struct ValueView {
 struct NormalView {
   double* hessian = nullptr;
   double* gradient = nullptr;
+  bool second_order = true;  ///< false: without the second-order terms of the losses
 };
 
 /// What the edges know of rigid motions is added up per component of the graph.

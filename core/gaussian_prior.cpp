@@ -127,7 +127,8 @@ double GaussianPriorBatch::linearize(const ValueView& view, const Scatter& scatt
     const BlockTarget* block = scatter.blocks.data() + record.first_block;
     linearize_edge(i, view, e, jacobians);
     const double squared = e.dot(record.information * e);
-    const LossValue loss = evaluate_loss(i, squared);
+    LossValue loss = evaluate_loss(i, squared);
+    if (!normal.second_order) loss.curvature = 0;
     sum += loss.rho;
     const Eigen::MatrixXd information = robust_information(loss, squared, record.information, e);
     const Eigen::VectorXd weighted_error = loss.weight * (record.information * e);

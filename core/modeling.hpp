@@ -93,6 +93,10 @@ struct GnssModelingType {
   std::string description;
   std::vector<OptionInfo> options;
   std::function<std::unique_ptr<GnssModeling>(const Options&)> make;
+  /// Whether outliers, biases and the odometry's calibration are part of its error model. Then a drive has no
+  /// gate, all calibration states and an estimated noise, unless it says otherwise; else the paper's gate,
+  /// none of the states and the noise as stated.
+  bool complete = false;
 };
 
 /// A registered sensor. drive.yaml names it under `sensors`; a log reader brings its columns.

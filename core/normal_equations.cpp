@@ -35,12 +35,12 @@ double NormalEquations::sum_over_chunks(const Work& work) const {
   return total;
 }
 
-double NormalEquations::linearize(const std::vector<double>& values) {
+double NormalEquations::linearize(const std::vector<double>& values, bool second_order) {
   hessian_.assign(at(structure_.hessian_size()), 0.0);
   gradient_.assign(at(structure_.gradient_size()), 0.0);
   diagonal_known_ = false;
   const ValueView view{values.data(), graph_.offsets().data()};
-  const NormalView normal{hessian_.data(), gradient_.data()};
+  const NormalView normal{hessian_.data(), gradient_.data(), second_order};
   const double chi2 =
       sum_over_chunks([&](const EdgeBatchBase& batch, const Scatter& scatter, EdgeRange range) {
         return batch.linearize(view, scatter, range, normal);

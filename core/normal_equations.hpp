@@ -24,7 +24,8 @@ class NormalEquations {
   void set_threads(ThreadPool* pool) { pool_ = pool; }
 
   /// Fills H and g at `values` (laid out as graph.values()) and returns chi2 there.
-  double linearize(const std::vector<double>& values);
+  /// @param second_order  whether H has the second-order terms of the losses (robust_information.hpp)
+  double linearize(const std::vector<double>& values, bool second_order = true);
   /// chi2 at other values; H and g stay.
   [[nodiscard]] double chi2(const std::vector<double>& values) const;
 

@@ -233,7 +233,8 @@ class EdgeBatch final : public EdgeBatchBase {
       const ErrorVector<kDimension> weighted_error = times(record.information, e);
       const double squared = e.dot(weighted_error);
       if constexpr (kRobust) {
-        const LossValue loss = evaluate_loss(i, squared);
+        LossValue loss = evaluate_loss(i, squared);
+        if (!normal.second_order) loss.curvature = 0;
         sum += loss.rho;
         const Information linearized = robust_information(loss, squared, square(record), e);
         add_part(triangle(linearized), loss.weight * weighted_error);
