@@ -90,12 +90,14 @@ std::vector<OptionInfo> options() {
       {"noise", "process", "",
        "'process': additive process noise; 'paper': 1.1 % per edge, at least 1e-5 m^2 and 1e-6 rad^2, gaps "
        "alike"},
-      {"longitudinal_variance_per_m", "2e-3", "m^2/m", "variance of the distance driven; in [1e-9, 1]"},
-      {"lateral_variance_per_m", "5e-4", "m^2/m", "variance across the way; in [1e-9, 1]"},
+      {"longitudinal_variance_per_m", "2e-3", "m^2/m", "variance of the distance driven; in [1e-9, 1]",
+       NoisePrior{2e-3, 0.8}},
+      {"lateral_variance_per_m", "1e-3", "m^2/m", "variance across the way; in [1e-9, 1]"},
       {"position_variance_per_s", "1e-4", "m^2/s",
        "variance of the position by time, both axes; in [1e-9, 1]"},
       {"heading_variance_per_m", "2.05e-7", "rad^2/m", "variance of the heading by way; in [0, 1]"},
-      {"heading_variance_per_s", "1.5e-6", "rad^2/s", "variance of the heading by time; in [1e-12, 1]"},
+      {"heading_variance_per_s", "1.5e-6", "rad^2/s", "variance of the heading by time; in [1e-12, 1]",
+       NoisePrior{4e-6, 1.4}},
       {"gap_noise_factor", "100", "", "factor on all of them across a gap of the odometry; in [1, 1e6]"},
       {"standstill_speed", "0.05", "m/s", "below this |speed| the vehicle stands; in [0, 1]"},
       {"standstill_position_variance_per_s", "1e-5", "m^2/s", "of a standing vehicle; in [1e-9, 1]"},
@@ -107,7 +109,7 @@ std::vector<OptionInfo> options() {
        state_options("gyro_bias", "rad/s", "0.01", "2e-6", "what the gyro reads while nothing turns"))
     all.push_back(option);
   for (const OptionInfo& option :
-       state_options("speed_scale", "1", "0.01", "1e-4", "part of the speed that the odometry does not show"))
+       state_options("speed_scale", "1", "0.01", "2e-4", "part of the speed that the odometry does not show"))
     all.push_back(option);
   all.push_back({"calibration_period", "10", "s", "of the values of a random walk; in [0.1, 1e4]"});
   return all;

@@ -6,7 +6,6 @@
 #include <waymark/tools/drive/assemble.hpp>
 #include <waymark/tools/drive/plausibility.hpp>
 #include <waymark/tools/drive/sensors.hpp>
-#include <waymark/tools/drive/timeline.hpp>
 #include <waymark/types_se2/time_offset.hpp>
 
 namespace waymark {
@@ -25,18 +24,6 @@ std::string place_of_option(const DriveConfig& config, const std::string& messag
     if (of_odometry && message.find("'" + name + "'") != std::string::npos) return place;
   }
   return place_of(config, "odometry.model");
-}
-
-std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, const TypeRegistry& registry) {
-  try {
-    const OdometryModelType& type = registry.odometry_model(config.odometry_model);
-    Options options = with_calibration(config.odometry_options, config, type.options);
-    if (has_option(type.options, "gap_noise_factor"))
-      options.try_emplace("gap_noise_factor", shortest(config.timeline.gap_noise_factor));
-    return type.make(options);
-  } catch (const UsageError& error) {
-    throw InputError(place_of_option(config, error.what()) + error.what());
-  }
 }
 
 std::vector<Fix> accepted_fixes(const std::vector<Fix>& fixes) {
@@ -108,26 +95,53 @@ void check_calibration(const DriveConfig& config, const std::vector<std::string>
   }
 }
 
+std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, const TypeRegistry& registry) {
+  try {
+    const OdometryModelType& type = registry.odometry_model(config.odometry_model);
+    Options options = with_calibration(config.odometry_options, config, type.options);
+    if (has_option(type.options, "gap_noise_factor"))
+      options.try_emplace("gap_noise_factor", shortest(config.timeline.gap_noise_factor));
+    return type.make(options);
+  } catch (const UsageError& error) {
+    throw InputError(place_of_option(config, error.what()) + error.what());
+  }
+}
+
+PlacedDrive place_drive(const PreparedDrive& drive, const DriveConfig& config, const TypeRegistry& registry) {
+  PlacedDrive placed;
+  placed.standstill_mps = make_odometry_model(config, registry)->standstill_speed();
+  placed.fixes = drive.fixes;
+  placed.timeline = build_timeline(drive.odometry, placed.fixes, config.timeline);
+  const std::vector<Eigen::Vector3d> reckoned =
+      dead_reckon(placed.timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
+  const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(placed.timeline, reckoned, drive.antenna_m);
+  placed.warnings = compare_odometry_with_fixes(placed.fixes, antenna);
+  placed.gate = apply_gate(placed.fixes, antenna, config.gate);
+  require_accepted_fix(placed.gate);
+  placed.start =
+      make_start(placed.timeline, placed.fixes, drive.antenna_m, placed.standstill_mps, config.start);
+  return placed;
+}
+
 DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& config,
                              const TypeRegistry& registry) {
-  const std::unique_ptr<OdometryModel> odometry = make_odometry_model(config, registry);
+  return build_skeleton(place_drive(drive, config, registry), drive, config, registry);
+}
+
+DriveSkeleton build_skeleton(const PlacedDrive& placed, const PreparedDrive& drive, const DriveConfig& config,
+                             const TypeRegistry& registry) {
   DriveSkeleton skeleton;
+  skeleton.gate = placed.gate;
+  skeleton.start = placed.start;
+  skeleton.warnings = placed.warnings;
   GraphDocument& document = skeleton.document;
   document.frame = drive.frame;
   document.time_scale = drive.scale;
   document.antenna_m = drive.antenna_m;
   document.truth_reference_m = drive.truth_reference_m;
-  document.fixes = drive.fixes;
+  document.fixes = placed.fixes;
 
-  const Timeline timeline = build_timeline(drive.odometry, document.fixes, config.timeline);
-  const double standstill = odometry->standstill_speed();
-  const std::vector<Eigen::Vector3d> reckoned = dead_reckon(timeline, Eigen::Vector3d::Zero(), standstill);
-  const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, drive.antenna_m);
-  skeleton.warnings = compare_odometry_with_fixes(document.fixes, antenna);
-  skeleton.gate = apply_gate(document.fixes, antenna, config.gate);
-  require_accepted_fix(skeleton.gate);
-  skeleton.start = make_start(timeline, document.fixes, drive.antenna_m, standstill, config.start);
-
+  const Timeline& timeline = placed.timeline;
   std::vector<VertexIndex> poses;
   poses.reserve(timeline.stamps.size());
   for (std::size_t i = 0; i < timeline.stamps.size(); ++i) {
@@ -137,7 +151,7 @@ DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& conf
     document.graph.set_stamp(poses.back(), timeline.stamps[i]);
   }
   const DriveNodes nodes{timeline.stamps, poses, timeline.intervals};
-  odometry->build(nodes, document.graph);
+  make_odometry_model(config, registry)->build(nodes, document.graph);
   for (std::size_t i = 0; i < document.fixes.size(); ++i) {
     document.fixes[i].vertex = static_cast<VertexId>(timeline.fix_node[i]) + 1;
     skeleton.motion_at_fixes.push_back(motion_at(nodes, timeline.fix_node[i]));

@@ -7,8 +7,29 @@
 #include <waymark/tools/drive/gate.hpp>
 #include <waymark/tools/drive/prepare.hpp>
 #include <waymark/tools/drive/start.hpp>
+#include <waymark/tools/drive/timeline.hpp>
 
 namespace waymark {
+
+/// A drive's nodes in time, the gate's verdicts and the start: what comes before any vertex.
+struct PlacedDrive {
+  Timeline timeline;
+  std::vector<Fix> fixes;  ///< judged by the gate, in the order of timeline.fix_node
+  GateSummary gate;
+  Start start;
+  std::vector<std::string> warnings;  ///< what looks wrong about units and signs of the logs
+  double standstill_mps = 0;          ///< of the odometry model
+};
+
+/// Builds the timeline, runs the gate and makes the start.
+/// @throws InputError where the gate leaves no fix; what the steps throw.
+[[nodiscard]] PlacedDrive place_drive(const PreparedDrive& drive, const DriveConfig& config,
+                                      const TypeRegistry& registry);
+
+/// The odometry model that the drive.yaml names, with its options and calibration states.
+/// @throws InputError with the place of what is wrong
+[[nodiscard]] std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config,
+                                                                 const TypeRegistry& registry);
 
 /// Everything that is the same for all modelings of a drive.
 struct DriveSkeleton {
@@ -20,10 +41,12 @@ struct DriveSkeleton {
   double distance_m = 0;                  ///< driven, by the odometry
 };
 
-/// Builds nodes, odometry edges, the further sensors' part and the start, and runs the gate. Pose ids are 1,
-/// 2,
-/// ... in order of time.
-/// @throws InputError where the gate leaves no fix; what the steps throw.
+/// Builds vertices, odometry edges and the further sensors' part. Pose ids are 1, 2, ... in order of time.
+/// @param placed  of this drive and config
+/// @throws what the odometry model and the sensors throw
+[[nodiscard]] DriveSkeleton build_skeleton(const PlacedDrive& placed, const PreparedDrive& drive,
+                                           const DriveConfig& config, const TypeRegistry& registry);
+/// place_drive and the above.
 [[nodiscard]] DriveSkeleton build_skeleton(const PreparedDrive& drive, const DriveConfig& config,
                                            const TypeRegistry& registry);
 

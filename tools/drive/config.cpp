@@ -19,6 +19,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 3> kScales{"gps", "utc", "unix"};
 constexpr std::array<std::string_view, 2> kGapPolicies{"bridge", "error"};
 constexpr std::array<std::string_view, 2> kStarts{"anchored", "dead_reckoning"};
+constexpr std::array<std::string_view, 2> kNoises{"estimate", "stated"};
 constexpr std::array<std::string_view, 4> kSwitch{"on", "off", "true", "false"};
 constexpr std::array kSwitchValues{true, false, true, false};
 constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
@@ -160,6 +161,7 @@ void read_gate(const YamlSection& top, DriveConfig& config) {
       "gate", {"enabled", "max_angle_deg", "max_displacement_m", "chord_s", "max_chord_s", "min_chord_m"});
   if (!gate) return;
   gate->read("enabled", config.gate.enabled);
+  config.gate_stated = true;
   double max_angle_deg = config.gate.max_angle_rad / kDegree;
   gate->read("max_angle_deg", max_angle_deg, kAngle);
   if (gate->has("max_angle_deg")) config.gate.max_angle_rad = max_angle_deg * kDegree;
@@ -196,6 +198,7 @@ void read_modeling(const YamlSection& top, DriveConfig& config) {
 /// `calibration: on`, `off`, or the states one by one.
 void read_calibration(const YamlSection& top, DriveConfig& config) {
   if (!top.has("calibration")) return;
+  config.calibration_stated = true;
   if (top.node("calibration").IsMap())
     return read_options(top, "calibration", "calibration.", config.calibration, config);
   const std::size_t word = *top.read_word("calibration", kSwitch);
@@ -249,7 +252,7 @@ DriveConfig parse_drive_config(const std::string& text, const std::string& path,
   }
   const YamlSection top(root, "", path,
                         {"name", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap",
-                         "snap", "start", "modeling", "calibration", "sensors", "plugins"});
+                         "snap", "start", "modeling", "calibration", "noise", "sensors", "plugins"});
   DriveConfig config;
   config.path = path;
   config.name = std::filesystem::path(path).stem().string();
@@ -266,6 +269,7 @@ DriveConfig parse_drive_config(const std::string& text, const std::string& path,
     config.start.method = *start == 0 ? StartMethod::anchored : StartMethod::dead_reckoning;
   read_modeling(top, config);
   read_calibration(top, config);
+  if (const auto noise = top.read_word("noise", kNoises)) config.estimates_noise = *noise == 0;
   read_sensors(top, config);
   read_plugins(top, config);
   return config;

@@ -68,7 +68,7 @@ struct DriveConfig {
   TimelineOptions timeline;
   GateOptions gate;
   StartOptions start;
-  std::string modeling = "g1";  ///< registered GNSS modeling
+  std::string modeling = "correlated";  ///< registered GNSS modeling
   std::map<std::string, std::string> modeling_options;
   std::string loss;  ///< of the fixes, "cauchy:1": a registered loss and its scale; empty: none
   std::string odometry_model = "constant_twist";        ///< registered odometry model
@@ -76,6 +76,9 @@ struct DriveConfig {
   /// States to estimate with the poses: options that go to the odometry model or the GNSS modeling, whichever
   /// has them.
   std::map<std::string, std::string> calibration;
+  bool calibration_stated = false;      ///< where it is not, the modeling decides, as for the next two
+  bool gate_stated = false;             ///< whether the gate is to run
+  std::optional<bool> estimates_noise;  ///< options with a prior, from the drive itself (noise.hpp)
   /// "drive.yaml:12:5: " of what only a plugin can check: "modeling", "modeling.options.NAME",
   /// "modeling.loss", "odometry.model", "odometry.noise.NAME", "calibration.NAME".
   std::map<std::string, std::string> places;

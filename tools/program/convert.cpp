@@ -55,28 +55,30 @@ ExitCode convert_drive(const ConvertOptions& options, const TypeRegistry& regist
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
   if (loaded.modelings.size() != 1)
     throw UsageError("convert writes one graph: name one modeling ('run' takes many)");
-  const GraphDocument document =
-      build_document(loaded, loaded.modelings.front(),
-                     known_options(loaded.modelings.front(), options.overrides, registry), registry);
+  const std::string& modeling = loaded.modelings.front();
+  const ModeledDrive modeled =
+      model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry), registry, console);
+  const GraphDocument& document = modeled.document;
   stop_if_interrupted();
   announce_output(options.format, document, options.input, console);
   write_graph_file(options.output, options.format, document, options.input, registry);
   if (options.common.json) {
-    const GateSummary& gate = loaded.skeleton.gate;
+    const GateSummary& gate = modeled.gate;
     nlohmann::ordered_json json = graph_json(options, document);
-    json["modeling"] = loaded.modelings.front();
+    json["modeling"] = modeling;
     json["accepted"] = gate.accepted;
     json["rejected"] = gate.rejected;
     json["withheld"] = gate.withheld;
     json["reasons"] = gate.reasons;
-    json["distance_m"] = loaded.skeleton.distance_m;
+    json["distance_m"] = modeled.distance_m;
+    json["noise"] = noise_json(modeled.noise);
     json["start_chi2"] = document.graph.chi2();
     console.result(json_text(json), is_stdout(options.output));
     return kSuccess;
   }
-  console.result(describe_drive(loaded) + fmt::format("written     {}: {} vertices, {} edges, modeling {}\n",
-                                                      options.output, document.graph.vertex_count(),
-                                                      document.graph.edge_count(), loaded.modelings.front()),
+  console.result(describe_drive(loaded) + describe_model(modeled) +
+                     fmt::format("written     {}: {} vertices, {} edges, modeling {}\n", options.output,
+                                 document.graph.vertex_count(), document.graph.edge_count(), modeling),
                  is_stdout(options.output));
   return kSuccess;
 }

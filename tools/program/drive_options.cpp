@@ -84,6 +84,10 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option("--noise", overrides.noise,
+                  "Noise parameters: estimated from the drive, or as stated (default: the modeling decides)")
+      ->check(CLI::IsMember({"estimate", "stated"}));
   command.add_flag("--no-gate", overrides.no_gate, "Accept every fix");
 }
 

@@ -11,6 +11,7 @@
 #include <waymark/formats/trajectory.hpp>
 #include <waymark/tools/drive/projection.hpp>
 #include <waymark/tools/drive/sensors.hpp>
+#include <waymark/tools/evaluation/text_table.hpp>
 #include <waymark/tools/program/hash.hpp>
 #include <waymark/tools/program/optimization.hpp>
 #include <waymark/tools/program/pipeline.hpp>
@@ -37,6 +38,7 @@ OutagePattern parse_outage(const std::string& text) {
 
 /// "on", "off", or NAME=VALUE pairs over what the drive.yaml says.
 void apply_calibration(const std::vector<std::string>& words, DriveConfig& config) {
+  if (!words.empty()) config.calibration_stated = true;
   for (const std::string& word : words) {
     if (word == "on") {
       config.calibration = default_calibration();
@@ -58,7 +60,11 @@ void apply(const DriveOverrides& overrides, DriveConfig& config) {
   }
   if (!overrides.outage.empty()) config.outage = parse_outage(overrides.outage);
   if (overrides.withhold_every) config.withhold_every = *overrides.withhold_every;
-  if (overrides.no_gate) config.gate.enabled = false;
+  if (overrides.no_gate) {
+    config.gate.enabled = false;
+    config.gate_stated = true;
+  }
+  if (overrides.noise) config.estimates_noise = *overrides.noise == "estimate";
   if (overrides.start == "dead_reckoning") config.start.method = StartMethod::dead_reckoning;
   if (overrides.start == "anchored") config.start.method = StartMethod::anchored;
   apply_calibration(overrides.calibrate, config);
@@ -147,6 +153,16 @@ std::vector<const LogConfig*> logs_of(const DriveConfig& config) {
   return logs;
 }
 
+/// The way that the odometry says was driven.
+double distance_by(const std::vector<OdometrySample>& odometry) {
+  double distance = 0;
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    distance += 0.5 * (std::abs(odometry[i].speed_mps) + std::abs(odometry[i - 1].speed_mps)) *
+                seconds_between(odometry[i - 1].stamp, odometry[i].stamp);
+  }
+  return distance;
+}
+
 std::string file_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
@@ -161,11 +177,6 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   loaded.modelings = chosen_modelings(overrides, loaded.config, registry);
   check_calibration(loaded.config, loaded.modelings, registry);
   loaded.loss = loss_of_fixes(loaded.config, overrides.loss.has_value(), registry);
-  const auto scale = loaded.config.calibration.find("speed_scale");
-  if (scale != loaded.config.calibration.end() && scale->second != "off" && !loaded.loss) {
-    console.note(
-        "note: squared errors let biased fixes bend speed_scale; a robust loss protects it: --loss cauchy:1");
-  }
   resolve_sensors(loaded.config, registry);
   console.progress("reading logs");
   loaded.drive = load_drive(loaded.config, reader_lookup(registry));
@@ -176,25 +187,35 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   for (const LogConfig* log : logs_of(loaded.config)) {
     loaded.inputs.push_back(file_name(log->file) + " fnv1a64:" + fnv1a64_hex(read_text_file(log->file)));
   }
-  console.progress("gate and start");
-  loaded.skeleton = build_skeleton(loaded.drive, loaded.config, registry);
   console.end_progress();
-  for (const std::string& warning : loaded.skeleton.warnings) console.note("warning: " + warning);
-  if (!loaded.skeleton.start.note.empty()) console.note("note: start: " + loaded.skeleton.start.note);
   return loaded;
 }
 
-GraphDocument build_document(const LoadedDrive& loaded, const std::string& modeling, const Options& options,
-                             const TypeRegistry& registry) {
-  const Options all = options_of(modeling, loaded.config, options, registry);
-  GraphDocument document = add_modeling(loaded.skeleton, modeling, all, registry, loaded.loss);
+ModeledDrive model_loaded(const LoadedDrive& loaded, const std::string& modeling, const Options& options,
+                          const TypeRegistry& registry, const Console& console) {
+  console.progress(modeling + ": start and noise");
+  ModeledDrive modeled = model_drive(loaded.drive, loaded.config, modeling, options, registry, loaded.loss);
+  console.end_progress();
+  for (const std::string& warning : modeled.warnings) console.note("warning: " + warning);
+  if (!modeled.start.note.empty()) console.note("note: start: " + modeled.start.note);
+  const DriveConfig& config = modeled.config;
+  const auto scale = config.calibration.find("speed_scale");
+  const bool calibrates_scale = scale != config.calibration.end() && scale->second != "off";
+  if (calibrates_scale && !loaded.loss && !registry.gnss_modeling(modeling).complete) {
+    console.note(
+        "note: squared errors let biased fixes bend speed_scale; a robust loss protects it: --loss cauchy:1");
+  }
+  GraphDocument& document = modeled.document;
   document.provenance = {{"program", "waymark " WAYMARK_VERSION}, {"drive", loaded.config.name}};
   for (const std::string& input : loaded.inputs) document.provenance.emplace_back("input", input);
   document.provenance.emplace_back("modeling", modeling);
-  for (const auto& [name, value] : all)
+  for (const auto& [name, value] : modeled.options)
     document.provenance.emplace_back("modeling_option", name + "=" + value);
   if (loaded.loss) document.provenance.emplace_back("loss", loaded.config.loss);
-  for (const auto& [name, value] : loaded.config.calibration)
+  for (const NoiseParameter& parameter : modeled.noise.parameters)
+    document.provenance.emplace_back(
+        "noise", parameter.owner + " " + parameter.option + "=" + shortest(parameter.value) + " estimated");
+  for (const auto& [name, value] : config.calibration)
     document.provenance.emplace_back("calibration", name + "=" + value);
   for (const SensorConfig& sensor : loaded.config.sensors)
     document.provenance.emplace_back("sensor", sensor.name);
@@ -202,7 +223,7 @@ GraphDocument build_document(const LoadedDrive& loaded, const std::string& model
     if (plugin.place != "built in")
       document.provenance.emplace_back("plugin", plugin.name + " " + plugin.version);
   }
-  const GateOptions& gate = loaded.config.gate;
+  const GateOptions& gate = config.gate;
   document.provenance.emplace_back(
       "gate", gate.enabled ? fmt::format("angle {:.6g} deg displacement {:.6g} m",
                                          gate.max_angle_rad * 180 / std::numbers::pi, gate.max_displacement_m)
@@ -210,7 +231,7 @@ GraphDocument build_document(const LoadedDrive& loaded, const std::string& model
   document.provenance.emplace_back(
       "start", loaded.config.start.method == StartMethod::anchored ? "anchored" : "dead_reckoning");
   for (const std::string& note : loaded.drive.report.notes) document.provenance.emplace_back("assumed", note);
-  return document;
+  return modeled;
 }
 
 Options known_options(const std::string& modeling, const DriveOverrides& overrides,
@@ -232,20 +253,52 @@ void add_provenance(const GraphDocument& document, const std::string& label, Rep
 }
 
 std::string describe_drive(const LoadedDrive& loaded) {
-  const GateSummary& gate = loaded.skeleton.gate;
   const PrepareReport& report = loaded.drive.report;
-  std::string reasons;
-  for (const auto& [reason, count] : gate.reasons) reasons += fmt::format(" {} {}", reason, count);
   std::string text;
   const auto& odometry = loaded.drive.odometry;
   text += fmt::format("drive       {}: {:.0f} s, {:.0f} m by odometry, {} odometry samples, {} fixes\n",
                       loaded.config.name, seconds_between(odometry.front().stamp, odometry.back().stamp),
-                      loaded.skeleton.distance_m, odometry.size(), loaded.skeleton.document.fixes.size());
+                      distance_by(odometry), odometry.size(), loaded.drive.fixes.size());
   text += fmt::format("left out    {} fixes outside the odometry, {} by thinning, {} withheld\n",
                       report.fixes_outside_odometry, report.fixes_thinned, report.fixes_withheld);
-  text += fmt::format("gate        {} of {} fixes rejected ({:.1f} %):{}\n", gate.rejected,
-                      gate.accepted + gate.rejected, gate.rejected_percent(), reasons);
   return text;
+}
+
+std::string describe_model(const ModeledDrive& modeled) {
+  std::string text;
+  const GateSummary& gate = modeled.gate;
+  std::string reasons;
+  for (const auto& [reason, count] : gate.reasons) reasons += fmt::format(" {} {}", reason, count);
+  if (modeled.config.gate.enabled) {
+    text += fmt::format("gate        {} of {} fixes rejected ({:.1f} %):{}\n", gate.rejected,
+                        gate.accepted + gate.rejected, gate.rejected_percent(), reasons);
+  } else {
+    text += fmt::format("gate        off: all {} fixes are used\n", gate.accepted);
+  }
+  if (modeled.noise.parameters.empty()) return text;
+  TextTable table({"estimated noise", "unit", "value", "68 % between", "and", "known before"});
+  for (const NoiseParameter& p : modeled.noise.parameters) {
+    const bool linear = p.prior.linear;
+    const auto moved = [&](double by) { return linear ? p.value + by : p.value * std::exp(by); };
+    table.add({p.option, p.unit, fmt::format("{:.3g}", p.value), fmt::format("{:.3g}", moved(-p.deviation)),
+               fmt::format("{:.3g}", moved(p.deviation)),
+               p.observed() ? fmt::format("{:.3g}", p.prior.mean) : "not observed"});
+  }
+  return text + table.text();
+}
+
+nlohmann::ordered_json noise_json(const NoiseEstimate& noise) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const NoiseParameter& p : noise.parameters) {
+    json.push_back({{"owner", p.owner},
+                    {"option", p.option},
+                    {"unit", p.unit},
+                    {"value", p.value},
+                    {"deviation", p.deviation},
+                    {"of", p.prior.linear ? "value" : "logarithm"},
+                    {"observed", p.observed()}});
+  }
+  return json;
 }
 
 Prediction as_prediction(std::string label, PosesAtWithheld at) {

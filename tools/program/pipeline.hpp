@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <waymark/tools/drive/assemble.hpp>
+#include <nlohmann/json.hpp>
+
+#include <waymark/tools/drive/model.hpp>
 #include <waymark/tools/drive/outages.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
 #include <waymark/tools/evaluation/report.hpp>
@@ -26,27 +28,27 @@ struct DriveOverrides {
   std::optional<std::string> start;    ///< anchored, dead_reckoning
   std::optional<std::string> loss;     ///< of the fixes, NAME:SCALE or "none"
   std::vector<std::string> calibrate;  ///< "on", "off", or NAME=MODEL pairs
+  std::optional<std::string> noise;    ///< estimate, stated
   bool no_gate = false;
 };
 
-/// A drive read, gated and started; ready for any modeling.
+/// A drive read; ready for any modeling.
 struct LoadedDrive {
   DriveConfig config;
   PreparedDrive drive;
-  DriveSkeleton skeleton;
   std::vector<std::string> modelings;
   std::optional<Loss> loss;         ///< of the fixes
   std::vector<std::string> inputs;  ///< name and fingerprint of each log
 };
 
-/// Reads a drive.yaml and its logs and builds the skeleton; what was assumed or left out is told on the
-/// console.
+/// Reads a drive.yaml and its logs; what was assumed or left out is told on the console.
 [[nodiscard]] LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overrides,
                                          const TypeRegistry& registry, const Console& console);
 
-/// The graph of one modeling, with provenance.
-[[nodiscard]] GraphDocument build_document(const LoadedDrive& loaded, const std::string& modeling,
-                                           const Options& options, const TypeRegistry& registry);
+/// The drive under one modeling, its graph with provenance; what is odd about it is told on the console.
+[[nodiscard]] ModeledDrive model_loaded(const LoadedDrive& loaded, const std::string& modeling,
+                                        const Options& options, const TypeRegistry& registry,
+                                        const Console& console);
 
 /// The command line's modeling options that this modeling has; where several modelings run, each takes its
 /// own.
@@ -56,8 +58,11 @@ struct LoadedDrive {
 /// Puts a document's provenance into a report, keys as "LABEL.KEY" (numbered where a key repeats).
 void add_provenance(const GraphDocument& document, const std::string& label, ReportHeader& header);
 
-/// A paragraph on what went in: samples, fixes, rejections by reason, the start.
+/// A paragraph on what went in: samples, fixes, what was left out.
 [[nodiscard]] std::string describe_drive(const LoadedDrive& loaded);
+/// What the gate rejected and why; the noise that was estimated, and what the drive did not show of it.
+[[nodiscard]] std::string describe_model(const ModeledDrive& modeled);
+[[nodiscard]] nlohmann::ordered_json noise_json(const NoiseEstimate& noise);
 
 /// Evaluates a document at its fixes. @param truth may be empty
 /// @param further  predictions of its withheld fixes, beside the fused poses and dead reckoning

@@ -26,6 +26,8 @@ struct ModelingRun {
   LabelledEvaluation evaluation;
   MultiStartSummary result;
   std::vector<StateReport> states;
+  NoiseEstimate noise;
+  std::string description;  ///< of the error model
   std::vector<std::string> files;
 };
 
@@ -46,11 +48,11 @@ Prediction predict_causally(const RunOptions& options, const LoadedDrive& loaded
   choice.covariance = "fixes";
   const FuseDrive fuse = [&](const PreparedDrive& known) -> std::optional<GraphDocument> {
     if (interrupted) return std::nullopt;
-    LoadedDrive so_far{loaded.config, known, {}, loaded.modelings, loaded.loss, loaded.inputs};
     try {
-      so_far.skeleton = build_skeleton(known, loaded.config, registry);
       GraphDocument document =
-          build_document(so_far, modeling, known_options(modeling, options.overrides, registry), registry);
+          model_drive(known, loaded.config, modeling, known_options(modeling, options.overrides, registry),
+                      registry, loaded.loss)
+              .document;
       const Summary summary = optimize_document(document, choice, registry, console).summary;
       if (summary.termination == Termination::interrupted) return std::nullopt;
       return document;
@@ -69,8 +71,11 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, c
                          const TypeRegistry& registry, const Console& console, ReportHeader& header) {
   ModelingRun run;
   const std::string prefix = options.folder + "/" + modeling;
-  GraphDocument document =
-      build_document(loaded, modeling, known_options(modeling, options.overrides, registry), registry);
+  const ModeledDrive modeled =
+      model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry), registry, console);
+  run.noise = modeled.noise;
+  run.description = describe_model(modeled);
+  GraphDocument document = modeled.document;
   const auto write = [&](const std::string& name) {
     write_file_atomically(name, [&](const TextSink& sink) { write_graph(document, registry, sink); });
     run.files.push_back(name);
@@ -112,9 +117,11 @@ ExitCode run_drive(const RunOptions& options) {
   ExitCode code = kSuccess;
   for (const std::string& modeling : loaded.modelings) {
     ModelingRun run = run_modeling(options, loaded, modeling, registry, console, header);
+    if (text.find(run.description) == std::string::npos) text += run.description;
     text += run_line(modeling, run.result.summary) + states_text(run.states);
     summaries[modeling] = summary_json(run.result);
     summaries[modeling]["states"] = states_json(run.states);
+    summaries[modeling]["noise"] = noise_json(run.noise);
     evaluations.push_back(std::move(run.evaluation));
     files.insert(files.end(), run.files.begin(), run.files.end());
     if (exit_code(run.result.summary) != kSuccess) code = exit_code(run.result.summary);

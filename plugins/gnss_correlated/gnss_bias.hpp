@@ -1,0 +1,109 @@
+/// Errors of a receiver that last: states that several fixes share, and the fix that they belong to.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include <waymark/core/edge_batch.hpp>
+#include <waymark/types_se2/time_offset.hpp>
+
+namespace waymark {
+
+/// What vertices of two plain numbers share.
+struct PlaneState {
+  static constexpr int kValueSize = 2;
+  static constexpr int kTangentSize = 2;
+  static constexpr bool kLinearChart = true;
+
+  template <typename T>
+  static Vector2<T> at(const double* value, const T* delta) {
+    return {delta[0] + T(value[0]), delta[1] + T(value[1])};
+  }
+  static void retract(double* value, const double* delta) {
+    value[0] += delta[0];
+    value[1] += delta[1];
+  }
+  static void local(const double* from, const double* to, double* delta) {
+    delta[0] = to[0] - from[0];
+    delta[1] = to[1] - from[1];
+  }
+};
+
+/// By how much all fixes about a moment are off, for minutes: atmosphere, orbits. Metres, frame axes.
+struct VertexGnssBias : PlaneState {
+  static constexpr std::string_view kTag = "VERTEX_GNSS_BIAS";
+  static constexpr std::array<std::string_view, 2> value_names() { return {"gnss_bias_x", "gnss_bias_y"}; }
+  static constexpr std::array<std::string_view, 2> value_units() { return {"m", "m"}; }
+};
+
+/// The part of the error that lasts for seconds: reflections, the receiver's own smoothing. In units of its
+/// standard deviation, which each fix states for itself; frame axes.
+struct VertexGnssMultipath : PlaneState {
+  static constexpr std::string_view kTag = "VERTEX_GNSS_MULTIPATH";
+  static constexpr std::array<std::string_view, 2> value_names() { return {"x", "y"}; }
+};
+
+/// A step of a first-order Gauss-Markov process: e = x_to - decay x_from, decay = exp(-dt / tau).
+struct EdgeGnssBiasDecay {
+  static constexpr std::string_view kTag = "EDGE_GNSS_BIAS_DECAY";
+  static constexpr std::string_view kForm = "difference";
+  static constexpr int kErrorDimension = 2;
+  using Vertices = VertexList<VertexGnssBias, VertexGnssBias>;
+  static constexpr auto fields() { return std::array{field<&EdgeGnssBiasDecay::decay>("decay")}; }
+
+  template <typename T>
+  Vector2<T> error(const Vector2<T>& from, const Vector2<T>& to) const {
+    return to - from * T(decay);
+  }
+
+  double decay = 1;
+};
+
+/// The same for the part that lasts for seconds.
+struct EdgeGnssMultipathDecay : EdgeGnssBiasDecay {
+  static constexpr std::string_view kTag = "EDGE_GNSS_MULTIPATH_DECAY";
+  using Vertices = VertexList<VertexGnssMultipath, VertexGnssMultipath>;
+  static constexpr auto fields() {
+    return std::array{Field<EdgeGnssMultipathDecay>{
+        "decay", 1, [](EdgeGnssMultipathDecay& edge) -> double* { return &edge.decay; }}};
+  }
+};
+
+/// EDGE_GNSS_POSITION_DELAYED with the lasting errors in the reading:
+///   e = R_from^T (p_then + R_then antenna - p_from) + bias + scale multipath - measured.
+/// `from` is the fixed origin, whose axes are the frame's. Metres.
+struct EdgeGnssPositionBiased {
+  static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_BIASED";
+  static constexpr std::string_view kForm = "position";
+  static constexpr int kErrorDimension = 2;
+  using Vertices = VertexList<VertexSe2, VertexSe2, VertexTimeOffset, VertexGnssBias, VertexGnssMultipath>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeGnssPositionBiased::measured>("measured"),
+                      field<&EdgeGnssPositionBiased::antenna>("antenna"),
+                      field<&EdgeGnssPositionBiased::velocity>("velocity"),
+                      field<&EdgeGnssPositionBiased::yaw_rate>("yaw_rate"),
+                      field<&EdgeGnssPositionBiased::scale>("scale")};
+  }
+
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& from, const Pose2<T>& to, const T& offset, const Vector2<T>& bias,
+                   const Vector2<T>& multipath) const {
+    EdgeGnssPositionDelayed fix;
+    fix.measured = measured;
+    fix.antenna = antenna;
+    fix.velocity = velocity;
+    fix.yaw_rate = yaw_rate;
+    const Vector2<T> spread(T(scale[0]) * multipath[0] + T(scale[1]) * multipath[1],
+                            T(scale[1]) * multipath[0] + T(scale[2]) * multipath[1]);
+    return fix.error(from, to, offset) + bias + spread;
+  }
+
+  Eigen::Vector2d measured = Eigen::Vector2d::Zero();
+  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();   ///< in the body frame: x forward, y left
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of `to` in the body frame, (grid) m/s
+  double yaw_rate = 0;
+  /// Root of the covariance of the part that lasts for seconds, symmetric: xx, xy, yy. m
+  Eigen::Vector3d scale = {1, 0, 1};
+};
+
+}  // namespace waymark

@@ -1,0 +1,209 @@
+#include <waymark/plugins/gnss_correlated/gnss_bias.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Eigenvalues>
+
+#include <waymark/core/error.hpp>
+#include <waymark/core/options.hpp>
+#include <waymark/core/plugin.hpp>
+#include <waymark/types_se2/gnss_edges.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr std::string_view kOwner = "correlated";
+
+/// Degrees of freedom of the white part. Student's t in two dimensions costs
+///   6 log(1 + q / 4) = rho(1.5 q),  rho(s) = 6 log(1 + s / 6):
+/// Cauchy's loss of scale sqrt(6) on 1.5 times the information.
+constexpr double kStudentInformation = 1.5;
+const double kStudentScale = std::sqrt(6.0);
+
+struct ErrorModel {
+  double white_m = 0;
+  double multipath_m = 0;
+  double multipath_time_s = 0;
+  double bias_floor_m = 0;
+  double bias_share = 0;
+  double bias_time_s = 0;
+  double accuracy_exponent = 0;
+
+  [[nodiscard]] double bias_m() const { return std::hypot(bias_floor_m, bias_share * multipath_m); }
+};
+
+/// Claimed accuracies relative to their median, per fix: receivers know better which fix is worse than how
+/// bad it is.
+double median_accuracy(std::span<const Fix> fixes) {
+  std::vector<double> ordered;
+  for (const Fix& fix : fixes) ordered.push_back(std::sqrt(0.5 * fix.covariance.trace()));
+  const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2);
+  std::nth_element(ordered.begin(), middle, ordered.end());
+  return *middle;
+}
+
+Eigen::Matrix2d relative_root(const Fix& fix, double median_m, double exponent) {
+  constexpr double kSmallest = 0.3;
+  constexpr double kLargest = 30;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(fix.covariance);
+  const Eigen::Vector2d sigma =
+      (axes.eigenvalues().cwiseMax(0).cwiseSqrt() / median_m).cwiseMax(kSmallest).cwiseMin(kLargest);
+  return axes.eigenvectors() * sigma.array().pow(exponent).matrix().asDiagonal() *
+         axes.eigenvectors().transpose();
+}
+
+/// A Gauss-Markov process along the fixes of one receiver.
+template <Vertex V, Edge Decay>
+class ProcessAlongFixes {
+ public:
+  ProcessAlongFixes(double sigma, double time_s, Graph& graph)
+      : variance_(sigma * sigma), time_s_(time_s), graph_(graph) {}
+
+  /// The vertex of a fix; stamps must not decrease.
+  [[nodiscard]] VertexIndex at(Stamp stamp) {
+    if (vertex_ >= 0 && since_ == stamp) return vertex_;
+    const VertexIndex next = graph_.add_vertex<V>(graph_.free_id(), {0, 0});
+    graph_.set_stamp(next, stamp);
+    if (vertex_ < 0) {
+      graph_.add_edge(gaussian_prior_type(), std::array{next}, std::array{0.0, 0.0, 0.0, 0.0},
+                      Eigen::MatrixXd::Identity(2, 2) / variance_);
+    } else {
+      Decay edge;
+      edge.decay = std::exp(-seconds_between(since_, stamp) / time_s_);
+      graph_.add_edge(edge, {vertex_, next},
+                      Eigen::Matrix2d::Identity() / (variance_ * (1 - edge.decay * edge.decay)));
+    }
+    vertex_ = next;
+    since_ = stamp;
+    return next;
+  }
+
+ private:
+  double variance_;
+  double time_s_;
+  Graph& graph_;
+  VertexIndex vertex_ = -1;  // none yet
+  Stamp since_;
+};
+
+/// The lasting errors of one receiver.
+struct Receiver {
+  ProcessAlongFixes<VertexGnssBias, EdgeGnssBiasDecay> bias;
+  ProcessAlongFixes<VertexGnssMultipath, EdgeGnssMultipathDecay> multipath;
+};
+
+/// z = antenna + bias + multipath + white: see README.md.
+class GnssCorrelated final : public GnssModeling {
+ public:
+  GnssCorrelated(const ErrorModel& model, double time_offset_sigma_s)
+      : model_(model), time_offset_sigma_s_(time_offset_sigma_s) {}
+
+  void build(const GnssInput& input, Graph& graph) const override {
+    if (input.fixes.empty()) return;
+    if (input.motion.size() != input.fixes.size())
+      throw UsageError("correlated: the motion at each fix is needed (GnssInput::motion)");
+    const VertexIndex origin = add_origin(graph);
+    const VertexIndex offset = add_time_offset(graph);
+    const Loss loss = input.loss ? *input.loss : student_loss();
+    const double median_m = median_accuracy(input.fixes);
+    std::map<int, Receiver> receivers;
+    for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+      const Fix& fix = input.fixes[i];
+      const Eigen::Matrix2d root = relative_root(fix, median_m, model_.accuracy_exponent);
+      Receiver& receiver = receivers.try_emplace(fix.source, make_receiver(graph)).first->second;
+      EdgeGnssPositionBiased edge;
+      edge.measured = fix.position;
+      edge.antenna = input.antenna;
+      edge.velocity = {input.motion[i].speed_mps, 0};
+      edge.yaw_rate = input.motion[i].yaw_rate_radps;
+      edge.scale = model_.multipath_m * Eigen::Vector3d(root(0, 0), root(0, 1), root(1, 1));
+      const Eigen::Matrix2d information =
+          kStudentInformation * (model_.white_m * model_.white_m * root * root).inverse();
+      EdgeBatchBase& batch = graph.add_edge(edge,
+                                            {origin, pose_vertex(fix, graph), offset,
+                                             receiver.bias.at(fix.stamp), receiver.multipath.at(fix.stamp)},
+                                            0.5 * (information + information.transpose()));
+      batch.set_loss(batch.size() - 1, loss);
+    }
+  }
+
+ private:
+  static Loss student_loss() {
+    for (const LossType& type : builtin_losses()) {
+      if (type.name == "cauchy") return {type.name, type.evaluate, kStudentScale};
+    }
+    throw UsageError("correlated: there is no loss 'cauchy'");
+  }
+
+  [[nodiscard]] VertexIndex add_time_offset(Graph& graph) const {
+    const VertexIndex offset = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
+    if (time_offset_sigma_s_ > 0) {
+      add_prior_about_zero(graph, offset, time_offset_sigma_s_);
+    } else {
+      graph.set_fixed(offset, true);
+    }
+    return offset;
+  }
+
+  [[nodiscard]] Receiver make_receiver(Graph& graph) const {
+    return {{model_.bias_m(), model_.bias_time_s, graph}, {1, model_.multipath_time_s, graph}};
+  }
+
+  ErrorModel model_;
+  double time_offset_sigma_s_;
+};
+
+std::vector<OptionInfo> options() {
+  return {
+      {"white_sigma", "1.5", "m", "scale of the part that is new in every fix (Student's t); in [1e-3, 1e3]",
+       NoisePrior{1.5, 1}},
+      {"multipath_sigma", "4", "m", "of the part that lasts for seconds; in [1e-3, 1e3]", NoisePrior{4, 0.6}},
+      {"multipath_time", "40", "s", "its correlation time; in [1, 1e4]", NoisePrior{40, 0.5}},
+      {"bias_floor", "1.5", "m", "of the part that lasts for minutes, at least; in [1e-3, 1e3]"},
+      {"bias_share", "0.7", "", "of multipath_sigma that is added to it; in [0, 10]"},
+      {"bias_time", "2000", "s", "its correlation time; in [1, 1e6]"},
+      {"accuracy_exponent", "0.5", "",
+       "how much the claimed accuracies count: 0 not, 1 as claimed; in [0, 1]", NoisePrior{0.5, 0.3, true}},
+      {"time_offset", "off", "",
+       "how late the fixes are against the odometry: 'off', or estimated 'constant'"},
+      {"time_offset_sigma", "0.3", "s", "sigma of its prior about 0; in [1e-6, 100]"},
+  };
+}
+
+std::unique_ptr<GnssModeling> make(const Options& given) {
+  const std::vector<OptionInfo> known = options();
+  check_option_names(kOwner, given, known);
+  const auto number = [&](const char* name, double low, double high) {
+    return number_option(kOwner, given, known, name, low, high);
+  };
+  constexpr std::array<std::string_view, 2> kOffsets = {"off", "constant"};
+  ErrorModel model;
+  model.white_m = number("white_sigma", 1e-3, 1e3);
+  model.multipath_m = number("multipath_sigma", 1e-3, 1e3);
+  model.multipath_time_s = number("multipath_time", 1, 1e4);
+  model.bias_floor_m = number("bias_floor", 1e-3, 1e3);
+  model.bias_share = number("bias_share", 0, 10);
+  model.bias_time_s = number("bias_time", 1, 1e6);
+  model.accuracy_exponent = number("accuracy_exponent", 0, 1);
+  const double offset_sigma = number("time_offset_sigma", 1e-6, 100);
+  const bool has_offset = word_option(kOwner, given, known, "time_offset", kOffsets) == "constant";
+  return std::make_unique<GnssCorrelated>(model, has_offset ? offset_sigma : 0);
+}
+
+void register_types(TypeRegistry& registry) {
+  registry.add_vertex<VertexGnssBias>();
+  registry.add_vertex<VertexGnssMultipath>();
+  registry.add_edge<EdgeGnssBiasDecay>();
+  registry.add_edge<EdgeGnssMultipathDecay>();
+  registry.add_edge<EdgeGnssPositionBiased>();
+  registry.add_gnss_modeling({"correlated",
+                              "fixes with biases that last, heavy-tailed noise and a latency (the default)",
+                              options(), make, true});
+}
+
+}  // namespace
+}  // namespace waymark
+
+WAYMARK_PLUGIN(gnss_correlated, "0.1.0", waymark::register_types);
