@@ -61,6 +61,7 @@ ExitCode run(int argc, char** argv) {
   add_bench(app, action);
   add_info(app, action);
   add_check(app, action);
+  add_simulate(app, action);
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);

@@ -1,0 +1,138 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <waymark/core/error.hpp>
+#include <waymark/tools/drive/config.hpp>
+#include <waymark/tools/drive/prepare.hpp>
+#include <waymark/tools/evaluation/text_table.hpp>
+#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/program_registry.hpp>
+#include <waymark/tools/simulation/simulation.hpp>
+#include <waymark/tools/simulation/statistics.hpp>
+
+namespace waymark {
+namespace {
+
+struct SimulateOptions {
+  CommonOptions common;
+  bool list = false;
+  std::string preset;
+  std::string describe;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> duration_s;
+  std::string folder;
+};
+
+ExitCode list_presets(const Console& console) {
+  TextTable table({"preset", "seed", "duration s", "description"});
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const SimulationPreset& preset : simulation_presets()) {
+    table.add({preset.name, std::to_string(preset.default_seed),
+               fmt::format("{:g}", preset.recipe.duration_s), preset.description});
+    json.push_back({{"name", preset.name},
+                    {"default_seed", preset.default_seed},
+                    {"duration_s", preset.recipe.duration_s},
+                    {"description", preset.description}});
+  }
+  console.result(console.json() ? json_text(json) : table.text());
+  return kSuccess;
+}
+
+std::string statistics_text(const std::string& name, const DriveStatistics& s) {
+  std::string text = name + "\n";
+  const auto line = [&text](const char* label, const std::string& value) {
+    text += fmt::format("  {:<34} {}\n", label, value);
+  };
+  line("duration", fmt::format("{:.2f} s", s.duration_s));
+  line("distance", fmt::format("{:.3f} km", s.distance_m / 1000));
+  line("odometry points", fmt::format("{}", s.odometry_points));
+  line("fixes", fmt::format("{}, {} epochs missing", s.fixes, s.missing_epochs));
+  line("raw fixes Max / Acc / Prec",
+       fmt::format("{:.3f} / {:.3f} / {:.3f} m", s.gnss.max_m, s.gnss.accuracy_m, s.gnss.precision_m));
+  line("rejected by the gate", fmt::format("{} ({:.2f} %)", s.rejected, s.rejected_percent));
+  for (std::size_t i = 0; i < s.autocorrelation.size(); ++i)
+    line(fmt::format("autocorrelation of the error, {} s", kAutocorrelationLags[i]).c_str(),
+         fmt::format("{:.3f}", s.autocorrelation[i]));
+  line("odometry drift over 1 km", fmt::format("{:.3f} %", s.drift_percent));
+  line("yaw drift", fmt::format("{:.3f} deg/min", s.yaw_drift_deg_per_minute));
+  return text;
+}
+
+nlohmann::ordered_json statistics_json(const std::string& name, const DriveStatistics& s) {
+  nlohmann::ordered_json json = {{"name", name},
+                                 {"duration_s", s.duration_s},
+                                 {"distance_m", s.distance_m},
+                                 {"odometry_points", s.odometry_points},
+                                 {"fixes", s.fixes},
+                                 {"missing_epochs", s.missing_epochs},
+                                 {"gnss_max_m", s.gnss.max_m},
+                                 {"gnss_accuracy_m", s.gnss.accuracy_m},
+                                 {"gnss_precision_m", s.gnss.precision_m},
+                                 {"rejected", s.rejected},
+                                 {"rejected_percent", s.rejected_percent}};
+  for (std::size_t i = 0; i < s.autocorrelation.size(); ++i)
+    json[fmt::format("autocorrelation_{}s", kAutocorrelationLags[i])] = s.autocorrelation[i];
+  json["drift_percent"] = s.drift_percent;
+  json["yaw_drift_deg_per_minute"] = s.yaw_drift_deg_per_minute;
+  return json;
+}
+
+/// A drive through the door by which every drive comes, simulated ones too.
+ExitCode describe(const std::string& path, const CommonOptions& common, const Console& console) {
+  const DriveConfig config = load_drive_config(path);
+  const TypeRegistry registry = make_registry(common, config.plugins);
+  console.progress("reading " + path);
+  const PreparedDrive drive =
+      load_drive(config, [&registry](std::string_view format) { return registry.find_log_reader(format); });
+  console.end_progress();
+  const DriveStatistics statistics = drive_statistics(drive, config.gate);
+  console.result(console.json() ? json_text(statistics_json(drive.name, statistics))
+                                : statistics_text(drive.name, statistics));
+  return kSuccess;
+}
+
+ExitCode simulate_drive(const SimulateOptions& options) {
+  const Console console(options.common);
+  if (options.list) return list_presets(console);
+  if (!options.describe.empty()) return describe(options.describe, options.common, console);
+  if (options.preset.empty()) throw UsageError("--preset is required (or --list, to see which there are)");
+  const SimulationPreset& preset = simulation_preset(options.preset);
+  if (options.folder.empty()) throw UsageError("--out is required: the folder for the logs");
+  SimulationRecipe recipe = preset.recipe;
+  if (options.duration_s) recipe = with_duration(recipe, *options.duration_s);
+  check(recipe);
+  make_folder(options.folder);
+  console.progress("simulating " + preset.name);
+  const SimulatedDrive drive = simulate(recipe, options.seed.value_or(preset.default_seed));
+  stop_if_interrupted();
+  write_simulated_drive(drive, options.folder);
+  return describe(options.folder + "/drive.yaml", options.common, console);
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("simulate", "Raw logs of a simulated drive, with truth and drive.yaml");
+  const auto options = std::make_shared<SimulateOptions>();
+  command->add_flag("--list", options->list, "The presets");
+  command->add_option("--preset", options->preset, "Which drive to simulate")->type_name("NAME");
+  command->add_option("--seed", options->seed, "Seed of all random numbers; default: the preset's");
+  command->add_option("--duration", options->duration_s, "Seconds, instead of the preset's")->type_name("S");
+  command
+      ->add_option("-o,--out", options->folder, "Folder for odometry.csv, gnss.json, truth.csv, drive.yaml")
+      ->type_name("DIR");
+  command
+      ->add_option("--describe", options->describe,
+                   "Instead of simulating: the same table of any drive.yaml, to compare with")
+      ->type_name("FILE");
+  add_common_options(*command, options->common);
+  command->footer(
+      "Example:\n  waymark simulate --preset urban --seed 7 -o simulated && waymark run simulated/drive.yaml "
+      "-o out");
+  command->callback([options, &action] { action = [options] { return simulate_drive(*options); }; });
+}
+
+}  // namespace waymark

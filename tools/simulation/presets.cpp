@@ -1,0 +1,269 @@
+#include <cmath>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/suggest.hpp>
+#include <waymark/tools/simulation/simulation.hpp>
+
+namespace waymark {
+namespace {
+
+RoadRecipe highway() {
+  return {.kind = "highway",
+          .cruise_min_mps = 22,
+          .cruise_max_mps = 33,
+          .speed_wander = 0.05,
+          .acceleration_mps2 = 1.0,
+          .deceleration_mps2 = 1.4,
+          .leg_min_m = 2000,
+          .leg_max_m = 6000,
+          .straight_m = 600,
+          .bend_sigma_deg = 15,
+          .bend_radius_min_m = 600,
+          .bend_radius_max_m = 2000,
+          .corner_probability = 0.1,
+          .corner_radius_m = 40,
+          .stop_probability = 0.15,
+          .stop_min_s = 3,
+          .stop_max_s = 30,
+          .canyon_probability = 0.25};
+}
+
+RoadRecipe urban() {
+  return {.kind = "urban",
+          .cruise_min_mps = 8,
+          .cruise_max_mps = 14,
+          .speed_wander = 0.08,
+          .acceleration_mps2 = 1.5,
+          .deceleration_mps2 = 2.0,
+          .leg_min_m = 80,
+          .leg_max_m = 350,
+          .straight_m = 80,
+          .bend_sigma_deg = 12,
+          .bend_radius_min_m = 40,
+          .bend_radius_max_m = 200,
+          .corner_probability = 0.35,
+          .corner_radius_m = 9,
+          .stop_probability = 0.5,
+          .stop_min_s = 5,
+          .stop_max_s = 45,
+          .canyon_probability = 0.5};
+}
+
+/// A motorway with too many on it.
+RoadRecipe congested() {
+  RoadRecipe road = highway();
+  road.kind = "congested highway";
+  road.cruise_min_mps = 5;
+  road.cruise_max_mps = 14;
+  road.speed_wander = 0.12;
+  road.leg_min_m = 300;
+  road.leg_max_m = 1500;
+  road.corner_probability = 0;
+  road.stop_probability = 0.5;
+  road.stop_min_s = 5;
+  road.stop_max_s = 40;
+  return road;
+}
+
+RoadRecipe rural() {
+  return {};
+}
+
+RoadRecipe with_share(RoadRecipe road, double share) {
+  road.share = share;
+  return road;
+}
+
+/// The stops of a road: how likely at the end of a leg, and how long.
+RoadRecipe with_stops(RoadRecipe road, double probability, double min_s, double max_s) {
+  road.stop_probability = probability;
+  road.stop_min_s = min_s;
+  road.stop_max_s = max_s;
+  return road;
+}
+
+/// Ten minutes. The bias over the drive is drawn so that the default model's prior for it is the truth.
+SimulationRecipe consistency(std::string name, std::vector<RoadRecipe> roads, double fast_sigma_m) {
+  SimulationRecipe recipe{.name = std::move(name), .duration_s = 600, .roads = std::move(roads)};
+  recipe.odometry.speed_scale_sigma = 0.006;
+  recipe.odometry.gyro_bias_sigma_radps = 5e-4;
+  recipe.gnss.fast_sigma_m = fast_sigma_m;
+  recipe.gnss.bias_sigma_m = std::hypot(1.5, 0.7 * fast_sigma_m);
+  recipe.gnss.jitter_m = 0.3;
+  recipe.gnss.missing_epochs = 10;
+  return recipe;
+}
+
+/// What differs between the paper's drives beside their roads; fitted (README.md).
+struct PaperDrive {
+  int number = 0;
+  double distance_m = 0;
+  int odometry_points = 0;
+  int fixes = 0;
+  double gyro_bias_radps = 0;
+  Eigen::Vector2d bias_m{0, 0};
+  double fast_sigma_m = 0;
+  double jitter_m = 0;
+  double bursts_per_minute = 0;
+  double burst_size_m = 0;
+  double burst_duration_s = 0;
+};
+
+SimulationRecipe paper_recipe(const PaperDrive& drive, std::vector<RoadRecipe> roads) {
+  SimulationRecipe recipe{.name = "paper-" + std::to_string(drive.number), .roads = std::move(roads)};
+  recipe.duration_s = drive.odometry_points / recipe.odometry.rate_hz;
+  recipe.distance_m = drive.distance_m;
+  // The last sample lies 3 / 100 s before the end of the duration, the first PPS epoch at 1 s.
+  const int epochs = static_cast<int>(recipe.duration_s - 0.03);
+  recipe.odometry.speed_scale = drive.number % 2 == 0 ? 0.004 : -0.004;
+  recipe.odometry.gyro_bias_radps = drive.gyro_bias_radps;
+  recipe.gnss.bias_east_m = drive.bias_m[0];
+  recipe.gnss.bias_north_m = drive.bias_m[1];
+  recipe.gnss.fast_sigma_m = drive.fast_sigma_m;
+  recipe.gnss.fast_tau_s = 45;
+  recipe.gnss.smoothing_s = 4;
+  recipe.gnss.jitter_m = drive.jitter_m;
+  recipe.gnss.bursts_per_minute = drive.bursts_per_minute;
+  recipe.gnss.burst_size_m = drive.burst_size_m;
+  recipe.gnss.burst_duration_s = drive.burst_duration_s;
+  recipe.gnss.missing_epochs = epochs - drive.fixes;
+  return recipe;
+}
+
+std::vector<SimulationPreset> paper_presets() {
+  std::vector<SimulationPreset> all;
+  const auto add = [&all](const PaperDrive& drive, std::vector<RoadRecipe> roads, const char* environment,
+                          std::uint64_t seed) {
+    SimulationRecipe recipe = paper_recipe(drive, std::move(roads));
+    all.push_back({recipe.name, "as the paper's drive " + std::to_string(drive.number) + ": " + environment,
+                   std::move(recipe), seed});
+  };
+  add({.number = 1,
+       .distance_m = 24000,
+       .odometry_points = 46131,
+       .fixes = 1814,
+       .gyro_bias_radps = 0.000279,
+       .bias_m = {0.216, 0.342},
+       .fast_sigma_m = 1.09,
+       .jitter_m = 0.0559,
+       .bursts_per_minute = 2,
+       .burst_size_m = 17.6,
+       .burst_duration_s = 1.5},
+      {with_share(highway(), 0.25), with_share(congested(), 0.5), with_share(highway(), 0.25)}, "highway", 1);
+  add({.number = 2,
+       .distance_m = 8000,
+       .odometry_points = 63042,
+       .fixes = 2495,
+       .gyro_bias_radps = 0.0001,
+       .bias_m = {0.997, 0.806},
+       .fast_sigma_m = 1.32,
+       .jitter_m = 0.196,
+       .bursts_per_minute = 1.5,
+       .burst_size_m = 3.91,
+       .burst_duration_s = 3},
+      {with_stops(urban(), 0.8, 15, 75)}, "urban", 4);
+  add({.number = 3,
+       .distance_m = 37000,
+       .odometry_points = 85226,
+       .fixes = 3354,
+       .gyro_bias_radps = 0.000248,
+       .bias_m = {-0.563, 0.583},
+       .fast_sigma_m = 0.901,
+       .jitter_m = 0.305,
+       .bursts_per_minute = 2,
+       .burst_size_m = 12.8,
+       .burst_duration_s = 1.5},
+      {with_stops(rural(), 0.6, 10, 70), with_share(highway(), 0.3), with_share(congested(), 0.5)},
+      "highway, rural", 1);
+  add({.number = 4,
+       .distance_m = 25000,
+       .odometry_points = 68351,
+       .fixes = 2716,
+       .gyro_bias_radps = 0.000278,
+       .bias_m = {0.786, 0.688},
+       .fast_sigma_m = 0.639,
+       .jitter_m = 0.119,
+       .bursts_per_minute = 3,
+       .burst_size_m = 1.96,
+       .burst_duration_s = 3},
+      {with_stops(rural(), 0.8, 20, 120)}, "rural", 5);
+  add({.number = 5,
+       .distance_m = 19000,
+       .odometry_points = 61479,
+       .fixes = 2458,
+       .gyro_bias_radps = 0.00038,
+       .bias_m = {0.517, -0.415},
+       .fast_sigma_m = 0.694,
+       .jitter_m = 0.0995,
+       .bursts_per_minute = 0.8,
+       .burst_size_m = 4.9,
+       .burst_duration_s = 1.5},
+      {with_stops(urban(), 0.35, 5, 30)}, "urban", 6);
+  add({.number = 6,
+       .distance_m = 24000,
+       .odometry_points = 39685,
+       .fixes = 1585,
+       .gyro_bias_radps = 0.000317,
+       .bias_m = {0.179, -0.310},
+       .fast_sigma_m = 0.663,
+       .jitter_m = 0.119,
+       .bursts_per_minute = 3,
+       .burst_size_m = 1.17,
+       .burst_duration_s = 3},
+      {with_share(highway(), 0.5), with_share(congested(), 0.5)}, "highway", 3);
+  add({.number = 7,
+       .distance_m = 26000,
+       .odometry_points = 82313,
+       .fixes = 3281,
+       .gyro_bias_radps = 0.000255,
+       .bias_m = {-0.619, 0.517},
+       .fast_sigma_m = 0.74,
+       .jitter_m = 0.0705,
+       .bursts_per_minute = 2,
+       .burst_size_m = 3.23,
+       .burst_duration_s = 3},
+      {with_stops(rural(), 0.9, 30, 150)}, "rural", 5);
+  add({.number = 8,
+       .distance_m = 25000,
+       .odometry_points = 104949,
+       .fixes = 4188,
+       .gyro_bias_radps = 0.000183,
+       .bias_m = {0.579, 0.340},
+       .fast_sigma_m = 0.683,
+       .jitter_m = 0.112,
+       .bursts_per_minute = 1,
+       .burst_size_m = 7.94,
+       .burst_duration_s = 2},
+      {with_stops(rural(), 0.9, 60, 200)}, "rural", 5);
+  return all;
+}
+
+}  // namespace
+
+const std::vector<SimulationPreset>& simulation_presets() {
+  static const std::vector<SimulationPreset> presets = [] {
+    std::vector<SimulationPreset> all;
+    all.push_back({"highway", "10 minutes of motorway", consistency("highway", {highway()}, 1.2), 1});
+    all.push_back(
+        {"urban", "10 minutes of streets, half of them canyons", consistency("urban", {urban()}, 3), 1});
+    all.push_back({"rural", "10 minutes of country roads", consistency("rural", {rural()}, 1.5), 1});
+    all.push_back({"mixed", "10 minutes: streets, country roads, motorway",
+                   consistency("mixed", {urban(), rural(), highway()}, 2), 1});
+    for (SimulationPreset& preset : paper_presets()) all.push_back(std::move(preset));
+    return all;
+  }();
+  return presets;
+}
+
+const SimulationPreset& simulation_preset(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const SimulationPreset& preset : simulation_presets()) {
+    if (preset.name == name) return preset;
+    names.push_back(preset.name);
+  }
+  const std::string nearest = did_you_mean(name, names);
+  throw UsageError("unknown preset '" + std::string(name) + "'" +
+                   (nearest.empty() ? "; there are: " + joined(names) : nearest));
+}
+
+}  // namespace waymark

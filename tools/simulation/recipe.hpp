@@ -1,0 +1,107 @@
+/// What a simulated drive is made of: plain parameters with a unit in each name. README.md explains the
+/// models.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace waymark {
+
+/// How one kind of road is built and driven. A road is a row of legs, each with its own cruise speed, filled
+/// with straights and smooth bends, and ended by a street corner, a stop, both or nothing.
+struct RoadRecipe {
+  std::string kind = "rural";  ///< a word for reports: highway, urban, rural
+  double share = 1;  ///< of the drive's duration; shares of all roads are added up and divided by the sum
+
+  double cruise_min_mps = 14;  ///< a leg's cruise speed is uniform in [min, max]
+  double cruise_max_mps = 25;
+  double speed_wander = 0.04;  ///< relative deviation of the cruise speed, correlated over 20 s
+  double acceleration_mps2 = 1.2;
+  double deceleration_mps2 = 1.6;
+  double lateral_acceleration_mps2 = 2.0;  ///< bends and corners are taken at no more than that
+
+  double leg_min_m = 500;  ///< a leg's length is uniform in [min, max]
+  double leg_max_m = 3000;
+  double straight_m = 250;         ///< mean length of the straight between two bends (exponential)
+  double bend_sigma_deg = 25;      ///< deviation of a bend's angle (normal, both senses)
+  double bend_radius_min_m = 120;  ///< a bend's smallest radius is uniform in [min, max]
+  double bend_radius_max_m = 500;
+
+  double corner_probability = 0.3;  ///< that a leg ends in a street corner of 90 degrees
+  double corner_radius_m = 12;      ///< its smallest radius
+  double stop_probability = 0.3;    ///< that the vehicle stops at the end of a leg
+  double stop_min_s = 5;            ///< a stop's duration is uniform in [min, max]
+  double stop_max_s = 40;
+  double canyon_probability = 0.25;  ///< that a leg runs through a canyon: houses, trees, a bridge
+};
+
+/// 25 Hz odometry: reading = quantised((1 + scale) speed + noise), quantised(yaw rate + bias + noise). A
+/// vehicle at rest reads speed 0 and a yaw rate of bias and noise.
+struct OdometryRecipe {
+  double rate_hz = 25;                 ///< must divide 100 Hz, the clock of the simulation
+  double speed_scale = 0;              ///< 0.01: reads 1 % too much
+  double speed_scale_sigma = 0;        ///< deviation of what each seed adds to it
+  double speed_noise_mps = 0.02;       ///< of each reading, independent
+  double speed_step_mps = 0.02 / 3.6;  ///< quantisation; 0: none
+  double gyro_bias_radps = 0;
+  double gyro_bias_sigma_radps = 0;          ///< deviation of what each seed adds to it
+  double gyro_bias_walk_radps_sqrts = 2e-6;  ///< its random walk, rad/s per sqrt(s)
+  double yaw_rate_noise_radps = 2.6e-3;      ///< of each reading, independent
+  double yaw_rate_step_radps = 7e-4;         ///< quantisation; 0: none
+};
+
+/// Errors of the fixes, on true east and north: bias + fast part + jitter + bursts; and what the receiver
+/// states.
+struct GnssRecipe {
+  double bias_east_m = 0;  ///< constant over the drive
+  double bias_north_m = 0;
+  double bias_sigma_m = 0;  ///< per axis, deviation of what each seed adds to it
+
+  double fast_sigma_m = 1;  ///< per axis, first-order Gauss-Markov
+  double fast_tau_s = 30;
+  double smoothing_s = 0;  ///< the receiver's filter on the fast part: a first-order lag that keeps its sigma
+  double jitter_m = 0.1;   ///< per axis, independent from fix to fix
+
+  double bursts_per_minute = 1;  ///< multipath bursts, Poisson, in canyons only
+  double burst_size_m = 10;      ///< mean of their size (exponential); direction uniform
+  double burst_duration_s = 6;   ///< mean duration (exponential) before it decays
+  double burst_rise_s = 1;       ///< rises as 1 - exp(-t / rise) ...
+  double burst_decay_s = 2;      ///< ... and decays as exp(-t / decay)
+  double burst_admitted = 0.05;  ///< share of a burst's size that goes into epx and epy: over-confident
+
+  int missing_epochs = 0;  ///< how many whole seconds have no fix, in all; exact
+  double outage_s = 5;     ///< mean length of the outages that they form (exponential)
+
+  double stated_95_m = 2;          ///< epx at 95 % in the mean; epy and epv are larger by fixed factors
+  double stated_variation = 0.15;  ///< relative deviation, correlated over 120 s
+  double stated_step_m = 0.01;     ///< rounding of epx, epy, epv
+};
+
+/// Post-processed RTK.
+struct TruthRecipe {
+  double rate_hz = 5;              ///< must divide 100 Hz
+  double position_noise_m = 0.01;  ///< per axis, independent
+  double heading_noise_rad = 5e-4;
+};
+
+/// A whole drive.
+struct SimulationRecipe {
+  std::string name = "drive";
+  double duration_s = 600;  ///< number of odometry samples / rate, exactly
+  double distance_m =
+      0;  ///< where not 0: cruise speeds are multiplied by the factor that gives this distance
+  std::vector<RoadRecipe> roads{};  ///< driven one after the other
+  OdometryRecipe odometry{};
+  GnssRecipe gnss{};
+  TruthRecipe truth{};
+  double start_latitude_deg = 52.27;  ///< a real place; everything is projected to its UTM zone
+  double start_longitude_deg = 10.53;
+};
+
+/// The same drive, shorter or longer: distance and missing epochs grow with the duration.
+[[nodiscard]] SimulationRecipe with_duration(SimulationRecipe recipe, double duration_s);
+
+/// @throws UsageError naming the parameter, its value and the rule.
+void check(const SimulationRecipe& recipe);
+
+}  // namespace waymark

@@ -1,0 +1,85 @@
+#include <waymark/tools/simulation/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <waymark/tools/drive/projection.hpp>
+#include <waymark/tools/simulation/road.hpp>
+#include <waymark/tools/simulation/sensors.hpp>
+
+namespace waymark {
+namespace {
+
+/// 2021-03-15 09:00:00 UTC on the GPS scale, a whole second: where the simulated world's time begins.
+constexpr Stamp kStart{1'299'834'018'000'000'000};
+constexpr double kTick = 1.0 / kTicksPerSecond;
+
+/// Lays the way driven on the ground into the frame: ground lengths times the point scale of the place.
+class Placement {
+ public:
+  Placement(const std::vector<DrivenState>& states, const Projection& projection)
+      : states_(states), projection_(projection) {}
+
+  /// The vehicle at a tick; ticks must not decrease.
+  PlacedState at(std::size_t tick) {
+    for (; tick_ < tick; ++tick_) advance();
+    const DrivenState& state = states_[tick];
+    return {{kStart.nanoseconds + static_cast<std::int64_t>(tick) * (1'000'000'000 / kTicksPerSecond)},
+            {position_[0], position_[1], state.heading_rad},
+            state.speed_mps,
+            state.canyon};
+  }
+
+ private:
+  void advance() {
+    if (tick_ % kTicksPerSecond == 0)  // the scale changes by less than 1e-8 in a second
+      scale_ = projection_.to_grid(projection_.to_geodetic(position_)).scale;
+    const double moved = scale_ * (states_[tick_ + 1].way_m - states_[tick_].way_m);
+    const double heading = 0.5 * (states_[tick_].heading_rad + states_[tick_ + 1].heading_rad);
+    position_ += moved * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+  }
+
+  const std::vector<DrivenState>& states_;
+  const Projection& projection_;
+  std::size_t tick_ = 0;
+  double scale_ = 1;
+  Eigen::Vector2d position_{0, 0};
+};
+
+std::vector<PlacedState> place_every(std::size_t step, const std::vector<DrivenState>& states,
+                                     const Projection& projection) {
+  Placement placement(states, projection);
+  std::vector<PlacedState> placed;
+  for (std::size_t tick = 0; tick < states.size(); tick += step) placed.push_back(placement.at(tick));
+  return placed;
+}
+
+}  // namespace
+
+SimulatedDrive simulate(const SimulationRecipe& recipe, std::uint64_t seed) {
+  check(recipe);
+  SimulatedDrive drive;
+  drive.name = "Simulated: " + recipe.name + ", seed " + std::to_string(seed);
+  drive.seed = seed;
+  drive.recipe = recipe;
+  drive.frame = choose_frame({recipe.start_latitude_deg, recipe.start_longitude_deg}, {}, {});
+  const Projection projection(drive.frame);
+
+  const double step = kTicksPerSecond / recipe.odometry.rate_hz;
+  const auto samples = std::llround(recipe.duration_s * recipe.odometry.rate_hz);
+  const auto ticks = std::llround(static_cast<double>(samples) * step);
+  const std::vector<DrivenState> states = drive_distance(recipe, seed, ticks);
+  drive.distance_m = states.back().way_m;
+  sense_odometry(states, kStart, drive);
+
+  // The fix of second 0 comes before the first odometry sample and would be dropped.
+  std::vector<PlacedState> epochs = place_every(kTicksPerSecond, states, projection);
+  epochs.erase(epochs.begin());
+  sense_gnss(epochs, projection, drive);
+  const auto truth_step = static_cast<std::size_t>(std::lround(kTicksPerSecond / recipe.truth.rate_hz));
+  sense_truth(place_every(truth_step, states, projection), projection, drive);
+  return drive;
+}
+
+}  // namespace waymark
