@@ -1,4 +1,5 @@
-#include <filesystem>
+#include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -41,23 +42,28 @@ ExitCode list_presets(const Console& console) {
   return kSuccess;
 }
 
+/// NaN: not defined, or there is no truth to define it.
+std::string number(double value, int decimals) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
+}
+
 std::string statistics_text(const std::string& name, const DriveStatistics& s) {
   std::string text = name + "\n";
-  const auto line = [&text](const char* label, const std::string& value) {
+  const auto line = [&text](const std::string& label, const std::string& value) {
     text += fmt::format("  {:<34} {}\n", label, value);
   };
-  line("duration", fmt::format("{:.2f} s", s.duration_s));
-  line("distance", fmt::format("{:.3f} km", s.distance_m / 1000));
-  line("odometry points", fmt::format("{}", s.odometry_points));
+  line("duration", number(s.duration_s, 2) + " s");
+  line("distance", number(s.distance_m / 1000, 3) + " km");
+  line("odometry points", std::to_string(s.odometry_points));
   line("fixes", fmt::format("{}, {} epochs missing", s.fixes, s.missing_epochs));
-  line("raw fixes Max / Acc / Prec",
-       fmt::format("{:.3f} / {:.3f} / {:.3f} m", s.gnss.max_m, s.gnss.accuracy_m, s.gnss.precision_m));
+  line("raw fixes Max / Acc / Prec", number(s.gnss.max_m, 3) + " / " + number(s.gnss.accuracy_m, 3) + " / " +
+                                         number(s.gnss.precision_m, 3) + " m");
   line("rejected by the gate", fmt::format("{} ({:.2f} %)", s.rejected, s.rejected_percent));
   for (std::size_t i = 0; i < s.autocorrelation.size(); ++i)
-    line(fmt::format("autocorrelation of the error, {} s", kAutocorrelationLags[i]).c_str(),
-         fmt::format("{:.3f}", s.autocorrelation[i]));
-  line("odometry drift over 1 km", fmt::format("{:.3f} %", s.drift_percent));
-  line("yaw drift", fmt::format("{:.3f} deg/min", s.yaw_drift_deg_per_minute));
+    line(fmt::format("autocorrelation of the error, {} s", kAutocorrelationLags[i]),
+         number(s.autocorrelation[i], 3));
+  line("odometry drift over 1 km", number(s.drift_percent, 3) + " %");
+  line("yaw drift", number(s.yaw_drift_deg_per_minute, 3) + " deg/min");
   return text;
 }
 
@@ -112,22 +118,40 @@ ExitCode simulate_drive(const SimulateOptions& options) {
   return describe(options.folder + "/drive.yaml", options.common, console);
 }
 
+/// The parser would take -1 and numbers beyond 64 bits for the largest one.
+std::string wrong_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const char* end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, seed);
+  if (error == std::errc() && stopped == end) return {};
+  return "must be a whole number from 0 to 2^64 - 1, got " + text;
+}
+
 }  // namespace
 
 void add_simulate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("simulate", "Raw logs of a simulated drive, with truth and drive.yaml");
   const auto options = std::make_shared<SimulateOptions>();
-  command->add_flag("--list", options->list, "The presets");
-  command->add_option("--preset", options->preset, "Which drive to simulate")->type_name("NAME");
-  command->add_option("--seed", options->seed, "Seed of all random numbers; default: the preset's");
-  command->add_option("--duration", options->duration_s, "Seconds, instead of the preset's")->type_name("S");
+  auto* list = command->add_flag("--list", options->list, "The presets");
+  auto* preset =
+      command->add_option("--preset", options->preset, "Which drive to simulate")->type_name("NAME");
+  command->add_option("--seed", options->seed, "Seed of all random numbers; default: the preset's")
+      ->check(CLI::Validator(wrong_seed, ""))
+      ->needs(preset);
+  command->add_option("--duration", options->duration_s, "Seconds, instead of the preset's")
+      ->type_name("S")
+      ->needs(preset);
   command
       ->add_option("-o,--out", options->folder, "Folder for odometry.csv, gnss.json, truth.csv, drive.yaml")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->needs(preset);
   command
       ->add_option("--describe", options->describe,
                    "Instead of simulating: the same table of any drive.yaml, to compare with")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->excludes(list)
+      ->excludes(preset);
+  list->excludes(preset);
   add_common_options(*command, options->common);
   command->footer(
       "Example:\n  waymark simulate --preset urban --seed 7 -o simulated && waymark run simulated/drive.yaml "

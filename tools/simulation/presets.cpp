@@ -90,6 +90,7 @@ SimulationRecipe consistency(std::string name, std::vector<RoadRecipe> roads, do
   recipe.gnss.fast_sigma_m = fast_sigma_m;
   recipe.gnss.bias_sigma_m = std::hypot(1.5, 0.7 * fast_sigma_m);
   recipe.gnss.jitter_m = 0.3;
+  recipe.gnss.stated_95_m = 2 * fast_sigma_m;
   recipe.gnss.missing_epochs = 10;
   return recipe;
 }

@@ -14,6 +14,8 @@ class RandomStream {
   /// @param seed    of the whole simulation
   /// @param stream  which part of it draws here: streams of one seed do not depend on each other
   RandomStream(std::uint64_t seed, std::uint64_t stream);
+  /// From the generator's own state, not all 0: to compare with its authors' code.
+  explicit RandomStream(const std::array<std::uint64_t, 4>& state) : state_(state) {}
 
   [[nodiscard]] std::uint64_t bits();
   /// In [0, 1), 53 bits.

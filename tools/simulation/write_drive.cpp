@@ -74,6 +74,7 @@ std::string drive_yaml(const SimulatedDrive& drive) {
       "\n"
       "odometry:\n"
       "  file: odometry.csv              # time_s: GPS seconds since 1980\n"
+      "  columns: {{time: time_s, speed: speed_mps, yaw_rate: yaw_rate_radps}}\n"
       "\n"
       "gnss:\n"
       "  file: gnss.json\n"
@@ -81,7 +82,10 @@ std::string drive_yaml(const SimulatedDrive& drive) {
       "  accuracy: {{meaning: 95}}         # epx and epy\n"
       "\n"
       "truth:\n"
-      "  file: truth.csv\n",
+      "  file: truth.csv\n"
+      "  columns: {{time: time_s, latitude: latitude_deg, longitude: longitude_deg, height: height_m, "
+      "heading: "
+      "heading_rad}}\n",
       drive.recipe.name, drive.seed, drive.name);
 }
 
