@@ -66,8 +66,7 @@ void judge_gnss(const PreparedDrive& drive, DriveStatistics& statistics) {
     offsets.push_back(drive.fixes[i].position - truth_antenna(match.at[i]->pose, drive));
   }
   statistics.gnss = position_metrics(offsets);
-  for (const double lag : kAutocorrelationLags)
-    statistics.autocorrelation.push_back(offset_autocorrelation(matched, offsets, lag));
+  statistics.autocorrelation = error_autocorrelation(matched, offsets, kAutocorrelationLags);
 }
 
 /// Median size of the change of (odometry - truth) heading over windows of a minute that follow each other.
@@ -107,31 +106,6 @@ void judge_odometry(const PreparedDrive& drive, const Timeline& timeline,
 }
 
 }  // namespace
-
-double offset_autocorrelation(std::span<const Stamp> stamps, std::span<const Eigen::Vector2d> offsets,
-                              double lag_s) {
-  if (stamps.size() < 2) return kUndefined;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& offset : offsets) mean += offset;
-  mean /= static_cast<double>(offsets.size());
-  double variance = 0;
-  for (const Eigen::Vector2d& offset : offsets) variance += (offset - mean).squaredNorm();
-  variance /= static_cast<double>(offsets.size());
-
-  const double tolerance = 0.5 * median_interval(stamps);
-  double product = 0;
-  std::size_t pairs = 0;
-  std::size_t later = 0;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    while (later < stamps.size() && seconds_between(stamps[i], stamps[later]) <= lag_s - tolerance) ++later;
-    for (std::size_t j = later;
-         j < stamps.size() && seconds_between(stamps[i], stamps[j]) < lag_s + tolerance; ++j) {
-      product += (offsets[i] - mean).dot(offsets[j] - mean);
-      ++pairs;
-    }
-  }
-  return pairs == 0 ? kUndefined : product / static_cast<double>(pairs) / variance;
-}
 
 double mean_drift(std::span<const Eigen::Vector3d> odometry, std::span<const Eigen::Vector3d> truth,
                   const DriftOptions& options) {

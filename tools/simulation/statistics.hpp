@@ -10,6 +10,7 @@
 #include <waymark/core/stamp.hpp>
 #include <waymark/tools/drive/gate.hpp>
 #include <waymark/tools/drive/prepare.hpp>
+#include <waymark/tools/evaluation/autocorrelation.hpp>
 #include <waymark/tools/evaluation/metrics.hpp>
 
 namespace waymark {
@@ -36,13 +37,6 @@ struct DriveStatistics {
   double yaw_drift_deg_per_minute = kUndefined;  ///< median size of what the odometry's heading gains on the
                                                  ///< truth's in a minute
 };
-
-inline constexpr double kAutocorrelationLags[] = {1, 10, 60};  // s
-
-/// Autocorrelation of offsets: both axes pooled, the mean removed, pairs within half a median interval of the
-/// lag. NaN where there are no pairs. @param stamps increasing
-[[nodiscard]] double offset_autocorrelation(std::span<const Stamp> stamps,
-                                            std::span<const Eigen::Vector2d> offsets, double lag_s);
 
 /// Mean drift over the pieces (DriftOptions), 0.011 for 1.1 %; NaN where none fits.
 /// @param odometry, truth poses (x, y, heading not wrapped or wrapped alike) at the same instants; grid
