@@ -1,8 +1,6 @@
 #include <waymark/tools/simulation/simulation.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <waymark/tools/drive/projection.hpp>
 #include <waymark/tools/simulation/road.hpp>
@@ -13,7 +11,6 @@ namespace {
 
 /// 2021-03-15 09:00:00 UTC on the GPS scale, a whole second: where the simulated world's time begins.
 constexpr Stamp kStart{1'299'834'018'000'000'000};
-constexpr double kTick = 1.0 / kTicksPerSecond;
 
 /// Lays the way driven on the ground into the frame: ground lengths times the point scale of the place.
 class Placement {
