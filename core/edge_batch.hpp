@@ -49,11 +49,11 @@ struct ValueView {
 };
 
 /// What linearisation adds to: H += J^T (w Omega + second-order term of the loss, robust_information.hpp) J,
-/// g += w J^T Omega e.
+/// g += w J^T Omega e. For the evidence (evidence.hpp) H takes min(w, evidence_weight) Omega instead.
 struct NormalView {
   double* hessian = nullptr;
   double* gradient = nullptr;
-  bool second_order = true;  ///< false: without the second-order terms of the losses
+  double evidence_weight = 0;  ///< 0: H is for steps
 };
 
 /// What the edges know of rigid motions is added up per component of the graph.

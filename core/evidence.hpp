@@ -4,10 +4,13 @@
 /// Neural Computation 4, 1992),
 ///   -log p(z | noise) = 1/2 chi2 + 1/2 log det H - 1/2 sum_e log det Omega_e + const.
 /// The first term falls as the noise grows, the last rises, and log det H charges for the unknowns that fit
-/// the measurements. H is that of iteratively reweighted least squares, sum w J^T Omega J: with the
-/// second-order terms of the losses, kept for some edges and not for others, it would jump as an edge crosses
-/// from one to the other. The constant takes in whatever depends only on the number and kind of edges: their
-/// dimensions and, under a robust loss of fixed scale, its normaliser.
+/// the measurements. H is not that of the steps. For an edge with a robust loss it takes
+/// min(w, m) Omega: w is the weight of iteratively reweighted least squares, and m that at which a normal
+/// distribution has the mass of exp(-rho / 2) (2/3 for the Cauchy loss that makes Student's t of four degrees
+/// of freedom in the plane). With w alone, which is 1 at the peak, every error that other unknowns take up
+/// would seem 1/m too improbable, and noise with heavy tails be found where there is none; the second-order
+/// terms, kept for some edges and not for others, would make it jump. The constant takes in whatever depends
+/// only on the number and kind of edges: the powers of 2 pi and, under a loss of fixed scale, its normaliser.
 #pragma once
 
 #include <waymark/core/block_cholesky.hpp>

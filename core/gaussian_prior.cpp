@@ -127,10 +127,11 @@ double GaussianPriorBatch::linearize(const ValueView& view, const Scatter& scatt
     const BlockTarget* block = scatter.blocks.data() + record.first_block;
     linearize_edge(i, view, e, jacobians);
     const double squared = e.dot(record.information * e);
-    LossValue loss = evaluate_loss(i, squared);
-    if (!normal.second_order) loss.curvature = 0;
+    const LossValue loss = evaluate_loss(i, squared);
     sum += loss.rho;
-    const Eigen::MatrixXd information = robust_information(loss, squared, record.information, e);
+    const Eigen::MatrixXd information =
+        normal.evidence_weight > 0 ? std::min(loss.weight, normal.evidence_weight) * record.information
+                                   : robust_information(loss, squared, record.information, e);
     const Eigen::VectorXd weighted_error = loss.weight * (record.information * e);
     for (std::size_t k = 0; k < record.vertices.size(); ++k) {
       const Eigen::MatrixXd left = jacobians[k].transpose() * information;

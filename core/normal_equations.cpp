@@ -23,7 +23,7 @@ double NormalEquations::sum_over_chunks(const Work& work) const {
     for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
       const Scatter& scatter = structure_.scatter(b);
       for (auto r = scatter.chunk[at(chunk)]; r < scatter.chunk[at(chunk) + 1]; ++r) {
-        sum += work(graph_.batch(b), scatter, scatter.ranges[r]);
+        sum += work(b, scatter.ranges[r]);
       }
     }
     sums_[at(chunk)] = sum;
@@ -35,16 +35,17 @@ double NormalEquations::sum_over_chunks(const Work& work) const {
   return total;
 }
 
-double NormalEquations::linearize(const std::vector<double>& values, bool second_order) {
+double NormalEquations::linearize(const std::vector<double>& values,
+                                  std::span<const double> evidence_weights) {
   hessian_.assign(at(structure_.hessian_size()), 0.0);
   gradient_.assign(at(structure_.gradient_size()), 0.0);
   diagonal_known_ = false;
   const ValueView view{values.data(), graph_.offsets().data()};
-  const NormalView normal{hessian_.data(), gradient_.data(), second_order};
-  const double chi2 =
-      sum_over_chunks([&](const EdgeBatchBase& batch, const Scatter& scatter, EdgeRange range) {
-        return batch.linearize(view, scatter, range, normal);
-      });
+  const double chi2 = sum_over_chunks([&](std::size_t batch, EdgeRange range) {
+    const NormalView normal{hessian_.data(), gradient_.data(),
+                            evidence_weights.empty() ? 0 : evidence_weights[batch]};
+    return graph_.batch(batch).linearize(view, structure_.scatter(batch), range, normal);
+  });
   structure_.add_slots(hessian_.data(), gradient_.data());
   return chi2;
 }
@@ -52,7 +53,7 @@ double NormalEquations::linearize(const std::vector<double>& values, bool second
 double NormalEquations::chi2(const std::vector<double>& values) const {
   const ValueView view{values.data(), graph_.offsets().data()};
   return sum_over_chunks(
-      [&](const EdgeBatchBase& batch, const Scatter&, EdgeRange range) { return batch.chi2(view, range); });
+      [&](std::size_t batch, EdgeRange range) { return graph_.batch(batch).chi2(view, range); });
 }
 
 const Eigen::VectorXd& NormalEquations::diagonal() const {

@@ -24,8 +24,8 @@ class NormalEquations {
   void set_threads(ThreadPool* pool) { pool_ = pool; }
 
   /// Fills H and g at `values` (laid out as graph.values()) and returns chi2 there.
-  /// @param second_order  whether H has the second-order terms of the losses (robust_information.hpp)
-  double linearize(const std::vector<double>& values, bool second_order = true);
+  /// @param evidence_weights  empty, or for each batch NormalView::evidence_weight
+  double linearize(const std::vector<double>& values, std::span<const double> evidence_weights = {});
   /// chi2 at other values; H and g stay.
   [[nodiscard]] double chi2(const std::vector<double>& values) const;
 
@@ -50,7 +50,7 @@ class NormalEquations {
   [[nodiscard]] VertexIndex vertex_of_unknown(std::int64_t unknown) const;
 
  private:
-  /// Calls work(batch, range, chunk) for all edges, chunks side by side, the last one after the others, and
+  /// Calls work(batch, range) for all edges, chunks side by side, the last one after the others, and
   /// sums what it returns in order.
   template <typename Work>
   double sum_over_chunks(const Work& work) const;

@@ -233,10 +233,12 @@ class EdgeBatch final : public EdgeBatchBase {
       const ErrorVector<kDimension> weighted_error = times(record.information, e);
       const double squared = e.dot(weighted_error);
       if constexpr (kRobust) {
-        LossValue loss = evaluate_loss(i, squared);
-        if (!normal.second_order) loss.curvature = 0;
+        const LossValue loss = evaluate_loss(i, squared);
         sum += loss.rho;
-        const Information linearized = robust_information(loss, squared, square(record), e);
+        const Information linearized =
+            normal.evidence_weight > 0
+                ? Information(std::min(loss.weight, normal.evidence_weight) * square(record))
+                : Information(robust_information(loss, squared, square(record), e));
         add_part(triangle(linearized), loss.weight * weighted_error);
       } else {
         sum += squared;
