@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include <waymark/core/options.hpp>
@@ -9,11 +11,18 @@
 namespace waymark {
 namespace {
 
+/// What its options say; the defaults are ours, the other values those of g2o's dogleg.
+struct DoglegSettings {
+  bool scaled = true;         ///< norm |D d| with D = diag(H)^(1/2); else |d|
+  bool absolute = false;      ///< the radius has a unit of its own and does not look at the steps' lengths
+  double initial_radius = 1;  ///< of the first Newton step's length, or as it is where absolute
+};
+
 /// Powell's dogleg in the norm |D d| with D = diag(H)^(1/2), so that metres and radians, stiff and soft edges
 /// count alike. The radius starts from the first Gauss-Newton step: no absolute number can fit every problem.
 class Dogleg final : public Algorithm {
  public:
-  explicit Dogleg(double initial_radius) : initial_radius_(initial_radius) {}
+  explicit Dogleg(const DoglegSettings& settings) : settings_(settings) {}
 
   void reset() override {
     radius_ = -1;
@@ -25,7 +34,7 @@ class Dogleg final : public Algorithm {
     diagonal_ = &equations.diagonal();
     if (fresh_ && !compute_newton(equations, solver)) return ProposalStatus::singular;
     fresh_ = false;
-    if (radius_ < 0) radius_ = initial_radius_ * newton_norm_;
+    if (radius_ < 0) radius_ = settings_.initial_radius * (settings_.absolute ? 1 : newton_norm_);
     if (radius_ < kMinRadius * newton_norm_) return ProposalStatus::exhausted;
     step.control = radius_;
     if (newton_norm_ <= radius_ && damping_ == 0) {
@@ -41,24 +50,31 @@ class Dogleg final : public Algorithm {
 
   [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 1e-4; }
 
-  // A good step triples the radius it reached, a poor one halves it.
+  // A good step triples the radius it reached, a poor one halves it. An absolute radius may be far above the
+  // step's length and is halved all the same.
   void accepted(const Step&, double gain_ratio) override {
     if (gain_ratio < 0.25) {
-      radius_ = 0.5 * std::min(radius_, length_);
+      radius_ = 0.5 * (settings_.absolute ? radius_ : std::min(radius_, length_));
     } else if (gain_ratio > 0.75) {
       radius_ = std::max(radius_, 3 * length_);
     }
     fresh_ = true;
   }
 
-  void rejected(const Step&, double) override { radius_ = 0.25 * std::min(radius_, length_); }
+  void rejected(const Step&, double) override {
+    radius_ = settings_.absolute ? 0.5 * radius_ : 0.25 * std::min(radius_, length_);
+  }
 
  private:
   static constexpr double kMinRadius = 1e-18;
   static constexpr double kMaxDamping = 1;
 
-  /// D^2: the diagonal of H, but never nothing.
-  [[nodiscard]] auto scale() const { return diagonal_->array().max(floor_); }
+  /// The diagonal of H, but never nothing.
+  [[nodiscard]] auto safe_diagonal() const { return diagonal_->array().max(floor_); }
+  /// D^2, without a copy: the diagonal or ones.
+  [[nodiscard]] auto scale() const {
+    return safe_diagonal() * (settings_.scaled ? 1.0 : 0.0) + (settings_.scaled ? 0.0 : 1.0);
+  }
 
   // The end of the path. Where H is singular to working precision it comes from the least damped matrix that
   // is not.
@@ -69,7 +85,7 @@ class Dogleg final : public Algorithm {
     while (solve_step(equations, solver, extra_, scratch_, newton_, slope_) != FactorStatus::ok) {
       damping_ = damping_ == 0 ? 1e-12 : damping_ * 100;
       if (damping_ > kMaxDamping) return false;
-      extra_ = damping_ * scale().matrix();
+      extra_ = damping_ * safe_diagonal().matrix();
     }
     newton_norm_ = scaled_norm(newton_);
     cauchy_norm_ = -1;
@@ -119,7 +135,7 @@ class Dogleg final : public Algorithm {
     return std::sqrt((scale() * v.array().square()).sum());
   }
 
-  double initial_radius_;
+  DoglegSettings settings_;
   std::vector<double> scratch_;
   const Eigen::VectorXd* diagonal_ = nullptr;  // of the present H
   double floor_ = 0;
@@ -140,14 +156,24 @@ class Dogleg final : public Algorithm {
 
 AlgorithmType dogleg() {
   const std::vector<OptionInfo> options = {
-      {"initial_radius", "1", "",
-       "first trust radius over the length of the first Newton step; in [1e-6, 1e6]"}};
-  return {
-      "dogleg", "Powell's dogleg in the norm scaled by diag(H)^(1/2)", options,
-      [options](const Options& given) {
-        check_option_names("dogleg", given, options);
-        return std::make_unique<Dogleg>(number_option("dogleg", given, options, "initial_radius", 1e-6, 1e6));
-      }};
+      {"scaling", "hessian", "",
+       "norm of the trust region: 'hessian' scales by diag(H)^(1/2), 'none' adds metres and radians as they "
+       "are (g2o)"},
+      {"radius", "newton", "",
+       "'newton': counted in lengths of the first Newton step, bound to the steps' lengths; 'absolute': a "
+       "number by itself, halved by every poor or failed step (g2o)"},
+      {"initial_radius", "1", "", "first trust radius, in what 'radius' says; in [1e-6, 1e12]; g2o has 1e4"}};
+  return {"dogleg", "Powell's dogleg in the norm scaled by diag(H)^(1/2)", options,
+          [options](const Options& given) {
+            constexpr std::array<std::string_view, 2> kScalings = {"hessian", "none"};
+            constexpr std::array<std::string_view, 2> kRadii = {"newton", "absolute"};
+            check_option_names("dogleg", given, options);
+            DoglegSettings settings;
+            settings.scaled = word_option("dogleg", given, options, "scaling", kScalings) == "hessian";
+            settings.absolute = word_option("dogleg", given, options, "radius", kRadii) == "absolute";
+            settings.initial_radius = number_option("dogleg", given, options, "initial_radius", 1e-6, 1e12);
+            return std::make_unique<Dogleg>(settings);
+          }};
 }
 
 }  // namespace waymark

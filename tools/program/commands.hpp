@@ -21,6 +21,7 @@ void add_run(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
+void add_reproduce(CLI::App& app, Action& action);
 
 /// --quiet, -v, --json, --plugin.
 void add_common_options(CLI::App& command, CommonOptions& options);

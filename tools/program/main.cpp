@@ -62,6 +62,7 @@ ExitCode run(int argc, char** argv) {
   add_info(app, action);
   add_check(app, action);
   add_simulate(app, action);
+  add_reproduce(app, action);
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);

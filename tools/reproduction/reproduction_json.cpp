@@ -1,0 +1,95 @@
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <waymark/tools/reproduction/reproduction_report.hpp>
+
+namespace waymark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json position_json(const PositionMetrics& m) {
+  return {{"count", m.count},
+          {"max_m", number(m.max_m)},
+          {"accuracy_m", number(m.accuracy_m)},
+          {"precision_m", number(m.precision_m)},
+          {"rmse_m", number(m.rmse_m)},
+          {"median_m", number(m.median_m)},
+          {"cep50_m", number(m.cep50_m)},
+          {"cep95_m", number(m.cep95_m)}};
+}
+
+Json outcome_json(const Outcome& outcome) {
+  Json json = {{"setting", outcome.setting.name}};
+  if (!outcome.failure.empty()) {
+    json["failure"] = outcome.failure;
+    return json;
+  }
+  const Ending& ending = outcome.ending;
+  json["converged"] = ending.converged;
+  json["ending"] = ending.message;
+  json["steps"] = ending.iterations;
+  json["rejected_steps"] = ending.rejected_steps;
+  json["initial_chi2"] = number(ending.initial_chi2);
+  json["chi2"] = number(ending.chi2);
+  if (!outcome.setting.objective.empty()) {
+    json["minimum_chi2"] = number(outcome.minimum_chi2);
+    json["from_minimum_m"] = number(outcome.from_minimum.position_m);
+    json["from_minimum_rad"] = number(outcome.from_minimum.heading_rad);
+  }
+  json["accepted"] = outcome.accepted;
+  json["rejected"] = outcome.rejected;
+  if (!outcome.setting.evaluated) return json;
+  const Evaluation& evaluation = outcome.evaluation;
+  if (evaluation.truth) json["fused"] = position_json(evaluation.truth->fused.position);
+  if (evaluation.withheld_fixes) json["withheld_fixes"] = position_json(evaluation.withheld_fixes->position);
+  return json;
+}
+
+Json outcomes_json(const std::vector<Outcome>& outcomes) {
+  Json json = Json::array();
+  for (const Outcome& outcome : outcomes) json.push_back(outcome_json(outcome));
+  return json;
+}
+
+Json drive_json(const DriveResult& drive) {
+  Json json = {{"name", drive.name},
+               {"dataset", drive.dataset > 0 ? Json(drive.dataset) : Json(nullptr)},
+               {"simulated", drive.simulated},
+               {"imitated_odometry", drive.imitated_odometry},
+               {"duration_s", drive.duration_s},
+               {"distance_m", drive.distance_m},
+               {"fixes", drive.fixes},
+               {"odometry_samples", drive.odometry_samples}};
+  if (const auto raw = metrics_of(drive, "gnss")) json["gnss"] = position_json(*raw);
+  json["runs"] = outcomes_json(drive.outcomes);
+  json["withheld"] = Json::array();
+  for (const WithheldResult& withheld : drive.withheld)
+    json["withheld"].push_back({{"kept_out", withheld.way}, {"runs", outcomes_json(withheld.outcomes)}});
+  return json;
+}
+
+}  // namespace
+
+std::string report_json(const ReproductionReport& report, const std::vector<DriveResult>& drives) {
+  Json json = {{"schema", "waymark-reproduction"}, {"version", 1}, {"introduction", report.introduction}};
+  json["drives"] = Json::array();
+  for (const DriveResult& drive : drives) json["drives"].push_back(drive_json(drive));
+  json["findings"] = Json::array();
+  for (const Finding& finding : report.findings) {
+    json["findings"].push_back({{"statement", finding.statement},
+                                {"paper", finding.paper},
+                                {"literal", finding.literal},
+                                {"literal_holds", finding.literal_holds},
+                                {"ours", finding.ours},
+                                {"ours_holds", finding.ours_holds}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace waymark

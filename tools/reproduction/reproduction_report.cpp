@@ -1,0 +1,54 @@
+#include <algorithm>
+
+#include <waymark/tools/reproduction/convergence_tables.hpp>
+#include <waymark/tools/reproduction/drive_tables.hpp>
+#include <waymark/tools/reproduction/paper_tables.hpp>
+#include <waymark/tools/reproduction/reproduction_report.hpp>
+
+namespace waymark {
+namespace {
+
+std::vector<DriveResult> other_drives(const std::vector<DriveResult>& drives) {
+  std::vector<DriveResult> others;
+  std::copy_if(drives.begin(), drives.end(), std::back_inserter(others),
+               [](const DriveResult& drive) { return drive.dataset == 0; });
+  return others;
+}
+
+}  // namespace
+
+ReproductionReport make_report(const std::vector<DriveResult>& drives, const std::string& introduction) {
+  ReproductionReport report;
+  report.introduction = introduction;
+  report.tables = paper_tables(drives);
+  const std::vector<DriveResult> others = other_drives(drives);
+  if (!others.empty()) {
+    for (ReportTable& table :
+         std::vector{overview_table(others), truth_table(others), withheld_table(others)}) {
+      if (!table.rows.empty()) report.tables.push_back(std::move(table));
+    }
+  }
+  report.tables.push_back(cause_table(drives));
+  report.tables.push_back(common_minimum_table(drives));
+  report.findings = findings(drives);
+  report.runs = run_table(drives);
+  return report;
+}
+
+std::string report_text(const ReproductionReport& report) {
+  std::string text = report.introduction + "\n";
+  for (const ReportTable& table : report.tables) text += "\n" + table_text(table);
+  if (!report.findings.empty())
+    text += "\nWhat the paper found, and what these drives say\n" + findings_text(report.findings);
+  return text;
+}
+
+std::string report_markdown(const ReproductionReport& report) {
+  std::string text = "# The paper's experiment, reproduced\n\n" + report.introduction + "\n";
+  if (!report.findings.empty())
+    text += "\n## What the paper found, and what these drives say\n\n" + findings_text(report.findings);
+  for (const ReportTable& table : report.tables) text += "\n" + table_markdown(table);
+  return text;
+}
+
+}  // namespace waymark

@@ -1,0 +1,33 @@
+/// The whole result: all tables, the findings, files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <waymark/tools/reproduction/drive_result.hpp>
+#include <waymark/tools/reproduction/findings.hpp>
+#include <waymark/tools/reproduction/report_table.hpp>
+
+namespace waymark {
+
+struct ReproductionReport {
+  std::string introduction;  ///< a paragraph: program, version, what is simulated
+  std::vector<ReportTable> tables;
+  std::vector<Finding> findings;
+  ReportTable runs;  ///< every run; in files only
+};
+
+/// The tables that the drives have material for: the paper's six, convergence, those of other drives.
+[[nodiscard]] ReproductionReport make_report(const std::vector<DriveResult>& drives,
+                                             const std::string& introduction);
+
+/// For the terminal.
+[[nodiscard]] std::string report_text(const ReproductionReport& report);
+/// REPRODUCTION.md
+[[nodiscard]] std::string report_markdown(const ReproductionReport& report);
+/// reproduction.json, schema "waymark-reproduction" version 1 (README.md of this folder): all numbers in
+/// full.
+[[nodiscard]] std::string report_json(const ReproductionReport& report,
+                                      const std::vector<DriveResult>& drives);
+
+}  // namespace waymark

@@ -1,0 +1,101 @@
+/// Runs settings on a drive that was read once.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <waymark/core/registry.hpp>
+#include <waymark/tools/drive/assemble.hpp>
+#include <waymark/tools/evaluation/evaluation.hpp>
+#include <waymark/tools/reproduction/setting.hpp>
+
+namespace waymark {
+
+/// What settings are run with.
+struct Laboratory {
+  const TypeRegistry& registry;
+  /// How a fused document is judged. @param converged whether the document is at a minimum
+  std::function<Evaluation(GraphDocument& document, const std::vector<TruthPose>& truth, bool converged)>
+      evaluate;
+  /// Told before every run what comes; may throw to end all of it.
+  std::function<void(const std::string&)> progress;
+  const std::atomic<bool>* cancel = nullptr;  ///< as OptimizerOptions::cancel
+};
+
+/// How a minimisation ended.
+struct Ending {
+  bool converged = false;  ///< by the rule of its setting; whether at a minimum is another question
+  std::string message;     ///< why it ended, with the numbers
+  int iterations = 0;      ///< steps taken
+  int rejected_steps = 0;  ///< steps tried in vain
+  double initial_chi2 = 0;
+  double chi2 = 0;
+};
+
+/// The largest differences between the vehicle's poses of two results.
+struct PoseDifference {
+  double position_m = kUndefined;
+  double heading_rad = kUndefined;
+};
+
+/// One setting on one drive.
+struct Outcome {
+  Setting setting;
+  std::string failure;  ///< why there is no result; empty: there is one
+  Ending ending;
+  std::size_t accepted = 0;  ///< fixes
+  std::size_t rejected = 0;
+  Evaluation evaluation;  ///< without its lists of epochs; nothing where the setting is not evaluated
+  /// From the lowest minimum that was found for the setting's objective (compare_outcomes); undefined without
+  /// objective.
+  PoseDifference from_minimum;
+  double minimum_chi2 = kUndefined;
+  std::vector<Eigen::Vector3d> poses;  ///< of the vehicle, by time; dropped by compare_outcomes
+
+  [[nodiscard]] double rejected_percent() const;
+};
+
+/// A drive with everything that its settings share.
+class StudiedDrive {
+ public:
+  /// @param config  from a drive.yaml; its modeling, loss, calibration and further sensors are set aside: the
+  ///                settings say what is done, the same for every drive
+  StudiedDrive(DriveConfig config, const DriveLogs& logs);
+
+  [[nodiscard]] const DriveConfig& config() const { return config_; }
+  [[nodiscard]] const PreparedDrive& drive() const { return drive_; }
+  /// Made on first use and kept. @throws what build_skeleton throws
+  [[nodiscard]] const DriveSkeleton& skeleton(const DriveChanges& changes, const TypeRegistry& registry);
+
+ private:
+  DriveConfig config_;
+  PreparedDrive drive_;
+  std::vector<std::pair<DriveChanges, DriveSkeleton>> skeletons_;
+};
+
+/// Fuses the drive as the setting says. What a drive does not allow (all fixes rejected, a lever arm with the
+/// literal error) is the outcome's failure.
+[[nodiscard]] Outcome run_setting(StudiedDrive& drive, const Setting& setting, const Laboratory& laboratory);
+
+/// Runs all of them and compares their ends.
+[[nodiscard]] std::vector<Outcome> run_settings(StudiedDrive& drive, const std::vector<Setting>& settings,
+                                                const Laboratory& laboratory);
+
+/// Fills from_minimum and minimum_chi2 of all outcomes: the lowest chi2 of each objective is its minimum.
+void compare_outcomes(std::vector<Outcome>& outcomes);
+
+/// Runs with our settings ended at the same minimum where no pose differs by more: 1 cm, 0.1 degrees.
+inline constexpr PoseDifference kSamePoses = {0.01, 0.1 * 0.017453292519943295};
+/// A run with the paper's settings reached its minimum where no pose is further from it: 0.5 m, 1 degree.
+/// They stop early by design, and its weights leave some poses nearly free; a false minimum is metres to
+/// kilometres away.
+inline constexpr PoseDifference kReachedPoses = {0.5, 0.017453292519943295};
+[[nodiscard]] bool at_minimum(const Outcome& outcome, const PoseDifference& tolerance);
+
+/// @return null where there is none of this name
+[[nodiscard]] const Outcome* find_outcome(const std::vector<Outcome>& outcomes, const std::string& name);
+
+}  // namespace waymark

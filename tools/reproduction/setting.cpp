@@ -1,0 +1,142 @@
+#include <waymark/tools/reproduction/setting.hpp>
+
+namespace waymark {
+namespace {
+
+/// The dogleg of g2o.
+Minimization g2o_dogleg() {
+  return {.algorithm = "dogleg",
+          .options = {{"scaling", "none"}, {"radius", "absolute"}, {"initial_radius", "1e4"}},
+          .stopping = StoppingRule::relative_gain};
+}
+
+/// An objective is the same for G1 and G3; G2's differs by the slack of its identity edges, far below what is
+/// told apart here.
+Setting paper_setting(const std::string& modeling) {
+  Setting setting;
+  setting.name = "paper_" + modeling;
+  setting.modeling = modeling;
+  setting.modeling_options = {{"error", "literal"}};
+  setting.changes = {.lever_arm = false,
+                     .start = StartMethod::dead_reckoning,
+                     .odometry_options = {{"noise", "paper"}}};
+  setting.minimization = g2o_dogleg();
+  setting.objective = "literal " + modeling;
+  return setting;
+}
+
+Setting our_setting(const std::string& modeling) {
+  Setting setting;
+  setting.name = "ours_" + modeling;
+  setting.modeling = modeling;
+  setting.objective = "decoupled";
+  return setting;
+}
+
+/// The three modelings, and g2 without the gate.
+template <typename Make>
+std::vector<Setting> four_settings(Make make) {
+  std::vector<Setting> settings;
+  for (const char* modeling : kModelings) settings.push_back(make(modeling));
+  Setting open = make("g2");
+  open.name += "_no_rejection";
+  open.objective += " without rejection";
+  open.changes.gate = false;
+  settings.push_back(open);
+  return settings;
+}
+
+void use_our_radius(Setting& setting) {
+  setting.minimization.options = {};
+}
+
+void use_our_error(Setting& setting) {
+  setting.modeling_options = {{"error", "decoupled"}};
+  setting.objective = "decoupled " + setting.modeling;
+}
+
+void use_our_stopping(Setting& setting) {
+  setting.minimization.stopping = StoppingRule::full_steps;
+  setting.minimization.max_iterations = kCauseIterations;
+}
+
+void use_our_start(Setting& setting) {
+  setting.changes.start = StartMethod::anchored;
+}
+
+void apply_cause(const std::string& cause, Setting& setting) {
+  if (cause == "radius" || cause == "all_but_start") use_our_radius(setting);
+  if (cause == "heading" || cause == "all_but_start") use_our_error(setting);
+  if (cause == "stopping" || cause == "all_but_start") use_our_stopping(setting);
+  if (cause == "start") use_our_start(setting);
+}
+
+}  // namespace
+
+std::vector<Setting> paper_settings() {
+  return four_settings(paper_setting);
+}
+
+std::vector<Setting> our_settings() {
+  return four_settings(our_setting);
+}
+
+const std::vector<Cause>& causes() {
+  static const std::vector<Cause> all = {{"radius", "scaled radius"},
+                                         {"heading", "no dummy heading"},
+                                         {"stopping", "full steps only"},
+                                         {"start", "anchored start"},
+                                         {"all_but_start", "first three"}};
+  return all;
+}
+
+std::vector<Setting> cause_settings() {
+  std::vector<Setting> settings;
+  for (const char* modeling : kModelings) {
+    for (const Cause& cause : causes()) {
+      Setting setting = paper_setting(modeling);
+      setting.name += "/" + cause.name;
+      setting.evaluated = false;
+      apply_cause(cause.name, setting);
+      settings.push_back(std::move(setting));
+    }
+  }
+  return settings;
+}
+
+std::vector<Setting> minimum_settings() {
+  std::vector<Setting> settings;
+  for (Setting setting : paper_settings()) {
+    const std::string name = setting.name;
+    setting.minimization = {.tolerance = 1e-12};
+    setting.evaluated = false;
+    use_our_start(setting);
+    setting.name = name + "/minimum";
+    settings.push_back(setting);
+    if (!setting.changes.gate) continue;
+    use_our_error(setting);
+    setting.name = name + "/heading_minimum";
+    settings.push_back(setting);
+  }
+  return settings;
+}
+
+std::vector<Setting> convergence_settings() {
+  std::vector<Setting> settings;
+  for (const char* modeling : kModelings) {
+    for (const std::string start : kConvergenceStarts) {
+      for (const std::string algorithm : kConvergenceAlgorithms) {
+        Setting setting = our_setting(modeling);
+        setting.name += "/" + start + "/" + algorithm;
+        if (start == "dead_reckoning") setting.changes.start = StartMethod::dead_reckoning;
+        setting.minimization.all_starts = algorithm == "default";
+        if (algorithm != "default") setting.minimization.algorithm = algorithm;
+        setting.evaluated = false;
+        settings.push_back(setting);
+      }
+    }
+  }
+  return settings;
+}
+
+}  // namespace waymark

@@ -1,0 +1,99 @@
+/// What is varied in the experiment: one Setting is one way to fuse a drive; an experiment is a list of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <waymark/core/algorithm.hpp>
+#include <waymark/tools/drive/config.hpp>
+
+namespace waymark {
+
+/// What a setting changes before there is a graph. Settings whose changes are equal share one skeleton.
+struct DriveChanges {
+  bool gate = true;
+  bool lever_arm = true;  ///< false: the antenna counts as the body point, as in the paper
+  StartMethod start = StartMethod::anchored;
+  Options odometry_options{};  ///< instead of the drive.yaml's
+  Options calibration{};       ///< the same; empty: none
+
+  friend bool operator==(const DriveChanges&, const DriveChanges&) = default;
+};
+
+/// When a run ends.
+enum class StoppingRule {
+  full_steps,    ///< ours: by the Newton decrement, on full steps only (core/optimizer.hpp)
+  relative_gain  ///< g2o's: the first step that lowers chi2 by less than 1e-6 of it ends the run, truncated
+                 ///< or not; at most kGainIterations steps
+};
+
+/// g2o has no limit of its own: its users say how many iterations. The paper does not say how many; its
+/// examples and program run 5 to 20, so 50 is generous.
+inline constexpr int kGainIterations = 50;
+inline constexpr double kGain = 1e-6;      ///< of chi2: g2o's SparseOptimizerTerminateAction
+inline constexpr int kGainAttempts = 100;  ///< shorter and shorter steps tried in one iteration, as in g2o
+
+/// Most steps of a run that asks for full steps where the literal settings are taken apart: what is not there
+/// after 100 creeps.
+inline constexpr int kCauseIterations = 100;
+
+/// How the graph is minimised.
+struct Minimization {
+  std::string algorithm = "dogleg";
+  Options options{};
+  bool all_starts = false;  ///< let it choose among registered starts, as `waymark optimize` does
+  StoppingRule stopping = StoppingRule::full_steps;
+  int max_iterations = 500;  ///< with full_steps
+  double tolerance = 1e-6;   ///< with full_steps: decrement_tolerance
+};
+
+/// One way to fuse a drive.
+struct Setting {
+  std::string name;      ///< unique, for tables and files: "paper_g1", "paper_g1/radius"
+  std::string modeling;  ///< registered GNSS modeling
+  Options modeling_options{};
+  DriveChanges changes;
+  Minimization minimization;
+  /// Settings of one objective have one minimum, so the poses that they end at are compared; empty: not.
+  std::string objective;
+  bool evaluated = true;  ///< against truth or withheld fixes; else it is run for its convergence alone
+};
+
+/// The modelings of the paper, in its order.
+inline constexpr const char* kModelings[] = {"g1", "g2", "g3"};
+
+/// g1, g2, g3 and g2_no_rejection with the paper's literal settings, names "paper_...": dogleg as g2o has it
+/// (norm over metres and radians alike, first radius 1e4, stopping by relative gain), dead-reckoned
+/// start, 1.1 % per odometry edge, the literal logarithm with heading 0 in the reading of each fix.
+[[nodiscard]] std::vector<Setting> paper_settings();
+
+/// The same four with ours, names "ours_...": decoupled error, additive process noise, anchored start, the
+/// default dogleg.
+[[nodiscard]] std::vector<Setting> our_settings();
+
+/// Why the paper's g1, g2 and g3 end where they end: each cause switched to ours alone, names
+/// "paper_g1/radius" (the trust region alone), "/heading" (the error alone), "/stopping", "/start", and
+/// "/all_but_start": the first three together.
+[[nodiscard]] std::vector<Setting> cause_settings();
+
+/// What runs of the paper's settings are compared with: anchored start, default dogleg, tight tolerance;
+/// names "paper_g1/minimum", and "paper_g1/heading_minimum" with the decoupled error.
+[[nodiscard]] std::vector<Setting> minimum_settings();
+
+/// A cause and what is changed, for a heading.
+struct Cause {
+  std::string name;
+  std::string title;
+};
+[[nodiscard]] const std::vector<Cause>& causes();
+
+/// Ours from both starts with every algorithm: names "ours_g1/dead_reckoning/levenberg_marquardt".
+[[nodiscard]] std::vector<Setting> convergence_settings();
+
+/// The algorithms in them: registered ones, and "default", which may choose among starts.
+inline constexpr const char* kConvergenceAlgorithms[] = {"gauss_newton", "levenberg_marquardt", "dogleg",
+                                                         "default"};
+/// The starts in them.
+inline constexpr const char* kConvergenceStarts[] = {"anchored", "dead_reckoning"};
+
+}  // namespace waymark
