@@ -12,7 +12,7 @@ namespace {
 using Drives = std::vector<DriveResult>;
 
 bool is_common_minimum(const Outcome& outcome) {
-  return at_minimum(outcome, kSamePoses) && outcome.ending.converged;
+  return at_minimum(outcome) && outcome.ending.converged;
 }
 
 template <typename Condition>
@@ -36,7 +36,7 @@ std::string short_length(double metres) {
 std::string ending_cell(const Outcome* outcome) {
   if (outcome == nullptr) return "-";
   if (!outcome->failure.empty()) return "failed";
-  if (at_minimum(*outcome, kReachedPoses)) return std::to_string(outcome->ending.iterations);
+  if (near_minimum(*outcome)) return std::to_string(outcome->ending.iterations);
   return fmt::format("x {}: {}", outcome->ending.iterations, short_length(outcome->from_minimum.position_m));
 }
 
@@ -70,7 +70,7 @@ Spread spread_of(const Drives& drives, const std::string& setting) {
 }  // namespace
 
 Reached count_reached(const Drives& drives, const std::string& setting) {
-  return count(drives, setting, [](const Outcome& outcome) { return at_minimum(outcome, kReachedPoses); });
+  return count(drives, setting, [](const Outcome& outcome) { return near_minimum(outcome); });
 }
 
 Reached count_common_minimum(const Drives& drives, const std::string& setting) {
@@ -97,10 +97,9 @@ ReportTable cause_table(const Drives& drives) {
   for (const std::string modeling : kModelings)
     add_row("reached", modeling, [&](const std::string& name) { return reached_cell(drives, name); });
   table.notes = {
-      fmt::format(
-          "A number: the steps to the minimum (all poses within {} m and {:.0f} degree of it). \"x 50: "
-          "3.0 m\": stopped after 50 steps, a pose 3.0 m from the minimum of the same errors and weights.",
-          kReachedPoses.position_m, kReachedPoses.heading_rad * 180 / std::numbers::pi),
+      fmt::format("A number: the steps to the minimum (chi2 less than {} above it). \"x 50: 3.0 m\": stopped "
+                  "after 50 steps, a pose 3.0 m from the minimum of the same errors and weights.",
+                  kReachedChi2),
       fmt::format(
           "literal: g2o's dogleg (norm over metres and radians, first radius 1e4), dead-reckoned start, "
           "log error with heading 0, 1.1 % per odometry edge. It ends where a step lowers chi2 by less "

@@ -24,9 +24,9 @@ struct Reached {
   int reached = 0;
   int of = 0;
 };
-/// The setting ended near the minimum of its objective (kReachedPoses).
+/// The setting ended near the minimum of its objective (near_minimum).
 [[nodiscard]] Reached count_reached(const std::vector<DriveResult>& drives, const std::string& setting);
-/// It ended at it (kSamePoses) and was declared converged.
+/// It ended at it (at_minimum) and was declared converged.
 [[nodiscard]] Reached count_common_minimum(const std::vector<DriveResult>& drives,
                                            const std::string& setting);
 

@@ -77,7 +77,7 @@ void note_endings(const Drives& drives, const std::string& setting, ReportTable&
     if (outcome == nullptr) continue;
     if (!outcome->failure.empty()) {
       table.notes.push_back(fmt::format("Drive {}, {}: {}", drive.label(), setting, outcome->failure));
-    } else if (!at_minimum(*outcome, kReachedPoses)) {
+    } else if (!near_minimum(*outcome)) {
       missed += " " + drive.label();
     }
   }

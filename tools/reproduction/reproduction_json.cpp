@@ -24,6 +24,15 @@ Json position_json(const PositionMetrics& m) {
           {"cep95_m", number(m.cep95_m)}};
 }
 
+Json consistency_json(const ConsistencyStatistics& stated) {
+  return {{"count", stated.count},
+          {"effective_samples", number(stated.effective_samples)},
+          {"nees_mean", number(stated.nees_mean)},
+          {"nees_mean_honest", {number(stated.nees_mean_honest.low), number(stated.nees_mean_honest.high)}},
+          {"coverage", number(stated.coverage)},
+          {"coverage_honest", {number(stated.coverage_honest.low), number(stated.coverage_honest.high)}}};
+}
+
 Json outcome_json(const Outcome& outcome) {
   Json json = {{"setting", outcome.setting.name}};
   if (!outcome.failure.empty()) {
@@ -46,8 +55,12 @@ Json outcome_json(const Outcome& outcome) {
   json["rejected"] = outcome.rejected;
   if (!outcome.setting.evaluated) return json;
   const Evaluation& evaluation = outcome.evaluation;
-  if (evaluation.truth) json["fused"] = position_json(evaluation.truth->fused.position);
-  if (evaluation.withheld_fixes) json["withheld_fixes"] = position_json(evaluation.withheld_fixes->position);
+  if (evaluation.truth) {
+    json["fused"] = position_json(evaluation.truth->fused.position);
+    if (evaluation.truth->consistency) json["consistency"] = consistency_json(*evaluation.truth->consistency);
+  }
+  for (const WithheldMetrics& withheld : evaluation.at_withheld)
+    json["at_withheld_fixes"][withheld.label] = position_json(withheld.at_fixes);
   return json;
 }
 

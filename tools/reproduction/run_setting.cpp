@@ -204,9 +204,13 @@ void compare_outcomes(std::vector<Outcome>& outcomes) {
   for (Outcome& outcome : outcomes) outcome.poses = {};
 }
 
-bool at_minimum(const Outcome& outcome, const PoseDifference& tolerance) {
-  return outcome.from_minimum.position_m <= tolerance.position_m &&
-         outcome.from_minimum.heading_rad <= tolerance.heading_rad;
+bool at_minimum(const Outcome& outcome) {
+  return outcome.from_minimum.position_m <= kSamePoses.position_m &&
+         outcome.from_minimum.heading_rad <= kSamePoses.heading_rad;
+}
+
+bool near_minimum(const Outcome& outcome) {
+  return outcome.ending.chi2 - outcome.minimum_chi2 <= kReachedChi2;  // not where there is none: NaN
 }
 
 const Outcome* find_outcome(const std::vector<Outcome>& outcomes, const std::string& name) {

@@ -89,11 +89,12 @@ void compare_outcomes(std::vector<Outcome>& outcomes);
 
 /// Runs with our settings ended at the same minimum where no pose differs by more: 1 cm, 0.1 degrees.
 inline constexpr PoseDifference kSamePoses = {0.01, 0.1 * 0.017453292519943295};
-/// A run with the paper's settings reached its minimum where no pose is further from it: 0.5 m, 1 degree.
-/// They stop early by design, and its weights leave some poses nearly free; a false minimum is metres to
-/// kilometres away.
-inline constexpr PoseDifference kReachedPoses = {0.5, 0.017453292519943295};
-[[nodiscard]] bool at_minimum(const Outcome& outcome, const PoseDifference& tolerance);
+[[nodiscard]] bool at_minimum(const Outcome& outcome);
+/// A run with the paper's settings reached its minimum where chi2 is less than 1 above it: no pose is then
+/// further from it than one of its standard deviations. A length would not do: these runs stop early by
+/// design, and their weights leave some poses free by metres.
+inline constexpr double kReachedChi2 = 1;
+[[nodiscard]] bool near_minimum(const Outcome& outcome);
 
 /// @return null where there is none of this name
 [[nodiscard]] const Outcome* find_outcome(const std::vector<Outcome>& outcomes, const std::string& name);

@@ -17,9 +17,8 @@ Setting paper_setting(const std::string& modeling) {
   setting.name = "paper_" + modeling;
   setting.modeling = modeling;
   setting.modeling_options = {{"error", "literal"}};
-  setting.changes = {.lever_arm = false,
-                     .start = StartMethod::dead_reckoning,
-                     .odometry_options = {{"noise", "paper"}}};
+  setting.changes = {
+      .lever_arm = false, .start = StartMethod::dead_reckoning, .odometry_options = {{"noise", "paper"}}};
   setting.minimization = g2o_dogleg();
   setting.objective = "literal " + modeling;
   return setting;
