@@ -12,8 +12,17 @@ namespace {
 /// there is one.
 class GnssG2 final : public GnssModeling {
  public:
-  GnssG2(bool literal, double identity_information, double time_offset_sigma_s)
-      : literal_(literal), identity_(identity_information), time_offset_sigma_s_(time_offset_sigma_s) {}
+  struct Configuration {
+    bool literal = false;
+    bool begin_at_pose = false;  ///< else at the fix
+    double identity_information = 1e6;
+    double time_offset_sigma_s = 0;
+  };
+  explicit GnssG2(const Configuration& given)
+      : literal_(given.literal),
+        begin_at_pose_(given.begin_at_pose),
+        identity_(given.identity_information),
+        time_offset_sigma_s_(given.time_offset_sigma_s) {}
 
   void build(const GnssInput& input, Graph& graph) const override {
     if (literal_) require_no_lever_arm(input, "g2");
@@ -23,8 +32,9 @@ class GnssG2 final : public GnssModeling {
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const VertexIndex pose = pose_vertex(fix, graph);
-      const VertexIndex node = graph.add_vertex<VertexSe2>(
-          graph.free_id(), {fix.position[0], fix.position[1], graph.value(pose)[2]});
+      const auto start = graph.value(pose);
+      const Eigen::Vector2d place = begin_at_pose_ ? Eigen::Vector2d(start[0], start[1]) : fix.position;
+      const VertexIndex node = graph.add_vertex<VertexSe2>(graph.free_id(), {place[0], place[1], start[2]});
       if (literal_) {
         attach_loss(graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, {origin, node},
                                    pose_information(fix)),
@@ -39,6 +49,7 @@ class GnssG2 final : public GnssModeling {
 
  private:
   bool literal_;
+  bool begin_at_pose_;
   double identity_;
   double time_offset_sigma_s_;
 };
@@ -47,15 +58,21 @@ std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = gnss_options();
   all.push_back(
       {"identity_information", "1e6", "1/m^2, 1/rad^2", "of the (virtual) identity edges; in [1, 1e12]"});
+  all.push_back(
+      {"nodes_begin", "fix", "",
+       "where the free nodes begin: at the 'fix', or at the 'pose' of the vehicle; the minimum is the same"});
   return all;
 }
 
 std::unique_ptr<GnssModeling> make(const Options& given) {
   const std::vector<OptionInfo> known = options();
   check_option_names("g2", given, known);
-  return std::make_unique<GnssG2>(is_literal("g2", given),
-                                  number_option("g2", given, known, "identity_information", 1, 1e12),
-                                  time_offset_sigma("g2", given));
+  constexpr std::array<std::string_view, 2> kBegins = {"fix", "pose"};
+  return std::make_unique<GnssG2>(GnssG2::Configuration{
+      .literal = is_literal("g2", given),
+      .begin_at_pose = word_option("g2", given, known, "nodes_begin", kBegins) == "pose",
+      .identity_information = number_option("g2", given, known, "identity_information", 1, 1e12),
+      .time_offset_sigma_s = time_offset_sigma("g2", given)});
 }
 
 void register_types(TypeRegistry& registry) {

@@ -40,9 +40,13 @@ std::string ending_cell(const Outcome* outcome) {
   return fmt::format("x {}: {}", outcome->ending.iterations, short_length(outcome->from_minimum.position_m));
 }
 
+std::string reached_text(const Reached& count) {
+  return count.of == 0 ? "-" : fmt::format("{} of {}", count.reached, count.of);
+}
+
 std::string reached_cell(const Drives& drives, const std::string& setting) {
   const Reached count = count_reached(drives, setting);
-  return fmt::format("{} of {}", count.reached, count.of);
+  return reached_text(count);
 }
 
 /// Smallest and largest number of steps, and how far apart the ends were.
@@ -108,9 +112,11 @@ ReportTable cause_table(const Drives& drives) {
       "scaled radius: the norm of diag(H), the first radius from the first Newton step.",
       "no dummy heading: the decoupled error instead of the logarithm.",
       fmt::format("full steps only: convergence is tested on full Newton steps; at most {} steps are tried.",
-                  kCauseIterations),
+                  kBareIterations),
       "anchored start: the fixes anchor place and heading instead of dead reckoning.",
-      "first three: scaled radius, no dummy heading and full steps only, from dead reckoning."};
+      "first three: scaled radius, no dummy heading and full steps only, from dead reckoning.",
+      "start to the east: literal, but dead reckoning begins with heading 0: odometry alone knows no north.",
+      "nodes at fixes: literal, but the nodes of G2 begin at their fixes instead of the poses."};
   return table;
 }
 
@@ -134,14 +140,14 @@ ReportTable common_minimum_table(const Drives& drives) {
         totals[a].of += count.of;
         position_m = std::max(position_m, spread.position_m);
         heading_rad = std::max(heading_rad, spread.heading_rad);
-        std::string text = fmt::format("{} of {}", count.reached, count.of);
+        std::string text = reached_text(count);
         if (spread.most > 0) text += fmt::format(" in {}-{}", spread.fewest, spread.most);
         row.push_back(text);
       }
       table.rows.push_back(row);
     }
     std::vector<std::string> row{start, "together"};
-    for (const Reached& total : totals) row.push_back(fmt::format("{} of {}", total.reached, total.of));
+    for (const Reached& total : totals) row.push_back(reached_text(total));
     table.rows.push_back(row);
   }
   table.notes = {
@@ -152,7 +158,10 @@ ReportTable common_minimum_table(const Drives& drives) {
           "m^2).",
           kSamePoses.position_m * 1000, kSamePoses.heading_rad * 180 / std::numbers::pi, position_m * 1000,
           heading_rad * 180 / std::numbers::pi),
-      "default: dogleg, as `waymark optimize` runs it: it may choose another start by itself."};
+      "+starts, and default (dogleg): as `waymark optimize` runs them: where a minimum is implausible, other "
+      "starts are "
+      "tried. The others are the bare algorithms, at most 100 steps.",
+      "east: dead reckoning that begins with heading 0."};
   return table;
 }
 

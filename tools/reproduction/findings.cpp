@@ -10,15 +10,19 @@ namespace {
 
 using Drives = std::vector<DriveResult>;
 
-/// The numbers that a finding speaks of, from one source: the paper, its settings, ours.
+/// The numbers that a finding speaks of, from one source: the paper, its settings, the same at the minimum,
+/// ours.
 class Source {
  public:
-  /// @param prefix of the settings, "paper_"; empty: the printed figures
-  Source(const Drives& drives, const char* prefix) : drives_(&drives), prefix_(prefix) {}
+  /// @param prefix, suffix  around a system's name in the names of settings; both empty: the printed figures
+  Source(std::string name, const Drives& drives, std::string prefix, std::string suffix = "")
+      : name_(std::move(name)), drives_(&drives), prefix_(std::move(prefix)), suffix_(std::move(suffix)) {}
 
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] bool printed() const { return prefix_.empty(); }
   [[nodiscard]] MetricsColumn column(const std::string& system) const {
     if (prefix_.empty()) return paper_column(*drives_, system);
-    return metrics_column(*drives_, system == "gnss" ? system : prefix_ + system);
+    return metrics_column(*drives_, system == "gnss" ? system : prefix_ + system + suffix_);
   }
   [[nodiscard]] PaperMetrics improvement(const std::string& system) const {
     return average_improvement(column("gnss"), column(system));
@@ -35,24 +39,24 @@ class Source {
     }
     return labels.empty() ? "none" : labels;
   }
-  [[nodiscard]] std::string prefix() const { return prefix_; }
 
  private:
+  std::string name_;
   const Drives* drives_;
   std::string prefix_;
+  std::string suffix_;
 };
 
-struct Sources {
-  Source paper;
-  Source literal;
-  Source ours;
-};
+using Sources = std::vector<Source>;
 
-/// A finding whose three texts and verdicts are functions of the source.
-template <typename Text, typename Holds>
-Finding make(const Sources& sources, const std::string& statement, Text text, Holds holds) {
-  return {statement,          text(sources.paper),    text(sources.literal),
-          text(sources.ours), holds(sources.literal), holds(sources.ours)};
+/// A finding whose figures and verdicts are functions of the source.
+template <typename Figures, typename Holds>
+Finding make(const Sources& sources, const std::string& statement, Figures figures, Holds holds) {
+  Finding finding{statement, {}};
+  for (const Source& source : sources)
+    finding.evidence.push_back({source.name(), figures(source),
+                                source.printed() ? std::nullopt : std::optional<bool>(holds(source))});
+  return finding;
 }
 
 std::string percents(const Source& source, double PaperMetrics::*metric) {
@@ -133,31 +137,41 @@ Drives drives_of_paper() {
   return drives;
 }
 
-/// Of the paper the text gives the counts; of ours, both starts with the default algorithm count.
+using Counter = Reached (*)(const Drives&, const std::string&);
+
+/// "g1 3 of 8, g2 8 of 8, g3 8 of 8"
+std::string counts(const Drives& drives, const std::string& prefix, const std::string& suffix,
+                   Counter count_drives) {
+  std::string text;
+  for (const std::string modeling : kModelings) {
+    const Reached count = count_drives(drives, prefix + modeling + suffix);
+    text += fmt::format("{}{} {} of {}", text.empty() ? "" : ", ", modeling, count.reached, count.of);
+  }
+  return text;
+}
+
+bool some_miss(const Drives& drives, const std::string& setting) {
+  const Reached count = count_reached(drives, setting);
+  return count.reached < count.of;
+}
+
 Finding convergence(const Drives& drives) {
-  const auto counts = [&](const std::string& prefix, const std::string& suffix, auto count_drives) {
-    std::string text;
-    bool all = true;
-    for (const std::string modeling : kModelings) {
-      const Reached count = count_drives(drives, prefix + modeling + suffix);
-      text += fmt::format("{}{} {} of {}", text.empty() ? "" : ", ", modeling, count.reached, count.of);
-      all = all && count.reached == count.of;
+  Finding finding{"From dead reckoning G1 does not converge in every drive", {}};
+  finding.evidence = {
+      {"paper", fmt::format("g1 {} of 8, g2 8 of 8; g3 performed well", kPaperG1Converged), std::nullopt},
+      {"literal", counts(drives, "paper_", "", count_reached), some_miss(drives, "paper_g1")},
+      {"literal, start to the east", counts(drives, "paper_", "/east", count_reached),
+       some_miss(drives, "paper_g1/east")},
+      {"literal, scaled radius", counts(drives, "paper_", "/radius", count_reached),
+       some_miss(drives, "paper_g1/radius")}};
+  for (const std::string start : {"dead_reckoning", "east"}) {
+    for (const std::string algorithm : {"levenberg_marquardt+starts", "default"}) {
+      const std::string suffix = "/" + start + "/" + algorithm;
+      finding.evidence.push_back({"ours" + suffix, counts(drives, "ours_", suffix, count_common_minimum),
+                                  count_common_minimum(drives, "ours_g1" + suffix).reached <
+                                      count_common_minimum(drives, "ours_g1" + suffix).of});
     }
-    return std::pair(text, all);
-  };
-  const Reached g1 = count_reached(drives, "paper_g1");
-  const Reached g2 = count_reached(drives, "paper_g2");
-  const auto [reckoned, reckoned_all] = counts("ours_", "/dead_reckoning/default", count_common_minimum);
-  Finding finding;
-  finding.statement =
-      "From dead reckoning G1 does not converge in most drives, and G2 does in all of them; with our "
-      "settings this must "
-      "not be so: all converge";
-  finding.paper = fmt::format("g1 {} of 8, g2 8 of 8, g3 8 of 8", kPaperG1Converged);
-  finding.literal = counts("paper_", "", count_reached).first;
-  finding.ours = reckoned;
-  finding.literal_holds = 2 * g1.reached < g1.of && g2.reached == g2.of;
-  finding.ours_holds = reckoned_all;
+  }
   return finding;
 }
 
@@ -170,7 +184,10 @@ std::vector<Finding> findings(const Drives& drives) {
   }
   if (with_truth.empty()) return {};
   const Drives printed = drives_of_paper();
-  const Sources sources{{printed, ""}, {with_truth, "paper_"}, {with_truth, "ours_"}};
+  const Sources sources{{"paper", printed, ""},
+                        {"literal", with_truth, "paper_"},
+                        {"minimum", with_truth, "paper_", "/minimum"},
+                        {"ours", with_truth, "ours_"}};
   return {average_improves(sources, "Max", &PaperMetrics::max_m),
           average_improves(sources, "Prec", &PaperMetrics::precision_m),
           accuracy_stays(sources),
@@ -181,14 +198,14 @@ std::vector<Finding> findings(const Drives& drives) {
 }
 
 std::string findings_text(const std::vector<Finding>& findings) {
-  const auto verdict = [](bool holds) { return holds ? "holds" : "DOES NOT HOLD"; };
   std::string text;
   int number = 0;
   for (const Finding& finding : findings) {
-    text +=
-        fmt::format("{}. {}.\n   - paper: {}\n   - literal settings ({}): {}\n   - our settings ({}): {}\n",
-                    ++number, finding.statement, finding.paper, verdict(finding.literal_holds),
-                    finding.literal, verdict(finding.ours_holds), finding.ours);
+    text += fmt::format("{}. {}.\n", ++number, finding.statement);
+    for (const Evidence& evidence : finding.evidence) {
+      const char* verdict = !evidence.holds ? "" : *evidence.holds ? " (holds)" : " (does not hold)";
+      text += fmt::format("   - {}{}: {}\n", evidence.source, verdict, evidence.figures);
+    }
   }
   return text;
 }

@@ -1,6 +1,7 @@
 /// Which of the paper's findings hold on the drives at hand: computed from the numbers.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,17 +9,21 @@
 
 namespace waymark {
 
-struct Finding {
-  std::string statement;  ///< what the paper found
-  std::string paper;      ///< its figures
-  std::string literal;    ///< the same with the paper's settings on these drives
-  std::string ours;       ///< and with ours
-  bool literal_holds = false;
-  bool ours_holds = false;
+/// What one source says of a finding.
+struct Evidence {
+  std::string source;  ///< "paper", "literal", "minimum", "ours"
+  std::string figures;
+  std::optional<bool> holds;  ///< empty: the source is no judge of it
 };
 
-/// Largest change of the average accuracy that counts as none, percent; the paper calls 2.3 % no change.
-inline constexpr double kUnchangedPercent = 5;
+struct Finding {
+  std::string statement;  ///< what the paper found
+  std::vector<Evidence> evidence;
+};
+
+/// Largest change of the average accuracy that counts as none, percent: what the paper has in a single drive
+/// (2) and calls no change.
+inline constexpr double kUnchangedPercent = 10;
 
 /// Drives without truth have no part in it. Empty where no drive has truth.
 [[nodiscard]] std::vector<Finding> findings(const std::vector<DriveResult>& drives);

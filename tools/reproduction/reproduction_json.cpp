@@ -95,12 +95,12 @@ std::string report_json(const ReproductionReport& report, const std::vector<Driv
   for (const DriveResult& drive : drives) json["drives"].push_back(drive_json(drive));
   json["findings"] = Json::array();
   for (const Finding& finding : report.findings) {
-    json["findings"].push_back({{"statement", finding.statement},
-                                {"paper", finding.paper},
-                                {"literal", finding.literal},
-                                {"literal_holds", finding.literal_holds},
-                                {"ours", finding.ours},
-                                {"ours_holds", finding.ours_holds}});
+    Json evidence = Json::array();
+    for (const Evidence& item : finding.evidence)
+      evidence.push_back({{"source", item.source},
+                          {"figures", item.figures},
+                          {"holds", item.holds ? Json(*item.holds) : Json(nullptr)}});
+    json["findings"].push_back({{"statement", finding.statement}, {"evidence", evidence}});
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -111,6 +111,22 @@ PreparedDrive prepare(const DriveLogs& logs, const DriveConfig& config) {
   return prepare_drive(needed, config);
 }
 
+/// Turns the start about its first pose.
+void turn_start(double first_heading, DriveSkeleton& skeleton) {
+  std::vector<Eigen::Vector3d>& poses = skeleton.start.poses;
+  const Eigen::Vector3d first = poses.front();
+  const double turn = first_heading - first[2];
+  Graph& graph = skeleton.document.graph;
+  std::vector<double> values = graph.values();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Vector2d place =
+        first.head<2>() + rotate(turn, Eigen::Vector2d((poses[i] - first).head<2>()));
+    poses[i] = {place[0], place[1], wrap_angle(poses[i][2] + turn)};
+    std::copy_n(poses[i].data(), 3, values.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  }
+  graph.set_values(std::move(values));
+}
+
 std::vector<Eigen::Vector3d> vehicle_poses(const Graph& graph, std::size_t count) {
   std::vector<Eigen::Vector3d> poses;
   poses.reserve(count);
@@ -146,11 +162,11 @@ const DriveSkeleton& StudiedDrive::skeleton(const DriveChanges& changes, const T
   }
   DriveConfig config = config_;
   apply(changes, config);
-  if (changes.lever_arm || drive_.antenna_m.isZero())
-    return skeletons_.emplace_back(changes, build_skeleton(drive_, config, registry)).second;
-  PreparedDrive without_arm = drive_;
-  without_arm.antenna_m.setZero();
-  return skeletons_.emplace_back(changes, build_skeleton(without_arm, config, registry)).second;
+  PreparedDrive drive = drive_;
+  if (!changes.lever_arm) drive.antenna_m.setZero();
+  DriveSkeleton skeleton = build_skeleton(drive, config, registry);
+  if (changes.first_heading_rad) turn_start(*changes.first_heading_rad, skeleton);
+  return skeletons_.emplace_back(changes, std::move(skeleton)).second;
 }
 
 Outcome run_setting(StudiedDrive& drive, const Setting& setting, const Laboratory& laboratory) {

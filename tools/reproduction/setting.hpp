@@ -1,6 +1,7 @@
 /// What is varied in the experiment: one Setting is one way to fuse a drive; an experiment is a list of them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct DriveChanges {
   bool gate = true;
   bool lever_arm = true;  ///< false: the antenna counts as the body point, as in the paper
   StartMethod start = StartMethod::anchored;
+  /// Heading of the first pose of the start, which is turned about that pose; empty: as it comes out.
+  std::optional<double> first_heading_rad{};
   Options odometry_options{};  ///< instead of the drive.yaml's
   Options calibration{};       ///< the same; empty: none
 
@@ -33,9 +36,8 @@ inline constexpr int kGainIterations = 50;
 inline constexpr double kGain = 1e-6;      ///< of chi2: g2o's SparseOptimizerTerminateAction
 inline constexpr int kGainAttempts = 100;  ///< shorter and shorter steps tried in one iteration, as in g2o
 
-/// Most steps of a run that asks for full steps where the literal settings are taken apart: what is not there
-/// after 100 creeps.
-inline constexpr int kCauseIterations = 100;
+/// Most steps of a bare algorithm with full_steps: what is not there after 100 creeps.
+inline constexpr int kBareIterations = 100;
 
 /// How the graph is minimised.
 struct Minimization {
@@ -64,7 +66,8 @@ inline constexpr const char* kModelings[] = {"g1", "g2", "g3"};
 
 /// g1, g2, g3 and g2_no_rejection with the paper's literal settings, names "paper_...": dogleg as g2o has it
 /// (norm over metres and radians alike, first radius 1e4, stopping by relative gain), dead-reckoned
-/// start, 1.1 % per odometry edge, the literal logarithm with heading 0 in the reading of each fix.
+/// start, 1.1 % per odometry edge, the literal logarithm with heading 0 in the reading of each fix, G2's
+/// nodes beginning at the poses.
 [[nodiscard]] std::vector<Setting> paper_settings();
 
 /// The same four with ours, names "ours_...": decoupled error, additive process noise, anchored start, the
@@ -73,11 +76,13 @@ inline constexpr const char* kModelings[] = {"g1", "g2", "g3"};
 
 /// Why the paper's g1, g2 and g3 end where they end: each cause switched to ours alone, names
 /// "paper_g1/radius" (the trust region alone), "/heading" (the error alone), "/stopping", "/start", and
-/// "/all_but_start": the first three together.
+/// "/all_but_start": the first three together. Two are no cures but what the paper leaves open: "/east"
+/// begins with heading 0, whatever the road's; "/nodes_at_fixes" has G2's nodes begin at their fixes.
 [[nodiscard]] std::vector<Setting> cause_settings();
 
 /// What runs of the paper's settings are compared with: anchored start, default dogleg, tight tolerance;
-/// names "paper_g1/minimum", and "paper_g1/heading_minimum" with the decoupled error.
+/// names "paper_g1/minimum" (evaluated: the paper's model without the way it was minimised), and
+/// "paper_g1/heading_minimum" with the decoupled error.
 [[nodiscard]] std::vector<Setting> minimum_settings();
 
 /// A cause and what is changed, for a heading.
@@ -90,10 +95,12 @@ struct Cause {
 /// Ours from both starts with every algorithm: names "ours_g1/dead_reckoning/levenberg_marquardt".
 [[nodiscard]] std::vector<Setting> convergence_settings();
 
-/// The algorithms in them: registered ones, and "default", which may choose among starts.
+/// The algorithms in them: registered ones, and the same as `waymark optimize` runs them, which may choose
+/// another start; its default is the dogleg.
 inline constexpr const char* kConvergenceAlgorithms[] = {"gauss_newton", "levenberg_marquardt", "dogleg",
-                                                         "default"};
-/// The starts in them.
-inline constexpr const char* kConvergenceStarts[] = {"anchored", "dead_reckoning"};
+                                                         "levenberg_marquardt+starts", "default"};
+/// The starts in them. "east": dead reckoning whose first heading is 0, whatever the road's; only for those
+/// that may choose another start.
+inline constexpr const char* kConvergenceStarts[] = {"anchored", "dead_reckoning", "east"};
 
 }  // namespace waymark
