@@ -160,7 +160,8 @@ ReportTable common_minimum_table(const Drives& drives) {
           heading_rad * 180 / std::numbers::pi),
       "+starts, and default (dogleg): as `waymark optimize` runs them: where a minimum is implausible, other "
       "starts are "
-      "tried. The others are the bare algorithms, at most 100 steps.",
+      "tried. The others are the bare algorithms, at most 100 steps; Levenberg-Marquardt with "
+      "initial_damping=1e-12.",
       "east: dead reckoning that begins with heading 0."};
   return table;
 }

@@ -137,7 +137,12 @@ std::vector<Setting> convergence_settings() {
         const std::size_t plus = algorithm.find('+');
         setting.minimization.all_starts = plus != std::string::npos || algorithm == "default";
         if (start == "east" && !setting.minimization.all_starts) continue;
-        if (!setting.minimization.all_starts) setting.minimization.max_iterations = kBareIterations;
+        if (!setting.minimization.all_starts) {
+          setting.minimization.max_iterations = kBareIterations;
+          // What damps the first step of kilometres bends it into a wrong winding.
+          if (algorithm == "levenberg_marquardt")
+            setting.minimization.options = {{"initial_damping", "1e-12"}};
+        }
         if (algorithm != "default") setting.minimization.algorithm = algorithm.substr(0, plus);
         setting.evaluated = false;
         settings.push_back(setting);
