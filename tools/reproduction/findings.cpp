@@ -194,7 +194,7 @@ std::vector<Finding> findings(const Drives& drives) {
           mixed_by_drive(sources),
           rejection_helps_on_average(sources),
           rejection_is_mixed(sources),
-          convergence(with_truth)};
+          convergence(drives)};
 }
 
 std::string findings_text(const std::vector<Finding>& findings) {
