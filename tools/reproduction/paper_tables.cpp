@@ -78,14 +78,13 @@ void note_endings(const Drives& drives, const std::string& setting, ReportTable&
     if (!outcome->failure.empty()) {
       table.notes.push_back(fmt::format("Drive {}, {}: {}", drive.label(), setting, outcome->failure));
     } else if (!near_minimum(*outcome)) {
-      missed += " " + drive.label();
+      missed += missed.empty() ? "" : ", ";
+      missed += drive.label();
     }
   }
   if (!missed.empty())
-    table.notes.push_back(
-        fmt::format("{} did not reach its minimum in drives{}: what is shown is where it "
-                    "stopped.",
-                    setting, missed));
+    table.notes.push_back(fmt::format(
+        "{} did not reach its minimum in drives {}: what is shown is where it stopped.", setting, missed));
 }
 
 ReportTable result_table(const Drives& drives, int number, const std::string& system,
@@ -119,7 +118,7 @@ ReportTable result_table(const Drives& drives, int number, const std::string& sy
     add_triple(average_improvement(gnss, *column), 3, better);
   table.rows.push_back(better);
 
-  table.notes.push_back(
+  table.notes.emplace_back(
       "paper: its printed figures. On the simulated drives: literal, the paper's settings; minimum, "
       "the same errors and weights minimised from a good start; ours, our settings.");
   note_paper_average(paper, system, table);

@@ -36,18 +36,21 @@ ReproductionReport make_report(const std::vector<DriveResult>& drives, const std
 }
 
 std::string report_text(const ReproductionReport& report) {
-  std::string text = report.introduction + "\n";
-  for (const ReportTable& table : report.tables) text += "\n" + table_text(table);
+  std::string text = report.introduction;
+  text += "\n";
+  for (const ReportTable& table : report.tables) text.append("\n").append(table_text(table));
   if (!report.findings.empty())
-    text += "\nWhat the paper found, and what these drives say\n" + findings_text(report.findings);
+    text.append("\nWhat the paper found, and what these drives say\n").append(findings_text(report.findings));
   return text;
 }
 
 std::string report_markdown(const ReproductionReport& report) {
-  std::string text = "# The paper's experiment, reproduced\n\n" + report.introduction + "\n";
+  std::string text = "# The paper's experiment, reproduced\n\n";
+  text.append(report.introduction).append("\n");
   if (!report.findings.empty())
-    text += "\n## What the paper found, and what these drives say\n\n" + findings_text(report.findings);
-  for (const ReportTable& table : report.tables) text += "\n" + table_markdown(table);
+    text.append("\n## What the paper found, and what these drives say\n\n")
+        .append(findings_text(report.findings));
+  for (const ReportTable& table : report.tables) text.append("\n").append(table_markdown(table));
   return text;
 }
 
