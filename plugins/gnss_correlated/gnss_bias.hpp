@@ -93,8 +93,8 @@ struct EdgeGnssPositionBiased {
     fix.antenna = antenna;
     fix.velocity = velocity;
     fix.yaw_rate = yaw_rate;
-    const Vector2<T> spread(T(scale[0]) * multipath[0] + T(scale[1]) * multipath[1],
-                            T(scale[1]) * multipath[0] + T(scale[2]) * multipath[1]);
+    const Vector2<T> spread = {multipath[0] * scale[0] + multipath[1] * scale[1],
+                               multipath[0] * scale[1] + multipath[1] * scale[2]};
     return fix.error(from, to, offset) + bias + spread;
   }
 
