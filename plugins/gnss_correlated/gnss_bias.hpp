@@ -77,6 +77,7 @@ struct EdgeGnssPositionBiased {
   static constexpr std::string_view kForm = "position";
   static constexpr int kErrorDimension = 2;
   using Vertices = VertexList<VertexSe2, VertexSe2, VertexTimeOffset, VertexGnssBias, VertexGnssMultipath>;
+  static constexpr bool kRelative = true;
   static constexpr auto fields() {
     return std::array{field<&EdgeGnssPositionBiased::measured>("measured"),
                       field<&EdgeGnssPositionBiased::antenna>("antenna"),

@@ -22,6 +22,7 @@ class ConstantTwist final : public OdometryModel {
     ProcessNoise noise;
     StandstillNoise standstill;
     double standstill_speed = 0;
+    double gyro_at_rest_per_s = 0;  ///< rad^2 per s: apart from heading_per_s, for driving shakes a gyro
     bool paper = false;
     StateOptions gyro_bias;
     StateOptions speed_scale;
@@ -79,7 +80,7 @@ class ConstantTwist final : public OdometryModel {
   /// The mean of a white yaw rate of density q over dt has the variance q / dt.
   void add_gyro_at_rest(const Interval& interval, VertexIndex bias, Graph& graph) const {
     graph.add_edge(EdgeGyroAtRest{interval.yaw_rate_radps}, {bias},
-                   Eigen::Matrix<double, 1, 1>(interval.dt_s / given_.noise.heading_per_s));
+                   Eigen::Matrix<double, 1, 1>(interval.dt_s / given_.gyro_at_rest_per_s));
   }
 
   Configuration given_;
@@ -92,7 +93,7 @@ std::vector<OptionInfo> options() {
        "alike"},
       {"longitudinal_variance_per_m", "2e-3", "m^2/m", "variance of the distance driven; in [1e-9, 1]",
        NoisePrior{2e-3, 0.8}},
-      {"lateral_variance_per_m", "1e-3", "m^2/m", "variance across the way; in [1e-9, 1]"},
+      {"lateral_variance_per_m", "5e-4", "m^2/m", "variance across the way; in [1e-9, 1]"},
       {"position_variance_per_s", "1e-4", "m^2/s",
        "variance of the position by time, both axes; in [1e-9, 1]"},
       {"heading_variance_per_m", "2.05e-7", "rad^2/m", "variance of the heading by way; in [0, 1]"},
@@ -102,6 +103,8 @@ std::vector<OptionInfo> options() {
       {"standstill_speed", "0.05", "m/s", "below this |speed| the vehicle stands; in [0, 1]"},
       {"standstill_position_variance_per_s", "1e-5", "m^2/s", "of a standing vehicle; in [1e-9, 1]"},
       {"standstill_heading_variance_per_s", "1e-6", "rad^2/s", "of a standing vehicle; in [1e-12, 1]"},
+      {"gyro_at_rest_variance_per_s", "1.5e-6", "rad^2/s",
+       "of the turn that a standing gyro reads; in [1e-12, 1]"},
       {"standstill_largest_variance", "1e-5", "m^2, rad^2",
        "per edge, so that information is at least 1e5; in [1e-9, 1]"},
   };
@@ -149,6 +152,7 @@ std::unique_ptr<OdometryModel> make(const Options& given) {
   standstill.position_per_s = number("standstill_position_variance_per_s", 1e-9, 1);
   standstill.heading_per_s = number("standstill_heading_variance_per_s", 1e-12, 1);
   standstill.largest = number("standstill_largest_variance", 1e-9, 1);
+  configuration.gyro_at_rest_per_s = number("gyro_at_rest_variance_per_s", 1e-12, 1);
   configuration.standstill_speed = number("standstill_speed", 0, 1);
   configuration.paper = word_option(kOwner, given, known, "noise", kNoises) == "paper";
   configuration.gyro_bias = state(kOwner, given, known, "gyro_bias");

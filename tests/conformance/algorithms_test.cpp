@@ -21,13 +21,15 @@ namespace {
 /// the same one.
 void check_all_pairs(const Graph& start) {
   const TypeRegistry registry = full_registry();
+  OptimizerOptions options;
+  options.decrement_tolerance = 1e-10;  // under robust losses the last steps are short
   double common = -1;
   std::vector<double> values;
   for (const auto& [algorithm, algorithm_origin] : registry.algorithms()) {
     for (const auto& [solver, solver_origin] : registry.linear_solvers()) {
       INFO(algorithm.name << " with " << solver.name);
       Graph graph = start;
-      const Summary summary = optimize(graph, *algorithm.make({}), *solver.make(), {});
+      const Summary summary = optimize(graph, *algorithm.make({}), *solver.make(), options);
       INFO(summary.message);
       REQUIRE(summary.converged());
       const DenseSystem system = assemble_dense(graph, find_gauge(graph).held);

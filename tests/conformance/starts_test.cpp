@@ -187,9 +187,10 @@ TEST_CASE("starts: the linear start finds a drive's headings from its fixes, und
     fix.vertex = static_cast<VertexId>(i);
     fixes.push_back(fix);
   }
+  const std::vector<Interval> standing(fixes.size());  // what a time offset would multiply
   for (const auto& [modeling, origin] : registry.gnss_modelings()) {
     Graph graph = wild_track(track);
-    registry.make_gnss_modeling(modeling.name)->build({fixes, {}, antenna}, graph);
+    registry.make_gnss_modeling(modeling.name)->build({fixes, standing, antenna}, graph);
     const Graph start = started(graph, registry, "linear");
     INFO(modeling.name);
     double worst = 0;

@@ -66,7 +66,7 @@ TEST_CASE(
   const auto states = [&](const std::string& lines, const std::vector<std::string>& extra) {
     const std::string drive = write_text(folder + "drive.yaml", yaml + "\n" + lines);
     std::vector<std::string> arguments = {
-        "convert", drive, "--data", data, "--to", "30", "-o", folder + "out.graph", "-q"};
+        "convert", drive, "-m", "g1", "--data", data, "--to", "30", "-o", folder + "out.graph", "-q"};
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     const RunResult result = run(arguments);
     return result.code == 0 ? read_text(folder + "out.graph") : result.err;

@@ -141,7 +141,8 @@ TEST_CASE("convert: options that do not belong to the input are refused") {
 
 TEST_CASE("convert: a drive of odometry cannot be said in g2o's words, and it is said") {
   const std::string folder = fresh_folder();
-  const RunResult result = run({"convert", write_drive(folder), "-o", folder + "out.g2o", "--format", "g2o"});
+  const RunResult result =
+      run({"convert", write_drive(folder), "-m", "g1", "-o", folder + "out.g2o", "--format", "g2o"});
   CHECK(result.code == 3);
   CHECK(contains(result.err, "EDGE_SE2_ODOMETRY"));
   CHECK_FALSE(exists(folder + "out.g2o"));

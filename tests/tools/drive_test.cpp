@@ -27,7 +27,7 @@ void check_refused(const std::string& folder, const std::string& message) {
 
 TEST_CASE("the bundled drive: three steps give what run gives") {
   const std::string folder = fresh_folder();
-  const RunResult converted = run({"convert", bundled_drive(), "-o", folder + "drive.graph"});
+  const RunResult converted = run({"convert", bundled_drive(), "-m", "g1", "-o", folder + "drive.graph"});
   CHECK(converted.code == 0);
   CHECK(contains(converted.out, "fixes rejected"));
   CHECK(run({"optimize", folder + "drive.graph", "-o", folder + "fused.graph", "-q"}).code == 0);
@@ -52,8 +52,9 @@ TEST_CASE("modelings, withheld fixes and a window of time are taken from the com
   CHECK(result.code == 0);
   CHECK(contains(result.out, ": 60 s, "));
   CHECK(contains(result.out, "12 withheld"));
-  for (const char* modeling : {"g1", "g2", "g3"}) {
-    CHECK(contains(result.out, std::string("\n") + modeling + "          converged"));
+  for (const char* modeling : {"correlated", "g1", "g2", "g3"}) {
+    CHECK(contains(result.out, std::string("\n") + modeling +
+                                   std::string(12 - std::string(modeling).size(), ' ') + "converged"));
     CHECK(exists(folder + "results/" + modeling + ".fused.graph"));
   }
 }
@@ -61,7 +62,7 @@ TEST_CASE("modelings, withheld fixes and a window of time are taken from the com
 TEST_CASE("a run that does not converge: exit 4, files and message") {
   const std::string folder = fresh_folder();
   const RunResult result = run({"run", write_drive(folder), "--out", folder + "results", "--max-iterations",
-                                "1", "--start", "dead_reckoning", "-a", "levenberg_marquardt"});
+                                "1", "--start", "dead_reckoning", "-a", "levenberg_marquardt", "-m", "g1"});
   INFO(result.out << result.err);
   CHECK(result.code == 4);
   CHECK(contains(result.out, "NOT CONVERGED in 1 iterations"));
@@ -98,9 +99,13 @@ TEST_CASE("a missing log is named") {
 TEST_CASE("a drive whose fixes are all rejected is bad input") {
   // Every second fix 200 m beside the way: the odometry contradicts each of them.
   const std::string folder = fresh_folder();
-  write_drive(folder, {.fix_error_m = [](int t) { return t % 2 == 0 ? 200.0 : -200.0; }});
+  write_drive(folder, {.fix_error_m = [](int t) { return t % 2 == 0 ? 200.0 : -200.0; },
+                       .more_yaml = "modeling: g1\n"});
   check_refused(folder, "rejected");
   CHECK(run({"convert", folder + "drive.yaml", "-o", folder + "out.graph", "--no-gate", "-q"}).code == 0);
+  // The default error model has no gate.
+  CHECK(run({"convert", folder + "drive.yaml", "-m", "correlated", "-o", folder + "out.graph", "-q"}).code ==
+        0);
 }
 
 TEST_CASE("truth that does not overlap the drive is bad input") {
@@ -120,7 +125,7 @@ TEST_CASE("truth that does not overlap the drive is bad input") {
 TEST_CASE("truth comes from a drive.yaml or a TUM file, with the same result") {
   const std::string folder = fresh_folder();
   const std::string drive = write_drive(folder);
-  REQUIRE(run({"run", drive, "--out", folder + "r", "-q"}).code == 0);
+  REQUIRE(run({"run", drive, "-m", "g1", "--out", folder + "r", "-q"}).code == 0);
   const std::string fused = folder + "r/g1.fused.graph";
   const auto by_yaml = run({"evaluate", fused, "--truth", drive, "--json"});
   CHECK(by_yaml.code == 0);
@@ -145,8 +150,8 @@ TEST_CASE("evaluate names a graph without fixes, and keeps graphs of one name ap
   CHECK(contains(plain.err, "plain.graph: has no GNSS records to evaluate at"));
 
   const std::string drive = write_drive(folder);
-  REQUIRE(run({"run", drive, "--out", folder + "x", "-q"}).code == 0);
-  REQUIRE(run({"run", drive, "--out", folder + "y", "-q"}).code == 0);
+  REQUIRE(run({"run", drive, "-m", "g1", "--out", folder + "x", "-q"}).code == 0);
+  REQUIRE(run({"run", drive, "-m", "g1", "--out", folder + "y", "-q"}).code == 0);
   CHECK(run({"evaluate", folder + "x/g1.graph", folder + "y/g1.graph", "--out", folder + "e", "-q"}).code ==
         0);
   CHECK(exists(folder + "e/g1.csv"));

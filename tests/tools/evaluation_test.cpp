@@ -40,7 +40,7 @@ void check_cell(const std::string& cell, const Json& value) {
 
 TEST_CASE("run states how honest its covariances are, in the table and in metrics.json") {
   const std::string folder = fresh_folder();
-  const RunResult result = run({"run", bundled_drive(), "--out", folder + "r"});
+  const RunResult result = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r"});
   REQUIRE(result.code == 0);
   const Json truth = Json::parse(read_text(folder + "r/metrics.json"))["evaluations"][0]["truth"];
 
@@ -71,7 +71,9 @@ TEST_CASE("run states how honest its covariances are, in the table and in metric
   // The covariances of the evaluation are not results that were asked for.
   CHECK_FALSE(contains(read_text(folder + "r/g1.fused.graph"), "\nCOVARIANCE "));
   // Asked for, they are the same ones, and a graph that has them is judged like the run.
-  REQUIRE(run({"run", bundled_drive(), "--out", folder + "c", "--covariance", "fixes", "-q"}).code == 0);
+  REQUIRE(
+      run({"run", bundled_drive(), "-m", "g1", "--out", folder + "c", "--covariance", "fixes", "-q"}).code ==
+      0);
   const RunResult again =
       run({"evaluate", folder + "c/g1.fused.graph", "--truth", bundled_drive(), "--json"});
   CHECK(Json::parse(again.out)["evaluations"][0]["truth"]["consistency"] == consistency);
@@ -80,7 +82,7 @@ TEST_CASE("run states how honest its covariances are, in the table and in metric
 TEST_CASE("outages: fused, dead reckoned and causal errors at the withheld fixes and at the ends") {
   const std::string folder = fresh_folder();
   const RunResult result =
-      run({"run", bundled_drive(), "--out", folder + "r", "--outage", "10/40", "--causal"});
+      run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r", "--outage", "10/40", "--causal"});
   INFO(result.err);
   REQUIRE(result.code == 0);
   const Json evaluation = Json::parse(read_text(folder + "r/metrics.json"))["evaluations"][0];
@@ -114,17 +116,17 @@ TEST_CASE("outages: fused, dead reckoned and causal errors at the withheld fixes
 TEST_CASE("the last outage of a drive is predicted causally as the whole drive is fused") {
   // Nothing comes after it: the causal estimate there is the fused one.
   const std::string folder = fresh_folder();
-  const RunResult result = run({"run", bundled_drive(), "--out", folder + "r", "--outage", "20/100", "--to",
-                                "99.9", "--causal", "--json", "--tolerance", "1e-12"});
+  const RunResult result = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r", "--outage",
+                                "20/100", "--to", "99.9", "--causal", "--json", "--tolerance", "1e-12"});
   REQUIRE(result.code == 0);
   const Json predictions = Json::parse(result.out)["evaluations"][0]["withheld_predictions"];
   CHECK(predictions["causal"]["at_fixes"]["rmse_m"].get<double>() ==
         Approx(predictions["fused"]["at_fixes"]["rmse_m"].get<double>()).epsilon(1e-6));
 }
 
-TEST_CASE("--causal without outages, or with nothing known before them, says so") {
+TEST_CASE("causal predictions without outages are refused") {
   const std::string folder = fresh_folder();
-  const RunResult refused = run({"run", bundled_drive(), "--out", folder + "r", "--causal"});
+  const RunResult refused = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r", "--causal"});
   CHECK(refused.code == 2);
   CHECK(contains(refused.err, "--causal: there are no outages to be predicted; name them with --outage"));
   CHECK_FALSE(exists(folder + "r"));

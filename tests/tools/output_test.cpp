@@ -67,7 +67,7 @@ TEST_CASE("a full disk under the shell's limit ends a run the same way") {
       run({"-c", "ulimit -f 8; exec \"$0\" run drive.yaml --out results", WAYMARK_PROGRAM},
           {.folder = folder, .program = "/bin/sh"});
   CHECK(result.code == 5);
-  CHECK(contains(result.err, "results/g1.graph: cannot write: File too large"));
+  CHECK(contains(result.err, "results/correlated.graph: cannot write: File too large"));
   CHECK(names_in(folder + "results").empty());
 }
 

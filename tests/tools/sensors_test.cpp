@@ -29,7 +29,7 @@ void write_log(const std::string& file, const std::string& header, const Row& ro
 
 std::string write_sensor_drive(const std::string& folder, const std::string& sensors,
                                const std::string& more = "") {
-  return write_drive(folder, {.more_yaml = "sensors:\n" + sensors + more});
+  return write_drive(folder, {.more_yaml = "sensors:\n" + sensors + more + "modeling: g1\n"});
 }
 
 /// The numbers behind the tag of every edge of a type in a graph file.

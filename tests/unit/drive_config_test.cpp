@@ -54,7 +54,10 @@ TEST_CASE("drive.yaml: the least there is, and its defaults") {
   CHECK(config.gate.max_angle_rad == Approx(1.5 * std::numbers::pi / 180));
   CHECK(config.gate.max_displacement_m == 15);
   CHECK(config.start.method == StartMethod::anchored);
-  CHECK(config.modeling == "g1");
+  CHECK(config.modeling == "correlated");
+  CHECK_FALSE(config.gate_stated);
+  CHECK_FALSE(config.calibration_stated);
+  CHECK_FALSE(config.estimates_noise.has_value());
 }
 
 TEST_CASE("drive.yaml: everything that can be said") {

@@ -60,7 +60,7 @@ class Objective {
     Graph graph = build(noise);
     prepare(graph);
     OptimizerOptions options;
-    options.decrement_tolerance = 1e-8;
+    options.decrement_tolerance = 1e-7;
     options.max_iterations = 60;
     const Summary summary = optimize(graph, structure_, *algorithm_, cholesky_, options);
     const double found = evidence(graph, structure_, cholesky_).negative_log();
@@ -136,7 +136,7 @@ double evaluate(unsigned size, const double* coordinates, double*, void* data) {
 /// BOBYQA (Powell 2009): no derivatives, within bounds. A parameter may leave its prior by four deviations.
 void minimize(Objective& objective, NoiseEstimate& noise) {
   constexpr double kReach = 4;
-  constexpr double kTolerance = 0.02;  // of a deviation of the prior
+  constexpr double kTolerance = 0.05;  // of a deviation of the prior
   const auto size = static_cast<unsigned>(noise.parameters.size());
   std::vector<double> at(size), low(size), high(size), step(size), tolerance(size);
   for (unsigned i = 0; i < size; ++i) {
@@ -158,7 +158,7 @@ void minimize(Objective& objective, NoiseEstimate& noise) {
   nlopt_set_upper_bounds(bobyqa, high.data());
   nlopt_set_initial_step(bobyqa, step.data());
   nlopt_set_xtol_abs(bobyqa, tolerance.data());
-  nlopt_set_maxeval(bobyqa, 40 * static_cast<int>(size));
+  nlopt_set_maxeval(bobyqa, 30 * static_cast<int>(size));
   double least = 0;
   nlopt_optimize(bobyqa, at.data(), &least);
   nlopt_destroy(bobyqa);

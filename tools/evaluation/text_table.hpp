@@ -36,6 +36,7 @@ class TextTable {
     for (const Row& row : rows_) {
       std::string line = fmt::format("{:<{}}", row[0], widths[0]);
       for (std::size_t c = 1; c < row.size(); ++c) line += fmt::format("  {:>{}}", row[c], widths[c]);
+      line.erase(line.find_last_not_of(' ') + 1);
       out += line + "\n";
     }
     return out;

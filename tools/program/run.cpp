@@ -67,12 +67,11 @@ Prediction predict_causally(const RunOptions& options, const LoadedDrive& loaded
   return causal;
 }
 
-ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, const std::string& modeling,
+ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, const ModeledDrive& modeled,
                          const TypeRegistry& registry, const Console& console, ReportHeader& header) {
+  const std::string& modeling = modeled.modeling;
   ModelingRun run;
   const std::string prefix = options.folder + "/" + modeling;
-  const ModeledDrive modeled =
-      model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry), registry, console);
   run.noise = modeled.noise;
   run.description = describe_model(modeled);
   GraphDocument document = modeled.document;
@@ -108,6 +107,12 @@ ExitCode run_drive(const RunOptions& options) {
   if (options.causal && loaded.config.outage.length_s == 0)
     throw UsageError("--causal: there are no outages to be predicted; name them with --outage LENGTH/EVERY");
   stop_if_interrupted();
+  std::vector<ModeledDrive> models;  // what is wrong with one of them shows before anything is written
+  for (const std::string& modeling : loaded.modelings) {
+    models.push_back(model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry),
+                                  registry, console));
+    stop_if_interrupted();
+  }
   make_folder(options.folder);
   std::vector<LabelledEvaluation> evaluations;
   ReportHeader header{loaded.config.name, {}};
@@ -115,8 +120,9 @@ ExitCode run_drive(const RunOptions& options) {
   std::vector<std::string> files;
   nlohmann::ordered_json summaries;
   ExitCode code = kSuccess;
-  for (const std::string& modeling : loaded.modelings) {
-    ModelingRun run = run_modeling(options, loaded, modeling, registry, console, header);
+  for (const ModeledDrive& modeled : models) {
+    const std::string& modeling = modeled.modeling;
+    ModelingRun run = run_modeling(options, loaded, modeled, registry, console, header);
     if (text.find(run.description) == std::string::npos) text += run.description;
     text += run_line(modeling, run.result.summary) + states_text(run.states);
     summaries[modeling] = summary_json(run.result);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/gaussian_prior.hpp>
 #include <waymark/core/marginals.hpp>
 #include <waymark/tools/evaluation/text_table.hpp>
 
@@ -43,6 +45,22 @@ std::vector<StateVertices> states_of(const Graph& graph) {
   return states;
 }
 
+/// Priors of single vertices: the information of each.
+std::map<VertexIndex, Eigen::MatrixXd> single_priors(const Graph& graph) {
+  std::map<VertexIndex, Eigen::MatrixXd> priors;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    if (graph.edge_type(b).tag != GaussianPriorBatch::kTag) continue;
+    const EdgeBatchBase& batch = graph.batch(b);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (batch.vertices(i).size() == 1) priors[batch.vertices(i).front()] = batch.information(i);
+    }
+  }
+  return priors;
+}
+
+/// A posterior sigma above this share of the prior's is the prior's.
+constexpr double kNotObserved = 0.9;
+
 StateReport report(const Graph& graph, const StateVertices& state, int axis,
                    const Eigen::MatrixXd& last_covariance) {
   const auto value = [&](VertexIndex v) { return graph.value(v)[static_cast<std::size_t>(axis)]; };
@@ -61,18 +79,34 @@ StateReport report(const Graph& graph, const StateVertices& state, int axis,
   return result;
 }
 
+void judge_by_prior(const std::map<VertexIndex, Eigen::MatrixXd>& priors, VertexIndex first, int axis,
+                    const Eigen::MatrixXd& covariance, StateReport& result) {
+  result.prior_sigma = std::numeric_limits<double>::quiet_NaN();
+  const auto prior = priors.find(first);
+  if (prior == priors.end() || !(prior->second(axis, axis) > 0)) return;
+  result.prior_sigma = 1 / std::sqrt(prior->second(axis, axis));
+  result.observed =
+      covariance(axis, axis) > 0 && std::sqrt(covariance(axis, axis)) < kNotObserved * result.prior_sigma;
+}
+
 }  // namespace
 
 std::vector<StateReport> report_states(const GraphDocument& document) {
   const std::vector<StateVertices> states = states_of(document.graph);
   if (states.empty()) return {};
-  std::vector<VertexIndex> last;
-  for (const StateVertices& state : states) last.push_back(state.vertices.back());
-  const auto covariances = marginal_covariances(document.graph, last);
+  std::vector<VertexIndex> ends;
+  for (const StateVertices& state : states) {
+    ends.push_back(state.vertices.front());
+    ends.push_back(state.vertices.back());
+  }
+  const auto covariances = marginal_covariances(document.graph, ends);
+  const auto priors = single_priors(document.graph);
   std::vector<StateReport> reports;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    for (int axis = 0; axis < states[i].type->value_size; ++axis)
-      reports.push_back(report(document.graph, states[i], axis, covariances[i]));
+    for (int axis = 0; axis < states[i].type->value_size; ++axis) {
+      reports.push_back(report(document.graph, states[i], axis, covariances[2 * i + 1]));
+      judge_by_prior(priors, states[i].vertices.front(), axis, covariances[2 * i], reports.back());
+    }
   }
   return reports;
 }
@@ -90,11 +124,12 @@ std::vector<StateReport> report_states(const GraphDocument& document, const Summ
 
 std::string states_text(const std::vector<StateReport>& states) {
   if (states.empty()) return {};
-  TextTable table({"estimated state", "unit", "values", "first", "last", "smallest", "largest", "sigma"});
+  TextTable table(
+      {"estimated state", "unit", "values", "first", "last", "smallest", "largest", "sigma", "prior", ""});
   for (const StateReport& s : states) {
     const auto number = [](double x) { return std::isnan(x) ? "-" : fmt::format("{:.4g}", x); };
     table.add({s.name, s.unit, fmt::to_string(s.values), number(s.first), number(s.last), number(s.smallest),
-               number(s.largest), number(s.sigma)});
+               number(s.largest), number(s.sigma), number(s.prior_sigma), s.observed ? "" : "not observed"});
   }
   return table.text();
 }
@@ -110,7 +145,10 @@ nlohmann::ordered_json states_json(const std::vector<StateReport>& states) {
          {"last", s.last},
          {"smallest", s.smallest},
          {"largest", s.largest},
-         {"sigma", std::isnan(s.sigma) ? nlohmann::ordered_json() : nlohmann::ordered_json(s.sigma)}});
+         {"sigma", std::isnan(s.sigma) ? nlohmann::ordered_json() : nlohmann::ordered_json(s.sigma)},
+         {"prior_sigma",
+          std::isnan(s.prior_sigma) ? nlohmann::ordered_json() : nlohmann::ordered_json(s.prior_sigma)},
+         {"observed", s.observed}});
   }
   return json;
 }

@@ -22,6 +22,8 @@ struct StateReport {
   double smallest = 0;
   double largest = 0;
   double sigma = 0;  ///< of the last value, from the marginal covariance; NaN where it is not determined
+  double prior_sigma = 0;  ///< of the first value before anything was measured; NaN where it has no prior
+  bool observed = true;    ///< whether the drive said more of the first value than its prior
 };
 
 /// Vertices of types that state units and have no place in the plane, as far as they were estimated, in the

@@ -70,7 +70,8 @@ using ReadFields = Relation (*)(std::span<const VertexIndex>, const std::vector<
 /// How the fields of a known type read; null for all others.
 ReadFields known_type(const std::string& tag) {
   if (tag == EdgeSe2::kTag || tag == EdgeSe2Log::kTag) return relative_pose;
-  if (tag == EdgeGnssPosition::kTag) return gnss_position;
+  // What extends it (a delay, biases) keeps its first vertices and fields.
+  if (tag.starts_with(EdgeGnssPosition::kTag)) return gnss_position;
   if (tag == EdgePriorSe2::kTag) return pose_prior;
   if (tag == EdgeSe2Xy::kTag) return point_seen;
   if (tag == EdgePriorSe2Xy::kTag || tag == EdgePriorXy::kTag) return position_prior;
