@@ -17,6 +17,10 @@ Json options_json(const std::vector<OptionInfo>& options) {
   for (const OptionInfo& o : options) {
     json.push_back(
         {{"name", o.name}, {"default", o.value}, {"unit", o.unit}, {"description", o.description}});
+    if (!o.prior) continue;
+    json.back()["prior"] = {{"mean", o.prior->mean},
+                            {"deviation", o.prior->deviation},
+                            {"of", o.prior->linear ? "value" : "logarithm"}};
   }
   return json;
 }
@@ -164,7 +168,8 @@ std::string registry_text(const Json& json) {
         const std::string unit = option["unit"];
         text += fmt::format(
             "    {:<34} {:<10} {}\n", option["name"].get<std::string>(), option["default"].get<std::string>(),
-            option["description"].get<std::string>() + (unit.empty() ? "" : " [" + unit + "]"));
+            option["description"].get<std::string>() + (unit.empty() ? "" : " [" + unit + "]") +
+                (option.contains("prior") ? "; a noise parameter, estimated on demand" : ""));
       }
     }
   }
