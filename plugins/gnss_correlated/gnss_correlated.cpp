@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 
@@ -30,6 +31,7 @@ struct ErrorModel {
   double bias_share = 0;
   double bias_time_s = 0;
   double accuracy_exponent = 0;
+  bool heavy_tails = true;
 
   [[nodiscard]] double bias_m() const { return std::hypot(bias_floor_m, bias_share * multipath_m); }
 };
@@ -106,7 +108,8 @@ class GnssCorrelated final : public GnssModeling {
       throw UsageError("correlated: the motion at each fix is needed (GnssInput::motion)");
     const VertexIndex origin = add_origin(graph);
     const VertexIndex offset = add_time_offset(graph);
-    const Loss loss = input.loss ? *input.loss : student_loss();
+    const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
+    const double peak = model_.heavy_tails ? kStudentInformation : 1;
     const double median_m = median_accuracy(input.fixes);
     std::map<int, Receiver> receivers;
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
@@ -119,20 +122,19 @@ class GnssCorrelated final : public GnssModeling {
       edge.velocity = {input.motion[i].speed_mps, 0};
       edge.yaw_rate = input.motion[i].yaw_rate_radps;
       edge.scale = model_.multipath_m * Eigen::Vector3d(root(0, 0), root(0, 1), root(1, 1));
-      const Eigen::Matrix2d information =
-          kStudentInformation * (model_.white_m * model_.white_m * root * root).inverse();
+      const Eigen::Matrix2d information = peak * (model_.white_m * model_.white_m * root * root).inverse();
       EdgeBatchBase& batch = graph.add_edge(edge,
                                             {origin, pose_vertex(fix, graph), offset,
                                              receiver.bias.at(fix.stamp), receiver.multipath.at(fix.stamp)},
                                             0.5 * (information + information.transpose()));
-      batch.set_loss(batch.size() - 1, loss);
+      if (loss) batch.set_loss(batch.size() - 1, *loss);
     }
   }
 
  private:
-  static Loss student_loss() {
+  static std::optional<Loss> student_loss() {
     for (const LossType& type : builtin_losses()) {
-      if (type.name == "cauchy") return {type.name, type.evaluate, kStudentScale};
+      if (type.name == "cauchy") return Loss{type.name, type.evaluate, kStudentScale};
     }
     throw UsageError("correlated: there is no loss 'cauchy'");
   }
@@ -157,8 +159,10 @@ class GnssCorrelated final : public GnssModeling {
 
 std::vector<OptionInfo> options() {
   return {
-      {"white_sigma", "1.5", "m", "scale of the part that is new in every fix (Student's t); in [1e-3, 1e3]",
+      {"white_sigma", "1.5", "m", "scale of the part that is new in every fix; in [1e-3, 1e3]",
        NoisePrior{1.5, 1}},
+      {"tails", "student", "",
+       "of that part: 'student', Student's t of four degrees of freedom, or 'normal'"},
       {"multipath_sigma", "4", "m", "of the part that lasts for seconds; in [1e-3, 1e3]", NoisePrior{4, 0.6}},
       {"multipath_time", "40", "s", "its correlation time; in [1, 1e4]", NoisePrior{40, 0.5}},
       {"bias_floor", "1.5", "m", "of the part that lasts for minutes, at least; in [1e-3, 1e3]"},
@@ -187,6 +191,8 @@ std::unique_ptr<GnssModeling> make(const Options& given) {
   model.bias_share = number("bias_share", 0, 10);
   model.bias_time_s = number("bias_time", 1, 1e6);
   model.accuracy_exponent = number("accuracy_exponent", 0, 1);
+  constexpr std::array<std::string_view, 2> kTails = {"student", "normal"};
+  model.heavy_tails = word_option(kOwner, given, known, "tails", kTails) == "student";
   const double offset_sigma = number("time_offset_sigma", 1e-6, 100);
   const bool has_offset = word_option(kOwner, given, known, "time_offset", kOffsets) == "constant";
   return std::make_unique<GnssCorrelated>(model, has_offset ? offset_sigma : 0);
