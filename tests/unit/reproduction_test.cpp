@@ -144,7 +144,7 @@ TEST_CASE("the lowest chi2 of an objective is its minimum, and distances wrap", 
 TEST_CASE("the six tables have the paper's figures beside ours, averages and improvements below",
           "[reproduction]") {
   const std::vector<ReportTable> tables = paper_tables(drives_as_printed());
-  REQUIRE(tables.size() == 6);
+  REQUIRE(tables.size() == 7);  // the paper's six, and the default model
   for (const ReportTable& table : tables) {
     for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
   }
@@ -176,6 +176,41 @@ TEST_CASE("on the paper's own figures each of its findings holds", "[reproductio
   CHECK_THAT(found[3].evidence[3].figures, Contains("4, 7, 8"));  // G2 worse than raw GNSS
   CHECK_THAT(found[5].evidence[3].figures, Contains("helps in drives 1, 3"));
   CHECK(findings({}).empty());
+}
+
+TEST_CASE("drives whose names have commas are listed with semicolons", "[reproduction]") {
+  std::vector<DriveResult> drives = drives_as_printed();
+  for (DriveResult& drive : drives) {
+    drive.name = "Town, street " + std::to_string(drive.dataset);
+    drive.dataset = 0;
+  }
+  const std::vector<Finding> found = findings(drives);
+  CHECK_THAT(found[3].evidence[3].figures, Contains("Town, street 4; Town, street 7; Town, street 8"));
+}
+
+TEST_CASE("the default model stands beside G2: table, findings, what its covariances are worth",
+          "[reproduction]") {
+  std::vector<DriveResult> drives = drives_as_printed();
+  for (DriveResult& drive : drives) {
+    const PaperMetrics raw = *paper_metrics(drive.dataset, "gnss");
+    Outcome model = outcome_with(kDefaultModel, raw, {raw.max_m / 10, raw.accuracy_m, raw.precision_m / 10});
+    model.evaluation.truth->consistency.emplace();
+    model.evaluation.truth->consistency->nees_mean = 2;
+    model.evaluation.truth->consistency->coverage = 0.95;
+    drive.outcomes.push_back(model);
+  }
+  const ReportTable table = table_named(paper_tables(drives), "table_7_default_model");
+  REQUIRE(table.rows.size() == 10);
+  CHECK(table.rows[9][7] == "90.000");  // a tenth of what raw GNSS has
+  CHECK(table.rows[9][8] == "0.000");
+  CHECK(table.rows[0][10] == "-");  // no covariances of G2
+  CHECK(table.rows[0][12] == "2.0");
+  CHECK(table.rows[0][13] == "95");
+  const std::vector<Finding> found = findings(drives);
+  REQUIRE(found.size() == 9);
+  CHECK(found[7].evidence[1].holds == true);
+  CHECK(found[8].evidence[1].holds == true);
+  CHECK(found[8].evidence[0].holds == false);  // nothing shows it
 }
 
 TEST_CASE("report tables are escaped for CSV and Markdown", "[reproduction]") {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <optional>
 
 #include <fmt/format.h>
@@ -10,7 +11,8 @@
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/pipeline.hpp>
 #include <waymark/tools/program/program_registry.hpp>
-#include <waymark/tools/reproduction/reproduction_report.hpp>
+#include <waymark/tools/reproduction/consistency_study.hpp>
+#include <waymark/tools/reproduction/experiment.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 
 namespace waymark {
@@ -22,19 +24,16 @@ struct ReproduceOptions {
   std::vector<std::string> files;  ///< drive.yaml
   std::vector<int> presets;        ///< the paper's datasets; empty: all
   std::optional<std::uint64_t> seed;
+  bool ablation = false;
+  std::optional<int> consistency;  ///< drives to be drawn
 };
 
 /// A drive to be studied.
 struct Subject {
-  std::string path;  ///< of its drive.yaml
-  int dataset = 0;   ///< of the paper; 0: none
+  std::string path;     ///< of its drive.yaml
+  int dataset = 0;      ///< of the paper; 0: none
+  std::string group{};  ///< the preset it is a draw of, where draws are pooled
 };
-
-std::vector<Setting> joined_settings(std::initializer_list<std::vector<Setting>> lists) {
-  std::vector<Setting> all;
-  for (const std::vector<Setting>& list : lists) all.insert(all.end(), list.begin(), list.end());
-  return all;
-}
 
 /// Covariances only of a minimum: elsewhere they mean nothing.
 Evaluation evaluate_fused(GraphDocument& document, const std::vector<TruthPose>& truth, bool converged) {
@@ -48,48 +47,20 @@ Evaluation evaluate_fused(GraphDocument& document, const std::vector<TruthPose>&
   return evaluate_document(document, truth);
 }
 
-/// How fixes are kept out of a drive without truth.
-struct Way {
-  std::string name;
-  int withhold_every = 0;
-  OutagePattern outage;
-};
-const Way kWays[] = {{"every 10th fix", 10, {}},
-                     {"outages of 30 s every 240 s", 0, {30, 240}},
-                     {"outages of 60 s every 240 s", 0, {60, 240}}};
-
-DriveResult study(const Subject& subject, const TypeRegistry& registry, const Console& console) {
-  DriveConfig config = load_drive_config(subject.path);
-  config.withhold_every = 0;
-  config.outage = {};
+DriveResult study(const Experiment& experiment, const Subject& subject, const TypeRegistry& registry,
+                  const Console& console) {
+  const DriveConfig config = load_drive_config(subject.path);
   console.progress(config.name + ": reading logs");
   const DriveLogs logs =
       read_drive_logs(config, [&](std::string_view name) { return registry.find_log_reader(name); });
-  std::string step;
   const Laboratory laboratory{registry, evaluate_fused,
                               [&](const std::string& setting) {
                                 stop_if_interrupted();
-                                console.progress(config.name + ": " + step + setting);
+                                console.progress(config.name + ": " + setting);
                               },
                               &interrupted};
-  StudiedDrive drive(config, logs);
-  DriveResult result = study_drive(subject.dataset, drive,
-                                   joined_settings({paper_settings(), our_settings(), cause_settings(),
-                                                    minimum_settings(), convergence_settings()}),
-                                   laboratory);
-  stop_if_interrupted();
-  if (!drive.drive().truth.empty()) return result;
-  for (const Way& way : kWays) {
-    DriveConfig with_gaps = config;
-    with_gaps.withhold_every = way.withhold_every;
-    with_gaps.outage = way.outage;
-    StudiedDrive gapped(with_gaps, logs);
-    step = way.name + ", ";
-    result.withheld.push_back(
-        {way.name,
-         run_settings(gapped, joined_settings({paper_settings(), our_settings(), minimum_settings()}),
-                      laboratory)});
-  }
+  DriveResult result = run_experiment(experiment, subject.dataset, config, logs, laboratory);
+  result.group = subject.group;
   stop_if_interrupted();
   return result;
 }
@@ -101,8 +72,10 @@ std::vector<std::string> write_report(const ReproductionReport& report, const st
     write_file_atomically(folder + "/" + name, content);
     files.push_back(folder + "/" + name);
   };
-  write("REPRODUCTION.md", report_markdown(report));
-  write("reproduction.json", json);
+  std::string capitals = report.name;
+  for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  write(capitals + ".md", report_markdown(report));
+  write(report.name + ".json", json);
   for (const ReportTable& table : report.tables) write(table.file + ".csv", table_csv(table));
   write(report.runs.file + ".csv", table_csv(report.runs));
   return files;
@@ -136,45 +109,89 @@ std::vector<int> chosen_datasets(const ReproduceOptions& options) {
   return datasets;
 }
 
-/// The paper's drives, simulated and written as raw logs: they come in by the door of real ones.
+/// Written as raw logs: simulated drives come in by the door of real ones. Returns the drive.yaml.
+std::string write_simulated(const SimulationPreset& preset, std::uint64_t seed, const std::string& folder,
+                            const Console& console) {
+  stop_if_interrupted();
+  console.progress("simulating " + preset.name);
+  make_folder(folder);
+  write_simulated_drive(simulate(preset.recipe, seed), folder);
+  return folder + "/drive.yaml";
+}
+
+/// The paper's drives.
 std::vector<Subject> simulated_subjects(const ReproduceOptions& options, const Console& console) {
   std::vector<Subject> subjects;
   for (const int dataset : chosen_datasets(options)) {
-    stop_if_interrupted();
     const SimulationPreset& preset = simulation_preset(fmt::format("paper-{}", dataset));
-    console.progress("simulating " + preset.name);
-    const std::string folder = options.folder + "/drives/" + preset.name;
-    make_folder(folder);
-    write_simulated_drive(simulate(preset.recipe, options.seed.value_or(preset.default_seed)), folder);
-    subjects.push_back({folder + "/drive.yaml", dataset});
+    subjects.push_back({write_simulated(preset, options.seed.value_or(preset.default_seed),
+                                        options.folder + "/drives/" + preset.name, console),
+                        dataset});
   }
   return subjects;
 }
 
-std::string introduction(const ReproduceOptions& options) {
-  std::string text = "waymark " WAYMARK_VERSION
-                     ". Das and Dubbelman, An Experimental Study on Relative and Absolute Pose Graph "
-                     "Fusion for Vehicle Localization. ";
-  if (!options.files.empty())
-    return text + "Its experiment on other drives, " + fmt::format("{} of them.", options.files.size());
-  return text + "Its eight drives are not public: those shown beside its figures are SIMULATED (" +
+/// The drives of the consistency study.
+std::vector<Subject> drawn_subjects(const ReproduceOptions& options, const Console& console) {
+  std::vector<Subject> subjects;
+  for (const Draw& draw : consistency_draws(*options.consistency)) {
+    const std::string folder = fmt::format("{}/drives/{}-{}", options.folder, draw.preset, draw.seed);
+    subjects.push_back(
+        {write_simulated(simulation_preset(draw.preset), draw.seed, folder, console), 0, draw.preset});
+  }
+  return subjects;
+}
+
+Experiment chosen_experiment(const ReproduceOptions& options) {
+  if (options.ablation) return ablation_experiment();
+  return options.consistency ? consistency_experiment() : paper_experiment();
+}
+
+/// The simulated subjects, or those given. What is wrong with the request shows before the work.
+std::vector<Subject> find_subjects(const ReproduceOptions& options, const Console& console) {
+  std::vector<Subject> given;
+  if (!options.files.empty()) given = given_subjects(options);
+  (void)chosen_datasets(options);
+  make_folder(options.folder);
+  if (!given.empty()) return given;
+  return options.consistency ? drawn_subjects(options, console) : simulated_subjects(options, console);
+}
+
+std::string whose_drives(const ReproduceOptions& options) {
+  if (!options.files.empty()) return fmt::format("{} drives that were given.", options.files.size());
+  return "Its eight drives are not public: those here are SIMULATED (" +
          (options.seed ? fmt::format("seed {}", *options.seed) : "the presets' seeds") +
          ") so that length, rates, and the errors of the raw fixes are like its tables'.";
 }
 
+std::string introduction(const ReproduceOptions& options) {
+  const std::string program = "waymark " WAYMARK_VERSION ". ";
+  if (options.consistency)
+    return program + fmt::format("{} SIMULATED drives: seeds {} to {}, none left out, presets in turn.",
+                                 *options.consistency, kFirstStudySeed,
+                                 kFirstStudySeed + static_cast<std::uint64_t>(*options.consistency) - 1);
+  const std::string paper =
+      "Das and Dubbelman, An Experimental Study on Relative and Absolute Pose Graph Fusion for Vehicle "
+      "Localization";
+  if (options.ablation)
+    return program +
+           "The default model with one ingredient switched at a time, and the field's alternatives. " +
+           (options.files.empty() ? "Drives: like those of " + paper + ". " : "") + whose_drives(options);
+  return program + paper + ". " + (options.files.empty() ? "" : "Its experiment on other drives: ") +
+         whose_drives(options);
+}
+
 ExitCode reproduce(const ReproduceOptions& options) {
+  if (options.consistency && (!options.files.empty() || !options.presets.empty() || options.seed))
+    throw UsageError("--consistency draws its own drives: no drive.yaml, --drives or --seed beside it");
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
-  const bool given = !options.files.empty();
-  std::vector<Subject> subjects;
-  if (given) subjects = given_subjects(options);
-  (void)chosen_datasets(options);
-  make_folder(options.folder);
-  if (!given) subjects = simulated_subjects(options, console);
+  const Experiment experiment = chosen_experiment(options);
   std::vector<DriveResult> results;
-  for (const Subject& subject : subjects) results.push_back(study(subject, registry, console));
+  for (const Subject& subject : find_subjects(options, console))
+    results.push_back(study(experiment, subject, registry, console));
   console.end_progress();
-  const ReproductionReport report = make_report(results, introduction(options));
+  const ReproductionReport report = experiment.report(results, introduction(options));
   const std::string json = report_json(report, results);
   const std::vector<std::string> files = write_report(report, json, options.folder);
   if (options.common.json) {
@@ -205,6 +222,15 @@ void add_reproduce(CLI::App& app, Action& action) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("N[,N]");
   command->add_option("--seed", options->seed, "Seed of the simulated drives; default: each preset's own");
+  auto* ablation = command->add_flag(
+      "--ablation", options->ablation,
+      "Instead: the default model with one ingredient switched at a time, and the field's alternatives");
+  command
+      ->add_option("--consistency", options->consistency,
+                   "Instead: stated against actual errors, pooled over N simulated drives")
+      ->check(CLI::Range(1, 100000))
+      ->excludes(ablation)
+      ->type_name("N");
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark reproduce --out results");
   command->callback([options, &action] { action = [options] { return reproduce(*options); }; });

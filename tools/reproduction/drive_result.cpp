@@ -57,6 +57,19 @@ std::optional<PositionMetrics> metrics_of(const DriveResult& drive, const std::s
   return outcome->evaluation.truth->fused.position;
 }
 
+std::optional<ConsistencyStatistics> consistency_of(const DriveResult& drive, const std::string& setting) {
+  const Outcome* outcome = find_outcome(drive.outcomes, setting);
+  if (outcome == nullptr || !outcome->evaluation.truth) return std::nullopt;
+  return outcome->evaluation.truth->consistency;
+}
+
+std::string labelled(const DriveResult& drive) {
+  std::string label = drive.label();
+  if (drive.simulated && !label.starts_with("Simulated")) label += " (simulated)";
+  if (drive.imitated_odometry) label += " (imitated odometry)";
+  return label;
+}
+
 MetricsColumn metrics_column(const std::vector<DriveResult>& drives, const std::string& system) {
   std::vector<std::optional<PaperMetrics>> of_drive;
   for (const DriveResult& drive : drives) {

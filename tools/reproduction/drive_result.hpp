@@ -19,6 +19,7 @@ struct WithheldResult {
 struct DriveResult {
   int dataset = 0;  ///< of the paper: 1 ... 8; 0: none of them
   std::string name;
+  std::string group;  ///< the preset that it is a draw of, where draws are pooled; else empty
   bool simulated = false;
   bool imitated_odometry = false;  ///< made from the truth; the name of its log says so
   double duration_s = 0;
@@ -38,6 +39,12 @@ struct DriveResult {
 
 /// Of a system ("gnss", or a setting's name) against truth; empty where there is no truth or no result.
 [[nodiscard]] std::optional<PositionMetrics> metrics_of(const DriveResult& drive, const std::string& system);
+
+/// The same for stated against actual errors.
+[[nodiscard]] std::optional<ConsistencyStatistics> consistency_of(const DriveResult& drive,
+                                                                  const std::string& setting);
+/// Its label, and what of it is simulated or imitated.
+[[nodiscard]] std::string labelled(const DriveResult& drive);
 
 /// The three numbers of the paper of one system over several drives, with averages as the paper forms them:
 /// over the drives that have numbers, each counted once, however long.

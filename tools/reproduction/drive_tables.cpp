@@ -8,20 +8,14 @@ namespace {
 using Drives = std::vector<DriveResult>;
 using Row = std::vector<std::string>;
 
-std::string labelled(const DriveResult& drive) {
-  std::string label = drive.label();
-  if (drive.simulated && !label.starts_with("Simulated")) label += " (simulated)";
-  if (drive.imitated_odometry) label += " (imitated odometry)";
-  return label;
-}
-
 void add_position(const PositionMetrics& m, Row& row) {
   for (const double value : {m.max_m, m.accuracy_m, m.precision_m, m.rmse_m, m.cep95_m})
     row.push_back(cell(value, 2));
 }
 
 const char* reached_word(const Outcome& outcome) {
-  return near_minimum(outcome) ? "yes" : "no";
+  const bool alone = outcome.setting.objective.empty();  // nothing to compare its end with
+  return (alone ? outcome.ending.converged : near_minimum(outcome)) ? "yes" : "no";
 }
 
 void add_consistency(const std::optional<ConsistencyStatistics>& stated, Row& row) {

@@ -77,7 +77,7 @@ void note_endings(const Drives& drives, const std::string& setting, ReportTable&
     if (outcome == nullptr) continue;
     if (!outcome->failure.empty()) {
       table.notes.push_back(fmt::format("Drive {}, {}: {}", drive.label(), setting, outcome->failure));
-    } else if (!near_minimum(*outcome)) {
+    } else if (!outcome->setting.objective.empty() && !near_minimum(*outcome)) {
       missed += missed.empty() ? "" : ", ";
       missed += drive.label();
     }
@@ -131,6 +131,57 @@ ReportTable result_table(const Drives& drives, int number, const std::string& sy
   return table;
 }
 
+/// Mean NEES and coverage of both systems; nothing in the lines below the drives.
+void add_honesty(const DriveResult* drive, Row& row) {
+  for (const std::string& setting : {std::string("ours_g2"), std::string(kDefaultModel)}) {
+    const auto stated = drive != nullptr ? consistency_of(*drive, setting) : std::nullopt;
+    row.push_back(cell(stated ? stated->nees_mean : kUndefined, 1));
+    row.push_back(cell(stated ? 100 * stated->coverage : kUndefined, 0));
+  }
+}
+
+ReportTable default_model_table(const Drives& drives) {
+  ReportTable table;
+  table.file = "table_7_default_model";
+  table.title = "Table 7, beyond the paper: the default model beside G2 with rejection, in metres";
+  table.columns = {"Dataset"};
+  for (const char* group : {"paper G2", "ours G2", "default"}) {
+    for (const char* metric : {"Max", "Acc", "Prec"})
+      table.columns.push_back(fmt::format("{} {}", metric, group));
+  }
+  for (const char* group : {"ours G2", "default"}) {
+    table.columns.push_back(fmt::format("NEES {}", group));
+    table.columns.push_back(fmt::format("95 % coverage {}", group));
+  }
+  const MetricsColumn paper = paper_column(drives, "g2");
+  const MetricsColumn ours = metrics_column(drives, "ours_g2");
+  const MetricsColumn model = metrics_column(drives, kDefaultModel);
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    Row row{drives[i].label()};
+    for (const MetricsColumn* column : {&paper, &ours, &model}) add_triple(column->of_drive[i], 3, row);
+    add_honesty(&drives[i], row);
+    table.rows.push_back(row);
+  }
+  Row average{"Average"};
+  for (const MetricsColumn* column : {&paper, &ours, &model}) add_triple(column->average, 3, average);
+  add_honesty(nullptr, average);
+  table.rows.push_back(average);
+  const MetricsColumn gnss = metrics_column(drives, "gnss");
+  Row better{"Improvement %"};
+  add_triple(average_improvement(paper_column(drives, "gnss"), paper), 3, better);
+  for (const MetricsColumn* column : {&ours, &model})
+    add_triple(average_improvement(gnss, *column), 3, better);
+  add_honesty(nullptr, better);
+  table.rows.push_back(better);
+  table.notes = {
+      "paper G2: its printed figures, on its own drives. ours G2 and default on the simulated ones. default: "
+      "what `waymark run` does: no gate, correlated errors with heavy tails, calibration states, noise "
+      "estimated from the drive.",
+      "NEES: error against truth in units of the stated covariance, 2 where that is honest."};
+  note_endings(drives, kDefaultModel, table);
+  return table;
+}
+
 }  // namespace
 
 std::vector<ReportTable> paper_tables(const Drives& drives) {
@@ -144,7 +195,8 @@ std::vector<ReportTable> paper_tables(const Drives& drives) {
           result_table(of_paper, 3, "g1", "G1 with rejection"),
           result_table(of_paper, 4, "g2", "G2 with rejection"),
           result_table(of_paper, 5, "g3", "G3 with rejection"),
-          result_table(of_paper, 6, "g2_no_rejection", "G2 without rejection")};
+          result_table(of_paper, 6, "g2_no_rejection", "G2 without rejection"),
+          default_model_table(of_paper)};
 }
 
 }  // namespace waymark

@@ -53,6 +53,8 @@ Json outcome_json(const Outcome& outcome) {
   }
   json["accepted"] = outcome.accepted;
   json["rejected"] = outcome.rejected;
+  for (const NoiseParameter& parameter : outcome.noise.parameters)
+    json["noise"][parameter.option] = number(parameter.value);
   if (!outcome.setting.evaluated) return json;
   const Evaluation& evaluation = outcome.evaluation;
   if (evaluation.truth) {
@@ -75,6 +77,7 @@ Json drive_json(const DriveResult& drive) {
                {"dataset", drive.dataset > 0 ? Json(drive.dataset) : Json(nullptr)},
                {"simulated", drive.simulated},
                {"imitated_odometry", drive.imitated_odometry},
+               {"group", drive.group.empty() ? Json(nullptr) : Json(drive.group)},
                {"duration_s", drive.duration_s},
                {"distance_m", drive.distance_m},
                {"fixes", drive.fixes},
@@ -90,7 +93,7 @@ Json drive_json(const DriveResult& drive) {
 }  // namespace
 
 std::string report_json(const ReproductionReport& report, const std::vector<DriveResult>& drives) {
-  Json json = {{"schema", "waymark-reproduction"}, {"version", 1}, {"introduction", report.introduction}};
+  Json json = {{"schema", "waymark-" + report.name}, {"version", 1}, {"introduction", report.introduction}};
   json["drives"] = Json::array();
   for (const DriveResult& drive : drives) json["drives"].push_back(drive_json(drive));
   json["findings"] = Json::array();

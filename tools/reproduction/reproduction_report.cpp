@@ -45,7 +45,7 @@ std::string report_text(const ReproductionReport& report) {
 }
 
 std::string report_markdown(const ReproductionReport& report) {
-  std::string text = "# The paper's experiment, reproduced\n\n";
+  std::string text = "# " + report.title + "\n\n";
   text.append(report.introduction).append("\n");
   if (!report.findings.empty())
     text.append("\n## What the paper found, and what these drives say\n\n")

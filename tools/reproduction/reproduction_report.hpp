@@ -11,6 +11,8 @@
 namespace waymark {
 
 struct ReproductionReport {
+  std::string name = "reproduction";  ///< of its files and, after "waymark-", of its schema
+  std::string title = "The paper's experiment, reproduced";
   std::string introduction;  ///< a paragraph: program, version, what is simulated
   std::vector<ReportTable> tables;
   std::vector<Finding> findings;
@@ -23,10 +25,9 @@ struct ReproductionReport {
 
 /// For the terminal.
 [[nodiscard]] std::string report_text(const ReproductionReport& report);
-/// REPRODUCTION.md
+/// NAME.md, the name in capitals
 [[nodiscard]] std::string report_markdown(const ReproductionReport& report);
-/// reproduction.json, schema "waymark-reproduction" version 1 (README.md of this folder): all numbers in
-/// full.
+/// NAME.json, schema "waymark-NAME" version 1 (README.md of this folder): all numbers in full.
 [[nodiscard]] std::string report_json(const ReproductionReport& report,
                                       const std::vector<DriveResult>& drives);
 

@@ -2,106 +2,20 @@
 #include <cmath>
 #include <map>
 
-#include <fmt/format.h>
-
 #include <waymark/core/error.hpp>
-#include <waymark/core/multi_start.hpp>
+#include <waymark/tools/reproduction/outlier_treatment.hpp>
 #include <waymark/tools/reproduction/run_setting.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark {
 namespace {
 
-/// g2o's rule, as an observer that cancels.
-class GainRule {
- public:
-  explicit GainRule(const std::atomic<bool>* outer) : outer_(outer) {}
-
-  void observe(const IterationRecord& record) {
-    if (outer_ != nullptr && outer_->load()) stop_ = true;
-    attempts_ = record.accepted ? 0 : attempts_ + 1;
-    if (attempts_ >= kGainAttempts) end(fmt::format("{} steps in a row were of no use", attempts_), false);
-    if (!record.accepted) return;
-    ++taken_;
-    const double gain = record.decrease / record.chi2;
-    // The first iteration has no gain in g2o: it counts from the chi2 after it.
-    if (taken_ > 1 && gain >= 0 && gain < kGain)
-      end(fmt::format("a {} step lowered chi2 by {:.2g} of it", record.kind, gain), true);
-    if (taken_ >= kGainIterations) end(fmt::format("{} iterations", taken_), false);
-  }
-
-  [[nodiscard]] bool ended() const { return !message_.empty(); }
-  [[nodiscard]] bool converged() const { return converged_; }
-  [[nodiscard]] const std::string& message() const { return message_; }
-  [[nodiscard]] const std::atomic<bool>* token() const { return &stop_; }
-
- private:
-  void end(std::string message, bool converged) {
-    if (ended()) return;
-    message_ = std::move(message);
-    converged_ = converged;
-    stop_ = true;
-  }
-
-  const std::atomic<bool>* outer_;
-  std::atomic<bool> stop_{false};
-  int taken_ = 0;
-  int attempts_ = 0;
-  bool converged_ = false;
-  std::string message_;
-};
-
-Ending describe(const Summary& summary) {
-  Ending ending;
-  ending.converged = summary.converged();
-  ending.message = summary.message;
-  for (const IterationRecord& record : summary.records)
-    ++(record.accepted ? ending.iterations : ending.rejected_steps);
-  ending.initial_chi2 = summary.initial_chi2;
-  ending.chi2 = summary.final_chi2;
-  return ending;
-}
-
-Ending minimize(Graph& graph, const Minimization& how, const Laboratory& laboratory) {
-  const TypeRegistry& registry = laboratory.registry;
-  const auto algorithm = registry.make_algorithm(how.algorithm, how.options);
-  const auto solver = registry.make_linear_solver(registry.linear_solvers().front().type.name);
-  OptimizerOptions options;
-  options.max_iterations = how.max_iterations;
-  options.decrement_tolerance = how.tolerance;
-  options.cancel = laboratory.cancel;
-  if (how.all_starts)
-    return describe(optimize_from_best_start(graph, registry.starts(), *algorithm, *solver, options).summary);
-  if (how.stopping == StoppingRule::full_steps)
-    return describe(optimize(graph, *algorithm, *solver, options));
-
-  GainRule rule(laboratory.cancel);
-  options.max_iterations = kGainIterations * kGainAttempts;
-  options.decrement_tolerance = 1e-300;  // the rule alone ends the run
-  options.gradient_tolerance = 0;
-  options.step_tolerance = 0;
-  options.cancel = rule.token();
-  options.observer = [&](const IterationRecord& record) { rule.observe(record); };
-  Ending ending = describe(optimize(graph, *algorithm, *solver, options));
-  if (rule.ended()) {
-    ending.converged = rule.converged();
-    ending.message = rule.message();
-  }
-  return ending;
-}
-
-void apply(const DriveChanges& changes, DriveConfig& config) {
-  config.gate.enabled = changes.gate;
-  config.start.method = changes.start;
-  config.odometry_options = changes.odometry_options;
-  config.calibration = changes.calibration;
-}
-
 DriveConfig without_choices(DriveConfig config) {
   config.modeling_options.clear();
   config.loss.clear();
   config.sensors.clear();
   config.odometry_model = DriveConfig().odometry_model;
+  config.modeling = DriveConfig().modeling;
   return config;
 }
 
@@ -156,12 +70,27 @@ double Outcome::rejected_percent() const {
 StudiedDrive::StudiedDrive(DriveConfig config, const DriveLogs& logs)
     : config_(without_choices(std::move(config))), drive_(prepare(logs, config_)) {}
 
+DriveConfig StudiedDrive::changed(const DriveChanges& changes) const {
+  DriveConfig config = config_;
+  config.gate_stated = changes.gate.has_value();
+  config.gate.enabled = changes.gate.value_or(true);
+  if (changes.gate_chord_s > 0) {
+    config.gate.chord_s = changes.gate_chord_s;
+    config.gate.max_chord_s = std::max(config.gate.max_chord_s, 2 * changes.gate_chord_s);
+  }
+  config.start.method = changes.start;
+  config.odometry_options = changes.odometry_options;
+  config.calibration_stated = changes.calibration.has_value();
+  config.calibration = changes.calibration.value_or(Options());
+  config.estimates_noise = changes.estimates_noise;
+  return config;
+}
+
 const DriveSkeleton& StudiedDrive::skeleton(const DriveChanges& changes, const TypeRegistry& registry) {
   for (const auto& [known, skeleton] : skeletons_) {
     if (known == changes) return skeleton;
   }
-  DriveConfig config = config_;
-  apply(changes, config);
+  const DriveConfig config = changed(changes);
   PreparedDrive drive = drive_;
   if (!changes.lever_arm) drive.antenna_m.setZero();
   DriveSkeleton skeleton = build_skeleton(drive, config, registry);
@@ -169,19 +98,75 @@ const DriveSkeleton& StudiedDrive::skeleton(const DriveChanges& changes, const T
   return skeletons_.emplace_back(changes, std::move(skeleton)).second;
 }
 
+namespace {
+
+std::optional<Loss> make_loss(const Setting& setting, const TypeRegistry& registry) {
+  if (!setting.loss) return std::nullopt;
+  const LossType* type = registry.find_loss(setting.loss->name);
+  if (type == nullptr) throw UsageError("unknown loss '" + setting.loss->name + "'");
+  return Loss{type->name, type->evaluate, setting.loss->scale};
+}
+
+/// The graph of a setting at its start, and what came about on the way.
+struct Built {
+  GraphDocument document;
+  GateSummary gate;
+  std::size_t poses = 0;
+  NoiseEstimate noise;
+};
+
+Built build(StudiedDrive& drive, const std::vector<Fix>& fixes, const Setting& setting,
+            const TypeRegistry& registry) {
+  const std::optional<Loss> loss = make_loss(setting, registry);
+  if (setting.changes.shares_skeleton() && setting.outliers != OutlierTreatment::inflation) {
+    const DriveSkeleton& skeleton = drive.skeleton(setting.changes, registry);
+    return {add_modeling(skeleton, setting.modeling, setting.modeling_options, registry, loss),
+            skeleton.gate,
+            skeleton.start.poses.size(),
+            {}};
+  }
+  PreparedDrive prepared = drive.drive();
+  prepared.fixes = fixes;
+  if (!setting.changes.lever_arm) prepared.antenna_m.setZero();
+  ModeledDrive modeled = model_drive(prepared, drive.changed(setting.changes), setting.modeling,
+                                     setting.modeling_options, registry, loss);
+  return {std::move(modeled.document), std::move(modeled.gate), modeled.start.poses.size(),
+          std::move(modeled.noise)};
+}
+
+/// Fuses the drive; the outcome has everything but its evaluation. Returns the optimised document.
+GraphDocument fuse(StudiedDrive& drive, const Setting& setting, const Laboratory& laboratory,
+                   Outcome& outcome) {
+  Built built = build(drive, drive.drive().fixes, setting, laboratory.registry);
+  outcome.accepted = built.gate.accepted;
+  outcome.rejected = built.gate.rejected;
+  Graph& graph = built.document.graph;
+  if (setting.outliers == OutlierTreatment::graduation) {
+    Graduated found = graduate_fixes(graph, setting.minimization, laboratory.registry, laboratory.cancel);
+    outcome.accepted -= found.outliers;
+    outcome.rejected += found.outliers;
+    outcome.ending = std::move(found.ending);
+  } else {
+    outcome.ending = minimize(graph, setting.minimization, laboratory.registry, laboratory.cancel);
+  }
+  if (setting.outliers == OutlierTreatment::inflation) {
+    const Evaluation residuals = laboratory.evaluate(built.document, {}, false);
+    built = build(drive, inflate_fixes(drive.drive().fixes, residuals.epochs), setting, laboratory.registry);
+    outcome.ending = minimize(graph, setting.minimization, laboratory.registry, laboratory.cancel);
+  }
+  if (!setting.objective.empty()) outcome.poses = vehicle_poses(graph, built.poses);
+  outcome.noise = std::move(built.noise);
+  return std::move(built.document);
+}
+
+}  // namespace
+
 Outcome run_setting(StudiedDrive& drive, const Setting& setting, const Laboratory& laboratory) {
   if (laboratory.progress) laboratory.progress(setting.name);
   Outcome outcome;
   outcome.setting = setting;
   try {
-    const DriveSkeleton& skeleton = drive.skeleton(setting.changes, laboratory.registry);
-    GraphDocument document =
-        add_modeling(skeleton, setting.modeling, setting.modeling_options, laboratory.registry);
-    outcome.accepted = skeleton.gate.accepted;
-    outcome.rejected = skeleton.gate.rejected;
-    outcome.ending = minimize(document.graph, setting.minimization, laboratory);
-    if (!setting.objective.empty())
-      outcome.poses = vehicle_poses(document.graph, skeleton.start.poses.size());
+    GraphDocument document = fuse(drive, setting, laboratory, outcome);
     if (setting.evaluated) {
       outcome.evaluation = laboratory.evaluate(document, drive.drive().truth, outcome.ending.converged);
       outcome.evaluation.epochs = {};

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include <waymark/core/registry.hpp>
-#include <waymark/tools/drive/assemble.hpp>
+#include <waymark/tools/drive/model.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
+#include <waymark/tools/reproduction/minimization.hpp>
 #include <waymark/tools/reproduction/setting.hpp>
 
 namespace waymark {
@@ -25,16 +26,6 @@ struct Laboratory {
   const std::atomic<bool>* cancel = nullptr;  ///< as OptimizerOptions::cancel
 };
 
-/// How a minimisation ended.
-struct Ending {
-  bool converged = false;  ///< by the rule of its setting; whether at a minimum is another question
-  std::string message;     ///< why it ended, with the numbers
-  int iterations = 0;      ///< steps taken
-  int rejected_steps = 0;  ///< steps tried in vain
-  double initial_chi2 = 0;
-  double chi2 = 0;
-};
-
 /// The largest differences between the vehicle's poses of two results.
 struct PoseDifference {
   double position_m = kUndefined;
@@ -48,6 +39,7 @@ struct Outcome {
   Ending ending;
   std::size_t accepted = 0;  ///< fixes
   std::size_t rejected = 0;
+  NoiseEstimate noise;    ///< no parameters where it is as stated
   Evaluation evaluation;  ///< without its lists of epochs; nothing where the setting is not evaluated
   /// From the lowest minimum that was found for the setting's objective (compare_outcomes); undefined without
   /// objective.
@@ -69,6 +61,8 @@ class StudiedDrive {
   [[nodiscard]] const PreparedDrive& drive() const { return drive_; }
   /// Made on first use and kept. @throws what build_skeleton throws
   [[nodiscard]] const DriveSkeleton& skeleton(const DriveChanges& changes, const TypeRegistry& registry);
+  /// The drive.yaml with the changes of a setting.
+  [[nodiscard]] DriveConfig changed(const DriveChanges& changes) const;
 
  private:
   DriveConfig config_;

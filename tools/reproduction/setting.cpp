@@ -77,6 +77,18 @@ void apply_cause(const std::string& cause, Setting& setting) {
 
 }  // namespace
 
+bool DriveChanges::shares_skeleton() const {
+  return gate && estimates_noise == false && calibration && calibration->empty();
+}
+
+Setting default_setting() {
+  Setting setting;
+  setting.name = kDefaultModel;
+  setting.modeling = DriveConfig().modeling;
+  setting.changes = {.gate = std::nullopt, .calibration = std::nullopt, .estimates_noise = std::nullopt};
+  return setting;
+}
+
 std::vector<Setting> paper_settings() {
   return four_settings(paper_setting);
 }
@@ -116,7 +128,7 @@ std::vector<Setting> minimum_settings() {
     use_our_start(setting);
     setting.name = name + "/minimum";
     settings.push_back(setting);
-    if (!setting.changes.gate) continue;
+    if (setting.changes.gate == false) continue;
     setting.evaluated = false;
     use_our_error(setting);
     setting.name = name + "/heading_minimum";

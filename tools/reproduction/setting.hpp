@@ -10,16 +10,22 @@
 
 namespace waymark {
 
-/// What a setting changes before there is a graph. Settings whose changes are equal share one skeleton.
+/// What a setting changes before there is a graph. What is empty belongs to the modeling, as in `waymark run`
+/// (config_for of tools/drive/model.hpp). Settings whose changes are equal share one skeleton, where nothing
+/// is empty, estimated or calibrated.
 struct DriveChanges {
-  bool gate = true;
-  bool lever_arm = true;  ///< false: the antenna counts as the body point, as in the paper
+  std::optional<bool> gate = true;
+  double gate_chord_s = 0;  ///< instead of the drive.yaml's; 0: that one
+  bool lever_arm = true;    ///< false: the antenna counts as the body point, as in the paper
   StartMethod start = StartMethod::anchored;
-  /// Heading of the first pose of the start, which is turned about that pose; empty: as it comes out.
+  /// Heading of the first pose of the start, which is turned about that pose; empty: as it comes out. For
+  /// settings that share a skeleton.
   std::optional<double> first_heading_rad{};
-  Options odometry_options{};  ///< instead of the drive.yaml's
-  Options calibration{};       ///< the same; empty: none
+  Options odometry_options{};                     ///< instead of the drive.yaml's
+  std::optional<Options> calibration{Options()};  ///< the same; no options: no states
+  std::optional<bool> estimates_noise = false;
 
+  [[nodiscard]] bool shares_skeleton() const;
   friend bool operator==(const DriveChanges&, const DriveChanges&) = default;
 };
 
@@ -49,12 +55,27 @@ struct Minimization {
   double tolerance = 1e-6;   ///< with full_steps: decrement_tolerance
 };
 
+/// What is done about outliers beside gate and loss.
+enum class OutlierTreatment {
+  none,
+  graduation,  ///< graduated non-convexity over the fixes (core/graduation.hpp)
+  inflation    ///< a second pass with covariances inflated where fixes did not fit (outlier_treatment.hpp)
+};
+
+/// A registered loss and its scale.
+struct NamedLoss {
+  std::string name;
+  double scale = 1;
+};
+
 /// One way to fuse a drive.
 struct Setting {
   std::string name;      ///< unique, for tables and files: "paper_g1", "paper_g1/radius"
   std::string modeling;  ///< registered GNSS modeling
   Options modeling_options{};
   DriveChanges changes;
+  std::optional<NamedLoss> loss{};  ///< of the fixes
+  OutlierTreatment outliers = OutlierTreatment::none;
   Minimization minimization;
   /// Settings of one objective have one minimum, so the poses that they end at are compared; empty: not.
   std::string objective;
@@ -73,6 +94,10 @@ inline constexpr const char* kModelings[] = {"g1", "g2", "g3"};
 /// The same four with ours, names "ours_...": decoupled error, additive process noise, anchored start, the
 /// default dogleg.
 [[nodiscard]] std::vector<Setting> our_settings();
+
+/// The default model of the program, exactly as `waymark run` has it: name kDefaultModel.
+[[nodiscard]] Setting default_setting();
+inline constexpr const char* kDefaultModel = "waymark";
 
 /// Why the paper's g1, g2 and g3 end where they end: each cause switched to ours alone, names
 /// "paper_g1/radius" (the trust region alone), "/heading" (the error alone), "/stopping", "/start", and
