@@ -194,7 +194,7 @@ TEST_CASE("coarse: fewer nodes and fixes, the same way and turn") {
   CHECK(coarse.stamps.front() == placed.timeline.stamps.front());
   CHECK(coarse.stamps.back() == placed.timeline.stamps.back());
   CHECK(coarse.intervals.size() == coarse.stamps.size() - 1);
-  CHECK(coarse.stamps.size() < placed.timeline.stamps.size() * 0.55);
+  CHECK(coarse.stamps.size() < placed.timeline.stamps.size() * 11 / 20);
   CHECK(coarse.fixes.size() == 240);  // of 1200
   for (const Fix& fix : coarse.fixes)
     CHECK(coarse.stamps[static_cast<std::size_t>(fix.vertex) - 1] == fix.stamp);
