@@ -158,7 +158,7 @@ std::vector<Subject> find_subjects(const ReproduceOptions& options, const Consol
 }
 
 std::string whose_drives(const ReproduceOptions& options) {
-  if (!options.files.empty()) return fmt::format("{} drives that were given.", options.files.size());
+  if (!options.files.empty()) return fmt::format("Drives given: {}.", options.files.size());
   return "Its eight drives are not public: those here are SIMULATED (" +
          (options.seed ? fmt::format("seed {}", *options.seed) : "the presets' seeds") +
          ") so that length, rates, and the errors of the raw fixes are like its tables'.";
@@ -177,7 +177,7 @@ std::string introduction(const ReproduceOptions& options) {
     return program +
            "The default model with one ingredient switched at a time, and the field's alternatives. " +
            (options.files.empty() ? "Drives: like those of " + paper + ". " : "") + whose_drives(options);
-  return program + paper + ". " + (options.files.empty() ? "" : "Its experiment on other drives: ") +
+  return program + paper + ". " + (options.files.empty() ? "" : "Its experiment on other drives. ") +
          whose_drives(options);
 }
 
