@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <waymark/tools/evaluation/json_number.hpp>
 #include <waymark/tools/evaluation/report.hpp>
 
 namespace waymark {
@@ -9,29 +10,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json to_json(const PositionMetrics& m) {
   return {{"n", m.count},
-          {"max_m", number(m.max_m)},
-          {"accuracy_m", number(m.accuracy_m)},
-          {"precision_m", number(m.precision_m)},
-          {"rmse_m", number(m.rmse_m)},
-          {"median_m", number(m.median_m)},
-          {"cep50_m", number(m.cep50_m)},
-          {"cep95_m", number(m.cep95_m)},
-          {"mean_offset_m", Json::array({number(m.mean_m.x()), number(m.mean_m.y())})}};
+          {"max_m", number_or_null(m.max_m)},
+          {"accuracy_m", number_or_null(m.accuracy_m)},
+          {"precision_m", number_or_null(m.precision_m)},
+          {"rmse_m", number_or_null(m.rmse_m)},
+          {"median_m", number_or_null(m.median_m)},
+          {"cep50_m", number_or_null(m.cep50_m)},
+          {"cep95_m", number_or_null(m.cep95_m)},
+          {"mean_offset_m", Json::array({number_or_null(m.mean_m.x()), number_or_null(m.mean_m.y())})}};
 }
 
 /// @param unit  suffix of the keys: "m" or "rad".
 Json to_json(const ScalarStatistics& s, const std::string& unit) {
   return {{"n", s.count},
-          {"mean_" + unit, number(s.mean)},
-          {"std_" + unit, number(s.deviation)},
-          {"rms_" + unit, number(s.rms)},
-          {"max_abs_" + unit, number(s.max_abs)}};
+          {"mean_" + unit, number_or_null(s.mean)},
+          {"std_" + unit, number_or_null(s.deviation)},
+          {"rms_" + unit, number_or_null(s.rms)},
+          {"max_abs_" + unit, number_or_null(s.max_abs)}};
 }
 
 Json to_json(const SystemMetrics& m) {
@@ -42,26 +39,26 @@ Json to_json(const SystemMetrics& m) {
 }
 
 Json to_json(const Improvement& i) {
-  return {{"max", number(i.max_percent)},
-          {"accuracy", number(i.accuracy_percent)},
-          {"precision", number(i.precision_percent)},
-          {"rmse", number(i.rmse_percent)},
-          {"median", number(i.median_percent)},
-          {"cep50", number(i.cep50_percent)},
-          {"cep95", number(i.cep95_percent)}};
+  return {{"max", number_or_null(i.max_percent)},
+          {"accuracy", number_or_null(i.accuracy_percent)},
+          {"precision", number_or_null(i.precision_percent)},
+          {"rmse", number_or_null(i.rmse_percent)},
+          {"median", number_or_null(i.median_percent)},
+          {"cep50", number_or_null(i.cep50_percent)},
+          {"cep95", number_or_null(i.cep95_percent)}};
 }
 
 Json to_json(const InnovationStatistics& s) {
   return {{"kind", to_string(s.kind)},
           {"n", s.count},
           {"undefined", s.undefined},
-          {"mean", number(s.mean)},
+          {"mean", number_or_null(s.mean)},
           {"expected_mean", InnovationStatistics::kExpectedMean},
-          {"expected_deviation_of_mean", number(s.expected_deviation)},
+          {"expected_deviation_of_mean", number_or_null(s.expected_deviation)},
           {"bound_95", InnovationStatistics::kBound95},
-          {"fraction_inside", number(s.fraction_inside)},
+          {"fraction_inside", number_or_null(s.fraction_inside)},
           {"expected_fraction_inside", InnovationStatistics::kExpectedInside},
-          {"max", number(s.max)}};
+          {"max", number_or_null(s.max)}};
 }
 
 Json to_json(const TruthMatch& m) {
@@ -70,30 +67,30 @@ Json to_json(const TruthMatch& m) {
           {"before_truth", m.before_truth},
           {"after_truth", m.after_truth},
           {"in_gap", m.in_gap},
-          {"median_interval_s", number(m.median_interval_s)},
-          {"longest_interpolated_s", number(m.longest_interpolated_s)}};
+          {"median_interval_s", number_or_null(m.median_interval_s)},
+          {"longest_interpolated_s", number_or_null(m.longest_interpolated_s)}};
 }
 
 Json to_json(const Interval95& i) {
-  return Json::array({number(i.low), number(i.high)});
+  return Json::array({number_or_null(i.low), number_or_null(i.high)});
 }
 
 Json to_json(const ConsistencyStatistics& s) {
   return {{"n", s.count},
           {"undefined", s.undefined},
-          {"effective_n", number(s.effective_samples)},
-          {"nees_mean", number(s.nees_mean)},
+          {"effective_n", number_or_null(s.effective_samples)},
+          {"nees_mean", number_or_null(s.nees_mean)},
           {"expected_nees_mean", ConsistencyStatistics::kExpectedMean},
           {"honest_nees_mean", to_json(s.nees_mean_honest)},
-          {"coverage_95", number(s.coverage)},
+          {"coverage_95", number_or_null(s.coverage)},
           {"expected_coverage_95", ConsistencyStatistics::kExpectedCoverage},
           {"honest_coverage_95", to_json(s.coverage_honest)},
-          {"median_error_ratio", number(s.median_error_ratio)}};
+          {"median_error_ratio", number_or_null(s.median_error_ratio)}};
 }
 
 Json numbers(std::span<const double> values) {
   Json list = Json::array();
-  for (const double value : values) list.push_back(number(value));
+  for (const double value : values) list.push_back(number_or_null(value));
   return list;
 }
 
@@ -123,8 +120,8 @@ Json predictions_json(const Evaluation& e) {
 Json to_json(const Frame& frame) {
   return {{"utm_zone", frame.zone},
           {"north", frame.north},
-          {"origin_easting_m", number(frame.origin_easting_m)},
-          {"origin_northing_m", number(frame.origin_northing_m)}};
+          {"origin_easting_m", number_or_null(frame.origin_easting_m)},
+          {"origin_northing_m", number_or_null(frame.origin_northing_m)}};
 }
 
 Json to_json(const LabelledEvaluation& labelled) {

@@ -10,6 +10,7 @@
 #include <waymark/tools/program/drive_options.hpp>
 #include <waymark/tools/program/graph_files.hpp>
 #include <waymark/tools/program/hash.hpp>
+#include <waymark/tools/program/model_report.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 

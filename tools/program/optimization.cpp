@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/tools/evaluation/json_number.hpp>
 #include <waymark/tools/program/covariance.hpp>
 #include <waymark/tools/program/optimization.hpp>
 
@@ -50,10 +51,6 @@ MultiStartSummary optimize_from(const std::string& start, Graph& graph, const Ty
   result.total_seconds = result.summary.total_seconds;
   if (made.apart > 0) result.summary.notes.push_back(apart_note(made.apart));
   return result;
-}
-
-nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include <waymark/formats/trajectory.hpp>
 #include <waymark/tools/drive/projection.hpp>
 #include <waymark/tools/drive/sensors.hpp>
-#include <waymark/tools/evaluation/text_table.hpp>
 #include <waymark/tools/program/hash.hpp>
 #include <waymark/tools/program/optimization.hpp>
 #include <waymark/tools/program/pipeline.hpp>
@@ -262,43 +261,6 @@ std::string describe_drive(const LoadedDrive& loaded) {
   text += fmt::format("left out    {} fixes outside the odometry, {} by thinning, {} withheld\n",
                       report.fixes_outside_odometry, report.fixes_thinned, report.fixes_withheld);
   return text;
-}
-
-std::string describe_model(const ModeledDrive& modeled) {
-  std::string text;
-  const GateSummary& gate = modeled.gate;
-  std::string reasons;
-  for (const auto& [reason, count] : gate.reasons) reasons += fmt::format(" {} {}", reason, count);
-  if (modeled.config.gate.enabled) {
-    text += fmt::format("gate        {} of {} fixes rejected ({:.1f} %):{}\n", gate.rejected,
-                        gate.accepted + gate.rejected, gate.rejected_percent(), reasons);
-  } else {
-    text += fmt::format("gate        off: all {} fixes are used\n", gate.accepted);
-  }
-  if (modeled.noise.parameters.empty()) return text;
-  TextTable table({"estimated noise", "unit", "value", "68 % between", "and", "known before"});
-  for (const NoiseParameter& p : modeled.noise.parameters) {
-    const bool linear = p.prior.linear;
-    const auto moved = [&](double by) { return linear ? p.value + by : p.value * std::exp(by); };
-    table.add({p.option, p.unit, fmt::format("{:.3g}", p.value), fmt::format("{:.3g}", moved(-p.deviation)),
-               fmt::format("{:.3g}", moved(p.deviation)),
-               p.observed() ? fmt::format("{:.3g}", p.prior.mean) : "not observed"});
-  }
-  return text + table.text();
-}
-
-nlohmann::ordered_json noise_json(const NoiseEstimate& noise) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const NoiseParameter& p : noise.parameters) {
-    json.push_back({{"owner", p.owner},
-                    {"option", p.option},
-                    {"unit", p.unit},
-                    {"value", p.value},
-                    {"deviation", p.deviation},
-                    {"of", p.prior.linear ? "value" : "logarithm"},
-                    {"observed", p.observed()}});
-  }
-  return json;
 }
 
 Prediction as_prediction(std::string label, PosesAtWithheld at) {

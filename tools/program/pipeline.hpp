@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <waymark/tools/drive/model.hpp>
 #include <waymark/tools/drive/outages.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
@@ -60,9 +58,6 @@ void add_provenance(const GraphDocument& document, const std::string& label, Rep
 
 /// A paragraph on what went in: samples, fixes, what was left out.
 [[nodiscard]] std::string describe_drive(const LoadedDrive& loaded);
-/// What the gate rejected and why; the noise that was estimated, and what the drive did not show of it.
-[[nodiscard]] std::string describe_model(const ModeledDrive& modeled);
-[[nodiscard]] nlohmann::ordered_json noise_json(const NoiseEstimate& noise);
 
 /// Evaluates a document at its fixes. @param truth may be empty
 /// @param further  predictions of its withheld fixes, beside the fused poses and dead reckoning

@@ -5,6 +5,7 @@
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/covariance.hpp>
 #include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/model_report.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 #include <waymark/tools/program/state_report.hpp>

@@ -10,6 +10,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/core/gaussian_prior.hpp>
 #include <waymark/core/marginals.hpp>
+#include <waymark/tools/evaluation/json_number.hpp>
 #include <waymark/tools/evaluation/text_table.hpp>
 
 namespace waymark {
@@ -137,18 +138,16 @@ std::string states_text(const std::vector<StateReport>& states) {
 nlohmann::ordered_json states_json(const std::vector<StateReport>& states) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const StateReport& s : states) {
-    json.push_back(
-        {{"name", s.name},
-         {"unit", s.unit},
-         {"values", s.values},
-         {"first", s.first},
-         {"last", s.last},
-         {"smallest", s.smallest},
-         {"largest", s.largest},
-         {"sigma", std::isnan(s.sigma) ? nlohmann::ordered_json() : nlohmann::ordered_json(s.sigma)},
-         {"prior_sigma",
-          std::isnan(s.prior_sigma) ? nlohmann::ordered_json() : nlohmann::ordered_json(s.prior_sigma)},
-         {"observed", s.observed}});
+    json.push_back({{"name", s.name},
+                    {"unit", s.unit},
+                    {"values", s.values},
+                    {"first", s.first},
+                    {"last", s.last},
+                    {"smallest", s.smallest},
+                    {"largest", s.largest},
+                    {"sigma", number_or_null(s.sigma)},
+                    {"prior_sigma", number_or_null(s.prior_sigma)},
+                    {"observed", s.observed}});
   }
   return json;
 }

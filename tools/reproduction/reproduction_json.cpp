@@ -1,7 +1,6 @@
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 
+#include <waymark/tools/evaluation/json_number.hpp>
 #include <waymark/tools/reproduction/reproduction_report.hpp>
 
 namespace waymark {
@@ -9,28 +8,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json position_json(const PositionMetrics& m) {
   return {{"count", m.count},
-          {"max_m", number(m.max_m)},
-          {"accuracy_m", number(m.accuracy_m)},
-          {"precision_m", number(m.precision_m)},
-          {"rmse_m", number(m.rmse_m)},
-          {"median_m", number(m.median_m)},
-          {"cep50_m", number(m.cep50_m)},
-          {"cep95_m", number(m.cep95_m)}};
+          {"max_m", number_or_null(m.max_m)},
+          {"accuracy_m", number_or_null(m.accuracy_m)},
+          {"precision_m", number_or_null(m.precision_m)},
+          {"rmse_m", number_or_null(m.rmse_m)},
+          {"median_m", number_or_null(m.median_m)},
+          {"cep50_m", number_or_null(m.cep50_m)},
+          {"cep95_m", number_or_null(m.cep95_m)}};
 }
 
 Json consistency_json(const ConsistencyStatistics& stated) {
   return {{"count", stated.count},
-          {"effective_samples", number(stated.effective_samples)},
-          {"nees_mean", number(stated.nees_mean)},
-          {"nees_mean_honest", {number(stated.nees_mean_honest.low), number(stated.nees_mean_honest.high)}},
-          {"coverage", number(stated.coverage)},
-          {"coverage_honest", {number(stated.coverage_honest.low), number(stated.coverage_honest.high)}}};
+          {"effective_samples", number_or_null(stated.effective_samples)},
+          {"nees_mean", number_or_null(stated.nees_mean)},
+          {"nees_mean_honest",
+           {number_or_null(stated.nees_mean_honest.low), number_or_null(stated.nees_mean_honest.high)}},
+          {"coverage", number_or_null(stated.coverage)},
+          {"coverage_honest",
+           {number_or_null(stated.coverage_honest.low), number_or_null(stated.coverage_honest.high)}}};
 }
 
 Json outcome_json(const Outcome& outcome) {
@@ -44,17 +41,17 @@ Json outcome_json(const Outcome& outcome) {
   json["ending"] = ending.message;
   json["steps"] = ending.iterations;
   json["rejected_steps"] = ending.rejected_steps;
-  json["initial_chi2"] = number(ending.initial_chi2);
-  json["chi2"] = number(ending.chi2);
+  json["initial_chi2"] = number_or_null(ending.initial_chi2);
+  json["chi2"] = number_or_null(ending.chi2);
   if (!outcome.setting.objective.empty()) {
-    json["minimum_chi2"] = number(outcome.minimum_chi2);
-    json["from_minimum_m"] = number(outcome.from_minimum.position_m);
-    json["from_minimum_rad"] = number(outcome.from_minimum.heading_rad);
+    json["minimum_chi2"] = number_or_null(outcome.minimum_chi2);
+    json["from_minimum_m"] = number_or_null(outcome.from_minimum.position_m);
+    json["from_minimum_rad"] = number_or_null(outcome.from_minimum.heading_rad);
   }
   json["accepted"] = outcome.accepted;
   json["rejected"] = outcome.rejected;
   for (const NoiseParameter& parameter : outcome.noise.parameters)
-    json["noise"][parameter.option] = number(parameter.value);
+    json["noise"][parameter.option] = number_or_null(parameter.value);
   if (!outcome.setting.evaluated) return json;
   const Evaluation& evaluation = outcome.evaluation;
   if (evaluation.truth) {
