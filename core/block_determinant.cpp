@@ -1,15 +1,9 @@
-#include <array>
 #include <cmath>
 
 #include <waymark/core/block_cholesky.hpp>
+#include <waymark/core/chain_kernels.hpp>
 
 namespace waymark {
-namespace {
-
-/// Where the reciprocal pivots of a link stand among its numbers (LinkFactor).
-constexpr std::array<int, 3> kPivots = {0, 6, 11};
-
-}  // namespace
 
 // The factor holds reciprocals: of the pivots D of a chain's L D L^T, of the diagonal of a front's L.
 double BlockCholesky::log_determinant() const {
@@ -17,7 +11,7 @@ double BlockCholesky::log_determinant() const {
   for (const Supernode& node : symbolic_.nodes) {
     const double* numbers = factor_.data() + node.panel;
     for (int link = 0; link < node.links; ++link, numbers += Supernode::kLinkNumbers) {
-      for (const int pivot : kPivots) sum -= std::log(numbers[pivot]);
+      for (const unsigned pivot : kLinkPivots) sum -= std::log(numbers[pivot]);
     }
     if (node.links > 0) continue;
     for (int c = 0; c < node.columns; ++c) sum -= 2 * std::log(numbers[std::int64_t{node.stride} * c + c]);

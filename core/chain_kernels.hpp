@@ -22,6 +22,8 @@ using LinkUpdate = std::array<T, 6>;
 /// block B towards the next, column by column: r0 l10 l20 g00 g10 g20  r1 l21 g01 g11 g21  r2 g02 g12 g22.
 template <typename T>
 using LinkFactor = std::array<T, 15>;
+/// Where r0, r1, r2 stand in it.
+inline constexpr std::array<unsigned, 3> kLinkPivots = {0, 6, 11};
 
 /// @param diagonal lower triangle, column by column @param below B, column by column
 /// @param carry in: what earlier links hand on; out: what this one does @param pivots the three pivots

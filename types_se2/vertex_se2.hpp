@@ -49,13 +49,11 @@ struct VertexSe2 {
   }
 };
 
-/// A point (x, y): a landmark.
-struct VertexXy {
-  static constexpr std::string_view kTag = "VERTEX_XY";
+/// What all vertices of two plain numbers in the plane share: points, offsets of points.
+struct PlaneState {
   static constexpr int kValueSize = 2;
   static constexpr int kTangentSize = 2;
   static constexpr bool kLinearChart = true;
-  static constexpr std::array<std::string_view, 2> value_names() { return {"x", "y"}; }
 
   template <typename T>
   static Vector2<T> at(const double* value, const T* delta) {
@@ -69,6 +67,13 @@ struct VertexXy {
     delta[0] = to[0] - from[0];
     delta[1] = to[1] - from[1];
   }
+};
+
+/// A point (x, y): a landmark.
+struct VertexXy : PlaneState {
+  static constexpr std::string_view kTag = "VERTEX_XY";
+  static constexpr std::array<std::string_view, 2> value_names() { return {"x", "y"}; }
+
   static Eigen::Vector2d position(const double* value) { return {value[0], value[1]}; }
   static void rigid_motion(const double* value, const Eigen::Vector2d& centre, double extent,
                            double* columns) {

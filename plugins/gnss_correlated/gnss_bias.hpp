@@ -9,26 +9,6 @@
 
 namespace waymark {
 
-/// What vertices of two plain numbers share.
-struct PlaneState {
-  static constexpr int kValueSize = 2;
-  static constexpr int kTangentSize = 2;
-  static constexpr bool kLinearChart = true;
-
-  template <typename T>
-  static Vector2<T> at(const double* value, const T* delta) {
-    return {delta[0] + T(value[0]), delta[1] + T(value[1])};
-  }
-  static void retract(double* value, const double* delta) {
-    value[0] += delta[0];
-    value[1] += delta[1];
-  }
-  static void local(const double* from, const double* to, double* delta) {
-    delta[0] = to[0] - from[0];
-    delta[1] = to[1] - from[1];
-  }
-};
-
 /// By how much all fixes about a moment are off, for minutes: atmosphere, orbits. Metres, frame axes.
 struct VertexGnssBias : PlaneState {
   static constexpr std::string_view kTag = "VERTEX_GNSS_BIAS";

@@ -1,6 +1,5 @@
 #include <waymark/tools/drive/coarse.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -60,12 +59,12 @@ CoarseDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_
   coarse.intervals.push_back(open);
   add_node(timeline.intervals.size());
 
+  const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};
   for (const std::size_t i : kept) {
     Fix fix = placed.fixes[i];
     fix.vertex = static_cast<VertexId>(coarse_node[timeline.fix_node[i]]) + 1;
     coarse.fixes.push_back(fix);
-    coarse.motion.push_back(
-        timeline.intervals[std::min(timeline.fix_node[i], timeline.intervals.size() - 1)]);
+    coarse.motion.push_back(motion_at(nodes, timeline.fix_node[i]));
   }
   return coarse;
 }

@@ -14,6 +14,12 @@ DriveConfig config_for(const GnssModelingType& modeling, DriveConfig config) {
   return config;
 }
 
+Options options_for(const GnssModelingType& modeling, const DriveConfig& config, const Options& given) {
+  Options all = config.modeling == modeling.name ? config.modeling_options : Options();
+  for (const auto& [name, value] : given) all[name] = value;
+  return with_calibration(std::move(all), config, modeling.options);
+}
+
 ModeledDrive model_drive(const PreparedDrive& drive, const DriveConfig& given, const std::string& modeling,
                          const Options& options, const TypeRegistry& registry,
                          const std::optional<Loss>& loss) {
@@ -21,9 +27,7 @@ ModeledDrive model_drive(const PreparedDrive& drive, const DriveConfig& given, c
   ModeledDrive modeled;
   modeled.modeling = modeling;
   DriveConfig& config = modeled.config = config_for(type, given);
-  modeled.options = config.modeling == modeling ? config.modeling_options : Options();
-  for (const auto& [name, value] : options) modeled.options[name] = value;
-  modeled.options = with_calibration(modeled.options, config, type.options);
+  modeled.options = options_for(type, config, options);
 
   const PlacedDrive placed = place_drive(drive, config, registry);
   if (*config.estimates_noise) {

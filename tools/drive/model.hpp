@@ -15,6 +15,11 @@ namespace waymark {
 /// states, noise as stated.
 [[nodiscard]] DriveConfig config_for(const GnssModelingType& modeling, DriveConfig config);
 
+/// The options of a modeling: those given, over the drive.yaml's where that names it, and the calibration
+/// states that it knows.
+[[nodiscard]] Options options_for(const GnssModelingType& modeling, const DriveConfig& config,
+                                  const Options& given);
+
 /// A drive as one modeling sees it.
 struct ModeledDrive {
   std::string modeling;

@@ -86,15 +86,6 @@ LogReaderLookup reader_lookup(const TypeRegistry& registry) {
   return [&registry](std::string_view name) { return registry.find_log_reader(name); };
 }
 
-/// The drive.yaml's options where it names this modeling, those of the command line over them, and the
-/// calibration that this modeling knows.
-Options options_of(const std::string& modeling, const DriveConfig& config, const Options& given,
-                   const TypeRegistry& registry) {
-  Options all(config.modeling == modeling ? config.modeling_options : Options());
-  for (const auto& [name, value] : given) all[name] = value;
-  return with_calibration(all, config, registry.gnss_modeling(modeling).options);
-}
-
 /// @throws UsageError for an option that no chosen modeling has
 void check_options_are_used(const std::vector<std::string>& modelings, const DriveOverrides& overrides,
                             const TypeRegistry& registry) {
@@ -125,7 +116,7 @@ std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const
   }
   for (const std::string& name : once) {  // what is wrong with them shows before the work
     (void)registry.make_gnss_modeling(
-        name, options_of(name, config, known_options(name, overrides, registry), registry));
+        name, options_for(registry.gnss_modeling(name), config, known_options(name, overrides, registry)));
   }
   check_options_are_used(once, overrides, registry);
   return once;

@@ -68,14 +68,14 @@ Prediction predict_causally(const RunOptions& options, const LoadedDrive& loaded
   return causal;
 }
 
-ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, const ModeledDrive& modeled,
+ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, ModeledDrive modeled,
                          const TypeRegistry& registry, const Console& console, ReportHeader& header) {
   const std::string& modeling = modeled.modeling;
   ModelingRun run;
   const std::string prefix = options.folder + "/" + modeling;
   run.noise = modeled.noise;
   run.description = describe_model(modeled);
-  GraphDocument document = modeled.document;
+  GraphDocument& document = modeled.document;
   const auto write = [&](const std::string& name) {
     write_file_atomically(name, [&](const TextSink& sink) { write_graph(document, registry, sink); });
     run.files.push_back(name);
@@ -121,9 +121,9 @@ ExitCode run_drive(const RunOptions& options) {
   std::vector<std::string> files;
   nlohmann::ordered_json summaries;
   ExitCode code = kSuccess;
-  for (const ModeledDrive& modeled : models) {
-    const std::string& modeling = modeled.modeling;
-    ModelingRun run = run_modeling(options, loaded, modeled, registry, console, header);
+  for (ModeledDrive& modeled : models) {
+    const std::string modeling = modeled.modeling;
+    ModelingRun run = run_modeling(options, loaded, std::move(modeled), registry, console, header);
     if (text.find(run.description) == std::string::npos) text += run.description;
     text += run_line(modeling, run.result.summary) + states_text(run.states);
     summaries[modeling] = summary_json(run.result);
