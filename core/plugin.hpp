@@ -11,7 +11,7 @@
 namespace waymark {
 
 /// Raised whenever a type that crosses the boundary changes its layout or meaning.
-inline constexpr std::uint32_t kPluginAbi = 2;
+inline constexpr std::uint32_t kPluginAbi = 3;
 inline constexpr std::uint32_t kPluginMagic = 0x57415950;  // "WAYP"
 
 /// How a binary was built, as far as it decides whether two binaries may share types.

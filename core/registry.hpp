@@ -19,13 +19,6 @@
 
 namespace waymark {
 
-/// A registered log reader.
-struct LogReaderType {
-  std::string name;
-  std::string description;
-  const LogReader* reader = nullptr;  ///< stateless, lives as long as the code that registered it
-};
-
 /// A plugin whose types are in the registry.
 struct PluginRecord {
   std::string name;

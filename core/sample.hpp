@@ -100,7 +100,7 @@ struct TruthPose {
 /// A column that a sensor's log must or may have.
 struct SensorColumn {
   std::string name;      ///< quantity, and the column's default name
-  std::string unit;      ///< the SI unit its numbers come in: "m", "m/s", "s", "rad", "rad/s" or "1"
+  std::string unit;      ///< the SI unit its numbers come in: "m", "m/s", "m/s^2", "s", "rad", "rad/s" or "1"
   std::string sense;     ///< of rad: "" a size, "ccw" an angle or turn, "ccw_from_east" a heading (given from
                          ///< true east, it comes as one in the frame); of rad/s: "ccw"; else ""
   bool required = true;  ///< where it is not, NaN stands for a missing column or value

@@ -48,10 +48,10 @@ static bool add_sample(std::string_view line, std::size_t line_number, const Log
 }
 
 /// Stateless: one reader serves any number of logs.
-class LineLog final : public LogReader {
+class LineLog final : public WholeLogReader {
  public:
-  [[nodiscard]] LogData read(std::string_view text, const std::string& path,
-                             const LogRequest& request) const override {
+  [[nodiscard]] LogData read_whole(std::string_view text, const std::string& path,
+                                   const LogRequest& request) const override {
     // A log may hold several streams: the request says which is wanted now.
     if (request.stream != StreamKind::odometry && request.stream != StreamKind::gnss)
       throw InputError(path + ": line_log holds odometry and fixes only");

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/optimizer.hpp>
-#include <waymark/formats/log_readers.hpp>
+#include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/tools/drive/assemble.hpp>
 
 #include "support/paths.hpp"

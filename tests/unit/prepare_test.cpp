@@ -6,7 +6,7 @@
 #include <string>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/log_readers.hpp>
+#include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/tools/drive/prepare.hpp>
 #include <waymark/tools/drive/projection.hpp>
 

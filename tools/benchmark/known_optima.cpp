@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/csv_table.hpp>
+#include <waymark/formats/logs/csv_table.hpp>
 #include <waymark/formats/line_scanner.hpp>
 
 namespace waymark {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/csv_columns.hpp>
-#include <waymark/formats/quantity.hpp>
+#include <waymark/formats/logs/csv_columns.hpp>
+#include <waymark/formats/logs/quantity.hpp>
 #include <waymark/formats/suggest.hpp>
 
 namespace waymark {

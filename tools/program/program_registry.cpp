@@ -8,7 +8,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/core/module_file.hpp>
 #include <waymark/core/plugin_loader.hpp>
-#include <waymark/formats/log_readers.hpp>
+#include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/plugins/builtin.hpp>
 #include <waymark/solvers/register.hpp>
 #include <waymark/tools/drive/config.hpp>
@@ -97,9 +97,7 @@ TypeRegistry own_registry() {
   register_se2_types(registry);
   register_solvers(registry);
   register_builtin_plugins(registry);
-  for (const NamedLogReader& reader : builtin_log_readers()) {
-    registry.add_log_reader({std::string(reader.name), std::string(reader.about), reader.reader});
-  }
+  for (const LogReaderType& reader : builtin_log_readers()) registry.add_log_reader(reader);
   return registry;
 }
 

@@ -1,4 +1,4 @@
-#include <waymark/formats/csv_columns.hpp>
+#include <waymark/formats/logs/csv_columns.hpp>
 
 #include <algorithm>
 #include <charconv>

@@ -1,7 +1,7 @@
 /// The columns of a table by what the samples need; private to the CSV reader.
 #pragma once
 
-#include <waymark/formats/csv_columns.hpp>
+#include <waymark/formats/logs/csv_columns.hpp>
 
 namespace waymark {
 

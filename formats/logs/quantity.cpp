@@ -1,4 +1,4 @@
-#include <waymark/formats/quantity.hpp>
+#include <waymark/formats/logs/quantity.hpp>
 
 #include <array>
 #include <limits>
@@ -22,6 +22,7 @@ constexpr std::array kDegrees{Unit{"deg", 1}, Unit{"rad", 1 / kDegree}, Unit{"1e
 constexpr std::array kLengths{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}};
 constexpr std::array kCourses{Unit{"deg", kDegree}, Unit{"rad", 1}, Unit{"1e-5deg", 1e-5 * kDegree}};
 constexpr std::array kHeadings{Unit{"rad", 1}, Unit{"deg", kDegree}};
+constexpr std::array kAccelerations{Unit{"m/s^2", 1}, Unit{"g", 9.80665}};
 constexpr std::array kFlags{Unit{"1", 1}};
 
 constexpr std::array kTurns{Convention{"ccw", 1, 0}, Convention{"cw", -1, 0}};
@@ -72,9 +73,10 @@ struct SensorKind {
 };
 constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
 constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", kDegree}};
-constexpr std::array<SensorKind, 8> kSensorKinds{{{"1", "", kFlags, {}},
+constexpr std::array<SensorKind, 9> kSensorKinds{{{"1", "", kFlags, {}},
                                                   {"m", "", kLengths, {}},
                                                   {"m/s", "", kSpeeds, {}},
+                                                  {"m/s^2", "", kAccelerations, {}},
                                                   {"s", "", kDurations, {}},
                                                   {"rad", "", kAngles, {}},
                                                   {"rad", "ccw_from_east", kHeadings, kHeadingSenses},

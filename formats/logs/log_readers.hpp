@@ -8,15 +8,8 @@
 
 namespace waymark {
 
-/// A reader under the name that `format:` uses.
-struct NamedLogReader {
-  std::string_view name;
-  const LogReader* reader = nullptr;
-  std::string_view about;  ///< one line for `waymark info`
-};
-
 /// All built-in readers, in the order to list them. They live as long as the program and are stateless.
-[[nodiscard]] std::span<const NamedLogReader> builtin_log_readers();
+[[nodiscard]] std::span<const LogReaderType> builtin_log_readers();
 /// Null for an unknown name.
 [[nodiscard]] const LogReader* builtin_log_reader(std::string_view name);
 

@@ -1,4 +1,4 @@
-#include <waymark/formats/gpsd_json.hpp>
+#include <waymark/formats/logs/gpsd_json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/iso8601.hpp>
-#include <waymark/formats/log_data.hpp>
+#include <waymark/formats/logs/accuracy.hpp>
 
 namespace waymark {
 namespace {
@@ -60,7 +60,6 @@ std::optional<double> scaled_if_positive(std::optional<double> value, double fac
 /// Counts of what was passed over.
 struct Passed {
   std::size_t not_json = 0;
-  std::size_t without_fix = 0;
   std::size_t without_time = 0;
   std::size_t other_devices = 0;
 };
@@ -150,7 +149,7 @@ void GpsdLog::end_epoch() {
   ++data_.records;
   try {
     if (number(report, "mode").value_or(0) < 2) {
-      ++passed_.without_fix;
+      ++data_.without_fix;
       return;
     }
     const std::string time = word(report, "time");
@@ -246,20 +245,19 @@ LogData GpsdLog::finish() {
   if (geoid_height_) note("heights are partly above the geoid (no altHAE)");
   if (passed_.not_json > 0)
     note(fmt::format("{} lines that are no JSON objects were skipped", passed_.not_json));
-  if (passed_.without_fix > 0)
-    note(fmt::format("{} of {} records are marked as without a fix", passed_.without_fix, data_.records));
+  if (data_.without_fix > 0)
+    note(fmt::format("{} of {} records are marked as without a fix", data_.without_fix, data_.records));
   if (passed_.without_time > 0)
     note(fmt::format("{} fixes without a time were skipped", passed_.without_time));
   if (passed_.other_devices > 0)
     note(fmt::format("{} reports of other devices than '{}' were skipped", passed_.other_devices, device_));
-  require_samples(data_, path_, passed_.without_fix);
   return std::move(data_);
 }
 
 }  // namespace
 
-LogData GpsdJsonReader::read(std::string_view text, const std::string& path,
-                             const LogRequest& request) const {
+LogData GpsdJsonReader::read_whole(std::string_view text, const std::string& path,
+                                   const LogRequest& request) const {
   if (request.stream == StreamKind::odometry)
     throw InputError(fmt::format("{}: a gpsd log holds no odometry", path));
   if (!request.columns.empty()) throw InputError(fmt::format("{}: a gpsd log has no columns to map", path));

@@ -1,4 +1,4 @@
-#include <waymark/formats/csv_log.hpp>
+#include <waymark/formats/logs/csv_log.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/csv_bindings.hpp>
-#include <waymark/formats/csv_columns.hpp>
-#include <waymark/formats/csv_table.hpp>
 #include <waymark/formats/iso8601.hpp>
-#include <waymark/formats/log_data.hpp>
+#include <waymark/formats/logs/accuracy.hpp>
+#include <waymark/formats/logs/csv_bindings.hpp>
+#include <waymark/formats/logs/csv_columns.hpp>
+#include <waymark/formats/logs/csv_table.hpp>
 #include <waymark/formats/stamp_text.hpp>
 
 namespace waymark {
@@ -56,14 +56,13 @@ class TableReader {
   }
 
   void finish() {
-    if (without_fix_ > 0)
+    if (data_.without_fix > 0)
       data_.notes.push_back(fmt::format("{}: {} of {} records are marked as without a fix", path_,
-                                        without_fix_, data_.records));
+                                        data_.without_fix, data_.records));
     if (defaulted_ > 0)
       data_.notes.push_back(
           fmt::format("{}: {} fixes give no accuracy, the stated default sigma of {} m is used", path_,
                       defaulted_, request_.default_sigma_m));
-    require_samples(data_, path_, without_fix_);
   }
 
  private:
@@ -87,7 +86,6 @@ class TableReader {
   LogData& data_;
   AccuracyRule accuracy_;
   std::int64_t offset_ = 0;
-  std::size_t without_fix_ = 0;
   std::size_t defaulted_ = 0;
 
   std::string_view line_;
@@ -251,7 +249,7 @@ bool TableReader::has_fix() {
     if (complaint_.column != 0) return false;
     fix = flag != 0;
   }
-  if (!fix) ++without_fix_;
+  if (!fix) ++data_.without_fix;
   return fix;
 }
 
@@ -283,7 +281,8 @@ void TableReader::complain(const BoundColumn& column, std::string what) {
 
 }  // namespace
 
-LogData CsvLogReader::read(std::string_view text, const std::string& path, const LogRequest& request) const {
+LogData CsvLogReader::read_whole(std::string_view text, const std::string& path,
+                                 const LogRequest& request) const {
   LogData data;
   CsvLines lines(text);
   if (!lines.next()) throw InputError(fmt::format("{}: the log is empty", path));

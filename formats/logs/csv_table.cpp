@@ -1,4 +1,4 @@
-#include <waymark/formats/csv_table.hpp>
+#include <waymark/formats/logs/csv_table.hpp>
 
 namespace waymark {
 namespace {

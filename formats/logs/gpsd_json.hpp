@@ -29,10 +29,10 @@ namespace waymark {
 ///
 /// @throws InputError (from read) for an empty log, one without a usable fix, the odometry stream, a column
 /// map.
-class GpsdJsonReader final : public LogReader {
+class GpsdJsonReader final : public WholeLogReader {
  public:
-  [[nodiscard]] LogData read(std::string_view text, const std::string& path,
-                             const LogRequest& request) const override;
+  [[nodiscard]] LogData read_whole(std::string_view text, const std::string& path,
+                                   const LogRequest& request) const override;
 };
 
 }  // namespace waymark

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <waymark/core/log_reader.hpp>
-#include <waymark/formats/csv_table.hpp>
-#include <waymark/formats/quantity.hpp>
+#include <waymark/formats/logs/csv_table.hpp>
+#include <waymark/formats/logs/quantity.hpp>
 
 namespace waymark {
 

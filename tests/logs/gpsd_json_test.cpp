@@ -5,7 +5,7 @@
 #include <string>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/gpsd_json.hpp>
+#include <waymark/formats/logs/gpsd_json.hpp>
 #include <waymark/formats/iso8601.hpp>
 #include <waymark/formats/text_file.hpp>
 

@@ -38,8 +38,8 @@ struct Quantity {
 /// Unit of times written as ISO 8601 dates.
 inline constexpr std::string_view kIso8601 = "iso8601";
 
-/// The quantities of a stream, `time` first. formats/logs.md has the same as a table; those of a sensor
-/// stream are the request's own, whose text must outlive them.
+/// The quantities of a stream, `time` first. formats/logs/README.md has the same as a table; those of a
+/// sensor stream are the request's own, whose text must outlive them.
 /// @throws UsageError where a sensor asks for a unit or sense that is not known
 [[nodiscard]] std::vector<Quantity> quantities(const LogRequest& request);
 [[nodiscard]] std::vector<std::string_view> names_of(std::span<const Quantity> quantities);

@@ -5,7 +5,7 @@
 
 namespace waymark {
 
-/// Reader "csv". formats/logs.md has the quantities with their default columns, units and senses.
+/// Reader "csv". formats/logs/README.md has the quantities with their default columns, units and senses.
 ///
 /// A quantity is found by `request.columns` (a name of the header line, or a 1-based number), else by its
 /// default column names; a quantity found so without being asked for is named in the notes. The header is the
@@ -29,10 +29,10 @@ namespace waymark {
 /// @throws InputError (from read) for an empty log, one where nothing was usable, a column that does not
 /// exist (with the columns present and the nearest), a quantity, unit or convention that does not exist,
 /// fixes without any accuracy.
-class CsvLogReader final : public LogReader {
+class CsvLogReader final : public WholeLogReader {
  public:
-  [[nodiscard]] LogData read(std::string_view text, const std::string& path,
-                             const LogRequest& request) const override;
+  [[nodiscard]] LogData read_whole(std::string_view text, const std::string& path,
+                                   const LogRequest& request) const override;
 };
 
 }  // namespace waymark

@@ -1,0 +1,163 @@
+#include <waymark/formats/logs/log_file.hpp>
+
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <waymark/core/error.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kPiece = 1U << 20U;
+constexpr std::size_t kHead = 64U << 10U;
+
+[[noreturn]] void fail_read(const std::string& path, int error) {
+  throw InputError(fmt::format("{}: cannot read: {}", path, std::generic_category().message(error)));
+}
+
+/// A file that zlib reads, compressed or not.
+class LogFile {
+ public:
+  explicit LogFile(const std::string& path) : path_(path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) fail_read(path, errno);
+    struct stat status {};
+    const bool known = ::fstat(descriptor, &status) == 0;
+    if (known && S_ISDIR(status.st_mode)) {
+      ::close(descriptor);
+      fail_read(path, EISDIR);
+    }
+    if (known && S_ISREG(status.st_mode)) size_ = static_cast<std::uint64_t>(status.st_size);
+    file_ = ::gzdopen(descriptor, "rb");
+    if (file_ == nullptr) {
+      ::close(descriptor);
+      fail_read(path, ENOMEM);
+    }
+    ::gzbuffer(file_, 256U << 10U);
+  }
+  LogFile(const LogFile&) = delete;
+  LogFile& operator=(const LogFile&) = delete;
+  ~LogFile() { ::gzclose_r(file_); }
+
+  /// The next bytes; empty at the end, and where a compressed file breaks off (see trouble()).
+  [[nodiscard]] std::string_view next(std::vector<char>& buffer) {
+    const int count = ::gzread(file_, buffer.data(), static_cast<unsigned>(buffer.size()));
+    if (count > 0) return {buffer.data(), static_cast<std::size_t>(count)};
+    int code = Z_OK;
+    const char* message = ::gzerror(file_, &code);
+    if (code == Z_ERRNO) fail_read(path_, errno);
+    if (code == Z_BUF_ERROR) {
+      trouble_ = "the compressed file breaks off; what came before is used";
+    } else if (code != Z_OK && code != Z_STREAM_END) {
+      trouble_ = fmt::format("the compressed file is damaged ({}); what came before is used", message);
+    }
+    return {};
+  }
+  [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  [[nodiscard]] std::uint64_t done() const { return static_cast<std::uint64_t>(::gzoffset(file_)); }
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+
+ private:
+  const std::string& path_;
+  gzFile file_ = nullptr;
+  std::uint64_t size_ = 0;
+  std::string trouble_;
+};
+
+/// Formats that are not read here: how they begin, what they are, and what makes a readable log of them.
+struct ForeignFormat {
+  std::string_view begins;
+  std::string_view name;
+  std::string_view remedy;
+};
+constexpr std::array<ForeignFormat, 5> kForeign{{
+    {"MDF     ", "an MF4 (ASAM MDF) file", "asammdf writes CSV from it"},
+    {"LOGG", "a Vector BLF file", "`python3 -m can.logconvert` writes a candump log from it"},
+    {"#ROSBAG", "a ROS 1 bag", "`rostopic echo -p -b FILE /topic` writes CSV from it"},
+    {std::string_view("\x89MCAP", 5), "an MCAP file", "export its topics as CSV"},
+    {"PK\x03\x04", "a zip archive", "unpack it first"},
+}};
+
+std::string what_it_may_be(std::string_view head) {
+  for (const ForeignFormat& format : kForeign) {
+    if (head.starts_with(format.begins))
+      return fmt::format("it is {}, which is not read here; {}", format.name, format.remedy);
+  }
+  if (head.substr(0, 100).find("RINEX VERSION") != std::string_view::npos)
+    return "it is a RINEX file of raw observations, which is not read here; RTKLIB's rnx2rtkp computes "
+           "positions from it";
+  return "state its 'format'; `waymark info` lists those there are";
+}
+
+std::string read_head(const std::string& path) {
+  LogFile file(path);
+  std::vector<char> buffer(kHead);
+  std::string head;
+  while (head.size() < kHead) {
+    const std::string_view piece = file.next(buffer);
+    if (piece.empty()) break;
+    head += piece;
+  }
+  if (head.empty())
+    throw InputError(path + (file.trouble().empty() ? ": the log is empty" : ": " + file.trouble()));
+  return head;
+}
+
+}  // namespace
+
+std::string read_in_pieces(const std::string& path, const std::function<void(std::string_view)>& take,
+                           const ReadProgress& progress) {
+  LogFile file(path);
+  std::vector<char> buffer(kPiece);
+  for (std::string_view piece = file.next(buffer); !piece.empty(); piece = file.next(buffer)) {
+    take(piece);
+    if (progress) progress(file.done(), file.size());
+  }
+  return file.trouble();
+}
+
+LogData read_log_file(const LogReader& reader, const std::string& path, const LogRequest& request,
+                      const ReadProgress& progress) {
+  const std::unique_ptr<LogDecoder> decoder = reader.open(path, request);
+  const std::string trouble = read_in_pieces(
+      path, [&](std::string_view piece) { decoder->take(piece); }, progress);
+  decoder->finish();
+  LogData& data = decoder->data();
+  if (!trouble.empty()) {
+    ++data.records;
+    ++data.corrupt;
+    data.corrupt_examples.insert(data.corrupt_examples.begin(), path + ": " + trouble);
+  }
+  require_samples(data, path);
+  return std::move(data);
+}
+
+Recognised recognise_log(const std::string& path, std::span<const LogReaderType> readers) {
+  const std::string head = read_head(path);
+  Recognised best;
+  std::string rival;
+  for (const LogReaderType& entry : readers) {
+    const Recognition why = entry.reader->recognise(head);
+    if (why.certainty <= 0 || why.certainty < best.why.certainty) continue;
+    rival = why.certainty == best.why.certainty ? std::string(best.reader.name) : std::string();
+    best = {entry, why};
+  }
+  if (best.reader.reader == nullptr)
+    throw InputError(fmt::format("{}: the log's format is not recognised: {}", path, what_it_may_be(head)));
+  if (!rival.empty())
+    throw InputError(
+        fmt::format("{}: the log may be '{}' or '{}'; state its 'format'", path, rival, best.reader.name));
+  return best;
+}
+
+}  // namespace waymark

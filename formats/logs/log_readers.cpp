@@ -1,0 +1,27 @@
+#include <waymark/formats/logs/log_readers.hpp>
+
+#include <vector>
+
+#include <waymark/formats/logs/csv_log.hpp>
+#include <waymark/formats/logs/gpsd_json.hpp>
+
+namespace waymark {
+
+std::span<const LogReaderType> builtin_log_readers() {
+  static const CsvLogReader csv;
+  static const GpsdJsonReader gpsd_json;
+  static const std::vector<LogReaderType> readers{
+      {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
+      {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
+  };
+  return readers;
+}
+
+const LogReader* builtin_log_reader(std::string_view name) {
+  for (const LogReaderType& entry : builtin_log_readers()) {
+    if (entry.name == name) return entry.reader;
+  }
+  return nullptr;
+}
+
+}  // namespace waymark
