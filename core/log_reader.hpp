@@ -51,7 +51,8 @@ struct LogRequest {
   /// (formats/logs/odometry_channels.hpp), for readers whose log holds it in pieces.
   std::vector<SensorColumn> readings;
   std::map<std::string, CompanionFile> companions;  ///< "dbc": of CAN frames, "timestamps": of KITTI oxts
-  char separator = ',';                             ///< CSV field separator; ' ': any run of blanks and tabs
+  char separator =
+      0;  ///< CSV field separator; ' ': any run of blanks and tabs; 0: what the header shows, and noted
   AccuracyMeaning accuracy = AccuracyMeaning::automatic;
   double default_sigma_m = 0;  ///< per-axis sigma where the log gives none; 0: such a fix is corrupt
   double range_error_m =

@@ -38,6 +38,10 @@ std::vector<std::string_view> names_of(std::span<const Item> items) {
   return names;
 }
 
+std::vector<std::string_view> views_of(const std::vector<std::string>& names) {
+  return {names.begin(), names.end()};
+}
+
 /// Whether the first line of a table holds values already: all of them numbers, or a time in the column that
 /// is given by number for it (a headerless table may hold dates and words beside).
 bool holds_values(const std::vector<std::string_view>& fields, const LogRequest& request) {
@@ -82,15 +86,20 @@ std::string column_request_error(const Quantity& quantity, const ColumnRequest& 
                      did_you_mean(request.convention, known), joined(known));
 }
 
-CsvColumns::CsvColumns(const CsvLines& lines, const std::string& path, const LogRequest& request)
+CsvColumns::CsvColumns(const TableLine& first, const std::string& path, const LogRequest& request)
     : quantities_(quantities(request)) {
   check_request(path + ": ", request);
-  find_header(lines, path, request);
-  const std::string place = fmt::format("{}:{}:1: ", path, lines.number());
+  find_header(first, path, request);
+  const std::string place = fmt::format("{}:{}:1: ", path, first.number);
   for (const Quantity& quantity : quantities_) {
     const auto wanted = request.columns.find(std::string(quantity.name));
     bind(quantity, wanted == request.columns.end() ? nullptr : &wanted->second, place);
   }
+  const bool in_channels = request.stream == StreamKind::odometry && !request.readings.empty();
+  if (in_channels && columns_.size() == 1)
+    throw InputError(
+        fmt::format("{}no column for speed, yaw_rate or another channel of odometry: name it under columns{}",
+                    place, columns_present()));
 }
 
 void CsvColumns::check_request(const std::string& place, const LogRequest& request) const {
@@ -108,24 +117,22 @@ void CsvColumns::check_request(const std::string& place, const LogRequest& reque
   }
 }
 
-void CsvColumns::find_header(const CsvLines& lines, const std::string& path, const LogRequest& request) {
-  std::vector<std::string_view> first;
-  if (!split_fields(lines.line(), request.separator, first))
-    throw InputError(
-        fmt::format("{}:{}:1: a quoted field of the header is not closed", path, lines.number()));
-  field_count_ = first.size();
-  if (!holds_values(first, request)) {
-    names_ = first;
+void CsvColumns::find_header(const TableLine& first, const std::string& path, const LogRequest& request) {
+  std::vector<std::string_view> fields;
+  if (!split_fields(first.text, request.separator, fields))
+    throw InputError(fmt::format("{}:{}:1: a quoted field of the header is not closed", path, first.number));
+  field_count_ = fields.size();
+  if (!holds_values(fields, request)) {
+    names_.assign(fields.begin(), fields.end());
     first_line_is_header_ = true;
     return;
   }
   std::vector<std::string_view> comment;
-  if (lines.comment_above().empty() || !split_fields(lines.comment_above(), request.separator, comment))
-    return;
-  if (comment.size() != first.size()) return;
-  names_ = comment;
+  if (first.comment_above.empty() || !split_fields(first.comment_above, request.separator, comment)) return;
+  if (comment.size() != fields.size()) return;
+  names_.assign(comment.begin(), comment.end());
   notes_.push_back(
-      fmt::format("{}: column names were taken from the comment above line {}", path, lines.number()));
+      fmt::format("{}: column names were taken from the comment above line {}", path, first.number));
 }
 
 void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place) {
@@ -142,7 +149,7 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
     }
     if (!field)
       throw InputError(fmt::format("{}no column '{}' for {}{}{}", place, wanted->column, quantity.name,
-                                   did_you_mean(wanted->column, names_), columns_present()));
+                                   did_you_mean(wanted->column, views_of(names_)), columns_present()));
   } else {
     field = field_named(quantity.name);
     if (!field) field = field_named(quantity.default_column);
@@ -183,7 +190,7 @@ std::optional<std::size_t> CsvColumns::field_named(std::string_view name) const 
 
 std::string CsvColumns::columns_present() const {
   if (names_.empty()) return fmt::format("; the table has no header, only columns 1 to {}", field_count_);
-  return fmt::format("; columns present: {}", joined(names_));
+  return fmt::format("; columns present: {}", joined(views_of(names_)));
 }
 
 }  // namespace waymark

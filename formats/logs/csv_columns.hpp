@@ -28,9 +28,10 @@ struct BoundColumn {
 class CsvColumns {
  public:
   /// Finds the header and ties the quantities.
-  /// @param lines  standing on the first line of the table; its text must outlive the columns
+  /// @param first    line of the table
+  /// @param request  with the separator
   /// @throws InputError see CsvLogReader
-  CsvColumns(const CsvLines& lines, const std::string& path, const LogRequest& request);
+  CsvColumns(const TableLine& first, const std::string& path, const LogRequest& request);
   CsvColumns(const CsvColumns&) = delete;  // columns point to the quantities
   CsvColumns& operator=(const CsvColumns&) = delete;
 
@@ -42,13 +43,13 @@ class CsvColumns {
 
  private:
   void check_request(const std::string& place, const LogRequest& request) const;
-  void find_header(const CsvLines& lines, const std::string& path, const LogRequest& request);
+  void find_header(const TableLine& first, const std::string& path, const LogRequest& request);
   void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
   [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
   [[nodiscard]] std::string columns_present() const;
 
   std::vector<Quantity> quantities_;
-  std::vector<std::string_view> names_;  ///< of the header; empty where there is none
+  std::vector<std::string> names_;  ///< of the header; empty where there is none
   std::size_t field_count_ = 0;
   bool first_line_is_header_ = false;
   std::vector<BoundColumn> columns_;

@@ -1,9 +1,13 @@
 #include <waymark/formats/logs/csv_log.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,6 +17,7 @@
 #include <waymark/formats/logs/csv_bindings.hpp>
 #include <waymark/formats/logs/csv_columns.hpp>
 #include <waymark/formats/logs/csv_table.hpp>
+#include <waymark/formats/logs/line_decoder.hpp>
 #include <waymark/formats/stamp_text.hpp>
 
 namespace waymark {
@@ -20,6 +25,12 @@ namespace {
 
 constexpr std::int64_t kNanosecondsPerWeek = 604'800'000'000'000;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// "','", "tabs" and the like, for notes.
+std::string separator_name(char separator) {
+  if (separator == ' ') return "blanks";
+  return separator == '\t' ? "tabs" : fmt::format("'{}'", separator);
+}
 
 /// The first complaint about the line at hand.
 struct Complaint {
@@ -38,19 +49,23 @@ struct AccuracyRule {
 /// Reads the table line by line.
 class TableReader {
  public:
-  TableReader(const CsvColumns& columns, const std::string& path, const LogRequest& request, LogData& data)
-      : bound_(columns), field_count_(columns.field_count()), path_(path), request_(request), data_(data) {
-    offset_ = request.gps_week * kNanosecondsPerWeek + std::llround(request.time_offset_s * 1e9);
-    if (request.stream == StreamKind::gnss) choose_accuracy();
-    for (const SensorColumn& column : request.readings) readings_.push_back(columns.find(column.name));
-    data.readings.columns = request.readings.size();
+  TableReader(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data)
+      : bound_(columns),
+        field_count_(columns.field_count()),
+        path_(path),
+        request_(std::move(request)),
+        data_(data) {
+    offset_ = request_.gps_week * kNanosecondsPerWeek + std::llround(request_.time_offset_s * 1e9);
+    if (request_.stream == StreamKind::gnss) choose_accuracy();
+    for (const SensorColumn& column : request_.readings) readings_.push_back(columns.find(column.name));
+    data.readings.columns = request_.readings.size();
   }
 
-  void read_line(const CsvLines& lines) {
+  void read_line(std::string_view line, std::size_t number) {
     ++data_.records;
-    line_ = lines.line();
+    line_ = line;
     complaint_ = {};
-    number_ = lines.number();
+    number_ = number;
     if (check_fields()) read_sample();
     if (complaint_.column != 0) add_corrupt(data_, path_, number_, complaint_.column, complaint_.what);
   }
@@ -82,7 +97,7 @@ class TableReader {
   std::vector<const BoundColumn*> readings_;  ///< of a sensor, as LogRequest::readings; null: no such column
   std::size_t field_count_;
   const std::string& path_;
-  const LogRequest& request_;
+  const LogRequest request_;
   LogData& data_;
   AccuracyRule accuracy_;
   std::int64_t offset_ = 0;
@@ -91,6 +106,7 @@ class TableReader {
   std::string_view line_;
   std::size_t number_ = 0;
   std::vector<std::string_view> fields_;
+  std::vector<double> row_;
   Complaint complaint_;
 };
 
@@ -134,12 +150,12 @@ void TableReader::read_sample() {
   if (request_.stream == StreamKind::gnss && !has_fix()) return;
   const std::optional<Stamp> at = stamp();
   if (!at) return;
+  if (request_.stream == StreamKind::sensor || !request_.readings.empty()) return read_readings(*at);
   if (request_.stream == StreamKind::odometry) {
     const OdometrySample sample{*at, number(bound_.speed, true), number(bound_.yaw_rate, true)};
     if (complaint_.column == 0) data_.odometry.push_back(sample);
     return;
   }
-  if (request_.stream == StreamKind::sensor) return read_readings(*at);
   const double latitude = number(bound_.latitude, true);
   const double longitude = number(bound_.longitude, true);
   const double height = number(bound_.height, false);
@@ -164,12 +180,12 @@ void TableReader::read_sample() {
 }
 
 void TableReader::read_readings(Stamp at) {
-  std::vector<double> row;
+  row_.clear();
   for (std::size_t i = 0; i < request_.readings.size(); ++i)
-    row.push_back(number(readings_[i], request_.readings[i].required));
+    row_.push_back(number(readings_[i], request_.readings[i].required));
   if (complaint_.column != 0) return;
   data_.readings.stamps.push_back(at);
-  data_.readings.values.insert(data_.readings.values.end(), row.begin(), row.end());
+  data_.readings.values.insert(data_.readings.values.end(), row_.begin(), row_.end());
 }
 
 std::optional<Stamp> TableReader::stamp() {
@@ -205,7 +221,9 @@ double TableReader::number(const BoundColumn* column, bool required) {
   const std::string_view field = fields_[column->field];
   const std::optional<double> given = number_from_field(field);
   if (!given) {
-    complain(*column, fmt::format("expected a number, got '{}'", field));
+    const bool comma = field.find(',') != std::string_view::npos;
+    complain(*column,
+             fmt::format("expected a number{}, got '{}'", comma ? " with a decimal point" : "", field));
     return kNone;
   }
   if (std::isnan(*given)) {
@@ -279,21 +297,76 @@ void TableReader::complain(const BoundColumn& column, std::string what) {
   complaint_ = {column_of(line_, fields_[column.field]), fmt::format("{}: {}", column.quantity->name, what)};
 }
 
+/// Finds the table in the lines.
+class CsvDecoder final : public LineDecoder {
+ public:
+  using LineDecoder::LineDecoder;
+
+ private:
+  void take_line(std::string_view line, std::size_t number) override {
+    const std::string_view content = table_content(line, number);
+    if (content.empty()) return;
+    if (content.front() == '#') {
+      comment_ = content.substr(1);
+      return;
+    }
+    if (number == 1) line = content;  // without a byte order mark
+    if (table_) {
+      table_->read_line(line, number);
+    } else {
+      begin(line, number);
+    }
+  }
+  void begin(std::string_view line, std::size_t number) {
+    LogRequest resolved = request();
+    if (resolved.separator == 0) {
+      resolved.separator = separator_of(line);
+      if (resolved.separator != ',')
+        note(fmt::format("fields are separated by {} (not stated)", separator_name(resolved.separator)));
+    }
+    columns_.emplace(TableLine{line, number, comment_}, path(), resolved);
+    data_.notes.insert(data_.notes.end(), columns_->notes().begin(), columns_->notes().end());
+    table_.emplace(*columns_, path(), std::move(resolved), data_);
+    if (!columns_->first_line_is_header()) table_->read_line(line, number);
+  }
+  void end() override {
+    if (!table_) throw InputError(fmt::format("{}: the log is empty", path()));
+    table_->finish();
+  }
+
+  std::string comment_;
+  std::optional<CsvColumns> columns_;
+  std::optional<TableReader> table_;
+};
+
 }  // namespace
 
-LogData CsvLogReader::read_whole(std::string_view text, const std::string& path,
-                                 const LogRequest& request) const {
-  LogData data;
-  CsvLines lines(text);
-  if (!lines.next()) throw InputError(fmt::format("{}: the log is empty", path));
-  const CsvColumns columns(lines, path, request);
-  data.notes = columns.notes();
+std::unique_ptr<LogDecoder> CsvLogReader::open(const std::string& path, const LogRequest& request) const {
+  for (const auto& [key, file] : request.companions)
+    throw InputError(fmt::format("{}: a table takes no '{}' ({})", path, key, file.path));
+  return std::make_unique<CsvDecoder>(path, request);
+}
 
-  TableReader reader(columns, path, request, data);
-  if (!columns.first_line_is_header()) reader.read_line(lines);
-  while (lines.next()) reader.read_line(lines);
-  reader.finish();
-  return data;
+Recognition CsvLogReader::recognise(std::string_view head) const {
+  const std::size_t cut = head.rfind('\n');
+  CsvLines lines(head.substr(0, cut == std::string_view::npos ? head.size() : cut));
+  if (!lines.next() || head.find('\0') != std::string_view::npos) return {};
+  const char separator = separator_of(lines.line());
+  std::vector<std::string_view> fields;
+  if (!split_fields(lines.line(), separator, fields) || fields.size() < 2) return {};
+  const std::size_t width = fields.size();
+  std::size_t rows = 0;
+  std::size_t good = 0;
+  while (lines.next()) {
+    ++rows;
+    if (!split_fields(lines.line(), separator, fields) || fields.size() != width) continue;
+    good += std::any_of(fields.begin(), fields.end(), [](std::string_view field) {
+      const std::optional<double> number = number_from_field(field);
+      return number && !std::isnan(*number);
+    });
+  }
+  if (rows == 0 || 10 * good < 9 * rows) return {};
+  return {0.5, fmt::format("a table of {} columns separated by {}", width, separator_name(separator))};
 }
 
 }  // namespace waymark

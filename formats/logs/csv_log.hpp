@@ -29,10 +29,12 @@ namespace waymark {
 /// @throws InputError (from read) for an empty log, one where nothing was usable, a column that does not
 /// exist (with the columns present and the nearest), a quantity, unit or convention that does not exist,
 /// fixes without any accuracy.
-class CsvLogReader final : public WholeLogReader {
+class CsvLogReader final : public LogReader {
  public:
-  [[nodiscard]] LogData read_whole(std::string_view text, const std::string& path,
-                                   const LogRequest& request) const override;
+  [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,
+                                                 const LogRequest& request) const override;
+  /// Never surer than 0.5: most texts are some table.
+  [[nodiscard]] Recognition recognise(std::string_view head) const override;
 };
 
 }  // namespace waymark

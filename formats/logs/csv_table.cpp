@@ -1,5 +1,7 @@
 #include <waymark/formats/logs/csv_table.hpp>
 
+#include <algorithm>
+
 namespace waymark {
 namespace {
 
@@ -69,6 +71,24 @@ bool CsvLines::next() {
     comment_ = content.substr(1);
   }
   return false;
+}
+
+std::string_view table_content(std::string_view line, std::size_t number) {
+  if (number == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+  return trimmed(line);
+}
+
+char separator_of(std::string_view header) {
+  char best = ' ';
+  std::ptrdiff_t most = 0;
+  for (const char candidate : {',', ';', '\t'}) {
+    const std::ptrdiff_t count = std::count(header.begin(), header.end(), candidate);
+    if (count > most) {
+      most = count;
+      best = candidate;
+    }
+  }
+  return best;
 }
 
 bool split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {

@@ -8,6 +8,16 @@
 
 namespace waymark {
 
+/// A line that carries something.
+struct TableLine {
+  std::string_view text;
+  std::size_t number = 0;          ///< 1-based
+  std::string_view comment_above;  ///< the last comment between the line before and this one, without its '#'
+};
+
+/// What a line holds beside blanks; of a first line without its byte order mark.
+[[nodiscard]] std::string_view table_content(std::string_view line, std::size_t number);
+
 /// Walks through the lines that carry something: skips a byte order mark, blank lines and comments (first
 /// character that is no blank: '#'); line ends are "\n" or "\r\n".
 class CsvLines {
@@ -27,6 +37,10 @@ class CsvLines {
   std::string_view comment_;
   std::size_t number_ = 0;
 };
+
+/// The separator that a header shows: of ',' ';' tab the one it has most of (the first of equals), a blank
+/// where it has none of them.
+[[nodiscard]] char separator_of(std::string_view header);
 
 /// Splits a line into fields, as views into it: blanks around a field and quotes around its text are left out
 /// (a doubled quote inside stays doubled). Separator ' ' stands for any run of blanks and tabs. One empty

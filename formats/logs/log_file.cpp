@@ -1,7 +1,9 @@
 #include <waymark/formats/logs/log_file.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <filesystem>
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -32,12 +34,8 @@ class LogFile {
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) fail_read(path, errno);
     struct stat status {};
-    const bool known = ::fstat(descriptor, &status) == 0;
-    if (known && S_ISDIR(status.st_mode)) {
-      ::close(descriptor);
-      fail_read(path, EISDIR);
-    }
-    if (known && S_ISREG(status.st_mode)) size_ = static_cast<std::uint64_t>(status.st_size);
+    if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode))
+      size_ = static_cast<std::uint64_t>(status.st_size);
     file_ = ::gzdopen(descriptor, "rb");
     if (file_ == nullptr) {
       ::close(descriptor);
@@ -99,17 +97,36 @@ std::string what_it_may_be(std::string_view head) {
   return "state its 'format'; `waymark info` lists those there are";
 }
 
+/// The file itself, or of a folder the files in it, in order of name.
+std::vector<std::string> files_of(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) return {path};
+  std::error_code error;
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
+    if (entry.is_regular_file(ignored)) files.push_back(entry.path().string());
+  }
+  if (error) fail_read(path, error.value());
+  if (files.empty()) throw InputError(path + ": the folder holds no files");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 std::string read_head(const std::string& path) {
-  LogFile file(path);
   std::vector<char> buffer(kHead);
   std::string head;
-  while (head.size() < kHead) {
-    const std::string_view piece = file.next(buffer);
-    if (piece.empty()) break;
-    head += piece;
+  std::string trouble;
+  for (const std::string& name : files_of(path)) {
+    LogFile file(name);
+    while (head.size() < kHead) {
+      const std::string_view piece = file.next(buffer);
+      if (piece.empty()) break;
+      head += piece;
+    }
+    if (trouble.empty()) trouble = file.trouble();
+    if (head.size() >= kHead) break;
   }
-  if (head.empty())
-    throw InputError(path + (file.trouble().empty() ? ": the log is empty" : ": " + file.trouble()));
+  if (head.empty()) throw InputError(path + (trouble.empty() ? ": the log is empty" : ": " + trouble));
   return head;
 }
 
@@ -117,13 +134,21 @@ std::string read_head(const std::string& path) {
 
 std::string read_in_pieces(const std::string& path, const std::function<void(std::string_view)>& take,
                            const ReadProgress& progress) {
-  LogFile file(path);
   std::vector<char> buffer(kPiece);
-  for (std::string_view piece = file.next(buffer); !piece.empty(); piece = file.next(buffer)) {
-    take(piece);
-    if (progress) progress(file.done(), file.size());
+  std::string trouble;
+  const std::vector<std::string> files = files_of(path);
+  for (const std::string& name : files) {
+    LogFile file(name);
+    char last = '\n';
+    for (std::string_view piece = file.next(buffer); !piece.empty(); piece = file.next(buffer)) {
+      take(piece);
+      last = piece.back();
+      if (progress && files.size() == 1) progress(file.done(), file.size());
+    }
+    if (trouble.empty()) trouble = file.trouble();
+    if (files.size() > 1 && last != '\n') take("\n");  // a line does not go on in the next file
   }
-  return file.trouble();
+  return trouble;
 }
 
 LogData read_log_file(const LogReader& reader, const std::string& path, const LogRequest& request,

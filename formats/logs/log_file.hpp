@@ -19,7 +19,7 @@ using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t size)>
 /// its name) uncompressed. Memory does not grow with the file.
 /// @return what broke off the reading of a compressed file that is cut or damaged; empty where all of it was
 /// read
-/// @throws InputError "gnss.log: cannot read: No such file or directory" and the like, also for a folder
+/// @throws InputError "gnss.log: cannot read: No such file or directory" and the like
 [[nodiscard]] std::string read_in_pieces(const std::string& path,
                                          const std::function<void(std::string_view)>& take,
                                          const ReadProgress& progress = {});

@@ -17,6 +17,10 @@ std::span<const LogReaderType> builtin_log_readers() {
   return readers;
 }
 
+void register_log_readers(TypeRegistry& registry) {
+  for (const LogReaderType& reader : builtin_log_readers()) registry.add_log_reader(reader);
+}
+
 const LogReader* builtin_log_reader(std::string_view name) {
   for (const LogReaderType& entry : builtin_log_readers()) {
     if (entry.name == name) return entry.reader;

@@ -100,11 +100,23 @@ Quantity sensor_quantity(const SensorColumn& column) {
                    column.sense + "'; SensorColumn in core/sample.hpp lists those there are");
 }
 
+/// Of odometry in pieces: none is required, speed and yaw rate are those of whole odometry.
+std::vector<Quantity> channel_quantities(std::span<const SensorColumn> channels) {
+  std::vector<Quantity> own{kTime};
+  for (const SensorColumn& channel : channels) {
+    const Quantity* whole = find_named(std::span<const Quantity>(kOdometry), channel.name);
+    own.push_back(whole != nullptr ? *whole : sensor_quantity(channel));
+    own.back().required = false;
+  }
+  return own;
+}
+
 }  // namespace
 
 std::vector<Quantity> quantities(const LogRequest& request) {
   switch (request.stream) {
     case StreamKind::odometry:
+      if (!request.readings.empty()) return channel_quantities(request.readings);
       return {kOdometry.begin(), kOdometry.end()};
     case StreamKind::gnss:
       return {kGnss.begin(), kGnss.end()};

@@ -41,7 +41,7 @@ bool is_absent(const DriveCase& drive) {
 DriveSkeleton skeleton_of(const DriveCase& drive, StartMethod start, const TypeRegistry& registry) {
   DriveConfig config = load_drive_config(drive.yaml.string(), drive.data.string());
   config.start.method = start;
-  return build_skeleton(load_drive(config, builtin_log_reader), config, registry);
+  return build_skeleton(load_drive(config, registry), config, registry);
 }
 
 Summary solve(GraphDocument& document, const std::string& algorithm, const TypeRegistry& registry) {
@@ -65,7 +65,8 @@ TEST_CASE("From the anchored start all modelings and algorithms reach one minimu
   const auto drive = GENERATE(from_range(drives()));
   if (is_absent(drive)) return;
   INFO(drive.name);
-  const TypeRegistry registry = waymark_test::full_registry();
+  TypeRegistry registry = waymark_test::full_registry();
+  register_log_readers(registry);
   const DriveSkeleton plain = skeleton_of(drive, StartMethod::anchored, registry);
   DriveSkeleton effective = plain;
   add_identity_covariance(effective);
@@ -97,7 +98,8 @@ TEST_CASE("From dead reckoning no failure passes for a success") {
   const auto drive = GENERATE(from_range(drives()));
   if (is_absent(drive)) return;
   INFO(drive.name);
-  const TypeRegistry registry = waymark_test::full_registry();
+  TypeRegistry registry = waymark_test::full_registry();
+  register_log_readers(registry);
   GraphDocument best = add_modeling(skeleton_of(drive, StartMethod::anchored, registry), "g1", {}, registry);
   const double minimum = solve(best, "dogleg", registry).final_chi2;
   const DriveSkeleton skeleton = skeleton_of(drive, StartMethod::dead_reckoning, registry);

@@ -41,9 +41,9 @@ std::string error_of_gnss(const std::string& entries) {
 TEST_CASE("drive.yaml: the least there is, and its defaults") {
   const DriveConfig config = parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n");
   CHECK(config.name == "drive");
-  CHECK(config.odometry->file == "tours/o.csv");
-  CHECK(config.odometry->format == "csv");
-  CHECK(config.odometry->request.stream == StreamKind::odometry);
+  CHECK(config.odometry.front().file == "tours/o.csv");
+  CHECK(config.odometry.front().format == "csv");
+  CHECK(config.odometry.front().request.stream == StreamKind::odometry);
   REQUIRE(config.gnss.size() == 1);
   CHECK(config.gnss[0].file == "tours/g.csv");
   CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::automatic);
@@ -92,8 +92,8 @@ modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
   CHECK(*config.to_s == 70.5);
   CHECK(*config.utm_zone == -56);
   CHECK(*config.utm_origin == Eigen::Vector2d(300000, 6250000));
-  CHECK(config.odometry->file == "tours/logs/can.tsv");
-  const LogRequest& odometry = config.odometry->request;
+  CHECK(config.odometry.front().file == "tours/logs/can.tsv");
+  const LogRequest& odometry = config.odometry.front().request;
   CHECK(odometry.separator == '\t');
   CHECK(odometry.columns.at("time").column == "1");
   CHECK(odometry.columns.at("speed").unit == "km/h");
@@ -132,7 +132,7 @@ modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
 TEST_CASE("drive.yaml: a data folder given from outside replaces the stated one, absolute names stand") {
   const DriveConfig config =
       parse("folder: logs\nodometry: {file: o.csv}\ngnss: {file: /g.csv}\n", "/elsewhere");
-  CHECK(config.odometry->file == "/elsewhere/o.csv");
+  CHECK(config.odometry.front().file == "/elsewhere/o.csv");
   CHECK(config.gnss[0].file == "/g.csv");
 }
 

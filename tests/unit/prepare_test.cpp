@@ -19,6 +19,12 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+TypeRegistry registry_with_readers() {
+  TypeRegistry registry;
+  register_log_readers(registry);
+  return registry;
+}
+
 OdometrySample odometry_at(double t, double speed = 1, double yaw_rate = 0) {
   return {Stamp::from_seconds(t), speed, yaw_rate};
 }
@@ -43,8 +49,9 @@ GeodeticTruth truth_at(double t) {
 /// Ten seconds of odometry at 10 Hz from t = 100 s, fixes at 101, 102, ... 108 s.
 DriveLogs small_drive() {
   DriveLogs logs;
-  logs.odometry.file = "odometry.csv";
-  for (int i = 0; i <= 100; ++i) logs.odometry.data.odometry.push_back(odometry_at(100 + 0.1 * i));
+  logs.odometry.resize(1);
+  logs.odometry.front().file = "odometry.csv";
+  for (int i = 0; i <= 100; ++i) logs.odometry.front().data.odometry.push_back(odometry_at(100 + 0.1 * i));
   logs.gnss.emplace_back();
   logs.gnss[0].file = "gnss.csv";
   for (int i = 1; i <= 8; ++i) logs.gnss[0].data.fixes.push_back(fix_at(100 + i));
@@ -80,7 +87,7 @@ TEST_CASE("prepare: a clean drive passes whole") {
 
 TEST_CASE("prepare: disorder, repetition, garbage and reversing are counted") {
   DriveLogs logs = small_drive();
-  auto& odometry = logs.odometry.data.odometry;
+  auto& odometry = logs.odometry.front().data.odometry;
   std::swap(odometry[10], odometry[11]);
   odometry.push_back(odometry_at(100.5));         // identical to an earlier one, and out of order
   odometry.push_back(odometry_at(100.6, 7));      // conflicting: the first is kept
@@ -125,7 +132,7 @@ TEST_CASE("prepare: two receivers may speak at one stamp: one epoch, two fixes")
 
 TEST_CASE("prepare: gaps are named") {
   DriveLogs logs = small_drive();
-  std::erase_if(logs.odometry.data.odometry, [](const OdometrySample& s) {
+  std::erase_if(logs.odometry.front().data.odometry, [](const OdometrySample& s) {
     return s.stamp.seconds() > 103.05 && s.stamp.seconds() < 104.95;
   });
   std::erase_if(logs.gnss[0].data.fixes,
@@ -196,9 +203,10 @@ TEST_CASE("prepare: every n-th epoch is withheld") {
 
 TEST_CASE("prepare: logs on other scales are converted, which needs dates") {
   DriveLogs logs;
-  logs.odometry.scale = TimeScale::gps;
-  logs.odometry.file = "odometry.csv";
-  for (int i = 0; i < 30; ++i) logs.odometry.data.odometry.push_back(odometry_at(1'200'000'000 + i));
+  logs.odometry.resize(1);
+  logs.odometry.front().scale = TimeScale::gps;
+  logs.odometry.front().file = "odometry.csv";
+  for (int i = 0; i < 30; ++i) logs.odometry.front().data.odometry.push_back(odometry_at(1'200'000'000 + i));
   logs.gnss.emplace_back();
   logs.gnss[0].scale = TimeScale::utc;
   logs.gnss[0].data.fixes.push_back(fix_at(1'200'000'000 + 315'964'800 - 18 + 5));  // 18 leap seconds in 2018
@@ -215,7 +223,7 @@ TEST_CASE("prepare: logs on other scales are converted, which needs dates") {
 
 TEST_CASE("prepare: what cannot become a drive says why and what to do") {
   DriveLogs logs = small_drive();
-  logs.odometry.data.odometry.resize(1);
+  logs.odometry.front().data.odometry.resize(1);
   CHECK_THROWS_MATCHES(prepare_drive(logs, small_config()), InputError,
                        Message("odometry.csv: 1 usable odometry samples; at least 2 are needed"));
   logs = small_drive();
@@ -247,13 +255,13 @@ TEST_CASE("prepare: what cannot become a drive says why and what to do") {
 
 TEST_CASE("prepare: reading the logs of a config") {
   DriveConfig config = small_config();
-  CHECK_THROWS_MATCHES(load_drive(config, builtin_log_reader), InputError,
+  CHECK_THROWS_MATCHES(load_drive(config, registry_with_readers()), InputError,
                        Message("drive.yaml: no odometry log is named"));
-  config.odometry.emplace();
-  config.odometry->place = "drive.yaml:2:3: ";
-  config.odometry->format = "cvs";
-  CHECK_THROWS_MATCHES(load_drive(config, builtin_log_reader), InputError,
-                       Message("drive.yaml:2:3: unknown log format 'cvs'; `waymark info` lists those there "
+  config.odometry.emplace_back();
+  config.odometry.front().place = "drive.yaml:2:3: ";
+  config.odometry.front().format = "cvs";
+  CHECK_THROWS_MATCHES(load_drive(config, registry_with_readers()), InputError,
+                       Message("drive.yaml:2:3: unknown log format 'cvs'; did you mean 'csv'?; `waymark info` lists those there "
                                "are; a plugin that brings it is loaded with --plugin"));
 }
 
@@ -281,7 +289,7 @@ TEST_CASE("prepare: the real drives that come as configs") {
     }
     INFO(expected.name);
     const PreparedDrive drive =
-        load_drive(load_drive_config(yaml.string(), folder.string()), builtin_log_reader);
+        load_drive(load_drive_config(yaml.string(), folder.string()), registry_with_readers());
     CHECK(drive.frame.zone == expected.zone);
     CHECK(drive.fixes.size() >= expected.fixes);
     CHECK(drive.odometry.size() >= expected.odometry);

@@ -1,5 +1,6 @@
 #include <waymark/tools/drive/config.hpp>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/logs/odometry_channels.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/drive/log_config.hpp>
 #include <waymark/tools/drive/yaml_section.hpp>
@@ -22,6 +24,7 @@ constexpr std::array<std::string_view, 2> kStarts{"anchored", "dead_reckoning"};
 constexpr std::array<std::string_view, 2> kNoises{"estimate", "stated"};
 constexpr std::array<std::string_view, 4> kSwitch{"on", "off", "true", "false"};
 constexpr std::array kSwitchValues{true, false, true, false};
+constexpr NumberRule kRate{1e-3, 1000, "a rate in Hz from 0.001 to 1000"};
 constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
 constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
 constexpr NumberRule kAngle{std::numeric_limits<double>::min(), 180, "degrees above 0, up to 180"};
@@ -89,14 +92,68 @@ void read_options(const YamlSection& section, std::string_view key, const std::s
   }
 }
 
+std::vector<YAML::Node> entries_of(const YAML::Node& node) {
+  std::vector<YAML::Node> entries;
+  if (node.IsSequence()) {
+    for (const auto& entry : node) entries.push_back(entry);
+  } else {
+    entries.push_back(node);
+  }
+  return entries;
+}
+
+void read_assembly(const YamlSection& section, OdometryAssembly& assembly) {
+  section.read("rate", assembly.rate_hz, kRate);
+  if (const auto word = section.read_word("speed_from", kSpeedSources))
+    assembly.speed_from = kSpeedSources[*word];
+  if (const auto word = section.read_word("yaw_rate_from", kYawRateSources))
+    assembly.yaw_rate_from = kYawRateSources[*word];
+  if (const auto gyro = section.section("gyro", {"axis"})) {
+    if (const auto word = gyro->read_word("axis", kGyroAxes)) assembly.gyro_axis = kGyroAxes[*word];
+  }
+  const auto vehicle = section.section(
+      "vehicle", {"track_width", "wheelbase", "steering_ratio", "metres_per_tick", "tick_range"});
+  if (!vehicle) return;
+  vehicle->read("track_width", assembly.track_width_m, kPositive);
+  vehicle->read("wheelbase", assembly.wheelbase_m, kPositive);
+  vehicle->read("steering_ratio", assembly.steering_ratio, kPositive);
+  vehicle->read("metres_per_tick", assembly.metres_per_tick, kPositive);
+  vehicle->read("tick_range", assembly.tick_range, kPositive);
+}
+
+/// Whether a log's columns name more than whole odometry has: then it holds channels.
+bool names_channels(const YamlSection& section) {
+  const auto columns = section.free_section("columns");
+  if (!columns) return false;
+  const std::vector<std::string> keys = columns->keys();
+  return std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
+    return key != "time" && key != "speed" && key != "yaw_rate";
+  });
+}
+
 void read_odometry(const YamlSection& top, DriveConfig& config) {
-  const auto section =
-      top.section("odometry", {"file", "format", "separator", "columns", "time", "model", "noise"});
-  if (!section) throw InputError(top.place() + "'odometry' is missing");
-  config.odometry = read_log_config(*section, StreamKind::odometry, config.folder, config.time_scale);
-  section->read("model", config.odometry_model);
-  if (section->has("model")) config.places["odometry.model"] = section->place("model");
-  read_options(*section, "noise", "odometry.noise.", config.odometry_options, config);
+  if (!top.has("odometry")) throw InputError(top.place() + "'odometry' is missing");
+  const YamlSection section(
+      top.node("odometry"), "odometry", top.file(),
+      log_keys({"parts", "rate", "speed_from", "yaw_rate_from", "gyro", "vehicle", "model", "noise"}));
+  const auto read_log = [&](const YamlSection& from, bool in_channels) {
+    LogRequest request;
+    request.stream = StreamKind::odometry;
+    if (in_channels) request.readings = odometry_channels();
+    config.odometry.push_back(read_log_config(from, request, config.folder, config.time_scale));
+  };
+  if (section.has("parts")) {
+    if (section.has("file")) section.fail("file", "give either 'file' or 'parts'");
+    for (const YAML::Node& entry : entries_of(section.node("parts")))
+      read_log(YamlSection(entry, "odometry.parts", top.file(), log_keys()), true);
+    if (config.odometry.empty()) section.fail("parts", "at least one log is needed");
+  } else {
+    read_log(section, names_channels(section));
+  }
+  read_assembly(section, config.assembly);
+  section.read("model", config.odometry_model);
+  if (section.has("model")) config.places["odometry.model"] = section.place("model");
+  read_options(section, "noise", "odometry.noise.", config.odometry_options, config);
 }
 
 Receiver read_receiver(const YamlSection& section) {
@@ -115,16 +172,6 @@ Receiver read_receiver(const YamlSection& section) {
   return receiver;
 }
 
-std::vector<YAML::Node> entries_of(const YAML::Node& node) {
-  std::vector<YAML::Node> entries;
-  if (node.IsSequence()) {
-    for (const auto& entry : node) entries.push_back(entry);
-  } else {
-    entries.push_back(node);
-  }
-  return entries;
-}
-
 void read_gnss(const YamlSection& top, DriveConfig& config) {
   if (!top.has("gnss")) throw InputError(top.place() + "'gnss' is missing");
   const std::vector<YAML::Node> entries = entries_of(top.node("gnss"));
@@ -132,10 +179,10 @@ void read_gnss(const YamlSection& top, DriveConfig& config) {
   std::optional<Receiver> first;
   for (const YAML::Node& entry : entries) {
     const YamlSection section(entry, "gnss", top.file(),
-                              {"file", "format", "separator", "columns", "time", "accuracy", "antenna",
-                               "period", "rate", "delay", "withhold_every"});
-    LogConfig log = read_log_config(section, StreamKind::gnss, config.folder, config.time_scale);
-    log.request.source = static_cast<int>(config.gnss.size());
+                              log_keys({"accuracy", "antenna", "period", "rate", "delay", "withhold_every"}));
+    LogRequest request;
+    request.source = static_cast<int>(config.gnss.size());
+    LogConfig log = read_log_config(section, request, config.folder, config.time_scale);
     config.gnss.push_back(std::move(log));
     const Receiver receiver = read_receiver(section);
     if (first && !(receiver == *first))
@@ -150,10 +197,12 @@ void read_gnss(const YamlSection& top, DriveConfig& config) {
 }
 
 void read_truth(const YamlSection& top, DriveConfig& config) {
-  const auto section = top.section("truth", {"file", "format", "separator", "columns", "time", "reference"});
-  if (!section) return;
-  config.truth = read_log_config(*section, StreamKind::truth, config.folder, config.time_scale);
-  section->read("reference", config.truth_reference_m);
+  if (!top.has("truth")) return;
+  const YamlSection section(top.node("truth"), "truth", top.file(), log_keys({"accuracy", "reference"}));
+  LogRequest request;
+  request.stream = StreamKind::truth;
+  config.truth = read_log_config(section, request, config.folder, config.time_scale);
+  section.read("reference", config.truth_reference_m);
 }
 
 void read_gate(const YamlSection& top, DriveConfig& config) {
@@ -208,14 +257,14 @@ void read_calibration(const YamlSection& top, DriveConfig& config) {
 void read_sensors(const YamlSection& top, DriveConfig& config) {
   if (!top.has("sensors")) return;
   for (const YAML::Node& entry : entries_of(top.node("sensors"))) {
-    const YamlSection section(entry, "sensors", top.file(),
-                              {"name", "file", "format", "separator", "columns", "time", "options"});
+    const YamlSection section(entry, "sensors", top.file(), log_keys({"name", "options"}));
     SensorConfig sensor;
     sensor.place = section.place();
     section.read("name", sensor.name);
     if (sensor.name.empty()) throw InputError(sensor.place + "sensors: 'name' is missing");
-    if (section.has("file"))
-      sensor.log = read_log_config(section, StreamKind::sensor, config.folder, config.time_scale);
+    LogRequest request;
+    request.stream = StreamKind::sensor;
+    if (section.has("file")) sensor.log = read_log_config(section, request, config.folder, config.time_scale);
     read_options(section, "options", "sensors." + sensor.name + ".", sensor.options, config);
     config.sensors.push_back(std::move(sensor));
   }

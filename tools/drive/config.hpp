@@ -13,6 +13,7 @@
 #include <waymark/core/log_reader.hpp>
 #include <waymark/core/stamp.hpp>
 #include <waymark/tools/drive/gate.hpp>
+#include <waymark/tools/drive/odometry_parts.hpp>
 #include <waymark/tools/drive/start.hpp>
 #include <waymark/tools/drive/timeline.hpp>
 
@@ -20,10 +21,12 @@ namespace waymark {
 
 /// One log of a stream: which reader, which file, how to read it.
 struct LogConfig {
-  std::string file;            ///< as resolved against the folder of the logs
-  std::string format = "csv";  ///< name of a registered log reader
-  LogRequest request;
-  std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
+  std::string file;  ///< as resolved against the folder of the logs
+  std::string format =
+      "csv";           ///< name of a registered log reader; "auto": the one that knows the log's content
+  LogRequest request;  ///< without the text of companions
+  std::map<std::string, std::string> companions;  ///< files that belong to the log, resolved, by key ("dbc")
+  std::string place;                              ///< "drive.yaml:12:5: " of the entry, for messages
 };
 
 /// A further sensor of the vehicle.
@@ -42,10 +45,11 @@ struct OutagePattern {
 
 /// A drive to be fused.
 struct DriveConfig {
-  std::string path;    ///< of the drive.yaml itself
-  std::string name;    ///< default: the file's name without ".yaml"
-  std::string folder;  ///< where relative log names are looked up
-  std::optional<LogConfig> odometry;
+  std::string path;                 ///< of the drive.yaml itself
+  std::string name;                 ///< default: the file's name without ".yaml"
+  std::string folder;               ///< where relative log names are looked up
+  std::vector<LogConfig> odometry;  ///< one, or the parts that odometry is put together from
+  OdometryAssembly assembly;
   std::vector<LogConfig> gnss;  ///< at least one
   std::optional<LogConfig> truth;
   std::vector<SensorConfig> sensors;

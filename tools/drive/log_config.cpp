@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/iso8601.hpp>
 #include <waymark/formats/logs/csv_columns.hpp>
 #include <waymark/formats/logs/quantity.hpp>
 #include <waymark/formats/suggest.hpp>
@@ -18,8 +19,11 @@ constexpr std::array<std::string_view, 5> kMeanings{"auto", "95", "1sigma", "drm
 constexpr std::array kMeaningValues{AccuracyMeaning::automatic, AccuracyMeaning::percent95,
                                     AccuracyMeaning::one_sigma, AccuracyMeaning::drms,
                                     AccuracyMeaning::cep50};
-constexpr std::array<std::string_view, 7> kSeparators{",", ";", "tab", "blank", "comma", "semicolon", "\t"};
-constexpr std::array kSeparatorValues{',', ';', '\t', ' ', ',', ';', '\t'};
+constexpr std::array<std::string_view, 8> kSeparators{",",     ";",         "tab", "blank",
+                                                      "comma", "semicolon", "\t",  "auto"};
+constexpr std::array kSeparatorValues{',', ';', '\t', ' ', ',', ';', '\t', '\0'};
+/// Keys of files that belong to a log.
+constexpr std::array<std::string_view, 2> kCompanions{"dbc", "timestamps"};
 constexpr NumberRule kWeek{0, 9999, "a GPS week from 0 to 9999"};
 constexpr NumberRule kOffset{-1e9, 1e9, "a number of seconds"};
 
@@ -39,7 +43,7 @@ ColumnRequest read_column(const YamlSection& columns, const std::string& key) {
 void read_columns(const YamlSection& section, LogRequest& request) {
   if (!section.has("columns")) return;
   const bool of_sensor = request.stream == StreamKind::sensor;  // only its plugin knows the quantities
-  const std::vector<Quantity> known = quantities(request);
+  std::vector<Quantity> known = quantities(request);
   const YamlSection columns =
       of_sensor ? *section.free_section("columns")
                 : YamlSection(section.node("columns"), "columns", section.file(), names_of(known));
@@ -52,45 +56,82 @@ void read_columns(const YamlSection& section, LogRequest& request) {
   }
 }
 
+/// UTC midnight of "2009-04-01".
+void read_date(const YamlSection& time, LogRequest& request) {
+  if (!time.has("date")) return;
+  std::string text;
+  time.read("date", text);
+  request.date = stamp_from_iso8601(text + "T00:00:00Z");
+  if (!request.date) time.fail_value("date", "a date such as 2009-04-01");
+}
+
 void read_time(const YamlSection& section, LogRequest& request) {
-  const auto time = section.section("time", {"scale", "week", "offset"});
+  const auto time = section.section("time", {"scale", "week", "date", "offset"});
   if (!time) return;
   if (const auto scale = time->read_word("scale", kScales))
     request.time_scale = *time_scale_from_string(kScales[*scale]);
   time->read("week", request.gps_week, kWeek);
+  read_date(*time, request);
   time->read("offset", request.time_offset_s, kOffset);
   if (request.gps_week != 0 && request.time_scale != TimeScale::gps)
     time->fail("week", "a week belongs to the scale gps");
 }
 
+void read_accuracy(const YamlSection& section, LogRequest& request) {
+  const auto accuracy = section.section("accuracy", {"meaning", "default_sigma", "range_error"});
+  if (!accuracy) return;
+  if (const auto meaning = accuracy->read_word("meaning", kMeanings))
+    request.accuracy = kMeaningValues[*meaning];
+  accuracy->read("default_sigma", request.default_sigma_m, kNotNegative);
+  accuracy->read("range_error", request.range_error_m, kNotNegative);
+}
+
+/// Columns are those of tables and the signals of CAN frames; separators those of tables.
+void check_tables(const YamlSection& section, const std::string& format) {
+  if (format == "csv" || format == "auto") return;
+  if (section.has("separator"))
+    section.fail("separator", fmt::format("belongs to the format csv, not to {}", format));
+  if (section.has("columns") && format != "candump")
+    section.fail("columns", fmt::format("belongs to the formats csv and candump, not to {}", format));
+}
+
+std::string resolved(const std::string& folder, const std::string& file) {
+  return (std::filesystem::path(folder) / file).lexically_normal().string();
+}
+
 }  // namespace
 
-LogConfig read_log_config(const YamlSection& section, StreamKind stream, const std::string& folder,
+std::vector<std::string_view> log_keys(std::initializer_list<std::string_view> own) {
+  std::vector<std::string_view> keys{"file", "format", "separator", "columns", "time"};
+  keys.insert(keys.end(), kCompanions.begin(), kCompanions.end());
+  keys.insert(keys.end(), own);
+  return keys;
+}
+
+LogConfig read_log_config(const YamlSection& section, LogRequest request, const std::string& folder,
                           TimeScale drive_scale) {
   LogConfig log;
   log.place = section.place();
-  log.request.stream = stream;
+  log.request = std::move(request);
   log.request.time_scale = drive_scale;
   std::string file;
   section.read("file", file);
-  if (file.empty()) throw InputError(fmt::format("{}{}: 'file' is missing", log.place, to_string(stream)));
-  log.file = (std::filesystem::path(folder) / file).lexically_normal().string();
+  if (file.empty())
+    throw InputError(fmt::format("{}{}: 'file' is missing", log.place, to_string(log.request.stream)));
+  log.file = resolved(folder, file);
   section.read("format", log.format);
-  if (log.format != "csv") {
-    for (const std::string_view key : {"columns", "separator"}) {
-      if (section.has(key))
-        section.fail(key, fmt::format("belongs to the format csv, not to {}", log.format));
-    }
+  check_tables(section, log.format);
+  for (const std::string_view key : kCompanions) {
+    if (!section.has(key)) continue;
+    std::string companion;
+    section.read(key, companion);
+    log.companions[std::string(key)] = resolved(folder, companion);
   }
   if (const auto separator = section.read_word("separator", kSeparators))
     log.request.separator = kSeparatorValues[*separator];
   read_columns(section, log.request);
   read_time(section, log.request);
-  if (const auto accuracy = section.section("accuracy", {"meaning", "default_sigma"})) {
-    if (const auto meaning = accuracy->read_word("meaning", kMeanings))
-      log.request.accuracy = kMeaningValues[*meaning];
-    accuracy->read("default_sigma", log.request.default_sigma_m, kNotNegative);
-  }
+  read_accuracy(section, log.request);
   return log;
 }
 

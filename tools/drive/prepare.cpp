@@ -42,11 +42,39 @@ bool finite_place(const auto& sample) {
   return std::isfinite(sample.latitude_deg) && std::isfinite(sample.longitude_deg);
 }
 
+/// Puts logs in channels together. @throws InputError where some are whole odometry and some are not
+void assemble_parts(const DriveLogs& logs, const DriveConfig& config, std::vector<OdometrySample>& odometry,
+                    PrepareReport& report) {
+  std::vector<OdometryPart> parts;
+  for (const DriveLogs::Log& log : logs.odometry) {
+    if (log.data.readings.size() == 0) continue;
+    OdometryPart part{log.data.readings, log.file};
+    put_on_scale(part.readings.stamps, log, config.time_scale, [](Stamp& stamp) -> Stamp& { return stamp; });
+    parts.push_back(std::move(part));
+  }
+  if (parts.empty()) return;
+  if (!odometry.empty())
+    throw InputError(
+        fmt::format("{}: some of the odometry's parts hold speed and yaw rate side by side, others channels; "
+                    "leave out what is not needed",
+                    config.path));
+  AssembledOdometry assembled = [&] {
+    try {
+      return assemble_odometry(parts, config.assembly, config.timeline.gap_s);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", config.path, error.what()));
+    }
+  }();
+  odometry = std::move(assembled.samples);
+  report.notes.insert(report.notes.end(), assembled.notes.begin(), assembled.notes.end());
+}
+
 std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveConfig& config,
                                              PrepareReport& report) {
   std::vector<OdometrySample> odometry;
-  append_log(logs.odometry.data.odometry, logs.odometry, config.time_scale, odometry, report.odometry,
-             report);
+  for (const DriveLogs::Log& log : logs.odometry)
+    append_log(log.data.odometry, log, config.time_scale, odometry, report.odometry, report);
+  assemble_parts(logs, config, odometry, report);
   clean_stream(
       odometry, report.odometry,
       [](const OdometrySample& s) { return std::isfinite(s.speed_mps) && std::isfinite(s.yaw_rate_radps); },
@@ -55,8 +83,8 @@ std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveC
         return a.speed_mps == b.speed_mps && a.yaw_rate_radps == b.yaw_rate_radps;
       });
   if (odometry.size() < 2)
-    throw InputError(fmt::format("{}: {} usable odometry samples; at least 2 are needed", logs.odometry.file,
-                                 odometry.size()));
+    throw InputError(fmt::format("{}: {} usable odometry samples; at least 2 are needed",
+                                 logs.odometry.front().file, odometry.size()));
   const std::int64_t first = odometry.front().stamp.nanoseconds;
   const std::size_t before = odometry.size();
   const double length_s = seconds_between(odometry.front().stamp, odometry.back().stamp);

@@ -1,6 +1,7 @@
 /// From logs to one drive on one clock: sorted, cleaned, projected, and a report of everything that was done.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -10,7 +11,9 @@
 
 #include <waymark/core/frame.hpp>
 #include <waymark/core/log_reader.hpp>
+#include <waymark/core/registry.hpp>
 #include <waymark/core/sample.hpp>
+#include <waymark/formats/logs/log_file.hpp>
 #include <waymark/tools/drive/config.hpp>
 
 namespace waymark {
@@ -73,10 +76,10 @@ struct DriveLogs {
     TimeScale scale = TimeScale::gps;
     std::string file;  ///< for messages
   };
-  Log odometry;
-  std::vector<Log> gnss;     ///< in the order of DriveConfig::gnss
-  std::vector<Log> truth;    ///< none or one
-  std::vector<Log> sensors;  ///< as DriveConfig::sensors; nothing in it for one without a log
+  std::vector<Log> odometry;  ///< in the order of DriveConfig::odometry
+  std::vector<Log> gnss;      ///< in the order of DriveConfig::gnss
+  std::vector<Log> truth;     ///< none or one
+  std::vector<Log> sensors;   ///< as DriveConfig::sensors; nothing in it for one without a log
 };
 
 /// Puts logs onto one clock and into one frame. Pure.
@@ -92,14 +95,16 @@ struct DriveLogs {
 /// date.
 [[nodiscard]] PreparedDrive prepare_drive(const DriveLogs& logs, const DriveConfig& config);
 
-/// Finds a log reader by name; null for an unknown one.
-using LogReaderLookup = std::function<const LogReader*(std::string_view name)>;
+/// Told while a log is read: its file, bytes done and in all (0: not known). May throw to stop.
+using LogWatch = std::function<void(const std::string& file, std::uint64_t done, std::uint64_t size)>;
 
 /// Reads the logs that a drive.yaml names.
 /// @throws InputError for an unknown format, a missing file, an unusable log.
-[[nodiscard]] DriveLogs read_drive_logs(const DriveConfig& config, const LogReaderLookup& find_reader);
+[[nodiscard]] DriveLogs read_drive_logs(const DriveConfig& config, const TypeRegistry& registry,
+                                        const LogWatch& watch = {});
 
 /// read_drive_logs and prepare_drive.
-[[nodiscard]] PreparedDrive load_drive(const DriveConfig& config, const LogReaderLookup& find_reader);
+[[nodiscard]] PreparedDrive load_drive(const DriveConfig& config, const TypeRegistry& registry,
+                                       const LogWatch& watch = {});
 
 }  // namespace waymark

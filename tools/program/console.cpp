@@ -1,6 +1,9 @@
 #include <unistd.h>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+
+#include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
@@ -61,6 +64,23 @@ void Console::progress(const std::string& text) const {
 
 void Console::end_progress() const {
   if (show_progress_) std::fputs("\r\033[K", stderr);
+}
+
+std::function<void(const std::string& file, std::uint64_t done, std::uint64_t size)> watch_reading(
+    const Console& console) {
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kBetween{100};
+  return [&console, shown = Clock::time_point{}](const std::string& file, std::uint64_t done,
+                                                 std::uint64_t size) mutable {
+    stop_if_interrupted();
+    const Clock::time_point now = Clock::now();
+    if (now - shown < kBetween) return;
+    shown = now;
+    const std::string name = file.substr(file.find_last_of('/') + 1);
+    console.progress(size > 0 ? fmt::format("reading {}: {} of {} MB, {} %", name, done >> 20U, size >> 20U,
+                                            100 * done / size)
+                              : fmt::format("reading {}: {} MB", name, done >> 20U));
+  };
 }
 
 }  // namespace waymark

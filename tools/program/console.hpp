@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -54,5 +55,11 @@ class Console {
   CommonOptions options_;
   bool show_progress_;
 };
+
+/// Shows how far the reading of a log has come, and lets Ctrl-C end it: to be told of each piece read
+/// (LogWatch).
+/// @param console  must outlive what is returned
+[[nodiscard]] std::function<void(const std::string& file, std::uint64_t done, std::uint64_t size)>
+watch_reading(const Console& console);
 
 }  // namespace waymark

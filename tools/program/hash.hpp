@@ -7,17 +7,33 @@
 
 namespace waymark {
 
-/// FNV-1a, 64 bits, as 16 hexadecimal digits. Tells files apart; it is no protection against forgery.
+/// FNV-1a, 64 bits. Tells files apart; it is no protection against forgery.
 /// Source: Fowler, Noll, Vo; RFC draft "The FNV Non-Cryptographic Hash Algorithm".
-[[nodiscard]] inline std::string fnv1a64_hex(std::string_view bytes) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char byte : bytes) {
-    hash ^= static_cast<unsigned char>(byte);
-    hash *= 1099511628211ULL;
+class Fnv1a64 {
+ public:
+  void add(std::string_view bytes) {
+    for (const char byte : bytes) {
+      hash_ ^= static_cast<unsigned char>(byte);
+      hash_ *= 1099511628211ULL;
+    }
   }
-  std::string text(16, '0');
-  for (int i = 15; i >= 0; --i, hash >>= 4) text[static_cast<std::size_t>(i)] = "0123456789abcdef"[hash & 15];
-  return text;
+  /// 16 hexadecimal digits.
+  [[nodiscard]] std::string hex() const {
+    std::string text(16, '0');
+    std::uint64_t rest = hash_;
+    for (auto digit = text.rbegin(); digit != text.rend(); ++digit, rest >>= 4)
+      *digit = "0123456789abcdef"[rest & 15];
+    return text;
+  }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ULL;
+};
+
+[[nodiscard]] inline std::string fnv1a64_hex(std::string_view bytes) {
+  Fnv1a64 hash;
+  hash.add(bytes);
+  return hash.hex();
 }
 
 }  // namespace waymark

@@ -7,6 +7,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/options.hpp>
+#include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/formats/trajectory.hpp>
 #include <waymark/tools/drive/projection.hpp>
@@ -82,10 +83,6 @@ std::optional<Loss> loss_of_fixes(const DriveConfig& config, bool overridden, co
   }
 }
 
-LogReaderLookup reader_lookup(const TypeRegistry& registry) {
-  return [&registry](std::string_view name) { return registry.find_log_reader(name); };
-}
-
 /// @throws UsageError for an option that no chosen modeling has
 void check_options_are_used(const std::vector<std::string>& modelings, const DriveOverrides& overrides,
                             const TypeRegistry& registry) {
@@ -134,7 +131,7 @@ void tell(const PrepareReport& report, const Console& console) {
 
 std::vector<const LogConfig*> logs_of(const DriveConfig& config) {
   std::vector<const LogConfig*> logs;
-  if (config.odometry) logs.push_back(&*config.odometry);
+  for (const LogConfig& log : config.odometry) logs.push_back(&log);
   for (const LogConfig& log : config.gnss) logs.push_back(&log);
   if (config.truth) logs.push_back(&*config.truth);
   for (const SensorConfig& sensor : config.sensors) {
@@ -153,6 +150,13 @@ double distance_by(const std::vector<OdometrySample>& odometry) {
   return distance;
 }
 
+/// Of a log's content; compressed or not is the same.
+std::string fingerprint(const std::string& path) {
+  Fnv1a64 hash;
+  (void)read_in_pieces(path, [&](std::string_view piece) { hash.add(piece); });
+  return hash.hex();
+}
+
 std::string file_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
@@ -168,14 +172,13 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   check_calibration(loaded.config, loaded.modelings, registry);
   loaded.loss = loss_of_fixes(loaded.config, overrides.loss.has_value(), registry);
   resolve_sensors(loaded.config, registry);
-  console.progress("reading logs");
-  loaded.drive = load_drive(loaded.config, reader_lookup(registry));
+  loaded.drive = load_drive(loaded.config, registry, watch_reading(console));
   if (!loaded.config.time_scale_stated) {
     loaded.drive.report.notes.push_back("time scale gps is assumed; state time: {scale: gps | utc | unix}");
   }
   tell(loaded.drive.report, console);
   for (const LogConfig* log : logs_of(loaded.config)) {
-    loaded.inputs.push_back(file_name(log->file) + " fnv1a64:" + fnv1a64_hex(read_text_file(log->file)));
+    loaded.inputs.push_back(file_name(log->file) + " fnv1a64:" + fingerprint(log->file));
   }
   console.end_progress();
   return loaded;
@@ -291,7 +294,7 @@ std::vector<TruthPose> read_truth(const std::string& path, const std::string& da
     config.utm_zone = document.frame->north ? document.frame->zone : -document.frame->zone;
     config.utm_origin = {document.frame->origin_easting_m, document.frame->origin_northing_m};
     config.sensors.clear();  // nothing of them is needed
-    return load_drive(config, reader_lookup(registry)).truth;
+    return load_drive(config, registry).truth;
   }
   std::vector<TruthPose> truth;
   for (const StampedPose& pose : read_tum(read_text_file(path), path)) {

@@ -97,7 +97,7 @@ TypeRegistry own_registry() {
   register_se2_types(registry);
   register_solvers(registry);
   register_builtin_plugins(registry);
-  for (const LogReaderType& reader : builtin_log_readers()) registry.add_log_reader(reader);
+  register_log_readers(registry);
   return registry;
 }
 

@@ -50,9 +50,7 @@ Evaluation evaluate_fused(GraphDocument& document, const std::vector<TruthPose>&
 DriveResult study(const Experiment& experiment, const Subject& subject, const TypeRegistry& registry,
                   const Console& console) {
   const DriveConfig config = load_drive_config(subject.path);
-  console.progress(config.name + ": reading logs");
-  const DriveLogs logs =
-      read_drive_logs(config, [&](std::string_view name) { return registry.find_log_reader(name); });
+  const DriveLogs logs = read_drive_logs(config, registry, watch_reading(console));
   const Laboratory laboratory{registry, evaluate_fused,
                               [&](const std::string& setting) {
                                 stop_if_interrupted();

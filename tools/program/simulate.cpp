@@ -90,9 +90,7 @@ nlohmann::ordered_json statistics_json(const std::string& name, const DriveStati
 ExitCode describe(const std::string& path, const CommonOptions& common, const Console& console) {
   const DriveConfig config = load_drive_config(path);
   const TypeRegistry registry = make_registry(common, config.plugins);
-  console.progress("reading " + path);
-  const PreparedDrive drive =
-      load_drive(config, [&registry](std::string_view format) { return registry.find_log_reader(format); });
+  const PreparedDrive drive = load_drive(config, registry, watch_reading(console));
   console.end_progress();
   const DriveStatistics statistics = drive_statistics(drive, config.gate);
   console.result(console.json() ? json_text(statistics_json(drive.name, statistics))

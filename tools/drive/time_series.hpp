@@ -1,0 +1,39 @@
+/// One quantity over time, its readings joined by straight lines.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <waymark/core/stamp.hpp>
+
+namespace waymark {
+
+struct TimeSeries {
+  std::vector<Stamp> stamps;  ///< ascending
+  std::vector<double> values;
+
+  [[nodiscard]] bool empty() const { return stamps.empty(); }
+};
+
+/// Median of the intervals between readings, s; 0 for fewer than two.
+[[nodiscard]] double median_interval_s(const TimeSeries& series);
+
+/// Value at an instant; empty outside the series, and between readings that are more than `gap_s` apart.
+[[nodiscard]] std::optional<double> value_at(const TimeSeries& series, Stamp moment, double gap_s);
+
+/// Integrals of a series in constant time each.
+class SeriesIntegral {
+ public:
+  explicit SeriesIntegral(const TimeSeries& series);
+  /// Mean over [from, to], the series taken as constant beyond its ends; the value at `from` where both are
+  /// equal.
+  [[nodiscard]] double mean(Stamp from, Stamp to) const;
+
+ private:
+  [[nodiscard]] double integral_to(Stamp moment) const;
+
+  const TimeSeries& series_;
+  std::vector<double> integral_;  ///< from the first reading to each
+};
+
+}  // namespace waymark
