@@ -24,11 +24,12 @@ struct Bindings {
         course(columns.find("course")),
         course_accuracy(columns.find("course_accuracy")),
         speed_accuracy(columns.find("speed_accuracy")),
+        gnss_time(columns.find("gnss_time")),
         valid(columns.find("valid")) {}
 
   const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *height, *heading;
   const BoundColumn *accuracy, *accuracy_east, *accuracy_north, *sigma_east, *sigma_north, *covariance_root;
-  const BoundColumn *course, *course_accuracy, *speed_accuracy, *valid;
+  const BoundColumn *course, *course_accuracy, *speed_accuracy, *gnss_time, *valid;
 };
 
 }  // namespace waymark

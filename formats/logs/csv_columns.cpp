@@ -171,7 +171,8 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
   bound.unit = unit.name;
   bound.factor = convention.sign * unit.factor;
   bound.offset = convention.offset;
-  if (quantity.name == "time") bound.time_power = static_cast<int>(unit.factor);
+  if (quantity.name == "time" || quantity.name == "gnss_time")
+    bound.time_power = static_cast<int>(unit.factor);
   columns_.push_back(bound);
 }
 

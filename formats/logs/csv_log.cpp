@@ -85,6 +85,7 @@ class TableReader {
   bool check_fields();
   void read_sample();
   void read_readings(Stamp at);
+  [[nodiscard]] std::optional<Stamp> instant(const BoundColumn& column);
   [[nodiscard]] std::optional<Stamp> stamp();
   [[nodiscard]] double number(const BoundColumn* column, bool required);
   [[nodiscard]] std::optional<double> optional_number(const BoundColumn* column);
@@ -176,7 +177,10 @@ void TableReader::read_sample() {
   fix.speed_sigma_mps = optional_sigma(bound_.speed_accuracy);
   fix.source = request_.source;
   fix.line = number_;
-  if (complaint_.column == 0) data_.fixes.push_back(fix);
+  const std::optional<Stamp> told = bound_.gnss_time ? instant(*bound_.gnss_time) : std::nullopt;
+  if (complaint_.column != 0) return;
+  data_.fixes.push_back(fix);
+  if (told) data_.clocks.push_back({*at, *told});
 }
 
 void TableReader::read_readings(Stamp at) {
@@ -188,23 +192,29 @@ void TableReader::read_readings(Stamp at) {
   data_.readings.values.insert(data_.readings.values.end(), row_.begin(), row_.end());
 }
 
-std::optional<Stamp> TableReader::stamp() {
-  const std::string_view field = fields_[bound_.time->field];
+/// The instant in a column of times, as it stands there.
+std::optional<Stamp> TableReader::instant(const BoundColumn& column) {
+  const std::string_view field = fields_[column.field];
   std::optional<Stamp> stamp;
-  if (bound_.time->unit == kIso8601) {
+  if (column.unit == kIso8601) {
     stamp = stamp_from_iso8601(field);
     if (stamp) stamp = convert(*stamp, TimeScale::utc, request_.time_scale);
-  } else if (bound_.time->time_power == 0) {
+  } else if (column.time_power == 0) {
     stamp = stamp_from_decimal_seconds(field);
   } else if (field.find_first_of("eE") == std::string_view::npos) {
-    stamp = stamp_from_decimal_seconds(fmt::format("{}e{}", field, bound_.time->time_power));
+    stamp = stamp_from_decimal_seconds(fmt::format("{}e{}", field, column.time_power));
   }
   if (!stamp) {
-    const char* expected = bound_.time->unit == kIso8601 ? "an ISO 8601 date" : "a decimal number";
-    complain(*bound_.time,
-             field.empty() ? "no value" : fmt::format("expected {}, got '{}'", expected, field));
-    return std::nullopt;
+    const char* expected = column.unit == kIso8601 ? "an ISO 8601 date" : "a decimal number";
+    complain(column, field.empty() ? "no value" : fmt::format("expected {}, got '{}'", expected, field));
   }
+  return stamp;
+}
+
+std::optional<Stamp> TableReader::stamp() {
+  std::optional<Stamp> stamp = instant(*bound_.time);
+  if (!stamp) return std::nullopt;
+  const std::string_view field = fields_[bound_.time->field];
   if (request_.gps_week != 0 && (stamp->nanoseconds < 0 || stamp->nanoseconds >= 2 * kNanosecondsPerWeek)) {
     complain(*bound_.time, fmt::format("'{}' is no second of a week", field));
     return std::nullopt;

@@ -58,6 +58,7 @@ constexpr std::array kGnss{
     Quantity{"course_accuracy", "course_accuracy_deg", false, kCourses, {}, -kInfinity, kInfinity},
     kOptionalSpeed,
     Quantity{"speed_accuracy", "speed_accuracy_mps", false, kSpeeds, {}, -kInfinity, kInfinity},
+    Quantity{"gnss_time", "gnss_time_s", false, kTimes, {}, -kInfinity, kInfinity},
     Quantity{"valid", "valid_flag", false, kFlags, {}, -kInfinity, kInfinity}};
 // References often count headings on through the turns of a drive.
 constexpr std::array kTruth{

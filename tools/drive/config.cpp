@@ -133,9 +133,9 @@ bool names_channels(const YamlSection& section) {
 
 void read_odometry(const YamlSection& top, DriveConfig& config) {
   if (!top.has("odometry")) throw InputError(top.place() + "'odometry' is missing");
-  const YamlSection section(
-      top.node("odometry"), "odometry", top.file(),
-      log_keys({"parts", "rate", "speed_from", "yaw_rate_from", "gyro", "vehicle", "model", "noise"}));
+  const YamlSection section(top.node("odometry"), "odometry", top.file(),
+                            log_keys({"parts", "rate", "speed_from", "yaw_rate_from", "gyro", "vehicle",
+                                      "speed_delay", "yaw_rate_delay", "model", "noise"}));
   const auto read_log = [&](const YamlSection& from, bool in_channels) {
     LogRequest request;
     request.stream = StreamKind::odometry;
@@ -151,6 +151,8 @@ void read_odometry(const YamlSection& top, DriveConfig& config) {
     read_log(section, names_channels(section));
   }
   read_assembly(section, config.assembly);
+  section.read("speed_delay", config.speed_delay_s, kAnyNumber);
+  section.read("yaw_rate_delay", config.yaw_rate_delay_s, kAnyNumber);
   section.read("model", config.odometry_model);
   if (section.has("model")) config.places["odometry.model"] = section.place("model");
   read_options(section, "noise", "odometry.noise.", config.odometry_options, config);

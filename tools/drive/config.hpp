@@ -50,6 +50,8 @@ struct DriveConfig {
   std::string folder;               ///< where relative log names are looked up
   std::vector<LogConfig> odometry;  ///< one, or the parts that odometry is put together from
   OdometryAssembly assembly;
+  double speed_delay_s = 0;  ///< how late the odometry's speed is stamped; subtracted
+  double yaw_rate_delay_s = 0;
   std::vector<LogConfig> gnss;  ///< at least one
   std::optional<LogConfig> truth;
   std::vector<SensorConfig> sensors;

@@ -1,5 +1,6 @@
 #include <waymark/tools/drive/prepare.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -8,6 +9,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/stamp_text.hpp>
+#include <waymark/tools/drive/clock_sync.hpp>
 #include <waymark/tools/drive/projection.hpp>
 #include <waymark/tools/drive/sensors.hpp>
 #include <waymark/tools/drive/streams.hpp>
@@ -85,6 +87,8 @@ std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveC
   if (odometry.size() < 2)
     throw InputError(fmt::format("{}: {} usable odometry samples; at least 2 are needed",
                                  logs.odometry.front().file, odometry.size()));
+  if (config.speed_delay_s != 0 || config.yaw_rate_delay_s != 0)
+    odometry = without_delays(odometry, config.speed_delay_s, config.yaw_rate_delay_s);
   const std::int64_t first = odometry.front().stamp.nanoseconds;
   const std::size_t before = odometry.size();
   const double length_s = seconds_between(odometry.front().stamp, odometry.back().stamp);
@@ -136,11 +140,34 @@ void thin(std::vector<GeodeticFix>& fixes, std::int64_t period) {
   std::erase_if(fixes, [&](const GeodeticFix&) { return keep[index++] == 0; });
 }
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Compares the stamps of a log with the GNSS time in its messages.
+void report_clock(const DriveLogs::Log& log, PrepareReport& report) {
+  if (log.data.clocks.empty()) return;
+  std::vector<double> ahead;
+  for (const ClockPair& pair : log.data.clocks) ahead.push_back(seconds_between(pair.told, pair.logged));
+  ClockReport clock{log.file, ahead.size(), median_of(ahead), 0};
+  for (double& value : ahead) value = std::abs(value - clock.ahead_s);
+  clock.spread_s = median_of(std::move(ahead));
+  report.clocks.push_back(clock);
+  report.notes.push_back(fmt::format(
+      "{}: its stamps are {:.3f} s ahead of the GNSS time in {} messages (median, deviations {:.3f} s); "
+      "'time: {{offset: ...}}' is added to them",
+      log.file, clock.ahead_s, clock.messages, clock.spread_s));
+}
+
 std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig& config,
                                        const std::vector<OdometrySample>& odometry, PrepareReport& report) {
   std::vector<GeodeticFix> fixes;
-  for (const DriveLogs::Log& log : logs.gnss)
+  for (const DriveLogs::Log& log : logs.gnss) {
     append_log(log.data.fixes, log, config.time_scale, fixes, report.gnss, report);
+    report_clock(log, report);
+  }
   clean_stream(
       fixes, report.gnss, [](const GeodeticFix& f) { return finite_place(f) && f.covariance_en.allFinite(); },
       [](const GeodeticFix& a, const GeodeticFix& b) { return a.source == b.source; },

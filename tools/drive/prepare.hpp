@@ -40,6 +40,14 @@ struct StreamReport {
   std::vector<GapReport> gaps;  ///< odometry: above timeline.gap_s; others: above 2.5 median intervals
 };
 
+/// What the messages of a log say of the clock that stamped them.
+struct ClockReport {
+  std::string file;
+  std::size_t messages = 0;
+  double ahead_s = 0;   ///< median of stamp minus the time told; positive: the stamps are ahead
+  double spread_s = 0;  ///< median absolute deviation from it
+};
+
 struct PrepareReport {
   StreamReport odometry;
   StreamReport gnss;
@@ -48,10 +56,11 @@ struct PrepareReport {
   std::size_t reversing = 0;  ///< odometry samples with negative speed: no error
   std::size_t odometry_outside_window = 0;
   std::size_t fixes_outside_odometry =
-      0;                           ///< dropped: before the first or after the last odometry sample used
-  std::size_t fixes_thinned = 0;   ///< dropped: not the nearest to a multiple of gnss_period_s
-  std::size_t fixes_withheld = 0;  ///< kept, but out of the graph
-  std::vector<std::string> notes;  ///< the readers' assumptions and what was concluded here
+      0;                            ///< dropped: before the first or after the last odometry sample used
+  std::size_t fixes_thinned = 0;    ///< dropped: not the nearest to a multiple of gnss_period_s
+  std::size_t fixes_withheld = 0;   ///< kept, but out of the graph
+  std::vector<ClockReport> clocks;  ///< of logs that hold their own stamps and GNSS time
+  std::vector<std::string> notes;   ///< the readers' assumptions and what was concluded here
   std::vector<std::string> corrupt_examples;
 };
 

@@ -89,6 +89,8 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
                   "Noise parameters: estimated from the drive, or as stated (default: the modeling decides)")
       ->check(CLI::IsMember({"estimate", "stated"}));
   command.add_flag("--no-gate", overrides.no_gate, "Accept every fix");
+  command.add_flag("--sync", overrides.sync,
+                   "Estimate how late speed and yaw rate are stamped against the GNSS, and apply it");
 }
 
 void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {

@@ -58,6 +58,7 @@ ExitCode run(int argc, char** argv) {
   add_optimize(app, action);
   add_evaluate(app, action);
   add_run(app, action);
+  add_sync(app, action);
   add_bench(app, action);
   add_info(app, action);
   add_check(app, action);

@@ -10,6 +10,7 @@
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/formats/trajectory.hpp>
+#include <waymark/tools/drive/clock_sync.hpp>
 #include <waymark/tools/drive/projection.hpp>
 #include <waymark/tools/drive/sensors.hpp>
 #include <waymark/tools/program/hash.hpp>
@@ -161,6 +162,27 @@ std::string file_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
 
+/// Prepares the drive again with the odometry moved by the offsets that its motion shows.
+void synchronise(const DriveLogs& logs, LoadedDrive& loaded, const Console& console) {
+  console.progress("comparing clocks");
+  const SyncReport report = estimate_clock_offsets(loaded.drive, {});
+  std::vector<std::string> notes;
+  const auto apply = [&](const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s) {
+    if (!offset) {
+      notes.push_back(fmt::format("sync: no offset of the {} was found; it stays as it is", quantity));
+      return;
+    }
+    delay_s += offset->late_s;
+    notes.push_back(fmt::format(
+        "sync: the odometry's {} was late by {:.3f} s (sigma {:.3f} s, correlation {:.4f}); applied",
+        quantity, offset->late_s, offset->sigma_s, offset->correlation));
+  };
+  apply(report.speed, "speed", loaded.config.speed_delay_s);
+  apply(report.yaw_rate, "yaw rate", loaded.config.yaw_rate_delay_s);
+  loaded.drive = prepare_drive(logs, loaded.config);
+  loaded.drive.report.notes.insert(loaded.drive.report.notes.end(), notes.begin(), notes.end());
+}
+
 }  // namespace
 
 LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overrides,
@@ -172,7 +194,9 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   check_calibration(loaded.config, loaded.modelings, registry);
   loaded.loss = loss_of_fixes(loaded.config, overrides.loss.has_value(), registry);
   resolve_sensors(loaded.config, registry);
-  loaded.drive = load_drive(loaded.config, registry, watch_reading(console));
+  const DriveLogs logs = read_drive_logs(loaded.config, registry, watch_reading(console));
+  loaded.drive = prepare_drive(logs, loaded.config);
+  if (overrides.sync) synchronise(logs, loaded, console);
   if (!loaded.config.time_scale_stated) {
     loaded.drive.report.notes.push_back("time scale gps is assumed; state time: {scale: gps | utc | unix}");
   }

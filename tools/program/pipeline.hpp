@@ -28,6 +28,7 @@ struct DriveOverrides {
   std::vector<std::string> calibrate;  ///< "on", "off", or NAME=MODEL pairs
   std::optional<std::string> noise;    ///< estimate, stated
   bool no_gate = false;
+  bool sync = false;  ///< estimate how late the odometry is stamped, and apply it
 };
 
 /// A drive read; ready for any modeling.
