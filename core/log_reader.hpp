@@ -48,7 +48,7 @@ struct LogRequest {
   StreamKind stream = StreamKind::gnss;
   std::map<std::string, ColumnRequest> columns;  ///< by quantity (CSV, CAN); see formats/logs/README.md
   /// The quantities of a sensor stream, beside `time`. For the odometry stream: what odometry can be made of
-  /// (formats/logs/odometry_channels.hpp), for readers whose log holds it in pieces.
+  /// (formats/logs/channels.hpp), for readers whose log holds it in pieces.
   std::vector<SensorColumn> readings;
   std::map<std::string, CompanionFile> companions;  ///< "dbc": of CAN frames, "timestamps": of KITTI oxts
   char separator =

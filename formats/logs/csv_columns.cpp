@@ -95,11 +95,10 @@ CsvColumns::CsvColumns(const TableLine& first, const std::string& path, const Lo
     const auto wanted = request.columns.find(std::string(quantity.name));
     bind(quantity, wanted == request.columns.end() ? nullptr : &wanted->second, place);
   }
-  const bool in_channels = request.stream == StreamKind::odometry && !request.readings.empty();
+  const bool in_channels = request.stream != StreamKind::sensor && !request.readings.empty();
   if (in_channels && columns_.size() == 1)
-    throw InputError(
-        fmt::format("{}no column for speed, yaw_rate or another channel of odometry: name it under columns{}",
-                    place, columns_present()));
+    throw InputError(fmt::format("{}no column for {} or another channel: name it under columns{}", place,
+                                 request.readings.front().name, columns_present()));
 }
 
 void CsvColumns::check_request(const std::string& place, const LogRequest& request) const {

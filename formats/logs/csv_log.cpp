@@ -56,7 +56,7 @@ class TableReader {
         request_(std::move(request)),
         data_(data) {
     offset_ = request_.gps_week * kNanosecondsPerWeek + std::llround(request_.time_offset_s * 1e9);
-    if (request_.stream == StreamKind::gnss) choose_accuracy();
+    if (request_.stream == StreamKind::gnss && request_.readings.empty()) choose_accuracy();
     for (const SensorColumn& column : request_.readings) readings_.push_back(columns.find(column.name));
     data.readings.columns = request_.readings.size();
   }

@@ -101,11 +101,12 @@ Quantity sensor_quantity(const SensorColumn& column) {
                    column.sense + "'; SensorColumn in core/sample.hpp lists those there are");
 }
 
-/// Of odometry in pieces: none is required, speed and yaw rate are those of whole odometry.
-std::vector<Quantity> channel_quantities(std::span<const SensorColumn> channels) {
+/// The channels of a stream: none is required; those that the stream has itself are the stream's.
+std::vector<Quantity> channel_quantities(std::span<const Quantity> stream,
+                                         std::span<const SensorColumn> channels) {
   std::vector<Quantity> own{kTime};
   for (const SensorColumn& channel : channels) {
-    const Quantity* whole = find_named(std::span<const Quantity>(kOdometry), channel.name);
+    const Quantity* whole = find_named(stream, channel.name);
     own.push_back(whole != nullptr ? *whole : sensor_quantity(channel));
     own.back().required = false;
   }
@@ -117,9 +118,10 @@ std::vector<Quantity> channel_quantities(std::span<const SensorColumn> channels)
 std::vector<Quantity> quantities(const LogRequest& request) {
   switch (request.stream) {
     case StreamKind::odometry:
-      if (!request.readings.empty()) return channel_quantities(request.readings);
+      if (!request.readings.empty()) return channel_quantities(kOdometry, request.readings);
       return {kOdometry.begin(), kOdometry.end()};
     case StreamKind::gnss:
+      if (!request.readings.empty()) return channel_quantities(kGnss, request.readings);
       return {kGnss.begin(), kGnss.end()};
     case StreamKind::truth:
       return {kTruth.begin(), kTruth.end()};

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/tools/drive/odometry_parts.hpp>
 #include <waymark/tools/drive/time_series.hpp>
 

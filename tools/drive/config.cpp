@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/drive/log_config.hpp>
 #include <waymark/tools/drive/yaml_section.hpp>
@@ -174,17 +174,27 @@ Receiver read_receiver(const YamlSection& section) {
   return receiver;
 }
 
+std::optional<LogConfig> read_velocity(const YamlSection& section, const DriveConfig& config) {
+  if (!section.has("velocity")) return std::nullopt;
+  LogRequest request;
+  request.readings = velocity_channels();
+  return read_log_config(YamlSection(section.node("velocity"), "gnss.velocity", section.file(), log_keys()),
+                         request, config.folder, config.time_scale);
+}
+
 void read_gnss(const YamlSection& top, DriveConfig& config) {
   if (!top.has("gnss")) throw InputError(top.place() + "'gnss' is missing");
   const std::vector<YAML::Node> entries = entries_of(top.node("gnss"));
   if (entries.empty()) top.fail("gnss", "at least one log is needed");
   std::optional<Receiver> first;
   for (const YAML::Node& entry : entries) {
-    const YamlSection section(entry, "gnss", top.file(),
-                              log_keys({"accuracy", "antenna", "period", "rate", "delay", "withhold_every"}));
+    const YamlSection section(
+        entry, "gnss", top.file(),
+        log_keys({"accuracy", "velocity", "antenna", "period", "rate", "delay", "withhold_every"}));
     LogRequest request;
     request.source = static_cast<int>(config.gnss.size());
-    LogConfig log = read_log_config(section, request, config.folder, config.time_scale);
+    GnssConfig log{read_log_config(section, request, config.folder, config.time_scale),
+                   read_velocity(section, config)};
     config.gnss.push_back(std::move(log));
     const Receiver receiver = read_receiver(section);
     if (first && !(receiver == *first))

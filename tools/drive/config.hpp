@@ -29,6 +29,11 @@ struct LogConfig {
   std::string place;                              ///< "drive.yaml:12:5: " of the entry, for messages
 };
 
+/// The log of a receiver, and the one that holds its velocity where that is another.
+struct GnssConfig : LogConfig {
+  std::optional<LogConfig> velocity;
+};
+
 /// A further sensor of the vehicle.
 struct SensorConfig {
   std::string name;              ///< of a registered sensor model
@@ -52,7 +57,7 @@ struct DriveConfig {
   OdometryAssembly assembly;
   double speed_delay_s = 0;  ///< how late the odometry's speed is stamped; subtracted
   double yaw_rate_delay_s = 0;
-  std::vector<LogConfig> gnss;  ///< at least one
+  std::vector<GnssConfig> gnss;  ///< at least one
   std::optional<LogConfig> truth;
   std::vector<SensorConfig> sensors;
   std::vector<std::string> plugins;  ///< modules to load, resolved against the drive.yaml's own folder

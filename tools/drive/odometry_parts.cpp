@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/tools/drive/time_series.hpp>
 
 namespace waymark {

@@ -13,6 +13,7 @@
 #include <waymark/tools/drive/projection.hpp>
 #include <waymark/tools/drive/sensors.hpp>
 #include <waymark/tools/drive/streams.hpp>
+#include <waymark/tools/drive/velocity.hpp>
 
 namespace waymark {
 namespace {
@@ -161,11 +162,26 @@ void report_clock(const DriveLogs::Log& log, PrepareReport& report) {
       log.file, clock.ahead_s, clock.messages, clock.spread_s));
 }
 
+void add_logged_velocity(const DriveLogs::Log& log, TimeScale scale, std::vector<GeodeticFix>& fixes,
+                         PrepareReport& report) {
+  SensorTable readings = log.data.readings;
+  put_on_scale(readings.stamps, log, scale, [](Stamp& stamp) -> Stamp& { return stamp; });
+  add_log_report(log.data, report.sensor, report);
+  const std::size_t given = add_velocity(readings, fixes);
+  report.notes.push_back(
+      fmt::format("{}: {} of {} fixes have their speed or course from it", log.file, given, fixes.size()));
+}
+
 std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig& config,
                                        const std::vector<OdometrySample>& odometry, PrepareReport& report) {
   std::vector<GeodeticFix> fixes;
-  for (const DriveLogs::Log& log : logs.gnss) {
-    append_log(log.data.fixes, log, config.time_scale, fixes, report.gnss, report);
+  for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
+    const DriveLogs::Log& log = logs.gnss[i];
+    std::vector<GeodeticFix> own;
+    append_log(log.data.fixes, log, config.time_scale, own, report.gnss, report);
+    if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)
+      add_logged_velocity(logs.velocity[i], config.time_scale, own, report);
+    fixes.insert(fixes.end(), own.begin(), own.end());
     report_clock(log, report);
   }
   clean_stream(

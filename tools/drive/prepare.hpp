@@ -87,6 +87,7 @@ struct DriveLogs {
   };
   std::vector<Log> odometry;  ///< in the order of DriveConfig::odometry
   std::vector<Log> gnss;      ///< in the order of DriveConfig::gnss
+  std::vector<Log> velocity;  ///< as gnss; readings as velocity_channels(), nothing in it where there is none
   std::vector<Log> truth;     ///< none or one
   std::vector<Log> sensors;   ///< as DriveConfig::sensors; nothing in it for one without a log
 };

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/suggest.hpp>
 #include <waymark/tools/drive/prepare.hpp>
 
@@ -90,7 +90,10 @@ DriveLogs read_drive_logs(const DriveConfig& config, const TypeRegistry& registr
   DriveLogs logs;
   if (config.odometry.empty()) throw InputError(fmt::format("{}: no odometry log is named", config.path));
   for (const LogConfig& log : config.odometry) logs.odometry.push_back(read_log(log, registry, watch));
-  for (const LogConfig& log : config.gnss) logs.gnss.push_back(read_log(log, registry, watch));
+  for (const GnssConfig& log : config.gnss) {
+    logs.gnss.push_back(read_log(log, registry, watch));
+    logs.velocity.push_back(log.velocity ? read_log(*log.velocity, registry, watch) : DriveLogs::Log{});
+  }
   if (config.truth) logs.truth.push_back(read_log(*config.truth, registry, watch));
   for (const SensorConfig& sensor : config.sensors)
     logs.sensors.push_back(sensor.log ? read_log(*sensor.log, registry, watch) : DriveLogs::Log{});

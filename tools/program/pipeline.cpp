@@ -133,7 +133,10 @@ void tell(const PrepareReport& report, const Console& console) {
 std::vector<const LogConfig*> logs_of(const DriveConfig& config) {
   std::vector<const LogConfig*> logs;
   for (const LogConfig& log : config.odometry) logs.push_back(&log);
-  for (const LogConfig& log : config.gnss) logs.push_back(&log);
+  for (const GnssConfig& log : config.gnss) {
+    logs.push_back(&log);
+    if (log.velocity) logs.push_back(&*log.velocity);
+  }
   if (config.truth) logs.push_back(&*config.truth);
   for (const SensorConfig& sensor : config.sensors) {
     if (sensor.log) logs.push_back(&*sensor.log);

@@ -1,4 +1,4 @@
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 
 namespace waymark {
 
@@ -24,6 +24,16 @@ const std::vector<SensorColumn>& odometry_channels() {
       {"acceleration_y", "m/s^2", "", false, "specific force along the sensor's y axis"},
       {"acceleration_z", "m/s^2", "", false, "specific force along the sensor's z axis"},
       {"reverse", "1", "", false, "not 0: driving backwards"},
+  };
+  return channels;
+}
+
+const std::vector<SensorColumn>& velocity_channels() {
+  static const std::vector<SensorColumn> channels{
+      {"speed", "m/s", "", false, "speed over ground"},
+      {"speed_accuracy", "m/s", "", false, "its standard deviation"},
+      {"course", "rad", "", false, "course over ground, clockwise from true north"},
+      {"course_accuracy", "rad", "", false, "its standard deviation"},
   };
   return channels;
 }

@@ -16,4 +16,8 @@ namespace waymark {
 /// m/s^2), `reverse` (not 0: driving backwards, for speeds and ticks without a sign).
 [[nodiscard]] const std::vector<SensorColumn>& odometry_channels();
 
+/// `speed`, `speed_accuracy` (m/s), `course`, `course_accuracy` (rad, clockwise from true north; 1 sigma):
+/// quantities of the gnss stream, none required.
+[[nodiscard]] const std::vector<SensorColumn>& velocity_channels();
+
 }  // namespace waymark
