@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <waymark/formats/logs/candump.hpp>
 #include <waymark/formats/logs/csv_log.hpp>
 #include <waymark/formats/logs/gpsd_json.hpp>
 
@@ -10,9 +11,11 @@ namespace waymark {
 std::span<const LogReaderType> builtin_log_readers() {
   static const CsvLogReader csv;
   static const GpsdJsonReader gpsd_json;
+  static const CandumpReader candump;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
+      {"candump", "CAN frames (candump) with a DBC: odometry, gnss, truth, sensors", &candump},
   };
   return readers;
 }

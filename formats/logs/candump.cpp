@@ -1,0 +1,356 @@
+#include <waymark/formats/logs/candump.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/logs/can_frame.hpp>
+#include <waymark/formats/logs/candump_fixes.hpp>
+#include <waymark/formats/logs/candump_signals.hpp>
+#include <waymark/formats/logs/dbc.hpp>
+#include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/quantity.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// So many interfaces are told apart, by names of so many characters (Linux has at most 15).
+constexpr std::size_t kMostInterfaces = 16;
+constexpr std::size_t kLongestInterface = 31;
+
+/// From id to index in the DBC.
+class MessageTable {
+ public:
+  static constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
+
+  explicit MessageTable(const Dbc& dbc) {
+    standard_.fill(kUnknown);
+    for (std::size_t i = 0; i < dbc.messages.size(); ++i) {
+      const std::uint32_t id = dbc.messages[i].id;
+      const auto index = static_cast<std::uint32_t>(i);
+      if (id < standard_.size()) {
+        standard_[id] = index;
+      } else {
+        extended_.emplace_back(id, index);
+      }
+    }
+    std::sort(extended_.begin(), extended_.end());
+  }
+  [[nodiscard]] std::uint32_t find(std::uint32_t id) const {
+    if (id < standard_.size()) return standard_[id];
+    const auto at = std::lower_bound(extended_.begin(), extended_.end(), std::pair{id, std::uint32_t{0}});
+    return at != extended_.end() && at->first == id ? at->second : kUnknown;
+  }
+
+ private:
+  std::array<std::uint32_t, 2048> standard_{};
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> extended_;
+};
+
+/// The interfaces of a log and how many frames each brought.
+class Interfaces {
+ public:
+  /// Index of an interface; kMostInterfaces for those beyond the table.
+  std::size_t count(std::string_view name) {
+    if (last_ >= used_ || names_[last_] != name) last_ = find(name);
+    ++counts_[last_];
+    return last_;
+  }
+  [[nodiscard]] std::string name(std::size_t index) const {
+    return index < used_ ? names_[index] : std::string("other interfaces");
+  }
+  [[nodiscard]] std::string summary(const std::array<std::size_t, kMostInterfaces + 1>& counts) const {
+    std::string text;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      if (counts[i] > 0)
+        text += fmt::format("{}{} ({} frames)", text.empty() ? "" : ", ", name(i), counts[i]);
+    }
+    return text;
+  }
+  [[nodiscard]] std::string summary() const { return summary(counts_); }
+
+ private:
+  std::size_t find(std::string_view name) {
+    for (std::size_t i = 0; i < used_; ++i) {
+      if (names_[i] == name) return i;
+    }
+    if (used_ == kMostInterfaces || name.size() > kLongestInterface) return kMostInterfaces;
+    names_[used_] = name;
+    return used_++;
+  }
+
+  std::array<std::string, kMostInterfaces> names_;
+  std::array<std::size_t, kMostInterfaces + 1> counts_{};
+  std::size_t used_ = 0;
+  std::size_t last_ = kMostInterfaces;
+};
+
+/// What is wanted of one message, and what came.
+struct MessageUse {
+  std::size_t frames = 0;
+  std::vector<std::size_t> bound;                               ///< indices of its BoundSignals
+  std::array<std::size_t, kMostInterfaces + 1> by_interface{};  ///< counted for wanted messages only
+};
+
+class CandumpDecoder final : public LineDecoder {
+ public:
+  CandumpDecoder(const std::string& path, const LogRequest& log_request, Dbc dbc)
+      : LineDecoder(path, log_request),
+        dbc_(std::move(dbc)),
+        table_(dbc_),
+        quantities_(signal_quantities(request())),
+        bound_(bind_signals(dbc_, quantities_, request(), path + ": ", data_.notes)),
+        outside_(bound_.size()),
+        uses_(dbc_.messages.size()) {
+    offset_ = std::llround(request().time_offset_s * 1e9);
+    for (std::size_t i = 0; i < bound_.size(); ++i) uses_[bound_[i].message].bound.push_back(i);
+    const StreamKind stream = request().stream;
+    if (stream == StreamKind::gnss || stream == StreamKind::truth)
+      fixes_.emplace(quantities_, bound_, request(), this->path(), data_);
+    data_.readings.columns = request().readings.size();
+  }
+
+ private:
+  void take_line(std::string_view line, std::size_t number) override;
+  void end() override;
+  void take_message(const MessageUse& use, const CanLine& line, std::string_view text, std::size_t number);
+  void take_values(Stamp stamp, std::size_t number);
+  void take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp);
+  [[nodiscard]] double value_of(const DbcSignal& signal, std::size_t index);
+  [[nodiscard]] std::string described(const BoundSignal& bound) const;
+  [[nodiscard]] std::optional<Stamp> stamp_of(std::string_view text) const;
+  void bad_line(std::size_t number, std::size_t column, const std::string& what) {
+    ++data_.records;
+    corrupt(number, column, what);
+  }
+  void refuse_asc(std::string_view line) const;
+  void note_interfaces();
+  [[noreturn]] void refuse_silence() const;
+
+  Dbc dbc_;
+  MessageTable table_;
+  std::vector<Quantity> quantities_;
+  std::vector<BoundSignal> bound_;
+  std::vector<std::size_t> outside_;  ///< by BoundSignal: values that were none
+  std::vector<MessageUse> uses_;      ///< by message
+  std::optional<FixAssembler> fixes_;
+  std::int64_t offset_ = 0;
+  Interfaces interfaces_;
+  std::size_t unknown_ = 0, remote_ = 0, errors_ = 0;
+  bool any_frame_ = false;
+  CanData frame_;
+  std::vector<SignalValue> values_;  ///< of the frame at hand
+};
+
+void CandumpDecoder::take_line(std::string_view line, std::size_t number) {
+  if (line.empty()) return;
+  const CanLine taken = split_can_line(line);
+  if (taken.kind == FrameKind::none) {
+    if (!any_frame_) refuse_asc(line);
+    return bad_line(number, taken.column, std::string(taken.what));
+  }
+  any_frame_ = true;
+  const std::size_t interface = interfaces_.count(taken.interface);
+  if (taken.kind == FrameKind::remote) {
+    ++remote_;
+    return;
+  }
+  if (taken.kind == FrameKind::error) {
+    ++errors_;
+    return;
+  }
+  const std::uint32_t message = table_.find(taken.id);
+  if (message == MessageTable::kUnknown) {
+    ++unknown_;
+    return;
+  }
+  MessageUse& use = uses_[message];
+  ++use.frames;
+  if (use.bound.empty()) return;
+  ++use.by_interface[interface];
+  take_message(use, taken, line, number);
+}
+
+void CandumpDecoder::take_message(const MessageUse& use, const CanLine& line, std::string_view text,
+                                  std::size_t number) {
+  const auto column = [&](std::string_view part) {
+    return static_cast<std::size_t>(part.data() - text.data()) + 1;
+  };
+  const std::optional<Stamp> stamp = stamp_of(line.stamp);
+  if (!stamp)
+    return bad_line(number, column(line.stamp),
+                    fmt::format("'{}' is no time in decimal seconds", line.stamp));
+  if (const std::string_view what = read_can_data(line, frame_); !what.empty())
+    return bad_line(number, column(line.data), std::string(what));
+  values_.clear();
+  for (const std::size_t index : use.bound) {
+    const BoundSignal& bound = bound_[index];
+    const DbcMessage& message = dbc_.messages[bound.message];
+    const DbcSignal& signal = message.signals[bound.signal];
+    if (!bound.interface.empty() && bound.interface != line.interface) continue;
+    if (!message.holds(signal, frame_)) continue;
+    if (frame_.size < signal.bytes_needed())
+      return bad_line(number, column(line.data),
+                      fmt::format("{}: {} bytes, but the signal {} needs {}", message.name, frame_.size,
+                                  signal.name, signal.bytes_needed()));
+    if (quantities_[bound.quantity].name == "gnss_time") {
+      take_clock(signal, index, *stamp);
+    } else {
+      values_.push_back({bound.quantity, value_of(signal, index)});
+    }
+  }
+  if (!values_.empty()) take_values(*stamp, number);
+}
+
+void CandumpDecoder::take_values(Stamp stamp, std::size_t number) {
+  if (fixes_) return fixes_->take(stamp, number, values_);
+  ++data_.records;
+  // The quantities of these streams are the readings, but for `time`, which the log gives.
+  SensorTable& table = data_.readings;
+  const std::size_t row = table.values.size();
+  table.stamps.push_back(stamp);
+  table.values.resize(row + table.columns, kNone);
+  for (const SignalValue& signal : values_) table.values[row + signal.quantity] = signal.value;
+}
+
+/// The quantity as the frame has it; NaN, and counted, where it is outside its range.
+double CandumpDecoder::value_of(const DbcSignal& signal, std::size_t index) {
+  const BoundSignal& bound = bound_[index];
+  const Quantity& quantity = quantities_[bound.quantity];
+  const double value = bound.factor * signal.value(frame_);
+  if (std::isfinite(value) && value >= quantity.smallest && value <= quantity.largest)
+    return value + bound.offset;
+  ++outside_[index];
+  return kNone;
+}
+
+void CandumpDecoder::take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp) {
+  const BoundSignal& bound = bound_[index];
+  const Quantity& quantity = quantities_[bound.quantity];
+  const std::optional<std::int64_t> told = signal.integer(frame_, std::llround(bound.unit_factor * 1e9));
+  if (!told || !(Stamp{*told}.seconds() >= quantity.smallest && Stamp{*told}.seconds() <= quantity.largest)) {
+    ++outside_[index];
+    return;
+  }
+  data_.clocks.push_back({stamp, convert(Stamp{*told}, TimeScale::utc, request().time_scale)});
+}
+
+std::optional<Stamp> CandumpDecoder::stamp_of(std::string_view text) const {
+  std::optional<Stamp> stamp = can_stamp(text);
+  if (stamp && __builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) return std::nullopt;
+  return stamp;
+}
+
+/// Vector's text logs begin with "date Mon Jul 26 ..." and "base hex  timestamps absolute".
+void CandumpDecoder::refuse_asc(std::string_view line) const {
+  if (!line.starts_with("date ") && !line.starts_with("base hex") && !line.starts_with("base dec")) return;
+  throw InputError(
+      fmt::format("{}: this is a Vector ASC log, which is not read here; `asc2log < {} > candump.log` "
+                  "(can-utils) writes a candump log from it",
+                  path(), path()));
+}
+
+void CandumpDecoder::end() {
+  if (fixes_) fixes_->finish();
+  for (std::size_t i = 0; i < bound_.size(); ++i) {
+    if (outside_[i] == 0) continue;
+    const Quantity& quantity = quantities_[bound_[i].quantity];
+    note(fmt::format("{}: {} values of signal {} are outside its range or no numbers, and count as not given",
+                     quantity.name, outside_[i],
+                     dbc_.messages[bound_[i].message].signals[bound_[i].signal].name));
+  }
+  note_interfaces();
+  if (any_frame_ && data_.records == 0) refuse_silence();
+  for (std::size_t i = 0; i < uses_.size(); ++i) {
+    if (uses_[i].frames > 0) data_.kinds[dbc_.messages[i].name] = uses_[i].frames;
+  }
+  if (unknown_ > 0) data_.kinds["not in the DBC"] = unknown_;
+  if (remote_ > 0) data_.kinds["remote frames"] = remote_;
+  if (errors_ > 0) data_.kinds["error frames"] = errors_;
+}
+
+/// "WHEEL_SPEEDS (id AA)", "WHEEL_SPEEDS (id AA) on can0".
+std::string CandumpDecoder::described(const BoundSignal& bound) const {
+  const DbcMessage& message = dbc_.messages[bound.message];
+  return fmt::format("{} (id {:X}){}", message.name, message.id & ~kExtendedFrame,
+                     bound.interface.empty() ? std::string() : " on " + bound.interface);
+}
+
+void CandumpDecoder::note_interfaces() {
+  if (const std::string summary = interfaces_.summary(); !summary.empty()) note("interfaces: " + summary);
+  for (const BoundSignal& bound : bound_) {
+    const MessageUse& use = uses_[bound.message];
+    const DbcMessage& message = dbc_.messages[bound.message];
+    const std::string quantity(quantities_[bound.quantity].name);
+    std::size_t on_stated = 0;
+    std::size_t first = use.by_interface.size();
+    for (std::size_t i = use.by_interface.size(); i-- > 0;) {
+      if (use.by_interface[i] == 0) continue;
+      first = i;
+      if (bound.interface.empty() || interfaces_.name(i) == bound.interface) on_stated += use.by_interface[i];
+    }
+    if (on_stated == 0) note(fmt::format("{}: the log has no frame of {}", quantity, described(bound)));
+    const auto sources = std::count_if(use.by_interface.begin(), use.by_interface.end(),
+                                       [](std::size_t count) { return count > 0; });
+    if (sources > 1 && bound.interface.empty())
+      note(fmt::format("{}: {} comes on {}, all are read; '{}:{}.{}' chooses one", quantity, message.name,
+                       interfaces_.summary(use.by_interface), interfaces_.name(first), message.name,
+                       message.signals[bound.signal].name));
+  }
+}
+
+/// Where not one frame with a wanted signal came: what was looked for, and where.
+void CandumpDecoder::refuse_silence() const {
+  std::string wanted;
+  for (const BoundSignal& bound : bound_) {
+    const std::string message = described(bound);
+    if (wanted.find(message) == std::string::npos) wanted += (wanted.empty() ? "" : ", ") + message;
+  }
+  throw InputError(fmt::format("{}: no frame holds a wanted signal ({}); there are {}", path(), wanted,
+                               interfaces_.summary()));
+}
+
+}  // namespace
+
+std::unique_ptr<LogDecoder> CandumpReader::open(const std::string& path, const LogRequest& request) const {
+  for (const auto& [name, file] : request.companions) {
+    if (name != "dbc")
+      throw InputError(fmt::format("{}: a candump log takes no '{}', only a 'dbc'", path, name));
+  }
+  const auto dbc = request.companions.find("dbc");
+  if (dbc == request.companions.end())
+    throw InputError(fmt::format("{}: a candump log needs its DBC: state 'dbc: FILE'", path));
+  return std::make_unique<CandumpDecoder>(path, request, Dbc::parse(dbc->second.text, dbc->second.path));
+}
+
+Recognition CandumpReader::recognise(std::string_view head) const {
+  std::size_t lines = 0;
+  std::size_t frames = 0;
+  CanData data;
+  while (!head.empty()) {
+    const std::size_t end = head.find('\n');
+    if (end == std::string_view::npos && lines > 0) break;  // may be cut
+    std::string_view line = head.substr(0, end);
+    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (line.empty()) continue;
+    ++lines;
+    const CanLine taken = split_can_line(line);
+    const bool sound = taken.kind == FrameKind::remote || taken.kind == FrameKind::error ||
+                       (taken.kind == FrameKind::data && read_can_data(taken, data).empty());
+    if (sound && can_stamp(taken.stamp)) ++frames;
+  }
+  if (2 * frames <= lines) return {};
+  return {static_cast<double>(frames) / static_cast<double>(lines),
+          fmt::format("{} of {} lines are CAN frames as candump writes them", frames, lines)};
+}
+
+}  // namespace waymark

@@ -1,0 +1,229 @@
+#include <waymark/formats/logs/candump_fixes.hpp>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/logs/accuracy.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Time between two stamps, whichever is earlier, without overflow.
+std::uint64_t distance(Stamp a, Stamp b) {
+  const auto x = static_cast<std::uint64_t>(a.nanoseconds);
+  const auto y = static_cast<std::uint64_t>(b.nanoseconds);
+  return a > b ? x - y : y - x;
+}
+
+bool one_burst(Stamp a, Stamp b) {
+  return distance(a, b) <= static_cast<std::uint64_t>(kBurstNanoseconds);
+}
+
+}  // namespace
+
+FixAssembler::FixAssembler(const std::vector<Quantity>& quantities, const std::vector<BoundSignal>& bound,
+                           const LogRequest& request, const std::string& path, LogData& data)
+    : quantities_(quantities),
+      bound_(bound),
+      request_(request),
+      path_(path),
+      data_(data),
+      latitude_(place_of("latitude")),
+      longitude_(place_of("longitude")),
+      height_(place_of("height")),
+      heading_(place_of("heading")),
+      course_(place_of("course")),
+      course_accuracy_(place_of("course_accuracy")),
+      speed_(place_of("speed")),
+      speed_accuracy_(place_of("speed_accuracy")),
+      valid_(place_of("valid")),
+      newest_(quantities.size()),
+      nearest_(quantities.size()) {
+  if (request.stream == StreamKind::gnss) choose_accuracy();
+}
+
+std::size_t FixAssembler::place_of(std::string_view name) const {
+  for (const BoundSignal& bound : bound_) {
+    if (quantities_[bound.quantity].name == name) return bound.quantity;
+  }
+  return kNowhere;
+}
+
+void FixAssembler::choose_accuracy() {
+  AccuracyMeaning meaning = request_.accuracy;
+  const bool automatic = meaning == AccuracyMeaning::automatic;
+  const std::size_t radius = place_of("accuracy");
+  accuracy_ = {place_of("sigma_east"), place_of("sigma_north"), place_of("covariance_en_signed_root"), 1};
+  if (accuracy_.east != kNowhere && accuracy_.north != kNowhere) return;
+  accuracy_ = {place_of("accuracy_east"), place_of("accuracy_north"), kNowhere, 1};
+  if (accuracy_.east != kNowhere && accuracy_.north != kNowhere) {
+    if (automatic) meaning = AccuracyMeaning::percent95;
+  } else {
+    accuracy_ = {radius, radius, kNowhere, 1};
+    if (automatic) meaning = AccuracyMeaning::drms;
+    if (radius == kNowhere && !(request_.default_sigma_m > 0))
+      throw InputError(
+          fmt::format("{}: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or "
+                      "sigma_east and sigma_north, or state a default sigma in metres",
+                      path_));
+  }
+  accuracy_.factor = sigma_factor(meaning);
+  if (automatic && accuracy_.east != kNowhere)
+    data_.notes.push_back(fmt::format("{}: accuracy is taken as {} (not stated)", path_, to_string(meaning)));
+}
+
+void FixAssembler::take(Stamp stamp, std::size_t line, std::span<const SignalValue> values) {
+  bool position = false;
+  for (const SignalValue& signal : values)
+    position = position || signal.quantity == latitude_ || signal.quantity == longitude_;
+  if (open_ && (position || !one_burst(stamp, position_.stamp))) close();
+
+  for (const SignalValue& signal : values) {
+    const Given given{signal.value, stamp, line, true};
+    if (signal.quantity == latitude_) {
+      take_part(latitude_part_, given, "latitude", "longitude");
+    } else if (signal.quantity == longitude_) {
+      take_part(longitude_part_, given, "longitude", "latitude");
+    } else {
+      newest_[signal.quantity] = given;
+      Given& nearest = nearest_[signal.quantity];
+      if (open_ &&
+          (!nearest.there || distance(stamp, position_.stamp) < distance(nearest.stamp, position_.stamp)))
+        nearest = given;
+    }
+  }
+  if (latitude_part_.there && longitude_part_.there) open();
+}
+
+void FixAssembler::take_part(Given& part, const Given& given, std::string_view name, std::string_view other) {
+  if (part.there) complain(part.line, fmt::format("{} without a {} within 0.1 s", name, other));
+  part = given;
+}
+
+void FixAssembler::complain(std::size_t line, const std::string& what) {
+  ++data_.records;
+  add_corrupt(data_, path_, line, 1, what);
+}
+
+/// Begins a fix from the two parts, unless these are of different bursts.
+void FixAssembler::open() {
+  const bool latitude_later = latitude_part_.line >= longitude_part_.line;
+  const Given& later = latitude_later ? latitude_part_ : longitude_part_;
+  if (!one_burst(latitude_part_.stamp, longitude_part_.stamp)) {
+    const Given alone = latitude_later ? longitude_part_ : latitude_part_;
+    (latitude_later ? longitude_part_ : latitude_part_).there = false;
+    return complain(alone.line, latitude_later ? "longitude without a latitude within 0.1 s"
+                                               : "latitude without a longitude within 0.1 s");
+  }
+  open_ = true;
+  position_ = later;
+  position_deg_[0] = latitude_part_.value;
+  position_deg_[1] = longitude_part_.value;
+  latitude_part_.there = longitude_part_.there = false;
+  for (std::size_t i = 0; i < newest_.size(); ++i) {
+    nearest_[i] = newest_[i];
+    nearest_[i].there = newest_[i].there && one_burst(newest_[i].stamp, position_.stamp);
+  }
+}
+
+void FixAssembler::close() {
+  open_ = false;
+  if (valid_ != kNowhere) {
+    if (!nearest_[valid_].there)
+      return complain(position_.line, "no frame within 0.1 s tells whether the fix is valid");
+    if (!(value(valid_) != 0)) {
+      ++data_.records;
+      ++data_.without_fix;
+      return;
+    }
+  }
+  for (const auto& [place, number] :
+       {std::pair{latitude_, position_deg_[0]}, {longitude_, position_deg_[1]}}) {
+    if (!std::isnan(number)) continue;
+    const Quantity& quantity = quantities_[place];
+    return complain(position_.line, fmt::format("{}: the signal is outside {:.6g} .. {:.6g} deg",
+                                                quantity.name, quantity.smallest, quantity.largest));
+  }
+  if (request_.stream == StreamKind::truth) return add_truth();
+  add_fix();
+}
+
+void FixAssembler::add_truth() {
+  ++data_.records;
+  data_.truth.push_back(
+      {position_.stamp, position_deg_[0], position_deg_[1], value(height_), optional_value(heading_)});
+}
+
+void FixAssembler::add_fix() {
+  GeodeticFix fix;
+  if (!covariance(fix.covariance_en)) return;
+  ++data_.records;
+  fix.stamp = position_.stamp;
+  fix.latitude_deg = position_deg_[0];
+  fix.longitude_deg = position_deg_[1];
+  fix.height_m = value(height_);
+  fix.course_rad = optional_value(course_);
+  fix.course_sigma_rad = optional_sigma(course_accuracy_);
+  fix.speed_mps = optional_value(speed_);
+  fix.speed_sigma_mps = optional_sigma(speed_accuracy_);
+  fix.source = request_.source;
+  fix.line = position_.line;
+  data_.fixes.push_back(fix);
+}
+
+/// @return false after a complaint
+bool FixAssembler::covariance(Eigen::Matrix2d& result) {
+  const double east = accuracy_.factor * value(accuracy_.east);
+  const double north = accuracy_.factor * value(accuracy_.north);
+  if (!(east > 0 && north > 0)) {
+    if (!(request_.default_sigma_m > 0)) {
+      complain(position_.line, "no accuracy, and no default sigma is stated");
+      return false;
+    }
+    ++defaulted_;
+    result = request_.default_sigma_m * request_.default_sigma_m * Eigen::Matrix2d::Identity();
+    return true;
+  }
+  const double root = value(accuracy_.covariance_root);
+  const double off_diagonal = std::isnan(root) ? 0 : root * std::abs(root);
+  if (std::abs(off_diagonal) >= east * north) {
+    complain(position_.line, "covariance_en_signed_root: the covariance is not positive definite");
+    return false;
+  }
+  result << east * east, off_diagonal, off_diagonal, north * north;
+  return true;
+}
+
+double FixAssembler::value(std::size_t place) const {
+  return place == kNowhere || !nearest_[place].there ? kNone : nearest_[place].value;
+}
+
+std::optional<double> FixAssembler::optional_value(std::size_t place) const {
+  const double number = value(place);
+  return std::isnan(number) ? std::nullopt : std::optional(number);
+}
+
+std::optional<double> FixAssembler::optional_sigma(std::size_t place) const {
+  const double number = value(place);
+  return number > 0 ? std::optional(number) : std::nullopt;
+}
+
+void FixAssembler::finish() {
+  if (open_) close();
+  if (latitude_part_.there) complain(latitude_part_.line, "latitude without a longitude within 0.1 s");
+  if (longitude_part_.there) complain(longitude_part_.line, "longitude without a latitude within 0.1 s");
+  latitude_part_.there = longitude_part_.there = false;
+  if (defaulted_ > 0)
+    data_.notes.push_back(
+        fmt::format("{}: {} fixes give no accuracy, the stated default sigma of {} m is used", path_,
+                    defaulted_, request_.default_sigma_m));
+  if (data_.without_fix > 0)
+    data_.notes.push_back(fmt::format("{}: {} of {} records are marked as without a fix", path_,
+                                      data_.without_fix, data_.records));
+}
+
+}  // namespace waymark

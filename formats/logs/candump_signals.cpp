@@ -1,0 +1,269 @@
+#include <waymark/formats/logs/candump_signals.hpp>
+
+#include <array>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/logs/csv_columns.hpp>
+#include <waymark/formats/suggest.hpp>
+
+namespace waymark {
+namespace {
+
+/// So many signals are listed in a message.
+constexpr std::size_t kMostListed = 12;
+
+struct UnitAlias {
+  std::string_view written;  ///< in small letters
+  std::string_view name;
+};
+constexpr std::array<UnitAlias, 51> kUnitAliases{{
+    {"m/s", "m/s"},
+    {"mps", "m/s"},
+    {"meter/sec", "m/s"},
+    {"km/h", "km/h"},
+    {"kph", "km/h"},
+    {"kmh", "km/h"},
+    {"kmph", "km/h"},
+    {"km/hr", "km/h"},
+    {"kilometers/hour", "km/h"},
+    {"mph", "mph"},
+    {"mi/h", "mph"},
+    {"kn", "kn"},
+    {"kt", "kn"},
+    {"kts", "kn"},
+    {"knots", "kn"},
+    {"mm/s", "mm/s"},
+    {"rad/s", "rad/s"},
+    {"rad/sec", "rad/s"},
+    {"deg/s", "deg/s"},
+    {"deg/sec", "deg/s"},
+    {"dps", "deg/s"},
+    {"°/s", "deg/s"},
+    {"°/sec", "deg/s"},
+    {"degree/s", "deg/s"},
+    {"degrees/s", "deg/s"},
+    {"deg", "deg"},
+    {"degree", "deg"},
+    {"degrees", "deg"},
+    {"°", "deg"},
+    {"rad", "rad"},
+    {"m", "m"},
+    {"meter", "m"},
+    {"meters", "m"},
+    {"metre", "m"},
+    {"cm", "cm"},
+    {"mm", "mm"},
+    {"m/s^2", "m/s^2"},
+    {"m/s2", "m/s^2"},
+    {"m/s²", "m/s^2"},
+    {"m/s/s", "m/s^2"},
+    {"m/ss", "m/s^2"},
+    {"m/(s^2)", "m/s^2"},
+    {"mps2", "m/s^2"},
+    {"g", "g"},
+    {"s", "s"},
+    {"sec", "s"},
+    {"seconds", "s"},
+    {"ms", "ms"},
+    {"us", "us"},
+    {"ns", "ns"},
+    {"1e-7deg", "1e-7deg"},
+}};
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+/// Names in a message, the first few of them.
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kMostListed; ++i) text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > kMostListed) text += fmt::format(" and {} more", names.size() - kMostListed);
+  return text;
+}
+
+/// Signals whose names sound like what the stream needs.
+std::vector<std::string> likely_signals(const Dbc& dbc, StreamKind stream) {
+  constexpr std::array<std::string_view, 7> kPosition{"latitude", "longitude", "lat_",    "lon_",
+                                                      "heading",  "course",    "altitude"};
+  constexpr std::array<std::string_view, 6> kMotion{"speed", "yaw", "wheel", "steer", "gyro", "accel"};
+  const bool position = stream == StreamKind::gnss || stream == StreamKind::truth;
+  const std::span<const std::string_view> words =
+      position ? std::span<const std::string_view>(kPosition) : std::span<const std::string_view>(kMotion);
+  std::vector<std::string> names;
+  for (const DbcMessage& message : dbc.messages) {
+    for (const DbcSignal& signal : message.signals) {
+      const std::string name = lower(signal.name);
+      for (const std::string_view word : words) {
+        if (name.find(word) == std::string::npos) continue;
+        names.push_back(message.name + "." + signal.name);
+        break;
+      }
+    }
+  }
+  return names;
+}
+
+class Binder {
+ public:
+  Binder(const Dbc& dbc, const LogRequest& request, const std::string& place, std::vector<std::string>& notes)
+      : dbc_(dbc), request_(request), place_(place), notes_(notes) {}
+
+  void check_request(const std::vector<Quantity>& quantities) const;
+  [[nodiscard]] BoundSignal bind(const Quantity& quantity, const ColumnRequest& wanted) const;
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(place_ + what); }
+  void find(const Quantity& quantity, std::string_view column, BoundSignal& bound) const;
+  [[nodiscard]] const Unit& unit_of(const Quantity& quantity, const ColumnRequest& wanted,
+                                    const DbcSignal& signal) const;
+
+  const Dbc& dbc_;
+  const LogRequest& request_;
+  const std::string& place_;
+  std::vector<std::string>& notes_;
+};
+
+void Binder::check_request(const std::vector<Quantity>& quantities) const {
+  const std::vector<std::string_view> known = names_of(quantities);
+  for (const auto& [name, wanted] : request_.columns) {
+    const Quantity* quantity = find_quantity(quantities, name);
+    if (quantity == nullptr && name == "time")
+      fail(
+          "frames of a candump log are stamped by the logger, no signal can be their 'time'; map the "
+          "receiver's clock as gnss_time, then the logger's offset is known");
+    if (quantity == nullptr) {
+      const std::string nearest = did_you_mean(name, known);
+      fail(fmt::format("'{}' is no quantity of the {} stream{}", name, to_string(request_.stream),
+                       nearest.empty() ? "; there are: " + joined(known) : nearest));
+    }
+    if (const std::string error = column_request_error(*quantity, wanted); !error.empty()) fail(error);
+  }
+  std::string missing;
+  for (const Quantity& quantity : quantities) {
+    const bool needed = request_.columns.empty() || quantity.required;
+    if (needed && !request_.columns.contains(std::string(quantity.name)))
+      missing = missing.empty() ? std::string(quantity.name) : missing;
+  }
+  if (missing.empty()) return;
+  const std::vector<std::string> likely = likely_signals(dbc_, request_.stream);
+  fail(fmt::format("no signal for {}: state 'columns: {{{}: SIGNAL}}'; {}", missing, missing,
+                   likely.empty() ? fmt::format("{} has no signal that sounds like it", dbc_.path)
+                                  : fmt::format("{} has {}", dbc_.path, listed(likely))));
+}
+
+BoundSignal Binder::bind(const Quantity& quantity, const ColumnRequest& wanted) const {
+  BoundSignal bound;
+  find(quantity, wanted.column, bound);
+  const DbcMessage& message = dbc_.messages[bound.message];
+  const DbcSignal& signal = message.signals[bound.signal];
+  if (signal.bytes_needed() > kMostFrameBytes)
+    fail(fmt::format(
+        "{}: {}.{} lies behind the first 64 bytes, so in a message of several frames (a transport "
+        "protocol), which is not read here",
+        quantity.name, message.name, signal.name));
+  const Unit& unit = unit_of(quantity, wanted, signal);
+  const Convention& convention = *find_convention(quantity, wanted.convention);
+  bound.unit_factor = unit.factor;
+  bound.factor = convention.sign * unit.factor;
+  bound.offset = convention.offset;
+  return bound;
+}
+
+/// Finds message and signal by name.
+void Binder::find(const Quantity& quantity, std::string_view column, BoundSignal& bound) const {
+  if (const std::size_t colon = column.find(':'); colon != std::string_view::npos) {
+    bound.interface = column.substr(0, colon);
+    column.remove_prefix(colon + 1);
+  }
+  const std::size_t point = column.find('.');
+  const bool has_message = point != std::string_view::npos;
+  const std::string_view message_name = has_message ? column.substr(0, point) : std::string_view();
+  const std::string_view signal_name = has_message ? column.substr(point + 1) : column;
+  std::vector<std::string> found;
+  std::vector<std::string_view> messages;
+  std::vector<std::string_view> signals;
+  for (std::size_t i = 0; i < dbc_.messages.size(); ++i) {
+    const DbcMessage& message = dbc_.messages[i];
+    messages.push_back(message.name);
+    if (has_message && message.name != message_name) continue;
+    for (std::size_t j = 0; j < message.signals.size(); ++j) {
+      signals.push_back(message.signals[j].name);
+      if (message.signals[j].name != signal_name) continue;
+      bound.message = i;
+      bound.signal = j;
+      found.push_back(message.name + "." + message.signals[j].name);
+    }
+  }
+  if (found.size() == 1) return;
+  if (found.size() > 1)
+    fail(fmt::format("{}: '{}' is a signal of several messages; name one: {}", quantity.name, signal_name,
+                     listed(found)));
+  if (has_message && signals.empty())
+    fail(fmt::format("{}: {} has no message '{}'{}", quantity.name, dbc_.path, message_name,
+                     did_you_mean(message_name, messages)));
+  fail(fmt::format("{}: {} has no signal '{}'{}", quantity.name,
+                   has_message ? std::string(message_name) : dbc_.path, signal_name,
+                   did_you_mean(signal_name, signals)));
+}
+
+const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wanted,
+                            const DbcSignal& signal) const {
+  const std::string_view by_dbc = known_unit(signal.unit);
+  if (!wanted.unit.empty()) {
+    if (!by_dbc.empty() && by_dbc != wanted.unit)
+      notes_.push_back(
+          fmt::format("{}{}: signal {} is read in '{}' as stated, though by the DBC it is in '{}'", place_,
+                      quantity.name, signal.name, wanted.unit, signal.unit));
+    return *find_unit(quantity, wanted.unit);
+  }
+  const Unit& own = quantity.units.front();
+  if (own.name == "1") return own;  // flags and counts
+  const Unit* unit = by_dbc.empty() ? nullptr : find_unit(quantity, by_dbc);
+  if (unit != nullptr) {
+    notes_.push_back(fmt::format("{}{}: signal {} is in '{}' by the DBC", place_, quantity.name, signal.name,
+                                 signal.unit));
+    return *unit;
+  }
+  std::vector<std::string_view> units;
+  for (const Unit& known : quantity.units) units.push_back(known.name);
+  fail(fmt::format("{}: signal {} is {}; state 'unit' for it: {}", quantity.name, signal.name,
+                   signal.unit.empty() ? "without a unit in the DBC"
+                                       : fmt::format("in '{}' by the DBC, which is no unit known for {}",
+                                                     signal.unit, quantity.name),
+                   joined(units)));
+}
+
+}  // namespace
+
+std::string_view known_unit(std::string_view dbc_unit) {
+  const std::string written = lower(dbc_unit);
+  for (const UnitAlias& alias : kUnitAliases) {
+    if (alias.written == written) return alias.name;
+  }
+  return {};
+}
+
+std::vector<BoundSignal> bind_signals(const Dbc& dbc, const std::vector<Quantity>& quantities,
+                                      const LogRequest& request, const std::string& place,
+                                      std::vector<std::string>& notes) {
+  const Binder binder(dbc, request, place, notes);
+  binder.check_request(quantities);
+  std::vector<BoundSignal> result;
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const auto wanted = request.columns.find(std::string(quantities[i].name));
+    if (wanted == request.columns.end()) continue;
+    result.push_back(binder.bind(quantities[i], wanted->second));
+    result.back().quantity = i;
+  }
+  return result;
+}
+
+}  // namespace waymark

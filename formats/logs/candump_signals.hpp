@@ -1,0 +1,38 @@
+/// Which signal of a DBC gives which quantity of a stream; private to the candump reader.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <waymark/core/log_reader.hpp>
+#include <waymark/formats/logs/dbc.hpp>
+#include <waymark/formats/logs/quantity.hpp>
+
+namespace waymark {
+
+/// A quantity tied to a signal.
+struct BoundSignal {
+  std::size_t quantity = 0;  ///< index in the stream's quantities
+  std::size_t message = 0;   ///< index in the DBC
+  std::size_t signal = 0;    ///< index in the message
+  std::string interface;     ///< only frames of this one; empty: of any
+  double factor = 1;         ///< quantity = factor * value + offset, sense included
+  double offset = 0;
+  double unit_factor = 1;  ///< the unit's part of `factor`
+};
+
+/// Ties every quantity in `request.columns` to its signal: "SIGNAL", "MESSAGE.SIGNAL", or either behind an
+/// interface, "can0:SIGNAL". Units: as stated, else by the DBC, which is noted.
+/// @param place  begins every message: "drive.log: "
+/// @throws InputError for an unknown quantity, unit, convention or signal, a signal name that several
+/// messages have, a required quantity without a signal, a unit that neither request nor DBC tell
+[[nodiscard]] std::vector<BoundSignal> bind_signals(const Dbc& dbc, const std::vector<Quantity>& quantities,
+                                                    const LogRequest& request, const std::string& place,
+                                                    std::vector<std::string>& notes);
+
+/// The name by which this library knows a unit of a DBC file: "km/h" for "kph"; empty for an unknown one.
+[[nodiscard]] std::string_view known_unit(std::string_view dbc_unit);
+
+}  // namespace waymark
