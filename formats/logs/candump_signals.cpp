@@ -111,6 +111,21 @@ std::vector<std::string> likely_signals(const Dbc& dbc, StreamKind stream) {
   return names;
 }
 
+void note_troubles(const Dbc& dbc, const std::string& place, std::vector<std::string>& notes) {
+  std::size_t count = 0;
+  std::string first;
+  for (const DbcMessage& message : dbc.messages) {
+    for (const DbcSignal& signal : message.signals) {
+      if (signal.trouble.empty()) continue;
+      if (count == 0) first = signal.trouble;
+      ++count;
+    }
+  }
+  if (count > 0)
+    notes.push_back(fmt::format("{}{} signals of the DBC cannot be read (none is asked for); first: {}",
+                                place, count, first));
+}
+
 class Binder {
  public:
   Binder(const Dbc& dbc, const LogRequest& request, const std::string& place, std::vector<std::string>& notes)
@@ -164,6 +179,7 @@ BoundSignal Binder::bind(const Quantity& quantity, const ColumnRequest& wanted) 
   find(quantity, wanted.column, bound);
   const DbcMessage& message = dbc_.messages[bound.message];
   const DbcSignal& signal = message.signals[bound.signal];
+  if (!signal.trouble.empty()) fail(fmt::format("{}: {}", quantity.name, signal.trouble));
   if (signal.bytes_needed() > kMostFrameBytes)
     fail(fmt::format(
         "{}: {}.{} lies behind the first 64 bytes, so in a message of several frames (a transport "
@@ -256,6 +272,7 @@ std::vector<BoundSignal> bind_signals(const Dbc& dbc, const std::vector<Quantity
                                       std::vector<std::string>& notes) {
   const Binder binder(dbc, request, place, notes);
   binder.check_request(quantities);
+  note_troubles(dbc, place, notes);
   std::vector<BoundSignal> result;
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     const auto wanted = request.columns.find(std::string(quantities[i].name));

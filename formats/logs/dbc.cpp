@@ -42,13 +42,18 @@ class Tokens {
       : line_(line), number_(number), path_(path) {}
 
   void set_object(std::string object) { object_ = std::move(object); }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(fmt::format("{}:{}:{}: {}: {}", path_, number_, at_ + 1, object_, what));
+  /// Remembers the next token as the place of complaints by fail().
+  void mark() {
+    skip_blanks();
+    mark_ = at_;
   }
+  [[noreturn]] void fail(const std::string& what) const { fail_at(mark_, what); }
+  /// What fail() would throw.
+  [[nodiscard]] std::string complaint(const std::string& what) const { return text(mark_, what); }
   [[noreturn]] void fail_expected(std::string_view what) const {
     const std::string_view rest = line_.substr(at_, 20);
-    fail(fmt::format("expected {}, got {}", what,
-                     rest.empty() ? std::string("the end of the line") : fmt::format("'{}'", rest)));
+    fail_at(at_, fmt::format("expected {}, got {}", what,
+                             rest.empty() ? std::string("the end of the line") : fmt::format("'{}'", rest)));
   }
   void skip_blanks() {
     while (at_ < line_.size() && (line_[at_] == ' ' || line_[at_] == '\t')) ++at_;
@@ -85,18 +90,26 @@ class Tokens {
   std::string_view quoted(std::string_view what) {
     if (!accept('"')) fail_expected(what);
     const std::size_t end = line_.find('"', at_);
-    if (end == std::string_view::npos) fail("the text's closing '\"' is missing");
+    if (end == std::string_view::npos) fail_at(at_ - 1, "the text's closing '\"' is missing");
     const std::string_view text = line_.substr(at_, end - at_);
     at_ = end + 1;
     return text;
   }
 
  private:
+  [[noreturn]] void fail_at(std::size_t place, const std::string& what) const {
+    throw InputError(text(place, what));
+  }
+  [[nodiscard]] std::string text(std::size_t place, const std::string& what) const {
+    return fmt::format("{}:{}:{}: {}: {}", path_, number_, place + 1, object_, what);
+  }
+
   std::string_view line_;
   std::size_t number_;
   const std::string& path_;
   std::string object_ = "DBC";
   std::size_t at_ = 0;
+  std::size_t mark_ = 0;
 };
 
 /// Finds the fraction that a decimal factor and offset stand for, where all its integers are doubles.
@@ -114,6 +127,13 @@ void find_fraction(DbcSignal& signal) {
     signal.denominator = static_cast<std::int64_t>(denominator);
     return;
   }
+}
+
+/// Null for an unknown name.
+DbcSignal* signal_named(DbcMessage& message, std::string_view name) {
+  const auto found = std::find_if(message.signals.begin(), message.signals.end(),
+                                  [&](const DbcSignal& signal) { return signal.name == name; });
+  return found == message.signals.end() ? nullptr : &*found;
 }
 
 class DbcParser {
@@ -144,11 +164,12 @@ class DbcParser {
   void read_message(Tokens& tokens, std::size_t number);
   void read_signal(Tokens& tokens, std::size_t number);
   void read_multiplexing(Tokens& tokens, DbcSignal& signal);
-  void check_fit(const Tokens& tokens, const DbcSignal& signal) const;
+  void check_fit(const Tokens& tokens, DbcSignal& signal) const;
   void read_value_type(Tokens& tokens);
   void read_ranges(Tokens& tokens);
   Place find_signal(Tokens& tokens);
   void finish_message(DbcMessage& message);
+  void check_multiplexers(const DbcMessage& message, DbcSignal& signal) const;
 
   Dbc dbc_;
   std::unordered_map<std::uint32_t, std::size_t> by_id_;
@@ -194,6 +215,7 @@ void DbcParser::read_message(Tokens& tokens, std::size_t number) {
   tokens.set_object("BO_");
   DbcMessage message;
   message.line = number;
+  tokens.mark();
   message.id = tokens.number<std::uint32_t>("the message's id");
   message.name = tokens.name("the message's name");
   tokens.set_object("BO_ " + message.name);
@@ -209,7 +231,7 @@ void DbcParser::read_message(Tokens& tokens, std::size_t number) {
                     "2147483648 is added",
                     message.id));
   if (message.size > kMostBytes)
-    tokens.fail(fmt::format("{} bytes are more than a message can have", message.size));
+    tokens.fail(fmt::format("a length of {} bytes is more than a message can have", message.size));
   const auto [same, fresh] = by_id_.emplace(message.id, dbc_.messages.size());
   if (!fresh)
     tokens.fail(fmt::format("the id {} is that of {} in line {} already", message.id,
@@ -223,21 +245,28 @@ void DbcParser::read_message(Tokens& tokens, std::size_t number) {
 
 void DbcParser::read_signal(Tokens& tokens, std::size_t number) {
   tokens.set_object("SG_");
-  if (!in_message_) tokens.fail("a signal before the first message (BO_)");
   DbcSignal signal;
   signal.line = number;
+  tokens.mark();
+  if (!in_message_) tokens.fail("a signal before the first message (BO_)");
   signal.name = tokens.name("the signal's name");
   tokens.set_object("SG_ " + signal.name);
+  DbcSignal* same = signal_named(dbc_.messages.back(), signal.name);
+  if (same != nullptr)
+    same->trouble = tokens.complaint(fmt::format("{} has a signal of this name in line {} already",
+                                                 dbc_.messages.back().name, same->line));
   if (!tokens.accept(':')) {
     read_multiplexing(tokens, signal);
     tokens.expect(':');
   }
+  tokens.mark();
   signal.start = tokens.number<unsigned>("the start bit");
   tokens.expect('|');
   signal.length = tokens.number<unsigned>("the length in bits");
   tokens.expect('@');
   const auto order = tokens.number<unsigned>("the byte order 0 (Motorola) or 1 (Intel)");
-  if (order > 1) tokens.fail("the byte order must be 0 (Motorola) or 1 (Intel)");
+  if (order > 1)
+    tokens.fail(fmt::format("the byte order is {}: it must be 0 (Motorola) or 1 (Intel)", order));
   signal.big_endian = order == 0;
   if (tokens.accept('-')) {
     signal.number = SignalNumber::signed_integer;
@@ -256,11 +285,12 @@ void DbcParser::read_signal(Tokens& tokens, std::size_t number) {
   tokens.expect(']');
   signal.unit = utf8_unit(tokens.quoted("the unit in quotes"));
   check_fit(tokens, signal);
-  dbc_.messages.back().signals.push_back(std::move(signal));
+  if (same == nullptr) dbc_.messages.back().signals.push_back(std::move(signal));
 }
 
 /// "M", "m3" or "m3M" between name and colon.
 void DbcParser::read_multiplexing(Tokens& tokens, DbcSignal& signal) {
+  tokens.mark();
   const std::string word = tokens.name("':' or a multiplexing such as 'M' or 'm3'");
   const char* at = word.data();
   const char* end = at + word.size();
@@ -279,16 +309,18 @@ void DbcParser::read_multiplexing(Tokens& tokens, DbcSignal& signal) {
   if (at != end) tokens.fail(fmt::format("'{}' is no multiplexing: expected 'M', 'm3' or 'm3M'", word));
 }
 
-void DbcParser::check_fit(const Tokens& tokens, const DbcSignal& signal) const {
+void DbcParser::check_fit(const Tokens& tokens, DbcSignal& signal) const {
   const DbcMessage& message = dbc_.messages.back();
-  if (signal.length < 1 || signal.length > 64)
-    tokens.fail(fmt::format("a length of {} bits: there may be 1 to 64", signal.length));
-  // The start is tested first: bytes_needed() must not overflow.
-  if (signal.start >= 8 * message.size || signal.bytes_needed() > message.size)
-    tokens.fail(fmt::format("start {} and length {} do not fit into the {} bytes of {}; correct one of them",
-                            signal.start, signal.length, message.size, message.name));
-  if (const DbcSignal* same = message.find(signal.name); same != nullptr)
-    tokens.fail(fmt::format("{} has a signal of this name in line {} already", message.name, same->line));
+  if (signal.length < 1 || signal.length > 64) {
+    signal.trouble =
+        tokens.complaint(fmt::format("a length of {} bits: there may be 1 to 64", signal.length));
+  } else if (signal.start >= 8 * message.size || signal.bytes_needed() > message.size) {
+    // The start is tested first: bytes_needed() must not overflow.
+    signal.trouble = tokens.complaint(
+        fmt::format("start {} and length {} do not fit into the {} bytes of {}; correct one of them",
+                    signal.start, signal.length, message.size, message.name));
+  }
+  if (!signal.trouble.empty()) signal.start = signal.length = 1;  // harmless where it is a multiplexer
 }
 
 /// The signal that a line speaks of; nulls where the file has none such.
@@ -297,24 +329,24 @@ DbcParser::Place DbcParser::find_signal(Tokens& tokens) {
   const std::string name = tokens.name("the signal's name");
   if (message == by_id_.end()) return {};
   DbcMessage& found = dbc_.messages[message->second];
-  for (DbcSignal& signal : found.signals) {
-    if (signal.name == name) return {&found, &signal};
-  }
-  return {};
+  return {&found, signal_named(found, name)};
 }
 
 /// "SIG_VALTYPE_ 170 SPEED : 1;": a float (1) or double (2).
 void DbcParser::read_value_type(Tokens& tokens) {
   tokens.set_object("SIG_VALTYPE_");
+  tokens.mark();
   DbcSignal* signal = find_signal(tokens).signal;
   (void)tokens.accept(':');
   const auto type = tokens.number<unsigned>("0 (integer), 1 (float) or 2 (double)");
   if (signal == nullptr || type == 0) return;
   if (type > 2) tokens.fail_expected("0 (integer), 1 (float) or 2 (double)");
   const unsigned length = type == 1 ? 32 : 64;
-  if (signal->length != length)
-    tokens.fail(fmt::format("{} has {} bits, a {} has {}", signal->name, signal->length,
-                            type == 1 ? "float" : "double", length));
+  if (signal->length != length) {
+    signal->trouble = tokens.complaint(fmt::format("{} has {} bits, a {} has {}", signal->name,
+                                                   signal->length, type == 1 ? "float" : "double", length));
+    return;
+  }
   signal->number = type == 1 ? SignalNumber::float32 : SignalNumber::float64;
 }
 
@@ -322,6 +354,7 @@ void DbcParser::read_value_type(Tokens& tokens) {
 void DbcParser::read_ranges(Tokens& tokens) {
   tokens.set_object("SG_MUL_VAL_");
   const auto [message, signal] = find_signal(tokens);
+  tokens.mark();
   const std::string multiplexer = tokens.name("the multiplexer's name");
   std::vector<MultiplexerRange> ranges;
   do {
@@ -333,43 +366,51 @@ void DbcParser::read_ranges(Tokens& tokens) {
   } while (tokens.accept(','));
   if (signal == nullptr) return;
   const DbcSignal* outer = message->find(multiplexer);
-  if (outer == nullptr)
-    tokens.fail(
+  if (outer == nullptr) {
+    signal->trouble = tokens.complaint(
         fmt::format("{} has no signal '{}' to multiplex {}", message->name, multiplexer, signal->name));
+    return;
+  }
   signal->multiplexer = static_cast<std::size_t>(outer - message->signals.data());
   signal->when = std::move(ranges);
 }
 
-/// Ties signals "m3" to the one multiplexer of their message, and looks for circles.
+/// Ties signals "m3" to the one multiplexer of their message.
 void DbcParser::finish_message(DbcMessage& message) {
   std::vector<std::size_t> roots;
+  std::size_t multiplexers = 0;
   for (std::size_t i = 0; i < message.signals.size(); ++i) {
     const DbcSignal& signal = message.signals[i];
+    if (signal.multiplexes) ++multiplexers;
     if (signal.multiplexes && signal.when.empty()) roots.push_back(i);
   }
-  const bool several = std::count_if(message.signals.begin(), message.signals.end(),
-                                     [](const DbcSignal& signal) { return signal.multiplexes; }) > 1;
   for (DbcSignal& signal : message.signals) {
-    const auto fail = [&](const std::string& what) {
-      throw InputError(fmt::format("{}:{}:1: SG_ {}: {}", dbc_.path, signal.line, signal.name, what));
-    };
     find_fraction(signal);
-    if (signal.when.empty() || signal.multiplexer) continue;
-    if (roots.empty()) fail(fmt::format("it is multiplexed, but {} has no multiplexer (M)", message.name));
+    if (signal.when.empty() || signal.multiplexer || !signal.trouble.empty()) continue;
+    const std::string place = fmt::format("{}:{}:1: SG_ {}: ", dbc_.path, signal.line, signal.name);
     // In extended multiplexing "m3M" usually lies under the one "M"; where a plain "m3" lies must be told.
-    if (roots.size() > 1 || (several && !signal.multiplexes))
-      fail(fmt::format("{} has several multiplexers: a line SG_MUL_VAL_ must say which one is meant",
-                       message.name));
-    signal.multiplexer = roots.front();
-  }
-  for (const DbcSignal& signal : message.signals) {
-    const DbcSignal* outer = &signal;
-    for (std::size_t steps = 0; outer->multiplexer; ++steps) {
-      if (steps > message.signals.size())
-        throw InputError(fmt::format("{}:{}:1: SG_ {}: its multiplexers depend on each other in a circle",
-                                     dbc_.path, signal.line, signal.name));
-      outer = &message.signals[*outer->multiplexer];
+    if (roots.empty()) {
+      signal.trouble = fmt::format("{}it is multiplexed, but {} has no multiplexer (M)", place, message.name);
+    } else if (roots.size() > 1 || (multiplexers > 1 && !signal.multiplexes)) {
+      signal.trouble =
+          fmt::format("{}{} has several multiplexers: a line SG_MUL_VAL_ must say which one is meant", place,
+                      message.name);
+    } else {
+      signal.multiplexer = roots.front();
     }
+  }
+  for (DbcSignal& signal : message.signals) check_multiplexers(message, signal);
+}
+
+/// A signal whose multiplexer cannot be read cannot be read either; nor one that depends on itself.
+void DbcParser::check_multiplexers(const DbcMessage& message, DbcSignal& signal) const {
+  const DbcSignal* outer = &signal;
+  for (std::size_t steps = 0; signal.trouble.empty() && outer->multiplexer; ++steps) {
+    outer = &message.signals[*outer->multiplexer];
+    signal.trouble = outer->trouble;
+    if (steps > message.signals.size())
+      signal.trouble = fmt::format("{}:{}:1: SG_ {}: its multiplexers depend on each other in a circle",
+                                   dbc_.path, signal.line, signal.name);
   }
 }
 

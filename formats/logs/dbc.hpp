@@ -21,7 +21,8 @@ struct MultiplexerRange {
   std::uint64_t last = 0;
 };
 
-/// One signal: a number in some bits of a frame. value = factor * bits + offset.
+/// One signal: a number in some bits of a frame. value = factor * bits + offset. Only those without trouble
+/// may be read.
 struct DbcSignal {
   std::string name;
   std::string unit;     ///< as the file has it, in UTF-8
@@ -36,6 +37,9 @@ struct DbcSignal {
       multiplexer;  ///< index of the signal in the message that says when this one is there
   std::vector<MultiplexerRange> when;  ///< and for which of its values
   std::size_t line = 0;                ///< in the file, 1-based
+  /// "car.dbc:12:20: SG_ SPEED: ..." where it cannot be read; empty where it can. Real files have such
+  /// signals in messages that nobody asks for.
+  std::string trouble;
 
   /// How many bytes a frame must have to hold it.
   [[nodiscard]] std::size_t bytes_needed() const;
