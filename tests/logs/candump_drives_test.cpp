@@ -198,12 +198,13 @@ TEST_CASE("candump: wheels and yaw rate of a RAV4 are those of one car that driv
   request.columns["yaw_rate"] = {"can0:KINEMATICS.YAW_RATE", "", ""};
   const LogData data = read_log_file(CandumpReader(), log, request);
   REQUIRE(data.corrupt == 0);
+  std::vector<double> spreads;  // between the four wheels
   int speeds = 0;
   int rates = 0;
   for (std::size_t row = 0; row < data.readings.size(); ++row) {
     if (!std::isnan(data.readings.at(row, 4))) {
       ++rates;
-      REQUIRE(std::abs(data.readings.at(row, 4)) < 30 * kDegree);
+      REQUIRE(std::abs(data.readings.at(row, 4)) < 5 * kDegree);  // it goes straight on
       continue;
     }
     ++speeds;
@@ -211,8 +212,11 @@ TEST_CASE("candump: wheels and yaw rate of a RAV4 are those of one car that driv
     const auto [slowest, fastest] = std::minmax_element(at, at + 4);
     REQUIRE(*slowest > 1);
     REQUIRE(*fastest < 30);
-    REQUIRE(*fastest - *slowest < 0.05 * *fastest);
+    spreads.push_back((*fastest - *slowest) / *fastest);
   }
+  std::sort(spreads.begin(), spreads.end());
+  CHECK(spreads[spreads.size() / 2] < 0.02);
+  CHECK(spreads.back() < 0.10);
   CHECK(speeds == 1006);  // frames of id 0AA: grep -c '0AA#'
   CHECK(rates == 1007);
   // (46408.589503) 0AA#25B525B525A0258D by hand: 0x25B5 * 0.01 - 67.67 = 28.86 km/h, 0x25A0: 28.65,
