@@ -20,6 +20,9 @@
 namespace waymark {
 namespace {
 
+/// 2106, when 32 bits of seconds end: beyond that a number is no date.
+constexpr std::int64_t kLastDate = 4'294'967'295'000'000'000;
+
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// So many interfaces are told apart, by names of so many characters (Linux has at most 15).
@@ -233,10 +236,10 @@ double CandumpDecoder::value_of(const DbcSignal& signal, std::size_t index) {
 }
 
 void CandumpDecoder::take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp) {
-  const BoundSignal& bound = bound_[index];
-  const Quantity& quantity = quantities_[bound.quantity];
-  const std::optional<std::int64_t> told = signal.integer(frame_, std::llround(bound.unit_factor * 1e9));
-  if (!told || !(Stamp{*told}.seconds() >= quantity.smallest && Stamp{*told}.seconds() <= quantity.largest)) {
+  std::int64_t multiplier = 1'000'000'000;
+  for (int power = bound_[index].time_power; power < 0; ++power) multiplier /= 10;
+  const std::optional<std::int64_t> told = signal.integer(frame_, multiplier);
+  if (!told || *told <= 0 || *told > kLastDate) {
     ++outside_[index];
     return;
   }

@@ -187,7 +187,10 @@ BoundSignal Binder::bind(const Quantity& quantity, const ColumnRequest& wanted) 
         quantity.name, message.name, signal.name));
   const Unit& unit = unit_of(quantity, wanted, signal);
   const Convention& convention = *find_convention(quantity, wanted.convention);
-  bound.unit_factor = unit.factor;
+  if (quantity.name == "gnss_time") {
+    bound.time_power = static_cast<int>(unit.factor);
+    return bound;
+  }
   bound.factor = convention.sign * unit.factor;
   bound.offset = convention.offset;
   return bound;
@@ -233,6 +236,8 @@ void Binder::find(const Quantity& quantity, std::string_view column, BoundSignal
 const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wanted,
                             const DbcSignal& signal) const {
   const std::string_view by_dbc = known_unit(signal.unit);
+  if (wanted.unit == kIso8601)
+    fail(fmt::format("{}: a signal is a number, not an ISO 8601 date", quantity.name));
   if (!wanted.unit.empty()) {
     if (!by_dbc.empty() && by_dbc != wanted.unit)
       notes_.push_back(
@@ -249,7 +254,9 @@ const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wante
     return *unit;
   }
   std::vector<std::string_view> units;
-  for (const Unit& known : quantity.units) units.push_back(known.name);
+  for (const Unit& known : quantity.units) {
+    if (known.name != kIso8601) units.push_back(known.name);
+  }
   fail(fmt::format("{}: signal {} is {}; state 'unit' for it: {}", quantity.name, signal.name,
                    signal.unit.empty() ? "without a unit in the DBC"
                                        : fmt::format("in '{}' by the DBC, which is no unit known for {}",
@@ -265,6 +272,14 @@ std::string_view known_unit(std::string_view dbc_unit) {
     if (alias.written == written) return alias.name;
   }
   return {};
+}
+
+std::vector<Quantity> signal_quantities(const LogRequest& request) {
+  if (request.stream == StreamKind::odometry && request.readings.empty())
+    throw UsageError("a CAN log gives odometry in channels: LogRequest::readings must name them");
+  std::vector<Quantity> result = quantities(request);
+  result.erase(result.begin());  // time
+  return result;
 }
 
 std::vector<BoundSignal> bind_signals(const Dbc& dbc, const std::vector<Quantity>& quantities,

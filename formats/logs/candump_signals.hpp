@@ -20,8 +20,13 @@ struct BoundSignal {
   std::string interface;     ///< only frames of this one; empty: of any
   double factor = 1;         ///< quantity = factor * value + offset, sense included
   double offset = 0;
-  double unit_factor = 1;  ///< the unit's part of `factor`
+  int time_power = 0;  ///< of `gnss_time`, instead of the factor: its unit is 10^time_power s
 };
+
+/// Quantities that signals can give: those of the stream but for `time`, which the log stamps. Readings are
+/// in the order of the request.
+/// @throws UsageError for an odometry request without channels, and as quantities()
+[[nodiscard]] std::vector<Quantity> signal_quantities(const LogRequest& request);
 
 /// Ties every quantity in `request.columns` to its signal: "SIGNAL", "MESSAGE.SIGNAL", or either behind an
 /// interface, "can0:SIGNAL". Units: as stated, else by the DBC, which is noted.

@@ -84,9 +84,6 @@ constexpr std::array<SensorKind, 9> kSensorKinds{{{"1", "", kFlags, {}},
                                                   {"rad", "ccw", kHeadings, kTurns},
                                                   {"rad/s", "ccw", kRates, kTurns}}};
 
-// Until 2106, when 32 bits of seconds end: beyond that it is no date.
-constexpr Quantity kGnssTime{"gnss_time", "gnss_time_s", false, kDurations, {}, 1, 4'294'967'295};
-
 template <typename Item>
 const Item* find_named(std::span<const Item> items, std::string_view name) {
   for (const Item& item : items) {
@@ -134,18 +131,6 @@ std::vector<Quantity> quantities(const LogRequest& request) {
   std::vector<Quantity> own{kTime};
   for (const SensorColumn& column : request.readings) own.push_back(sensor_quantity(column));
   return own;
-}
-
-std::vector<Quantity> signal_quantities(const LogRequest& request) {
-  std::vector<Quantity> result;
-  if (request.stream == StreamKind::odometry) {
-    for (const SensorColumn& column : request.readings) result.push_back(sensor_quantity(column));
-    return result;
-  }
-  result = quantities(request);
-  result.erase(result.begin());  // time
-  if (request.stream == StreamKind::gnss) result.push_back(kGnssTime);
-  return result;
 }
 
 std::vector<std::string_view> names_of(std::span<const Quantity> quantities) {

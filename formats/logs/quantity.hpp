@@ -42,10 +42,6 @@ inline constexpr std::string_view kIso8601 = "iso8601";
 /// sensor stream are the request's own, whose text must outlive them.
 /// @throws UsageError where a sensor asks for a unit or sense that is not known
 [[nodiscard]] std::vector<Quantity> quantities(const LogRequest& request);
-/// The quantities that signals of a vehicle bus can give: as quantities(), without `time`, which the log
-/// stamps; of odometry the channels in `request.readings`, of gnss also `gnss_time` (s since 1970, UTC).
-/// @throws UsageError as quantities()
-[[nodiscard]] std::vector<Quantity> signal_quantities(const LogRequest& request);
 [[nodiscard]] std::vector<std::string_view> names_of(std::span<const Quantity> quantities);
 /// Null for an unknown name.
 [[nodiscard]] const Quantity* find_quantity(std::span<const Quantity> quantities, std::string_view name);

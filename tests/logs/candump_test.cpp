@@ -376,6 +376,13 @@ TEST_CASE("candump: a column that does not fit the DBC is told with what does") 
           "unknown unit 'degs' for yaw_rate; did you mean 'deg/s'?; known: rad/s, deg/s");
   check_refused(request_of(StreamKind::odometry, {{"yawrate", from("FL")}}),
                 "'yawrate' is no quantity of the odometry stream; did you mean 'yaw_rate'?");
+  LogRequest clock = fixes();
+  clock.columns["gnss_time"] = from("Epoch", "iso8601");
+  check_refused(clock, "gnss_time: a signal is a number, not an ISO 8601 date");
+  LogRequest without_channels = request_of(StreamKind::odometry, {{"speed", from("FL")}});
+  without_channels.readings.clear();
+  CHECK_THROWS_MATCHES(CandumpReader().open("car.log", without_channels), UsageError,
+                       Message("a CAN log gives odometry in channels: LogRequest::readings must name them"));
   check_refused(request_of(StreamKind::gnss, {{"time", from("Epoch")}}),
                 "frames of a candump log are stamped by the logger, no signal can be their 'time'; map the "
                 "receiver's clock as gnss_time, then the logger's offset is known");
