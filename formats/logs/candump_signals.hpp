@@ -37,7 +37,4 @@ struct BoundSignal {
                                                     const LogRequest& request, const std::string& place,
                                                     std::vector<std::string>& notes);
 
-/// The name by which this library knows a unit of a DBC file: "km/h" for "kph"; empty for an unknown one.
-[[nodiscard]] std::string_view known_unit(std::string_view dbc_unit);
-
 }  // namespace waymark

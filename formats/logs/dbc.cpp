@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/logs/dbc_tokens.hpp>
 
 namespace waymark {
 namespace {
@@ -20,10 +21,6 @@ constexpr double kMostExact = 9007199254740992.0;
 /// The longest message of the transport protocols that DBC files describe (J1939).
 constexpr unsigned kMostBytes = 1785;
 
-bool is_name_character(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-}
-
 /// Text of an old code page to UTF-8, as far as units need it: degree sign and superscript two.
 std::string utf8_unit(std::string_view text) {
   std::string result;
@@ -34,83 +31,6 @@ std::string utf8_unit(std::string_view text) {
   }
   return result;
 }
-
-/// Reads tokens of one line; a complaint names place and object.
-class Tokens {
- public:
-  Tokens(std::string_view line, std::size_t number, const std::string& path)
-      : line_(line), number_(number), path_(path) {}
-
-  void set_object(std::string object) { object_ = std::move(object); }
-  /// Remembers the next token as the place of complaints by fail().
-  void mark() {
-    skip_blanks();
-    mark_ = at_;
-  }
-  [[noreturn]] void fail(const std::string& what) const { fail_at(mark_, what); }
-  /// What fail() would throw.
-  [[nodiscard]] std::string complaint(const std::string& what) const { return text(mark_, what); }
-  [[noreturn]] void fail_expected(std::string_view what) const {
-    const std::string_view rest = line_.substr(at_, 20);
-    fail_at(at_, fmt::format("expected {}, got {}", what,
-                             rest.empty() ? std::string("the end of the line") : fmt::format("'{}'", rest)));
-  }
-  void skip_blanks() {
-    while (at_ < line_.size() && (line_[at_] == ' ' || line_[at_] == '\t')) ++at_;
-  }
-  [[nodiscard]] bool accept(char c) {
-    skip_blanks();
-    if (at_ >= line_.size() || line_[at_] != c) return false;
-    ++at_;
-    return true;
-  }
-  void expect(char c) {
-    if (!accept(c)) fail_expected(fmt::format("'{}'", c));
-  }
-  std::string name(std::string_view what) {
-    skip_blanks();
-    const std::size_t begin = at_;
-    while (at_ < line_.size() && is_name_character(line_[at_])) ++at_;
-    if (at_ == begin) fail_expected(what);
-    return std::string(line_.substr(begin, at_ - begin));
-  }
-  template <typename Number>
-  Number number(std::string_view what) {
-    skip_blanks();
-    const std::size_t plus = at_ < line_.size() && line_[at_] == '+' ? 1 : 0;
-    Number value = 0;
-    const auto [end, error] = std::from_chars(line_.data() + at_ + plus, line_.data() + line_.size(), value);
-    if (error != std::errc()) fail_expected(what);
-    if constexpr (std::is_floating_point_v<Number>) {
-      if (!std::isfinite(value)) fail_expected(what);
-    }
-    at_ = static_cast<std::size_t>(end - line_.data());
-    return value;
-  }
-  std::string_view quoted(std::string_view what) {
-    if (!accept('"')) fail_expected(what);
-    const std::size_t end = line_.find('"', at_);
-    if (end == std::string_view::npos) fail_at(at_ - 1, "the text's closing '\"' is missing");
-    const std::string_view text = line_.substr(at_, end - at_);
-    at_ = end + 1;
-    return text;
-  }
-
- private:
-  [[noreturn]] void fail_at(std::size_t place, const std::string& what) const {
-    throw InputError(text(place, what));
-  }
-  [[nodiscard]] std::string text(std::size_t place, const std::string& what) const {
-    return fmt::format("{}:{}:{}: {}: {}", path_, number_, place + 1, object_, what);
-  }
-
-  std::string_view line_;
-  std::size_t number_;
-  const std::string& path_;
-  std::string object_ = "DBC";
-  std::size_t at_ = 0;
-  std::size_t mark_ = 0;
-};
 
 /// Finds the fraction that a decimal factor and offset stand for, where all its integers are doubles.
 void find_fraction(DbcSignal& signal) {
@@ -161,13 +81,13 @@ class DbcParser {
   };
 
   void read_line(std::string_view line, std::size_t number);
-  void read_message(Tokens& tokens, std::size_t number);
-  void read_signal(Tokens& tokens, std::size_t number);
-  void read_multiplexing(Tokens& tokens, DbcSignal& signal);
-  void check_fit(const Tokens& tokens, DbcSignal& signal) const;
-  void read_value_type(Tokens& tokens);
-  void read_ranges(Tokens& tokens);
-  Place find_signal(Tokens& tokens);
+  void read_message(DbcTokens& tokens, std::size_t number);
+  void read_signal(DbcTokens& tokens, std::size_t number);
+  void read_multiplexing(DbcTokens& tokens, DbcSignal& signal);
+  void check_fit(const DbcTokens& tokens, DbcSignal& signal) const;
+  void read_value_type(DbcTokens& tokens);
+  void read_ranges(DbcTokens& tokens);
+  Place find_signal(DbcTokens& tokens);
   void finish_message(DbcMessage& message);
   void check_multiplexers(const DbcMessage& message, DbcSignal& signal) const;
 
@@ -182,7 +102,7 @@ class DbcParser {
 void DbcParser::read_line(std::string_view line, std::size_t number) {
   const std::size_t first = line.find_first_not_of(" \t");
   const std::string_view body = first == std::string_view::npos ? std::string_view() : line.substr(first);
-  Tokens tokens(line, number, dbc_.path);
+  DbcTokens tokens(line, number, dbc_.path);
   if (!in_text_ && !body.empty()) {
     const std::string_view keyword = body.substr(0, body.find_first_of(" \t:"));
     if (keyword == "BO_" && body.size() > 3) {
@@ -211,7 +131,7 @@ void DbcParser::read_line(std::string_view line, std::size_t number) {
   }
 }
 
-void DbcParser::read_message(Tokens& tokens, std::size_t number) {
+void DbcParser::read_message(DbcTokens& tokens, std::size_t number) {
   tokens.set_object("BO_");
   DbcMessage message;
   message.line = number;
@@ -243,7 +163,7 @@ void DbcParser::read_message(Tokens& tokens, std::size_t number) {
   dbc_.messages.push_back(std::move(message));
 }
 
-void DbcParser::read_signal(Tokens& tokens, std::size_t number) {
+void DbcParser::read_signal(DbcTokens& tokens, std::size_t number) {
   tokens.set_object("SG_");
   DbcSignal signal;
   signal.line = number;
@@ -289,7 +209,7 @@ void DbcParser::read_signal(Tokens& tokens, std::size_t number) {
 }
 
 /// "M", "m3" or "m3M" between name and colon.
-void DbcParser::read_multiplexing(Tokens& tokens, DbcSignal& signal) {
+void DbcParser::read_multiplexing(DbcTokens& tokens, DbcSignal& signal) {
   tokens.mark();
   const std::string word = tokens.name("':' or a multiplexing such as 'M' or 'm3'");
   const char* at = word.data();
@@ -309,7 +229,7 @@ void DbcParser::read_multiplexing(Tokens& tokens, DbcSignal& signal) {
   if (at != end) tokens.fail(fmt::format("'{}' is no multiplexing: expected 'M', 'm3' or 'm3M'", word));
 }
 
-void DbcParser::check_fit(const Tokens& tokens, DbcSignal& signal) const {
+void DbcParser::check_fit(const DbcTokens& tokens, DbcSignal& signal) const {
   const DbcMessage& message = dbc_.messages.back();
   if (signal.length < 1 || signal.length > 64) {
     signal.trouble =
@@ -324,7 +244,7 @@ void DbcParser::check_fit(const Tokens& tokens, DbcSignal& signal) const {
 }
 
 /// The signal that a line speaks of; nulls where the file has none such.
-DbcParser::Place DbcParser::find_signal(Tokens& tokens) {
+DbcParser::Place DbcParser::find_signal(DbcTokens& tokens) {
   const auto message = by_id_.find(tokens.number<std::uint32_t>("the message's id"));
   const std::string name = tokens.name("the signal's name");
   if (message == by_id_.end()) return {};
@@ -333,7 +253,7 @@ DbcParser::Place DbcParser::find_signal(Tokens& tokens) {
 }
 
 /// "SIG_VALTYPE_ 170 SPEED : 1;": a float (1) or double (2).
-void DbcParser::read_value_type(Tokens& tokens) {
+void DbcParser::read_value_type(DbcTokens& tokens) {
   tokens.set_object("SIG_VALTYPE_");
   tokens.mark();
   DbcSignal* signal = find_signal(tokens).signal;
@@ -351,7 +271,7 @@ void DbcParser::read_value_type(Tokens& tokens) {
 }
 
 /// "SG_MUL_VAL_ 2024 SPEED PID 13-13, 20-22;": SPEED is there where PID has one of these values.
-void DbcParser::read_ranges(Tokens& tokens) {
+void DbcParser::read_ranges(DbcTokens& tokens) {
   tokens.set_object("SG_MUL_VAL_");
   const auto [message, signal] = find_signal(tokens);
   tokens.mark();

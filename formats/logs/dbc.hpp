@@ -83,4 +83,7 @@ struct Dbc {
   [[nodiscard]] static Dbc parse(std::string_view text, const std::string& path);
 };
 
+/// The name by which this library knows a unit of a DBC file: "km/h" for "kph"; empty for an unknown one.
+[[nodiscard]] std::string_view known_unit(std::string_view dbc_unit);
+
 }  // namespace waymark

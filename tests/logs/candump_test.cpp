@@ -7,7 +7,6 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/logs/candump.hpp>
-#include <waymark/formats/logs/candump_signals.hpp>
 #include <waymark/formats/logs/odometry_channels.hpp>
 
 using namespace waymark;
@@ -467,13 +466,4 @@ TEST_CASE("candump: is recognised by its lines") {
         Approx(2.0 / 3));
   CHECK(reader.recognise("time,speed\n1,2\n").certainty == 0);
   CHECK(reader.recognise("").certainty == 0);
-}
-
-TEST_CASE("candump: units as DBC files write them") {
-  CHECK(known_unit("kph") == "km/h");
-  CHECK(known_unit("KM/H") == "km/h");
-  CHECK(known_unit("°/s") == "deg/s");
-  CHECK(known_unit("m/s²") == "m/s^2");
-  CHECK(known_unit("G") == "g");
-  CHECK(known_unit("furlong").empty());
 }

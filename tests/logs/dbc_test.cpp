@@ -234,3 +234,12 @@ TEST_CASE("dbc: a signal that cannot be read spoils only itself") {
   check(head + " SG_ A : 0|8@1+ (1,0) [0|0] \"\" X\nSIG_VALTYPE_ 170 A : 1;",
         "3:14: SIG_VALTYPE_: A has 8 bits, a float has 32");
 }
+
+TEST_CASE("dbc: units as DBC files write them") {
+  CHECK(known_unit("kph") == "km/h");
+  CHECK(known_unit("KM/H") == "km/h");
+  CHECK(known_unit("°/s") == "deg/s");
+  CHECK(known_unit("m/s²") == "m/s^2");
+  CHECK(known_unit("G") == "g");
+  CHECK(known_unit("furlong").empty());
+}
