@@ -1,0 +1,420 @@
+#include <waymark/formats/logs/nmea.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/logs/accuracy.hpp>
+#include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/nmea_epoch.hpp>
+#include <waymark/formats/logs/nmea_sentence.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::int64_t kDayNanoseconds = 86'400'000'000'000;
+constexpr std::size_t kMostUndated = 4096;  ///< fixes that wait for the first date
+
+/// Counts sentences by address without a map in the hot path. An address has at most eight characters.
+class KindTally {
+ public:
+  void add(std::string_view address) {
+    std::uint64_t key = 0;
+    std::memcpy(&key, address.data(), std::min(address.size(), sizeof key));
+    std::size_t place = (key * 0x9E3779B97F4A7C15U) >> 56U;
+    while (entries_[place].count > 0 && entries_[place].key != key) place = (place + 1) % kSlots;
+    Entry& entry = entries_[place];
+    if (entry.count == 0) {
+      if (used_ == kMostKinds) {  // no receiver speaks so many
+        ++others_;
+        return;
+      }
+      ++used_;
+      entry.key = key;
+    }
+    ++entry.count;
+  }
+  void write(std::map<std::string, std::size_t>& kinds) const {
+    for (const Entry& entry : entries_) {
+      if (entry.count == 0) continue;
+      std::array<char, sizeof entry.key> letters{};
+      std::memcpy(letters.data(), &entry.key, letters.size());
+      kinds[std::string(letters.begin(), std::find(letters.begin(), letters.end(), '\0'))] += entry.count;
+    }
+    if (others_ > 0) kinds["others"] += others_;
+  }
+
+ private:
+  static constexpr std::size_t kSlots = 256;
+  static constexpr std::size_t kMostKinds = 128;
+  struct Entry {
+    std::uint64_t key = 0;
+    std::size_t count = 0;
+  };
+  std::array<Entry, kSlots> entries_{};
+  std::size_t used_ = 0;
+  std::size_t others_ = 0;
+};
+
+/// What the notes tell.
+struct Counts {
+  std::size_t not_sentences = 0;
+  std::size_t without_checksum = 0;
+  std::size_t other_wrong_checksums = 0;
+  std::size_t without_time = 0;
+  std::size_t from_gst = 0;
+  std::size_t from_ellipse = 0;
+  std::size_t ellipse_disagrees = 0;
+  std::size_t from_hdop = 0;
+  std::size_t from_default = 0;
+  std::size_t above_sea_level = 0;
+  std::size_t dead_reckoning = 0;
+  std::size_t simulated = 0;
+  std::size_t leap_seconds = 0;
+  std::size_t midnights = 0;
+  std::size_t dated_backwards = 0;
+  std::size_t decimals = 0;  ///< the most that any position had
+  std::size_t fixes = 0;
+};
+
+class NmeaDecoder final : public LineDecoder {
+ public:
+  NmeaDecoder(const std::string& path, const LogRequest& request) : LineDecoder(path, request) {
+    if (request.date) day_ = request.date->nanoseconds / kDayNanoseconds;
+    dated_ = request.date.has_value();
+    offset_ns_ = std::llround(request.time_offset_s * 1e9);
+  }
+
+ private:
+  void take_line(std::string_view line, std::size_t number) override;
+  void end() override;
+  void take_sentence(const NmeaSentence& sentence, std::string_view line, std::size_t number);
+  [[nodiscard]] bool is_whole(const NmeaSentence& sentence, NmeaKind kind, std::size_t column,
+                              std::size_t number);
+  [[nodiscard]] bool begins_epoch(NmeaKind kind, std::optional<std::int64_t> time) const;
+  void end_epoch();
+  void count_days(const NmeaEpoch& epoch);
+  void add_fix(const NmeaEpoch& epoch);
+  [[nodiscard]] std::optional<Eigen::Matrix2d> covariance(const NmeaEpoch& epoch);
+  void give(GeodeticFix fix);
+  void release_undated();
+  [[noreturn]] void fail_undated() const;
+  void note_dates();
+  void note_accuracy();
+  void note_quality();
+
+  KindTally tally_;
+  Counts counts_;
+  bool checksums_ = false;  ///< a sentence had a right one
+  NmeaEpoch epoch_;
+
+  /// Day of the last fix: since 1970-01-01 once dated_, before that since the first fix.
+  std::int64_t day_ = 0;
+  bool dated_ = false;
+  bool log_has_date_ = false;
+  std::optional<std::int64_t> last_time_of_day_;
+  std::int64_t offset_ns_ = 0;
+  std::vector<GeodeticFix> undated_;  ///< their stamps count from the midnight before the first fix
+};
+
+void NmeaDecoder::take_line(std::string_view line, std::size_t number) {
+  std::string_view rest = line;
+  std::size_t sentences = 0;
+  while (const std::optional<NmeaSentence> sentence = next_nmea_sentence(rest)) {
+    // Without a checksum only what begins the line is believed to be one: comments name sentences too.
+    const bool begins = sentence->address.data() == line.data() + 1;
+    if (sentence->checksum == NmeaChecksum::none && !begins) continue;
+    ++sentences;
+    take_sentence(*sentence, line, number);
+  }
+  if (sentences == 0 && line.find_first_not_of(" \t\r") != std::string_view::npos) ++counts_.not_sentences;
+}
+
+void NmeaDecoder::take_sentence(const NmeaSentence& sentence, std::string_view line, std::size_t number) {
+  const auto column_of = [&](std::string_view part) {
+    return part.data() == nullptr ? 1 : static_cast<std::size_t>(part.data() - line.data()) + 1;
+  };
+  const NmeaKind kind = nmea_kind(sentence.address);
+  if (!is_whole(sentence, kind, column_of(sentence.address), number)) return;
+  tally_.add(sentence.address);
+  if (kind == NmeaKind::other) return;
+  const NmeaFields fields(sentence.fields);
+  try {
+    const std::optional<std::int64_t> time = nmea_time(kind, fields);
+    if (begins_epoch(kind, time)) {
+      end_epoch();
+      epoch_.time_of_day = time;
+    }
+    add_to_epoch(kind, fields, number, epoch_);
+  } catch (const BadNmeaField& bad) {
+    ++data_.records;
+    corrupt(number, column_of(bad.field), fmt::format("{}: {}", sentence.address, bad.what));
+  }
+}
+
+/// Looks at the checksum. A sentence that is damaged is corrupt where it is of a kind that is read.
+bool NmeaDecoder::is_whole(const NmeaSentence& sentence, NmeaKind kind, std::size_t column,
+                           std::size_t number) {
+  if (sentence.checksum == NmeaChecksum::right) {
+    checksums_ = true;
+    return true;
+  }
+  if (sentence.checksum == NmeaChecksum::none && !checksums_) {
+    if (kind != NmeaKind::other) ++counts_.without_checksum;
+    return true;
+  }
+  if (kind == NmeaKind::other) {
+    ++counts_.other_wrong_checksums;
+    return false;
+  }
+  ++data_.records;
+  corrupt(number, column,
+          sentence.checksum == NmeaChecksum::none
+              ? fmt::format("{}: the sentence breaks off before its checksum", sentence.address)
+              : fmt::format("{}: wrong checksum: the sentence states {:02X}, its characters give {:02X}",
+                            sentence.address, sentence.expected, sentence.found));
+  return false;
+}
+
+bool NmeaDecoder::begins_epoch(NmeaKind kind, std::optional<std::int64_t> time) const {
+  if (time) return time != epoch_.time_of_day;
+  // Receivers that do not know the time yet leave it empty: then a kind that comes again begins anew.
+  const bool leads = kind == NmeaKind::rmc || kind == NmeaKind::gga || kind == NmeaKind::gns;
+  if (epoch_.time_of_day) return leads;
+  return (leads || kind == NmeaKind::gll) && epoch_.has(kind);
+}
+
+void NmeaDecoder::end_epoch() {
+  const NmeaEpoch epoch = std::exchange(epoch_, {});
+  if (!epoch.is_record()) return;
+  ++data_.records;
+  if (epoch.without_fix) {
+    ++data_.without_fix;
+  } else if (epoch.position.kind == NmeaKind::other) {
+    ++data_.without_fix;  // GNS with a mode and an empty position
+  } else if (!epoch.time_of_day) {
+    ++counts_.without_time;
+  } else {
+    count_days(epoch);
+    add_fix(epoch);
+  }
+}
+
+/// Sets day_ to the day of this epoch.
+void NmeaDecoder::count_days(const NmeaEpoch& epoch) {
+  const std::int64_t time = *epoch.time_of_day;
+  if (last_time_of_day_ && *last_time_of_day_ - time > kDayNanoseconds / 2) {
+    day_ = std::min(day_ + 1, kLastNmeaDay + 1);  // beyond, add_fix refuses
+    ++counts_.midnights;
+  }
+  last_time_of_day_ = time;
+  if (time >= kDayNanoseconds) ++counts_.leap_seconds;
+  if (!epoch.day) return;
+  if (!dated_) {
+    const std::int64_t first_day = *epoch.day - day_;
+    for (GeodeticFix& fix : undated_) fix.stamp.nanoseconds += first_day * kDayNanoseconds;
+    counts_.dated_backwards = undated_.size();
+    dated_ = true;
+    release_undated();
+  }
+  log_has_date_ = true;
+  day_ = *epoch.day;
+}
+
+void NmeaDecoder::add_fix(const NmeaEpoch& epoch) {
+  if (day_ > kLastNmeaDay || day_ < -kLastNmeaDay)
+    return corrupt(epoch.position.line, 1, "so many midnights have passed that the date is after 2200");
+  GeodeticFix fix;
+  if (request().stream == StreamKind::gnss) {
+    const std::optional<Eigen::Matrix2d> covariance_en = covariance(epoch);
+    if (!covariance_en)
+      return corrupt(
+          epoch.position.line, 1,
+          "no GST sentence gives the accuracy of this fix: state 'default_sigma', or 'range_error' to "
+          "multiply HDOP with");
+    fix.covariance_en = *covariance_en;
+  }
+  fix.stamp.nanoseconds = day_ * kDayNanoseconds + *epoch.time_of_day;
+  fix.latitude_deg = epoch.position.latitude_deg;
+  fix.longitude_deg = epoch.position.longitude_deg;
+  if (epoch.altitude_m) {
+    fix.height_m = *epoch.altitude_m + epoch.geoid_separation_m.value_or(0);
+    if (!epoch.geoid_separation_m) ++counts_.above_sea_level;
+  }
+  if (epoch.course_deg) fix.course_rad = *epoch.course_deg * kDegree;
+  fix.speed_mps = epoch.speed_mps;
+  fix.source = request().source;
+  fix.line = epoch.position.line;
+
+  ++counts_.fixes;
+  if (epoch.dead_reckoning) ++counts_.dead_reckoning;
+  if (epoch.simulated) ++counts_.simulated;
+  counts_.decimals = std::max(counts_.decimals, epoch.position.decimals);
+  if (dated_) return give(fix);
+  if (undated_.size() == kMostUndated) fail_undated();
+  undated_.push_back(fix);
+}
+
+std::optional<Eigen::Matrix2d> NmeaDecoder::covariance(const NmeaEpoch& epoch) {
+  const LogRequest& request = this->request();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
+  if (epoch.accuracy) {
+    const NmeaAccuracy& accuracy = *epoch.accuracy;
+    ++counts_.from_gst;
+    if (accuracy.has_ellipse) ++counts_.from_ellipse;
+    if (accuracy.ellipse_disagrees) ++counts_.ellipse_disagrees;
+    const double factor = sigma_factor(request.accuracy);  // automatic: 1
+    const double east = factor * accuracy.east_m;
+    const double north = factor * accuracy.north_m;
+    const double common = accuracy.correlation * east * north;
+    covariance << east * east, common, common, north * north;
+    return covariance;
+  }
+  if (epoch.hdop && request.range_error_m > 0) {
+    ++counts_.from_hdop;
+    const double sigma = *epoch.hdop * request.range_error_m;
+    return covariance * (sigma * sigma);
+  }
+  if (request.default_sigma_m > 0) {
+    ++counts_.from_default;
+    return covariance * (request.default_sigma_m * request.default_sigma_m);
+  }
+  return std::nullopt;
+}
+
+/// Hands out a fix whose stamp is UTC.
+void NmeaDecoder::give(GeodeticFix fix) {
+  fix.stamp = convert(fix.stamp, TimeScale::utc, request().time_scale);
+  fix.stamp.nanoseconds += offset_ns_;
+  if (request().stream == StreamKind::truth) {
+    data_.truth.push_back({fix.stamp, fix.latitude_deg, fix.longitude_deg, fix.height_m, std::nullopt});
+  } else {
+    data_.fixes.push_back(fix);
+  }
+}
+
+void NmeaDecoder::release_undated() {
+  for (const GeodeticFix& fix : undated_) give(fix);
+  undated_.clear();
+  undated_.shrink_to_fit();
+}
+
+void NmeaDecoder::fail_undated() const {
+  throw InputError(
+      fmt::format("{}: none of the first {} fixes has a date (RMC and ZDA sentences give one); state that of "
+                  "the first record, "
+                  "such as `time: {{date: 2009-04-01}}`",
+                  path(), undated_.size()));
+}
+
+void NmeaDecoder::end() {
+  end_epoch();
+  if (!undated_.empty()) fail_undated();
+  tally_.write(data_.kinds);
+  note_dates();
+  note_accuracy();
+  note_quality();
+}
+
+void NmeaDecoder::note_dates() {
+  if (counts_.dated_backwards > 0)
+    note(fmt::format("{} fixes before the first date take the day from it", counts_.dated_backwards));
+  if (request().date && counts_.fixes > 0)
+    note(log_has_date_ ? "the log gives its date itself; the stated one counts before the log's first only"
+                       : "the log gives no date, the stated one is that of its first fix");
+  if (counts_.midnights > 0)
+    note(fmt::format("the time of day jumps back by more than 12 h {} times, which is taken for midnight",
+                     counts_.midnights));
+  if (counts_.leap_seconds > 0)
+    note(fmt::format("{} fixes in a leap second are stamped as one second later", counts_.leap_seconds));
+  if (counts_.without_time > 0)
+    note(fmt::format("{} fixes without a time of day were skipped", counts_.without_time));
+}
+
+void NmeaDecoder::note_accuracy() {
+  if (counts_.from_gst > 0)
+    note(fmt::format(
+        "{} fixes with GST read as {}; {} of them with the correlation of its error ellipse",
+        counts_.from_gst,
+        request().accuracy == AccuracyMeaning::automatic ? "1sigma" : to_string(request().accuracy),
+        counts_.from_ellipse));
+  if (counts_.ellipse_disagrees > 0)
+    note(fmt::format("{} error ellipses of another shape than the errors beside them were left aside",
+                     counts_.ellipse_disagrees));
+  if (counts_.from_hdop > 0)
+    note(fmt::format("{} fixes give HDOP only, which is multiplied with the stated range error of {} m",
+                     counts_.from_hdop, request().range_error_m));
+  if (counts_.from_default > 0)
+    note(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used",
+                     counts_.from_default, request().default_sigma_m));
+}
+
+void NmeaDecoder::note_quality() {
+  if (data_.without_fix > 0)
+    note(fmt::format("{} of {} records are marked as without a fix", data_.without_fix, data_.records));
+  if (counts_.dead_reckoning > 0)
+    note(fmt::format("{} fixes are dead reckoning of the receiver, not measured", counts_.dead_reckoning));
+  if (counts_.simulated > 0)
+    note(fmt::format("{} fixes are marked as simulated or typed in", counts_.simulated));
+  if (counts_.above_sea_level > 0)
+    note(fmt::format("{} heights are above mean sea level (no geoid separation)", counts_.above_sea_level));
+  constexpr double kMinute = 1852;              // m along a meridian
+  constexpr std::size_t kDecimalsOfAMetre = 4;  // 0.0001' is 0.19 m
+  if (counts_.fixes > 0 && counts_.decimals < kDecimalsOfAMetre)
+    note(fmt::format("positions are given in steps of {:.2g} m ({} decimals of a minute)",
+                     kMinute * std::pow(10, -static_cast<double>(counts_.decimals)), counts_.decimals));
+  if (counts_.without_checksum > 0)
+    note(fmt::format("{} sentences have no checksum and are believed", counts_.without_checksum));
+  if (counts_.other_wrong_checksums > 0)
+    note(fmt::format("{} sentences of kinds that are not read are damaged (wrong checksum or none)",
+                     counts_.other_wrong_checksums));
+  if (counts_.not_sentences > 0)
+    note(fmt::format("{} lines that hold no NMEA sentence were skipped", counts_.not_sentences));
+}
+
+}  // namespace
+
+std::unique_ptr<LogDecoder> NmeaReader::open(const std::string& path, const LogRequest& request) const {
+  if (request.stream != StreamKind::gnss && request.stream != StreamKind::truth)
+    throw InputError(fmt::format("{}: an NMEA log holds no {}; it gives the streams gnss and truth", path,
+                                 request.stream == StreamKind::odometry ? "odometry" : "sensor readings"));
+  if (!request.columns.empty()) throw InputError(fmt::format("{}: an NMEA log has no columns to map", path));
+  if (!request.companions.empty())
+    throw InputError(fmt::format("{}: an NMEA log is read without companion files such as {} '{}'", path,
+                                 request.companions.begin()->first, request.companions.begin()->second.path));
+  return std::make_unique<NmeaDecoder>(path, request);
+}
+
+Recognition NmeaReader::recognise(std::string_view head) const {
+  std::size_t lines = 0;
+  std::size_t right = 0;
+  while (!head.empty()) {
+    const std::size_t end = head.find('\n');
+    std::string_view line = head.substr(0, end);
+    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    // Only of whole lines: the last one may be cut.
+    if (end == std::string_view::npos && lines > 0) break;
+    ++lines;
+    while (const std::optional<NmeaSentence> sentence = next_nmea_sentence(line)) {
+      if (sentence->checksum != NmeaChecksum::right) continue;
+      ++right;
+      break;
+    }
+  }
+  if (right == 0) return {};
+  return {static_cast<double>(right) / static_cast<double>(lines),
+          fmt::format("{} of {} lines are NMEA sentences with a right checksum", right, lines)};
+}
+
+}  // namespace waymark
