@@ -72,6 +72,7 @@ struct Counts {
   std::size_t without_checksum = 0;
   std::size_t other_wrong_checksums = 0;
   std::size_t without_time = 0;
+  std::size_t without_satellites = 0;
   std::size_t from_gst = 0;
   std::size_t from_ellipse = 0;
   std::size_t ellipse_disagrees = 0;
@@ -103,6 +104,7 @@ class NmeaDecoder final : public LineDecoder {
                               std::size_t number);
   [[nodiscard]] bool begins_epoch(NmeaKind kind, std::optional<std::int64_t> time) const;
   void end_epoch();
+  [[nodiscard]] bool rests_on_no_satellite(const NmeaEpoch& epoch);
   void count_days(const NmeaEpoch& epoch);
   void add_fix(const NmeaEpoch& epoch);
   [[nodiscard]] std::optional<Eigen::Matrix2d> covariance(const NmeaEpoch& epoch);
@@ -115,7 +117,8 @@ class NmeaDecoder final : public LineDecoder {
 
   KindTally tally_;
   Counts counts_;
-  bool checksums_ = false;  ///< a sentence had a right one
+  bool checksums_ = false;        ///< a sentence had a right one
+  bool satellites_told_ = false;  ///< a fix had satellites
   NmeaEpoch epoch_;
 
   /// Day of the last fix: since 1970-01-01 once dated_, before that since the first fix.
@@ -202,12 +205,24 @@ void NmeaDecoder::end_epoch() {
     ++data_.without_fix;
   } else if (epoch.position.kind == NmeaKind::other) {
     ++data_.without_fix;  // GNS with a mode and an empty position
+  } else if (rests_on_no_satellite(epoch)) {
+    ++data_.without_fix;
+    ++counts_.without_satellites;
   } else if (!epoch.time_of_day) {
     ++counts_.without_time;
   } else {
     count_days(epoch);
     add_fix(epoch);
   }
+}
+
+/// Some receivers go on stating a fix when they have lost all satellites, and repeat the last position: the
+/// one that drove through Munich's Petuelring tunnel did so for 19 s before it said "no fix". Converters that
+/// do not know the number write 0 always; there it means nothing.
+bool NmeaDecoder::rests_on_no_satellite(const NmeaEpoch& epoch) {
+  if (!epoch.satellites || epoch.dead_reckoning || epoch.simulated) return false;
+  satellites_told_ = satellites_told_ || *epoch.satellites > 0;
+  return satellites_told_ && *epoch.satellites == 0;
 }
 
 /// Sets day_ to the day of this epoch.
@@ -360,8 +375,11 @@ void NmeaDecoder::note_accuracy() {
 }
 
 void NmeaDecoder::note_quality() {
-  if (data_.without_fix > 0)
-    note(fmt::format("{} of {} records are marked as without a fix", data_.without_fix, data_.records));
+  if (data_.without_fix > counts_.without_satellites)
+    note(fmt::format("{} of {} records are marked as without a fix",
+                     data_.without_fix - counts_.without_satellites, data_.records));
+  if (counts_.without_satellites > 0)
+    note(fmt::format("{} fixes that rest on no satellite are not used", counts_.without_satellites));
   if (counts_.dead_reckoning > 0)
     note(fmt::format("{} fixes are dead reckoning of the receiver, not measured", counts_.dead_reckoning));
   if (counts_.simulated > 0)

@@ -13,10 +13,11 @@ namespace waymark {
 /// RMC, else VTG. Sentences of a fix that lack the time of day are counted and not used.
 ///
 /// **No fix**: RMC or GLL status V, GGA quality 0, a mode indicator N (GNS: of all systems), each in any
-/// sentence of the epoch. **Corrupt**: a sentence of these kinds with a wrong checksum or a field that does
-/// not hold what it should, or without a checksum where an earlier one had one (it broke off); a fix without
-/// an accuracy. Each is a record, as is each epoch. Sentences without a checksum are believed where none
-/// before them had one. Lines without a sentence are counted in the notes.
+/// sentence of the epoch; also 0 satellites in GGA or GNS where an earlier fix had some (a frozen position).
+/// **Corrupt**: a sentence of these kinds with a wrong checksum or a field that does not hold what it should,
+/// or without a checksum where an earlier one had one (it broke off); a fix without an accuracy. Each is a
+/// record, as is each epoch. Sentences without a checksum are believed where none before them had one. Lines
+/// without a sentence are counted in the notes.
 ///
 /// **Date** from RMC of a fix and from ZDA (which wins); between dates it advances where the time of day
 /// jumps back by more than 12 hours. Fixes before the first date wait for it, at most 4096 of them. A log

@@ -100,18 +100,20 @@ void add_rmc(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   add_quality(position, mode, fixed, epoch);
 }
 
-/// Height, geoid and dilution of precision, which GGA and GNS both have. @param first  field of HDOP
-struct Height {
+/// Satellites, dilution of precision and height, which GGA and GNS both have.
+struct Circumstances {
+  std::optional<double> satellites;
   std::optional<double> hdop;
   std::optional<double> altitude;
   std::optional<double> separation;
 
-  Height(const NmeaFields& fields, std::size_t hdop_field, std::size_t altitude_field,
-         std::size_t separation_field)
-      : hdop(fields.number(hdop_field, "HDOP")),
-        altitude(fields.number(altitude_field, "altitude")),
+  Circumstances(const NmeaFields& fields, std::size_t separation_field)
+      : satellites(fields.number(7, "number of satellites")),
+        hdop(fields.number(8, "HDOP")),
+        altitude(fields.number(9, "altitude")),
         separation(fields.number(separation_field, "geoid separation")) {}
   void add_to(NmeaEpoch& epoch) const {
+    if (satellites) epoch.satellites = satellites;
     if (hdop && *hdop > 0) epoch.hdop = hdop;
     if (altitude) {
       epoch.altitude_m = altitude;
@@ -124,8 +126,8 @@ void add_gga(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   const double quality = fields.number(6, "fix quality").value_or(0);
   const bool fixed = quality > 0;
   const NmeaEpoch::Position position = read_position(NmeaKind::gga, fields, 2, line, fixed);
-  const Height height(fields, 8, 9, 11);
-  height.add_to(epoch);
+  const Circumstances circumstances(fields, 11);
+  circumstances.add_to(epoch);
   add_quality(position, Mode(quality == 6 ? "E" : quality == 7 || quality == 8 ? "S" : "A"), fixed, epoch);
 }
 
@@ -133,8 +135,8 @@ void add_gns(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   const Mode mode(fields[6]);
   // A receiver may add one GNS for every satellite system, without a position.
   const NmeaEpoch::Position position = read_position(NmeaKind::gns, fields, 2, line, false);
-  const Height height(fields, 8, 9, 10);
-  if (position.kind != NmeaKind::other && !epoch.has(NmeaKind::gga)) height.add_to(epoch);
+  const Circumstances circumstances(fields, 10);
+  if (position.kind != NmeaKind::other && !epoch.has(NmeaKind::gga)) circumstances.add_to(epoch);
   add_quality(position, mode, !mode.none, epoch);
 }
 

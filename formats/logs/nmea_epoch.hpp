@@ -44,6 +44,7 @@ struct NmeaEpoch {
   std::optional<double> altitude_m;          ///< above mean sea level
   std::optional<double> geoid_separation_m;  ///< of mean sea level above the ellipsoid
   std::optional<double> hdop;
+  std::optional<double> satellites;  ///< used in the position
   std::optional<double> course_deg;  ///< clockwise from true north
   std::optional<double> speed_mps;
   std::optional<NmeaAccuracy> accuracy;
