@@ -1,5 +1,6 @@
 #include <waymark/formats/logs/accuracy.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -34,6 +35,21 @@ std::string_view to_string(AccuracyMeaning meaning) {
       return "cep50";
   }
   return "auto";
+}
+
+std::optional<double> ellipse_correlation(double sigma_east, double sigma_north, double major, double minor,
+                                          double orientation_deg) {
+  const double angle = orientation_deg * std::numbers::pi / 180;
+  const double north = std::hypot(major * std::cos(angle), minor * std::sin(angle));
+  const double east = std::hypot(major * std::sin(angle), minor * std::cos(angle));
+  const double correlation =
+      (major - minor) * (major + minor) * std::sin(angle) * std::cos(angle) / (north * east);
+  const double shape = sigma_east * north / (sigma_north * east);
+  constexpr double kSameShape = 1.5;  // figures come rounded to as little as one digit
+  constexpr double kMostCorrelated = 0.99999;
+  // The comparisons are such that NaN fails.
+  if (!(shape < kSameShape && shape > 1 / kSameShape && std::abs(correlation) < 1.001)) return std::nullopt;
+  return std::clamp(correlation, -kMostCorrelated, kMostCorrelated);
 }
 
 }  // namespace waymark

@@ -1,50 +1,32 @@
 #include <waymark/formats/logs/gpsd_json.hpp>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/iso8601.hpp>
-#include <waymark/formats/logs/accuracy.hpp>
+#include <waymark/formats/logs/gpsd_accuracy.hpp>
+#include <waymark/formats/logs/gpsd_report.hpp>
+#include <waymark/formats/logs/kind_tally.hpp>
+#include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/nmea_sentence.hpp>
 
 namespace waymark {
 namespace {
 
-using nlohmann::json;
-
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A member of an object that does not hold what the protocol says.
-struct BadMember {
-  std::string what;
-};
-
-std::optional<double> number(const json& object, const char* key) {
-  const auto member = object.find(key);
-  if (member == object.end() || member->is_null()) return std::nullopt;
-  if (!member->is_number())
-    throw BadMember{fmt::format("TPV: expected a number for '{}', got {}", key, member->dump())};
-  const double value = member->get<double>();
-  if (!std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::string word(const json& object, const char* key) {
-  const auto member = object.find(key);
-  return member != object.end() && member->is_string() ? member->get<std::string>() : std::string();
-}
-
-double required(const json& object, const char* key, double limit) {
-  const std::optional<double> value = number(object, key);
-  if (!value) throw BadMember{fmt::format("TPV: a fix without '{}'", key)};
+double required(const GpsdReport& report, GpsdNumber key, const char* name, double limit) {
+  const std::optional<double> value = report.number(key);
+  if (!value) throw BadGpsdMember{fmt::format("TPV: a fix without '{}'", name)};
   if (std::abs(*value) > limit)
-    throw BadMember{fmt::format("TPV: '{}' {} is outside {} .. {}", key, *value, -limit, limit)};
+    throw BadGpsdMember{fmt::format("TPV: '{}' {} is outside {} .. {}", name, *value, -limit, limit)};
   return *value;
 }
 
@@ -57,126 +39,127 @@ std::optional<double> scaled_if_positive(std::optional<double> value, double fac
   return value && *value > 0 ? scaled(value, factor) : std::nullopt;
 }
 
-/// Counts of what was passed over.
-struct Passed {
+/// For messages: a name may be as long as a line.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kShown = 40;
+  return text.size() > kShown ? text.substr(0, kShown) + "..." : text;
+}
+
+/// Counts of what is noted.
+struct Counts {
   std::size_t not_json = 0;
   std::size_t without_time = 0;
   std::size_t other_devices = 0;
+  std::size_t dead_reckoning = 0;
+  std::size_t simulated = 0;
+  std::size_t above_sea_level = 0;
 };
 
-/// How often each source of accuracy was used.
-struct AccuracyUse {
-  std::size_t per_axis = 0;
-  std::size_t per_axis_equal = 0;
-  std::size_t radial = 0;
-  std::size_t defaulted = 0;
-};
-
-class GpsdLog {
+class GpsdDecoder final : public LineDecoder {
  public:
-  GpsdLog(const std::string& path, const LogRequest& request) : path_(path), request_(request) {}
-
-  void read_line(std::string_view line, std::size_t line_number);
-  [[nodiscard]] LogData finish();
+  GpsdDecoder(const std::string& path, const LogRequest& request)
+      : LineDecoder(path, request), offset_ns_(std::llround(request.time_offset_s * 1e9)) {}
 
  private:
-  void read_report(const json& report, std::size_t line_number);
+  void take_line(std::string_view line, std::size_t number) override;
+  void end() override;
+  void take_report(GpsdReport report, std::size_t line_number);
   void end_epoch();
-  void add_sample(const json& report, Stamp stamp);
-  [[nodiscard]] Eigen::Matrix2d covariance(const json& report);
-  void note(const std::string& text) { data_.notes.push_back(path_ + ": " + text); }
-  void note_accuracy();
+  void add_sample(const GpsdReport& report, Stamp utc);
+  void count_status(const GpsdReport& report);
+  [[nodiscard]] const GpsdReport* gst_of(const GpsdReport& report) const;
+  void add_notes();
 
-  const std::string& path_;
-  const LogRequest& request_;
-  LogData data_;
-  Passed passed_;
-  AccuracyUse use_;
+  std::int64_t offset_ns_;
+  KindTally tally_;
+  Counts counts_;
+  GpsdAccuracy accuracy_;
+  bool empty_ = true;
   std::string release_;  ///< of gpsd, from VERSION
   std::string device_;   ///< the one that is read
-  bool geoid_height_ = false;
 
-  json epoch_;  ///< the merged TPV of the epoch at hand; null: none
+  std::optional<GpsdReport> epoch_;  ///< the merged TPV of the epoch at hand
   std::size_t epoch_line_ = 0;
+  /// The last two GST objects: that of an epoch comes before its TPV or after it, when the next may have come
+  /// too.
+  std::array<GpsdReport, 2> gst_;
 };
 
-void GpsdLog::read_line(std::string_view line, std::size_t line_number) {
+void GpsdDecoder::take_line(std::string_view line, std::size_t number) {
   const std::size_t start = line.find_first_not_of(" \t\r");
   if (start == std::string_view::npos) return;
+  empty_ = false;
   if (line[start] != '{') {
-    ++passed_.not_json;
+    ++counts_.not_json;
     return;
   }
-  json object;
+  // Most of a log are objects that are not read; as gpsd writes them they need not be parsed to know that.
+  const std::string_view named = gpsd_class(line);
+  if (!named.empty() && named != "TPV" && named != "GST" && named != "VERSION") return tally_.add(named);
   try {
-    object = json::parse(line);
-  } catch (const json::parse_error& error) {
+    GpsdReport report = read_gpsd_report(line);
+    if (!report.kind.empty()) tally_.add(report.kind);
+    if (report.kind == "VERSION") release_ = shortened(report.release);
+    if (report.kind == "TPV")
+      take_report(std::move(report), number);
+    else if (report.kind == "GST")
+      gst_ = {std::move(report), std::move(gst_[0])};
+  } catch (const BadGpsdLine& bad) {
     ++data_.records;
-    add_corrupt(data_, path_, line_number, std::max<std::size_t>(1, error.byte), "malformed JSON");
-    return;
-  } catch (const json::exception&) {  // a number that no double holds
-    ++data_.records;
-    add_corrupt(data_, path_, line_number, 1, "a number is out of range");
-    return;
+    corrupt(number, bad.column, bad.what);
   }
-  const std::string kind = word(object, "class");
-  if (kind == "VERSION") release_ = word(object, "release");
-  if (kind == "TPV") read_report(object, line_number);
 }
 
-void GpsdLog::read_report(const json& report, std::size_t line_number) {
-  const std::string time = word(report, "time");
-  const std::string device = word(report, "device");
-  if (device_.empty() && !time.empty()) device_ = device;
-  if (!device.empty() && !device_.empty() && device != device_) {
-    ++passed_.other_devices;
+void GpsdDecoder::take_report(GpsdReport report, std::size_t line_number) {
+  if (device_.empty() && !report.time.empty()) device_ = report.device;
+  if (!report.device.empty() && !device_.empty() && report.device != device_) {
+    ++counts_.other_devices;
     return;
   }
-  if (!epoch_.is_null() && !time.empty() && word(epoch_, "time") == time) {
-    epoch_.update(report);
-    epoch_line_ = line_number;
-    return;
+  if (epoch_ && !report.time.empty() && epoch_->time == report.time) {
+    epoch_->update(report);
+  } else {
+    end_epoch();
+    epoch_ = std::move(report);
   }
-  end_epoch();
-  epoch_ = report;
   epoch_line_ = line_number;
 }
 
-void GpsdLog::end_epoch() {
-  if (epoch_.is_null()) return;
-  const json report = std::move(epoch_);
-  epoch_ = nullptr;
+void GpsdDecoder::end_epoch() {
+  if (!epoch_) return;
+  const GpsdReport report = *std::exchange(epoch_, std::nullopt);
   ++data_.records;
   try {
-    if (number(report, "mode").value_or(0) < 2) {
+    if (report.number(GpsdNumber::mode).value_or(0) < 2) {
       ++data_.without_fix;
       return;
     }
-    const std::string time = word(report, "time");
-    if (time.empty()) {
-      ++passed_.without_time;
+    if (report.time.empty()) {
+      ++counts_.without_time;
       return;
     }
-    const std::optional<Stamp> stamp = stamp_from_iso8601(time);
-    if (!stamp) throw BadMember{fmt::format("TPV: expected an ISO 8601 date for 'time', got '{}'", time)};
+    const std::optional<Stamp> stamp = stamp_from_iso8601(report.time);
+    if (!stamp)
+      throw BadGpsdMember{
+          fmt::format("TPV: expected an ISO 8601 date for 'time', got '{}'", shortened(report.time))};
     add_sample(report, *stamp);
-  } catch (const BadMember& bad) {
-    add_corrupt(data_, path_, epoch_line_, 1, bad.what);
+  } catch (const BadGpsdMember& bad) {
+    corrupt(epoch_line_, 1, bad.what);
   }
 }
 
-void GpsdLog::add_sample(const json& report, Stamp utc) {
-  Stamp stamp = convert(utc, TimeScale::utc, request_.time_scale);
-  stamp.nanoseconds += std::llround(request_.time_offset_s * 1e9);
-  const double latitude = required(report, "lat", 90);
-  const double longitude = required(report, "lon", 180);
-  std::optional<double> height = number(report, "altHAE");
-  if (!height) {
-    height = number(report, "alt");
-    geoid_height_ = geoid_height_ || height.has_value();
-  }
+void GpsdDecoder::add_sample(const GpsdReport& report, Stamp utc) {
+  Stamp stamp = convert(utc, TimeScale::utc, request().time_scale);
+  stamp.nanoseconds += offset_ns_;
+  const double latitude = required(report, GpsdNumber::lat, "lat", 90);
+  const double longitude = required(report, GpsdNumber::lon, "lon", 180);
+  std::optional<double> height = report.number(GpsdNumber::alt_hae);
+  const bool above_sea_level = !height;
+  if (!height) height = report.number(GpsdNumber::alt);
+  if (above_sea_level && height) ++counts_.above_sea_level;
   const double height_m = height.value_or(std::numeric_limits<double>::quiet_NaN());
-  if (request_.stream == StreamKind::truth) {
+  if (request().stream == StreamKind::truth) {
+    count_status(report);
     data_.truth.push_back({stamp, latitude, longitude, height_m, std::nullopt});
     return;
   }
@@ -185,91 +168,96 @@ void GpsdLog::add_sample(const json& report, Stamp utc) {
   fix.latitude_deg = latitude;
   fix.longitude_deg = longitude;
   fix.height_m = height_m;
-  fix.course_rad = scaled(number(report, "track"), kDegree);
-  fix.course_sigma_rad = scaled_if_positive(number(report, "epd"), kDegree / 2);
-  fix.speed_mps = number(report, "speed");
-  fix.speed_sigma_mps = scaled_if_positive(number(report, "eps"), 0.5);
-  fix.source = request_.source;
+  fix.course_rad = scaled(report.number(GpsdNumber::track), kDegree);
+  fix.course_sigma_rad = scaled_if_positive(report.number(GpsdNumber::epd), kDegree / 2);
+  fix.speed_mps = report.number(GpsdNumber::speed);
+  fix.speed_sigma_mps = scaled_if_positive(report.number(GpsdNumber::eps), 0.5);
+  fix.source = request().source;
   fix.line = epoch_line_;
-  fix.covariance_en = covariance(report);
+  fix.covariance_en = accuracy_.covariance(report, gst_of(report), request());
+  count_status(report);
   data_.fixes.push_back(fix);
 }
 
-Eigen::Matrix2d GpsdLog::covariance(const json& report) {
-  const AccuracyMeaning stated = request_.accuracy;
-  const bool automatic = stated == AccuracyMeaning::automatic;
-  const bool radial_first = stated == AccuracyMeaning::drms || stated == AccuracyMeaning::cep50;
-  const double east = number(report, "epx").value_or(0);
-  const double north = number(report, "epy").value_or(0);
-  const double radial = number(report, "eph").value_or(0);
-  const bool per_axis = east > 0 && north > 0;
+void GpsdDecoder::count_status(const GpsdReport& report) {
+  constexpr double kDeadReckoning = 5;
+  constexpr double kSimulated = 8;
+  const double status = report.number(GpsdNumber::status).value_or(0);
+  if (status == kDeadReckoning) ++counts_.dead_reckoning;
+  if (status == kSimulated) ++counts_.simulated;
+}
 
-  Eigen::Vector2d sigma;
-  if (per_axis && !(radial_first && radial > 0)) {
-    ++use_.per_axis;
-    if (east == north) ++use_.per_axis_equal;
-    sigma = sigma_factor(automatic ? AccuracyMeaning::percent95 : stated) * Eigen::Vector2d(east, north);
-  } else if (radial > 0) {
-    ++use_.radial;
-    sigma.setConstant(sigma_factor(automatic ? AccuracyMeaning::drms : stated) * radial);
-  } else if (request_.default_sigma_m > 0) {
-    ++use_.defaulted;
-    sigma.setConstant(request_.default_sigma_m);
-  } else {
-    throw BadMember{"TPV: neither epx and epy nor eph, and no default sigma is stated"};
+const GpsdReport* GpsdDecoder::gst_of(const GpsdReport& report) const {
+  for (const GpsdReport& gst : gst_) {
+    if (gst.time == report.time && gst.device == report.device) return &gst;
   }
-  return sigma.cwiseAbs2().asDiagonal();
+  return nullptr;
 }
 
-void GpsdLog::note_accuracy() {
-  const bool automatic = request_.accuracy == AccuracyMeaning::automatic;
-  const std::string stated(to_string(request_.accuracy));
-  const std::string version = release_.empty() ? "of unknown version" : release_;
-  if (use_.per_axis > 0)
-    note(fmt::format("gpsd {}: {} fixes with epx and epy read as {}", version, use_.per_axis,
-                     automatic ? "95 (not stated)" : stated));
-  if (use_.per_axis > 0 && use_.per_axis_equal == use_.per_axis)
-    note(
-        "epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms reads "
-        "better");
-  if (use_.radial > 0)
-    note(fmt::format("{} fixes with eph read as {}", use_.radial, automatic ? "drms (not stated)" : stated));
-  if (use_.defaulted > 0)
-    note(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used", use_.defaulted,
-                     request_.default_sigma_m));
-}
-
-LogData GpsdLog::finish() {
+void GpsdDecoder::end() {
+  if (empty_) throw InputError(fmt::format("{}: the log is empty", path()));
   end_epoch();
-  note_accuracy();
-  if (geoid_height_) note("heights are partly above the geoid (no altHAE)");
-  if (passed_.not_json > 0)
-    note(fmt::format("{} lines that are no JSON objects were skipped", passed_.not_json));
+  tally_.write(data_.kinds);
+  add_notes();
+}
+
+void GpsdDecoder::add_notes() {
+  for (const std::string& text : accuracy_.notes(release_, request())) note(text);
+  if (counts_.above_sea_level > 0)
+    note(fmt::format("{} heights are above mean sea level (no altHAE)", counts_.above_sea_level));
+  if (counts_.not_json > 0)
+    note(fmt::format("{} lines that are no JSON objects were skipped", counts_.not_json));
   if (data_.without_fix > 0)
     note(fmt::format("{} of {} records are marked as without a fix", data_.without_fix, data_.records));
-  if (passed_.without_time > 0)
-    note(fmt::format("{} fixes without a time were skipped", passed_.without_time));
-  if (passed_.other_devices > 0)
-    note(fmt::format("{} reports of other devices than '{}' were skipped", passed_.other_devices, device_));
-  return std::move(data_);
+  if (counts_.without_time > 0)
+    note(fmt::format("{} fixes without a time were skipped", counts_.without_time));
+  if (counts_.dead_reckoning > 0)
+    note(fmt::format("{} fixes are dead reckoning of the receiver, not measured", counts_.dead_reckoning));
+  if (counts_.simulated > 0) note(fmt::format("{} fixes are marked as simulated", counts_.simulated));
+  if (counts_.other_devices > 0)
+    note(fmt::format("{} reports of other devices than '{}' were skipped", counts_.other_devices,
+                     shortened(device_)));
 }
 
 }  // namespace
 
-LogData GpsdJsonReader::read_whole(std::string_view text, const std::string& path,
-                                   const LogRequest& request) const {
+std::unique_ptr<LogDecoder> GpsdJsonReader::open(const std::string& path, const LogRequest& request) const {
   if (request.stream == StreamKind::odometry)
     throw InputError(fmt::format("{}: a gpsd log holds no odometry", path));
+  if (request.stream == StreamKind::sensor)
+    throw InputError(fmt::format("{}: a gpsd log holds no sensor readings", path));
   if (!request.columns.empty()) throw InputError(fmt::format("{}: a gpsd log has no columns to map", path));
-  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-    throw InputError(fmt::format("{}: the log is empty", path));
-  GpsdLog log(path, request);
-  for (std::size_t line_number = 1; !text.empty(); ++line_number) {
-    const std::size_t end = text.find('\n');
-    log.read_line(text.substr(0, end), line_number);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  if (!request.companions.empty())
+    throw InputError(fmt::format("{}: a gpsd log is read without companion files such as {} '{}'", path,
+                                 request.companions.begin()->first, request.companions.begin()->second.path));
+  return std::make_unique<GpsdDecoder>(path, request);
+}
+
+Recognition GpsdJsonReader::recognise(std::string_view head) const {
+  std::size_t lines = 0;
+  std::size_t objects = 0;
+  std::size_t sentences = 0;
+  bool positions = false;
+  while (!head.empty()) {
+    const std::size_t end = head.find('\n');
+    std::string_view line = head.substr(0, end);
+    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    ++lines;
+    if (const std::string_view kind = gpsd_class(line); !kind.empty()) {
+      ++objects;
+      positions = positions || kind == "TPV";
+    } else if (const auto sentence = next_nmea_sentence(line);
+               sentence && sentence->checksum == NmeaChecksum::right) {
+      ++sentences;
+    }
   }
-  return log.finish();
+  if (objects == 0) return {};
+  // gpspipe -r and gpsd's regression outputs have the receiver's sentences between the objects made of them.
+  const std::size_t known = positions ? objects + sentences : objects;
+  return {static_cast<double>(known) / static_cast<double>(lines),
+          fmt::format("{} of {} lines are gpsd's JSON objects{}", objects, lines,
+                      positions && sentences > 0 ? fmt::format(", {} NMEA sentences", sentences) : "")};
 }
 
 }  // namespace waymark

@@ -13,26 +13,29 @@ namespace waymark {
 ///
 /// **Not corrupt**, only counted in the notes: lines that are no JSON objects (comments, NMEA), a `mode`
 /// below 2 or none (no fix), a fix without `time`. **Corrupt**: a line that starts as an object and is no
-/// JSON, a member of the wrong type, a fix without `lat` and `lon` or outside their range, a `time` that is
-/// no ISO 8601 date.
+/// JSON (objects that name another class first, as gpsd's SKY do, are passed over unseen), a member of the
+/// wrong type, a fix without `lat` and `lon` or outside their range, a `time` that is no ISO 8601 date.
 ///
 /// **Time** is UTC and comes out on `request.time_scale`.
 ///
-/// **Accuracy.** Per-axis meanings (automatic, 95, 1sigma) read epx and epy, radial ones (drms, cep50) read
-/// eph; each falls back on the other. automatic: epx and epy at 95 % (the paper's rule), eph as drms. gpsd
-/// changed their meaning: before 3.11 epx = epy = 3-D accuracy / sqrt 2, in 3.11 to 3.18 u-blox' raw hAcc
-/// (drms is then the better reading), since 3.19 DOP x 15 m with hAcc in eph. What the log shows of this is
-/// put into the notes. No figure: the default sigma, counted in the notes; without one the record is corrupt.
+/// **Accuracy.** automatic: the GST object of the same device and time, whose errors are 1 sigma, with the
+/// correlation of its error ellipse; else epx and epy at 95 % (the paper's rule); else eph as drms. A stated
+/// meaning leaves GST aside: per-axis ones (95, 1sigma) read epx and epy, radial ones (drms, cep50) read eph;
+/// each falls back on the other. gpsd changed what epx and epy are: before 3.11 the 3-D accuracy / sqrt 2,
+/// in 3.11 to 3.18 u-blox' raw hAcc (drms is then the better reading), since 3.19 DOP x 15 m with hAcc in
+/// eph. What version and values show of this is put into the notes, with the sigma that the fitting meaning
+/// would give. No figure: the default sigma, counted in the notes; without one the record is corrupt.
 ///
 /// **Course and speed**: track and speed with epd and eps (95 %). Height: altHAE, else alt (which is above
 /// the geoid).
-///
-/// @throws InputError (from read) for an empty log, one without a usable fix, the odometry stream, a column
-/// map.
-class GpsdJsonReader final : public WholeLogReader {
+class GpsdJsonReader final : public LogReader {
  public:
-  [[nodiscard]] LogData read_whole(std::string_view text, const std::string& path,
-                                   const LogRequest& request) const override;
+  /// @throws InputError for the odometry and sensor streams, a column map, a companion file. Its decoder
+  /// throws one for an empty log.
+  [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,
+                                                 const LogRequest& request) const override;
+  /// The share of lines that are gpsd's objects, the receiver's own sentences between them included.
+  [[nodiscard]] Recognition recognise(std::string_view head) const override;
 };
 
 }  // namespace waymark

@@ -1,10 +1,7 @@
 #include <waymark/formats/logs/nmea.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -14,8 +11,10 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/logs/accuracy.hpp>
+#include <waymark/formats/logs/kind_tally.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
 #include <waymark/formats/logs/nmea_epoch.hpp>
+#include <waymark/formats/logs/nmea_notes.hpp>
 #include <waymark/formats/logs/nmea_sentence.hpp>
 
 namespace waymark {
@@ -24,69 +23,6 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::int64_t kDayNanoseconds = 86'400'000'000'000;
 constexpr std::size_t kMostUndated = 4096;  ///< fixes that wait for the first date
-
-/// Counts sentences by address without a map in the hot path. An address has at most eight characters.
-class KindTally {
- public:
-  void add(std::string_view address) {
-    std::uint64_t key = 0;
-    std::memcpy(&key, address.data(), std::min(address.size(), sizeof key));
-    std::size_t place = (key * 0x9E3779B97F4A7C15U) >> 56U;
-    while (entries_[place].count > 0 && entries_[place].key != key) place = (place + 1) % kSlots;
-    Entry& entry = entries_[place];
-    if (entry.count == 0) {
-      if (used_ == kMostKinds) {  // no receiver speaks so many
-        ++others_;
-        return;
-      }
-      ++used_;
-      entry.key = key;
-    }
-    ++entry.count;
-  }
-  void write(std::map<std::string, std::size_t>& kinds) const {
-    for (const Entry& entry : entries_) {
-      if (entry.count == 0) continue;
-      std::array<char, sizeof entry.key> letters{};
-      std::memcpy(letters.data(), &entry.key, letters.size());
-      kinds[std::string(letters.begin(), std::find(letters.begin(), letters.end(), '\0'))] += entry.count;
-    }
-    if (others_ > 0) kinds["others"] += others_;
-  }
-
- private:
-  static constexpr std::size_t kSlots = 256;
-  static constexpr std::size_t kMostKinds = 128;
-  struct Entry {
-    std::uint64_t key = 0;
-    std::size_t count = 0;
-  };
-  std::array<Entry, kSlots> entries_{};
-  std::size_t used_ = 0;
-  std::size_t others_ = 0;
-};
-
-/// What the notes tell.
-struct Counts {
-  std::size_t not_sentences = 0;
-  std::size_t without_checksum = 0;
-  std::size_t other_wrong_checksums = 0;
-  std::size_t without_time = 0;
-  std::size_t without_satellites = 0;
-  std::size_t from_gst = 0;
-  std::size_t from_ellipse = 0;
-  std::size_t ellipse_disagrees = 0;
-  std::size_t from_hdop = 0;
-  std::size_t from_default = 0;
-  std::size_t above_sea_level = 0;
-  std::size_t dead_reckoning = 0;
-  std::size_t simulated = 0;
-  std::size_t leap_seconds = 0;
-  std::size_t midnights = 0;
-  std::size_t dated_backwards = 0;
-  std::size_t decimals = 0;  ///< the most that any position had
-  std::size_t fixes = 0;
-};
 
 class NmeaDecoder final : public LineDecoder {
  public:
@@ -111,12 +47,9 @@ class NmeaDecoder final : public LineDecoder {
   void give(GeodeticFix fix);
   void release_undated();
   [[noreturn]] void fail_undated() const;
-  void note_dates();
-  void note_accuracy();
-  void note_quality();
 
   KindTally tally_;
-  Counts counts_;
+  NmeaCounts counts_;
   bool checksums_ = false;        ///< a sentence had a right one
   bool satellites_told_ = false;  ///< a fix had satellites
   NmeaEpoch epoch_;
@@ -124,7 +57,6 @@ class NmeaDecoder final : public LineDecoder {
   /// Day of the last fix: since 1970-01-01 once dated_, before that since the first fix.
   std::int64_t day_ = 0;
   bool dated_ = false;
-  bool log_has_date_ = false;
   std::optional<std::int64_t> last_time_of_day_;
   std::int64_t offset_ns_ = 0;
   std::vector<GeodeticFix> undated_;  ///< their stamps count from the midnight before the first fix
@@ -242,7 +174,7 @@ void NmeaDecoder::count_days(const NmeaEpoch& epoch) {
     dated_ = true;
     release_undated();
   }
-  log_has_date_ = true;
+  counts_.log_has_date = true;
   day_ = *epoch.day;
 }
 
@@ -336,68 +268,7 @@ void NmeaDecoder::end() {
   end_epoch();
   if (!undated_.empty()) fail_undated();
   tally_.write(data_.kinds);
-  note_dates();
-  note_accuracy();
-  note_quality();
-}
-
-void NmeaDecoder::note_dates() {
-  if (counts_.dated_backwards > 0)
-    note(fmt::format("{} fixes before the first date take the day from it", counts_.dated_backwards));
-  if (request().date && counts_.fixes > 0)
-    note(log_has_date_ ? "the log gives its date itself; the stated one counts before the log's first only"
-                       : "the log gives no date, the stated one is that of its first fix");
-  if (counts_.midnights > 0)
-    note(fmt::format("the time of day jumps back by more than 12 h {} times, which is taken for midnight",
-                     counts_.midnights));
-  if (counts_.leap_seconds > 0)
-    note(fmt::format("{} fixes in a leap second are stamped as one second later", counts_.leap_seconds));
-  if (counts_.without_time > 0)
-    note(fmt::format("{} fixes without a time of day were skipped", counts_.without_time));
-}
-
-void NmeaDecoder::note_accuracy() {
-  if (counts_.from_gst > 0)
-    note(fmt::format(
-        "{} fixes with GST read as {}; {} of them with the correlation of its error ellipse",
-        counts_.from_gst,
-        request().accuracy == AccuracyMeaning::automatic ? "1sigma" : to_string(request().accuracy),
-        counts_.from_ellipse));
-  if (counts_.ellipse_disagrees > 0)
-    note(fmt::format("{} error ellipses of another shape than the errors beside them were left aside",
-                     counts_.ellipse_disagrees));
-  if (counts_.from_hdop > 0)
-    note(fmt::format("{} fixes give HDOP only, which is multiplied with the stated range error of {} m",
-                     counts_.from_hdop, request().range_error_m));
-  if (counts_.from_default > 0)
-    note(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used",
-                     counts_.from_default, request().default_sigma_m));
-}
-
-void NmeaDecoder::note_quality() {
-  if (data_.without_fix > counts_.without_satellites)
-    note(fmt::format("{} of {} records are marked as without a fix",
-                     data_.without_fix - counts_.without_satellites, data_.records));
-  if (counts_.without_satellites > 0)
-    note(fmt::format("{} fixes that rest on no satellite are not used", counts_.without_satellites));
-  if (counts_.dead_reckoning > 0)
-    note(fmt::format("{} fixes are dead reckoning of the receiver, not measured", counts_.dead_reckoning));
-  if (counts_.simulated > 0)
-    note(fmt::format("{} fixes are marked as simulated or typed in", counts_.simulated));
-  if (counts_.above_sea_level > 0)
-    note(fmt::format("{} heights are above mean sea level (no geoid separation)", counts_.above_sea_level));
-  constexpr double kMinute = 1852;              // m along a meridian
-  constexpr std::size_t kDecimalsOfAMetre = 4;  // 0.0001' is 0.19 m
-  if (counts_.fixes > 0 && counts_.decimals < kDecimalsOfAMetre)
-    note(fmt::format("positions are given in steps of {:.2g} m ({} decimals of a minute)",
-                     kMinute * std::pow(10, -static_cast<double>(counts_.decimals)), counts_.decimals));
-  if (counts_.without_checksum > 0)
-    note(fmt::format("{} sentences have no checksum and are believed", counts_.without_checksum));
-  if (counts_.other_wrong_checksums > 0)
-    note(fmt::format("{} sentences of kinds that are not read are damaged (wrong checksum or none)",
-                     counts_.other_wrong_checksums));
-  if (counts_.not_sentences > 0)
-    note(fmt::format("{} lines that hold no NMEA sentence were skipped", counts_.not_sentences));
+  for (const std::string& text : nmea_notes(counts_, data_, request())) note(text);
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include <waymark/formats/logs/accuracy.hpp>
 
 namespace waymark {
 namespace {
@@ -156,25 +157,6 @@ void add_vtg(const NmeaFields& fields, NmeaEpoch& epoch) {
   if (!epoch.speed_mps) epoch.speed_mps = speed;
 }
 
-/// The correlation that an error ellipse stands for. Its size is not used: u-blox M9 states the ellipse 2.45
-/// times as large as the sigmas (a 95 % ellipse), others as large as they are.
-void add_ellipse(double major, double minor, double orientation_deg, NmeaAccuracy& accuracy) {
-  const double angle = orientation_deg * std::numbers::pi / 180;
-  const double north = std::hypot(major * std::cos(angle), minor * std::sin(angle));
-  const double east = std::hypot(major * std::sin(angle), minor * std::cos(angle));
-  const double correlation =
-      (major - minor) * (major + minor) * std::sin(angle) * std::cos(angle) / (north * east);
-  const double shape = accuracy.east_m * north / (accuracy.north_m * east);
-  constexpr double kSameShape = 1.5;  // figures come rounded to as little as one digit
-  constexpr double kMostCorrelated = 0.99999;
-  if (!(shape < kSameShape && shape > 1 / kSameShape && std::abs(correlation) <= 1)) {
-    accuracy.ellipse_disagrees = true;
-    return;
-  }
-  accuracy.has_ellipse = true;
-  accuracy.correlation = std::clamp(correlation, -kMostCorrelated, kMostCorrelated);
-}
-
 void add_gst(const NmeaFields& fields, NmeaEpoch& epoch) {
   NmeaAccuracy accuracy;
   accuracy.north_m = fields.number(6, "latitude error").value_or(0);
@@ -186,7 +168,13 @@ void add_gst(const NmeaFields& fields, NmeaEpoch& epoch) {
   if (!(accuracy.north_m > 0 && accuracy.east_m > 0 && accuracy.north_m < kLargest &&
         accuracy.east_m < kLargest))
     return;
-  if (major > 0 && minor > 0 && orientation) add_ellipse(major, minor, *orientation, accuracy);
+  if (major > 0 && minor > 0 && orientation) {
+    const std::optional<double> correlation =
+        ellipse_correlation(accuracy.east_m, accuracy.north_m, major, minor, *orientation);
+    accuracy.has_ellipse = correlation.has_value();
+    accuracy.ellipse_disagrees = !correlation;
+    accuracy.correlation = correlation.value_or(0);
+  }
   epoch.accuracy = accuracy;
 }
 

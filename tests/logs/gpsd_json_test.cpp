@@ -5,8 +5,8 @@
 #include <string>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/logs/gpsd_json.hpp>
 #include <waymark/formats/iso8601.hpp>
+#include <waymark/formats/logs/gpsd_json.hpp>
 #include <waymark/formats/text_file.hpp>
 
 #include "support/paths.hpp"
@@ -57,7 +57,11 @@ TEST_CASE("gpsd: one report") {
   CHECK(fix.line == 1);
   CHECK(data.notes ==
         std::vector<std::string>{
-            "log.json: gpsd of unknown version: 1 fixes with epx and epy read as 95 (not stated)"});
+            "log.json: gpsd of unknown version: 1 fixes with epx and epy read as 95 (not stated)",
+            "log.json: epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of "
+            "precision; eph is the "
+            "receiver's own accuracy where it states one, which drms reads: sigma would be 7.07 m on average "
+            "instead of 2.5 m"});
 }
 
 TEST_CASE("gpsd: stamps come out on the scale asked for") {
@@ -145,6 +149,10 @@ TEST_CASE("gpsd: what is no fix, what is no JSON and what is corrupt are told ap
   CHECK(data.corrupt_examples[4] == "log.json:11:1: TPV: 'lat' 91 is outside -90 .. 90");
   CHECK(data.notes ==
         std::vector<std::string>{"log.json: gpsd 3.22: 1 fixes with epx and epy read as 95 (not stated)",
+                                 "log.json: epx and epy beside eph, as gpsd writes them since 3.19, come "
+                                 "from the dilution of precision; eph is the "
+                                 "receiver's own accuracy where it states one, which drms reads: sigma would "
+                                 "be 7.07 m on average instead of 2.5 m",
                                  "log.json: 2 lines that are no JSON objects were skipped",
                                  "log.json: 1 of 9 records are marked as without a fix",
                                  "log.json: 1 fixes without a time were skipped"});
@@ -155,7 +163,7 @@ TEST_CASE("gpsd: equal epx and epy throughout are remarked upon") {
       read(R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,"epx":3,"epy":3})");
   CHECK(data.notes.back() ==
         "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms "
-        "reads better");
+        "reads better: sigma would be 2.12 m on average instead of 1.5 m");
 }
 
 TEST_CASE("gpsd: a log may serve as truth") {
@@ -178,25 +186,156 @@ TEST_CASE("gpsd: what cannot be read at all is an error that says why") {
                        Message("log.json: a gpsd log has no columns to map"));
   request.stream = StreamKind::odometry;
   CHECK_THROWS_MATCHES(read(kFix, request), InputError, Message("log.json: a gpsd log holds no odometry"));
+  request.stream = StreamKind::sensor;
+  CHECK_THROWS_MATCHES(read(kFix, request), InputError,
+                       Message("log.json: a gpsd log holds no sensor readings"));
+  request = utc_fixes();
+  request.companions["dbc"] = {"car.dbc", ""};
+  CHECK_THROWS_MATCHES(read(kFix, request), InputError,
+                       Message("log.json: a gpsd log is read without companion files such as dbc 'car.dbc'"));
 }
 
-TEST_CASE("gpsd: real logs") {
-  if (const std::string text = shared_log("gpsd_ublox-glo.log.chk"); !text.empty()) {
+TEST_CASE("gpsd: a GST object of the same time gives the accuracy, before its TPV or after it") {
+  const std::string gst =
+      R"({"class":"GST","time":"2005-06-09T14:34:45.280Z","rms":1,"major":8.7,"minor":4.7,)"
+      R"("orient":132.3,"lat":6.8,"lon":7.2,"alt":14})"
+      "\n";
+  const std::string other = R"({"class":"GST","time":"2005-06-09T14:34:46.280Z","lat":1,"lon":1})"
+                            "\n";
+  const std::string tpv = std::string(kFix) + "\n";
+  for (const std::string& text : {gst + tpv, tpv + gst, gst + other + tpv, tpv + gst + other}) {
     const LogData data = read(text);
-    CHECK(data.corrupt == 0);
-    CHECK(data.fixes.size() > 200);
-    CHECK(data.fixes.front().latitude_deg == Approx(55.6024871));
-    CHECK(data.fixes.front().covariance_en(0, 0) == Approx(11.143 * 11.143 / 4));
+    const Eigen::Matrix2d& covariance = data.fixes.at(0).covariance_en;
+    CHECK(covariance(0, 0) == Approx(7.2 * 7.2));  // lon is the east error, 1 sigma
+    CHECK(covariance(1, 1) == Approx(6.8 * 6.8));
+    // The ellipse's own off-diagonal: (8.7^2 - 4.7^2) sin cos of its axis, clockwise from north.
+    CHECK(covariance(0, 1) == Approx(-26.68).epsilon(0.01));
+    CHECK(data.notes ==
+          std::vector<std::string>{"log.json: 1 fixes with a GST object, whose errors are 1 sigma; 1 of "
+                                   "them with the correlation of its error ellipse"});
   }
-  if (const std::string text = shared_log("gpsd_neo-m8n.log.chk"); !text.empty()) {
-    LogRequest request = utc_fixes();
-    request.default_sigma_m = 10;
-    const LogData data = read(text, request);
-    CHECK(data.corrupt == 0);
-    CHECK(data.fixes.size() >= 20);
+  CHECK(read(other + tpv).fixes.at(0).covariance_en(0, 0) == Approx(4));  // of another time
+  LogRequest stated = utc_fixes();
+  stated.accuracy = AccuracyMeaning::percent95;
+  CHECK(read(gst + tpv, stated).fixes.at(0).covariance_en(0, 0) == Approx(4));  // what is stated wins
+}
+
+TEST_CASE("gpsd: version and values tell the dialect") {
+  const auto note = [](const std::string& release, const std::string& figures) {
+    const std::vector<std::string> notes =
+        read(R"({"class":"VERSION","release":")" + release + "\"}\n" +
+             R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,)" + figures + "}\n")
+            .notes;
+    return notes.size() > 1 ? notes[1] : std::string();
+  };
+  const std::string equal = R"("epx":10,"epy":10)";
+  const std::string dilution = R"("epx":6,"epy":8,"eph":2)";
+  CHECK(note("3.10", equal) ==
+        "log.json: epx and epy of gpsd before 3.11 are the 3-D accuracy / sqrt(2), a rough 1sigma: sigma "
+        "would be 10 "
+        "m on average instead of 5 m");
+  const std::string raw =
+      "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms "
+      "reads better: "
+      "sigma would be 7.07 m on average instead of 5 m";
+  CHECK(note("3.17", equal) == raw);
+  CHECK(note("", equal) == raw);
+  const std::string since_3_19 =
+      "log.json: epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of "
+      "precision; eph is "
+      "the receiver's own accuracy where it states one, which drms reads: sigma would be 1.41 m on average "
+      "instead of "
+      "3.5 m";
+  CHECK(note("3.22", dilution) == since_3_19);
+  CHECK(note("3.20.1~dev", dilution) == since_3_19);
+  CHECK(note("unknown", dilution) == since_3_19);
+  CHECK(note("3.17", dilution).empty());
+  CHECK(note("3.22", equal).empty());
+}
+
+TEST_CASE("gpsd: dead reckoning and simulation are noted, messages are counted by class") {
+  const auto tpv = [](int second, int status) {
+    return R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:0)" + std::to_string(second) +
+           R"(Z","status":)" + std::to_string(status) +
+           R"(,"lat":1,"lon":2,"eph":3,"leapseconds":18,"ecefx":1})" + "\n";
+  };
+  const LogData data =
+      read(tpv(1, 5) + tpv(2, 8) + tpv(3, 3) + "{\"class\":\"PPS\",\"x\":[1,{\"lat\":9}]}\n" +
+           "{ \"class\" : \"SKY\" }\n{\"class\":\"SKY\",\"unfinished\":\n");
+  CHECK(data.fixes.size() == 3);
+  CHECK(data.corrupt == 0);
+  CHECK(data.kinds == std::map<std::string, std::size_t>{{"PPS", 1}, {"SKY", 2}, {"TPV", 3}});
+  CHECK(data.notes[1] == "log.json: 1 fixes are dead reckoning of the receiver, not measured");
+  CHECK(data.notes[2] == "log.json: 1 fixes are marked as simulated");
+}
+
+TEST_CASE("gpsd: nested and gigantic members break nothing") {
+  const std::string start = R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45Z","lon":2,"lat":)";
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+  const LogData data =
+      read(std::string(kFix) + "\n" + start + deep + "}\n" + start + '"' + std::string(100'000, 'x') +
+           "\"}\n" + start + "{\"lat\":1}}\n" + start + "true}\n");
+  CHECK(data.fixes.size() == 1);
+  CHECK(data.corrupt_examples ==
+        std::vector<std::string>{"log.json:5:1: TPV: expected a number for 'lat', got true"});
+}
+
+TEST_CASE("gpsd: how surely a log is known") {
+  const std::string sky = "{\"class\":\"SKY\"}\n";
+  const Recognition mixed = GpsdJsonReader().recognise("# comment\n" + sky + kFix + "\n$GPGSV,1,1,00*79\n");
+  CHECK(mixed.certainty == Approx(3.0 / 4));
+  CHECK(mixed.evidence == "2 of 4 lines are gpsd's JSON objects, 1 NMEA sentences");
+  CHECK(GpsdJsonReader().recognise(sky + "time,speed\n").certainty == Approx(0.5));
+  CHECK(GpsdJsonReader().recognise("{\"a\":1}\n").certainty == 0);
+}
+
+TEST_CASE("gpsd: real logs, whole and in pieces") {
+  struct Log {
+    const char* name;
+    std::size_t fixes;  ///< counted with ten lines of Python over the .chk files
+    std::size_t without_fix;
+    std::size_t corrupt;
+  };
+  // The TPV objects of a time are one record.
+  constexpr Log kLogs[] = {
+      {"gpsd_bu303-moving.log.chk", 12, 0, 0}, {"gpsd_garmin18x-bin.log.chk", 29, 0, 0},
+      {"gpsd_neo-m8n.log.chk", 22, 0, 0},      {"gpsd_telit-he910.log.chk", 187, 111, 0},
+      {"gpsd_ublox-glo.log.chk", 291, 8, 0},   {"gpsd_ublox-neo-m8l.log.chk", 207, 0, 0},
+  };
+  LogRequest request = utc_fixes();
+  request.default_sigma_m = 10;
+  for (const Log& log : kLogs) {
+    const std::string text = shared_log(log.name);
+    if (text.empty()) return;
+    INFO(log.name);
+    const LogData whole = read(text, request);
+    CHECK(whole.fixes.size() == log.fixes);
+    CHECK(whole.without_fix == log.without_fix);
+    CHECK(whole.corrupt == log.corrupt);
+    CHECK(GpsdJsonReader().recognise(std::string_view(text).substr(0, 65536)).certainty > 0.99);
+    for (const std::size_t piece : {1, 7}) {
+      const auto decoder = GpsdJsonReader().open("log.json", request);
+      for (std::size_t k = 0; k < text.size(); k += piece)
+        decoder->take(std::string_view(text).substr(k, piece));
+      decoder->finish();
+      const LogData& data = decoder->data();
+      CHECK(data.notes == whole.notes);
+      CHECK(data.kinds == whole.kinds);
+      REQUIRE(data.fixes.size() == whole.fixes.size());
+      for (std::size_t k = 0; k < data.fixes.size(); ++k) {
+        CHECK(data.fixes[k].stamp == whole.fixes[k].stamp);
+        CHECK(data.fixes[k].latitude_deg == whole.fixes[k].latitude_deg);
+        CHECK(data.fixes[k].covariance_en == whole.fixes[k].covariance_en);
+        CHECK(data.fixes[k].line == whole.fixes[k].line);
+      }
+    }
   }
+  const LogData glonass = read(shared_log("gpsd_ublox-glo.log.chk"));
+  CHECK(glonass.fixes.front().latitude_deg == Approx(55.6024871));
+  CHECK(glonass.fixes.front().covariance_en(0, 0) == Approx(11.143 * 11.143 / 4));
   if (const std::string text = shared_log("gpsd_bu303-nofix.log.chk"); !text.empty())
-    CHECK_THROWS_AS(read(text), InputError);
+    CHECK_THROWS_MATCHES(read(text), InputError,
+                         Message("log.json: not one fix in 7 records (7 are marked as without a fix)"));
 }
 
 TEST_CASE("ISO 8601") {

@@ -1,0 +1,146 @@
+#include <waymark/formats/logs/gpsd_accuracy.hpp>
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include <waymark/formats/logs/accuracy.hpp>
+
+namespace waymark {
+namespace {
+
+struct Release {
+  int major = 0;
+  int minor = 0;
+
+  friend constexpr auto operator<=>(const Release&, const Release&) = default;
+};
+
+/// "3.22", "3.20.1~dev": what stands before and after the first point; empty for anything else.
+std::optional<Release> release_from(const std::string& text) {
+  Release release;
+  const char* const end = text.data() + text.size();
+  const auto major = std::from_chars(text.data(), end, release.major);
+  if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.') return std::nullopt;
+  const auto minor = std::from_chars(major.ptr + 1, end, release.minor);
+  if (minor.ec != std::errc()) return std::nullopt;
+  return release;
+}
+
+constexpr Release kRawAccuracySince{3, 11};
+constexpr Release kDilutionSince{3, 19};
+
+}  // namespace
+
+Eigen::Matrix2d GpsdAccuracy::covariance(const GpsdReport& report, const GpsdReport* gst,
+                                         const LogRequest& request) {
+  const AccuracyMeaning stated = request.accuracy;
+  const bool automatic = stated == AccuracyMeaning::automatic;
+  const bool radial_first = stated == AccuracyMeaning::drms || stated == AccuracyMeaning::cep50;
+  if (automatic && gst != nullptr) {
+    if (const std::optional<Eigen::Matrix2d> measured = covariance_from_gst(*gst)) return *measured;
+  }
+  const double east = report.number(GpsdNumber::epx).value_or(0);
+  const double north = report.number(GpsdNumber::epy).value_or(0);
+  const double radial = report.number(GpsdNumber::eph).value_or(0);
+  const bool per_axis = east > 0 && north > 0;
+
+  Eigen::Vector2d sigma;
+  if (per_axis && !(radial_first && radial > 0)) {
+    ++per_axis_;
+    if (east == north) ++per_axis_equal_;
+    per_axis_sum_m_ += (east + north) / 2;
+    if (radial > 0) {
+      ++per_axis_with_radial_;
+      radial_sum_m_ += radial;
+    }
+    sigma = sigma_factor(automatic ? AccuracyMeaning::percent95 : stated) * Eigen::Vector2d(east, north);
+  } else if (radial > 0) {
+    ++radial_;
+    sigma.setConstant(sigma_factor(automatic ? AccuracyMeaning::drms : stated) * radial);
+  } else if (request.default_sigma_m > 0) {
+    ++defaulted_;
+    sigma.setConstant(request.default_sigma_m);
+  } else {
+    throw BadGpsdMember{"TPV: neither epx and epy nor eph, and no default sigma is stated"};
+  }
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
+std::optional<Eigen::Matrix2d> GpsdAccuracy::covariance_from_gst(const GpsdReport& gst) {
+  const double east = gst.number(GpsdNumber::lon).value_or(0);
+  const double north = gst.number(GpsdNumber::lat).value_or(0);
+  constexpr double kLargest = 1e7;  // m; more than the way to the pole is no accuracy
+  if (!(east > 0 && north > 0 && east < kLargest && north < kLargest)) return std::nullopt;
+  ++from_gst_;
+  const double major = gst.number(GpsdNumber::major).value_or(0);
+  const double minor = gst.number(GpsdNumber::minor).value_or(0);
+  const std::optional<double> orientation = gst.number(GpsdNumber::orient);
+  double common = 0;
+  if (major > 0 && minor > 0 && orientation) {
+    if (const auto correlation = ellipse_correlation(east, north, major, minor, *orientation)) {
+      ++from_ellipse_;
+      common = *correlation * east * north;
+    }
+  }
+  return (Eigen::Matrix2d() << east * east, common, common, north * north).finished();
+}
+
+std::vector<std::string> GpsdAccuracy::notes(const std::string& release, const LogRequest& request) const {
+  std::vector<std::string> notes;
+  const bool automatic = request.accuracy == AccuracyMeaning::automatic;
+  const std::string stated(to_string(request.accuracy));
+  if (from_gst_ > 0)
+    notes.push_back(
+        fmt::format("{} fixes with a GST object, whose errors are 1 sigma; {} of them with the correlation "
+                    "of its error ellipse",
+                    from_gst_, from_ellipse_));
+  if (per_axis_ > 0) {
+    notes.push_back(fmt::format("gpsd {}: {} fixes with epx and epy read as {}",
+                                release.empty() ? "of unknown version" : release, per_axis_,
+                                automatic ? "95 (not stated)" : stated));
+    if (automatic) {
+      if (const std::string text = dialect(release); !text.empty()) notes.push_back(text);
+    }
+  }
+  if (radial_ > 0)
+    notes.push_back(
+        fmt::format("{} fixes with eph read as {}", radial_, automatic ? "drms (not stated)" : stated));
+  if (defaulted_ > 0)
+    notes.push_back(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used",
+                                defaulted_, request.default_sigma_m));
+  return notes;
+}
+
+/// What version and values say that epx and epy are, and which meaning would fit; empty where they say
+/// nothing.
+std::string GpsdAccuracy::dialect(const std::string& release) const {
+  const std::optional<Release> version = release_from(release);
+  const double figure = per_axis_sum_m_ / static_cast<double>(per_axis_);
+  const double read = sigma_factor(AccuracyMeaning::percent95) * figure;
+  if (version && *version < kRawAccuracySince)
+    return fmt::format(
+        "epx and epy of gpsd before 3.11 are the 3-D accuracy / sqrt(2), a rough 1sigma: sigma would be "
+        "{:.3g} m on "
+        "average instead of {:.3g} m",
+        figure, read);
+  const bool all_equal = per_axis_equal_ == per_axis_;
+  if (all_equal && (!version || *version < kDilutionSince))
+    return fmt::format(
+        "epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms reads "
+        "better: sigma "
+        "would be {:.3g} m on average instead of {:.3g} m",
+        sigma_factor(AccuracyMeaning::drms) * figure, read);
+  if (per_axis_with_radial_ > 0 && (!version || *version >= kDilutionSince))
+    return fmt::format(
+        "epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of precision; eph is "
+        "the "
+        "receiver's own accuracy where it states one, which drms reads: sigma would be {:.3g} m on average "
+        "instead of "
+        "{:.3g} m",
+        sigma_factor(AccuracyMeaning::drms) * radial_sum_m_ / static_cast<double>(per_axis_with_radial_),
+        read);
+  return {};
+}
+
+}  // namespace waymark
