@@ -21,6 +21,10 @@ double sigma_factor(AccuracyMeaning meaning) {
   return 1;
 }
 
+bool is_accuracy(double metres) {
+  return metres >= 1e-5 && metres <= 1e7;
+}
+
 std::string_view to_string(AccuracyMeaning meaning) {
   switch (meaning) {
     case AccuracyMeaning::automatic:

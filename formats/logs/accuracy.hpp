@@ -10,6 +10,9 @@ namespace waymark {
 
 /// sigma = factor * figure for an accuracy figure of this meaning; `automatic` must have been resolved.
 [[nodiscard]] double sigma_factor(AccuracyMeaning meaning);
+/// Whether a figure can be an accuracy: from 10 micrometres to 10,000 km, the way to the pole. Zero, NaN and
+/// what a damaged log holds are none.
+[[nodiscard]] bool is_accuracy(double metres);
 /// "95", "1sigma", "drms", "cep50", "auto".
 [[nodiscard]] std::string_view to_string(AccuracyMeaning meaning);
 

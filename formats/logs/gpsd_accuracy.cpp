@@ -43,19 +43,19 @@ Eigen::Matrix2d GpsdAccuracy::covariance(const GpsdReport& report, const GpsdRep
   const double east = report.number(GpsdNumber::epx).value_or(0);
   const double north = report.number(GpsdNumber::epy).value_or(0);
   const double radial = report.number(GpsdNumber::eph).value_or(0);
-  const bool per_axis = east > 0 && north > 0;
+  const bool per_axis = is_accuracy(east) && is_accuracy(north);
 
   Eigen::Vector2d sigma;
-  if (per_axis && !(radial_first && radial > 0)) {
+  if (per_axis && !(radial_first && is_accuracy(radial))) {
     ++per_axis_;
     if (east == north) ++per_axis_equal_;
     per_axis_sum_m_ += (east + north) / 2;
-    if (radial > 0) {
+    if (is_accuracy(radial)) {
       ++per_axis_with_radial_;
       radial_sum_m_ += radial;
     }
     sigma = sigma_factor(automatic ? AccuracyMeaning::percent95 : stated) * Eigen::Vector2d(east, north);
-  } else if (radial > 0) {
+  } else if (is_accuracy(radial)) {
     ++radial_;
     sigma.setConstant(sigma_factor(automatic ? AccuracyMeaning::drms : stated) * radial);
   } else if (request.default_sigma_m > 0) {
@@ -70,14 +70,13 @@ Eigen::Matrix2d GpsdAccuracy::covariance(const GpsdReport& report, const GpsdRep
 std::optional<Eigen::Matrix2d> GpsdAccuracy::covariance_from_gst(const GpsdReport& gst) {
   const double east = gst.number(GpsdNumber::lon).value_or(0);
   const double north = gst.number(GpsdNumber::lat).value_or(0);
-  constexpr double kLargest = 1e7;  // m; more than the way to the pole is no accuracy
-  if (!(east > 0 && north > 0 && east < kLargest && north < kLargest)) return std::nullopt;
+  if (!is_accuracy(east) || !is_accuracy(north)) return std::nullopt;
   ++from_gst_;
   const double major = gst.number(GpsdNumber::major).value_or(0);
   const double minor = gst.number(GpsdNumber::minor).value_or(0);
   const std::optional<double> orientation = gst.number(GpsdNumber::orient);
   double common = 0;
-  if (major > 0 && minor > 0 && orientation) {
+  if (is_accuracy(major) && is_accuracy(minor) && orientation) {
     if (const auto correlation = ellipse_correlation(east, north, major, minor, *orientation)) {
       ++from_ellipse_;
       common = *correlation * east * north;

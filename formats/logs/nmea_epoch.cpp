@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kKnot = 1852.0 / 3600;
 constexpr double kKilometrePerHour = 1000.0 / 3600;
+constexpr double kNoHdop = 1000;   // 99.99 is usual for "not known"; beyond, the field is damaged
 constexpr double kFastest = 1000;  // m/s; beyond, the field is damaged
 
 int rank(NmeaKind kind) {
@@ -115,7 +116,7 @@ struct Circumstances {
         separation(fields.number(separation_field, "geoid separation")) {}
   void add_to(NmeaEpoch& epoch) const {
     if (satellites) epoch.satellites = satellites;
-    if (hdop && *hdop > 0) epoch.hdop = hdop;
+    if (hdop && *hdop > 0 && *hdop < kNoHdop) epoch.hdop = hdop;
     if (altitude) {
       epoch.altitude_m = altitude;
       epoch.geoid_separation_m = separation;
@@ -164,11 +165,8 @@ void add_gst(const NmeaFields& fields, NmeaEpoch& epoch) {
   const double major = fields.number(3, "semi-major axis").value_or(0);
   const double minor = fields.number(4, "semi-minor axis").value_or(0);
   const std::optional<double> orientation = fields.number(5, "orientation");
-  constexpr double kLargest = 1e7;  // m; more than the way to the pole is no accuracy
-  if (!(accuracy.north_m > 0 && accuracy.east_m > 0 && accuracy.north_m < kLargest &&
-        accuracy.east_m < kLargest))
-    return;
-  if (major > 0 && minor > 0 && orientation) {
+  if (!is_accuracy(accuracy.north_m) || !is_accuracy(accuracy.east_m)) return;
+  if (is_accuracy(major) && is_accuracy(minor) && orientation) {
     const std::optional<double> correlation =
         ellipse_correlation(accuracy.east_m, accuracy.north_m, major, minor, *orientation);
     accuracy.has_ellipse = correlation.has_value();

@@ -164,6 +164,27 @@ TEST_CASE("nmea: a log without a date needs one to be stated") {
               "state that of the first record, such as `time: {date: 2009-04-01}`"));
 }
 
+TEST_CASE("nmea: days are counted as far as stamps reach") {
+  LogRequest request = utc();
+  request.date = stamp_from_iso8601("2200-12-31T00:00:00Z");
+  const LogData data = read(gga("235959") + gga("000000"), request);
+  CHECK(data.fixes.size() == 1);
+  CHECK(data.corrupt_examples ==
+        std::vector<std::string>{"log.nmea:2:1: so many midnights have passed that the date is after 2200"});
+}
+
+TEST_CASE("nmea: what no accuracy can be is none") {
+  LogRequest request = utc();
+  request.range_error_m = 4;
+  for (const char* errors : {"0,4", "3,", "99999999,4", "0.000001,4"}) {
+    const LogData data =
+        read(rmc("000001") + line(std::string("GPGST,000001,9,,,,") + errors + ",5"), request);
+    CHECK(data.fixes.at(0).covariance_en(0, 0) == 100);  // the default
+  }
+  const std::string unknown = line("GPGGA,000001,4810.8509,N,01133.9095,E,1,04,9999999999,500.5,M,46.5,M,,");
+  CHECK(read(rmc("000001") + unknown, request).fixes.at(0).covariance_en(0, 0) == 100);
+}
+
 TEST_CASE("nmea: stamps come out on the scale asked for, with the offset, leap seconds included") {
   LogRequest request = utc();
   request.time_scale = TimeScale::gps;
