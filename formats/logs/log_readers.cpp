@@ -6,6 +6,7 @@
 #include <waymark/formats/logs/csv_log.hpp>
 #include <waymark/formats/logs/gpsd_json.hpp>
 #include <waymark/formats/logs/nmea.hpp>
+#include <waymark/formats/logs/rtklib_pos.hpp>
 
 namespace waymark {
 
@@ -14,11 +15,13 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const GpsdJsonReader gpsd_json;
   static const CandumpReader candump;
   static const NmeaReader nmea;
+  static const RtklibPosReader rtklib_pos;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
       {"candump", "CAN frames (candump) with a DBC: odometry, gnss, truth, sensors", &candump},
       {"nmea", "NMEA 0183 sentences (RMC, GGA, GNS, GST, VTG, ZDA, GLL): gnss, truth", &nmea},
+      {"rtklib_pos", "solutions of RTKLIB (.pos): gnss, truth", &rtklib_pos},
   };
   return readers;
 }
