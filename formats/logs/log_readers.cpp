@@ -5,6 +5,7 @@
 #include <waymark/formats/logs/candump.hpp>
 #include <waymark/formats/logs/csv_log.hpp>
 #include <waymark/formats/logs/gpsd_json.hpp>
+#include <waymark/formats/logs/kitti_oxts.hpp>
 #include <waymark/formats/logs/nmea.hpp>
 #include <waymark/formats/logs/rtklib_pos.hpp>
 
@@ -16,12 +17,14 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const CandumpReader candump;
   static const NmeaReader nmea;
   static const RtklibPosReader rtklib_pos;
+  static const KittiOxtsReader kitti_oxts;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
       {"candump", "CAN frames (candump) with a DBC: odometry, gnss, truth, sensors", &candump},
       {"nmea", "NMEA 0183 sentences (RMC, GGA, GNS, GST, VTG, ZDA, GLL): gnss, truth", &nmea},
       {"rtklib_pos", "solutions of RTKLIB (.pos): gnss, truth", &rtklib_pos},
+      {"kitti_oxts", "KITTI's oxts records with their time stamps: odometry, gnss, truth", &kitti_oxts},
   };
   return readers;
 }

@@ -15,7 +15,7 @@ constexpr double kLargestSigma = 1e6;  // m; larger figures are garbled, and the
 
 }  // namespace
 
-PositionStream::PositionStream(const std::string& path, const LogRequest& request, const char* format)
+PositionStream::PositionStream(const std::string& path, const LogRequest& request)
     : path_(path),
       scale_(request.time_scale),
       offset_(std::llround(request.time_offset_s * 1e9)),
@@ -24,19 +24,7 @@ PositionStream::PositionStream(const std::string& path, const LogRequest& reques
       default_sigma_m_(request.default_sigma_m),
       range_error_m_(request.range_error_m),
       source_(request.source),
-      truth_(request.stream == StreamKind::truth) {
-  if (request.stream == StreamKind::odometry)
-    throw InputError(
-        fmt::format("{}: {} holds no odometry; it gives the streams gnss and truth", path, format));
-  if (request.stream == StreamKind::sensor)
-    throw InputError(
-        fmt::format("{}: {} holds no sensor readings; it gives the streams gnss and truth", path, format));
-  if (!request.columns.empty())
-    throw InputError(fmt::format("{}: {} has no columns to map; leave out 'columns'", path, format));
-  if (!request.companions.empty())
-    throw InputError(fmt::format("{}: {} takes no '{}' file; leave it out", path, format,
-                                 request.companions.begin()->first));
-}
+      truth_(request.stream == StreamKind::truth) {}
 
 std::optional<Stamp> PositionStream::stamp(Stamp given, TimeScale scale) const {
   Stamp result = convert(given, scale, scale_);
@@ -96,6 +84,20 @@ void PositionStream::finish(LogData& data) const {
                      default_sigma_m_));
   if (data.without_fix > 0)
     note(fmt::format("{} of {} records are marked as without a fix", data.without_fix, data.records));
+}
+
+void require_positions(const std::string& path, const LogRequest& request, const char* format) {
+  if (request.stream == StreamKind::odometry)
+    throw InputError(
+        fmt::format("{}: {} holds no odometry; it gives the streams gnss and truth", path, format));
+  if (request.stream == StreamKind::sensor)
+    throw InputError(
+        fmt::format("{}: {} holds no sensor readings; it gives the streams gnss and truth", path, format));
+  if (!request.columns.empty())
+    throw InputError(fmt::format("{}: {} has no columns to map; leave out 'columns'", path, format));
+  if (!request.companions.empty())
+    throw InputError(fmt::format("{}: {} takes no '{}' file; leave it out", path, format,
+                                 request.companions.begin()->first));
 }
 
 void set_velocity(GeodeticFix& fix, const Eigen::Vector2d& velocity_en, const Eigen::Matrix2d* covariance) {

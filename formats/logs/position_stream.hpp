@@ -21,9 +21,7 @@ struct StatedAccuracy {
 /// Positions of a gnss or truth stream. What it counts goes into the notes once, at the end.
 class PositionStream {
  public:
-  /// @param format  for the complaint: "an RTKLIB solution"
-  /// @throws InputError for the odometry and sensor streams, a column map, companions
-  PositionStream(const std::string& path, const LogRequest& request, const char* format);
+  PositionStream(const std::string& path, const LogRequest& request);
 
   /// The stamp on the request's scale with the request's offset; empty where it does not fit.
   [[nodiscard]] std::optional<Stamp> stamp(Stamp given, TimeScale scale) const;
@@ -54,6 +52,10 @@ class PositionStream {
   std::size_t from_hdop_ = 0;
   std::size_t defaulted_ = 0;
 };
+
+/// Refuses what a receiver's log cannot give. @param format  for the complaint: "an RTKLIB solution"
+/// @throws InputError for the odometry and sensor streams, a column map, companions
+void require_positions(const std::string& path, const LogRequest& request, const char* format);
 
 /// Speed and course with their sigmas from a velocity (east, north) and its covariance in (m/s)^2. A course
 /// whose sigma exceeds a radian says nothing and is left out. @param covariance  null: not known

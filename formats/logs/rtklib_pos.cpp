@@ -44,7 +44,7 @@ Eigen::Matrix3d covariance_xyz(const std::array<double, 6>& deviation) {
 class RtklibDecoder final : public LineDecoder {
  public:
   RtklibDecoder(const std::string& path, const LogRequest& request)
-      : LineDecoder(path, request), positions_(path, request, kFormat) {}
+      : LineDecoder(path, request), positions_(path, request) {}
 
  private:
   void take_line(std::string_view line, std::size_t number) override;
@@ -281,6 +281,7 @@ void RtklibDecoder::end() {
 }  // namespace
 
 std::unique_ptr<LogDecoder> RtklibPosReader::open(const std::string& path, const LogRequest& request) const {
+  require_positions(path, request, kFormat);
   return std::make_unique<RtklibDecoder>(path, request);
 }
 
