@@ -5,6 +5,7 @@
 #include <waymark/formats/logs/candump.hpp>
 #include <waymark/formats/logs/csv_log.hpp>
 #include <waymark/formats/logs/gpsd_json.hpp>
+#include <waymark/formats/logs/gpx.hpp>
 #include <waymark/formats/logs/kitti_oxts.hpp>
 #include <waymark/formats/logs/nmea.hpp>
 #include <waymark/formats/logs/rtklib_pos.hpp>
@@ -18,6 +19,7 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const NmeaReader nmea;
   static const RtklibPosReader rtklib_pos;
   static const KittiOxtsReader kitti_oxts;
+  static const GpxReader gpx;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
@@ -25,6 +27,7 @@ std::span<const LogReaderType> builtin_log_readers() {
       {"nmea", "NMEA 0183 sentences (RMC, GGA, GNS, GST, VTG, ZDA, GLL): gnss, truth", &nmea},
       {"rtklib_pos", "solutions of RTKLIB (.pos): gnss, truth", &rtklib_pos},
       {"kitti_oxts", "KITTI's oxts records with their time stamps: odometry, gnss, truth", &kitti_oxts},
+      {"gpx", "tracks of GPX 1.0 and 1.1: gnss, truth", &gpx},
   };
   return readers;
 }
