@@ -8,6 +8,7 @@
 #include <waymark/formats/logs/gpx.hpp>
 #include <waymark/formats/logs/kitti_oxts.hpp>
 #include <waymark/formats/logs/nmea.hpp>
+#include <waymark/formats/logs/novatel.hpp>
 #include <waymark/formats/logs/rtklib_pos.hpp>
 
 namespace waymark {
@@ -20,6 +21,7 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const RtklibPosReader rtklib_pos;
   static const KittiOxtsReader kitti_oxts;
   static const GpxReader gpx;
+  static const NovatelReader novatel;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
@@ -28,6 +30,7 @@ std::span<const LogReaderType> builtin_log_readers() {
       {"rtklib_pos", "solutions of RTKLIB (.pos): gnss, truth", &rtklib_pos},
       {"kitti_oxts", "KITTI's oxts records with their time stamps: odometry, gnss, truth", &kitti_oxts},
       {"gpx", "tracks of GPX 1.0 and 1.1: gnss, truth", &gpx},
+      {"novatel", "ASCII messages of NovAtel receivers (BESTPOSA, INSPVAXA): gnss, truth", &novatel},
   };
   return readers;
 }
