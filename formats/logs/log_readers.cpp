@@ -10,6 +10,7 @@
 #include <waymark/formats/logs/nmea.hpp>
 #include <waymark/formats/logs/novatel.hpp>
 #include <waymark/formats/logs/rtklib_pos.hpp>
+#include <waymark/formats/logs/ubx.hpp>
 
 namespace waymark {
 
@@ -22,6 +23,7 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const KittiOxtsReader kitti_oxts;
   static const GpxReader gpx;
   static const NovatelReader novatel;
+  static const UbxReader ubx;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
@@ -31,6 +33,7 @@ std::span<const LogReaderType> builtin_log_readers() {
       {"kitti_oxts", "KITTI's oxts records with their time stamps: odometry, gnss, truth", &kitti_oxts},
       {"gpx", "tracks of GPX 1.0 and 1.1: gnss, truth", &gpx},
       {"novatel", "ASCII messages of NovAtel receivers (BESTPOSA, INSPVAXA): gnss, truth", &novatel},
+      {"ubx", "u-blox binary messages: gnss, truth, odometry and sensor channels (ESF-MEAS)", &ubx},
   };
   return readers;
 }
