@@ -110,9 +110,24 @@ void UbxFrameDecoder::finish() {
   begun_.clear();
   end();
   if (strange_ > 0) note(fmt::format("{} bytes that belong to no UBX frame were passed over", strange_));
-  for (std::size_t key = 0; key < counts_.size(); ++key) {
-    if (counts_[key] > 0) data_.kinds[ubx_name(static_cast<std::uint16_t>(key))] = counts_[key];
+  for (unsigned key = 0; key < 1U << 16U; ++key) {
+    const auto kind = static_cast<std::uint16_t>(key);
+    if (const std::size_t messages = count(kind); messages > 0) data_.kinds[ubx_name(kind)] = messages;
   }
+}
+
+std::size_t UbxFrameDecoder::count(std::uint16_t key) const {
+  const std::unique_ptr<CountsById>& of_class = counts_[key >> 8U];
+  return of_class ? (*of_class)[key & 0xFFU] : 0;
+}
+
+void UbxFrameDecoder::give(const UbxFrame& frame, std::uint64_t place) {
+  std::unique_ptr<CountsById>& of_class = counts_[frame.key >> 8U];
+  if (!of_class) of_class = std::make_unique<CountsById>();
+  ++(*of_class)[frame.key & 0xFFU];
+  ++number_;
+  byte_ = place;
+  take_frame(frame);
 }
 
 /// Gives what is complete. @return so many bytes are done with; the rest may begin a frame
@@ -133,10 +148,7 @@ std::size_t UbxFrameDecoder::scan(std::string_view bytes, bool at_end) {
     }
     strange_ += found.begin - done;
     if (found.kind == UbxFound::Kind::frame) {
-      ++number_;
-      byte_ = base_ + found.begin;
-      ++counts_[found.frame.key];
-      take_frame(found.frame);
+      give(found.frame, base_ + found.begin);
       done = found.end;
     } else {
       give_broken(found, bytes);

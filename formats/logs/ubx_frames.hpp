@@ -1,11 +1,13 @@
 /// Frames of the UBX protocol (u-blox), found in streams that hold other things too.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 #include <waymark/core/log_reader.hpp>
 
@@ -49,7 +51,7 @@ class UbxFrameDecoder : public LogDecoder {
  public:
   /// @param path  the log's name, for messages
   UbxFrameDecoder(std::string path, LogRequest request)
-      : path_(std::move(path)), request_(std::move(request)), counts_(1U << 16U, 0) {}
+      : path_(std::move(path)), request_(std::move(request)) {}
   void take(std::string_view piece) final;
   /// Also fills `kinds`.
   void finish() final;
@@ -64,7 +66,7 @@ class UbxFrameDecoder : public LogDecoder {
   /// Of the frame at hand: its number in the log, from 1, and its place.
   [[nodiscard]] std::size_t number() const { return number_; }
   [[nodiscard]] std::uint64_t byte() const { return byte_; }
-  [[nodiscard]] std::size_t count(std::uint16_t key) const { return counts_[key]; }
+  [[nodiscard]] std::size_t count(std::uint16_t key) const;
   /// Counts a corrupt record, described as "path:byte N: what" (N from 0).
   void corrupt(std::uint64_t byte, const std::string& what);
   /// Adds a note that begins with the log's name.
@@ -72,6 +74,7 @@ class UbxFrameDecoder : public LogDecoder {
 
  private:
   std::size_t scan(std::string_view bytes, bool at_end);
+  void give(const UbxFrame& frame, std::uint64_t place);
   void give_broken(const UbxFound& found, std::string_view bytes);
 
   std::string path_;
@@ -82,7 +85,8 @@ class UbxFrameDecoder : public LogDecoder {
   std::uint64_t strange_ = 0;
   std::size_t number_ = 0;
   std::uint64_t byte_ = 0;
-  std::vector<std::size_t> counts_;  ///< by key
+  using CountsById = std::array<std::size_t, 256>;
+  std::array<std::unique_ptr<CountsById>, 256> counts_;  ///< by class; null: none of the class came
 };
 
 }  // namespace waymark

@@ -57,6 +57,7 @@ void UbxSensorClock::navigation(std::int64_t gps_ns) {
   differences_[meetings_ % kMeetings] = gps_ns - *fresh_tag_ms_ * kMillisecond;
   ++meetings_;
   kept_ = std::min(kept_ + 1, kMeetings);
+  median_ = median();
   fresh_tag_ms_.reset();
 }
 
@@ -78,7 +79,7 @@ std::int64_t UbxSensorClock::median() const {
 }
 
 std::int64_t UbxSensorClock::gps_ns(std::int64_t tag_ms) {
-  const std::int64_t wanted = median();
+  const std::int64_t wanted = median_;
   if (!offset_) {
     offset_ = first_offset_ = wanted;
   } else if (std::abs(wanted - *offset_) > kSecond) {

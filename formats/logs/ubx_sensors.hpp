@@ -79,6 +79,7 @@ class UbxSensorClock {
   std::optional<std::int64_t> newest_gps_;
   std::array<std::int64_t, kMeetings> differences_{};
   std::size_t kept_ = 0;
+  std::int64_t median_ = 0;  ///< of those kept
   std::size_t meetings_ = 0;
   std::optional<std::int64_t> offset_;
   std::int64_t first_offset_ = 0;
