@@ -22,7 +22,7 @@ namespace waymark {
 /// **Accuracy**: NAV-COV's covariance where valid; else hAcc, as drms unless stated. Speed and course
 /// accuracies are taken as one sigma. Heights are above the ellipsoid. Heading of truth: headVeh where valid.
 ///
-/// **Readings**: one row per ESF-MEAS message, columns by name (odometry_channels.hpp), NaN for what it does
+/// **Readings**: one row per ESF-MEAS message, columns by name (channels.hpp), NaN for what it does
 /// not hold. Tick counters become running counts that fall while the direction bit says backwards. The
 /// sensors' clock is placed on GNSS time by the order of the messages: see UbxSensorClock for its error.
 ///

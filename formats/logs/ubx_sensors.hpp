@@ -14,7 +14,7 @@
 
 namespace waymark {
 
-/// The quantities that ESF-MEAS holds, and under which type number; names as odometry_channels.hpp has them.
+/// The quantities that ESF-MEAS holds, and under which type number; names as channels.hpp has them.
 struct UbxChannel {
   const char* name;
   unsigned type;

@@ -12,7 +12,7 @@
 
 #include <waymark/formats/logs/candump.hpp>
 #include <waymark/formats/logs/log_file.hpp>
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/stamp_text.hpp>
 #include <waymark/formats/text_file.hpp>
 

@@ -7,7 +7,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/logs/candump.hpp>
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 
 using namespace waymark;
 using Catch::Matchers::Message;

@@ -9,7 +9,7 @@
 
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/ubx.hpp>
 #include <waymark/formats/text_file.hpp>
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/logs/odometry_channels.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/ubx.hpp>
 #include <waymark/formats/logs/ubx_sensors.hpp>
 
