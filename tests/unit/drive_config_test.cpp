@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/tools/drive/config.hpp>
 
 using namespace waymark;
@@ -190,6 +191,83 @@ TEST_CASE("drive.yaml: wrong types and ranges") {
         "kn, mm/s");
   CHECK(error_of_gnss("  columns:\n    course: {unit: deg}\n") ==
         "tours/drive.yaml:5:13: no column is given for course");
+}
+
+TEST_CASE("drive.yaml: odometry from parts, a CAN log with its DBC, a velocity apart") {
+  const DriveConfig config = parse(R"(
+odometry:
+  parts:
+    - {file: v.csv, columns: {time: t, speed: v}, time: {offset: -0.4}}
+    - {file: can.log, format: candump, dbc: car.dbc, columns: {gyro_x: {column: IMU.Rate, unit: deg/s}}}
+  rate: 20
+  speed_from: speed
+  yaw_rate_from: gyro
+  gyro: {axis: -x}
+  vehicle: {track_width: 1.5, wheelbase: 2.7, steering_ratio: 15, metres_per_tick: 0.02, tick_range: 65536}
+  speed_delay: 0.4
+  yaw_rate_delay: -0.1
+gnss:
+  file: g.nmea
+  format: auto
+  time: {date: 2009-04-01}
+  accuracy: {range_error: 5}
+  velocity: {file: doppler.csv, columns: {time: t, speed: v, course: c}}
+truth: {file: oxts/data, format: kitti_oxts, timestamps: oxts/times.txt}
+)");
+  REQUIRE(config.odometry.size() == 2);
+  CHECK(config.odometry[0].request.time_offset_s == -0.4);
+  CHECK(config.odometry[1].format == "candump");
+  CHECK(config.odometry[1].companions.at("dbc") == "tours/car.dbc");
+  CHECK(config.odometry[1].request.columns.at("gyro_x").column == "IMU.Rate");
+  CHECK(config.odometry[1].request.readings.size() == odometry_channels().size());
+  CHECK(config.assembly.rate_hz == 20);
+  CHECK(config.assembly.speed_from == "speed");
+  CHECK(config.assembly.yaw_rate_from == "gyro");
+  CHECK(config.assembly.gyro_axis == "-x");
+  CHECK(config.assembly.track_width_m == 1.5);
+  CHECK(config.assembly.wheelbase_m == 2.7);
+  CHECK(config.assembly.steering_ratio == 15);
+  CHECK(config.assembly.metres_per_tick == 0.02);
+  CHECK(config.assembly.tick_range == 65536);
+  CHECK(config.speed_delay_s == 0.4);
+  CHECK(config.yaw_rate_delay_s == -0.1);
+  CHECK(config.gnss[0].request.date->nanoseconds == 1'238'544'000'000'000'000);  // 2009-04-01T00:00:00Z
+  CHECK(config.gnss[0].request.range_error_m == 5);
+  CHECK(config.gnss[0].velocity->file == "tours/doppler.csv");
+  CHECK(config.gnss[0].velocity->request.readings.size() == velocity_channels().size());
+  CHECK(config.truth->companions.at("timestamps") == "tours/oxts/times.txt");
+}
+
+TEST_CASE("drive.yaml: what is wrong with parts, dates and signals is told with its place") {
+  const auto error_of_odometry = [](const std::string& more) {
+    try {
+      (void)parse("gnss: {file: g.csv}\nodometry:\n" + more);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  CHECK(error_of_odometry("  file: o.csv\n  parts: [{file: v.csv}]\n") ==
+        "tours/drive.yaml:3:9: odometry.file: give either 'file' or 'parts'");
+  CHECK(error_of_odometry("  parts: []\n") ==
+        "tours/drive.yaml:3:10: odometry.parts: at least one log is needed");
+  CHECK(error_of_odometry("  parts: [{fil: v.csv}]\n") ==
+        "tours/drive.yaml:3:12: unknown key 'fil' in odometry.parts; did you mean 'file'?");
+  CHECK(error_of_odometry("  file: o.csv\n  gyro: {axis: up}\n") ==
+        "tours/drive.yaml:4:16: odometry.gyro.axis: expected one of x, -x, y, -y, z, -z, gravity, got 'up'");
+  CHECK(error_of_odometry("  file: o.csv\n  rate: 0\n") ==
+        "tours/drive.yaml:4:9: odometry.rate: expected a rate in Hz from 0.001 to 1000, got '0'");
+  CHECK(error_of_odometry("  file: o.csv\n  speed_from: wheels\n") ==
+        "tours/drive.yaml:4:15: odometry.speed_from: expected one of speed, rear_wheels, front_wheels, "
+        "rear_ticks, "
+        "front_ticks, ticks, distance, got 'wheels'");
+  CHECK(error_of_odometry("  file: o.csv\n  columns: {wheel_speed_rear_lef: v}\n") ==
+        "tours/drive.yaml:4:13: unknown key 'wheel_speed_rear_lef' in columns; did you mean "
+        "'wheel_speed_rear_left'?");
+  CHECK(error_of_odometry("  file: o.nmea\n  format: nmea\n  columns: {speed: v}\n") ==
+        "tours/drive.yaml:5:12: odometry.columns: belongs to the formats csv and candump, not to nmea");
+  CHECK(error_of_gnss("  time: {date: 1.4.2009}\n") ==
+        "tours/drive.yaml:4:16: gnss.time.date: expected a date such as 2009-04-01, got '1.4.2009'");
 }
 
 TEST_CASE("drive.yaml: calibration is on, off, or stated state by state") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -20,6 +21,7 @@ constexpr double kLongestInterval = 5;  // s between fixes that are compared
 constexpr double kDopplerWindow = 0.2;  // s around the stamp of a Doppler speed
 constexpr double kLeastCorrelation = 0.25;
 constexpr std::size_t kLeastSamples = 30;
+constexpr double kAnyGap = std::numeric_limits<double>::infinity();
 constexpr double kOutlier = 4;  // median absolute deviations, scaled to a standard deviation
 
 /// What the GNSS says of a stretch of time.
@@ -34,11 +36,17 @@ struct Comparison {
   std::vector<Stretch> stretches;
 };
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 Stamp moved(Stamp stamp, double seconds) {
   return {stamp.nanoseconds + std::llround(seconds * 1e9)};
 }
 
-Stamp middle(Stamp a, Stamp b) {
+Stamp halfway(Stamp a, Stamp b) {
   return {a.nanoseconds + (b.nanoseconds - a.nanoseconds) / 2};
 }
 
@@ -106,8 +114,8 @@ Comparison gnss_turns(const std::vector<const Fix*>& fixes) {
     const Eigen::Vector2d first = fixes[i - 1]->position - fixes[i - 2]->position;
     const Eigen::Vector2d second = fixes[i]->position - fixes[i - 1]->position;
     if (std::min(first.norm(), second.norm()) < kShortestChord) continue;
-    add_turn(result, middle(fixes[i - 2]->stamp, fixes[i - 1]->stamp), std::atan2(first.y(), first.x()),
-             middle(fixes[i - 1]->stamp, fixes[i]->stamp), std::atan2(second.y(), second.x()));
+    add_turn(result, halfway(fixes[i - 2]->stamp, fixes[i - 1]->stamp), std::atan2(first.y(), first.x()),
+             halfway(fixes[i - 1]->stamp, fixes[i]->stamp), std::atan2(second.y(), second.x()));
   }
   return result;
 }
@@ -189,9 +197,7 @@ class Correlator {
     std::vector<double> lively;
     for (std::size_t i = by_motion.size() / 2; i < by_motion.size(); ++i)
       lively.push_back(by_motion[i].second);
-    const auto middle_one = lively.begin() + static_cast<std::ptrdiff_t>(lively.size() / 2);
-    std::nth_element(lively.begin(), middle_one, lively.end());
-    const double limit = kOutlier * 1.4826 * *middle_one;
+    const double limit = kOutlier * 1.4826 * median(std::move(lively));
     std::size_t index = 0;
     std::erase_if(stretches_, [&](const Stretch&) { return std::abs(left[index++]) > limit; });
   }
@@ -268,18 +274,28 @@ SyncReport estimate_clock_offsets(const PreparedDrive& drive, const SyncOptions&
           compare(series_of(drive.odometry, false, false), gnss_turns(fixes), largest)};
 }
 
+std::optional<ClockReport> clock_of(const DriveLogs::Log& log) {
+  if (log.data.clocks.empty()) return std::nullopt;
+  std::vector<double> ahead;
+  for (const ClockPair& pair : log.data.clocks) ahead.push_back(seconds_between(pair.told, pair.logged));
+  ClockReport clock{log.file, ahead.size(), median(ahead), 0};
+  for (double& value : ahead) value = std::abs(value - clock.ahead_s);
+  clock.spread_s = median(std::move(ahead));
+  return clock;
+}
+
 std::vector<OdometrySample> without_delays(const std::vector<OdometrySample>& odometry, double speed_delay_s,
                                            double yaw_rate_delay_s) {
+  const bool same_sense = speed_delay_s * yaw_rate_delay_s > 0;
+  const bool speed_less = std::abs(speed_delay_s) < std::abs(yaw_rate_delay_s);
+  const double common = same_sense ? (speed_less ? speed_delay_s : yaw_rate_delay_s) : 0;
   const TimeSeries speed = series_of(odometry, true, false);
   const TimeSeries yaw_rate = series_of(odometry, false, false);
-  const SeriesIntegral speed_lines(speed);
-  const SeriesIntegral yaw_rate_lines(yaw_rate);
-  std::vector<OdometrySample> result = odometry;
-  for (OdometrySample& sample : result) {
-    const Stamp s = moved(sample.stamp, speed_delay_s);
-    const Stamp w = moved(sample.stamp, yaw_rate_delay_s);
-    sample.speed_mps = speed_lines.mean(s, s);
-    sample.yaw_rate_radps = yaw_rate_lines.mean(w, w);
+  std::vector<OdometrySample> result;
+  for (const OdometrySample& sample : odometry) {
+    const auto v = value_at(speed, moved(sample.stamp, speed_delay_s - common), kAnyGap);
+    const auto w = value_at(yaw_rate, moved(sample.stamp, yaw_rate_delay_s - common), kAnyGap);
+    if (v && w) result.push_back({moved(sample.stamp, -common), *v, *w});
   }
   return result;
 }

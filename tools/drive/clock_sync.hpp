@@ -38,8 +38,11 @@ struct SyncOptions {
 /// do/dt)^2 with the residuals' variance s^2 and autocorrelation r, and the slope b.
 [[nodiscard]] SyncReport estimate_clock_offsets(const PreparedDrive& drive, const SyncOptions& options);
 
-/// Odometry with speed and yaw rate moved earlier by their delays, each on the other's lines between
-/// readings.
+/// What the messages of a log say of the clock that stamped them; empty where it holds no GNSS time.
+[[nodiscard]] std::optional<ClockReport> clock_of(const DriveLogs::Log& log);
+
+/// Odometry with speed and yaw rate moved earlier by their delays: all stamps by what both have in common,
+/// the rest on the lines between readings. Samples whose reading would lie beyond an end are dropped.
 [[nodiscard]] std::vector<OdometrySample> without_delays(const std::vector<OdometrySample>& odometry,
                                                          double speed_delay_s, double yaw_rate_delay_s);
 

@@ -141,25 +141,15 @@ void thin(std::vector<GeodeticFix>& fixes, std::int64_t period) {
   std::erase_if(fixes, [&](const GeodeticFix&) { return keep[index++] == 0; });
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Compares the stamps of a log with the GNSS time in its messages.
+/// Tells what a log's messages say of its stamps.
 void report_clock(const DriveLogs::Log& log, PrepareReport& report) {
-  if (log.data.clocks.empty()) return;
-  std::vector<double> ahead;
-  for (const ClockPair& pair : log.data.clocks) ahead.push_back(seconds_between(pair.told, pair.logged));
-  ClockReport clock{log.file, ahead.size(), median_of(ahead), 0};
-  for (double& value : ahead) value = std::abs(value - clock.ahead_s);
-  clock.spread_s = median_of(std::move(ahead));
-  report.clocks.push_back(clock);
+  const std::optional<ClockReport> clock = clock_of(log);
+  if (!clock) return;
+  report.clocks.push_back(*clock);
   report.notes.push_back(fmt::format(
-      "{}: its stamps are {:.3f} s ahead of the GNSS time in {} messages (median, deviations {:.3f} s); "
-      "'time: {{offset: ...}}' is added to them",
-      log.file, clock.ahead_s, clock.messages, clock.spread_s));
+      "{}: its stamps are {:.3f} s ahead of the GNSS time in {} messages (median, deviations {:.3f} s), "
+      "with the stated 'time: {{offset: ...}}' added",
+      log.file, clock->ahead_s, clock->messages, clock->spread_s));
 }
 
 void add_logged_velocity(const DriveLogs::Log& log, TimeScale scale, std::vector<GeodeticFix>& fixes,

@@ -165,11 +165,28 @@ std::string file_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
 
-/// Prepares the drive again with the odometry moved by the offsets that its motion shows.
-void synchronise(const DriveLogs& logs, LoadedDrive& loaded, const Console& console) {
-  console.progress("comparing clocks");
-  const SyncReport report = estimate_clock_offsets(loaded.drive, {});
+/// Puts fixes onto the GNSS time that their log tells of. @return what was done
+std::vector<std::string> put_on_told_time(DriveLogs& logs) {
   std::vector<std::string> notes;
+  for (DriveLogs::Log& log : logs.gnss) {
+    const std::optional<ClockReport> clock = clock_of(log);
+    if (!clock) continue;
+    const std::int64_t ahead = std::llround(clock->ahead_s * 1e9);
+    for (GeodeticFix& fix : log.data.fixes) fix.stamp.nanoseconds -= ahead;
+    for (ClockPair& pair : log.data.clocks) pair.logged.nanoseconds -= ahead;
+    notes.push_back(fmt::format("sync: {}: the stamps were {:.3f} s ahead of the GNSS time it tells; applied",
+                                log.file, clock->ahead_s));
+  }
+  return notes;
+}
+
+/// Prepares the drive again with the fixes on GNSS time, where their log tells it, and the odometry moved by
+/// the offsets that its motion shows.
+void synchronise(DriveLogs& logs, LoadedDrive& loaded, const Console& console) {
+  console.progress("comparing clocks");
+  std::vector<std::string> notes = put_on_told_time(logs);
+  if (!notes.empty()) loaded.drive = prepare_drive(logs, loaded.config);
+  const SyncReport report = estimate_clock_offsets(loaded.drive, {});
   const auto apply = [&](const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s) {
     if (!offset) {
       notes.push_back(fmt::format("sync: no offset of the {} was found; it stays as it is", quantity));
@@ -197,7 +214,7 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   check_calibration(loaded.config, loaded.modelings, registry);
   loaded.loss = loss_of_fixes(loaded.config, overrides.loss.has_value(), registry);
   resolve_sensors(loaded.config, registry);
-  const DriveLogs logs = read_drive_logs(loaded.config, registry, watch_reading(console));
+  DriveLogs logs = read_drive_logs(loaded.config, registry, watch_reading(console));
   loaded.drive = prepare_drive(logs, loaded.config);
   if (overrides.sync) synchronise(logs, loaded, console);
   if (!loaded.config.time_scale_stated) {

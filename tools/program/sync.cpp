@@ -86,8 +86,9 @@ ExitCode synchronise(const SyncCommand& command) {
   std::string text = table_of(report, config);
   for (const ClockReport& clock : drive.report.clocks)
     text += fmt::format(
-        "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; their usual "
-        "deviation is {:.3f} s)\n",
+        "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual deviation "
+        "{:.3f} s),\n"
+        "with the stated 'time: {{offset: ...}}' added. --sync takes that away.\n",
         clock.file, clock.ahead_s, clock.messages, clock.spread_s);
   console.result(text);
   return kSuccess;
