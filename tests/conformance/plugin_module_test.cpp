@@ -79,7 +79,7 @@ TEST_CASE("modules: another build is refused with the reason, before any of its 
       {"linked_fast_stripped", "was linked with -ffast-math or -Ofast",
        "link the plugin without these flags"},
       {"debug_stl", "_GLIBCXX_DEBUG differs (plugin 1, waymark 0)", "waymark_add_plugin()"},
-      {"other_abi", "plugin ABI number differs (plugin 1, waymark 2)", "build the plugin again"},
+      {"other_abi", "plugin ABI number differs (plugin 2, waymark 3)", "build the plugin again"},
       {"no_descriptor", "no symbol 'waymark_plugin'", "define it with WAYMARK_PLUGIN"},
   };
   for (const Case& wrong : cases) {

@@ -16,7 +16,7 @@ void check_readings(const SensorTable& readings, const LogConfig& log) {
   if (readings.size() > 0 && readings.columns == columns &&
       readings.values.size() == readings.size() * columns)
     return;
-  throw InputError(fmt::format("{}{}: format '{}' gives no readings of a sensor; use csv", log.place,
+  throw InputError(fmt::format("{}{}: format '{}' gives no readings of a sensor; csv and candump do", log.place,
                                log.file, log.format));
 }
 

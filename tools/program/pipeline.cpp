@@ -154,15 +154,15 @@ double distance_by(const std::vector<OdometrySample>& odometry) {
   return distance;
 }
 
-/// Of a log's content; compressed or not is the same.
+std::string file_name(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+/// Name and hash of a log's content; compressed or not is the same.
 std::string fingerprint(const std::string& path) {
   Fnv1a64 hash;
   (void)read_in_pieces(path, [&](std::string_view piece) { hash.add(piece); });
-  return hash.hex();
-}
-
-std::string file_name(const std::string& path) {
-  return path.substr(path.find_last_of('/') + 1);
+  return file_name(path) + " fnv1a64:" + hash.hex();
 }
 
 /// Puts fixes onto the GNSS time that their log tells of. @return what was done
@@ -222,7 +222,8 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   }
   tell(loaded.drive.report, console);
   for (const LogConfig* log : logs_of(loaded.config)) {
-    loaded.inputs.push_back(file_name(log->file) + " fnv1a64:" + fingerprint(log->file));
+    loaded.inputs.push_back(fingerprint(log->file));
+    for (const auto& [key, file] : log->companions) loaded.inputs.push_back(fingerprint(file));
   }
   console.end_progress();
   return loaded;
