@@ -14,9 +14,10 @@ void note_dates(const NmeaCounts& counts, const LogRequest& request, std::vector
     notes.push_back(
         fmt::format("{} fixes before the first date take the day from it", counts.dated_backwards));
   if (request.date && counts.fixes > 0)
-    notes.push_back(counts.log_has_date
-                        ? "the log gives its date itself; the stated one counts before the log's first only"
-                        : "the log gives no date, the stated one is that of its first fix");
+    notes.emplace_back(
+        counts.log_has_date
+            ? "the log gives its date itself; the stated one counts before the log's first only"
+            : "the log gives no date, the stated one is that of its first fix");
   if (counts.midnights > 0)
     notes.push_back(
         fmt::format("the time of day jumps back by more than 12 h {} times, which is taken for midnight",

@@ -255,9 +255,12 @@ TEST_CASE("gpsd: version and values tell the dialect") {
 
 TEST_CASE("gpsd: dead reckoning and simulation are noted, messages are counted by class") {
   const auto tpv = [](int second, int status) {
-    return R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:0)" + std::to_string(second) +
-           R"(Z","status":)" + std::to_string(status) +
-           R"(,"lat":1,"lon":2,"eph":3,"leapseconds":18,"ecefx":1})" + "\n";
+    std::string text = R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:0)";
+    text += std::to_string(second);
+    text += R"(Z","status":)";
+    text += std::to_string(status);
+    text += R"(,"lat":1,"lon":2,"eph":3,"leapseconds":18,"ecefx":1})";
+    return text + "\n";
   };
   const LogData data =
       read(tpv(1, 5) + tpv(2, 8) + tpv(3, 3) + "{\"class\":\"PPS\",\"x\":[1,{\"lat\":9}]}\n" +
