@@ -6,19 +6,23 @@
 
 namespace waymark {
 
-double sigma_factor(AccuracyMeaning meaning) {
+double variance_factor(AccuracyMeaning meaning) {
   switch (meaning) {
     case AccuracyMeaning::automatic:
     case AccuracyMeaning::one_sigma:
       return 1;
     case AccuracyMeaning::percent95:
-      return 0.5;
+      return 0.25;
     case AccuracyMeaning::drms:
-      return 1 / std::numbers::sqrt2;
+      return 0.5;
     case AccuracyMeaning::cep50:
-      return 1 / std::sqrt(2 * std::numbers::ln2);  // median of a Rayleigh distribution: sigma sqrt(2 ln 2)
+      return 1 / (2 * std::numbers::ln2);  // median of a Rayleigh distribution: sigma sqrt(2 ln 2)
   }
   return 1;
+}
+
+double sigma_factor(AccuracyMeaning meaning) {
+  return std::sqrt(variance_factor(meaning));
 }
 
 bool is_accuracy(double metres) {

@@ -8,7 +8,9 @@
 
 namespace waymark {
 
-/// sigma = factor * figure for an accuracy figure of this meaning; `automatic` must have been resolved.
+/// variance = factor * figure^2 for an accuracy figure of this meaning; `automatic` must have been resolved.
+[[nodiscard]] double variance_factor(AccuracyMeaning meaning);
+/// sigma = factor * figure, its root.
 [[nodiscard]] double sigma_factor(AccuracyMeaning meaning);
 /// Whether a figure can be an accuracy: from 10 micrometres to 10,000 km, the way to the pole. Zero, NaN and
 /// what a damaged log holds are none.

@@ -16,6 +16,7 @@
 #include <waymark/formats/logs/candump_tables.hpp>
 #include <waymark/formats/logs/dbc.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/quantity.hpp>
 
 namespace waymark {
@@ -254,10 +255,7 @@ void CandumpDecoder::refuse_silence() const {
 }  // namespace
 
 std::unique_ptr<LogDecoder> CandumpReader::open(const std::string& path, const LogRequest& request) const {
-  for (const auto& [name, file] : request.companions) {
-    if (name != "dbc")
-      throw InputError(fmt::format("{}: a candump log takes no '{}', only a 'dbc'", path, name));
-  }
+  require_companions(path, request, "a candump log", "dbc");
   const auto dbc = request.companions.find("dbc");
   if (dbc == request.companions.end())
     throw InputError(fmt::format("{}: a candump log needs its DBC: state 'dbc: FILE'", path));

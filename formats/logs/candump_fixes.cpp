@@ -4,9 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <waymark/core/error.hpp>
-#include <waymark/formats/logs/accuracy.hpp>
-
 namespace waymark {
 namespace {
 
@@ -29,9 +26,9 @@ FixAssembler::FixAssembler(const std::vector<Quantity>& quantities, const std::v
                            const LogRequest& request, const std::string& path, LogData& data)
     : quantities_(quantities),
       bound_(bound),
-      request_(request),
       path_(path),
       data_(data),
+      positions_(path, request, nullptr),
       latitude_(place_of("latitude")),
       longitude_(place_of("longitude")),
       height_(place_of("height")),
@@ -43,7 +40,12 @@ FixAssembler::FixAssembler(const std::vector<Quantity>& quantities, const std::v
       valid_(place_of("valid")),
       newest_(quantities.size()),
       nearest_(quantities.size()) {
-  if (request.stream == StreamKind::gnss) choose_accuracy();
+  if (request.stream != StreamKind::gnss) return;
+  const auto has = [&](std::string_view name) { return place_of(name) != kNowhere; };
+  accuracy_ = choose_accuracy(has, path, request, data.notes);
+  east_ = place_of(accuracy_.east);
+  north_ = place_of(accuracy_.north);
+  covariance_root_ = place_of(accuracy_.covariance_root);
 }
 
 std::size_t FixAssembler::place_of(std::string_view name) const {
@@ -51,29 +53,6 @@ std::size_t FixAssembler::place_of(std::string_view name) const {
     if (quantities_[bound.quantity].name == name) return bound.quantity;
   }
   return kNowhere;
-}
-
-void FixAssembler::choose_accuracy() {
-  AccuracyMeaning meaning = request_.accuracy;
-  const bool automatic = meaning == AccuracyMeaning::automatic;
-  const std::size_t radius = place_of("accuracy");
-  accuracy_ = {place_of("sigma_east"), place_of("sigma_north"), place_of("covariance_en_signed_root"), 1};
-  if (accuracy_.east != kNowhere && accuracy_.north != kNowhere) return;
-  accuracy_ = {place_of("accuracy_east"), place_of("accuracy_north"), kNowhere, 1};
-  if (accuracy_.east != kNowhere && accuracy_.north != kNowhere) {
-    if (automatic) meaning = AccuracyMeaning::percent95;
-  } else {
-    accuracy_ = {radius, radius, kNowhere, 1};
-    if (automatic) meaning = AccuracyMeaning::drms;
-    if (radius == kNowhere && !(request_.default_sigma_m > 0))
-      throw InputError(
-          fmt::format("{}: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or "
-                      "sigma_east and sigma_north, or state a default sigma in metres",
-                      path_));
-  }
-  accuracy_.factor = sigma_factor(meaning);
-  if (automatic && accuracy_.east != kNowhere)
-    data_.notes.push_back(fmt::format("{}: accuracy is taken as {} (not stated)", path_, to_string(meaning)));
 }
 
 void FixAssembler::take(Stamp stamp, std::size_t line, std::span<const SignalValue> values) {
@@ -148,19 +127,14 @@ void FixAssembler::close() {
     return complain(position_.line, fmt::format("{}: the signal is outside {:.6g} .. {:.6g} deg",
                                                 quantity.name, quantity.smallest, quantity.largest));
   }
-  if (request_.stream == StreamKind::truth) return add_truth();
-  add_fix();
+  add_position();
 }
 
-void FixAssembler::add_truth() {
-  ++data_.records;
-  data_.truth.push_back(
-      {position_.stamp, position_deg_[0], position_deg_[1], value(height_), optional_value(heading_)});
-}
-
-void FixAssembler::add_fix() {
+void FixAssembler::add_position() {
   GeodeticFix fix;
-  if (!covariance(fix.covariance_en)) return;
+  const StatedAccuracy accuracy =
+      table_accuracy(value(east_), value(north_), value(covariance_root_), accuracy_);
+  if (const char* what = positions_.set_covariance(fix, accuracy)) return complain(position_.line, what);
   ++data_.records;
   fix.stamp = position_.stamp;
   fix.latitude_deg = position_deg_[0];
@@ -170,32 +144,8 @@ void FixAssembler::add_fix() {
   fix.course_sigma_rad = optional_sigma(course_accuracy_);
   fix.speed_mps = optional_value(speed_);
   fix.speed_sigma_mps = optional_sigma(speed_accuracy_);
-  fix.source = request_.source;
   fix.line = position_.line;
-  data_.fixes.push_back(fix);
-}
-
-/// @return false after a complaint
-bool FixAssembler::covariance(Eigen::Matrix2d& result) {
-  const double east = accuracy_.factor * value(accuracy_.east);
-  const double north = accuracy_.factor * value(accuracy_.north);
-  if (!(east > 0 && north > 0)) {
-    if (!(request_.default_sigma_m > 0)) {
-      complain(position_.line, "no accuracy, and no default sigma is stated");
-      return false;
-    }
-    ++defaulted_;
-    result = request_.default_sigma_m * request_.default_sigma_m * Eigen::Matrix2d::Identity();
-    return true;
-  }
-  const double root = value(accuracy_.covariance_root);
-  const double off_diagonal = std::isnan(root) ? 0 : root * std::abs(root);
-  if (std::abs(off_diagonal) >= east * north) {
-    complain(position_.line, "covariance_en_signed_root: the covariance is not positive definite");
-    return false;
-  }
-  result << east * east, off_diagonal, off_diagonal, north * north;
-  return true;
+  positions_.give(data_, fix, optional_value(heading_));
 }
 
 double FixAssembler::value(std::size_t place) const {
@@ -217,13 +167,7 @@ void FixAssembler::finish() {
   if (latitude_part_.there) complain(latitude_part_.line, "latitude without a longitude within 0.1 s");
   if (longitude_part_.there) complain(longitude_part_.line, "longitude without a latitude within 0.1 s");
   latitude_part_.there = longitude_part_.there = false;
-  if (defaulted_ > 0)
-    data_.notes.push_back(
-        fmt::format("{}: {} fixes give no accuracy, the stated default sigma of {} m is used", path_,
-                    defaulted_, request_.default_sigma_m));
-  if (data_.without_fix > 0)
-    data_.notes.push_back(fmt::format("{}: {} of {} records are marked as without a fix", path_,
-                                      data_.without_fix, data_.records));
+  positions_.finish(data_);
 }
 
 }  // namespace waymark

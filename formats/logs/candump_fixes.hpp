@@ -11,7 +11,9 @@
 
 #include <waymark/core/log_reader.hpp>
 #include <waymark/formats/logs/candump_signals.hpp>
+#include <waymark/formats/logs/position_stream.hpp>
 #include <waymark/formats/logs/quantity.hpp>
+#include <waymark/formats/logs/table_accuracy.hpp>
 
 namespace waymark {
 
@@ -49,33 +51,26 @@ class FixAssembler {
     std::size_t line = 0;
     bool there = false;
   };
-  struct AccuracyRule {
-    std::size_t east = kNowhere, north = kNowhere, covariance_root = kNowhere;
-    double factor = 1;
-  };
 
   [[nodiscard]] std::size_t place_of(std::string_view name) const;
-  void choose_accuracy();
   void take_part(Given& part, const Given& given, std::string_view name, std::string_view other);
   void complain(std::size_t line, const std::string& what);
   void open();
   void close();
-  void add_fix();
-  void add_truth();
-  [[nodiscard]] bool covariance(Eigen::Matrix2d& result);
+  void add_position();
   [[nodiscard]] double value(std::size_t place) const;
   [[nodiscard]] std::optional<double> optional_value(std::size_t place) const;
   [[nodiscard]] std::optional<double> optional_sigma(std::size_t place) const;
 
   const std::vector<Quantity>& quantities_;
   const std::vector<BoundSignal>& bound_;
-  const LogRequest& request_;
   const std::string& path_;
   LogData& data_;
+  PositionStream positions_;
   std::size_t latitude_, longitude_, height_, heading_, course_, course_accuracy_, speed_, speed_accuracy_,
       valid_;
-  AccuracyRule accuracy_;
-  std::size_t defaulted_ = 0;
+  AccuracyQuantities accuracy_;
+  std::size_t east_ = kNowhere, north_ = kNowhere, covariance_root_ = kNowhere;
 
   Given latitude_part_, longitude_part_;  ///< that wait for the other
   std::vector<Given> newest_;             ///< by quantity

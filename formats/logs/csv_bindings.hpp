@@ -15,12 +15,6 @@ struct Bindings {
         longitude(columns.find("longitude")),
         height(columns.find("height")),
         heading(columns.find("heading")),
-        accuracy(columns.find("accuracy")),
-        accuracy_east(columns.find("accuracy_east")),
-        accuracy_north(columns.find("accuracy_north")),
-        sigma_east(columns.find("sigma_east")),
-        sigma_north(columns.find("sigma_north")),
-        covariance_root(columns.find("covariance_en_signed_root")),
         course(columns.find("course")),
         course_accuracy(columns.find("course_accuracy")),
         speed_accuracy(columns.find("speed_accuracy")),
@@ -28,7 +22,6 @@ struct Bindings {
         valid(columns.find("valid")) {}
 
   const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *height, *heading;
-  const BoundColumn *accuracy, *accuracy_east, *accuracy_north, *sigma_east, *sigma_north, *covariance_root;
   const BoundColumn *course, *course_accuracy, *speed_accuracy, *gnss_time, *valid;
 };
 

@@ -13,11 +13,13 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/iso8601.hpp>
-#include <waymark/formats/logs/accuracy.hpp>
 #include <waymark/formats/logs/csv_bindings.hpp>
 #include <waymark/formats/logs/csv_columns.hpp>
 #include <waymark/formats/logs/csv_table.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/log_request.hpp>
+#include <waymark/formats/logs/position_stream.hpp>
+#include <waymark/formats/logs/table_accuracy.hpp>
 #include <waymark/formats/stamp_text.hpp>
 
 namespace waymark {
@@ -38,14 +40,6 @@ struct Complaint {
   std::string what;
 };
 
-/// How the accuracy figures of this table become sigmas.
-struct AccuracyRule {
-  const BoundColumn* east = nullptr;  ///< null: the table gives none
-  const BoundColumn* north = nullptr;
-  const BoundColumn* covariance_root = nullptr;
-  double factor = 1;
-};
-
 /// Reads the table line by line.
 class TableReader {
  public:
@@ -54,9 +48,16 @@ class TableReader {
         field_count_(columns.field_count()),
         path_(path),
         request_(std::move(request)),
-        data_(data) {
+        data_(data),
+        positions_(path, request_, nullptr) {
     offset_ = request_.gps_week * kNanosecondsPerWeek + std::llround(request_.time_offset_s * 1e9);
-    if (request_.stream == StreamKind::gnss && request_.readings.empty()) choose_accuracy();
+    if (request_.stream == StreamKind::gnss && request_.readings.empty()) {
+      const auto has = [&](std::string_view name) { return columns.find(name) != nullptr; };
+      accuracy_ = choose_accuracy(has, path, request_, data.notes);
+      accuracy_east_ = columns.find(accuracy_.east);
+      accuracy_north_ = columns.find(accuracy_.north);
+      covariance_root_ = columns.find(accuracy_.covariance_root);
+    }
     for (const SensorColumn& column : request_.readings) readings_.push_back(columns.find(column.name));
     data.readings.columns = request_.readings.size();
   }
@@ -70,18 +71,9 @@ class TableReader {
     if (complaint_.column != 0) add_corrupt(data_, path_, number_, complaint_.column, complaint_.what);
   }
 
-  void finish() {
-    if (data_.without_fix > 0)
-      data_.notes.push_back(fmt::format("{}: {} of {} records are marked as without a fix", path_,
-                                        data_.without_fix, data_.records));
-    if (defaulted_ > 0)
-      data_.notes.push_back(
-          fmt::format("{}: {} fixes give no accuracy, the stated default sigma of {} m is used", path_,
-                      defaulted_, request_.default_sigma_m));
-  }
+  void finish() { positions_.finish(data_); }
 
  private:
-  void choose_accuracy();
   bool check_fields();
   void read_sample();
   void read_readings(Stamp at);
@@ -91,7 +83,7 @@ class TableReader {
   [[nodiscard]] std::optional<double> optional_number(const BoundColumn* column);
   [[nodiscard]] std::optional<double> optional_sigma(const BoundColumn* column);
   [[nodiscard]] bool has_fix();
-  [[nodiscard]] Eigen::Matrix2d covariance();
+  void set_covariance(GeodeticFix& fix);
   void complain(const BoundColumn& column, std::string what);
 
   Bindings bound_;
@@ -100,9 +92,10 @@ class TableReader {
   const std::string& path_;
   const LogRequest request_;
   LogData& data_;
-  AccuracyRule accuracy_;
+  PositionStream positions_;
+  AccuracyQuantities accuracy_;
+  const BoundColumn *accuracy_east_ = nullptr, *accuracy_north_ = nullptr, *covariance_root_ = nullptr;
   std::int64_t offset_ = 0;
-  std::size_t defaulted_ = 0;
 
   std::string_view line_;
   std::size_t number_ = 0;
@@ -110,29 +103,6 @@ class TableReader {
   std::vector<double> row_;
   Complaint complaint_;
 };
-
-void TableReader::choose_accuracy() {
-  AccuracyMeaning meaning = request_.accuracy;
-  const bool automatic = meaning == AccuracyMeaning::automatic;
-  if (bound_.sigma_east != nullptr && bound_.sigma_north != nullptr) {
-    accuracy_ = {bound_.sigma_east, bound_.sigma_north, bound_.covariance_root, 1};
-    return;
-  }
-  if (bound_.accuracy_east != nullptr && bound_.accuracy_north != nullptr) {
-    if (automatic) meaning = AccuracyMeaning::percent95;
-    accuracy_ = {bound_.accuracy_east, bound_.accuracy_north, nullptr, sigma_factor(meaning)};
-  } else if (bound_.accuracy != nullptr) {
-    if (automatic) meaning = AccuracyMeaning::drms;
-    accuracy_ = {bound_.accuracy, bound_.accuracy, nullptr, sigma_factor(meaning)};
-  } else if (!(request_.default_sigma_m > 0)) {
-    throw InputError(
-        fmt::format("{}: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or "
-                    "sigma_east and sigma_north, or state a default sigma in metres",
-                    path_));
-  }
-  if (automatic && accuracy_.east != nullptr)
-    data_.notes.push_back(fmt::format("{}: accuracy is taken as {} (not stated)", path_, to_string(meaning)));
-}
 
 bool TableReader::check_fields() {
   if (!split_fields(line_, request_.separator, fields_)) {
@@ -170,16 +140,15 @@ void TableReader::read_sample() {
   fix.latitude_deg = latitude;
   fix.longitude_deg = longitude;
   fix.height_m = height;
-  fix.covariance_en = covariance();
+  set_covariance(fix);
   fix.course_rad = optional_number(bound_.course);
   fix.course_sigma_rad = optional_sigma(bound_.course_accuracy);
   fix.speed_mps = optional_number(bound_.speed);
   fix.speed_sigma_mps = optional_sigma(bound_.speed_accuracy);
-  fix.source = request_.source;
   fix.line = number_;
   const std::optional<Stamp> told = bound_.gnss_time ? instant(*bound_.gnss_time) : std::nullopt;
   if (complaint_.column != 0) return;
-  data_.fixes.push_back(fix);
+  positions_.give(data_, fix);
   if (told) data_.clocks.push_back({*at, *told});
 }
 
@@ -281,25 +250,15 @@ bool TableReader::has_fix() {
   return fix;
 }
 
-Eigen::Matrix2d TableReader::covariance() {
-  const double east = accuracy_.factor * number(accuracy_.east, false);
-  const double north = accuracy_.factor * number(accuracy_.north, false);
-  if (!(east > 0 && north > 0)) {
-    if (complaint_.column != 0) return Eigen::Matrix2d::Identity();
-    if (request_.default_sigma_m > 0) {
-      ++defaulted_;
-    } else {
-      complain(*(east > 0 ? accuracy_.north : accuracy_.east), "no accuracy, and no default sigma is stated");
-    }
-    return request_.default_sigma_m * request_.default_sigma_m * Eigen::Matrix2d::Identity();
-  }
-  const double root = number(accuracy_.covariance_root, false);
-  const double off_diagonal = std::isnan(root) ? 0 : root * std::abs(root);
-  if (std::abs(off_diagonal) >= east * north)
-    complain(*accuracy_.covariance_root, "the covariance is not positive definite");
-  Eigen::Matrix2d result;
-  result << east * east, off_diagonal, off_diagonal, north * north;
-  return result;
+void TableReader::set_covariance(GeodeticFix& fix) {
+  const double east = number(accuracy_east_, false);
+  const double north = accuracy_north_ == accuracy_east_ ? east : number(accuracy_north_, false);
+  const double root = number(covariance_root_, false);
+  if (complaint_.column != 0) return;
+  const char* what = positions_.set_covariance(fix, table_accuracy(east, north, root, accuracy_));
+  if (what == nullptr) return;
+  const bool root_is_wrong = east > 0 && north > 0 && covariance_root_ != nullptr;
+  complain(*(root_is_wrong ? covariance_root_ : east > 0 ? accuracy_north_ : accuracy_east_), what);
 }
 
 void TableReader::complain(const BoundColumn& column, std::string what) {
@@ -352,8 +311,7 @@ class CsvDecoder final : public LineDecoder {
 }  // namespace
 
 std::unique_ptr<LogDecoder> CsvLogReader::open(const std::string& path, const LogRequest& request) const {
-  for (const auto& [key, file] : request.companions)
-    throw InputError(fmt::format("{}: a table takes no '{}' ({})", path, key, file.path));
+  require_companions(path, request, "a table");
   return std::make_unique<CsvDecoder>(path, request);
 }
 

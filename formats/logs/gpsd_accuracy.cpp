@@ -32,20 +32,16 @@ constexpr Release kDilutionSince{3, 19};
 
 }  // namespace
 
-Eigen::Matrix2d GpsdAccuracy::covariance(const GpsdReport& report, const GpsdReport* gst,
-                                         const LogRequest& request) {
-  const AccuracyMeaning stated = request.accuracy;
-  const bool automatic = stated == AccuracyMeaning::automatic;
+StatedAccuracy GpsdAccuracy::of(const GpsdReport& report, const GpsdReport* gst, AccuracyMeaning stated) {
   const bool radial_first = stated == AccuracyMeaning::drms || stated == AccuracyMeaning::cep50;
-  if (automatic && gst != nullptr) {
-    if (const std::optional<Eigen::Matrix2d> measured = covariance_from_gst(*gst)) return *measured;
+  if (stated == AccuracyMeaning::automatic && gst != nullptr) {
+    if (const auto measured = covariance_from_gst(*gst)) return {measured, std::nullopt};
   }
   const double east = report.number(GpsdNumber::epx).value_or(0);
   const double north = report.number(GpsdNumber::epy).value_or(0);
   const double radial = report.number(GpsdNumber::eph).value_or(0);
   const bool per_axis = is_accuracy(east) && is_accuracy(north);
 
-  Eigen::Vector2d sigma;
   if (per_axis && !(radial_first && is_accuracy(radial))) {
     ++per_axis_;
     if (east == north) ++per_axis_equal_;
@@ -54,17 +50,12 @@ Eigen::Matrix2d GpsdAccuracy::covariance(const GpsdReport& report, const GpsdRep
       ++per_axis_with_radial_;
       radial_sum_m_ += radial;
     }
-    sigma = sigma_factor(automatic ? AccuracyMeaning::percent95 : stated) * Eigen::Vector2d(east, north);
-  } else if (is_accuracy(radial)) {
-    ++radial_;
-    sigma.setConstant(sigma_factor(automatic ? AccuracyMeaning::drms : stated) * radial);
-  } else if (request.default_sigma_m > 0) {
-    ++defaulted_;
-    sigma.setConstant(request.default_sigma_m);
-  } else {
-    throw BadGpsdMember{"TPV: neither epx and epy nor eph, and no default sigma is stated"};
+    return {Eigen::Vector2d(east * east, north * north).asDiagonal().toDenseMatrix(),
+            AccuracyMeaning::percent95};
   }
-  return sigma.cwiseAbs2().asDiagonal();
+  if (!is_accuracy(radial)) return {};
+  ++radial_;
+  return {radial * radial * Eigen::Matrix2d::Identity(), AccuracyMeaning::drms};
 }
 
 std::optional<Eigen::Matrix2d> GpsdAccuracy::covariance_from_gst(const GpsdReport& gst) {
@@ -85,10 +76,10 @@ std::optional<Eigen::Matrix2d> GpsdAccuracy::covariance_from_gst(const GpsdRepor
   return (Eigen::Matrix2d() << east * east, common, common, north * north).finished();
 }
 
-std::vector<std::string> GpsdAccuracy::notes(const std::string& release, const LogRequest& request) const {
+std::vector<std::string> GpsdAccuracy::notes(const std::string& release, AccuracyMeaning meaning) const {
   std::vector<std::string> notes;
-  const bool automatic = request.accuracy == AccuracyMeaning::automatic;
-  const std::string stated(to_string(request.accuracy));
+  const bool automatic = meaning == AccuracyMeaning::automatic;
+  const std::string stated(to_string(meaning));
   if (from_gst_ > 0)
     notes.push_back(
         fmt::format("{} fixes with a GST object, whose errors are 1 sigma; {} of them with the correlation "
@@ -105,9 +96,6 @@ std::vector<std::string> GpsdAccuracy::notes(const std::string& release, const L
   if (radial_ > 0)
     notes.push_back(
         fmt::format("{} fixes with eph read as {}", radial_, automatic ? "drms (not stated)" : stated));
-  if (defaulted_ > 0)
-    notes.push_back(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used",
-                                defaulted_, request.default_sigma_m));
   return notes;
 }
 

@@ -10,18 +10,19 @@
 
 #include <waymark/core/log_reader.hpp>
 #include <waymark/formats/logs/gpsd_report.hpp>
+#include <waymark/formats/logs/position_stream.hpp>
 
 namespace waymark {
 
-/// Makes covariances of epx, epy, eph and of GST objects, and tells in the end what it took them for.
+/// Chooses between epx and epy, eph, and the GST object, and tells in the end what it took them for.
 class GpsdAccuracy {
  public:
-  /// @param gst  the GST object of the same time and device, or null
-  /// @throws BadGpsdMember where there is no figure and no default sigma
-  [[nodiscard]] Eigen::Matrix2d covariance(const GpsdReport& report, const GpsdReport* gst,
-                                           const LogRequest& request);
+  /// @param gst     the GST object of the same time and device, or null
+  /// @param stated  what the request says the figures mean
+  [[nodiscard]] StatedAccuracy of(const GpsdReport& report, const GpsdReport* gst, AccuracyMeaning stated);
   /// @param release  of gpsd, from its VERSION object; empty: the log has none
-  [[nodiscard]] std::vector<std::string> notes(const std::string& release, const LogRequest& request) const;
+  /// @param meaning  as stated
+  [[nodiscard]] std::vector<std::string> notes(const std::string& release, AccuracyMeaning meaning) const;
 
  private:
   [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_from_gst(const GpsdReport& gst);
@@ -33,7 +34,6 @@ class GpsdAccuracy {
   std::size_t per_axis_equal_ = 0;
   std::size_t per_axis_with_radial_ = 0;
   std::size_t radial_ = 0;
-  std::size_t defaulted_ = 0;
   double per_axis_sum_m_ = 0;  ///< of (epx + epy) / 2
   double radial_sum_m_ = 0;    ///< of eph beside them
 };

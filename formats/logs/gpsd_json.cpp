@@ -15,7 +15,9 @@
 #include <waymark/formats/logs/gpsd_report.hpp>
 #include <waymark/formats/logs/kind_tally.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/nmea_sentence.hpp>
+#include <waymark/formats/logs/position_stream.hpp>
 
 namespace waymark {
 namespace {
@@ -58,7 +60,7 @@ struct Counts {
 class GpsdDecoder final : public LineDecoder {
  public:
   GpsdDecoder(const std::string& path, const LogRequest& request)
-      : LineDecoder(path, request), offset_ns_(std::llround(request.time_offset_s * 1e9)) {}
+      : LineDecoder(path, request), positions_(path, request, nullptr) {}
 
  private:
   void take_line(std::string_view line, std::size_t number) override;
@@ -70,7 +72,7 @@ class GpsdDecoder final : public LineDecoder {
   [[nodiscard]] const GpsdReport* gst_of(const GpsdReport& report) const;
   void add_notes();
 
-  std::int64_t offset_ns_;
+  PositionStream positions_;
   KindTally tally_;
   Counts counts_;
   GpsdAccuracy accuracy_;
@@ -149,34 +151,29 @@ void GpsdDecoder::end_epoch() {
 }
 
 void GpsdDecoder::add_sample(const GpsdReport& report, Stamp utc) {
-  Stamp stamp = convert(utc, TimeScale::utc, request().time_scale);
-  stamp.nanoseconds += offset_ns_;
+  const std::optional<Stamp> stamp = positions_.stamp(utc, TimeScale::utc);
+  if (!stamp) throw BadGpsdMember{"TPV: its time is too large for a stamp"};
   const double latitude = required(report, GpsdNumber::lat, "lat", 90);
   const double longitude = required(report, GpsdNumber::lon, "lon", 180);
   std::optional<double> height = report.number(GpsdNumber::alt_hae);
   const bool above_sea_level = !height;
   if (!height) height = report.number(GpsdNumber::alt);
   if (above_sea_level && height) ++counts_.above_sea_level;
-  const double height_m = height.value_or(std::numeric_limits<double>::quiet_NaN());
-  if (request().stream == StreamKind::truth) {
-    count_status(report);
-    data_.truth.push_back({stamp, latitude, longitude, height_m, std::nullopt});
-    return;
-  }
   GeodeticFix fix;
-  fix.stamp = stamp;
+  fix.stamp = *stamp;
   fix.latitude_deg = latitude;
   fix.longitude_deg = longitude;
-  fix.height_m = height_m;
+  if (height) fix.height_m = *height;
   fix.course_rad = scaled(report.number(GpsdNumber::track), kDegree);
   fix.course_sigma_rad = scaled_if_positive(report.number(GpsdNumber::epd), kDegree / 2);
   fix.speed_mps = report.number(GpsdNumber::speed);
   fix.speed_sigma_mps = scaled_if_positive(report.number(GpsdNumber::eps), 0.5);
-  fix.source = request().source;
   fix.line = epoch_line_;
-  fix.covariance_en = accuracy_.covariance(report, gst_of(report), request());
+  StatedAccuracy accuracy;
+  if (!positions_.wants_truth()) accuracy = accuracy_.of(report, gst_of(report), request().accuracy);
+  if (const char* complaint = positions_.add(data_, fix, accuracy))
+    throw BadGpsdMember{fmt::format("TPV: {}", complaint)};
   count_status(report);
-  data_.fixes.push_back(fix);
 }
 
 void GpsdDecoder::count_status(const GpsdReport& report) {
@@ -197,18 +194,16 @@ const GpsdReport* GpsdDecoder::gst_of(const GpsdReport& report) const {
 void GpsdDecoder::end() {
   if (empty_) throw InputError(fmt::format("{}: the log is empty", path()));
   end_epoch();
-  tally_.write(data_.kinds);
+  data_.kinds = tally_.counts();
   add_notes();
 }
 
 void GpsdDecoder::add_notes() {
-  for (const std::string& text : accuracy_.notes(release_, request())) note(text);
+  for (const std::string& text : accuracy_.notes(release_, request().accuracy)) note(text);
   if (counts_.above_sea_level > 0)
     note(fmt::format("{} heights are above mean sea level (no altHAE)", counts_.above_sea_level));
   if (counts_.not_json > 0)
     note(fmt::format("{} lines that are no JSON objects were skipped", counts_.not_json));
-  if (data_.without_fix > 0)
-    note(fmt::format("{} of {} records are marked as without a fix", data_.without_fix, data_.records));
   if (counts_.without_time > 0)
     note(fmt::format("{} fixes without a time were skipped", counts_.without_time));
   if (counts_.dead_reckoning > 0)
@@ -217,19 +212,13 @@ void GpsdDecoder::add_notes() {
   if (counts_.other_devices > 0)
     note(fmt::format("{} reports of other devices than '{}' were skipped", counts_.other_devices,
                      shortened(device_)));
+  positions_.finish(data_);
 }
 
 }  // namespace
 
 std::unique_ptr<LogDecoder> GpsdJsonReader::open(const std::string& path, const LogRequest& request) const {
-  if (request.stream == StreamKind::odometry)
-    throw InputError(fmt::format("{}: a gpsd log holds no odometry", path));
-  if (request.stream == StreamKind::sensor)
-    throw InputError(fmt::format("{}: a gpsd log holds no sensor readings", path));
-  if (!request.columns.empty()) throw InputError(fmt::format("{}: a gpsd log has no columns to map", path));
-  if (!request.companions.empty())
-    throw InputError(fmt::format("{}: a gpsd log is read without companion files such as {} '{}'", path,
-                                 request.companions.begin()->first, request.companions.begin()->second.path));
+  require_positions(path, request, "a gpsd log");
   return std::make_unique<GpsdDecoder>(path, request);
 }
 

@@ -11,6 +11,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/iso8601.hpp>
 #include <waymark/formats/line_scanner.hpp>
+#include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/position_stream.hpp>
 #include <waymark/formats/logs/record_fields.hpp>
 #include <waymark/formats/logs/xml_stream.hpp>
@@ -63,7 +64,7 @@ struct Point {
 class GpxDecoder final : public LogDecoder, private XmlStream {
  public:
   GpxDecoder(std::string path, const LogRequest& request)
-      : path_(std::move(path)), positions_(path_, request) {}
+      : path_(std::move(path)), positions_(path_, request, nullptr) {}
   void take(std::string_view piece) override { XmlStream::take(piece); }
   void finish() override;
 
@@ -185,7 +186,7 @@ void GpxDecoder::add_point() {
   fix.speed_mps = speed;
   if (course) fix.course_rad = *course * std::numbers::pi / 180;
   fix.line = point_.line;
-  const char* complaint = positions_.add(data_, fix, {std::nullopt, hdop.value_or(0)});
+  const char* complaint = positions_.add(data_, fix, {.hdop = hdop.value_or(0)});
   if (complaint != nullptr) return complain(complaint);
   any_height_ = any_height_ || (elevation && !geoid_height);
 }

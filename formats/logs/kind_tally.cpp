@@ -7,9 +7,11 @@ namespace waymark {
 
 void KindTally::add(std::string_view name) {
   constexpr std::size_t kMostKinds = 128;  // half of the table: a search ends soon
-  std::uint64_t key = 0;
-  std::memcpy(&key, name.data(), std::min(name.size(), sizeof key));
-  std::size_t place = (key * 0x9E3779B97F4A7C15U) >> 56U;  // the top byte of a multiplicative hash
+  Key key{};
+  name.copy(reinterpret_cast<char*>(key.data()), sizeof key);
+  // The top byte of a multiplicative hash; an odd factor for each word keeps their order.
+  std::size_t place =
+      (key[0] * 0x9E3779B97F4A7C15U + key[1] * 0xC2B2AE3D27D4EB4FU + key[2] * 0x165667B19E3779F9U) >> 56U;
   while (entries_[place].count > 0 && entries_[place].key != key) place = (place + 1) % entries_.size();
   Entry& entry = entries_[place];
   if (entry.count == 0) {
@@ -23,14 +25,16 @@ void KindTally::add(std::string_view name) {
   ++entry.count;
 }
 
-void KindTally::write(std::map<std::string, std::size_t>& kinds) const {
+std::map<std::string, std::size_t> KindTally::counts() const {
+  std::map<std::string, std::size_t> result;
   for (const Entry& entry : entries_) {
     if (entry.count == 0) continue;
     std::array<char, sizeof entry.key> letters{};
-    std::memcpy(letters.data(), &entry.key, letters.size());
-    kinds[std::string(letters.begin(), std::find(letters.begin(), letters.end(), '\0'))] += entry.count;
+    std::memcpy(letters.data(), entry.key.data(), letters.size());
+    result[std::string(letters.begin(), std::find(letters.begin(), letters.end(), '\0'))] += entry.count;
   }
-  if (others_ > 0) kinds["others"] += others_;
+  if (others_ > 0) result["others"] += others_;
+  return result;
 }
 
 }  // namespace waymark

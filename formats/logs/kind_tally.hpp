@@ -1,4 +1,4 @@
-/// Counts messages by kind where they come by the million.
+/// How many messages of each kind a log holds, counted where they come by the million.
 #pragma once
 
 #include <array>
@@ -10,17 +10,20 @@
 
 namespace waymark {
 
-/// Counts names of at most eight characters (of longer ones the first eight) in a small table: neither a map
-/// nor an allocation in the hot path, and no growth with a hostile log: beyond 128 names they are "others".
+/// Counts names in a small table: neither a map nor an allocation in the hot path. Names are told apart by
+/// their first 24 characters, which are more than NMEA, gpsd and NovAtel need. A log of garbage has endless
+/// names: beyond the first 128 they count as "others".
 class KindTally {
  public:
   void add(std::string_view name);
-  /// Adds the counts to LogData::kinds.
-  void write(std::map<std::string, std::size_t>& kinds) const;
+  /// As LogData::kinds has them.
+  [[nodiscard]] std::map<std::string, std::size_t> counts() const;
 
  private:
+  static constexpr std::size_t kWords = 3;
+  using Key = std::array<std::uint64_t, kWords>;  ///< the name's characters, then zeros
   struct Entry {
-    std::uint64_t key = 0;
+    Key key{};
     std::size_t count = 0;
   };
   std::array<Entry, 256> entries_{};

@@ -11,6 +11,7 @@
 #include <waymark/formats/iso8601.hpp>
 #include <waymark/formats/line_scanner.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/position_stream.hpp>
 #include <waymark/formats/logs/record_fields.hpp>
 
@@ -60,17 +61,10 @@ std::vector<Stamp> read_stamps(const CompanionFile& file) {
 }
 
 const CompanionFile& stamps_file(const std::string& path, const LogRequest& request) {
-  if (request.stream == StreamKind::sensor)
-    throw InputError(
-        fmt::format("{}: a KITTI oxts log gives no sensor readings; it gives the streams odometry, gnss "
-                    "and truth",
-                    path));
-  if (!request.columns.empty())
-    throw InputError(fmt::format("{}: a KITTI oxts log has no columns to map; leave out 'columns'", path));
-  for (const auto& [name, file] : request.companions) {
-    if (name != "timestamps")
-      throw InputError(fmt::format("{}: a KITTI oxts log takes no '{}' file; leave it out", path, name));
-  }
+  constexpr const char* kFormat = "a KITTI oxts log";
+  require_streams(path, request, kFormat, {StreamKind::odometry, StreamKind::gnss, StreamKind::truth});
+  require_no_columns(path, request, kFormat);
+  require_companions(path, request, kFormat, "timestamps");
   const auto file = request.companions.find("timestamps");
   if (file == request.companions.end())
     throw InputError(fmt::format(
@@ -84,7 +78,7 @@ class OxtsDecoder final : public LineDecoder {
       : LineDecoder(path, request),
         stamps_path_(stamps_file(path, request).path),
         stamps_(read_stamps(stamps_file(path, request))),
-        positions_(path, request) {}
+        positions_(path, request, "pos_accuracy") {}
 
  private:
   void take_line(std::string_view line, std::size_t number) override;
@@ -151,7 +145,7 @@ void OxtsDecoder::take_position(GeodeticFix fix) {
     yaw = number(kYaw);
   } else {
     const double sigma = number(kPositionAccuracy);
-    if (sigma > 0) accuracy.covariance_en = sigma * sigma * Eigen::Matrix2d::Identity();
+    if (sigma > 0) accuracy.squares_en = sigma * sigma * Eigen::Matrix2d::Identity();
     const Eigen::Vector2d velocity(number(kEastVelocity), number(kNorthVelocity));
     const double velocity_sigma = number(kVelocityAccuracy);
     const Eigen::Matrix2d covariance = velocity_sigma * velocity_sigma * Eigen::Matrix2d::Identity();

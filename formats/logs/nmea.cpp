@@ -10,12 +10,13 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/logs/accuracy.hpp>
 #include <waymark/formats/logs/kind_tally.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/nmea_epoch.hpp>
 #include <waymark/formats/logs/nmea_notes.hpp>
 #include <waymark/formats/logs/nmea_sentence.hpp>
+#include <waymark/formats/logs/position_stream.hpp>
 
 namespace waymark {
 namespace {
@@ -26,10 +27,10 @@ constexpr std::size_t kMostUndated = 4096;  ///< fixes that wait for the first d
 
 class NmeaDecoder final : public LineDecoder {
  public:
-  NmeaDecoder(const std::string& path, const LogRequest& request) : LineDecoder(path, request) {
+  NmeaDecoder(const std::string& path, const LogRequest& request)
+      : LineDecoder(path, request), positions_(path, request, nullptr) {
     if (request.date) day_ = request.date->nanoseconds / kDayNanoseconds;
     dated_ = request.date.has_value();
-    offset_ns_ = std::llround(request.time_offset_s * 1e9);
   }
 
  private:
@@ -43,11 +44,12 @@ class NmeaDecoder final : public LineDecoder {
   [[nodiscard]] bool rests_on_no_satellite(const NmeaEpoch& epoch);
   void count_days(const NmeaEpoch& epoch);
   void add_fix(const NmeaEpoch& epoch);
-  [[nodiscard]] std::optional<Eigen::Matrix2d> covariance(const NmeaEpoch& epoch);
+  [[nodiscard]] StatedAccuracy accuracy(const NmeaEpoch& epoch);
   void give(GeodeticFix fix);
   void release_undated();
   [[noreturn]] void fail_undated() const;
 
+  PositionStream positions_;
   KindTally tally_;
   NmeaCounts counts_;
   bool checksums_ = false;        ///< a sentence had a right one
@@ -58,7 +60,6 @@ class NmeaDecoder final : public LineDecoder {
   std::int64_t day_ = 0;
   bool dated_ = false;
   std::optional<std::int64_t> last_time_of_day_;
-  std::int64_t offset_ns_ = 0;
   std::vector<GeodeticFix> undated_;  ///< their stamps count from the midnight before the first fix
 };
 
@@ -182,15 +183,8 @@ void NmeaDecoder::add_fix(const NmeaEpoch& epoch) {
   if (day_ > kLastNmeaDay || day_ < -kLastNmeaDay)
     return corrupt(epoch.position.line, 1, "so many midnights have passed that the date is after 2200");
   GeodeticFix fix;
-  if (request().stream == StreamKind::gnss) {
-    const std::optional<Eigen::Matrix2d> covariance_en = covariance(epoch);
-    if (!covariance_en)
-      return corrupt(
-          epoch.position.line, 1,
-          "no GST sentence gives the accuracy of this fix: state 'default_sigma', or 'range_error' to "
-          "multiply HDOP with");
-    fix.covariance_en = *covariance_en;
-  }
+  if (const char* complaint = positions_.set_covariance(fix, accuracy(epoch)))
+    return corrupt(epoch.position.line, 1, complaint);
   fix.stamp.nanoseconds = day_ * kDayNanoseconds + *epoch.time_of_day;
   fix.latitude_deg = epoch.position.latitude_deg;
   fix.longitude_deg = epoch.position.longitude_deg;
@@ -200,7 +194,6 @@ void NmeaDecoder::add_fix(const NmeaEpoch& epoch) {
   }
   if (epoch.course_deg) fix.course_rad = *epoch.course_deg * kDegree;
   fix.speed_mps = epoch.speed_mps;
-  fix.source = request().source;
   fix.line = epoch.position.line;
 
   ++counts_.fixes;
@@ -212,42 +205,24 @@ void NmeaDecoder::add_fix(const NmeaEpoch& epoch) {
   undated_.push_back(fix);
 }
 
-std::optional<Eigen::Matrix2d> NmeaDecoder::covariance(const NmeaEpoch& epoch) {
-  const LogRequest& request = this->request();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
-  if (epoch.accuracy) {
-    const NmeaAccuracy& accuracy = *epoch.accuracy;
-    ++counts_.from_gst;
-    if (accuracy.has_ellipse) ++counts_.from_ellipse;
-    if (accuracy.ellipse_disagrees) ++counts_.ellipse_disagrees;
-    const double factor = sigma_factor(request.accuracy);  // automatic: 1
-    const double east = factor * accuracy.east_m;
-    const double north = factor * accuracy.north_m;
-    const double common = accuracy.correlation * east * north;
-    covariance << east * east, common, common, north * north;
-    return covariance;
-  }
-  if (epoch.hdop && request.range_error_m > 0) {
-    ++counts_.from_hdop;
-    const double sigma = *epoch.hdop * request.range_error_m;
-    return covariance * (sigma * sigma);
-  }
-  if (request.default_sigma_m > 0) {
-    ++counts_.from_default;
-    return covariance * (request.default_sigma_m * request.default_sigma_m);
-  }
-  return std::nullopt;
+StatedAccuracy NmeaDecoder::accuracy(const NmeaEpoch& epoch) {
+  if (!epoch.accuracy || positions_.wants_truth()) return {.hdop = epoch.hdop.value_or(0)};
+  const NmeaAccuracy& gst = *epoch.accuracy;
+  ++counts_.from_gst;
+  if (gst.has_ellipse) ++counts_.from_ellipse;
+  if (gst.ellipse_disagrees) ++counts_.ellipse_disagrees;
+  const double common = gst.correlation * gst.east_m * gst.north_m;
+  Eigen::Matrix2d squares;
+  squares << gst.east_m * gst.east_m, common, common, gst.north_m * gst.north_m;
+  return {.squares_en = squares};
 }
 
 /// Hands out a fix whose stamp is UTC.
 void NmeaDecoder::give(GeodeticFix fix) {
-  fix.stamp = convert(fix.stamp, TimeScale::utc, request().time_scale);
-  fix.stamp.nanoseconds += offset_ns_;
-  if (request().stream == StreamKind::truth) {
-    data_.truth.push_back({fix.stamp, fix.latitude_deg, fix.longitude_deg, fix.height_m, std::nullopt});
-  } else {
-    data_.fixes.push_back(fix);
-  }
+  const std::optional<Stamp> stamp = positions_.stamp(fix.stamp, TimeScale::utc);
+  if (!stamp) return corrupt(fix.line, 1, "its time is too large for a stamp");
+  fix.stamp = *stamp;
+  positions_.give(data_, fix);
 }
 
 void NmeaDecoder::release_undated() {
@@ -267,20 +242,15 @@ void NmeaDecoder::fail_undated() const {
 void NmeaDecoder::end() {
   end_epoch();
   if (!undated_.empty()) fail_undated();
-  tally_.write(data_.kinds);
-  for (const std::string& text : nmea_notes(counts_, data_, request())) note(text);
+  data_.kinds = tally_.counts();
+  for (const std::string& text : nmea_notes(counts_, request())) note(text);
+  positions_.finish(data_);
 }
 
 }  // namespace
 
 std::unique_ptr<LogDecoder> NmeaReader::open(const std::string& path, const LogRequest& request) const {
-  if (request.stream != StreamKind::gnss && request.stream != StreamKind::truth)
-    throw InputError(fmt::format("{}: an NMEA log holds no {}; it gives the streams gnss and truth", path,
-                                 request.stream == StreamKind::odometry ? "odometry" : "sensor readings"));
-  if (!request.columns.empty()) throw InputError(fmt::format("{}: an NMEA log has no columns to map", path));
-  if (!request.companions.empty())
-    throw InputError(fmt::format("{}: an NMEA log is read without companion files such as {} '{}'", path,
-                                 request.companions.begin()->first, request.companions.begin()->second.path));
+  require_positions(path, request, "an NMEA log");
   return std::make_unique<NmeaDecoder>(path, request);
 }
 

@@ -39,22 +39,12 @@ void note_accuracy(const NmeaCounts& counts, const LogRequest& request, std::vec
     notes.push_back(
         fmt::format("{} error ellipses of another shape than the errors beside them were left aside",
                     counts.ellipse_disagrees));
-  if (counts.from_hdop > 0)
-    notes.push_back(
-        fmt::format("{} fixes give HDOP only, which is multiplied with the stated range error of {} m",
-                    counts.from_hdop, request.range_error_m));
-  if (counts.from_default > 0)
-    notes.push_back(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used",
-                                counts.from_default, request.default_sigma_m));
 }
 
-void note_quality(const NmeaCounts& counts, const LogData& data, std::vector<std::string>& notes) {
-  if (data.without_fix > counts.without_satellites)
-    notes.push_back(fmt::format("{} of {} records are marked as without a fix",
-                                data.without_fix - counts.without_satellites, data.records));
+void note_quality(const NmeaCounts& counts, std::vector<std::string>& notes) {
   if (counts.without_satellites > 0)
-    notes.push_back(
-        fmt::format("{} fixes that rest on no satellite are not used", counts.without_satellites));
+    notes.push_back(fmt::format("{} fixes rest on no satellite and count as records without a fix",
+                                counts.without_satellites));
   if (counts.dead_reckoning > 0)
     notes.push_back(
         fmt::format("{} fixes are dead reckoning of the receiver, not measured", counts.dead_reckoning));
@@ -81,12 +71,11 @@ void note_quality(const NmeaCounts& counts, const LogData& data, std::vector<std
 
 }  // namespace
 
-std::vector<std::string> nmea_notes(const NmeaCounts& counts, const LogData& data,
-                                    const LogRequest& request) {
+std::vector<std::string> nmea_notes(const NmeaCounts& counts, const LogRequest& request) {
   std::vector<std::string> notes;
   note_dates(counts, request, notes);
   note_accuracy(counts, request, notes);
-  note_quality(counts, data, notes);
+  note_quality(counts, notes);
   return notes;
 }
 

@@ -19,8 +19,6 @@ struct NmeaCounts {
   std::size_t from_gst = 0;
   std::size_t from_ellipse = 0;
   std::size_t ellipse_disagrees = 0;
-  std::size_t from_hdop = 0;
-  std::size_t from_default = 0;
   std::size_t above_sea_level = 0;
   std::size_t dead_reckoning = 0;
   std::size_t simulated = 0;
@@ -32,8 +30,8 @@ struct NmeaCounts {
   bool log_has_date = false;
 };
 
-/// One sentence for each thing worth telling. @param data  its counts
-[[nodiscard]] std::vector<std::string> nmea_notes(const NmeaCounts& counts, const LogData& data,
-                                                  const LogRequest& request);
+/// One sentence for each thing worth telling, beside those that logs of positions have in common
+/// (PositionStream).
+[[nodiscard]] std::vector<std::string> nmea_notes(const NmeaCounts& counts, const LogRequest& request);
 
 }  // namespace waymark

@@ -10,8 +10,9 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/line_scanner.hpp>
 #include <waymark/formats/logs/gps_time.hpp>
-#include <waymark/formats/logs/kind_counter.hpp>
+#include <waymark/formats/logs/kind_tally.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/novatel_layout.hpp>
 #include <waymark/formats/logs/novatel_message.hpp>
 #include <waymark/formats/logs/position_stream.hpp>
@@ -41,7 +42,7 @@ struct HeldFix {
 class NovatelDecoder final : public LineDecoder {
  public:
   NovatelDecoder(const std::string& path, const LogRequest& request)
-      : LineDecoder(path, request), positions_(path, request) {}
+      : LineDecoder(path, request), positions_(path, request, "sigmas") {}
 
  private:
   void take_line(std::string_view line, std::size_t number) override;
@@ -65,8 +66,8 @@ class NovatelDecoder final : public LineDecoder {
   int best_rank_ = 1;
   std::optional<HeldFix> held_;
   std::optional<Velocity> velocity_;
-  KindCounter kinds_;
-  KindCounter types_;
+  KindTally kinds_;
+  KindTally types_;
   std::string datum_;  ///< the first that is not WGS84
   double largest_latency_s_ = 0;
   std::size_t without_time_ = 0;
@@ -86,7 +87,7 @@ void NovatelDecoder::take_line(std::string_view line, std::size_t line_number) {
     }
     return;
   }
-  kinds_.count(name);
+  kinds_.add(name);
   layout_ = novatel_layout(name);
   if (layout_ == nullptr) return;
   const bool is_position = layout_->gnss_rank > 0;
@@ -158,7 +159,7 @@ void NovatelDecoder::take_position(Stamp at, std::size_t line_number) {
   if (layout_->undulation != kNoField) fix.height_m += number(layout_->undulation, "undulation", -kFar, kFar);
   fix.line = line_number;
   if (!is_sound()) return;
-  if (layout_->type != kNoField) types_.count(message_.body[layout_->type]);
+  if (layout_->type != kNoField) types_.add(message_.body[layout_->type]);
   const std::string_view datum = message_.body[layout_->datum];
   if (!datum.empty() && datum != "WGS84" && datum_.empty()) datum_ = quote_word(datum);
   if (positions_.wants_truth()) {
@@ -181,7 +182,7 @@ StatedAccuracy NovatelDecoder::accuracy() {
   const double north = number(layout_->sigma, "latitude sigma", 0, 1e9);
   const double east = number(layout_->sigma + 1, "longitude sigma", 0, 1e9);
   if (north == 0 || east == 0) return {};
-  return {Eigen::Vector2d(east * east, north * north).asDiagonal().toDenseMatrix(), 0};
+  return {.squares_en = Eigen::Vector2d(east * east, north * north).asDiagonal().toDenseMatrix()};
 }
 
 void NovatelDecoder::set_inertial_velocity(GeodeticFix& fix) {

@@ -1,26 +1,27 @@
 #include <waymark/formats/logs/position_stream.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
-#include <waymark/core/error.hpp>
 #include <waymark/formats/logs/accuracy.hpp>
 
 namespace waymark {
 namespace {
 
-constexpr double kLargestSigma = 1e6;  // m; larger figures are garbled, and their squares overflow
+constexpr double kLargestSigma = 1e7;  // m: the way to the pole; larger figures are garbled
+constexpr const char* kTooLarge = "an accuracy of more than 10,000 km";
 
 }  // namespace
 
-PositionStream::PositionStream(const std::string& path, const LogRequest& request)
+PositionStream::PositionStream(const std::string& path, const LogRequest& request, const char* figures)
     : path_(path),
+      figures_(figures),
       scale_(request.time_scale),
       offset_(std::llround(request.time_offset_s * 1e9)),
-      meaning_(request.accuracy),
-      variance_factor_(sigma_factor(request.accuracy) * sigma_factor(request.accuracy)),
+      stated_(request.accuracy),
       default_sigma_m_(request.default_sigma_m),
       range_error_m_(request.range_error_m),
       source_(request.source),
@@ -32,72 +33,74 @@ std::optional<Stamp> PositionStream::stamp(Stamp given, TimeScale scale) const {
   return result;
 }
 
-const char* PositionStream::add(LogData& data, GeodeticFix fix, const StatedAccuracy& accuracy,
-                                std::optional<double> heading_rad) {
-  if (truth_) {
-    data.truth.push_back({fix.stamp, fix.latitude_deg, fix.longitude_deg, fix.height_m, heading_rad});
+const char* PositionStream::set_covariance(GeodeticFix& fix, const StatedAccuracy& accuracy) {
+  if (truth_) return nullptr;
+  if (!accuracy.squares_en) return stand_in(fix, accuracy.hdop);
+  const Eigen::Matrix2d& squares = *accuracy.squares_en;
+  // The comparisons are such that NaN fails.
+  if (!(std::max(squares(0, 0), squares(1, 1)) <= kLargestSigma * kLargestSigma)) return kTooLarge;
+  if (!(squares(0, 0) > 0 && squares(0, 0) * squares(1, 1) > squares(0, 1) * squares(0, 1)))
+    return "the covariance is not positive definite";
+  if (!accuracy.usual_meaning) {
+    fix.covariance_en = squares;
     return nullptr;
   }
-  if (const char* complaint = set_covariance(fix, accuracy)) return complaint;
-  fix.source = source_;
-  data.fixes.push_back(fix);
+  usual_ = stated_ == AccuracyMeaning::automatic;
+  meaning_ = usual_ ? *accuracy.usual_meaning : stated_;
+  fix.covariance_en = variance_factor(meaning_) * squares;
+  ++with_figures_;
   return nullptr;
 }
 
-const char* PositionStream::set_covariance(GeodeticFix& fix, const StatedAccuracy& accuracy) {
-  if (accuracy.covariance_en) {
-    const Eigen::Matrix2d& given = *accuracy.covariance_en;
-    const double largest = std::max(given(0, 0), given(1, 1));
-    if (!(largest < kLargestSigma * kLargestSigma)) return "a sigma of more than 1000 km";
-    if (!(given(0, 0) > 0 && given(0, 0) * given(1, 1) > given(0, 1) * given(0, 1)))
-      return "the covariance is not positive definite";
-    fix.covariance_en = variance_factor_ * given;
-    ++from_covariance_;
-    return nullptr;
-  }
+/// The covariance of a fix without figures.
+const char* PositionStream::stand_in(GeodeticFix& fix, double hdop) {
   double sigma = default_sigma_m_;
-  if (accuracy.hdop > 0 && range_error_m_ > 0) {
-    sigma = accuracy.hdop * range_error_m_;
-    if (!(sigma < kLargestSigma)) return "a sigma of more than 1000 km";
+  if (hdop > 0 && range_error_m_ > 0) {
+    sigma = hdop * range_error_m_;
+    if (!(sigma <= kLargestSigma)) return kTooLarge;
     ++from_hdop_;
   } else if (sigma > 0) {
     ++defaulted_;
-  } else if (accuracy.hdop > 0) {
-    return "only HDOP tells the accuracy: state range_error_m or default_sigma_m";
+  } else if (hdop > 0) {
+    return "no accuracy but HDOP is given: state 'range_error' to multiply it with, or 'default_sigma'";
   } else {
-    return "no accuracy, and no default sigma is stated (default_sigma_m)";
+    return "no accuracy is given: state 'default_sigma'";
   }
   fix.covariance_en = sigma * sigma * Eigen::Matrix2d::Identity();
   return nullptr;
 }
 
+void PositionStream::give(LogData& data, const GeodeticFix& fix, std::optional<double> heading_rad) const {
+  if (truth_) {
+    data.truth.push_back({fix.stamp, fix.latitude_deg, fix.longitude_deg, fix.height_m, heading_rad});
+    return;
+  }
+  data.fixes.push_back(fix);
+  data.fixes.back().source = source_;
+}
+
+const char* PositionStream::add(LogData& data, GeodeticFix fix, const StatedAccuracy& accuracy,
+                                std::optional<double> heading_rad) {
+  if (const char* complaint = set_covariance(fix, accuracy)) return complaint;
+  give(data, fix, heading_rad);
+  return nullptr;
+}
+
 void PositionStream::finish(LogData& data) const {
   const auto note = [&](const std::string& text) { data.notes.push_back(path_ + ": " + text); };
-  if (from_covariance_ > 0 && meaning_ != AccuracyMeaning::automatic &&
-      meaning_ != AccuracyMeaning::one_sigma)
-    note(
-        fmt::format("the sigmas of {} fixes are read as {} (stated)", from_covariance_, to_string(meaning_)));
+  // That a standard deviation is one needs no telling.
+  const bool plain = usual_ && meaning_ == AccuracyMeaning::one_sigma;
+  if (figures_ != nullptr && with_figures_ > 0 && !plain)
+    note(fmt::format("{} fixes with {} read as {}{}", with_figures_, figures_, to_string(meaning_),
+                     usual_ ? " (not stated)" : ""));
   if (from_hdop_ > 0)
-    note(fmt::format("the sigma of {} fixes is HDOP times the stated {} m", from_hdop_, range_error_m_));
+    note(fmt::format("{} fixes give HDOP only, which is multiplied with the stated range error of {} m",
+                     from_hdop_, range_error_m_));
   if (defaulted_ > 0)
     note(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used", defaulted_,
                      default_sigma_m_));
   if (data.without_fix > 0)
     note(fmt::format("{} of {} records are marked as without a fix", data.without_fix, data.records));
-}
-
-void require_positions(const std::string& path, const LogRequest& request, const char* format) {
-  if (request.stream == StreamKind::odometry)
-    throw InputError(
-        fmt::format("{}: {} holds no odometry; it gives the streams gnss and truth", path, format));
-  if (request.stream == StreamKind::sensor)
-    throw InputError(
-        fmt::format("{}: {} holds no sensor readings; it gives the streams gnss and truth", path, format));
-  if (!request.columns.empty())
-    throw InputError(fmt::format("{}: {} has no columns to map; leave out 'columns'", path, format));
-  if (!request.companions.empty())
-    throw InputError(fmt::format("{}: {} takes no '{}' file; leave it out", path, format,
-                                 request.companions.begin()->first));
 }
 
 void set_velocity(GeodeticFix& fix, const Eigen::Vector2d& velocity_en, const Eigen::Matrix2d* covariance) {

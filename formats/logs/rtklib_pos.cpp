@@ -13,6 +13,7 @@
 #include <waymark/formats/logs/geocentric.hpp>
 #include <waymark/formats/logs/gps_time.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
+#include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/position_stream.hpp>
 #include <waymark/formats/logs/record_fields.hpp>
 #include <waymark/formats/logs/rtklib_header.hpp>
@@ -44,7 +45,7 @@ Eigen::Matrix3d covariance_xyz(const std::array<double, 6>& deviation) {
 class RtklibDecoder final : public LineDecoder {
  public:
   RtklibDecoder(const std::string& path, const LogRequest& request)
-      : LineDecoder(path, request), positions_(path, request) {}
+      : LineDecoder(path, request), positions_(path, request, "standard deviations") {}
 
  private:
   void take_line(std::string_view line, std::size_t number) override;
@@ -111,7 +112,7 @@ void RtklibDecoder::take_record(std::size_t number) {
   if (!positions_.wants_truth()) {
     choose_axes(where);
     const bool has_sigmas = header_.sigma > 0 && fields_.count() >= header_.sigma + 6;
-    if (has_sigmas) accuracy.covariance_en = horizontal(header_.sigma);
+    if (has_sigmas) accuracy.squares_en = horizontal(header_.sigma);
     if (header_.velocity > 0) read_velocity(fix);
     if (!is_sound()) return;
   }

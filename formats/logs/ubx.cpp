@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/ubx_fixes.hpp>
 #include <waymark/formats/logs/ubx_sensors.hpp>
 
@@ -41,8 +42,7 @@ std::string channel_names() {
 }
 
 void check_readings(const std::string& path, const LogRequest& request) {
-  if (!request.columns.empty())
-    throw InputError(fmt::format("{}: the readings of a UBX log have no columns to map", path));
+  require_no_columns(path, request, "a UBX log of readings");
   bool any = false;
   for (const SensorColumn& wanted : request.readings) {
     const bool has = std::any_of(kUbxChannels.begin(), kUbxChannels.end(),
@@ -66,9 +66,7 @@ bool holds_position(std::uint16_t key) {
 }  // namespace
 
 std::unique_ptr<LogDecoder> UbxReader::open(const std::string& path, const LogRequest& request) const {
-  if (!request.companions.empty())
-    throw InputError(fmt::format("{}: a UBX log takes no companion files, got '{}'", path,
-                                 request.companions.begin()->first));
+  require_companions(path, request, "a UBX log");
   if (request.gps_week < 0 || request.gps_week > kLastWeek)
     throw InputError(fmt::format("{}: 'gps_week' {} is outside 0 .. {}", path, request.gps_week, kLastWeek));
   if (request.stream == StreamKind::gnss || request.stream == StreamKind::truth)

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <waymark/formats/logs/accuracy.hpp>
-
 namespace waymark {
 namespace {
 
@@ -47,6 +45,7 @@ bool has(const UbxEpoch& epoch, std::uint16_t key) {
 UbxFixDecoder::UbxFixDecoder(std::string path, LogRequest request, bool high_rate)
     : UbxFrameDecoder(std::move(path), std::move(request)),
       high_rate_(high_rate),
+      positions_(this->path(), this->request(), "hAcc"),
       time_(this->request().gps_week) {}
 
 void UbxFixDecoder::take_frame(const UbxFrame& frame) {
@@ -149,9 +148,9 @@ void UbxFixDecoder::end_epoch() {
   if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 180)
     return corrupt(epoch.byte, fmt::format("the position {}, {} is outside -90 .. 90, -180 .. 180",
                                            place.latitude_deg, place.longitude_deg));
-  Stamp stamp = convert(Stamp{*gps}, TimeScale::gps, request().time_scale);
-  stamp.nanoseconds += std::llround(request().time_offset_s * 1e9);
-  add_sample(epoch, place, stamp);
+  const std::optional<Stamp> stamp = positions_.stamp(Stamp{*gps}, TimeScale::gps);
+  if (!stamp) return corrupt(epoch.byte, "its time is too large for a stamp");
+  add_sample(epoch, place, *stamp);
 }
 
 std::optional<std::int64_t> UbxFixDecoder::time_of(const UbxEpoch& epoch) {
@@ -164,25 +163,14 @@ std::optional<std::int64_t> UbxFixDecoder::time_of(const UbxEpoch& epoch) {
 }
 
 void UbxFixDecoder::add_sample(const UbxEpoch& epoch, const UbxPlace& place, Stamp stamp) {
-  if (request().stream == StreamKind::truth) {
-    GeodeticTruth truth{stamp, place.latitude_deg, place.longitude_deg, place.height_m, std::nullopt};
-    if (epoch.solution && epoch.solution->vehicle_heading_deg)
-      truth.heading_rad = heading_from_course(*epoch.solution->vehicle_heading_deg);
-    count(epoch);
-    data_.truth.push_back(truth);
-    return;
-  }
-  const std::optional<Eigen::Matrix2d> covariance_en = covariance(epoch, place);
-  if (!covariance_en)
-    return corrupt(epoch.byte, "the position has no accuracy (hAcc), and no default sigma is stated");
-  count(epoch);
   GeodeticFix fix;
+  if (const char* complaint = positions_.set_covariance(fix, accuracy(epoch, place)))
+    return corrupt(epoch.byte, complaint);
+  count(epoch);
   fix.stamp = stamp;
   fix.latitude_deg = place.latitude_deg;
   fix.longitude_deg = place.longitude_deg;
   fix.height_m = place.height_m;
-  fix.covariance_en = *covariance_en;
-  fix.source = request().source;
   fix.line = epoch.number;
   if (epoch.solution || epoch.velned) {
     const UbxMotion& motion = epoch.solution ? epoch.solution->motion : *epoch.velned;
@@ -191,26 +179,21 @@ void UbxFixDecoder::add_sample(const UbxEpoch& epoch, const UbxPlace& place, Sta
     fix.course_rad = motion.course_deg * kDegree;
     fix.course_sigma_rad = if_positive(motion.course_accuracy_deg * kDegree);
   }
-  data_.fixes.push_back(fix);
+  std::optional<double> heading;
+  if (epoch.solution && epoch.solution->vehicle_heading_deg)
+    heading = heading_from_course(*epoch.solution->vehicle_heading_deg);
+  positions_.give(data_, fix, heading);
 }
 
-std::optional<Eigen::Matrix2d> UbxFixDecoder::covariance(const UbxEpoch& epoch, const UbxPlace& place) {
+StatedAccuracy UbxFixDecoder::accuracy(const UbxEpoch& epoch, const UbxPlace& place) {
+  if (positions_.wants_truth()) return {};
   if (epoch.covariance && positive_definite(*epoch.covariance)) {
     ++counts_.covariance;
-    return epoch.covariance;
+    return {epoch.covariance, std::nullopt};
   }
   if (epoch.covariance) ++counts_.bad_covariance;
-  double sigma = request().default_sigma_m;
-  if (place.accuracy_m > 0) {
-    ++counts_.radial;
-    const bool stated = request().accuracy != AccuracyMeaning::automatic;
-    sigma = sigma_factor(stated ? request().accuracy : AccuracyMeaning::drms) * place.accuracy_m;
-  } else if (sigma > 0) {
-    ++counts_.defaulted;
-  } else {
-    return std::nullopt;
-  }
-  return Eigen::Matrix2d(Eigen::Vector2d::Constant(sigma * sigma).asDiagonal());
+  if (!(place.accuracy_m > 0)) return {};
+  return {place.accuracy_m * place.accuracy_m * Eigen::Matrix2d::Identity(), AccuracyMeaning::drms};
 }
 
 /// Counts what the notes tell of an epoch that is used.
@@ -227,8 +210,8 @@ void UbxFixDecoder::count(const UbxEpoch& epoch) {
 void UbxFixDecoder::end() {
   end_epoch();
   note_positions();
-  note_accuracy();
   note_time();
+  positions_.finish(data_);
 }
 
 void UbxFixDecoder::note_positions() {
@@ -256,25 +239,13 @@ void UbxFixDecoder::note_positions() {
   if (counts_.stateless > 0)
     note(
         fmt::format("{} positions come without a word on the fix and are taken as fixes", counts_.stateless));
-  if (data_.without_fix > 0)
-    note(fmt::format("{} of {} records are marked as without a fix", data_.without_fix, data_.records));
   if (counts_.repeated > 0)
     note(fmt::format("{} epochs repeat the iTOW of the one before", counts_.repeated));
-}
-
-void UbxFixDecoder::note_accuracy() {
-  const bool stated = request().accuracy != AccuracyMeaning::automatic;
   if (counts_.covariance > 0)
     note(fmt::format("{} fixes with the covariance of NAV-COV", counts_.covariance));
   if (counts_.bad_covariance > 0)
     note(fmt::format("{} covariances of NAV-COV are not positive definite and were passed over",
                      counts_.bad_covariance));
-  if (counts_.radial > 0)
-    note(fmt::format("{} fixes with hAcc read as {}", counts_.radial,
-                     stated ? std::string(to_string(request().accuracy)) : "drms (not stated)"));
-  if (counts_.defaulted > 0)
-    note(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used", counts_.defaulted,
-                     request().default_sigma_m));
 }
 
 void UbxFixDecoder::note_time() {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include <waymark/formats/logs/position_stream.hpp>
 #include <waymark/formats/logs/ubx_frames.hpp>
 #include <waymark/formats/logs/ubx_messages.hpp>
 #include <waymark/formats/logs/ubx_time.hpp>
@@ -37,8 +38,6 @@ struct UbxFixCounts {
   std::size_t plain = 0;
   std::size_t covariance = 0;
   std::size_t bad_covariance = 0;
-  std::size_t radial = 0;
-  std::size_t defaulted = 0;
   std::size_t dead_reckoned = 0;
   std::size_t combined = 0;
   std::size_t carrier_float = 0;
@@ -63,13 +62,13 @@ class UbxFixDecoder final : public UbxFrameDecoder {
   void end_epoch();
   [[nodiscard]] std::optional<std::int64_t> time_of(const UbxEpoch& epoch);
   void add_sample(const UbxEpoch& epoch, const UbxPlace& place, Stamp stamp);
-  [[nodiscard]] std::optional<Eigen::Matrix2d> covariance(const UbxEpoch& epoch, const UbxPlace& place);
+  [[nodiscard]] StatedAccuracy accuracy(const UbxEpoch& epoch, const UbxPlace& place);
   void count(const UbxEpoch& epoch);
   void note_positions();
-  void note_accuracy();
   void note_time();
 
   bool high_rate_;
+  PositionStream positions_;
   UbxTime time_;
   UbxFixCounts counts_;
   std::optional<UbxEpoch> epoch_;       ///< the one at hand

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <waymark/formats/logs/candump.hpp>
-#include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/stamp_text.hpp>
 #include <waymark/formats/text_file.hpp>
 

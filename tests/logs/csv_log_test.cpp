@@ -8,6 +8,8 @@
 #include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/formats/suggest.hpp>
 
+#include "logs/log_pieces.hpp"
+
 using namespace waymark;
 using Catch::Matchers::Message;
 using std::numbers::pi;
@@ -246,12 +248,12 @@ TEST_CASE("csv: a fix without accuracy takes the stated default, or is corrupt")
   const LogData strict = read(text, gnss(0));
   CHECK(strict.fixes.size() == 1);
   CHECK(strict.corrupt == 2);
-  CHECK(strict.corrupt_examples[0] == "log.csv:2:8: accuracy: no accuracy, and no default sigma is stated");
+  CHECK(strict.corrupt_examples[0] == "log.csv:2:8: accuracy: no accuracy is given: state 'default_sigma'");
 
   CHECK_THROWS_MATCHES(
       read("time,latitude,longitude\n1,50,8\n", gnss(0)), InputError,
       Message("log.csv: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, "
-              "or sigma_east and sigma_north, or state a default sigma in metres"));
+              "or sigma_east and sigma_north, or state 'default_sigma' (in metres)"));
 }
 
 TEST_CASE("csv: a line without a fix is not corrupt") {
@@ -259,7 +261,16 @@ TEST_CASE("csv: a line without a fix is not corrupt") {
   CHECK(data.fixes.size() == 2);
   CHECK(data.fixes[0].line == 3);
   CHECK(data.corrupt == 0);
-  CHECK(data.notes[data.notes.size() - 2] == "log.csv: 2 of 4 records are marked as without a fix");
+  CHECK(data.notes.back() == "log.csv: 2 of 4 records are marked as without a fix");
+}
+
+TEST_CASE("csv: pieces of any length give the same") {
+  const std::string text =
+      "\xEF\xBB\xBF# a "
+      "comment\r\n\ntime;latitude;longitude;accuracy\r\n1.5;55.1;12.25;2\r\n2;x;1;1\n3;55;12;0";
+  const LogData data = waymark_test::check_pieces(CsvLogReader(), text, "log.csv", gnss());
+  CHECK(data.fixes.size() == 2);
+  CHECK(data.corrupt == 1);
 }
 
 TEST_CASE("csv: what cannot be read at all is an error that says why") {

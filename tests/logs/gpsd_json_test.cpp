@@ -9,6 +9,7 @@
 #include <waymark/formats/logs/gpsd_json.hpp>
 #include <waymark/formats/text_file.hpp>
 
+#include "logs/log_pieces.hpp"
 #include "support/paths.hpp"
 
 using namespace waymark;
@@ -95,8 +96,7 @@ TEST_CASE("gpsd: a report without accuracy takes the stated default, or is corru
   const LogData strict = read(text, request);
   CHECK(strict.fixes.size() == 1);
   CHECK(strict.corrupt_examples ==
-        std::vector<std::string>{
-            "log.json:2:1: TPV: neither epx and epy nor eph, and no default sigma is stated"});
+        std::vector<std::string>{"log.json:2:1: TPV: no accuracy is given: state 'default_sigma'"});
   request.default_sigma_m = 7;
   CHECK(read(text, request).fixes.at(1).covariance_en(1, 1) == 49);
 }
@@ -154,8 +154,8 @@ TEST_CASE("gpsd: what is no fix, what is no JSON and what is corrupt are told ap
                                  "receiver's own accuracy where it states one, which drms reads: sigma would "
                                  "be 7.07 m on average instead of 2.5 m",
                                  "log.json: 2 lines that are no JSON objects were skipped",
-                                 "log.json: 1 of 9 records are marked as without a fix",
-                                 "log.json: 1 fixes without a time were skipped"});
+                                 "log.json: 1 fixes without a time were skipped",
+                                 "log.json: 1 of 9 records are marked as without a fix"});
 }
 
 TEST_CASE("gpsd: equal epx and epy throughout are remarked upon") {
@@ -183,16 +183,19 @@ TEST_CASE("gpsd: what cannot be read at all is an error that says why") {
                        Message("log.json: not one fix in 1 records (1 are marked as without a fix)"));
   request.columns["time"] = {"t", "", ""};
   CHECK_THROWS_MATCHES(read(kFix, request), InputError,
-                       Message("log.json: a gpsd log has no columns to map"));
+                       Message("log.json: a gpsd log has no columns to map; leave out 'columns'"));
   request.stream = StreamKind::odometry;
-  CHECK_THROWS_MATCHES(read(kFix, request), InputError, Message("log.json: a gpsd log holds no odometry"));
+  CHECK_THROWS_MATCHES(
+      read(kFix, request), InputError,
+      Message("log.json: a gpsd log holds no odometry; it gives the streams gnss and truth"));
   request.stream = StreamKind::sensor;
-  CHECK_THROWS_MATCHES(read(kFix, request), InputError,
-                       Message("log.json: a gpsd log holds no sensor readings"));
+  CHECK_THROWS_MATCHES(
+      read(kFix, request), InputError,
+      Message("log.json: a gpsd log holds no sensor readings; it gives the streams gnss and truth"));
   request = utc_fixes();
   request.companions["dbc"] = {"car.dbc", ""};
   CHECK_THROWS_MATCHES(read(kFix, request), InputError,
-                       Message("log.json: a gpsd log is read without companion files such as dbc 'car.dbc'"));
+                       Message("log.json: a gpsd log takes no 'dbc' file; leave it out"));
 }
 
 TEST_CASE("gpsd: a GST object of the same time gives the accuracy, before its TPV or after it") {
@@ -311,27 +314,11 @@ TEST_CASE("gpsd: real logs, whole and in pieces") {
     const std::string text = shared_log(log.name);
     if (text.empty()) return;
     INFO(log.name);
-    const LogData whole = read(text, request);
+    const LogData whole = waymark_test::check_pieces(GpsdJsonReader(), text, "log.json", request);
     CHECK(whole.fixes.size() == log.fixes);
     CHECK(whole.without_fix == log.without_fix);
     CHECK(whole.corrupt == log.corrupt);
     CHECK(GpsdJsonReader().recognise(std::string_view(text).substr(0, 65536)).certainty > 0.99);
-    for (const std::size_t piece : {1, 7}) {
-      const auto decoder = GpsdJsonReader().open("log.json", request);
-      for (std::size_t k = 0; k < text.size(); k += piece)
-        decoder->take(std::string_view(text).substr(k, piece));
-      decoder->finish();
-      const LogData& data = decoder->data();
-      CHECK(data.notes == whole.notes);
-      CHECK(data.kinds == whole.kinds);
-      REQUIRE(data.fixes.size() == whole.fixes.size());
-      for (std::size_t k = 0; k < data.fixes.size(); ++k) {
-        CHECK(data.fixes[k].stamp == whole.fixes[k].stamp);
-        CHECK(data.fixes[k].latitude_deg == whole.fixes[k].latitude_deg);
-        CHECK(data.fixes[k].covariance_en == whole.fixes[k].covariance_en);
-        CHECK(data.fixes[k].line == whole.fixes[k].line);
-      }
-    }
   }
   const LogData glonass = read(shared_log("gpsd_ublox-glo.log.chk"));
   CHECK(glonass.fixes.front().latitude_deg == Approx(55.6024871));

@@ -10,7 +10,7 @@
 #include <waymark/formats/logs/gpx.hpp>
 #include <waymark/formats/text_file.hpp>
 
-#include "log_pieces.hpp"
+#include "logs/log_pieces.hpp"
 #include "support/paths.hpp"
 
 using namespace waymark;
@@ -67,8 +67,9 @@ TEST_CASE("gpx: a track point of 1.0") {
   CHECK(fix.line == 4);
   CHECK(data.kinds == std::map<std::string, std::size_t>{{"trkpt", 1}});
   CHECK(data.notes ==
-        std::vector<std::string>{"run.gpx: heights are elevations as GPX has them, as a rule above the geoid",
-                                 "run.gpx: the sigma of 1 fixes is HDOP times the stated 5 m"});
+        std::vector<std::string>{
+            "run.gpx: heights are elevations as GPX has them, as a rule above the geoid",
+            "run.gpx: 1 fixes give HDOP only, which is multiplied with the stated range error of 5 m"});
 }
 
 TEST_CASE("gpx: speed and course of 1.1 stand in extensions, under any prefix") {
@@ -107,9 +108,10 @@ TEST_CASE("gpx: points of routes and waypoints are counted, not read") {
 TEST_CASE("gpx: accuracy is HDOP times a stated error, else the stated default, else missing") {
   LogRequest request;
   CHECK(first_complaint(kOpen + kPoint + kClose, request) ==
-        "run.gpx:4:1: trkpt: only HDOP tells the accuracy: state range_error_m or default_sigma_m");
+        "run.gpx:4:1: trkpt: no accuracy but HDOP is given: state 'range_error' to multiply it with, or "
+        "'default_sigma'");
   CHECK(first_complaint(kOpen + replaced(kPoint, "<hdop>0.8</hdop>", "") + kClose, request) ==
-        "run.gpx:4:1: trkpt: no accuracy, and no default sigma is stated (default_sigma_m)");
+        "run.gpx:4:1: trkpt: no accuracy is given: state 'default_sigma'");
   request.default_sigma_m = 3;
   CHECK(decode(kOpen + kPoint + kClose, request).fixes.at(0).covariance_en(1, 1) == 9);
   request.default_sigma_m = 0;

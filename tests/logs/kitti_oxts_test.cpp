@@ -8,7 +8,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/logs/kitti_oxts.hpp>
 
-#include "log_pieces.hpp"
+#include "logs/log_pieces.hpp"
 
 using namespace waymark;
 using Catch::Matchers::Message;
@@ -121,7 +121,7 @@ TEST_CASE("kitti_oxts: what is wrong with a record is said with its place, and t
   CHECK(first_complaint(replaced(kCounting, "6 7 8", "6 7 800"), StreamKind::odometry) ==
         "oxts/data:2:17: vf: 800 is outside -150 .. 150");
   CHECK(first_complaint(replaced(kCounting, "-0.5 2 0.1", "-0.5 0 0.1"), StreamKind::gnss) ==
-        "oxts/data:2:62: no accuracy, and no default sigma is stated (default_sigma_m)");
+        "oxts/data:2:62: no accuracy is given: state 'default_sigma'");
   const LogData data = read("1 2 3\n" + kFirst, request_of(StreamKind::odometry));
   CHECK(data.odometry.at(0).stamp.nanoseconds == 1'317'042'146'074'389'445);
 }
@@ -139,7 +139,7 @@ TEST_CASE("kitti_oxts: a request that it cannot meet is refused") {
                        Message("oxts/data: a KITTI oxts log has no columns to map; leave out 'columns'"));
   request.stream = StreamKind::sensor;
   CHECK_THROWS_MATCHES(read(kFirst, request), InputError,
-                       Message("oxts/data: a KITTI oxts log gives no sensor readings; it gives the streams "
+                       Message("oxts/data: a KITTI oxts log holds no sensor readings; it gives the streams "
                                "odometry, gnss and truth"));
 }
 

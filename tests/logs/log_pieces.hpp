@@ -1,8 +1,13 @@
 /// A log given to its reader in pieces gives what it gives at once.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -10,14 +15,58 @@
 
 namespace waymark_test {
 
+/// The fixes are taken out after every piece, as a caller of bounded memory does, and put back in the end.
 inline waymark::LogData read_in_pieces_of(std::size_t length, const waymark::LogReader& reader,
                                           std::string_view text, const std::string& path,
                                           const waymark::LogRequest& request) {
   const auto decoder = reader.open(path, request);
-  for (; !text.empty(); text.remove_prefix(std::min(length, text.size())))
+  std::vector<waymark::GeodeticFix> fixes;
+  const auto take_out = [&] {
+    auto& found = decoder->data().fixes;
+    fixes.insert(fixes.end(), found.begin(), found.end());
+    found.clear();
+  };
+  for (; !text.empty(); text.remove_prefix(std::min(length, text.size()))) {
     decoder->take(text.substr(0, length));
+    take_out();
+  }
   decoder->finish();
+  take_out();
+  decoder->data().fixes = std::move(fixes);
   return decoder->data();
+}
+
+/// Bit by bit, so that NaN equals itself.
+inline bool same_number(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+inline bool same_fix(const waymark::GeodeticFix& a, const waymark::GeodeticFix& b) {
+  return a.stamp == b.stamp && a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg &&
+         same_number(a.height_m, b.height_m) && a.covariance_en == b.covariance_en &&
+         a.course_rad == b.course_rad && a.course_sigma_rad == b.course_sigma_rad &&
+         a.speed_mps == b.speed_mps && a.speed_sigma_mps == b.speed_sigma_mps && a.source == b.source &&
+         a.line == b.line;
+}
+
+inline bool same_truth(const waymark::GeodeticTruth& a, const waymark::GeodeticTruth& b) {
+  return a.stamp == b.stamp && a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg &&
+         same_number(a.height_m, b.height_m) && a.heading_rad == b.heading_rad;
+}
+
+inline bool same_odometry(const waymark::OdometrySample& a, const waymark::OdometrySample& b) {
+  return a.stamp == b.stamp && a.speed_mps == b.speed_mps && a.yaw_rate_radps == b.yaw_rate_radps;
+}
+
+inline bool same_clocks(const waymark::ClockPair& a, const waymark::ClockPair& b) {
+  return a.logged == b.logged && a.told == b.told;
+}
+
+/// The first index at which two rows of samples differ; the common length where they do not.
+template <typename Rows, typename Same>
+std::size_t same_until(const Rows& a, const Rows& b, Same same) {
+  const auto [end, other] = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), same);
+  return static_cast<std::size_t>(end - a.begin());
 }
 
 inline void check_same(const waymark::LogData& a, const waymark::LogData& b) {
@@ -27,36 +76,26 @@ inline void check_same(const waymark::LogData& a, const waymark::LogData& b) {
   CHECK(a.records == b.records);
   CHECK(a.without_fix == b.without_fix);
   CHECK(a.corrupt == b.corrupt);
-  REQUIRE(a.odometry.size() == b.odometry.size());
-  for (std::size_t i = 0; i < a.odometry.size(); ++i) {
-    CHECK(a.odometry[i].stamp == b.odometry[i].stamp);
-    CHECK(a.odometry[i].speed_mps == b.odometry[i].speed_mps);
-    CHECK(a.odometry[i].yaw_rate_radps == b.odometry[i].yaw_rate_radps);
-  }
-  REQUIRE(a.fixes.size() == b.fixes.size());
-  for (std::size_t i = 0; i < a.fixes.size(); ++i) {
-    CHECK(a.fixes[i].stamp == b.fixes[i].stamp);
-    CHECK(a.fixes[i].latitude_deg == b.fixes[i].latitude_deg);
-    CHECK(a.fixes[i].longitude_deg == b.fixes[i].longitude_deg);
-    CHECK(a.fixes[i].covariance_en == b.fixes[i].covariance_en);
-    CHECK(a.fixes[i].course_rad == b.fixes[i].course_rad);
-    CHECK(a.fixes[i].speed_mps == b.fixes[i].speed_mps);
-    CHECK(a.fixes[i].line == b.fixes[i].line);
-  }
-  REQUIRE(a.truth.size() == b.truth.size());
-  for (std::size_t i = 0; i < a.truth.size(); ++i) {
-    CHECK(a.truth[i].stamp == b.truth[i].stamp);
-    CHECK(a.truth[i].latitude_deg == b.truth[i].latitude_deg);
-    CHECK(a.truth[i].heading_rad == b.truth[i].heading_rad);
-  }
+  CHECK(a.odometry.size() == b.odometry.size());
+  CHECK(same_until(a.odometry, b.odometry, same_odometry) == b.odometry.size());
+  CHECK(a.fixes.size() == b.fixes.size());
+  CHECK(same_until(a.fixes, b.fixes, same_fix) == b.fixes.size());
+  CHECK(a.truth.size() == b.truth.size());
+  CHECK(same_until(a.truth, b.truth, same_truth) == b.truth.size());
+  CHECK(a.clocks.size() == b.clocks.size());
+  CHECK(same_until(a.clocks, b.clocks, same_clocks) == b.clocks.size());
+  CHECK(a.readings.stamps == b.readings.stamps);
+  CHECK(a.readings.values.size() == b.readings.values.size());
+  CHECK(same_until(a.readings.values, b.readings.values, same_number) == b.readings.values.size());
 }
 
-/// Byte by byte, and in pieces of 7.
-inline void check_pieces(const waymark::LogReader& reader, std::string_view text, const std::string& path,
-                         const waymark::LogRequest& request) {
-  const waymark::LogData whole = read_in_pieces_of(text.size() + 1, reader, text, path, request);
+/// Byte by byte, and in pieces of 7. @return the log read at once
+inline waymark::LogData check_pieces(const waymark::LogReader& reader, std::string_view text,
+                                     const std::string& path, const waymark::LogRequest& request) {
+  waymark::LogData whole = read_in_pieces_of(text.size() + 1, reader, text, path, request);
   check_same(read_in_pieces_of(1, reader, text, path, request), whole);
   check_same(read_in_pieces_of(7, reader, text, path, request), whole);
+  return whole;
 }
 
 }  // namespace waymark_test

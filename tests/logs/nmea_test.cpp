@@ -15,6 +15,7 @@
 #include <waymark/formats/logs/nmea.hpp>
 #include <waymark/formats/text_file.hpp>
 
+#include "logs/log_pieces.hpp"
 #include "support/paths.hpp"
 
 using namespace waymark;
@@ -217,9 +218,8 @@ TEST_CASE("nmea: which accuracy a fix gets") {
   request.default_sigma_m = 0;
   CHECK_THROWS_MATCHES(
       read(rmc("000001"), request), InputError,
-      Message("log.nmea: none of 1 records could be used; first: log.nmea:1:1: no GST sentence "
-              "gives the accuracy of this fix: state 'default_sigma', or 'range_error' to multiply "
-              "HDOP with"));
+      Message("log.nmea: none of 1 records could be used; first: log.nmea:1:1: no accuracy is "
+              "given: state 'default_sigma'"));
 }
 
 TEST_CASE("nmea: the error ellipse of GST gives the correlation, whatever its scale") {
@@ -273,7 +273,7 @@ TEST_CASE("nmea: a fix from no satellite is none, where the receiver counts them
   };
   const LogData data = read(rmc("000001") + gga("000001") + without_satellites("000002", "1"));
   CHECK(data.fixes.size() == 1);
-  CHECK(noted(data, "1 fixes that rest on no satellite are not used"));
+  CHECK(noted(data, "1 fixes rest on no satellite and count as records without a fix"));
   CHECK(read(rmc("000001") + without_satellites("000001", "1")).fixes.size() == 1);
   const LogData reckoned = read(rmc("000001") + gga("000001") + without_satellites("000002", "6"));
   CHECK(reckoned.fixes.size() == 2);
@@ -366,12 +366,12 @@ TEST_CASE("nmea: requests that no NMEA log can meet") {
       Message("log.nmea: an NMEA log holds no sensor readings; it gives the streams gnss and truth"));
   request = utc();
   request.columns["time"] = {"t", "", ""};
-  CHECK_THROWS_MATCHES(read("", request), InputError, Message("log.nmea: an NMEA log has no columns to map"));
+  CHECK_THROWS_MATCHES(read("", request), InputError,
+                       Message("log.nmea: an NMEA log has no columns to map; leave out 'columns'"));
   request = utc();
   request.companions["dbc"] = {"car.dbc", ""};
-  CHECK_THROWS_MATCHES(
-      read("", request), InputError,
-      Message("log.nmea: an NMEA log is read without companion files such as dbc 'car.dbc'"));
+  CHECK_THROWS_MATCHES(read("", request), InputError,
+                       Message("log.nmea: an NMEA log takes no 'dbc' file; leave it out"));
 }
 
 TEST_CASE("nmea: a log may serve as truth, without an accuracy") {
@@ -401,26 +401,8 @@ TEST_CASE("nmea: the pieces that a log comes in make no difference, real and dam
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::string text = read_text_file(entry.path().string()).substr(0, 60'000);
     for (std::size_t k = 500; k < text.size(); k += 977) text[k] = static_cast<char>(k * 31);  // damage
-    const LogData whole = read(text);
-    for (const std::size_t piece : {1, 7}) {
-      const auto decoder = NmeaReader().open("log.nmea", utc());
-      for (std::size_t k = 0; k < text.size(); k += piece)
-        decoder->take(std::string_view(text).substr(k, piece));
-      decoder->finish();
-      const LogData& data = decoder->data();
-      INFO(entry.path() << " in pieces of " << piece);
-      CHECK(data.notes == whole.notes);
-      CHECK(data.corrupt_examples == whole.corrupt_examples);
-      CHECK(data.corrupt == whole.corrupt);
-      CHECK(data.kinds == whole.kinds);
-      REQUIRE(data.fixes.size() == whole.fixes.size());
-      for (std::size_t k = 0; k < data.fixes.size(); ++k) {
-        CHECK(data.fixes[k].stamp == whole.fixes[k].stamp);
-        CHECK(data.fixes[k].latitude_deg == whole.fixes[k].latitude_deg);
-        CHECK(data.fixes[k].covariance_en == whole.fixes[k].covariance_en);
-        CHECK(data.fixes[k].line == whole.fixes[k].line);
-      }
-    }
+    INFO(entry.path());
+    waymark_test::check_pieces(NmeaReader(), text, "log.nmea", utc());
   }
 }
 

@@ -10,7 +10,7 @@
 #include <waymark/formats/logs/novatel.hpp>
 #include <waymark/formats/logs/novatel_message.hpp>
 
-#include "log_pieces.hpp"
+#include "logs/log_pieces.hpp"
 
 using namespace waymark;
 using Catch::Matchers::Message;
@@ -230,7 +230,7 @@ TEST_CASE("novatel: what is wrong with a message is said with its place") {
   CHECK(first_complaint(bestpos("700000", kBody)) ==
         "run.log:1:1: BESTPOSA: expected a GPS week and its seconds, got '1803' '700000'");
   CHECK(first_complaint(bestpos("10", replaced(kBody, ",3,2,4", ",0,0,0"))) ==
-        "run.log:1:106: BESTPOSA: no accuracy, and no default sigma is stated (default_sigma_m)");
+        "run.log:1:106: BESTPOSA: no accuracy is given: state 'default_sigma'");
   CHECK(first_complaint(bestvel("10", "SOL_COMPUTED,DOPPLER_VELOCITY,0.150,0.000,-5,90,0,0")) ==
         "run.log:1:105: BESTVELA: horizontal speed: -5 is outside 0 .. 1000");
 }

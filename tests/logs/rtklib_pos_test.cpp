@@ -11,7 +11,7 @@
 #include <waymark/formats/logs/rtklib_pos.hpp>
 #include <waymark/formats/text_file.hpp>
 
-#include "log_pieces.hpp"
+#include "logs/log_pieces.hpp"
 #include "support/paths.hpp"
 
 using namespace waymark;
@@ -194,8 +194,7 @@ TEST_CASE("rtklib_pos: without a header the default layout is assumed and said")
 TEST_CASE("rtklib_pos: no accuracy takes the stated default, truth needs none") {
   const std::string text =
       "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n2323 553950.0 35.1 136.8 40.2 1 9\n";
-  CHECK(first_complaint(text) ==
-        "run.pos:2:1: no accuracy, and no default sigma is stated (default_sigma_m)");
+  CHECK(first_complaint(text) == "run.pos:2:1: no accuracy is given: state 'default_sigma'");
   LogRequest request;
   request.default_sigma_m = 3;
   const LogData data = read(text, request);
@@ -211,7 +210,7 @@ TEST_CASE("rtklib_pos: a stated meaning overrides 1 sigma") {
   request.accuracy = AccuracyMeaning::percent95;
   const LogData data = read(kDegrees + kFix, request);
   CHECK(data.fixes.at(0).covariance_en(1, 1) == 4);  // (4 / 2)^2
-  CHECK(data.notes.back() == "run.pos: the sigmas of 1 fixes are read as 95 (stated)");
+  CHECK(data.notes.back() == "run.pos: 1 fixes with standard deviations read as 95");
 }
 
 TEST_CASE("rtklib_pos: what is wrong with a record is said with its place") {
@@ -229,7 +228,7 @@ TEST_CASE("rtklib_pos: what is wrong with a record is said with its place") {
         "run.pos:3:1: time: expected yyyy/mm/dd hh:mm:ss.sss or a GPS week and its seconds, got '2024/07/20' "
         "'09:72:30.000'");
   CHECK(replaced("1.5  -1.5", "3.0  -1.5") == "run.pos:3:76: the covariance is not positive definite");
-  CHECK(replaced("4.0   2.0", "1e9   2.0") == "run.pos:3:76: a sigma of more than 1000 km");
+  CHECK(replaced("4.0   2.0", "1e9   2.0") == "run.pos:3:76: an accuracy of more than 10,000 km");
   CHECK(replaced("4.0   2.0", "nan   2.0") ==
         "run.pos:3:76: standard deviation: expected a number, got 'nan'");
   CHECK(first_complaint("2323 553950.0 35.1 136.8\n") == "run.pos:1:25: expected at least 7 fields, got 4");

@@ -2,14 +2,11 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -20,6 +17,7 @@
 #include <waymark/formats/logs/ubx.hpp>
 #include <waymark/formats/text_file.hpp>
 
+#include "logs/gpsdecode.hpp"
 #include "support/paths.hpp"
 
 using namespace waymark;
@@ -37,16 +35,11 @@ double member(const nlohmann::json& object, const char* key) {
   return object.contains(key) ? object.at(key).get<double>() : std::nan("");
 }
 
-/// The TPV objects with a position in lines of JSON.
-std::vector<Report> reports_in(const std::string& text) {
+/// The TPV objects with a position and a time.
+std::vector<Report> reports_of(const std::vector<nlohmann::json>& objects) {
   std::vector<Report> reports;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
-    begin = end + 1;
-    if (!line.starts_with(R"({"class":"TPV")")) continue;
-    const nlohmann::json tpv = nlohmann::json::parse(line);
-    if (!tpv.contains("lat") || !tpv.contains("time")) continue;
+  for (const nlohmann::json& tpv : objects) {
+    if (tpv.at("class") != "TPV" || !tpv.contains("lat") || !tpv.contains("time")) continue;
     reports.push_back({stamp_from_iso8601(tpv.at("time").get<std::string>()).value(), member(tpv, "lat"),
                        member(tpv, "lon"), member(tpv, "speed"), member(tpv, "track"), member(tpv, "eph"),
                        member(tpv, "eps")});
@@ -54,32 +47,8 @@ std::vector<Report> reports_in(const std::string& text) {
   return reports;
 }
 
-/// What gpsdecode makes of a file; empty where the program is absent.
-std::vector<Report> gpsdecode(const std::string& path) {
-  const std::string command = "gpsdecode < '" + path + "' 2>/dev/null";
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
-  std::string text;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe.get()))
-    text.append(buffer.data(), count);
-  return reports_in(text);
-}
-
 std::string log_path(const std::string& folder, const std::string& name) {
   return (waymark_test::shared_data_dir() / "logs" / folder / name).string();
-}
-
-/// False, with a line that says so, where a log or the program is absent.
-bool can_compare(const std::string& name) {
-  if (!std::filesystem::exists(log_path("ubx", name))) {
-    std::cout << "SKIPPED: " << log_path("ubx", name) << " is absent\n";
-    return false;
-  }
-  if (std::system("command -v gpsdecode > /dev/null") != 0) {
-    std::cout << "SKIPPED: gpsdecode is not installed (Debian package gpsd-clients)\n";
-    return false;
-  }
-  return true;
 }
 
 LogData read_fixes(const std::string& name, const std::string& position = "NAV-PVT") {
@@ -171,22 +140,24 @@ TEST_CASE("ubx: real logs of NAV-PVT agree with gpsdecode") {
         Case{"gpsd_ublox-neo-m8l.log", 19, 0, 0}, Case{"gpsd_ublox-neo-m8u-hnr.log", 1, 0, 0},
         Case{"pyubx2_pygpsdata-MIXED.log", 39, 0, 0}, Case{"swiftnav_nav_pvt.ubx", 1, 0, 0},
         Case{"swiftnav_nav_pvt_corrupted.ubx", 1, 0, 2}, Case{"swiftnav_nav_pvt_fix_type.ubx", 13, 3, 0}}) {
-    if (!can_compare(log.name)) return;
+    const auto objects = waymark_test::run_gpsdecode(log_path("ubx", log.name));
+    if (!objects) return;
     INFO(log.name);
     const LogData data = read_fixes(log.name);
     CHECK(data.fixes.size() == log.fixes);
     CHECK(data.without_fix == log.without_fix);
     CHECK(data.corrupt == log.corrupt);
-    check_agreement(compared(log.name, data, gpsdecode(log_path("ubx", log.name))), 1e-6, 1e-9);
+    check_agreement(compared(log.name, data, reports_of(*objects)), 1e-6, 1e-9);
   }
 }
 
 TEST_CASE("ubx: a real log of NAV-HPPOSLLH agrees with gpsdecode") {
   const std::string name = "gpsd_ublox-zed-f9p-hp.log";
-  if (!can_compare(name)) return;
+  const auto objects = waymark_test::run_gpsdecode(log_path("ubx", name));
+  if (!objects) return;
   const LogData data = read_fixes(name);
   CHECK(data.fixes.size() == 29);
-  const std::vector<Report> reports = gpsdecode(log_path("ubx", name));
+  const std::vector<Report> reports = reports_of(*objects);
   // Where gpsd reports an epoch only once it is with NAV-PVT's position and hAcc, rounded to 1e-7 degree and
   // to 1 mm: 5.6 mm north, 3.9 mm east at most, and 0.5 mm.
   check_agreement(compared(name, data, reports), 0.0068, 0.00051);
@@ -210,5 +181,7 @@ TEST_CASE("ubx: real HNR-PVT agrees with what gpsd 3.25 made of it") {
   }
   const LogData data = read_fixes(name, "HNR-PVT");
   CHECK(data.fixes.size() == 189);
-  check_agreement(compared(name + " (HNR)", data, reports_in(read_text_file(reference))), 1e-6, 1e-9);
+  check_agreement(
+      compared(name + " (HNR)", data, reports_of(waymark_test::gpsd_objects(read_text_file(reference)))),
+      1e-6, 1e-9);
 }

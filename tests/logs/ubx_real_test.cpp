@@ -7,12 +7,13 @@
 #include <iostream>
 #include <string>
 
+#include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
-#include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/ubx.hpp>
 #include <waymark/formats/text_file.hpp>
 
+#include "logs/log_pieces.hpp"
 #include "support/paths.hpp"
 
 using namespace waymark;
@@ -30,42 +31,11 @@ bool logs_are_there() {
   return false;
 }
 
-LogData decode(const std::string& bytes, const LogRequest& request, std::size_t piece) {
-  const auto decoder = UbxReader().open("log.ubx", request);
-  for (std::size_t begin = 0; begin < bytes.size(); begin += piece)
-    decoder->take(std::string_view(bytes).substr(begin, piece));
-  decoder->finish();
-  return decoder->data();
-}
-
 LogRequest sensor_request() {
   LogRequest request;
   request.stream = StreamKind::odometry;
   request.readings = odometry_channels();
   return request;
-}
-
-bool same_number(double one, double other) {
-  return one == other || (std::isnan(one) && std::isnan(other));
-}
-
-bool same_fix(const GeodeticFix& one, const GeodeticFix& other) {
-  return one.stamp == other.stamp && one.latitude_deg == other.latitude_deg &&
-         one.longitude_deg == other.longitude_deg && one.covariance_en == other.covariance_en &&
-         one.course_rad == other.course_rad && one.speed_mps == other.speed_mps && one.line == other.line;
-}
-
-void check_same(const LogData& one, const LogData& other) {
-  CHECK(std::equal(one.fixes.begin(), one.fixes.end(), other.fixes.begin(), other.fixes.end(), same_fix));
-  CHECK(one.readings.stamps == other.readings.stamps);
-  CHECK(std::equal(one.readings.values.begin(), one.readings.values.end(), other.readings.values.begin(),
-                   other.readings.values.end(), same_number));
-  CHECK(one.notes == other.notes);
-  CHECK(one.kinds == other.kinds);
-  CHECK(one.records == other.records);
-  CHECK(one.without_fix == other.without_fix);
-  CHECK(one.corrupt == other.corrupt);
-  CHECK(one.corrupt_examples == other.corrupt_examples);
 }
 
 }  // namespace
@@ -77,20 +47,17 @@ TEST_CASE("ubx: real logs give the same in pieces of any length") {
     const std::string bytes = read_text_file(entry.path().string());
     INFO(entry.path().string());
     all += bytes;
-    for (const LogRequest& request : {LogRequest{}, sensor_request()}) {
-      const LogData whole = decode(bytes, request, bytes.size());
-      for (const std::size_t piece : {1, 7}) check_same(whole, decode(bytes, request, piece));
-    }
+    for (const LogRequest& request : {LogRequest{}, sensor_request()})
+      waymark_test::check_pieces(UbxReader(), bytes, "log.ubx", request);
   }
   // Damaged: every 997th byte lost.
   std::string damaged;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (i % 997 != 0) damaged += all[i];
   }
-  const LogData whole = decode(damaged, {}, damaged.size());
+  const LogData whole = waymark_test::check_pieces(UbxReader(), damaged, "log.ubx", {});
   CHECK(whole.corrupt > 50);
   CHECK(whole.fixes.size() > 100);
-  for (const std::size_t piece : {1, 7}) check_same(whole, decode(damaged, {}, piece));
 }
 
 TEST_CASE("ubx: real logs are known for UBX even where NMEA is mixed in") {
@@ -109,7 +76,7 @@ TEST_CASE("ubx: real logs are known for UBX even where NMEA is mixed in") {
 TEST_CASE("ubx: a real log of a vehicle's sensors") {
   if (!logs_are_there()) return;
   const std::string bytes = read_text_file((folder() / "gpsd_ublox-neo-m8l.log").string());
-  const LogData data = decode(bytes, sensor_request(), bytes.size());
+  const LogData data = UbxReader().read(bytes, "log.ubx", sensor_request());
   CHECK(data.records == 612);
   CHECK(data.corrupt == 0);
   REQUIRE(data.readings.size() == 612);
@@ -140,7 +107,7 @@ TEST_CASE("ubx: real single messages of ESF-MEAS") {
   const std::string bytes = read_text_file((folder() / "swiftnav_esf_meas.ubx").string());
   LogRequest request = sensor_request();
   request.gps_week = 2000;  // the log's only navigation message, NAV-STATUS, tells none
-  const LogData data = decode(bytes, request, bytes.size());
+  const LogData data = UbxReader().read(bytes, "log.ubx", request);
   CHECK(data.readings.size() == 7);
   CHECK(data.readings.stamps.at(0).nanoseconds == (2000LL * 604'800'000 + 325'304'500) * 1'000'000);
   const auto value = [&](std::size_t row, const std::string& name) {

@@ -82,13 +82,13 @@ TEST_CASE("ubx, by the specification: ESF-MEAS in SI units, NaN for what a messa
   CHECK(at(0, 4) == Approx(2 * kDegree));
   CHECK(at(0, 5) == Approx(0.5 * kDegree));
   CHECK(at(0, 6) == Approx(-kDegree));
-  for (const std::size_t absent : {1, 2, 3, 7, 8, 9}) CHECK(std::isnan(at(0, absent)));
+  for (const std::size_t absent : {1U, 2U, 3U, 7U, 8U, 9U}) CHECK(std::isnan(at(0, absent)));
   CHECK(at(1, 1) == 5);
   CHECK(at(1, 2) == 3);
   CHECK(at(1, 7) == 1);
   CHECK(at(1, 8) == -0.5);
   CHECK(at(1, 9) == Approx(9.765625));
-  for (const std::size_t absent : {0, 3, 4, 5, 6}) CHECK(std::isnan(at(1, absent)));
+  for (const std::size_t absent : {0U, 3U, 4U, 5U, 6U}) CHECK(std::isnan(at(1, absent)));
   CHECK(data.records == 2);
 }
 
@@ -220,5 +220,5 @@ TEST_CASE("ubx: readings that ESF-MEAS has not are an error that says what it ha
   request = channels({"speed"});
   request.columns["speed"] = {"v", "", ""};
   CHECK_THROWS_MATCHES(UbxReader().open("log.ubx", request), InputError,
-                       Message("log.ubx: the readings of a UBX log have no columns to map"));
+                       Message("log.ubx: a UBX log of readings has no columns to map; leave out 'columns'"));
 }

@@ -268,7 +268,7 @@ TEST_CASE("ubx: a position without accuracy takes the stated default, or is corr
   for (const std::int64_t none : {0LL, 0xFFFFFFFFLL}) {
     const std::string log = pvt_frame(nav_pvt().u32(40, none));
     CHECK(decode(log).corrupt_examples ==
-          Notes{"log.ubx:byte 0: the position has no accuracy (hAcc), and no default sigma is stated"});
+          Notes{"log.ubx:byte 0: no accuracy is given: state 'default_sigma'"});
     LogRequest request;
     request.default_sigma_m = 7;
     const LogData data = read(log, request);
@@ -386,7 +386,7 @@ TEST_CASE("ubx: what cannot be read at all is an error that says why") {
   request.gps_week = 0;
   request.companions["dbc"] = {"a.dbc", ""};
   CHECK_THROWS_MATCHES(read("", request), InputError,
-                       Message("log.ubx: a UBX log takes no companion files, got 'dbc'"));
+                       Message("log.ubx: a UBX log takes no 'dbc' file; leave it out"));
 }
 
 TEST_CASE("ubx: a log is known by its frames") {
