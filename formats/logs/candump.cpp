@@ -18,6 +18,7 @@
 #include <waymark/formats/logs/line_decoder.hpp>
 #include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/quantity.hpp>
+#include <waymark/formats/logs/record_fields.hpp>
 
 namespace waymark {
 namespace {
@@ -121,7 +122,7 @@ void CandumpDecoder::take_message(const MessageUse& use, const CanLine& line, st
   const std::optional<Stamp> stamp = stamp_of(line.stamp);
   if (!stamp)
     return bad_line(number, column(line.stamp),
-                    fmt::format("'{}' is no time in decimal seconds", line.stamp));
+                    fmt::format("{} is no time in decimal seconds", quote_field(line.stamp)));
   if (const std::string_view what = read_can_data(line, frame_); !what.empty())
     return bad_line(number, column(line.data), std::string(what));
   values_.clear();
@@ -263,25 +264,17 @@ std::unique_ptr<LogDecoder> CandumpReader::open(const std::string& path, const L
 }
 
 Recognition CandumpReader::recognise(std::string_view head) const {
-  std::size_t lines = 0;
+  HeadLines lines(head);
   std::size_t frames = 0;
   CanData data;
-  while (!head.empty()) {
-    const std::size_t end = head.find('\n');
-    if (end == std::string_view::npos && lines > 0) break;  // may be cut
-    std::string_view line = head.substr(0, end);
-    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    if (line.empty()) continue;
-    ++lines;
-    const CanLine taken = split_can_line(line);
+  while (lines.next()) {
+    const CanLine taken = split_can_line(lines.line());
     const bool sound = taken.kind == FrameKind::remote || taken.kind == FrameKind::error ||
                        (taken.kind == FrameKind::data && read_can_data(taken, data).empty());
     if (sound && can_stamp(taken.stamp)) ++frames;
   }
-  if (2 * frames <= lines) return {};
-  return {static_cast<double>(frames) / static_cast<double>(lines),
-          fmt::format("{} of {} lines are CAN frames as candump writes them", frames, lines)};
+  if (2 * frames <= lines.count()) return {};
+  return lines.share(frames, "are CAN frames as candump writes them");
 }
 
 }  // namespace waymark

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/logs/dbc_multiplexing.hpp>
 #include <waymark/formats/logs/dbc_tokens.hpp>
 
 namespace waymark {
@@ -70,7 +71,10 @@ class DbcParser {
     }
     if (dbc_.messages.empty())
       throw InputError(fmt::format("{}: no message (a line 'BO_ ...'): this is no DBC file", dbc_.path));
-    for (DbcMessage& message : dbc_.messages) finish_message(message);
+    for (DbcMessage& message : dbc_.messages) {
+      for (DbcSignal& signal : message.signals) find_fraction(signal);
+      resolve_multiplexing(message, dbc_.path);
+    }
     return std::move(dbc_);
   }
 
@@ -88,8 +92,6 @@ class DbcParser {
   void read_value_type(DbcTokens& tokens);
   void read_ranges(DbcTokens& tokens);
   Place find_signal(DbcTokens& tokens);
-  void finish_message(DbcMessage& message);
-  void check_multiplexers(const DbcMessage& message, DbcSignal& signal) const;
 
   Dbc dbc_;
   std::unordered_map<std::uint32_t, std::size_t> by_id_;
@@ -293,45 +295,6 @@ void DbcParser::read_ranges(DbcTokens& tokens) {
   }
   signal->multiplexer = static_cast<std::size_t>(outer - message->signals.data());
   signal->when = std::move(ranges);
-}
-
-/// Ties signals "m3" to the one multiplexer of their message.
-void DbcParser::finish_message(DbcMessage& message) {
-  std::vector<std::size_t> roots;
-  std::size_t multiplexers = 0;
-  for (std::size_t i = 0; i < message.signals.size(); ++i) {
-    const DbcSignal& signal = message.signals[i];
-    if (signal.multiplexes) ++multiplexers;
-    if (signal.multiplexes && signal.when.empty()) roots.push_back(i);
-  }
-  for (DbcSignal& signal : message.signals) {
-    find_fraction(signal);
-    if (signal.when.empty() || signal.multiplexer || !signal.trouble.empty()) continue;
-    const std::string place = fmt::format("{}:{}:1: SG_ {}: ", dbc_.path, signal.line, signal.name);
-    // In extended multiplexing "m3M" usually lies under the one "M"; where a plain "m3" lies must be told.
-    if (roots.empty()) {
-      signal.trouble = fmt::format("{}it is multiplexed, but {} has no multiplexer (M)", place, message.name);
-    } else if (roots.size() > 1 || (multiplexers > 1 && !signal.multiplexes)) {
-      signal.trouble =
-          fmt::format("{}{} has several multiplexers: a line SG_MUL_VAL_ must say which one is meant", place,
-                      message.name);
-    } else {
-      signal.multiplexer = roots.front();
-    }
-  }
-  for (DbcSignal& signal : message.signals) check_multiplexers(message, signal);
-}
-
-/// A signal whose multiplexer cannot be read cannot be read either; nor one that depends on itself.
-void DbcParser::check_multiplexers(const DbcMessage& message, DbcSignal& signal) const {
-  const DbcSignal* outer = &signal;
-  for (std::size_t steps = 0; signal.trouble.empty() && outer->multiplexer; ++steps) {
-    outer = &message.signals[*outer->multiplexer];
-    signal.trouble = outer->trouble;
-    if (steps > message.signals.size())
-      signal.trouble = fmt::format("{}:{}:1: SG_ {}: its multiplexers depend on each other in a circle",
-                                   dbc_.path, signal.line, signal.name);
-  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <waymark/formats/logs/gpsd_json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -18,6 +19,7 @@
 #include <waymark/formats/logs/log_request.hpp>
 #include <waymark/formats/logs/nmea_sentence.hpp>
 #include <waymark/formats/logs/position_stream.hpp>
+#include <waymark/formats/logs/record_fields.hpp>
 
 namespace waymark {
 namespace {
@@ -41,10 +43,11 @@ std::optional<double> scaled_if_positive(std::optional<double> value, double fac
   return value && *value > 0 ? scaled(value, factor) : std::nullopt;
 }
 
-/// For messages: a name may be as long as a line.
-std::string shortened(const std::string& text) {
-  constexpr std::size_t kShown = 40;
-  return text.size() > kShown ? text.substr(0, kShown) + "..." : text;
+/// What may be a release, "3.25" or "3.20.1~dev"; empty for what is none.
+std::string release_text(const std::string& text) {
+  constexpr std::size_t kLongest = 40;
+  const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~'; });
+  return plain && text.size() <= kLongest ? text : std::string();
 }
 
 /// Counts of what is noted.
@@ -101,7 +104,7 @@ void GpsdDecoder::take_line(std::string_view line, std::size_t number) {
   try {
     GpsdReport report = read_gpsd_report(line);
     if (!report.kind.empty()) tally_.add(report.kind);
-    if (report.kind == "VERSION") release_ = shortened(report.release);
+    if (report.kind == "VERSION") release_ = release_text(report.release);
     if (report.kind == "TPV")
       take_report(std::move(report), number);
     else if (report.kind == "GST")
@@ -143,7 +146,7 @@ void GpsdDecoder::end_epoch() {
     const std::optional<Stamp> stamp = stamp_from_iso8601(report.time);
     if (!stamp)
       throw BadGpsdMember{
-          fmt::format("TPV: expected an ISO 8601 date for 'time', got '{}'", shortened(report.time))};
+          fmt::format("TPV: expected an ISO 8601 date for 'time', got {}", quote_field(report.time))};
     add_sample(report, *stamp);
   } catch (const BadGpsdMember& bad) {
     corrupt(epoch_line_, 1, bad.what);
@@ -210,8 +213,8 @@ void GpsdDecoder::add_notes() {
     note(fmt::format("{} fixes are dead reckoning of the receiver, not measured", counts_.dead_reckoning));
   if (counts_.simulated > 0) note(fmt::format("{} fixes are marked as simulated", counts_.simulated));
   if (counts_.other_devices > 0)
-    note(fmt::format("{} reports of other devices than '{}' were skipped", counts_.other_devices,
-                     shortened(device_)));
+    note(fmt::format("{} reports of other devices than {} were skipped", counts_.other_devices,
+                     quote_field(device_)));
   positions_.finish(data_);
 }
 
@@ -223,16 +226,12 @@ std::unique_ptr<LogDecoder> GpsdJsonReader::open(const std::string& path, const 
 }
 
 Recognition GpsdJsonReader::recognise(std::string_view head) const {
-  std::size_t lines = 0;
+  HeadLines lines(head);
   std::size_t objects = 0;
   std::size_t sentences = 0;
   bool positions = false;
-  while (!head.empty()) {
-    const std::size_t end = head.find('\n');
-    std::string_view line = head.substr(0, end);
-    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    ++lines;
+  while (lines.next()) {
+    std::string_view line = lines.line();
     if (const std::string_view kind = gpsd_class(line); !kind.empty()) {
       ++objects;
       positions = positions || kind == "TPV";
@@ -241,12 +240,10 @@ Recognition GpsdJsonReader::recognise(std::string_view head) const {
       ++sentences;
     }
   }
-  if (objects == 0) return {};
+  if (!positions || sentences == 0) return lines.share(objects, "are gpsd's JSON objects");
   // gpspipe -r and gpsd's regression outputs have the receiver's sentences between the objects made of them.
-  const std::size_t known = positions ? objects + sentences : objects;
-  return {static_cast<double>(known) / static_cast<double>(lines),
-          fmt::format("{} of {} lines are gpsd's JSON objects{}", objects, lines,
-                      positions && sentences > 0 ? fmt::format(", {} NMEA sentences", sentences) : "")};
+  return lines.share(objects + sentences,
+                     fmt::format("are gpsd's JSON objects, or NMEA sentences between them ({})", sentences));
 }
 
 }  // namespace waymark

@@ -198,26 +198,18 @@ std::unique_ptr<LogDecoder> KittiOxtsReader::open(const std::string& path, const
 }
 
 Recognition KittiOxtsReader::recognise(std::string_view head) const {
-  std::size_t records = 0;
+  HeadLines lines(head);
   RecordFields fields;
-  while (!head.empty()) {
-    const std::size_t end = head.find('\n');
-    if (end == std::string_view::npos && records > 0) break;  // cut off
-    fields.split_words(head.substr(0, end));
-    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
-    if (fields.count() == 0) continue;
+  while (lines.next()) {
+    fields.split_words(lines.line());
     if (fields.count() != kColumns) return {};
     for (std::size_t i = 0; i < kColumns; ++i) {
-      // Separated by blanks alone, and the five states are whole numbers.
-      const bool state = i >= kStatus.place;
-      std::string_view field = fields[i];
-      if (i + 1 == kColumns && field.ends_with('\r')) field.remove_suffix(1);
-      if (state ? !field_count(field) : !field_number(field)) return {};
+      const bool state = i >= kStatus.place;  // the last five are whole numbers
+      if (state ? !field_count(fields[i]) : !field_number(fields[i])) return {};
     }
-    ++records;
   }
-  if (records == 0) return {};
-  return {0.9, fmt::format("each of its first {} lines is 30 numbers, the last 5 whole", records)};
+  if (lines.count() == 0) return {};
+  return {0.9, fmt::format("each of its first {} lines is 30 numbers, the last 5 whole", lines.count())};
 }
 
 }  // namespace waymark

@@ -1,5 +1,7 @@
 #include <waymark/formats/logs/line_decoder.hpp>
 
+#include <fmt/format.h>
+
 namespace waymark {
 
 void LineDecoder::take(std::string_view piece) {
@@ -44,6 +46,26 @@ void LineDecoder::give(std::string_view line) {
   }
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   take_line(line, number_);
+}
+
+bool HeadLines::next() {
+  while (!rest_.empty()) {
+    const std::size_t end = rest_.find('\n');
+    if (end == std::string_view::npos && count_ > 0) return false;
+    line_ = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    if (!line_.empty() && line_.back() == '\r') line_.remove_suffix(1);
+    if (line_.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    ++count_;
+    return true;
+  }
+  return false;
+}
+
+Recognition HeadLines::share(std::size_t known, std::string_view what) const {
+  if (known == 0) return {};
+  return {static_cast<double>(known) / static_cast<double>(count_),
+          fmt::format("{} of {} lines {}", known, count_, what)};
 }
 
 }  // namespace waymark

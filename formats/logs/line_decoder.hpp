@@ -48,4 +48,25 @@ class LineDecoder : public LogDecoder {
   std::size_t number_ = 0;
 };
 
+/// The lines that a log begins with, for LogReader::recognise: without blank ones, and without a last one
+/// that has no end and so may be cut off (unless it is the only one).
+class HeadLines {
+ public:
+  explicit HeadLines(std::string_view head) : rest_(head) {}
+  /// Goes to the next line. @return false behind the last
+  [[nodiscard]] bool next();
+  /// Without its end.
+  [[nodiscard]] std::string_view line() const { return line_; }
+  /// How many there were so far.
+  [[nodiscard]] std::size_t count() const { return count_; }
+  /// "9 of 10 lines are ...", as sure as their share; nothing where there are none of them.
+  /// @param what  follows the numbers: "are CAN frames"
+  [[nodiscard]] Recognition share(std::size_t known, std::string_view what) const;
+
+ private:
+  std::string_view rest_;
+  std::string_view line_;
+  std::size_t count_ = 0;
+};
+
 }  // namespace waymark

@@ -255,25 +255,17 @@ std::unique_ptr<LogDecoder> NmeaReader::open(const std::string& path, const LogR
 }
 
 Recognition NmeaReader::recognise(std::string_view head) const {
-  std::size_t lines = 0;
+  HeadLines lines(head);
   std::size_t right = 0;
-  while (!head.empty()) {
-    const std::size_t end = head.find('\n');
-    std::string_view line = head.substr(0, end);
-    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    // Only of whole lines: the last one may be cut.
-    if (end == std::string_view::npos && lines > 0) break;
-    ++lines;
+  while (lines.next()) {
+    std::string_view line = lines.line();
     while (const std::optional<NmeaSentence> sentence = next_nmea_sentence(line)) {
       if (sentence->checksum != NmeaChecksum::right) continue;
       ++right;
       break;
     }
   }
-  if (right == 0) return {};
-  return {static_cast<double>(right) / static_cast<double>(lines),
-          fmt::format("{} of {} lines are NMEA sentences with a right checksum", right, lines)};
+  return lines.share(right, "are NMEA sentences with a right checksum");
 }
 
 }  // namespace waymark

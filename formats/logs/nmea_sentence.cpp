@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/formats/decimal.hpp>
+#include <waymark/formats/logs/record_fields.hpp>
 
 namespace waymark {
 namespace {
@@ -74,17 +75,6 @@ std::optional<NmeaSentence> sentence_of(std::string_view text) {
   return sentence;
 }
 
-/// A number of nothing but digits; at most nine of them.
-std::optional<int> digits(std::string_view text) {
-  if (text.empty() || text.size() > 9) return std::nullopt;
-  int value = 0;
-  for (const char c : text) {
-    if (!is_digit(c)) return std::nullopt;
-    value = 10 * value + (c - '0');
-  }
-  return value;
-}
-
 /// Days since 1970-01-01; empty for a day that does not exist.
 std::optional<std::int64_t> days_since_1970(std::optional<int> year, std::optional<int> month,
                                             std::optional<int> day) {
@@ -97,9 +87,7 @@ std::optional<std::int64_t> days_since_1970(std::optional<int> year, std::option
 }
 
 [[noreturn]] void fail(std::string_view field, std::string_view expected) {
-  constexpr std::size_t kShown = 40;
-  throw BadNmeaField{field, fmt::format("expected {}, got '{}{}'", expected, field.substr(0, kShown),
-                                        field.size() > kShown ? "..." : "")};
+  throw BadNmeaField{field, fmt::format("expected {}, got {}", expected, quote_field(field))};
 }
 
 }  // namespace
@@ -145,7 +133,7 @@ std::optional<double> NmeaFields::number(std::size_t index, const char* name) co
 std::optional<std::int64_t> NmeaFields::time_of_day(std::size_t index) const {
   const std::string_view field = (*this)[index];
   if (field.empty()) return std::nullopt;
-  const std::optional<int> whole = digits(field.substr(0, 6));
+  const std::optional<int> whole = field_count(field.substr(0, 6));
   const bool pointed = field.size() > 6 && field[6] == '.';
   if (!whole || field.size() < 6 || (field.size() > 6 && !pointed)) fail(field, "a time hhmmss");
   const int hour = *whole / 10'000;
@@ -164,7 +152,7 @@ std::optional<std::int64_t> NmeaFields::time_of_day(std::size_t index) const {
 std::optional<std::int64_t> NmeaFields::short_date(std::size_t index) const {
   const std::string_view field = (*this)[index];
   if (field.empty()) return std::nullopt;
-  const std::optional<int> number = field.size() == 6 ? digits(field) : std::nullopt;
+  const std::optional<int> number = field.size() == 6 ? field_count(field) : std::nullopt;
   if (!number) fail(field, "a date ddmmyy");
   const int year = *number % 100;
   const std::optional<std::int64_t> days =
@@ -175,10 +163,10 @@ std::optional<std::int64_t> NmeaFields::short_date(std::size_t index) const {
 
 std::optional<std::int64_t> NmeaFields::long_date(std::size_t index) const {
   if ((*this)[index].empty() || (*this)[index + 1].empty() || (*this)[index + 2].empty()) return std::nullopt;
-  const std::optional<int> year = digits((*this)[index + 2]);
+  const std::optional<int> year = field_count((*this)[index + 2]);
   if (!year || *year < 1980 || *year > 2200) fail((*this)[index + 2], "a year from 1980 to 2200");
   const std::optional<std::int64_t> days =
-      days_since_1970(year, digits((*this)[index + 1]), digits((*this)[index]));
+      days_since_1970(year, field_count((*this)[index + 1]), field_count((*this)[index]));
   if (!days) fail((*this)[index], "a day and a month that exist");
   return days;
 }

@@ -274,22 +274,13 @@ std::unique_ptr<LogDecoder> NovatelReader::open(const std::string& path, const L
 }
 
 Recognition NovatelReader::recognise(std::string_view head) const {
-  std::size_t lines = 0;
+  HeadLines lines(head);
   std::size_t right = 0;
   NovatelMessage message;
-  while (!head.empty()) {
-    const std::size_t end = head.find('\n');
-    if (end == std::string_view::npos && lines > 0) break;  // cut off
-    std::string_view line = head.substr(0, end);
-    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    if (line.empty()) continue;
-    ++lines;
-    if (!novatel_name(line).empty() && read_novatel(line, message).empty()) ++right;
+  while (lines.next()) {
+    if (!novatel_name(lines.line()).empty() && read_novatel(lines.line(), message).empty()) ++right;
   }
-  if (right == 0) return {};
-  return {static_cast<double>(right) / static_cast<double>(lines),
-          fmt::format("{} of {} lines are NovAtel messages with a right checksum", right, lines)};
+  return lines.share(right, "are NovAtel messages with a right checksum");
 }
 
 }  // namespace waymark

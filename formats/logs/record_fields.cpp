@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <waymark/formats/decimal.hpp>
+#include <waymark/formats/line_scanner.hpp>
 
 namespace waymark {
 
@@ -52,6 +53,10 @@ void RecordFields::split_at(std::string_view line, char separator) {
 std::size_t RecordFields::column(std::size_t index) const {
   if (index >= count_ || index >= kKept) return line_.size() + 1;
   return static_cast<std::size_t>(kept_[index].data() - line_.data()) + 1;
+}
+
+std::string quote_field(std::string_view field) {
+  return field.empty() ? "''" : quote_word(field);
 }
 
 std::optional<double> field_number(std::string_view field) {

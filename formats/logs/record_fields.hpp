@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace waymark {
@@ -34,6 +35,9 @@ class RecordFields {
   std::size_t count_ = 0;
 };
 
+/// A field as messages show it: in quotes, cut after 40 characters, without bytes that a terminal could take
+/// for a command.
+[[nodiscard]] std::string quote_field(std::string_view field);
 /// A finite decimal number that fills the field, with an optional sign and exponent.
 [[nodiscard]] std::optional<double> field_number(std::string_view field);
 /// A whole number 0 .. 999,999,999 of digits alone.

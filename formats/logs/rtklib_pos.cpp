@@ -287,12 +287,9 @@ std::unique_ptr<LogDecoder> RtklibPosReader::open(const std::string& path, const
 }
 
 Recognition RtklibPosReader::recognise(std::string_view head) const {
-  while (!head.empty()) {
-    const std::size_t end = head.find('\n');
-    std::string_view line = head.substr(0, end);
-    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    if (line.starts_with('%') && RtklibHeader().take(line))
+  HeadLines lines(head);
+  while (lines.next()) {
+    if (lines.line().starts_with('%') && RtklibHeader().take(lines.line()))
       return {1, "a header line names the columns of an RTKLIB solution"};
   }
   return {};

@@ -2,11 +2,13 @@
 
 #include <cstdlib>
 
+#include <waymark/formats/logs/gps_time.hpp>
+
 namespace waymark {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kWeek = 604'800 * kSecond;
+constexpr std::int64_t kWeek = kGpsWeekNanoseconds;
 constexpr std::int64_t kLastWeek = 10'000;
 
 std::int64_t of_week(std::uint32_t itow_ms) {

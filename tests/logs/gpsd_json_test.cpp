@@ -290,7 +290,7 @@ TEST_CASE("gpsd: how surely a log is known") {
   const std::string sky = "{\"class\":\"SKY\"}\n";
   const Recognition mixed = GpsdJsonReader().recognise("# comment\n" + sky + kFix + "\n$GPGSV,1,1,00*79\n");
   CHECK(mixed.certainty == Approx(3.0 / 4));
-  CHECK(mixed.evidence == "2 of 4 lines are gpsd's JSON objects, 1 NMEA sentences");
+  CHECK(mixed.evidence == "3 of 4 lines are gpsd's JSON objects, or NMEA sentences between them (1)");
   CHECK(GpsdJsonReader().recognise(sky + "time,speed\n").certainty == Approx(0.5));
   CHECK(GpsdJsonReader().recognise("{\"a\":1}\n").certainty == 0);
 }
