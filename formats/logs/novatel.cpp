@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/line_scanner.hpp>
+
 #include <waymark/formats/logs/gps_time.hpp>
 #include <waymark/formats/logs/kind_tally.hpp>
 #include <waymark/formats/logs/line_decoder.hpp>
@@ -132,8 +132,8 @@ std::optional<Stamp> NovatelDecoder::stamp() {
   const std::optional<Stamp> given = stamp_from_gps_week(week, seconds);
   const std::optional<Stamp> result = given ? positions_.stamp(*given, TimeScale::gps) : std::nullopt;
   if (!result) {
-    complain(0, fmt::format("expected a GPS week and its seconds, got {} {}", quote_word(week),
-                            quote_word(seconds)));
+    complain(0, fmt::format("expected a GPS week and its seconds, got {} {}", quote_field(week),
+                            quote_field(seconds)));
     if (!in_body) column_ = 1;
   }
   return result;
@@ -161,7 +161,7 @@ void NovatelDecoder::take_position(Stamp at, std::size_t line_number) {
   if (!is_sound()) return;
   if (layout_->type != kNoField) types_.add(message_.body[layout_->type]);
   const std::string_view datum = message_.body[layout_->datum];
-  if (!datum.empty() && datum != "WGS84" && datum_.empty()) datum_ = quote_word(datum);
+  if (!datum.empty() && datum != "WGS84" && datum_.empty()) datum_ = quote_field(datum);
   if (positions_.wants_truth()) {
     std::optional<double> heading;
     if (layout_->azimuth != kNoField)
@@ -222,7 +222,7 @@ double NovatelDecoder::number(std::size_t field, const char* name, double smalle
   const std::string_view text = message_.body[field];
   const std::optional<double> value = field_number(text);
   if (!value) {
-    complain(field, fmt::format("{}: expected a number, got {}", name, quote_word(text)));
+    complain(field, fmt::format("{}: expected a number, got {}", name, quote_field(text)));
   } else if (*value < smallest || *value > largest) {
     complain(field, fmt::format("{}: {} is outside {} .. {}", name, *value, smallest, largest));
   } else {

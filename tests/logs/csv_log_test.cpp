@@ -308,20 +308,3 @@ TEST_CASE("csv: a missing column names those present and the nearest") {
       Message("log.csv: unknown unit 'kmh' for speed; did you mean 'km/h'?; known: m/s, km/h, mph, "
               "kn, mm/s"));
 }
-
-TEST_CASE("the built-in readers are found by name") {
-  REQUIRE(builtin_log_readers().size() >= 2);
-  for (const LogReaderType& entry : builtin_log_readers())
-    CHECK(builtin_log_reader(entry.name) == entry.reader);
-  CHECK(builtin_log_reader("cvs") == nullptr);
-}
-
-TEST_CASE("suggestions") {
-  CHECK(edit_distance("", "abc") == 3);
-  CHECK(edit_distance("kitten", "sitting") == 3);
-  CHECK(edit_distance("yaw_rate", "ywa_rate") == 1);  // a swap is one edit
-  CHECK(edit_distance("Speed", "speed") == 0);
-  const std::vector<std::string_view> words{"columns", "format", "file"};
-  CHECK(did_you_mean("colums", words) == "; did you mean 'columns'?");
-  CHECK(did_you_mean("xyz", words).empty());
-}

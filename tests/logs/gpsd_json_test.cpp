@@ -1,45 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include <iostream>
-#include <numbers>
-#include <string>
-
-#include <waymark/core/error.hpp>
-#include <waymark/formats/iso8601.hpp>
-#include <waymark/formats/logs/gpsd_json.hpp>
-#include <waymark/formats/text_file.hpp>
-
-#include "logs/log_pieces.hpp"
-#include "support/paths.hpp"
+#include "logs/gpsd_reports.hpp"
 
 using namespace waymark;
-using Catch::Matchers::Message;
-
-namespace {
-
-LogRequest utc_fixes() {
-  LogRequest request;
-  request.time_scale = TimeScale::utc;
-  return request;
-}
-
-LogData read(std::string_view text, const LogRequest& request = utc_fixes()) {
-  return GpsdJsonReader().read(text, "log.json", request);
-}
-
-constexpr const char* kFix =
-    R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45.280Z","lat":46.5,"lon":7.5,"altHAE":1391.3,)"
-    R"("epx":4,"epy":6,"eph":10,"track":90,"epd":20,"speed":5,"eps":3})";
-
-/// The log in the shared data, or empty with a line that says so.
-std::string shared_log(const std::string& name) {
-  const auto path = waymark_test::shared_data_dir() / "logs" / "gpsd" / name;
-  if (std::filesystem::exists(path)) return read_text_file(path.string());
-  std::cout << "SKIPPED: " << path.string() << " is absent\n";
-  return {};
-}
-
-}  // namespace
+using namespace waymark_test::gpsd_samples;
 
 TEST_CASE("gpsd: one report") {
   const LogData data = read(kFix);
@@ -72,33 +36,6 @@ TEST_CASE("gpsd: stamps come out on the scale asked for") {
   // 13 leap seconds in 2005; GPS began at POSIX 315964800.
   CHECK(read(kFix, request).fixes.at(0).stamp.nanoseconds ==
         (1'118'327'685LL - 315'964'800 + 13) * 1'000'000'000 + 30'000'000);
-}
-
-TEST_CASE("gpsd: which figure a stated meaning reads") {
-  LogRequest request = utc_fixes();
-  const auto east_variance = [&](AccuracyMeaning meaning, std::string_view text) {
-    request.accuracy = meaning;
-    return read(text, request).fixes.at(0).covariance_en(0, 0);
-  };
-  CHECK(east_variance(AccuracyMeaning::one_sigma, kFix) == Approx(16));       // epx
-  CHECK(east_variance(AccuracyMeaning::drms, kFix) == Approx(50));            // eph^2 / 2
-  CHECK(east_variance(AccuracyMeaning::cep50, kFix) == Approx(72.13475204));  // eph^2 / (2 ln 2)
-  const char* radial_only =
-      R"({"class":"TPV","mode":2,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,"eph":10})";
-  CHECK(east_variance(AccuracyMeaning::automatic, radial_only) == Approx(50));
-  CHECK(east_variance(AccuracyMeaning::percent95, radial_only) == Approx(25));
-}
-
-TEST_CASE("gpsd: a report without accuracy takes the stated default, or is corrupt") {
-  const std::string text = std::string(kFix) + "\n" +
-                           R"({"class":"TPV","mode":2,"time":"2005-06-09T14:34:46Z","lat":1,"lon":2})" + "\n";
-  LogRequest request = utc_fixes();
-  const LogData strict = read(text, request);
-  CHECK(strict.fixes.size() == 1);
-  CHECK(strict.corrupt_examples ==
-        std::vector<std::string>{"log.json:2:1: TPV: no accuracy is given: state 'default_sigma'"});
-  request.default_sigma_m = 7;
-  CHECK(read(text, request).fixes.at(1).covariance_en(1, 1) == 49);
 }
 
 TEST_CASE("gpsd: neighbouring reports of one epoch are merged, the later field wins") {
@@ -158,14 +95,6 @@ TEST_CASE("gpsd: what is no fix, what is no JSON and what is corrupt are told ap
                                  "log.json: 1 of 9 records are marked as without a fix"});
 }
 
-TEST_CASE("gpsd: equal epx and epy throughout are remarked upon") {
-  const LogData data =
-      read(R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,"epx":3,"epy":3})");
-  CHECK(data.notes.back() ==
-        "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms "
-        "reads better: sigma would be 2.12 m on average instead of 1.5 m");
-}
-
 TEST_CASE("gpsd: a log may serve as truth") {
   LogRequest request = utc_fixes();
   request.stream = StreamKind::truth;
@@ -196,64 +125,6 @@ TEST_CASE("gpsd: what cannot be read at all is an error that says why") {
   request.companions["dbc"] = {"car.dbc", ""};
   CHECK_THROWS_MATCHES(read(kFix, request), InputError,
                        Message("log.json: a gpsd log takes no 'dbc' file; leave it out"));
-}
-
-TEST_CASE("gpsd: a GST object of the same time gives the accuracy, before its TPV or after it") {
-  const std::string gst =
-      R"({"class":"GST","time":"2005-06-09T14:34:45.280Z","rms":1,"major":8.7,"minor":4.7,)"
-      R"("orient":132.3,"lat":6.8,"lon":7.2,"alt":14})"
-      "\n";
-  const std::string other = R"({"class":"GST","time":"2005-06-09T14:34:46.280Z","lat":1,"lon":1})"
-                            "\n";
-  const std::string tpv = std::string(kFix) + "\n";
-  for (const std::string& text : {gst + tpv, tpv + gst, gst + other + tpv, tpv + gst + other}) {
-    const LogData data = read(text);
-    const Eigen::Matrix2d& covariance = data.fixes.at(0).covariance_en;
-    CHECK(covariance(0, 0) == Approx(7.2 * 7.2));  // lon is the east error, 1 sigma
-    CHECK(covariance(1, 1) == Approx(6.8 * 6.8));
-    // The ellipse's own off-diagonal: (8.7^2 - 4.7^2) sin cos of its axis, clockwise from north.
-    CHECK(covariance(0, 1) == Approx(-26.68).epsilon(0.01));
-    CHECK(data.notes ==
-          std::vector<std::string>{"log.json: 1 fixes with a GST object, whose errors are 1 sigma; 1 of "
-                                   "them with the correlation of its error ellipse"});
-  }
-  CHECK(read(other + tpv).fixes.at(0).covariance_en(0, 0) == Approx(4));  // of another time
-  LogRequest stated = utc_fixes();
-  stated.accuracy = AccuracyMeaning::percent95;
-  CHECK(read(gst + tpv, stated).fixes.at(0).covariance_en(0, 0) == Approx(4));  // what is stated wins
-}
-
-TEST_CASE("gpsd: version and values tell the dialect") {
-  const auto note = [](const std::string& release, const std::string& figures) {
-    const std::vector<std::string> notes =
-        read(R"({"class":"VERSION","release":")" + release + "\"}\n" +
-             R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,)" + figures + "}\n")
-            .notes;
-    return notes.size() > 1 ? notes[1] : std::string();
-  };
-  const std::string equal = R"("epx":10,"epy":10)";
-  const std::string dilution = R"("epx":6,"epy":8,"eph":2)";
-  CHECK(note("3.10", equal) ==
-        "log.json: epx and epy of gpsd before 3.11 are the 3-D accuracy / sqrt(2), a rough 1sigma: sigma "
-        "would be 10 "
-        "m on average instead of 5 m");
-  const std::string raw =
-      "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms "
-      "reads better: "
-      "sigma would be 7.07 m on average instead of 5 m";
-  CHECK(note("3.17", equal) == raw);
-  CHECK(note("", equal) == raw);
-  const std::string since_3_19 =
-      "log.json: epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of "
-      "precision; eph is "
-      "the receiver's own accuracy where it states one, which drms reads: sigma would be 1.41 m on average "
-      "instead of "
-      "3.5 m";
-  CHECK(note("3.22", dilution) == since_3_19);
-  CHECK(note("3.20.1~dev", dilution) == since_3_19);
-  CHECK(note("unknown", dilution) == since_3_19);
-  CHECK(note("3.17", dilution).empty());
-  CHECK(note("3.22", equal).empty());
 }
 
 TEST_CASE("gpsd: dead reckoning and simulation are noted, messages are counted by class") {
@@ -326,17 +197,4 @@ TEST_CASE("gpsd: real logs, whole and in pieces") {
   if (const std::string text = shared_log("gpsd_bu303-nofix.log.chk"); !text.empty())
     CHECK_THROWS_MATCHES(read(text), InputError,
                          Message("log.json: not one fix in 7 records (7 are marked as without a fix)"));
-}
-
-TEST_CASE("ISO 8601") {
-  const auto nanoseconds = [](std::string_view text) { return stamp_from_iso8601(text).value().nanoseconds; };
-  CHECK(nanoseconds("1970-01-01T00:00:00Z") == 0);
-  CHECK(nanoseconds("2000-02-29T12:00:00.123456789Z") == 951'825'600'123'456'789);
-  CHECK(nanoseconds("1969-12-31T23:59:59.5Z") == -500'000'000);
-  CHECK(nanoseconds("2016-12-31T23:59:60Z") == nanoseconds("2017-01-01T00:00:00Z"));
-  CHECK(nanoseconds("2023-06-28 14:52:12-0130") == nanoseconds("2023-06-28T16:22:12Z"));
-  for (const char* wrong :
-       {"", "2023-06-31T00:00:00Z", "2023-6-1T00:00:00Z", "2023-06-01T24:00:00Z", "2023-06-01T00:00:00X",
-        "2023-06-01T00:00:00.Z", "2023-06-01", "2023-06-01T00:00:00Z "})
-    CHECK(!stamp_from_iso8601(wrong));
 }

@@ -7,7 +7,6 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/logs/csv_log.hpp>
-#include <waymark/formats/logs/geocentric.hpp>
 #include <waymark/formats/logs/rtklib_pos.hpp>
 #include <waymark/formats/text_file.hpp>
 
@@ -125,22 +124,6 @@ TEST_CASE("rtklib_pos: at latitude and longitude 0 the axes x, y, z are up, east
   CHECK(*fix.course_rad == Approx(std::atan2(3, 4)));
   CHECK(*fix.speed_sigma_mps == Approx(0.1));
   CHECK(*fix.course_sigma_rad == Approx(0.02));
-}
-
-TEST_CASE("rtklib_pos: ECEF to geodetic as in EPSG guidance note 7-2, method 9602") {
-  const Eigen::Vector3d ecef(3771793.968, 140253.342, 5124304.349);
-  const GeodeticPlace place = geodetic_from_ecef(ecef);
-  CHECK(place.latitude_deg == Approx(53 + 48 / 60.0 + 33.820 / 3600).margin(1e-8));
-  CHECK(place.longitude_deg == Approx(2 + 7 / 60.0 + 46.380 / 3600).margin(1e-8));
-  CHECK(place.height_m == Approx(73).margin(1e-3));
-  for (const double latitude : {-90.0, -89.9999, -45.0, 0.0, 1e-7, 30.0, 60.0, 90.0}) {
-    for (const double height : {-1e5, -100.0, 0.0, 9000.0, 1e6}) {
-      const GeodeticPlace back = geodetic_from_ecef(ecef_from_geodetic({latitude, 12, height}));
-      CAPTURE(latitude, height);
-      CHECK(back.latitude_deg == Approx(latitude).margin(1e-13));
-      CHECK(back.height_m == Approx(height).margin(3e-9));
-    }
-  }
 }
 
 TEST_CASE("rtklib_pos: baselines are added to the reference position of the header") {

@@ -1,50 +1,10 @@
 #include <catch2/catch.hpp>
 
-#include <cmath>
-#include <iostream>
-#include <limits>
-#include <numbers>
-#include <string>
-
-#include <waymark/core/error.hpp>
-#include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/ubx.hpp>
-#include <waymark/formats/text_file.hpp>
-
-#include "logs/ubx_bytes.hpp"
-#include "support/paths.hpp"
+#include "logs/ubx_epochs.hpp"
 
 using namespace waymark;
 using namespace waymark_test;
-using Catch::Matchers::Message;
-using Notes = std::vector<std::string>;
-
-namespace {
-
-LogData read(std::string_view bytes, const LogRequest& request = {}) {
-  return UbxReader().read(bytes, "log.ubx", request);
-}
-
-std::string pvt_frame(const UbxBytes& pvt) {
-  return ubx_frame(0x0107, pvt.bytes());
-}
-
-/// What the log says where read() would throw for the want of samples.
-LogData decode(std::string_view bytes, const LogRequest& request = {}) {
-  const auto decoder = UbxReader().open("log.ubx", request);
-  decoder->take(bytes);
-  decoder->finish();
-  return decoder->data();
-}
-
-bool has_note(const LogData& data, const std::string& text) {
-  for (const std::string& note : data.notes) {
-    if (note == "log.ubx: " + text) return true;
-  }
-  return false;
-}
-
-}  // namespace
+using namespace waymark_test::ubx_samples;
 
 TEST_CASE("ubx, by the specification: NAV-PVT") {
   const LogData data = read(pvt_frame(nav_pvt()));
@@ -64,13 +24,6 @@ TEST_CASE("ubx, by the specification: NAV-PVT") {
   CHECK(data.kinds == std::map<std::string, std::size_t>{{"NAV-PVT", 1}});
   CHECK(data.notes == Notes{"log.ubx: positions: 0 of NAV-HPPOSLLH, 1 of NAV-PVT, 0 of NAV-POSLLH",
                             "log.ubx: 1 fixes with hAcc read as drms (not stated)"});
-}
-
-TEST_CASE("ubx: stamps come out on the scale asked for, with the offset") {
-  LogRequest request;
-  request.time_scale = TimeScale::utc;
-  request.time_offset_s = -0.5;
-  CHECK(read(pvt_frame(nav_pvt()), request).fixes.at(0).stamp.nanoseconds == kUtc - 250 - 500'000'000);
 }
 
 TEST_CASE("ubx: what a stated accuracy means") {
@@ -185,70 +138,6 @@ TEST_CASE("ubx, by the specification: older receivers: NAV-POSLLH, NAV-VELNED an
   }
 }
 
-TEST_CASE("ubx: iTOW goes on over the end of a week") {
-  constexpr std::int64_t kWeekMs = 604'800'000;
-  const auto position = [](std::int64_t itow_ms) {
-    return ubx_frame(0x0102, UbxBytes(28).u32(0, itow_ms).u32(20, 600).bytes());
-  };
-  UbxBytes week(16);
-  week.u32(0, kWeekMs - 1000).u16(8, 2268).u8(11, 0x03);
-  const LogData data =
-      read(ubx_frame(0x0120, week.bytes()) + position(kWeekMs - 1000) + position(0) + position(1000));
-  REQUIRE(data.fixes.size() == 3);
-  const std::int64_t next_week = 2269 * kWeekMs * 1'000'000;
-  CHECK(data.fixes[0].stamp.nanoseconds == next_week - 1'000'000'000);
-  CHECK(data.fixes[1].stamp.nanoseconds == next_week);
-  CHECK(data.fixes[2].stamp.nanoseconds == next_week + 1'000'000'000);
-  CHECK(has_note(data, "2 epochs without a valid date or week: the week is that of the epochs before"));
-}
-
-TEST_CASE("ubx: without a week a position is corrupt, unless one is stated") {
-  const std::string log = ubx_frame(0x0102, UbxBytes(28).u32(0, kItowMs).u32(20, 600).bytes());
-  CHECK_THROWS_MATCHES(
-      read(log), InputError,
-      Message("log.ubx: none of 1 records could be used; first: log.ubx:byte 0: neither a valid "
-              "date nor a GPS week has come yet; state 'gps_week' to use the positions before"));
-  LogRequest request;
-  request.gps_week = 2268;
-  const LogData data = read(log, request);
-  CHECK(data.fixes.at(0).stamp.nanoseconds == kGps);
-  CHECK(has_note(data, "the first epochs tell no GPS week, the stated week 2268 is used"));
-}
-
-TEST_CASE("ubx: a date whose seconds are not resolved takes those of iTOW") {
-  UbxBytes pvt = nav_pvt();
-  pvt.u8(11, 0x03).u8(10, 14);  // 16 leap seconds assumed: two seconds late
-  const LogData data = read(pvt_frame(pvt));
-  CHECK(data.fixes.at(0).stamp.nanoseconds == kGps - 250);
-  CHECK(has_note(data,
-                 "1 dates are not fully resolved and differ from iTOW by whole seconds; iTOW is followed"));
-  pvt.u8(11, 0x07);
-  const LogData resolved = read(pvt_frame(pvt));
-  CHECK(resolved.fixes.at(0).stamp.nanoseconds == kGps - 250 + 2'000'000'000);
-  CHECK(has_note(resolved, "1 dates differ from iTOW by a second or more; the dates are followed"));
-}
-
-TEST_CASE("ubx: the leap second of 2016 is an instant of its own on the GPS scale") {
-  UbxBytes pvt = nav_pvt();
-  pvt.u16(4, 2016).u8(6, 12).u8(7, 31).u8(8, 23).u8(9, 59).u8(10, 60).u32(16, 0);
-  // 2016-12-31 was a Saturday: 23:59:60 is 17 s before the end of the week and 86400 + 17 leap seconds in:
-  // week 1930 ended.
-  const std::int64_t gps = (1'483'228'800LL - 315'964'800 + 17) * 1'000'000'000;
-  pvt.u32(0, gps / 1'000'000 % 604'800'000);
-  CHECK(read(pvt_frame(pvt)).fixes.at(0).stamp.nanoseconds == gps);
-}
-
-TEST_CASE("ubx: dates that are not valid or do not exist fall back on the week") {
-  UbxBytes week(16);
-  week.u32(0, kItowMs).u16(8, 2268).u8(11, 0x03);
-  for (const auto& wrong :
-       {nav_pvt().u8(11, 0x01), nav_pvt().u8(11, 0x02), nav_pvt().u8(6, 13), nav_pvt().u8(7, 31),
-        nav_pvt().u16(4, 9999), nav_pvt().u8(8, 24), nav_pvt().u32(16, 1'000'000'001)}) {
-    CHECK(read(pvt_frame(wrong) + ubx_frame(0x0120, week.bytes())).fixes.at(0).stamp.nanoseconds == kGps);
-    CHECK(decode(pvt_frame(wrong)).corrupt == 1);
-  }
-}
-
 TEST_CASE("ubx: which fixes are fixes") {
   const auto with = [](int type, int flags) { return pvt_frame(nav_pvt().u8(20, type).u8(21, flags)); };
   for (const int type : {0, 5, 6, 255}) CHECK(decode(with(type, 1)).without_fix == 1);
@@ -275,50 +164,6 @@ TEST_CASE("ubx: a position without accuracy takes the stated default, or is corr
     CHECK(data.fixes.at(0).covariance_en(1, 1) == 49);
     CHECK(has_note(data, "1 fixes give no accuracy, the stated default sigma of 7 m is used"));
   }
-}
-
-TEST_CASE("ubx: what is corrupt is told with its place") {
-  CHECK(decode(pvt_frame(nav_pvt().u32(28, 900'000'001))).corrupt_examples ==
-        Notes{"log.ubx:byte 0: the position 90.0000001, 12.25 is outside -90 .. 90, -180 .. 180"});
-  CHECK(decode(pvt_frame(nav_pvt().u32(0, 604'800'000))).corrupt_examples ==
-        Notes{"log.ubx:byte 0: iTOW 604800000 ms lies beyond the end of a week"});
-  CHECK(decode("junk" + ubx_frame(0x0107, std::string(83, 'x'))).corrupt_examples ==
-        Notes{"log.ubx:byte 4: NAV-PVT: 83 bytes, where the message has at least 84"});
-  CHECK(decode(ubx_frame(0x0107, "")).corrupt == 0);  // a poll
-
-  std::string wrong = pvt_frame(nav_pvt());
-  wrong[30] ^= 1;
-  const std::string good = pvt_frame(nav_pvt(1));
-  const LogData data = read("$GPGGA,1*00\r\n" + wrong + good);
-  CHECK(data.fixes.size() == 1);
-  CHECK(data.fixes[0].line == 1);
-  CHECK(data.records == 2);
-  CHECK(data.corrupt_examples == Notes{"log.ubx:byte 13: NAV-PVT: the checksum is wrong"});
-  CHECK(has_note(data, "113 bytes that belong to no UBX frame were passed over"));
-
-  const LogData cut = read(good + good.substr(0, 50));
-  CHECK(cut.fixes.size() == 1);
-  CHECK(cut.corrupt_examples == Notes{"log.ubx:byte 100: NAV-PVT: the log ends within the message"});
-}
-
-TEST_CASE("ubx: a corrupt length swallows no frames") {
-  const std::string good = pvt_frame(nav_pvt()) + pvt_frame(nav_pvt(1)) + pvt_frame(nav_pvt(2));
-  for (const int length : {93, 200, 8192, 8193, 0xFFFF}) {
-    std::string wrong = pvt_frame(nav_pvt());
-    wrong[4] = static_cast<char>(length & 0xFF);
-    wrong[5] = static_cast<char>(length >> 8);
-    const LogData data = read(wrong + good);
-    CHECK(data.fixes.size() == 3);
-    CHECK(data.corrupt == 1);
-    CHECK(data.corrupt_examples.at(0).starts_with("log.ubx:byte 0: NAV-PVT: "));
-    if (length > 8192)
-      CHECK(data.corrupt_examples[0] == "log.ubx:byte 0: NAV-PVT: a length of " + std::to_string(length) +
-                                            " bytes, which no message has");
-  }
-  // Sync bytes by chance in other binary data are no record: no class of the protocol follows.
-  const LogData data = read(std::string("\xB5\xB5\x62\x77\x07\x02\x00", 7) + good + "\xB5");
-  CHECK(data.fixes.size() == 3);
-  CHECK(data.corrupt == 0);
 }
 
 TEST_CASE("ubx: truth has the vehicle's heading where it is valid") {
@@ -364,43 +209,4 @@ TEST_CASE("ubx, by the specification: HNR-PVT is read where it is asked for, and
                "of that epoch and no new ones"));
   request.stream = StreamKind::truth;
   CHECK(*read(log, request).truth.at(0).heading_rad == Approx(std::numbers::pi / 2));
-}
-
-TEST_CASE("ubx: what cannot be read at all is an error that says why") {
-  CHECK_THROWS_MATCHES(read(""), InputError, Message("log.ubx: the log holds no records"));
-  CHECK_THROWS_MATCHES(read("$GPGGA,1*00\r\n"), InputError, Message("log.ubx: the log holds no records"));
-  LogRequest request;
-  request.columns["time"] = {"t", "", ""};
-  CHECK_THROWS_MATCHES(
-      read("", request), InputError,
-      Message("log.ubx: a UBX log has no column for 'time'; only 'position' may be stated, as "
-              "'NAV-PVT' (all navigation messages) or 'HNR-PVT'"));
-  request.columns = {{"position", {"NAV-SOL", "", ""}}};
-  CHECK_THROWS_MATCHES(read("", request), InputError,
-                       Message("log.ubx: 'position' of a UBX log is 'NAV-PVT' (all navigation messages) or "
-                               "'HNR-PVT', got 'NAV-SOL'"));
-  request.columns.clear();
-  request.gps_week = -1;
-  CHECK_THROWS_MATCHES(read("", request), InputError,
-                       Message("log.ubx: 'gps_week' -1 is outside 0 .. 10000"));
-  request.gps_week = 0;
-  request.companions["dbc"] = {"a.dbc", ""};
-  CHECK_THROWS_MATCHES(read("", request), InputError,
-                       Message("log.ubx: a UBX log takes no 'dbc' file; leave it out"));
-}
-
-TEST_CASE("ubx: a log is known by its frames") {
-  const auto certainty = [](std::string_view head) { return UbxReader().recognise(head).certainty; };
-  const std::string pvt = pvt_frame(nav_pvt());
-  CHECK(certainty("") == 0);
-  CHECK(certainty("$GPGGA,1*00\r\n") == 0);
-  CHECK(certainty(pvt) == Approx(0.9));
-  std::string mixed;
-  for (int i = 0; i < 3; ++i)
-    mixed += "$GPGGA,of,NMEA,there,is,much,more,than,of,UBX" + std::string(900, ',') + pvt;
-  CHECK(certainty(mixed) == 1);
-  CHECK(UbxReader().recognise(mixed).evidence ==
-        "3 UBX frames with a right checksum, 3 of them with a position");
-  const std::string silent = nav_eoe(1) + nav_eoe(2) + nav_eoe(3);
-  CHECK(certainty(silent + std::string(36, ' ')) == Approx(0.45));
 }

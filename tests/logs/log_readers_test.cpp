@@ -1,0 +1,27 @@
+#include <catch2/catch.hpp>
+
+#include <string>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/logs/log_readers.hpp>
+#include <waymark/formats/suggest.hpp>
+
+using namespace waymark;
+using Catch::Matchers::Message;
+
+TEST_CASE("the built-in readers are found by name") {
+  REQUIRE(builtin_log_readers().size() >= 2);
+  for (const LogReaderType& entry : builtin_log_readers())
+    CHECK(builtin_log_reader(entry.name) == entry.reader);
+  CHECK(builtin_log_reader("cvs") == nullptr);
+}
+
+TEST_CASE("suggestions") {
+  CHECK(edit_distance("", "abc") == 3);
+  CHECK(edit_distance("kitten", "sitting") == 3);
+  CHECK(edit_distance("yaw_rate", "ywa_rate") == 1);  // a swap is one edit
+  CHECK(edit_distance("Speed", "speed") == 0);
+  const std::vector<std::string_view> words{"columns", "format", "file"};
+  CHECK(did_you_mean("colums", words) == "; did you mean 'columns'?");
+  CHECK(did_you_mean("xyz", words).empty());
+}
