@@ -108,23 +108,20 @@ std::string GpsdAccuracy::dialect(const std::string& release) const {
   if (version && *version < kRawAccuracySince)
     return fmt::format(
         "epx and epy of gpsd before 3.11 are the 3-D accuracy / sqrt(2), a rough 1sigma: sigma would be "
-        "{:.3g} m on "
-        "average instead of {:.3g} m",
+        "{:.3g} m on average instead of {:.3g} m",
         figure, read);
   const bool all_equal = per_axis_equal_ == per_axis_;
   if (all_equal && (!version || *version < kDilutionSince))
     return fmt::format(
         "epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms reads "
-        "better: sigma "
-        "would be {:.3g} m on average instead of {:.3g} m",
+        "better: sigma would be {:.3g} m on average instead of {:.3g} m",
         sigma_factor(AccuracyMeaning::drms) * figure, read);
   if (per_axis_with_radial_ > 0 && (!version || *version >= kDilutionSince))
     return fmt::format(
         "epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of precision; eph is "
-        "the "
-        "receiver's own accuracy where it states one, which drms reads: sigma would be {:.3g} m on average "
-        "instead of "
-        "{:.3g} m",
+        "the receiver's own accuracy where it states one, which drms reads: sigma would be {:.3g} m on "
+        "average "
+        "instead of {:.3g} m",
         sigma_factor(AccuracyMeaning::drms) * radial_sum_m_ / static_cast<double>(per_axis_with_radial_),
         read);
   return {};

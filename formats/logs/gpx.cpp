@@ -175,7 +175,7 @@ void GpxDecoder::add_point() {
   std::optional<Stamp> stamp = stamp_from_iso8601(time);
   if (!stamp) complain(fmt::format("time: expected an ISO 8601 date, got {}", quote_word(time)));
   if (stamp) stamp = positions_.stamp(*stamp, TimeScale::utc);
-  if (!stamp) complain("time: too large for a stamp");
+  if (!stamp) complain("its time is too large for a stamp");
   if (!what_.empty()) return;
 
   GeodeticFix fix;

@@ -234,8 +234,7 @@ void NmeaDecoder::release_undated() {
 void NmeaDecoder::fail_undated() const {
   throw InputError(
       fmt::format("{}: none of the first {} fixes has a date (RMC and ZDA sentences give one); state that of "
-                  "the first record, "
-                  "such as `time: {{date: 2009-04-01}}`",
+                  "the first record, such as `time: {{date: 2009-04-01}}`",
                   path(), undated_.size()));
 }
 

@@ -26,7 +26,7 @@ void note_dates(const NmeaCounts& counts, const LogRequest& request, std::vector
     notes.push_back(
         fmt::format("{} fixes in a leap second are stamped as one second later", counts.leap_seconds));
   if (counts.without_time > 0)
-    notes.push_back(fmt::format("{} fixes without a time of day were skipped", counts.without_time));
+    notes.push_back(fmt::format("{} fixes without a time of day were passed over", counts.without_time));
 }
 
 void note_accuracy(const NmeaCounts& counts, const LogRequest& request, std::vector<std::string>& notes) {
@@ -66,7 +66,8 @@ void note_quality(const NmeaCounts& counts, std::vector<std::string>& notes) {
         fmt::format("{} sentences of kinds that are not read are damaged (wrong checksum or none)",
                     counts.other_wrong_checksums));
   if (counts.not_sentences > 0)
-    notes.push_back(fmt::format("{} lines that hold no NMEA sentence were skipped", counts.not_sentences));
+    notes.push_back(
+        fmt::format("{} lines that hold no NMEA sentence were passed over", counts.not_sentences));
 }
 
 }  // namespace

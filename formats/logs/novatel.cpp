@@ -243,8 +243,7 @@ void NovatelDecoder::end() {
   if (abbreviated_ > 0) {
     const std::string what = fmt::format(
         "{} lines are abbreviated ASCII (`<BESTPOS`), which has no checksum and is not read; let the "
-        "receiver log "
-        "BESTPOSA",
+        "receiver log BESTPOSA",
         abbreviated_);
     if (data_.records == 0) throw InputError(fmt::format("{}: {}", path(), what));
     note(what);

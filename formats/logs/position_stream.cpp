@@ -38,9 +38,9 @@ const char* PositionStream::set_covariance(GeodeticFix& fix, const StatedAccurac
   if (!accuracy.squares_en) return stand_in(fix, accuracy.hdop);
   const Eigen::Matrix2d& squares = *accuracy.squares_en;
   // The comparisons are such that NaN fails.
-  if (!(std::max(squares(0, 0), squares(1, 1)) <= kLargestSigma * kLargestSigma)) return kTooLarge;
   if (!(squares(0, 0) > 0 && squares(0, 0) * squares(1, 1) > squares(0, 1) * squares(0, 1)))
     return "the covariance is not positive definite";
+  if (!(std::max(squares(0, 0), squares(1, 1)) <= kLargestSigma * kLargestSigma)) return kTooLarge;
   if (!accuracy.usual_meaning) {
     fix.covariance_en = squares;
     return nullptr;

@@ -162,7 +162,7 @@ std::optional<Stamp> RtklibDecoder::stamp() {
   }
   given->nanoseconds -= header_.hours_ahead * kHour;
   const std::optional<Stamp> stamp = positions_.stamp(*given, header_.scale);
-  if (!stamp) complain(0, "time: too large for a stamp");
+  if (!stamp) complain(0, "its time is too large for a stamp");
   return stamp;
 }
 

@@ -67,8 +67,7 @@ TEST_CASE("candump: a signal that the DBC spoils is refused where it is asked fo
   request.columns["speed"] = from("T", "m/s");
   CHECK(read("(1.0) can0 001#05\n", request).notes.front() ==
         "car.log: 1 signals of the DBC cannot be read (none is asked for); first: car.dbc:2:10: SG_ S: start "
-        "1 and "
-        "length 8 do not fit into the 1 bytes of M; correct one of them");
+        "1 and length 8 do not fit into the 1 bytes of M; correct one of them");
 }
 
 TEST_CASE("candump: signals behind a frame's reach are refused") {
@@ -86,8 +85,7 @@ TEST_CASE("candump: a log without a wanted frame says what was looked for") {
                                        {{"speed", from("can0:FL")}, {"yaw_rate", from("MOTION.YAW_RATE")}})),
                        InputError,
                        Message("car.log: no frame holds a wanted signal (WHEELS (id AA) on can0, MOTION (id "
-                               "24)); there are can0 (1 "
-                               "frames), can1 (1 frames)"));
+                               "24)); there are can0 (1 frames), can1 (1 frames)"));
   CHECK_THROWS_MATCHES(read("", fixes()), InputError, Message("car.log: the log holds no records"));
 }
 

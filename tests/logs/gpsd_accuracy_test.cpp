@@ -77,20 +77,17 @@ TEST_CASE("gpsd: version and values tell the dialect") {
   const std::string dilution = R"("epx":6,"epy":8,"eph":2)";
   CHECK(note("3.10", equal) ==
         "log.json: epx and epy of gpsd before 3.11 are the 3-D accuracy / sqrt(2), a rough 1sigma: sigma "
-        "would be 10 "
-        "m on average instead of 5 m");
+        "would be 10 m on average instead of 5 m");
   const std::string raw =
       "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms "
-      "reads better: "
-      "sigma would be 7.07 m on average instead of 5 m";
+      "reads better: sigma would be 7.07 m on average instead of 5 m";
   CHECK(note("3.17", equal) == raw);
   CHECK(note("", equal) == raw);
   const std::string since_3_19 =
       "log.json: epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of "
-      "precision; eph is "
-      "the receiver's own accuracy where it states one, which drms reads: sigma would be 1.41 m on average "
-      "instead of "
-      "3.5 m";
+      "precision; eph is the receiver's own accuracy where it states one, which drms reads: sigma would be "
+      "1.41 m on average "
+      "instead of 3.5 m";
   CHECK(note("3.22", dilution) == since_3_19);
   CHECK(note("3.20.1~dev", dilution) == since_3_19);
   CHECK(note("unknown", dilution) == since_3_19);

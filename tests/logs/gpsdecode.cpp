@@ -126,8 +126,7 @@ Comparison compare_with_gpsd(const std::vector<waymark::GeodeticFix>& fixes,
 
 std::string table_head() {
   return "log                                  ours theirs matched dates  pos/m   h/m     t/s     v/(m/s) "
-         "course/deg "
-         "GSTs sigma/m";
+         "course/deg GSTs sigma/m";
 }
 
 std::string table_row(const std::string& name, const Comparison& c) {

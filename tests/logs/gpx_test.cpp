@@ -145,8 +145,7 @@ TEST_CASE("gpx: of malformed XML the points before the place are used") {
             "run.gpx:5:1: the XML is not well-formed: no element found; what came before is used"});
   CHECK_THROWS_MATCHES(GpxReader().read("", "run.gpx", {}), InputError,
                        Message("run.gpx: none of 1 records could be used; first: run.gpx:1:1: the XML is not "
-                               "well-formed: no element "
-                               "found; what came before is used"));
+                               "well-formed: no element found; what came before is used"));
   CHECK_THROWS_MATCHES(decode("<kml><trkpt/></kml>"), InputError,
                        Message("run.gpx: the root element is 'kml', expected 'gpx'"));
 }

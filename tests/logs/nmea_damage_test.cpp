@@ -63,7 +63,7 @@ TEST_CASE("nmea: what is no sentence is passed over") {
   CHECK(data.fixes.size() == 3);
   CHECK(data.corrupt_examples ==
         std::vector<std::string>{"log.nmea:9:2: GPRMC: the sentence breaks off before its checksum"});
-  CHECK(noted(data, "6 lines that hold no NMEA sentence were skipped"));
+  CHECK(noted(data, "6 lines that hold no NMEA sentence were passed over"));
   CHECK(noted(data, "1 sentences of kinds that are not read are damaged (wrong checksum or none)"));
   CHECK(data.kinds.at("PMTK001") == 1);
 }

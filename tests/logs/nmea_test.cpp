@@ -140,7 +140,7 @@ TEST_CASE("nmea: what is no fix") {
       line("GPGGA,,,,,,0,,,,M,,M,,") + line("GPGLL,,,,,,V,N") + line("GPRMC,,V,,,,,,,,,,N");
   CHECK(read(untimed + untimed + rmc("000001")).without_fix == 2);
   CHECK(noted(read(line("GPGGA,,4810.8509,N,01133.9095,E,1,04,,,M,,M,,") + rmc("000001")),
-              "1 fixes without a time of day were skipped"));
+              "1 fixes without a time of day were passed over"));
 }
 
 TEST_CASE("nmea: a fix from no satellite is none, where the receiver counts them") {

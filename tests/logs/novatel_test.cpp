@@ -198,8 +198,7 @@ TEST_CASE("novatel: what else stands in the log is passed over and counted") {
   CHECK(data.kinds == std::map<std::string, std::size_t>{{"BESTPOSA", 2}, {"RANGEA", 1}});
   CHECK(data.notes ==
         std::vector<std::string>{"run.log: 1 lines are abbreviated ASCII (`<BESTPOS`), which has no checksum "
-                                 "and is not read; let the "
-                                 "receiver log BESTPOSA",
+                                 "and is not read; let the receiver log BESTPOSA",
                                  "run.log: 1 lines that are no NovAtel messages were passed over",
                                  "run.log: positions by type: 1 L1_FLOAT, 1 SINGLE",
                                  "run.log: positions of datum 'USER' are taken as WGS84"});

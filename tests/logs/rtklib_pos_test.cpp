@@ -25,20 +25,16 @@ constexpr std::int64_t kStart = (2323LL * 604800 + 553950) * kSecond;
 const std::string kDegrees =
     "% (lat/lon/height=WGS84/ellipsoidal,Q=1:fix,2:float,3:sbas,4:dgps,5:single,6:ppp,ns=# of satellites)\n"
     "%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  "
-    "sdne(m)  "
-    "sdeu(m)  sdun(m) age(s)  ratio\n";
+    "sdne(m)  sdeu(m)  sdun(m) age(s)  ratio\n";
 const std::string kFix =
     "2024/07/20 09:52:30.000   35.165318215  136.881460576    40.2116   5  30   4.0   2.0   5.0   1.5  -1.5 "
-    "-1.9 0.00 "
-    "0.0\n";
+    "-1.9 0.00 0.0\n";
 const std::string kEcef =
     "%  GPST                      x-ecef(m)      y-ecef(m)      z-ecef(m)   Q  ns   sdx(m)   sdy(m)   sdz(m) "
-    " sdxy(m)  "
-    "sdyz(m)  sdzx(m) age(s)  ratio";
+    " sdxy(m)  sdyz(m)  sdzx(m) age(s)  ratio";
 const std::string kBaseline =
     "%  GPST             e-baseline(m)  n-baseline(m)  u-baseline(m)   Q  ns   sde(m)   sdn(m)   sdu(m)  "
-    "sden(m)  "
-    "sdnu(m)  sdue(m) age(s)  ratio\n";
+    "sden(m)  sdnu(m)  sdue(m) age(s)  ratio\n";
 
 LogData read(const std::string& text, const LogRequest& request = {}) {
   return RtklibPosReader().read(text, "run.pos", request);
@@ -170,8 +166,7 @@ TEST_CASE("rtklib_pos: without a header the default layout is assumed and said")
   CHECK(data.fixes.at(0).stamp.nanoseconds == kStart);
   CHECK(data.notes.at(1) ==
         "run.pos: no header names the columns: latitude, longitude (degrees), height, Q, ns, deviations, on "
-        "GPST, are "
-        "assumed");
+        "GPST, are assumed");
 }
 
 TEST_CASE("rtklib_pos: no accuracy takes the stated default, truth needs none") {

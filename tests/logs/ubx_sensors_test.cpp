@@ -205,8 +205,8 @@ TEST_CASE("ubx: corrupt and unplaceable measurements") {
 TEST_CASE("ubx: readings that ESF-MEAS has not are an error that says what it has") {
   const std::string has =
       "gyro_z, wheel_ticks_front_left, wheel_ticks_front_right, wheel_ticks_rear_left, "
-      "wheel_ticks_rear_right, wheel_ticks, speed, gyro_y, gyro_x, acceleration_x, "
-      "acceleration_y, acceleration_z";
+      "wheel_ticks_rear_right, wheel_ticks, speed, gyro_y, gyro_x, acceleration_x, acceleration_y, "
+      "acceleration_z";
   CHECK_THROWS_MATCHES(
       UbxReader().open("log.ubx", channels({"steering_angle"})), InputError,
       Message("log.ubx: a UBX log holds none of the readings asked for; its ESF-MEAS messages may "
