@@ -290,5 +290,5 @@ TEST_CASE("sensors: a format that knows no sensors is refused instead of giving 
              "\"epx\":2.0,\"epy\":2.0}\n");
   const RunResult result = run({"convert", folder + "drive.yaml", "-o", folder + "out.graph"});
   CHECK(result.code == 3);
-  CHECK(contains(result.err, "format 'gpsd_json' gives no readings of a sensor; use csv"));
+  CHECK(contains(result.err, "compass.json: a gpsd log holds no sensor readings; it gives the streams gnss and truth"));
 }
