@@ -22,6 +22,8 @@ void add_sync(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
+void add_inspect(CLI::App& app, Action& action);
+void add_init(CLI::App& app, Action& action);
 void add_reproduce(CLI::App& app, Action& action);
 
 /// --quiet, -v, --json, --plugin.

@@ -63,6 +63,8 @@ ExitCode run(int argc, char** argv) {
   add_info(app, action);
   add_check(app, action);
   add_simulate(app, action);
+  add_inspect(app, action);
+  add_init(app, action);
   add_reproduce(app, action);
   try {
     check_command(app, argc, argv);

@@ -1,0 +1,381 @@
+#include <waymark/tools/inspection/inspection.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/log_file.hpp>
+#include <waymark/formats/logs/quantity.hpp>
+#include <waymark/formats/suggest.hpp>
+#include <waymark/tools/inspection/log_clock.hpp>
+#include <waymark/tools/inspection/suspicions.hpp>
+
+namespace waymark {
+namespace {
+
+/// Of logs that tell no date, to read them all the same.
+constexpr Stamp kAnyDate{946'684'800'000'000'000};
+
+/// A stream asked of the log, and where its samples go.
+struct Pass {
+  std::unique_ptr<LogDecoder> decoder;
+  std::function<void(LogData&)> drain;
+  std::string trouble;
+  bool over = false;
+};
+
+/// What the decoder throws ends its pass, not the inspection.
+template <typename Step>
+void guarded(Pass& pass, Step step) {
+  if (pass.over || !pass.decoder) return;
+  try {
+    step(*pass.decoder);
+  } catch (const InputError& error) {
+    pass.trouble = error.what();
+    pass.over = true;
+  }
+  if (pass.drain) pass.drain(pass.decoder->data());
+}
+
+void read_passes(const std::string& path, std::span<Pass* const> passes, const InspectionOptions& options,
+                 LogInspection& log) {
+  const ReadProgress progress = [&](std::uint64_t done, std::uint64_t size) {
+    if (options.watch) options.watch(path, done, size);
+  };
+  const std::string trouble = read_in_pieces(
+      path,
+      [&](std::string_view piece) {
+        for (Pass* pass : passes) guarded(*pass, [&](LogDecoder& decoder) { decoder.take(piece); });
+      },
+      progress);
+  for (Pass* pass : passes) guarded(*pass, [](LogDecoder& decoder) { decoder.finish(); });
+  if (!trouble.empty() && log.troubles.empty()) log.troubles.push_back(path + ": " + trouble);
+}
+
+std::uint64_t size_of(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) {
+    const auto size = std::filesystem::file_size(path, ignored);
+    return ignored ? 0 : size;
+  }
+  std::uint64_t size = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path, ignored))
+    if (entry.is_regular_file(ignored)) size += entry.file_size(ignored);
+  return size;
+}
+
+LogReaderType reader_for(const std::string& path, std::span<const LogReaderType> readers,
+                         const InspectionOptions& options, LogInspection& log) {
+  if (options.format == "auto") {
+    const Recognised found = recognise_log(path, readers);
+    log.evidence = found.why.evidence;
+    return found.reader;
+  }
+  std::vector<std::string_view> names;
+  for (const LogReaderType& reader : readers) {
+    if (reader.name == options.format) return reader;
+    names.push_back(reader.name);
+  }
+  throw UsageError(fmt::format("unknown log format '{}'{}; there are: {}", options.format,
+                               did_you_mean(options.format, names), joined(names)));
+}
+
+/// The files that belong to the log: a DBC where one was given, the stamps of a KITTI folder beside it.
+void find_companions(LogInspection& log, const InspectionOptions& options) {
+  if (log.format == "candump" && !options.dbc.empty()) log.companions["dbc"] = options.dbc;
+  const std::filesystem::path beside = std::filesystem::path(log.path).parent_path() / "timestamps.txt";
+  if (log.format == "kitti_oxts" && std::filesystem::is_directory(log.path) &&
+      std::filesystem::exists(beside))
+    log.companions["timestamps"] = beside.string();
+}
+
+LogRequest basic_request(const LogInspection& log, StreamKind stream) {
+  LogRequest request;
+  request.stream = stream;
+  request.time_scale = log.clock.scale;
+  request.default_sigma_m = kNoAccuracy;
+  if (stream == StreamKind::odometry) request.readings = odometry_channels();
+  for (const auto& [key, path] : log.companions) {
+    std::string text;
+    const std::string trouble = read_in_pieces(path, [&](std::string_view piece) { text += piece; });
+    if (!trouble.empty()) throw InputError(path + ": " + trouble);
+    request.companions[key] = {path, std::move(text)};
+  }
+  return request;
+}
+
+/// Whether a log of columns holds the stream; its request gets them.
+bool map_columns(const LogInspection& log, LogRequest& request) {
+  const auto columns = proposed_columns(log, request.stream);
+  for (const auto& [quantity, column] : columns)
+    request.columns[quantity] = {column->name, column->proposal.unit, column->proposal.convention};
+  if (request.stream == StreamKind::gnss)
+    return columns.contains("latitude") && columns.contains("longitude");
+  return columns.size() > (log.table ? 1U : 0U);
+}
+
+std::optional<Dbc> dbc_of(const LogInspection& log) {
+  const auto path = log.companions.find("dbc");
+  if (path == log.companions.end()) return std::nullopt;
+  std::string text;
+  (void)read_in_pieces(path->second, [&](std::string_view piece) { text += piece; });
+  return Dbc::parse(text, path->second);
+}
+
+/// The first pass over logs of columns: what columns there are.
+void survey(LogInspection& log, const InspectionOptions& options) {
+  Pass pass;
+  if (log.format == "csv")
+    pass.decoder = std::make_unique<TableSurvey>(log.path);
+  else
+    pass.decoder = std::make_unique<CanSurvey>(log.path, dbc_of(log));
+  Pass* const passes[] = {&pass};
+  read_passes(log.path, passes, options, log);
+  const LogData& data = pass.decoder->data();
+  log.records = data.records;
+  log.corrupt = data.corrupt;
+  log.corrupt_examples = data.corrupt_examples;
+  log.kinds = data.kinds;
+  if (log.format == "csv") {
+    log.table = dynamic_cast<TableSurvey&>(*pass.decoder).summary();
+    const ColumnSummary* time = nullptr;
+    for (const ColumnSummary& column : log.table->columns)
+      if (column.proposal.quantity == "time") time = &column;
+    log.clock = clock_of_column(time, options.now);
+  } else {
+    log.can = dynamic_cast<CanSurvey&>(*pass.decoder).summary();
+    const bool since_start = log.can->stamps.earliest().seconds() < 0.9e9;
+    log.clock = {
+        TimeScale::unix_time,
+        false,
+        !since_start,
+        false,
+        !since_start,
+        since_start ? "the logger counts from an unknown start" : "the logger's clock, Unix seconds"};
+  }
+}
+
+/// Notes of a pass, but for those about the sigma that only the inspection asked for.
+void add_notes(LogInspection& log, const LogData& data) {
+  for (const std::string& note : data.notes) {
+    if (note.find("999999") != std::string::npos || note.find("by default") != std::string::npos) continue;
+    if (std::find(log.notes.begin(), log.notes.end(), note) == log.notes.end()) log.notes.push_back(note);
+  }
+}
+
+void add_counts(LogInspection& log, const LogData& data) {
+  log.records = data.records;
+  log.without_fix = data.without_fix;
+  log.corrupt = data.corrupt;
+  log.corrupt_examples = data.corrupt_examples;
+}
+
+/// Counts say that the log holds no odometry at all rather than that something is wrong with it.
+void open(Pass& pass, const LogReader& reader, const std::string& path, const LogRequest& request) {
+  try {
+    pass.decoder = reader.open(path, request);
+  } catch (const InputError& error) {
+    pass.trouble = error.what();
+  }
+}
+
+class StreamReading {
+ public:
+  StreamReading(LogInspection& log, const LogReader& reader, const InspectionOptions& options)
+      : log_(log), reader_(reader), options_(options), motion_(odometry_channels()) {}
+
+  void read(std::optional<Stamp> date) {
+    Pass gnss, odometry;
+    LogRequest positions = basic_request(log_, StreamKind::gnss);
+    LogRequest motions = basic_request(log_, StreamKind::odometry);
+    positions.date = date;
+    const bool of_columns = log_.table || log_.can;
+    if (!of_columns || map_columns(log_, positions)) open(gnss, reader_, log_.path, positions);
+    if (log_.table && has_whole_odometry()) motions.readings.clear();
+    if (!of_columns || map_columns(log_, motions)) open(odometry, reader_, log_.path, motions);
+    std::vector<Pass*> passes;
+    gnss.drain = [this](LogData& data) { take_fixes(data); };
+    odometry.drain = [this](LogData& data) { take_motion(data); };
+    if (gnss.decoder) passes.push_back(&gnss);
+    if (odometry.decoder) passes.push_back(&odometry);
+    if (passes.empty()) return;
+    read_passes(log_.path, passes, options_, log_);
+    finish(gnss, odometry);
+  }
+
+ private:
+  [[nodiscard]] bool has_whole_odometry() const {
+    const auto columns = proposed_columns(log_, StreamKind::odometry);
+    return columns.size() == 3 && columns.contains("speed") && columns.contains("yaw_rate");
+  }
+  void take_fixes(LogData& data) {
+    for (const GeodeticFix& fix : data.fixes) fixes_.add(fix);
+    fix_count_ += data.fixes.size();
+    data.fixes.clear();
+    for (const ClockPair& pair : data.clocks) ahead_.add(pair.logged.seconds() - pair.told.seconds());
+    data.clocks.clear();
+  }
+  void take_motion(LogData& data) {
+    for (const OdometrySample& sample : data.odometry) motion_.add(sample);
+    motion_.add(data.readings);
+    motion_count_ += data.odometry.size() + data.readings.size();
+    data.odometry.clear();
+    data.readings.stamps.clear();
+    data.readings.values.clear();
+    data.clocks.clear();
+  }
+  void finish(const Pass& gnss, const Pass& odometry) {
+    const auto counts_of = [&](const Pass& pass, bool main) {
+      const LogData& data = pass.decoder->data();
+      add_notes(log_, data);
+      if (main) add_counts(log_, data);
+      for (const auto& [kind, count] : data.kinds) log_.kinds[kind] = std::max(log_.kinds[kind], count);
+    };
+    const bool positions_first = gnss.decoder && (fix_count_ > 0 || motion_count_ == 0);
+    if (gnss.decoder) counts_of(gnss, positions_first);
+    if (odometry.decoder && motion_count_ > 0) counts_of(odometry, !positions_first);
+    // A receiver's log that has no odometry says so by throwing; that is nothing wrong.
+    if (!gnss.trouble.empty() && (fix_count_ == 0 || gnss.over)) log_.troubles.push_back(gnss.trouble);
+    if (!odometry.trouble.empty() && (motion_count_ > 0 || log_.table || log_.can))
+      log_.troubles.push_back(odometry.trouble);
+    if (fix_count_ > 0 || (gnss.decoder && motion_count_ == 0)) log_.fixes = fixes_.summary();
+    if (motion_count_ > 0) log_.odometry = motion_.summary();
+    if (ahead_.count() > 0) log_.logger_ahead_s = ahead_.median();
+  }
+
+  LogInspection& log_;
+  const LogReader& reader_;
+  const InspectionOptions& options_;
+  FixStatistics fixes_;
+  OdometryStatistics motion_;
+  EvenSample ahead_;
+  std::size_t fix_count_ = 0, motion_count_ = 0;
+};
+
+void read_streams(LogInspection& log, const LogReader& reader, const InspectionOptions& options) {
+  StreamReading(log, reader, options).read(std::nullopt);
+  const bool nothing = (!log.fixes || log.fixes->fixes == 0) && !log.odometry;
+  if (!nothing || log.format != "nmea" || log.records == log.without_fix) return;
+  // Perhaps it only lacks a date.
+  LogInspection again = log;
+  again.troubles.clear();
+  again.notes.clear();
+  StreamReading(again, reader, options).read(kAnyDate);
+  if (!again.fixes || again.fixes->fixes == 0) return;
+  again.clock.known = false;
+  again.clock.reason =
+      "the log tells only the time of day; the date shown is made up, state 'date' under 'time'";
+  again.clock.names_its_own = false;
+  log = std::move(again);
+}
+
+bool is_stream_quantity(std::string_view quantity, StreamKind stream) {
+  LogRequest request;
+  request.stream = stream;
+  if (stream == StreamKind::odometry) request.readings = odometry_channels();
+  const std::vector<Quantity> known = quantities(request);
+  return find_quantity(known, quantity) != nullptr;
+}
+
+/// A receiver's heading is its course, clockwise from north and within a turn; what counts on through turns,
+/// or from east, is that of a reference system.
+bool heading_is_course(const ColumnSummary& column) {
+  const double turn = column.proposal.unit == "rad" ? 6.2832 : 360;
+  return column.proposal.convention != "ccw_from_east" && column.range.smallest >= -turn &&
+         column.range.largest <= turn;
+}
+
+bool is_of_receiver(const std::string& signal) {
+  const std::vector<std::string> words = words_of(signal);
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word == "gnss" || word == "gps"; });
+}
+
+/// A table without dates whose numbers are those of the other's seconds of week.
+void adopt_week(LogInspection& log, const LogInspection& other) {
+  if (log.clock.dated || log.clock.of_week || log.span() == nullptr || other.span() == nullptr) return;
+  if (!other.clock.dated && !other.clock.of_week) return;
+  const auto second = [&](Stamp stamp) {
+    return other.clock.dated ? week_second(stamp, other.clock).second : stamp.seconds();
+  };
+  const double begin = second(other.span()->earliest());
+  const double end = begin + other.span()->span_s();
+  if (log.span()->latest().seconds() < begin || log.span()->earliest().seconds() > end) return;
+  if (log.span()->earliest().seconds() < 600) return;  // what counts from its start fits by chance
+  log.clock.of_week = true;
+  log.clock.scale = TimeScale::gps;
+  log.clock.reason = fmt::format("its numbers are those of the seconds of the GPS week in {}", other.path);
+}
+
+}  // namespace
+
+const StampSeries* LogInspection::span() const {
+  if (fixes && fixes->fixes > 0) return &fixes->stamps;
+  if (odometry) return &odometry->stamps;
+  if (can && can->frames > 0) return &can->stamps;
+  return nullptr;
+}
+
+std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection& log, StreamKind stream) {
+  std::map<std::string, const ColumnSummary*> columns;
+  static const std::vector<ColumnSummary> kNone;
+  const std::vector<ColumnSummary>& all = log.table ? log.table->columns : log.can ? log.can->signals : kNone;
+  for (const ColumnSummary& column : all) {
+    std::string quantity = column.proposal.quantity;
+    if (stream == StreamKind::gnss && quantity == "heading")
+      quantity = heading_is_course(column) ? "course" : "";
+    if (quantity.empty() || !is_stream_quantity(quantity, stream)) continue;
+    // The speed of a receiver on the bus is no odometry.
+    if (log.can && stream == StreamKind::odometry && quantity == "speed" && is_of_receiver(column.name))
+      continue;
+    if (log.can && stream == StreamKind::gnss && quantity == "speed" && !is_of_receiver(column.name))
+      continue;
+    columns.emplace(quantity, &column);
+  }
+  return columns;
+}
+
+LogInspection inspect_log(const std::string& path, std::span<const LogReaderType> readers,
+                          const InspectionOptions& options) {
+  LogInspection log;
+  log.path = path;
+  log.size = size_of(path);
+  const LogReaderType reader = reader_for(path, readers, options, log);
+  log.format = reader.name;
+  log.clock = {TimeScale::utc, true, true, false, true, "the log names its dates"};
+  find_companions(log, options);
+  if (log.format == "csv" || log.format == "candump") survey(log, options);
+  const bool without_dbc = log.format == "candump" && !log.companions.contains("dbc");
+  if (!without_dbc) read_streams(log, *reader.reader, options);
+  log.suspicions = suspicions_of(log, options.now);
+  return log;
+}
+
+std::vector<LogInspection> inspect_logs(const std::vector<std::string>& paths,
+                                        std::span<const LogReaderType> readers,
+                                        const InspectionOptions& options) {
+  std::vector<LogInspection> logs;
+  for (const std::string& path : paths) logs.push_back(inspect_log(path, readers, options));
+  for (LogInspection& log : logs) {
+    for (const LogInspection& other : logs)
+      if (&other != &log) adopt_week(log, other);
+  }
+  for (std::size_t i = 1; i < logs.size(); ++i) {
+    std::string sentence;
+    for (std::size_t j = 0; j < i && sentence.empty(); ++j) {
+      const bool both_of_week = logs[i].clock.of_week && (logs[j].clock.of_week || logs[j].clock.dated);
+      const bool week_after = logs[j].clock.of_week && logs[i].clock.dated;
+      if (!both_of_week && !week_after) sentence = suspicion_between(logs[i], logs[j]);
+    }
+    if (!sentence.empty()) logs[i].suspicions.push_back(sentence);
+  }
+  return logs;
+}
+
+}  // namespace waymark

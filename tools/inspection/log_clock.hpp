@@ -1,0 +1,19 @@
+/// How the stamps of a table are to be read.
+#pragma once
+
+#include <waymark/tools/inspection/inspection.hpp>
+
+namespace waymark {
+
+/// Judged by the name of the time column and its numbers.
+/// @param time  null where the table has none
+[[nodiscard]] LogClock clock_of_column(const ColumnSummary* time, Stamp now);
+
+/// Seconds of the GPS week and the week's number of a dated instant.
+struct WeekSecond {
+  int week = 0;
+  double second = 0;
+};
+[[nodiscard]] WeekSecond week_second(Stamp stamp, const LogClock& clock);
+
+}  // namespace waymark

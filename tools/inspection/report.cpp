@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/evaluation/json_number.hpp>
+#include <waymark/tools/evaluation/text_table.hpp>
+#include <waymark/tools/inspection/inspection.hpp>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kMostRows = 40;  // of ids and message kinds; the rest is summed up
+
+std::string size_text(std::uint64_t bytes) {
+  if (bytes < 10'000) return fmt::format("{} bytes", bytes);
+  const double size = static_cast<double>(bytes);
+  return size < 1e6 ? fmt::format("{:.1f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
+}
+
+/// Hz where it is one, else seconds.
+std::string rate_text(double hz) {
+  if (!(hz > 0) || !std::isfinite(hz)) return "-";
+  return hz >= 0.995 ? fmt::format("{:.4g} Hz", hz) : fmt::format("every {:.3g} s", 1 / hz);
+}
+
+double rate_of(const StampSeries& stamps) {
+  return 1 / stamps.median_interval_s();
+}
+
+std::string range_text(const Range& range) {
+  if (range.count == 0) return "-";
+  return fmt::format("{:.10g} .. {:.10g}", range.smallest, range.largest);
+}
+
+class Text {
+ public:
+  explicit Text(std::string title) : text_(std::move(title) + "\n") {}
+  void line(const std::string& label, const std::string& value) {
+    text_ += fmt::format("  {:<14} {}\n", label, value);
+  }
+  void block(const std::string& table) {
+    std::size_t begin = 0;
+    while (begin < table.size()) {
+      const std::size_t end = table.find('\n', begin);
+      text_ += "    " + table.substr(begin, end - begin) + "\n";
+      begin = end + 1;
+    }
+  }
+  /// One sentence a line.
+  void list(const std::string& label, const std::vector<std::string>& sentences) {
+    for (std::size_t i = 0; i < sentences.size(); ++i) line(i == 0 ? label : "", sentences[i]);
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string percent(std::size_t part, std::size_t all) {
+  return fmt::format("{:.0f} %",
+                     all == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all));
+}
+
+void add_gaps(Text& text, const StampSeries& stamps, const LogClock& clock) {
+  const std::size_t gaps = stamps.gaps();
+  if (gaps == 0) {
+    text.line("  gaps", "none above 2.5 usual intervals");
+    return;
+  }
+  text.line("  gaps", fmt::format("{} above 2.5 usual intervals, the longest:", gaps));
+  for (const LongInterval& gap : stamps.longest_gaps())
+    text.line("", fmt::format("{:.3f} s after {}", gap.seconds, date_text(gap.begin, clock)));
+}
+
+void add_fixes(Text& text, const LogInspection& log) {
+  const FixSummary& fixes = *log.fixes;
+  if (fixes.fixes == 0) {
+    if (log.records == 0) return text.line("gnss", "no position in the log");
+    text.line("gnss",
+              fmt::format("no fix in {} records ({} marked as without a fix)", log.records, log.without_fix));
+    return;
+  }
+  text.line("gnss", fmt::format("{} fixes, {}; {} records without a fix", fixes.fixes,
+                                rate_text(rate_of(fixes.stamps)), log.without_fix));
+  add_gaps(text, fixes.stamps, log.clock);
+  const BoundingBox& box = fixes.box;
+  if (box.latitude.count > 0)
+    text.line("  area",
+              fmt::format("latitude {:.7g} .. {:.7g}, longitude {:.7g} .. {:.7g} deg: {:.0f} m to the "
+                          "north, {:.0f} m to the east",
+                          box.latitude.smallest, box.latitude.largest, box.longitude.smallest,
+                          box.longitude.largest, box.height_m(), box.width_m()));
+  text.line("  way", fmt::format("{:.0f} m from fix to fix, noise included", fixes.distance_m));
+  text.line("  height", fixes.height.count == 0
+                            ? "none"
+                            : fmt::format("{:.1f} .. {:.1f} m", fixes.height.smallest, fixes.height.largest));
+  if (fixes.with_accuracy == 0) {
+    text.line(
+        "  accuracy",
+        "the log gives none: as gnss it needs a 'default_sigma' (or, with HDOP, a 'range_error') stated");
+  } else {
+    if (fixes.with_accuracy < fixes.fixes)
+      text.line("  accuracy",
+                fmt::format("{} of {} fixes have none: a 'default_sigma' must be stated for them",
+                            fixes.fixes - fixes.with_accuracy, fixes.fixes));
+    const auto axis = [](const char* name, const SigmaSummary& sigma) {
+      return fmt::format("sigma {}: median {:.3g} m, 95 % below {:.3g} m, {:.3g} .. {:.3g} m", name,
+                         sigma.median, sigma.percent95, sigma.range.smallest, sigma.range.largest);
+    };
+    text.line(fixes.with_accuracy < fixes.fixes ? "" : "  accuracy", axis("east", fixes.east));
+    text.line("", axis("north", fixes.north));
+  }
+  text.line("  velocity",
+            fmt::format("speed in {} of the fixes{}, course in {}", percent(fixes.with_speed, fixes.fixes),
+                        fixes.with_speed == 0 ? "" : fmt::format(" (up to {:.1f} m/s)", fixes.speed.largest),
+                        percent(fixes.with_course, fixes.fixes)));
+}
+
+void add_odometry(Text& text, const LogInspection& log) {
+  const OdometrySummary& odometry = *log.odometry;
+  text.line("odometry", fmt::format("{} rows", odometry.stamps.count()));
+  TextTable table({"channel", "values", "rate", "unit", "smallest", "largest", "gaps", "longest s"});
+  for (const ChannelSummary& channel : odometry.channels) {
+    const auto gaps = channel.stamps.longest_gaps();
+    table.add({channel.name, std::to_string(channel.range.count), rate_text(rate_of(channel.stamps)),
+               channel.unit, fmt::format("{:.5g}", channel.range.smallest),
+               fmt::format("{:.5g}", channel.range.largest), std::to_string(channel.stamps.gaps()),
+               gaps.empty() ? "-" : fmt::format("{:.3g}", gaps[0].seconds)});
+  }
+  text.block(table.text());
+}
+
+/// "speed, km/h", "yaw_rate (CHECK: ...)".
+std::string proposal_text(const ColumnProposal& proposal) {
+  if (proposal.quantity.empty()) return proposal.remark.empty() ? "-" : "- (" + proposal.remark + ")";
+  std::string text = proposal.quantity;
+  if (!proposal.unit.empty()) text += ", " + proposal.unit;
+  if (!proposal.convention.empty()) text += ", " + proposal.convention;
+  if (!proposal.remark.empty()) text += " (check: " + proposal.remark + ")";
+  return text;
+}
+
+/// Rows flush left with the proposal behind.
+void add_columns(Text& text, const std::vector<ColumnSummary>& columns, bool of_bus) {
+  std::size_t name = 6;
+  for (const ColumnSummary& column : columns) name = std::max(name, column.name.size());
+  std::string rows = fmt::format("{:<{}}  {:>8}  {:>9}  {:<32}  {}\n", of_bus ? "signal" : "column", name,
+                                 "values", of_bus ? "rate" : "empty", "range", "proposed as");
+  for (const ColumnSummary& column : columns) {
+    std::string range =
+        column.range.count == 0 ? fmt::format("{} words", column.words) : range_text(column.range);
+    if (!column.unit.empty()) range += " " + column.unit;
+    std::string proposal = proposal_text(column.proposal);
+    if (!of_bus && column.rate_hz > 0 && !column.proposal.quantity.empty())
+      proposal += ", " + rate_text(column.rate_hz);
+    rows += fmt::format("{:<{}}  {:>8}  {:>9}  {:<32}  {}\n", column.name, name, column.values,
+                        of_bus ? rate_text(column.rate_hz) : std::to_string(column.empty), range, proposal);
+  }
+  text.block(rows);
+}
+
+void add_ids(Text& text, const LogInspection& log) {
+  text.line("frames", fmt::format("{} on {}", log.can->frames, log.can->interfaces));
+  if (!log.companions.contains("dbc"))
+    text.line("", "without a DBC (--dbc FILE) the signals in them are unknown");
+  TextTable table({"id", "frames", "rate", "length"});
+  std::size_t rest = 0;
+  for (std::size_t i = 0; i < log.can->ids.size(); ++i) {
+    const ColumnSummary& id = log.can->ids[i];
+    if (i < kMostRows)
+      table.add({id.name, std::to_string(id.values), rate_text(id.rate_hz), id.detail});
+    else
+      rest += id.values;
+  }
+  if (rest > 0)
+    table.add({fmt::format("{} more ids", log.can->ids.size() - kMostRows), std::to_string(rest)});
+  text.block(table.text());
+  if (log.can->signals.empty()) return;
+  add_columns(text, log.can->signals, true);
+}
+
+void add_kinds(Text& text, const LogInspection& log) {
+  if (log.kinds.empty() || log.can) return;
+  const double seconds = log.span() == nullptr ? 0 : log.span()->span_s();
+  TextTable table({"message", "count", "rate"});
+  std::size_t rows = 0;
+  for (const auto& [kind, count] : log.kinds) {
+    if (++rows > kMostRows) continue;
+    table.add(
+        {kind, std::to_string(count), seconds > 0 ? rate_text(static_cast<double>(count) / seconds) : "-"});
+  }
+  if (rows > kMostRows) table.add({fmt::format("{} more kinds", rows - kMostRows)});
+  text.line("messages", fmt::format("{} kind{}", log.kinds.size(), log.kinds.size() == 1 ? "" : "s"));
+  text.block(table.text());
+}
+
+}  // namespace
+
+std::string inspection_text(const LogInspection& log) {
+  Text text(log.path);
+  text.line("size", size_text(log.size));
+  text.line("format", log.format + (log.evidence.empty() ? " (stated)" : ": " + log.evidence));
+  for (const auto& [key, path] : log.companions) text.line(key, path);
+  if (const StampSeries* span = log.span())
+    text.line("span", fmt::format("{} .. {}, {:.3f} s", date_text(span->earliest(), log.clock),
+                                  date_text(span->latest(), log.clock), span->span_s()));
+  text.line("clock", fmt::format("{}: {}",
+                                 log.clock.of_week ? "gps, seconds of a week"
+                                                   : std::string(to_string(log.clock.scale)),
+                                 log.clock.reason));
+  if (log.table) {
+    text.line("table", fmt::format("{} rows, {} columns", log.table->rows, log.table->columns.size()));
+    if (!log.table->first_line.empty()) text.line("comment", log.table->first_line.substr(0, 300));
+    add_columns(text, log.table->columns, false);
+  }
+  if (log.can) add_ids(text, log);
+  add_kinds(text, log);
+  if (log.fixes) add_fixes(text, log);
+  if (log.odometry) add_odometry(text, log);
+  if (!log.fixes && !log.odometry && !log.can) text.line("streams", "neither fixes nor odometry were found");
+  if (log.corrupt > 0) {
+    text.line("corrupt", fmt::format("{} of {} records, the first:", log.corrupt, log.records));
+    text.list("", log.corrupt_examples);
+  }
+  text.list("trouble", log.troubles);
+  std::vector<std::string> notes = log.notes;
+  for (std::string& note : notes)
+    if (note.starts_with(log.path + ": ")) note.erase(0, log.path.size() + 2);
+  text.list("notes", notes);
+  text.list("suspicious", log.suspicions.empty() ? std::vector<std::string>{"nothing"} : log.suspicions);
+  return text.text();
+}
+
+}  // namespace waymark

@@ -1,0 +1,44 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <waymark/tools/inspection/inspection.hpp>
+#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/log_inspection.hpp>
+#include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/program_registry.hpp>
+
+namespace waymark {
+namespace {
+
+ExitCode inspect(const InspectCommand& command) {
+  const Console console(command.common);
+  const std::vector<LogInspection> logs = inspect_files(command, console);
+  if (command.common.json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const LogInspection& log : logs) json.push_back(inspection_json(log));
+    console.result(json_text(json));
+  } else {
+    std::string text;
+    for (const LogInspection& log : logs) text += (text.empty() ? "" : "\n") + inspection_text(log);
+    console.result(text);
+  }
+  if (!command.output.empty()) write_proposal(command, logs, console);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("inspect", "What is in raw logs: streams, rates, gaps, what looks wrong");
+  const auto options = std::make_shared<InspectCommand>();
+  command->add_option("logs", options->logs, "Logs, and the DBC of CAN logs")->required()->type_name("LOG");
+  add_inspection_options(*command, *options);
+  command->footer("Example:\n  waymark inspect candump.log.gz --dbc car.dbc -o drive.yaml");
+  command->callback([options, &action] { action = [options] { return inspect(*options); }; });
+}
+
+}  // namespace waymark
