@@ -130,6 +130,10 @@ class Deciding {
       proposal_.decisions.emplace_back("no log with positions was found: fill in gnss");
     if (proposal_.odometry.empty())
       proposal_.decisions.emplace_back("no log with odometry was found: fill in odometry");
+    else if (!proposal_.has_speed)
+      proposal_.decisions.emplace_back("no log with a speed was found: add one to the parts of odometry");
+    else if (!proposal_.has_yaw_rate)
+      proposal_.decisions.emplace_back("no log with a yaw rate was found: add one to the parts of odometry");
     return std::move(proposal_);
   }
 
@@ -189,7 +193,7 @@ class Deciding {
     for (const bool of_receivers : {false, true}) {
       if (take_whole(of_receivers)) return;
       take_parts(of_receivers);
-      if (has_speed_ && has_yaw_rate_) return;
+      if (proposal_.has_speed && proposal_.has_yaw_rate) return;
     }
   }
 
@@ -199,7 +203,7 @@ class Deciding {
   }
 
   bool take_whole(bool of_receivers) {
-    if (has_speed_ || has_yaw_rate_) return false;
+    if (proposal_.has_speed || proposal_.has_yaw_rate) return false;
     for (std::size_t i = 0; i < logs_.size(); ++i) {
       if (!may_give(i, of_receivers)) continue;
       const std::set<std::string> channels = channels_of(logs_[i]);
@@ -209,6 +213,7 @@ class Deciding {
       for (const std::string& name : yaw)
         if (std::find(taken.begin(), taken.end(), name) == taken.end()) taken.push_back(name);
       add_odometry(i, taken);
+      proposal_.has_speed = proposal_.has_yaw_rate = true;
       return true;
     }
     return false;
@@ -219,13 +224,13 @@ class Deciding {
     for (std::size_t i = 0; i < logs_.size(); ++i) {
       if (!may_give(i, of_receivers)) continue;
       const std::set<std::string> channels = channels_of(logs_[i]);
-      const Names speed = has_speed_ ? Names{} : speed_channels(channels);
-      const Names yaw = has_yaw_rate_ ? Names{} : yaw_rate_channels(channels);
+      const Names speed = proposal_.has_speed ? Names{} : speed_channels(channels);
+      const Names yaw = proposal_.has_yaw_rate ? Names{} : yaw_rate_channels(channels);
       if (!speed.empty()) {
-        has_speed_ = true;
+        proposal_.has_speed = true;
         add_odometry(i, speed);
       } else if (!yaw.empty()) {
-        has_yaw_rate_ = true;
+        proposal_.has_yaw_rate = true;
         add_odometry(i, yaw);
       }
     }
@@ -235,14 +240,17 @@ class Deciding {
     proposal_.odometry.push_back(i);
     proposal_.channels.push_back(taken);
     used_[i] = true;
-    say(i, fmt::format("odometry{}: {}", proposal_.in_parts ? " part" : "", joined_names(taken)));
+    Names left;
+    for (const std::string& name : channels_of(logs_[i]))
+      if (std::find(taken.begin(), taken.end(), name) == taken.end()) left.push_back(name);
+    say(i, fmt::format("odometry{}: {}{}", proposal_.in_parts ? " part" : "", joined_names(taken),
+                       left.empty() ? "" : "; left aside: " + joined_names(left)));
   }
 
   const std::vector<LogInspection>& logs_;
   std::vector<bool> used_;
   std::set<std::size_t> told_;
   DriveProposal proposal_;
-  bool has_speed_ = false, has_yaw_rate_ = false;
 };
 
 }  // namespace

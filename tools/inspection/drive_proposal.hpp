@@ -14,6 +14,7 @@ struct DriveProposal {
   std::vector<std::size_t> odometry;               ///< one whole, or parts
   std::vector<std::vector<std::string>> channels;  ///< of each of them: quantities without `time`
   bool in_parts = false;
+  bool has_speed = false, has_yaw_rate = false;  ///< whether the odometry has something they are made of
   std::vector<std::size_t> gnss;
   std::vector<std::size_t>
       velocity;  ///< speed and course of a receiver without positions; belongs to the first gnss

@@ -45,12 +45,17 @@ std::string one_line(std::string text) {
   return text;
 }
 
-const Quantity* quantity_of(const std::string& name, StreamKind stream, std::vector<Quantity>& storage) {
+std::vector<Quantity> quantities_of(StreamKind stream) {
   LogRequest request;
   request.stream = stream;
   if (stream == StreamKind::odometry) request.readings = odometry_channels();
-  storage = quantities(request);
-  return find_quantity(storage, name);
+  return quantities(request);
+}
+
+std::vector<std::string> quantity_names(StreamKind stream) {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities_of(stream)) names.emplace_back(quantity.name);
+  return names;
 }
 
 class Writer {
@@ -66,7 +71,7 @@ class Writer {
         "# Proposed by `waymark inspect` or `waymark init` from what the logs show. Look at every '# "
         "CHECK';");
     line("# the keys are explained in tools/drive/README.md.");
-    line("name: " + scalar(folder_.filename().empty() ? "drive" : folder_.filename().string()));
+    line("# name: Somewhere", "default: this file's name");
     line(fmt::format("time: {{scale: {}}}", to_string(scale_)), scale_reason_);
     line("# frame: {utm_zone: 32N}", "default: the zone of the first fix");
     odometry();
@@ -109,7 +114,7 @@ class Writer {
     }
     if (of_week_) {
       scale_ = TimeScale::gps;
-      scale_reason_ = logs_[*of_week_].path + ": " + logs_[*of_week_].clock.reason;
+      scale_reason_ = (logs_[*of_week_].clock.known ? "" : "CHECK: ") + logs_[*of_week_].clock.reason;
     } else if (dated_) {
       scale_ = TimeScale::utc;
       scale_reason_ = "the logs have dates; those on another scale are converted";
@@ -126,9 +131,9 @@ class Writer {
     if (clock.of_week && dated_) {
       const WeekSecond week = week_second(logs_[*dated_].span()->earliest(), logs_[*dated_].clock);
       line(fmt::format("{}time: {{scale: gps, week: {}}}", indent, week.week),
-           fmt::format("CHECK: {}; the week is that of {}", clock.reason, logs_[*dated_].path));
+           fmt::format("{}{}; the week is that of the dated log", check, clock.reason));
     } else if (clock.of_week) {
-      line(indent + "# time: {week: 2300}", "fill in the GPS week to get dates; " + clock.reason);
+      line(indent + "# time: {week: 2300}", "fill in the GPS week to get dates");
     } else if (log.format == "nmea" && !clock.known) {
       line(indent + "# time: {date: 2000-01-01}", "CHECK: fill in the day of the first fix; " + clock.reason);
     } else if (!clock.dated && dated_) {
@@ -146,8 +151,8 @@ class Writer {
   /// "speed: v_mps", "yaw_rate: {column: w, unit: deg/s}" with what there is to check.
   void column(const std::string& quantity, const ColumnSummary& from, const LogInspection& log,
               StreamKind stream, const std::string& indent) {
-    std::vector<Quantity> storage;
-    const Quantity* known = quantity_of(quantity, stream, storage);
+    const std::vector<Quantity> all = quantities_of(stream);
+    const Quantity* known = find_quantity(all, quantity);
     const ColumnProposal& how = from.proposal;
     const bool own_unit = known == nullptr || how.unit.empty() || how.unit == known->units.front().name;
     const bool own_sense = known == nullptr || how.convention.empty() || known->conventions.empty() ||
@@ -187,7 +192,7 @@ class Writer {
                  const std::vector<std::string>& only = {}) {
     const std::string begin = first_of_list ? indent.substr(2) + "- " : indent;
     line(begin + "file: " + scalar(relative(log.path)));
-    line(indent + "format: " + log.format, log.evidence);
+    line(indent + "format: " + log.format, log.table ? std::string() : log.evidence);
     for (const auto& [key, path] : log.companions) line(indent + key + ": " + scalar(relative(path)));
     if (log.table && log.table->separator != ',')
       line(fmt::format("{}separator: {}", indent,
@@ -197,11 +202,11 @@ class Writer {
     if (log.table || log.can) {
       line(indent + "columns:");
       const auto columns = proposed_columns(log, stream);
-      if (const auto time = columns.find("time"); time != columns.end())
-        column("time", *time->second, log, stream, indent + "  ");
-      for (const auto& [quantity, from] : columns) {
-        const bool wanted = only.empty() || std::find(only.begin(), only.end(), quantity) != only.end();
-        if (quantity != "time" && wanted) column(quantity, *from, log, stream, indent + "  ");
+      for (const std::string& quantity : quantity_names(stream)) {  // in their order
+        const auto from = columns.find(quantity);
+        const bool wanted =
+            only.empty() || quantity == "time" || std::find(only.begin(), only.end(), quantity) != only.end();
+        if (from != columns.end() && wanted) column(quantity, *from->second, log, stream, indent + "  ");
       }
     }
     time_of(log, indent);
@@ -218,6 +223,10 @@ class Writer {
     for (std::size_t i = 0; i < proposal_.odometry.size(); ++i)
       log_lines(logs_[proposal_.odometry[i]], StreamKind::odometry, proposal_.in_parts ? "      " : "  ",
                 proposal_.in_parts, proposal_.channels[i]);
+    if (!proposal_.has_speed || !proposal_.has_yaw_rate)
+      line("    # - file: FILL_IN.csv",
+           fmt::format("CHECK: no log with a {} was found; the drive does not run without",
+                       proposal_.has_speed ? "yaw rate" : "speed"));
     vehicle();
     line("  # speed_delay: 0", "`waymark sync` estimates it, and yaw_rate_delay");
   }

@@ -267,7 +267,7 @@ ColumnProposal propose_quantity(std::string_view name) {
   read_unit(rest.empty() ? words : rest, proposal);
   read_sense(words, proposal);
   const auto odd = std::find_if_not(rest.begin(), rest.end(), understood);
-  if (odd != rest.end()) proposal.remark = "not understood of the name: '" + *odd + "'";
+  if (odd != rest.end()) proposal.remark = "the name is not understood from '" + *odd + "' on";
   return proposal;
 }
 

@@ -310,7 +310,9 @@ void adopt_week(LogInspection& log, const LogInspection& other) {
   if (log.span()->earliest().seconds() < 600) return;  // what counts from its start fits by chance
   log.clock.of_week = true;
   log.clock.scale = TimeScale::gps;
-  log.clock.reason = fmt::format("its numbers are those of the seconds of the GPS week in {}", other.path);
+  log.clock.known = false;
+  log.clock.reason = fmt::format("its numbers are like the seconds of the GPS week in {}",
+                                 std::filesystem::path(other.path).filename().string());
 }
 
 }  // namespace
@@ -338,6 +340,12 @@ std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection
       continue;
     columns.emplace(quantity, &column);
   }
+  // Beside positions a speed alone is the receiver's.
+  const bool speed_alone = columns.contains("speed") && columns.size() == 1U + columns.count("time");
+  const auto is_latitude = [](const ColumnSummary& column) { return column.proposal.quantity == "latitude"; };
+  if (log.table && stream == StreamKind::odometry && speed_alone &&
+      std::any_of(all.begin(), all.end(), is_latitude))
+    columns.clear();
   return columns;
 }
 

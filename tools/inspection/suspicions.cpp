@@ -156,7 +156,8 @@ std::vector<std::string> suspicions_of(const LogInspection& log, Stamp now) {
     judge_speed(fixes, sentences);
   }
   if (log.odometry) {
-    judge_clock(log.odometry->stamps, log, "odometry", sentences);
+    const bool same_rows = log.table && log.fixes;
+    if (!same_rows) judge_clock(log.odometry->stamps, log, "odometry", sentences);
     judge_odometry(*log.odometry, sentences);
   } else if (log.can && !log.fixes) {
     const Sighting& back = log.can->stamps.backwards();

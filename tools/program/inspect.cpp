@@ -19,11 +19,11 @@ ExitCode inspect(const InspectCommand& command) {
   if (command.common.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const LogInspection& log : logs) json.push_back(inspection_json(log));
-    console.result(json_text(json));
+    console.result(json_text(json), is_stdout(command.output));
   } else {
     std::string text;
     for (const LogInspection& log : logs) text += (text.empty() ? "" : "\n") + inspection_text(log);
-    console.result(text);
+    console.result(text, is_stdout(command.output));
   }
   if (!command.output.empty()) write_proposal(command, logs, console);
   return kSuccess;
