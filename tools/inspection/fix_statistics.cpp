@@ -67,6 +67,7 @@ FixStatistics::FixStatistics() : cells_(kRows * kColumns) {
 }
 
 void FixStatistics::add(const GeodeticFix& fix) {
+  if (!std::isfinite(fix.latitude_deg) || !std::isfinite(fix.longitude_deg)) return;
   ++summary_.fixes;
   summary_.stamps.add(fix.stamp, fix.line);
   if (fix.speed_mps) {

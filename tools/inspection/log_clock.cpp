@@ -68,8 +68,13 @@ LogClock clock_of_column(const ColumnSummary* time, Stamp now) {
       TimeScale::unix_time, false, true, false, false, column + " holds numbers like those of Unix seconds"};
 }
 
+Stamp on_scale(Stamp stamp, TimeScale from, TimeScale to) {
+  constexpr std::int64_t kLargest = 8'000'000'000'000'000'000;
+  return convert(Stamp{std::clamp(stamp.nanoseconds, -kLargest, kLargest)}, from, to);
+}
+
 WeekSecond week_second(Stamp stamp, const LogClock& clock) {
-  const double seconds = convert(stamp, clock.scale, TimeScale::gps).seconds();
+  const double seconds = on_scale(stamp, clock.scale, TimeScale::gps).seconds();
   const double week = std::floor(seconds / kWeek);
   return {static_cast<int>(week), seconds - week * kWeek};
 }
@@ -77,7 +82,7 @@ WeekSecond week_second(Stamp stamp, const LogClock& clock) {
 std::string date_text(Stamp stamp, const LogClock& clock) {
   if (!clock.dated) return fmt::format("{:.3f} s", stamp.seconds());
   using namespace std::chrono;
-  const std::int64_t ns = convert(stamp, clock.scale, TimeScale::utc).nanoseconds;
+  const std::int64_t ns = on_scale(stamp, clock.scale, TimeScale::utc).nanoseconds;
   const auto instant = sys_time<nanoseconds>(nanoseconds(ns));
   const auto day = floor<days>(instant);
   const year_month_day date(day);

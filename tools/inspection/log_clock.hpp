@@ -9,6 +9,9 @@ namespace waymark {
 /// @param time  null where the table has none
 [[nodiscard]] LogClock clock_of_column(const ColumnSummary* time, Stamp now);
 
+/// The instant on another scale; stamps near the ends of int64, which only damaged logs have, stay within it.
+[[nodiscard]] Stamp on_scale(Stamp stamp, TimeScale from, TimeScale to);
+
 /// Seconds of the GPS week and the week's number of a dated instant.
 struct WeekSecond {
   int week = 0;

@@ -229,7 +229,12 @@ std::string inspection_text(const LogInspection& log) {
     if (note.starts_with(log.path + ": ")) note.erase(0, log.path.size() + 2);
   text.list("notes", notes);
   text.list("suspicious", log.suspicions.empty() ? std::vector<std::string>{"nothing"} : log.suspicions);
-  return text.text();
+  // Names and comments are the log's: nothing in them may steer a terminal.
+  std::string result = text.text();
+  std::replace_if(
+      result.begin(), result.end(),
+      [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f; }, '?');
+  return result;
 }
 
 }  // namespace waymark

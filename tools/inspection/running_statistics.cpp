@@ -14,6 +14,12 @@ constexpr std::size_t kBins = (static_cast<std::size_t>(kOctaves) << kBinBits) +
 constexpr std::size_t kKept = 1024;
 constexpr std::size_t kLongest = 5;
 
+/// To the nanosecond where that fits: stamps of a damaged log may be as far apart as int64 goes.
+double seconds_from(Stamp earlier, Stamp later) {
+  const double rough = later.seconds() - earlier.seconds();
+  return std::abs(rough) < 1e9 ? seconds_between(earlier, later) : rough;
+}
+
 }  // namespace
 
 /// Bin 0 is that of sizes next to zero. A double's exponent and first bits of mantissa are the bin: no
@@ -75,9 +81,7 @@ void StampSeries::add(Stamp stamp, std::size_t line) {
     earliest_ = latest_ = last_ = stamp;
     return;
   }
-  // Stamps of a damaged log may be as far apart as int64 goes.
-  const double step = stamp.seconds() - last_.seconds();
-  const double seconds = std::abs(step) < 1e9 ? seconds_between(last_, stamp) : step;
+  const double seconds = seconds_from(last_, stamp);
   if (seconds < 0) backwards_.see(line, stamp, -seconds);
   if (seconds == 0) duplicates_.see(line, stamp);
   if (seconds > kClockJump) jumps_.see(line, stamp, seconds);
@@ -88,6 +92,10 @@ void StampSeries::add(Stamp stamp, std::size_t line) {
   earliest_ = std::min(earliest_, stamp);
   latest_ = std::max(latest_, stamp);
   last_ = stamp;
+}
+
+double StampSeries::span_s() const {
+  return count_ == 0 ? 0 : seconds_from(earliest_, latest_);
 }
 
 void StampSeries::keep_longest(const LongInterval& interval) {

@@ -98,7 +98,7 @@ class StampSeries {
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] Stamp earliest() const { return earliest_; }
   [[nodiscard]] Stamp latest() const { return latest_; }
-  [[nodiscard]] double span_s() const { return count_ == 0 ? 0 : seconds_between(earliest_, latest_); }
+  [[nodiscard]] double span_s() const;
   /// NaN for fewer than two stamps.
   [[nodiscard]] double median_interval_s() const { return intervals_.median(); }
   [[nodiscard]] std::size_t gaps() const;

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/inspection/log_clock.hpp>
+
 namespace waymark {
 namespace {
 
@@ -43,7 +45,7 @@ void judge_clock(const StampSeries& stamps, const LogInspection& log, const std:
 void judge_date(const LogInspection& log, Stamp now, std::vector<std::string>& sentences) {
   const StampSeries* span = log.span();
   if (span == nullptr || !log.clock.dated) return;
-  const double first = convert(span->earliest(), log.clock.scale, TimeScale::utc).seconds();
+  const double first = on_scale(span->earliest(), log.clock.scale, TimeScale::utc).seconds();
   const double latest = now.seconds() + kYear;
   if (first >= kYear2000 && first <= latest) return;
   std::string sentence = fmt::format("the first stamp is {}, {}", date_text(span->earliest(), log.clock),
@@ -182,7 +184,7 @@ std::string suspicion_between(const LogInspection& log, const LogInspection& oth
     return fmt::format("its stamps cannot be compared with those of {}: only one of both has dates",
                        other.path);
   const auto seconds = [](Stamp stamp, const LogClock& clock) {
-    return (clock.dated ? convert(stamp, clock.scale, TimeScale::utc) : stamp).seconds();
+    return (clock.dated ? on_scale(stamp, clock.scale, TimeScale::utc) : stamp).seconds();
   };
   const double behind = seconds(a->earliest(), log.clock) - seconds(b->latest(), other.clock);
   const double before = seconds(b->earliest(), other.clock) - seconds(a->latest(), log.clock);

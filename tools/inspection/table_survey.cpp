@@ -100,17 +100,17 @@ void TableSurvey::take_line(std::string_view line, std::size_t number) {
   if (!begun_) return begin(line);
   ++data_.records;
   ++summary_.rows;
-  if (!split_fields(line, summary_.separator, fields_) || fields_.size() != columns_.size())
-    return corrupt(number, 1,
-                   fmt::format("{} fields, but the header has {}", fields_.size(), columns_.size()));
-  for (std::size_t i = 0; i < fields_.size(); ++i) take_field(columns_[i], fields_[i]);
+  if (!split_fields(line, summary_.separator, fields_) || fields_.size() != width_)
+    return corrupt(number, 1, fmt::format("{} fields, but the header has {}", fields_.size(), width_));
+  for (std::size_t i = 0; i < columns_.size(); ++i) take_field(columns_[i], fields_[i]);
 }
 
 void TableSurvey::begin(std::string_view line) {
   begun_ = true;
   summary_.separator = separator_of(line);
   if (!split_fields(line, summary_.separator, fields_)) return;
-  columns_.resize(fields_.size());
+  width_ = fields_.size();
+  columns_.resize(std::min(width_, kMostColumns));
   const bool numbers = std::all_of(fields_.begin(), fields_.end(), [](std::string_view field) {
     return number_from_field(field).has_value() || stamp_from_iso8601(field).has_value();
   });
@@ -125,6 +125,9 @@ void TableSurvey::begin(std::string_view line) {
   }
   for (std::size_t i = 0; i < columns_.size(); ++i)
     columns_[i].seen.name = names[i].empty() ? std::to_string(i + 1) : std::string(names[i]);
+  std::size_t times = 0;
+  for (Column& column : columns_)
+    column.is_time = propose_quantity(column.seen.name).quantity == "time" && ++times <= 4;
   if (!numbers) return;
   ++summary_.rows;
   for (std::size_t i = 0; i < columns_.size(); ++i) take_field(columns_[i], fields_[i]);
@@ -149,8 +152,7 @@ void TableSurvey::take_field(Column& column, std::string_view field) {
     value = date->seconds();
   }
   if (column.seen.values + (column.dates ? column.seen.words : 0) > 0) {
-    if (value < column.last) column.increasing = false;
-    if (value > column.last) column.steps.add(value - column.last);
+    if (column.is_time && value > column.last) column.steps.add(value - column.last);
   }
   column.last = value;
   ++column.seen.values;

@@ -34,6 +34,9 @@ struct TableSummary {
   std::string first_line;  ///< the comment above the header, if there is one
 };
 
+/// So many columns are looked at; a header of a damaged log may have any number.
+inline constexpr std::size_t kMostColumns = 1024;
+
 /// Takes a table line by line; finds no samples.
 class TableSurvey final : public LineDecoder {
  public:
@@ -44,10 +47,9 @@ class TableSurvey final : public LineDecoder {
  private:
   struct Column {
     ColumnSummary seen;
-    bool dates = true;       ///< all words so far are ISO 8601 dates
-    bool increasing = true;  ///< no number is below its predecessor
+    bool dates = true;  ///< all words so far are ISO 8601 dates
     double last = 0;
-    double last_date = 0;
+    bool is_time = false;  ///< by its name: steps are kept
     Quantiles steps;
   };
   void take_line(std::string_view line, std::size_t number) override;
@@ -57,6 +59,7 @@ class TableSurvey final : public LineDecoder {
   TableSummary summary_;
   std::string comment_;
   std::vector<Column> columns_;
+  std::size_t width_ = 0;  ///< fields of a line
   std::vector<std::string_view> fields_;
   bool begun_ = false;
 };
