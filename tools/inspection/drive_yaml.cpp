@@ -45,10 +45,17 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// A quantity views the text of its request, which is kept.
 std::vector<Quantity> quantities_of(StreamKind stream) {
+  static const LogRequest kOdometry = [] {
+    LogRequest request;
+    request.stream = StreamKind::odometry;
+    request.readings = odometry_channels();
+    return request;
+  }();
+  if (stream == StreamKind::odometry) return quantities(kOdometry);
   LogRequest request;
   request.stream = stream;
-  if (stream == StreamKind::odometry) request.readings = odometry_channels();
   return quantities(request);
 }
 
