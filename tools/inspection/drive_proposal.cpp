@@ -122,9 +122,9 @@ class Deciding {
       if (used_[i]) continue;
       proposal_.unused.push_back(i);
       if (!told_.contains(i))
-        say(i, "not used: " + std::string(has_positions(logs_[i]) || !channels_of(logs_[i]).empty()
-                                              ? "other logs give the same"
-                                              : "nothing that a drive needs was found in it"));
+        say(i, fmt::format("not used: {}", has_positions(logs_[i]) || !channels_of(logs_[i]).empty()
+                                               ? "other logs give the same"
+                                               : "nothing that a drive needs was found in it"));
     }
     if (proposal_.gnss.empty())
       proposal_.decisions.emplace_back("no log with positions was found: fill in gnss");

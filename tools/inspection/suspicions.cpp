@@ -97,7 +97,7 @@ void judge_accuracy(const FixSummary& fixes, std::vector<std::string>& sentences
     sentences.push_back(fmt::format("the accuracy never changes: sigma is {:.4g} m in all {} fixes",
                                     fixes.east.median, fixes.with_accuracy));
   else if (fixes.axes_equal)
-    sentences.push_back(
+    sentences.emplace_back(
         "east and north have the same accuracy in every fix: a radius, not a figure of each axis (what it "
         "means: "
         "'meaning' under 'accuracy')");
