@@ -1,0 +1,84 @@
+// Files: as they are, or compressed and then damaged. The first byte: bit 0 compresses, bit 1 cuts the file
+// (at the second byte, 256ths), bit 2 flips a bit of it (at the third byte).
+#include <array>
+#include <vector>
+
+#include <sys/mman.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/logs/log_file.hpp>
+#include <waymark/formats/logs/log_readers.hpp>
+
+#include "invariants.hpp"
+
+using namespace waymark_fuzz;
+
+namespace {
+
+constexpr std::size_t kHeader = 3;
+
+std::string compressed(const std::string& text) {
+  z_stream stream{};
+  if (deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK) broken("zlib");
+  std::string result(deflateBound(&stream, text.size()) + 64, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<unsigned>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(result.data());
+  stream.avail_out = static_cast<unsigned>(result.size());
+  if (deflate(&stream, Z_FINISH) != Z_STREAM_END) broken("zlib");
+  result.resize(stream.total_out);
+  deflateEnd(&stream);
+  return result;
+}
+
+/// A file in memory.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const std::string& content) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
+    if (descriptor_ < 0 ||
+        ::write(descriptor_, content.data(), content.size()) != static_cast<ssize_t>(content.size()))
+      broken("memfd");
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { ::close(descriptor_); }
+  [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  if (size < kHeader) return 0;
+  const std::string plain(reinterpret_cast<const char*>(bytes) + kHeader, size - kHeader);
+  const bool compress = (bytes[0] & 1U) != 0;
+  std::string content = compress ? compressed(plain) : plain;
+  const bool cut = (bytes[0] & 2U) != 0;
+  const bool flip = (bytes[0] & 4U) != 0;
+  if (cut) content.resize(content.size() * bytes[1] / 256);
+  if (flip && !content.empty()) content[content.size() * bytes[2] / 256] ^= 0x10;
+
+  const MemoryFile file(content);
+  try {
+    std::string read;
+    const std::string trouble =
+        waymark::read_in_pieces(file.path(), [&](std::string_view piece) { read += piece; });
+    if (compress && !cut && !flip && (read != plain || !trouble.empty())) broken("a sound file is not read as it is");
+    if (compress && cut && !flip && read != plain.substr(0, read.size())) broken("a cut file gives other bytes");
+  } catch (const waymark::InputError& error) {
+    broken(error.what());
+  }
+  try {
+    const waymark::Recognised found = waymark::recognise_log(file.path(), waymark::builtin_log_readers());
+    waymark::LogRequest request;
+    request.default_sigma_m = 5;
+    check_data(waymark::read_log_file(*found.reader.reader, file.path(), request), request);
+  } catch (const waymark::InputError&) {
+    // What cannot be read is refused.
+  }
+  return 0;
+}

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Seed corpora of the fuzzers: snippets of real logs (shared data) and of hand-made ones.
+
+make_seeds.py SHARED_DATA OUTPUT: one folder per target, one file per snippet of at most 4 KiB, each behind the
+four bytes that say how it is read (fuzz_input.hpp).
+"""
+import gzip
+import pathlib
+import sys
+
+SNIPPET = 4096
+
+# By target: patterns below the shared data. Those of no real sample stand in MADE.
+REAL = {
+    "csv": ["drives/*/*.csv"],
+    "gpsd_json": ["logs/gpsd/*.chk"],
+    "candump": ["logs/can/*.log", "drives/aarhus_horsens/candump.log.gz"],
+    "nmea": ["logs/nmea/*"],
+    "rtklib_pos": ["logs/pos/*.pos", "drives/nagoya/*.pos"],
+    "gpx": ["logs/gpx/*.gpx"],
+    "ubx": ["logs/ubx/*"],
+    "dbc": ["logs/can/*.dbc", "drives/aarhus_horsens/*.dbc"],
+    "log_file": ["logs/*/*"],
+}
+
+OXTS = ("49.01 8.43 112.8 0.03 0.02 1.5 -1.2 5.1 5.2 0.1 0.01 0.2 0.1 9.8 0.2 0.1 9.8 0.01 0.02 0.03 0.01 0.02 "
+        "0.03 0.05 0.02 4 11 6 6 6\n")
+BESTPOS = ("BESTPOSA,COM1,0,90.5,FINESTEERING,2062,151500.000,02000020,cdba,15564;SOL_COMPUTED,NARROW_INT,"
+           "51.15043711386,-114.03067767000,1097.2099,-17.0000,WGS84,0.0123,0.0114,0.0212,\"AAAA\",1.000,0.000,"
+           "35,30,30,30,00,06,39,33")
+INSPVAX = ("INSPVAXA,COM1,0,73.5,FINESTEERING,1695,309428.000,02000040,4e77,43562;INS_SOLUTION_GOOD,INS_PSRSP,"
+           "51.11637873403,-114.03825114994,1063.6093,-16.9000,-0.0845,-0.0464,-0.0127,0.138023492,0.069459386,"
+           "90.000923268,0.9428,0.6688,1.4746,0.0430,0.0518,0.0521,0.944295466,0.944567084,1.000131845,3,0")
+BESTVEL = ("BESTVELA,COM1,0,90.5,FINESTEERING,2062,151500.000,02000020,10a2,15564;SOL_COMPUTED,DOPPLER_VELOCITY,"
+           "0.150,0.000,1.2021,150.0,0.01,0.0")
+RTKLIB = ("% GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) sdun(m) age(s) ratio\n"
+          "2068 284261.000 36.082 140.077 70.1 1 10 0.01 0.01 0.02 0.001 0.0 0.0 0.0 99.9\n")
+MADE = {
+    "kitti_oxts": [(OXTS * 8).encode()],
+    "novatel": ["".join("#%s*00000000\n" % m for m in messages).encode()
+                for messages in ([BESTPOS] * 4, [INSPVAX] * 4, [BESTPOS, BESTVEL] * 4)],
+    "rtklib_pos": [RTKLIB.encode()],
+    "candump": [b"(1.5) can0 0AA#0123456789ABCDEF\n (1.6)  can0  024   [2]  FF FF\n(1.7) can0 123##1AABB\n"
+                b"(1.8) can0 003#0011223344556677\n(1.9) can0 007#00112233\n(2.0) can0 002#0011223344\n"
+                b"(2.1) can0 0B4#0100002041000000\n(2.2) can0 123#R\n"],
+    "csv": [b"time,latitude,longitude,height,accuracy,course,speed,valid\n1.5,48.1,11.5,500,3.5,90,4.5,1\n" * 2,
+            b"time;speed;yaw_rate\n1.5;4.25;0.01\n\"1.6\";4.5;-0.02\n",
+            b"2024-05-06T07:08:09.5Z,481234567,111234567,500000,3500\n" * 3],
+    "gpx": [b'<?xml version="1.0"?><gpx version="1.1" creator="x"><trk><trkseg><trkpt lat="48.1" lon="11.5">'
+            b"<ele>500</ele><time>2024-05-06T07:08:09Z</time><fix>3d</fix><hdop>1.2</hdop><speed>3</speed>"
+            b"<course>90</course></trkpt></trkseg></trk></gpx>"],
+}
+
+# Stream and pieces; accuracy; week, date, offset, separator; free.
+HEADS = {
+    "csv": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(3) for v in (0, 1, 2, 4, 7)],
+    "candump": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(4) for v in (0, 3)],
+    "dbc": [bytes([s | 4, 8, 0, 0]) for s in range(2)],
+    "ubx": [bytes([s | v << 5 | r | 4, 8 | 32, 2, 0]) for s in (0, 1) for v in (0, 1) for r in (0, 16)],
+    "log_file": [bytes([0, 0, 0]), bytes([1, 0, 0]), bytes([3, 128, 0]), bytes([5, 0, 100])],
+}
+DEFAULT_HEADS = [bytes([4, 0, 0, 100]), bytes([16 | 5, 8, 4, 100]), bytes([16, 16 | 8 | 32, 5, 10])]
+
+
+def snippets(data):
+    """Beginning, middle and end, from the begin of a line on."""
+    yield data[:SNIPPET]
+    for begin in (len(data) // 2, len(data) - SNIPPET):
+        if begin > SNIPPET // 2:
+            begin = data.find(b"\n", begin) + 1 or begin
+            yield data[begin:begin + SNIPPET]
+
+
+def contents(target, shared):
+    for pattern in REAL.get(target, []):
+        for path in sorted(shared.glob(pattern)):
+            if not path.is_file():
+                continue
+            opened = gzip.open(path) if path.suffix == ".gz" else open(path, "rb")
+            with opened as file:
+                yield from snippets(file.read(2 << 20))
+    yield from MADE.get(target, [])
+
+
+def main():
+    shared, output = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    for target in sorted(set(REAL) | set(MADE)):
+        folder = output / target
+        folder.mkdir(parents=True, exist_ok=True)
+        for i, content in enumerate(contents(target, shared)):
+            for k, head in enumerate(HEADS.get(target, DEFAULT_HEADS)):
+                (folder / f"seed_{i:03}_{k:02}").write_bytes(head + content)
+
+
+main()
