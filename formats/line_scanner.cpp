@@ -14,22 +14,34 @@ const char* skip_plus(const char* begin, const char* end) {
   return plus ? begin + 1 : begin;
 }
 
-}  // namespace
-
-std::string quote_word(std::string_view word) {
+void append_shown(std::string& text, std::string_view word, bool beyond_ascii) {
   constexpr std::size_t kLongest = 40;
   constexpr std::string_view kDigits = "0123456789abcdef";
-  if (word.empty()) return "the end of the line";
-  std::string text = "'";
   for (const char c : word.substr(0, kLongest)) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte < 0x7f) {
+    if ((byte >= 0x20 && byte < 0x7f) || (beyond_ascii && byte >= 0x80)) {
       text += c;
     } else {
       text += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 15U]};
     }
   }
-  return text + (word.size() > kLongest ? "...'" : "'");
+  if (word.size() > kLongest) text += "...";
+}
+
+}  // namespace
+
+std::string quote_word(std::string_view word) {
+  if (word.empty()) return "the end of the line";
+  std::string text = "'";
+  append_shown(text, word, false);
+  text += '\'';
+  return text;
+}
+
+std::string shown_name(std::string_view name) {
+  std::string text;
+  append_shown(text, name, true);
+  return text;
 }
 
 std::string_view LineScanner::rest() {

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/line_scanner.hpp>
 #include <waymark/formats/logs/dbc.hpp>
 
 namespace waymark {
@@ -60,7 +61,7 @@ class Interfaces {
     return last_;
   }
   [[nodiscard]] std::string name(std::size_t index) const {
-    return index < used_ ? names_[index] : std::string("other interfaces");
+    return index < used_ ? shown_name(names_[index]) : std::string("other interfaces");
   }
   [[nodiscard]] std::string summary(const std::array<std::size_t, kMostInterfaces + 1>& counts) const {
     std::string text;

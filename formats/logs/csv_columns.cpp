@@ -9,6 +9,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/iso8601.hpp>
+#include <waymark/formats/line_scanner.hpp>
 #include <waymark/formats/stamp_text.hpp>
 #include <waymark/formats/suggest.hpp>
 
@@ -148,7 +149,7 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
     }
     if (!field)
       throw InputError(fmt::format("{}no column '{}' for {}{}{}", place, wanted->column, quantity.name,
-                                   did_you_mean(wanted->column, views_of(names_)), columns_present()));
+                                   did_you_mean(wanted->column, views_of(shown_names())), columns_present()));
   } else {
     field = field_named(quantity.name);
     if (!field) field = field_named(quantity.default_column);
@@ -190,7 +191,19 @@ std::optional<std::size_t> CsvColumns::field_named(std::string_view name) const 
 
 std::string CsvColumns::columns_present() const {
   if (names_.empty()) return fmt::format("; the table has no header, only columns 1 to {}", field_count_);
-  return fmt::format("; columns present: {}", joined(views_of(names_)));
+  constexpr std::size_t kMostListed = 40;
+  std::vector<std::string> shown = shown_names();
+  const std::size_t more = shown.size() - std::min(shown.size(), kMostListed);
+  shown.resize(shown.size() - more);
+  return fmt::format("; columns present: {}{}", joined(views_of(shown)),
+                     more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// Of the header, as messages show them.
+std::vector<std::string> CsvColumns::shown_names() const {
+  std::vector<std::string> shown;
+  for (const std::string& name : names_) shown.push_back(shown_name(name));
+  return shown;
 }
 
 }  // namespace waymark

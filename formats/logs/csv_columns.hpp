@@ -47,6 +47,7 @@ class CsvColumns {
   void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
   [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
   [[nodiscard]] std::string columns_present() const;
+  [[nodiscard]] std::vector<std::string> shown_names() const;
 
   std::vector<Quantity> quantities_;
   std::vector<std::string> names_;  ///< of the header; empty where there is none

@@ -205,7 +205,7 @@ void DbcParser::read_signal(DbcTokens& tokens, std::size_t number) {
   tokens.expect('|');
   (void)tokens.number<double>("the largest value");
   tokens.expect(']');
-  signal.unit = utf8_unit(tokens.quoted("the unit in quotes"));
+  signal.unit = shown_name(utf8_unit(tokens.quoted("the unit in quotes")));
   check_fit(tokens, signal);
   if (same == nullptr) dbc_.messages.back().signals.push_back(std::move(signal));
 }

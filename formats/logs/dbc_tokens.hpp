@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/line_scanner.hpp>
 
 namespace waymark {
 
@@ -36,9 +37,7 @@ class DbcTokens {
   /// What fail() would throw.
   [[nodiscard]] std::string complaint(const std::string& what) const { return placed(mark_, what); }
   [[noreturn]] void fail_expected(std::string_view what) const {
-    const std::string_view rest = line_.substr(at_, 20);
-    fail_at(at_, fmt::format("expected {}, got {}", what,
-                             rest.empty() ? std::string("the end of the line") : fmt::format("'{}'", rest)));
+    fail_at(at_, fmt::format("expected {}, got {}", what, quote_word(line_.substr(at_, 20))));
   }
   void skip_blanks() {
     while (at_ < line_.size() && (line_[at_] == ' ' || line_[at_] == '\t')) ++at_;
@@ -57,6 +56,8 @@ class DbcTokens {
     const std::size_t begin = at_;
     while (at_ < line_.size() && is_name_character(line_[at_])) ++at_;
     if (at_ == begin) fail_expected(what);
+    if (at_ - begin > kLongestName)
+      fail_at(begin, fmt::format("a name of {} characters: none has more than {}", at_ - begin, kLongestName));
     return std::string(line_.substr(begin, at_ - begin));
   }
   template <typename Number>
@@ -82,6 +83,7 @@ class DbcTokens {
   }
 
  private:
+  static constexpr std::size_t kLongestName = 128;
   [[noreturn]] void fail_at(std::size_t place, const std::string& what) const {
     throw InputError(placed(place, what));
   }

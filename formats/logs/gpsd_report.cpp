@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <waymark/formats/line_scanner.hpp>
+
 namespace waymark {
 namespace {
 
@@ -14,7 +16,6 @@ using nlohmann::json;
 constexpr std::array<std::string_view, static_cast<std::size_t>(GpsdNumber::count)> kNames{
     "mode", "status", "lat", "lon",   "altHAE", "alt",   "epx",   "epy",
     "eph",  "track",  "epd", "speed", "eps",    "major", "minor", "orient"};
-constexpr std::size_t kShown = 40;  ///< characters of a value that messages repeat
 
 /// Takes the events of the parser. A tree of objects, as json::parse makes it, costs an allocation for every
 /// member, and its copy recurses as deep as the text is nested.
@@ -33,7 +34,7 @@ class Collector {
       *text_ = std::move(value);
       return true;
     }
-    return other(fmt::format("\"{}{}\"", value.substr(0, kShown), value.size() > kShown ? "..." : ""));
+    return other('"' + shown_name(value) + '"');
   }
   bool binary(json::binary_t&) { return true; }
   bool start_object(std::size_t) {
@@ -110,10 +111,11 @@ void GpsdReport::update(const GpsdReport& later) {
 }
 
 std::string_view gpsd_class(std::string_view line) {
+  constexpr std::size_t kLongestClass = 40;
   constexpr std::string_view kStart = "{\"class\":\"";
   if (!line.starts_with(kStart)) return {};
   line.remove_prefix(kStart.size());
-  const std::size_t end = line.substr(0, kShown).find('"');
+  const std::size_t end = line.substr(0, kLongestClass).find('"');
   return end == std::string_view::npos ? std::string_view() : line.substr(0, end);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <waymark/formats/line_scanner.hpp>
 #include <waymark/formats/logs/accuracy.hpp>
 
 namespace waymark {
@@ -75,7 +76,7 @@ std::optional<double> speed_from(const NmeaFields& fields, std::size_t index, do
   *speed *= unit;
   if (!(*speed >= 0 && *speed <= kFastest))
     throw BadNmeaField{fields[index],
-                       "expected a speed of 0 to 1000 m/s, got '" + std::string(fields[index]) + "'"};
+                       "expected a speed of 0 to 1000 m/s, got " + quote_word(fields[index])};
   return speed;
 }
 
@@ -83,7 +84,7 @@ std::optional<double> course_from(const NmeaFields& fields, std::size_t index) {
   const std::optional<double> course = fields.number(index, "course");
   if (course && !(std::abs(*course) <= 360))
     throw BadNmeaField{fields[index],
-                       "expected a course of 0 to 360 degrees, got '" + std::string(fields[index]) + "'"};
+                       "expected a course of 0 to 360 degrees, got " + quote_word(fields[index])};
   return course;
 }
 

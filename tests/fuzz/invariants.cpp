@@ -16,7 +16,7 @@ using waymark::GeodeticFix;
 using waymark::LogData;
 
 /// Longest message: a place, what was expected, and a quoted word of the log.
-constexpr std::size_t kLongestMessage = 1000;
+constexpr std::size_t kLongestMessage = 4000;
 
 void hold(bool condition, const char* what) {
   if (!condition) broken(what);
@@ -89,7 +89,10 @@ void check_data(const LogData& data, const waymark::LogRequest& request) {
   for (const double value : data.readings.values) hold(!std::isinf(value), "readings: finite or none");
   hold(request.readings.empty() || data.readings.columns == request.readings.size(), "readings: columns");
 
-  hold(data.corrupt_examples.size() == std::min(data.corrupt, waymark::kCorruptExamples), "corrupt examples");
+  // One more than the first few may tell what was wrong with the whole log.
+  hold(data.corrupt_examples.empty() == (data.corrupt == 0) &&
+           data.corrupt_examples.size() <= std::min(data.corrupt, waymark::kCorruptExamples + 1),
+       "corrupt examples");
   hold(data.corrupt + data.without_fix <= data.records, "more corrupt records than records");
   for (const std::string& text : data.corrupt_examples) check_text(text);
   for (const std::string& text : data.notes) check_text(text);
