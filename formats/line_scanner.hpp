@@ -13,8 +13,8 @@ namespace waymark {
 /// take for a command (and all beyond ASCII) as `\xNN`; an empty one is "the end of the line".
 [[nodiscard]] std::string quote_word(std::string_view word);
 
-/// A name out of a file as a message shows it: without quotes, cut after 40 bytes, control characters as `\xNN`,
-/// what is beyond ASCII as it stands.
+/// A name out of a file as a message shows it: without quotes, cut after 40 bytes, control characters as
+/// `\xNN`, what is beyond ASCII as it stands.
 [[nodiscard]] std::string shown_name(std::string_view name);
 
 /// What the scanner expected, made into text only when it fails.

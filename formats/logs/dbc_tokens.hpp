@@ -57,7 +57,8 @@ class DbcTokens {
     while (at_ < line_.size() && is_name_character(line_[at_])) ++at_;
     if (at_ == begin) fail_expected(what);
     if (at_ - begin > kLongestName)
-      fail_at(begin, fmt::format("a name of {} characters: none has more than {}", at_ - begin, kLongestName));
+      fail_at(begin,
+              fmt::format("a name of {} characters: none has more than {}", at_ - begin, kLongestName));
     return std::string(line_.substr(begin, at_ - begin));
   }
   template <typename Number>

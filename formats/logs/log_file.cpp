@@ -22,6 +22,8 @@ namespace {
 
 constexpr std::size_t kPiece = 1U << 20U;
 constexpr std::size_t kHead = 64U << 10U;
+/// zlib is asked for so much at a time: where a compressed file is damaged, it keeps what it holds of that.
+constexpr unsigned kStep = 8U << 10U;
 
 [[noreturn]] void fail_read(const std::string& path, int error) {
   throw InputError(fmt::format("{}: cannot read: {}", path, std::generic_category().message(error)));
@@ -41,7 +43,7 @@ class LogFile {
       ::close(descriptor);
       fail_read(path, ENOMEM);
     }
-    ::gzbuffer(file_, 256U << 10U);
+    ::gzbuffer(file_, kStep);
   }
   LogFile(const LogFile&) = delete;
   LogFile& operator=(const LogFile&) = delete;
@@ -49,23 +51,39 @@ class LogFile {
 
   /// The next bytes; empty at the end, and where a compressed file breaks off (see trouble()).
   [[nodiscard]] std::string_view next(std::vector<char>& buffer) {
-    const int count = ::gzread(file_, buffer.data(), static_cast<unsigned>(buffer.size()));
-    if (count > 0) return {buffer.data(), static_cast<std::size_t>(count)};
-    int code = Z_OK;
-    const char* message = ::gzerror(file_, &code);
-    if (code == Z_ERRNO) fail_read(path_, errno);
-    if (code == Z_BUF_ERROR) {
-      trouble_ = "the compressed file breaks off; what came before is used";
-    } else if (code != Z_OK && code != Z_STREAM_END) {
-      trouble_ = fmt::format("the compressed file is damaged ({}); what came before is used", message);
+    const auto size = static_cast<unsigned>(buffer.size());
+    const unsigned step = ::gzdirect(file_) != 0 ? size : std::min(kStep, size);
+    unsigned filled = 0;
+    while (trouble_.empty() && filled + step <= size) {
+      const int count = ::gzread(file_, buffer.data() + filled, step);
+      if (count > 0) {
+        filled += static_cast<unsigned>(count);
+        continue;
+      }
+      find_trouble();
+      break;
     }
-    return {};
+    return {buffer.data(), filled};
   }
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
   [[nodiscard]] std::uint64_t done() const { return static_cast<std::uint64_t>(::gzoffset(file_)); }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
  private:
+  /// What ended the reading, where it was not the file's end.
+  void find_trouble() {
+    int code = Z_OK;
+    std::string_view message = ::gzerror(file_, &code);
+    if (code == Z_ERRNO) fail_read(path_, errno);
+    if (code == Z_BUF_ERROR) {
+      trouble_ = "the compressed file breaks off; what came before is used";
+    } else if (code != Z_OK && code != Z_STREAM_END) {
+      if (message.starts_with("<fd:"))
+        message.remove_prefix(std::min(message.find(": ") + 2, message.size()));
+      trouble_ = fmt::format("the compressed file is damaged ({}); what came before is used", message);
+    }
+  }
+
   const std::string& path_;
   gzFile file_ = nullptr;
   std::uint64_t size_ = 0;

@@ -75,8 +75,7 @@ std::optional<double> speed_from(const NmeaFields& fields, std::size_t index, do
   if (!speed) return speed;
   *speed *= unit;
   if (!(*speed >= 0 && *speed <= kFastest))
-    throw BadNmeaField{fields[index],
-                       "expected a speed of 0 to 1000 m/s, got " + quote_word(fields[index])};
+    throw BadNmeaField{fields[index], "expected a speed of 0 to 1000 m/s, got " + quote_word(fields[index])};
   return speed;
 }
 

@@ -43,11 +43,26 @@ unsigned byte_at(std::string_view bytes, std::size_t place) {
 }
 
 /// Fletcher's checksum: b is the sum of all intermediate sums a. Sums of 32 bits wrap at a multiple of 256.
+/// In blocks, which the compiler turns into vector instructions: a log of false headers with great lengths
+/// has every byte summed a thousand times.
 bool checksum_is_right(std::string_view frame) {
+  constexpr std::uint32_t kBlock = 64;
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   const std::size_t end = frame.size() - 2;
-  for (std::size_t i = 2; i < end; ++i) {
+  std::size_t i = 2;
+  for (; i + kBlock <= end; i += kBlock) {
+    std::uint32_t sum = 0;
+    std::uint32_t weighted = 0;
+    for (std::uint32_t k = 0; k < kBlock; ++k) {
+      const std::uint32_t byte = byte_at(frame, i + k);
+      sum += byte;
+      weighted += (kBlock - k) * byte;
+    }
+    b += kBlock * a + weighted;
+    a += sum;
+  }
+  for (; i < end; ++i) {
     a += byte_at(frame, i);
     b += a;
   }

@@ -1,4 +1,5 @@
-// A DBC file of any bytes, and a candump log of any bytes that is read by it: the two parted by the first zero.
+// A DBC file of any bytes, and a candump log of any bytes that is read by it: the two parted by the first
+// zero.
 #include <waymark/core/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/dbc.hpp>
@@ -33,9 +34,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   FuzzInput input = fuzz_input("candump", bytes, size);
   const std::size_t end = std::min(input.log.find('\0'), input.log.size());
   const std::string dbc = input.log.substr(0, end);
-  const std::string log = end < input.log.size()
-                              ? input.log.substr(end + 1)
-                              : "(1.5) can0 0AA#0123456789ABCDEF\n(1.6) can0 024#FFFF\n(1.7) can0 003#0011223344556677\n";
+  const std::string log =
+      end < input.log.size()
+          ? input.log.substr(end + 1)
+          : "(1.5) can0 0AA#0123456789ABCDEF\n(1.6) can0 024#FFFF\n(1.7) can0 003#0011223344556677\n";
   input.request.companions["dbc"] = {"fuzz.dbc", dbc};
   try {
     read_signals(dbc);

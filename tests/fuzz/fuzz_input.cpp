@@ -121,8 +121,8 @@ std::string kitti_stamps(std::string& log, unsigned variant, unsigned between) {
   std::string stamps;
   for (std::size_t i = 0; i < lines; ++i) {
     const std::size_t ms = i * between;
-    stamps += fmt::format("2011-09-26 {:02}:{:02}:{:02}.{:03}000000\n", ms / 3'600'000 % 24,
-                          ms / 60'000 % 60, ms / 1000 % 60, ms % 1000);
+    stamps += fmt::format("2011-09-26 {:02}:{:02}:{:02}.{:03}000000\n", ms / 3'600'000 % 24, ms / 60'000 % 60,
+                          ms / 1000 % 60, ms % 1000);
   }
   return stamps;
 }
@@ -201,9 +201,9 @@ FuzzInput fuzz_input(std::string_view reader, const std::uint8_t* bytes, std::si
   const bool repair = (head[0] & 16U) != 0;
   const unsigned variant = head[0] >> 5U;
 
-  request.accuracy = std::array{AccuracyMeaning::automatic, AccuracyMeaning::percent95,
-                                AccuracyMeaning::one_sigma, AccuracyMeaning::drms,
-                                AccuracyMeaning::cep50}[(head[1] & 7U) % 5];
+  request.accuracy =
+      std::array{AccuracyMeaning::automatic, AccuracyMeaning::percent95, AccuracyMeaning::one_sigma,
+                 AccuracyMeaning::drms, AccuracyMeaning::cep50}[(head[1] & 7U) % 5];
   if ((head[1] & 8U) != 0) request.default_sigma_m = 5;
   if ((head[1] & 16U) != 0) request.range_error_m = 4;
   request.time_scale = std::array{TimeScale::gps, TimeScale::utc, TimeScale::unix_time}[(head[1] >> 5U) % 3];
@@ -221,8 +221,10 @@ FuzzInput fuzz_input(std::string_view reader, const std::uint8_t* bytes, std::si
   if (reader == "csv" && request.readings.empty()) set_csv_columns(request, variant);
   if (reader == "candump") {
     request.companions["dbc"] = {"fuzz.dbc", fuzz_dbc()};
-    if (variant != 7 || request.stream != StreamKind::gnss) set_can_columns(request, variant);
-    else request.columns["speed"] = {"VELOCITY.Speed", "", ""};
+    if (variant != 7 || request.stream != StreamKind::gnss)
+      set_can_columns(request, variant);
+    else
+      request.columns["speed"] = {"VELOCITY.Speed", "", ""};
   }
   if (reader == "ubx" && variant == 1 && request.readings.empty())
     request.columns["position"] = {"HNR-PVT", "", ""};

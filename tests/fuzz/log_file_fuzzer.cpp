@@ -67,8 +67,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     std::string read;
     const std::string trouble =
         waymark::read_in_pieces(file.path(), [&](std::string_view piece) { read += piece; });
-    if (compress && !cut && !flip && (read != plain || !trouble.empty())) broken("a sound file is not read as it is");
-    if (compress && cut && !flip && read != plain.substr(0, read.size())) broken("a cut file gives other bytes");
+    if (compress && !cut && !flip && (read != plain || !trouble.empty()))
+      broken("a sound file is not read as it is");
+    if (compress && cut && !flip && read != plain.substr(0, read.size()))
+      broken("a cut file gives other bytes");
   } catch (const waymark::InputError& error) {
     broken(error.what());
   }

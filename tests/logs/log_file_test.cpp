@@ -1,0 +1,182 @@
+// Files: compressed and damaged ones, foreign formats, and the text of every error.
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <zlib.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/formats/logs/log_file.hpp>
+#include <waymark/formats/logs/log_readers.hpp>
+
+#include "support/paths.hpp"
+
+using namespace waymark;
+using Catch::Matchers::Message;
+
+namespace {
+
+std::string file_with(const std::string& name, const std::string& content) {
+  const std::string path = (waymark_test::scratch_dir() / name).string();
+  std::ofstream(path, std::ios::binary) << content;
+  return path;
+}
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// NMEA fixes a second apart, each line another.
+std::string nmea_log(int count) {
+  std::string text;
+  for (int k = 0; k < count; ++k) {
+    std::string sentence = "GPRMC,";
+    for (const int part : {k / 3600, k / 60 % 60, k % 60}) {
+      sentence += static_cast<char>('0' + part / 10);
+      sentence += static_cast<char>('0' + part % 10);
+    }
+    sentence += ",A,4807." + std::to_string(1000 + k * 7919 % 9000) + ",N,01131.0000,E,022.4,084.4,230394,,";
+    unsigned sum = 0;
+    for (const char c : sentence) sum ^= static_cast<unsigned char>(c);
+    constexpr const char* kDigits = "0123456789ABCDEF";
+    text += '$' + sentence + '*' + kDigits[sum >> 4U] + kDigits[sum & 15U] + "\r\n";
+  }
+  return text;
+}
+
+std::string gzip_of(const std::string& name, const std::string& text) {
+  const std::string path = (waymark_test::scratch_dir() / name).string();
+  gzFile file = ::gzopen(path.c_str(), "wb");
+  REQUIRE(::gzwrite(file, text.data(), static_cast<unsigned>(text.size())) == static_cast<int>(text.size()));
+  ::gzclose(file);
+  return path;
+}
+
+LogRequest request() {
+  LogRequest result;
+  result.default_sigma_m = 5;
+  return result;
+}
+
+LogData read(const std::string& path) {
+  return read_log_file(*builtin_log_reader("nmea"), path, request());
+}
+
+}  // namespace
+
+TEST_CASE("log files: a compressed log is known by its first bytes, whatever it is called") {
+  const std::string text = nmea_log(500);
+  const std::string path = gzip_of("compressed.nmea", text);
+  REQUIRE(content_of(path).size() < text.size());
+  std::string all;
+  CHECK(read_in_pieces(path, [&](std::string_view piece) { all += piece; }).empty());
+  CHECK(all == text);
+  CHECK(read(path).fixes.size() == 500);
+  CHECK(recognise_log(path, builtin_log_readers()).reader.name == "nmea");
+}
+
+TEST_CASE("log files: a compressed log that is cut gives what came before, and one corrupt record says so") {
+  const std::string whole = content_of(gzip_of("whole.gz", nmea_log(5000)));
+  const std::string path = file_with("cut.nmea.gz", whole.substr(0, whole.size() / 2));
+  const LogData data = read(path);
+  CHECK(data.fixes.size() > 1000);
+  CHECK(data.fixes.size() < 5000);
+  CHECK(data.corrupt_examples.at(0) == path + ": the compressed file breaks off; what came before is used");
+  CHECK(data.corrupt >= 1);
+}
+
+TEST_CASE("log files: a damaged compressed log gives what came before, and says what zlib says") {
+  std::string damaged = content_of(gzip_of("sound.gz", nmea_log(5000)));
+  for (std::size_t i = damaged.size() / 2; i < damaged.size() / 2 + 40; ++i) damaged[i] = '\xFF';
+  const std::string path = file_with("damaged.nmea.gz", damaged);
+  const LogData data = read(path);
+  CHECK(data.fixes.size() > 1000);
+  CHECK(data.fixes.size() < 5000);
+  CHECK(data.corrupt >= 1);
+  const std::string first = data.corrupt_examples.at(0);
+  CHECK(first.rfind(path + ": the compressed file is damaged (", 0) == 0);
+  CHECK(first.find("<fd:") == std::string::npos);
+  CHECK(first.substr(first.size() - 27) == "); what came before is used");
+}
+
+TEST_CASE("log files: a compressed log of which nothing is left") {
+  const std::string head = content_of(gzip_of("head.gz", nmea_log(100))).substr(0, 14);
+  const std::string path = file_with("nothing.gz", head);
+  CHECK_THROWS_MATCHES(recognise_log(path, builtin_log_readers()), InputError,
+                       Message(path + ": the compressed file breaks off; what came before is used"));
+  CHECK_THROWS_MATCHES(read(path), InputError,
+                       Message(path + ": none of 1 records could be used; first: " + path +
+                               ": the compressed file breaks off; what came before is used"));
+}
+
+TEST_CASE("log files: what cannot be read is named with the system's reason") {
+  const std::string path = (waymark_test::scratch_dir() / "absent.log").string();
+  for (const auto& act : std::vector<std::function<void()>>{
+           [&] { (void)read(path); }, [&] { (void)recognise_log(path, builtin_log_readers()); }})
+    CHECK_THROWS_MATCHES(act(), InputError, Message(path + ": cannot read: No such file or directory"));
+}
+
+TEST_CASE("log files: a folder is its files in order of name, each beginning with a new line") {
+  const std::filesystem::path folder = waymark_test::scratch_dir() / "parts";
+  std::filesystem::create_directories(folder);
+  CHECK_THROWS_MATCHES(read(folder.string()), InputError,
+                       Message(folder.string() + ": the folder holds no files"));
+  (void)file_with("parts/b", "second\n");
+  (void)file_with("parts/a", "first");
+  std::string all;
+  CHECK(read_in_pieces(folder.string(), [&](std::string_view piece) { all += piece; }).empty());
+  CHECK(all == "first\nsecond\n");
+}
+
+TEST_CASE("log files: a format that is not read is named with what converts it") {
+  const auto refusal = [](const std::string& content) -> std::string {
+    const std::string path = file_with("unknown.log", content);
+    try {
+      (void)recognise_log(path, builtin_log_readers());
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      return text.substr(std::min(text.size(), path.size()));
+    }
+    return "recognised";
+  };
+  const std::string start = ": the log's format is not recognised: ";
+  CHECK(refusal("") == ": the log is empty");
+  CHECK(refusal("MDF     4.10") ==
+        start + "it is an MF4 (ASAM MDF) file, which is not read here; asammdf writes CSV from it");
+  CHECK(refusal("LOGG\x90") ==
+        start +
+            "it is a Vector BLF file, which is not read here; `python3 -m can.logconvert` "
+            "writes a candump log from it");
+  CHECK(refusal("#ROSBAG V2.0\n") ==
+        start +
+            "it is a ROS 1 bag, which is not read here; `rostopic echo -p -b FILE "
+            "/topic` writes CSV from it");
+  CHECK(refusal("\x89MCAP0\r\n") ==
+        start + "it is an MCAP file, which is not read here; export its topics as CSV");
+  CHECK(refusal("PK\x03\x04") == start + "it is a zip archive, which is not read here; unpack it first");
+  CHECK(refusal("     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n") ==
+        start +
+            "it is a RINEX file of raw observations, which is not read here; RTKLIB's rnx2rtkp computes "
+            "positions from it");
+  CHECK(refusal("nothing that anyone knows\n") ==
+        start + "state its 'format'; `waymark info` lists those there are");
+}
+
+TEST_CASE("log files: two readers that are equally sure are both named") {
+  class Sure final : public WholeLogReader {
+   public:
+    [[nodiscard]] LogData read_whole(std::string_view, const std::string&, const LogRequest&) const override {
+      return {};
+    }
+    [[nodiscard]] Recognition recognise(std::string_view) const override { return {0.5, "always"}; }
+  };
+  const Sure one;
+  const std::vector<LogReaderType> readers{{"first", "", &one}, {"second", "", &one}};
+  const std::string path = file_with("either.log", "anything\n");
+  CHECK_THROWS_MATCHES(recognise_log(path, readers), InputError,
+                       Message(path + ": the log may be 'first' or 'second'; state its 'format'"));
+}
