@@ -76,12 +76,13 @@ std::unique_ptr<LogDecoder> UbxReader::open(const std::string& path, const LogRe
 }
 
 Recognition UbxReader::recognise(std::string_view head) const {
+  UbxStretch stretch(head);
   std::size_t frames = 0;
   std::size_t positions = 0;
   std::size_t bytes = 0;
   std::size_t from = 0;
   for (;;) {
-    const UbxFound found = find_ubx_frame(head, from);
+    const UbxFound found = find_ubx_frame(stretch, from);
     if (found.kind == UbxFound::Kind::nothing) break;
     from = found.begin + 2;
     if (found.kind != UbxFound::Kind::frame) continue;

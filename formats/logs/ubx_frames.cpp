@@ -43,26 +43,11 @@ unsigned byte_at(std::string_view bytes, std::size_t place) {
 }
 
 /// Fletcher's checksum: b is the sum of all intermediate sums a. Sums of 32 bits wrap at a multiple of 256.
-/// In blocks, which the compiler turns into vector instructions: a log of false headers with great lengths
-/// has every byte summed a thousand times.
 bool checksum_is_right(std::string_view frame) {
-  constexpr std::uint32_t kBlock = 64;
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   const std::size_t end = frame.size() - 2;
-  std::size_t i = 2;
-  for (; i + kBlock <= end; i += kBlock) {
-    std::uint32_t sum = 0;
-    std::uint32_t weighted = 0;
-    for (std::uint32_t k = 0; k < kBlock; ++k) {
-      const std::uint32_t byte = byte_at(frame, i + k);
-      sum += byte;
-      weighted += (kBlock - k) * byte;
-    }
-    b += kBlock * a + weighted;
-    a += sum;
-  }
-  for (; i < end; ++i) {
+  for (std::size_t i = 2; i < end; ++i) {
     a += byte_at(frame, i);
     b += a;
   }
@@ -79,7 +64,33 @@ UbxFound incomplete(std::size_t begin, std::size_t missing) {
 
 }  // namespace
 
-UbxFound find_ubx_frame(std::string_view bytes, std::size_t from) {
+bool UbxStretch::checksum_is_right(std::size_t begin, std::size_t size) {
+  if (sums_.empty()) {
+    summed_ += size;
+    if (summed_ <= 4 * bytes_.size()) return waymark::checksum_is_right(bytes_.substr(begin, size));
+    make_sums();
+  }
+  // The sums over a part: with a(i) and b(i) from the first byte of the stretch to byte i, that part's
+  // a = a(last) - a(first), b = b(last) - b(first) - (last - first) a(first).
+  const std::size_t first = begin + 2;
+  const std::size_t last = begin + size - 2;
+  const Sums& before = sums_[first];
+  const Sums& after = sums_[last];
+  const std::size_t a = after.a - std::size_t{before.a};
+  const std::size_t b = after.b - std::size_t{before.b} - (last - first) * before.a;
+  return (a & 0xFFU) == byte_at(bytes_, last) && (b & 0xFFU) == byte_at(bytes_, last + 1);
+}
+
+void UbxStretch::make_sums() {
+  sums_.resize(bytes_.size() + 1);
+  for (std::size_t i = 0; i < bytes_.size(); ++i) {
+    sums_[i + 1].a = static_cast<std::uint8_t>(sums_[i].a + byte_at(bytes_, i));
+    sums_[i + 1].b = static_cast<std::uint8_t>(sums_[i].b + sums_[i + 1].a);
+  }
+}
+
+UbxFound find_ubx_frame(UbxStretch& stretch, std::size_t from) {
+  const std::string_view bytes = stretch.bytes();
   for (std::size_t begin = from;; begin += 2) {
     begin = bytes.find(kSync1, begin);
     if (begin == std::string_view::npos) return {};
@@ -94,7 +105,7 @@ UbxFound find_ubx_frame(std::string_view bytes, std::size_t from) {
     if (length <= kLongestUbxPayload) {
       const std::size_t size = length + kFrame;
       if (rest.size() < size) return incomplete(begin, size - rest.size());
-      if (checksum_is_right(rest.substr(0, size)))
+      if (stretch.checksum_is_right(begin, size))
         return {UbxFound::Kind::frame, begin, begin + size, 0, {key, rest.substr(kHeader, length)}};
     }
     if (is_known_class(key)) return {UbxFound::Kind::broken, begin, begin + 2, 0, {key, {}}};
@@ -109,15 +120,23 @@ std::string ubx_name(std::uint16_t key) {
 }
 
 void UbxFrameDecoder::take(std::string_view piece) {
-  while (!begun_.empty() && !piece.empty()) {
-    const std::size_t part = std::min(missing_, piece.size());
-    begun_ += piece.substr(0, part);
-    piece.remove_prefix(part);
-    missing_ -= part;
-    if (missing_ > 0) return;
+  std::string_view rest = piece;
+  while (!begun_.empty() && !rest.empty()) {
+    const std::size_t part = std::min(std::max(missing_, kLongestUbxPayload + kFrame), rest.size());
+    begun_ += rest.substr(0, part);
+    rest.remove_prefix(part);
+    if (part < missing_) {
+      missing_ -= part;
+      return;
+    }
     begun_.erase(0, scan(begun_, false));
+    // What is left lies in this piece as a rule, and is looked at there: without copies, in one go.
+    const std::size_t taken = piece.size() - rest.size();
+    if (begun_.size() > taken) continue;
+    rest = piece.substr(taken - begun_.size());
+    begun_.clear();
   }
-  if (begun_.empty() && !piece.empty()) begun_ = piece.substr(scan(piece, false));
+  if (begun_.empty() && !rest.empty()) begun_ = rest.substr(scan(rest, false));
 }
 
 void UbxFrameDecoder::finish() {
@@ -148,8 +167,9 @@ void UbxFrameDecoder::give(const UbxFrame& frame, std::uint64_t place) {
 /// Gives what is complete. @return so many bytes are done with; the rest may begin a frame
 std::size_t UbxFrameDecoder::scan(std::string_view bytes, bool at_end) {
   std::size_t done = 0;
+  UbxStretch stretch(bytes);
   for (;;) {
-    const UbxFound found = find_ubx_frame(bytes, done);
+    const UbxFound found = find_ubx_frame(stretch, done);
     if (found.kind == UbxFound::Kind::incomplete && !at_end) {
       missing_ = found.missing;
       strange_ += found.begin - done;

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <waymark/core/log_reader.hpp>
 
@@ -38,9 +39,31 @@ struct UbxFound {
   UbxFrame frame;  ///< of a broken one: the key only
 };
 
+/// Bytes in which frames are looked for. Where a log is full of false headers, each with a great length, the
+/// same bytes would be summed again for each of them: once that has cost four passes, running sums are kept.
+class UbxStretch {
+ public:
+  /// @param bytes  must outlive it
+  explicit UbxStretch(std::string_view bytes) : bytes_(bytes) {}
+  [[nodiscard]] std::string_view bytes() const { return bytes_; }
+  /// Of the frame of so many bytes that begins there.
+  [[nodiscard]] bool checksum_is_right(std::size_t begin, std::size_t size);
+
+ private:
+  struct Sums {
+    std::uint8_t a = 0;
+    std::uint8_t b = 0;
+  };
+  void make_sums();
+
+  std::string_view bytes_;
+  std::size_t summed_ = 0;
+  std::vector<Sums> sums_;  ///< over the bytes before each place
+};
+
 /// The first of these after `from`. Bytes between are passed over, among them sync bytes that are followed by
 /// no class of the protocol and a wrong checksum: other binary data holds such pairs by chance.
-[[nodiscard]] UbxFound find_ubx_frame(std::string_view bytes, std::size_t from);
+[[nodiscard]] UbxFound find_ubx_frame(UbxStretch& stretch, std::size_t from);
 
 /// "NAV-PVT", or "UBX-0x01-0x99" for a message without a name here.
 [[nodiscard]] std::string ubx_name(std::uint16_t key);
