@@ -84,6 +84,34 @@ std::optional<std::uint64_t> to_integer(std::string_view digits, int exponent) {
   return digits[kept] >= '5' ? *value + 1 : *value;
 }
 
+/// What logs hold as a rule: digits, a point, at most nine decimals, and no rounding or overflow to think of.
+/// @return empty for everything else, which the general way above reads
+std::optional<Stamp> read_plain(std::string_view text) {
+  constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max() / 1'000'000'000 - 1;
+  const bool negative = !text.empty() && text.front() == '-';
+  const std::size_t first = negative ? 1 : 0;
+  std::size_t at = first;
+  std::int64_t seconds = 0;
+  for (; at < text.size() && is_digit(text[at]); ++at) {
+    if (at - first == 10) return std::nullopt;
+    seconds = 10 * seconds + (text[at] - '0');
+  }
+  if (at == first || seconds > kLargest) return std::nullopt;
+  std::int64_t nanoseconds = 0;
+  if (at < text.size()) {
+    if (text[at] != '.' || text.size() - at > 10) return std::nullopt;
+    std::int64_t unit = 1'000'000'000;
+    while (++at < text.size()) {
+      if (!is_digit(text[at])) return std::nullopt;
+      unit /= 10;
+      nanoseconds = 10 * nanoseconds + (text[at] - '0');
+    }
+    nanoseconds *= unit;
+  }
+  nanoseconds += seconds * 1'000'000'000;
+  return Stamp{negative ? -nanoseconds : nanoseconds};
+}
+
 }  // namespace
 
 std::string decimal_seconds(Stamp stamp) {
@@ -94,6 +122,7 @@ std::string decimal_seconds(Stamp stamp) {
 }
 
 std::optional<Stamp> stamp_from_decimal_seconds(std::string_view text) {
+  if (const std::optional<Stamp> plain = read_plain(text)) return plain;
   const std::optional<Decimal> number = read_decimal(text);
   if (!number) return std::nullopt;
   const std::optional<std::uint64_t> magnitude = to_integer(number->digits, number->exponent + 9);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/formats/iso8601.hpp>
 #include <waymark/formats/line_scanner.hpp>
+#include <waymark/formats/logs/record_fields.hpp>
 #include <waymark/formats/stamp_text.hpp>
 #include <waymark/formats/suggest.hpp>
 
@@ -61,11 +61,7 @@ bool holds_values(const std::vector<std::string_view>& fields, const LogRequest&
 std::optional<double> number_from_field(std::string_view field) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (field.empty()) return kNone;
-  const char* begin = field.data() + (field.front() == '+' ? 1 : 0);
-  const char* end = field.data() + field.size();
-  double value = 0;
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error == std::errc() && stop == end && !std::isinf(value)) return value;
+  if (const std::optional<double> value = field_number(field)) return value;
   const std::string word = lower(field);
   for (const std::string_view none : {"nan", "na", "n/a", "null", "none"}) {
     if (word == none) return kNone;

@@ -17,6 +17,7 @@
 #include <waymark/core/optimizer.hpp>
 #include <waymark/formats/graph_document.hpp>
 
+#include "bench/logs.hpp"
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 #include "support/replay.hpp"
@@ -267,6 +268,7 @@ void register_all() {
 
 int main(int argc, char** argv) {
   register_all();
+  waymark_bench::register_log_benchmarks();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

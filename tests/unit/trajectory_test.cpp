@@ -61,6 +61,11 @@ TEST_CASE("decimal seconds are read in every usual spelling", "[stamp_text]") {
   CHECK(stamp_from_decimal_seconds("0.0000000004") == Stamp{0});
   CHECK(stamp_from_decimal_seconds("0.0000000005") == Stamp{1});
   CHECK(stamp_from_decimal_seconds("1.9999999996") == Stamp{2'000'000'000});
+  CHECK(stamp_from_decimal_seconds("-12.25") == Stamp{-12'250'000'000});
+  CHECK(stamp_from_decimal_seconds("9223372036.854775807") ==
+        Stamp{std::numeric_limits<std::int64_t>::max()});
+  CHECK(stamp_from_decimal_seconds("-9223372035.999999999") == Stamp{-9'223'372'035'999'999'999});
+  CHECK(stamp_from_decimal_seconds("00000000001.5") == Stamp{1'500'000'000});
   CHECK(stamp_from_decimal_seconds("1e-300") == Stamp{0});
   CHECK(stamp_from_decimal_seconds("0e400") == Stamp{0});
   for (const char* bad : {"", "-", ".", "abc", "1.2.3", "1e", "1e+", "1e+-3", "1 ", " 1", "nan", "0x10",
