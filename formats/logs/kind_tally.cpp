@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include <waymark/formats/line_scanner.hpp>
+
 namespace waymark {
 
 void KindTally::add(std::string_view name) {
@@ -31,7 +33,7 @@ std::map<std::string, std::size_t> KindTally::counts() const {
     if (entry.count == 0) continue;
     std::array<char, sizeof entry.key> letters{};
     std::memcpy(letters.data(), entry.key.data(), letters.size());
-    result[std::string(letters.begin(), std::find(letters.begin(), letters.end(), '\0'))] += entry.count;
+    result[shown_name({letters.data(), std::find(letters.begin(), letters.end(), '\0')})] += entry.count;
   }
   if (others_ > 0) result["others"] += others_;
   return result;

@@ -65,7 +65,8 @@ int main(int argc, char** argv) {
     std::cerr << "usage: waymark_instructions [--modules FOLDER] drive|grid|FILE SOLVER...\n";
     return 2;
   }
-  const TypeRegistry registry = with_modules ? registry_with_modules(argv[2]) : waymark_test::full_registry();
+  const TypeRegistry registry =
+      with_modules ? registry_with_modules(argv[2]) : waymark_test::full_registry();
   GraphDocument document;
   document.graph = make_problem(argv[first], registry);
   const Graph& graph = document.graph;
