@@ -132,8 +132,9 @@ std::optional<Stamp> NovatelDecoder::stamp() {
   const std::optional<Stamp> given = stamp_from_gps_week(week, seconds);
   const std::optional<Stamp> result = given ? positions_.stamp(*given, TimeScale::gps) : std::nullopt;
   if (!result) {
-    complain(0, fmt::format("expected a GPS week and its seconds, got {} {}", quote_field(week),
-                            quote_field(seconds)));
+    complain(0, given ? "its time is too large for a stamp"
+                      : fmt::format("expected a GPS week and its seconds, got {} {}", quote_field(week),
+                                    quote_field(seconds)));
     if (!in_body) column_ = 1;
   }
   return result;

@@ -50,7 +50,7 @@ TEST_CASE("messages: tables") {
   CHECK(complaint("csv", "time,\"speed,yaw_rate\n", odometry) ==
         "run.log:1:1: a quoted field of the header is not closed");
   CHECK(complaint("csv", "time,speed,yaw_rate\n1,\"2,3\n", odometry) ==
-        "run.log:2:8: a quoted field is not closed or text follows its end");
+        "run.log:2:7: a quoted field is not closed or text follows its end");
   CHECK(complaint("csv", "time;speed;yaw_rate\n1;2,5;3\n", odometry) ==
         "run.log:2:3: speed: expected a number with a decimal point, got '2,5'");
   CHECK(complaint("csv", "time,speed,yaw_rate\n1h,2,3\n", odometry) ==
