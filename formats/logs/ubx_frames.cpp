@@ -145,6 +145,10 @@ void UbxFrameDecoder::finish() {
   end();
   if (strange_ > 0) note(fmt::format("{} bytes that belong to no UBX frame were passed over", strange_));
   for (unsigned key = 0; key < 1U << 16U; ++key) {
+    if (!counts_[key >> 8U]) {  // none of the class came
+      key |= 0xFFU;
+      continue;
+    }
     const auto kind = static_cast<std::uint16_t>(key);
     if (const std::size_t messages = count(kind); messages > 0) data_.kinds[ubx_name(kind)] = messages;
   }
