@@ -264,8 +264,6 @@ TEST_CASE("drive.yaml: what is wrong with parts, dates and signals is told with 
   CHECK(error_of_odometry("  file: o.csv\n  columns: {wheel_speed_rear_lef: v}\n") ==
         "tours/drive.yaml:4:13: unknown key 'wheel_speed_rear_lef' in columns; did you mean "
         "'wheel_speed_rear_left'?");
-  CHECK(error_of_odometry("  file: o.nmea\n  format: nmea\n  columns: {speed: v}\n") ==
-        "tours/drive.yaml:5:12: odometry.columns: belongs to the formats csv and candump, not to nmea");
   CHECK(error_of_gnss("  time: {date: 1.4.2009}\n") ==
         "tours/drive.yaml:4:16: gnss.time.date: expected a date such as 2009-04-01, got '1.4.2009'");
 }

@@ -40,16 +40,18 @@ ColumnRequest read_column(const YamlSection& columns, const std::string& key) {
   return request;
 }
 
-void read_columns(const YamlSection& section, LogRequest& request) {
+void read_columns(const YamlSection& section, const std::string& format, LogRequest& request) {
   if (!section.has("columns")) return;
-  const bool of_sensor = request.stream == StreamKind::sensor;  // only its plugin knows the quantities
+  // Only its plugin knows a sensor's quantities, and only its reader what else a format may name.
+  const bool of_table = format == "csv" || format == "candump" || format == "auto";
+  const bool open = request.stream == StreamKind::sensor || !of_table;
   std::vector<Quantity> known = quantities(request);
   const YamlSection columns =
-      of_sensor ? *section.free_section("columns")
+      open ? *section.free_section("columns")
                 : YamlSection(section.node("columns"), "columns", section.file(), names_of(known));
   for (const std::string& key : columns.keys()) {
     request.columns[key] = read_column(columns, key);
-    if (of_sensor) continue;
+    if (open) continue;
     const Quantity& quantity = *find_quantity(known, key);
     if (const std::string error = column_request_error(quantity, request.columns[key]); !error.empty())
       throw InputError(columns.place(key) + error);
@@ -86,15 +88,6 @@ void read_accuracy(const YamlSection& section, LogRequest& request) {
   accuracy->read("range_error", request.range_error_m, kNotNegative);
 }
 
-/// Columns are those of tables and the signals of CAN frames; separators those of tables.
-void check_tables(const YamlSection& section, const std::string& format) {
-  if (format == "csv" || format == "auto") return;
-  if (section.has("separator"))
-    section.fail("separator", fmt::format("belongs to the format csv, not to {}", format));
-  if (section.has("columns") && format != "candump")
-    section.fail("columns", fmt::format("belongs to the formats csv and candump, not to {}", format));
-}
-
 std::string resolved(const std::string& folder, const std::string& file) {
   return (std::filesystem::path(folder) / file).lexically_normal().string();
 }
@@ -120,7 +113,8 @@ LogConfig read_log_config(const YamlSection& section, LogRequest request, const 
     throw InputError(fmt::format("{}{}: 'file' is missing", log.place, to_string(log.request.stream)));
   log.file = resolved(folder, file);
   section.read("format", log.format);
-  check_tables(section, log.format);
+  if (section.has("separator") && log.format != "csv" && log.format != "auto")
+    section.fail("separator", fmt::format("belongs to the format csv, not to {}", log.format));
   for (const std::string_view key : kCompanions) {
     if (!section.has(key)) continue;
     std::string companion;
@@ -129,7 +123,7 @@ LogConfig read_log_config(const YamlSection& section, LogRequest request, const 
   }
   if (const auto separator = section.read_word("separator", kSeparators))
     log.request.separator = kSeparatorValues[*separator];
-  read_columns(section, log.request);
+  read_columns(section, log.format, log.request);
   read_time(section, log.request);
   read_accuracy(section, log.request);
   return log;

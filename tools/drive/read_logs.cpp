@@ -68,9 +68,6 @@ DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, cons
   } else {
     reader = named_reader(log, readers);
   }
-  if (reader.name != "csv" && reader.name != "candump" && !request.columns.empty())
-    throw InputError(
-        fmt::format("{}{}: a log of format '{}' has no columns to map", log.place, log.file, reader.name));
   // A table tells by its columns whether it holds odometry in channels; other logs are asked for both.
   if (request.stream == StreamKind::odometry && reader.name != "csv") request.readings = odometry_channels();
   read_companions(log, request, notes);
