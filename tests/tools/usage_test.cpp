@@ -44,7 +44,9 @@ TEST_CASE("wrong words on the command line are usage errors that name them") {
   const std::vector<Case> cases = {
       {{}, "A subcommand is required"},
       {{"optimise"}, "unknown subcommand 'optimise'; did you mean 'optimize'?"},
-      {{"xyz"}, "unknown subcommand 'xyz'; there are: convert, optimize, evaluate, run, bench, info, check"},
+      {{"xyz"},
+       "unknown subcommand 'xyz'; there are: inspect, init, sync, convert, optimize, evaluate, run, bench, "
+       "info, check"},
       {{"optimize", graph}, "--output is required"},
       {{"optimize", "-o", out}, "graph is required"},
       {{"optimize", graph, "-o", out, "--speed", "3"}, "--speed"},

@@ -54,17 +54,17 @@ ExitCode run(int argc, char** argv) {
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("waymark: error: ") + error.what() + "\nRun with --help for more information.\n";
   });
+  add_inspect(app, action);
+  add_init(app, action);
+  add_sync(app, action);
   add_convert(app, action);
   add_optimize(app, action);
   add_evaluate(app, action);
   add_run(app, action);
-  add_sync(app, action);
   add_bench(app, action);
   add_info(app, action);
   add_check(app, action);
   add_simulate(app, action);
-  add_inspect(app, action);
-  add_init(app, action);
   add_reproduce(app, action);
   try {
     check_command(app, argc, argv);
