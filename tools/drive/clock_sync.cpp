@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -21,7 +20,6 @@ constexpr double kLongestInterval = 5;  // s between fixes that are compared
 constexpr double kDopplerWindow = 0.2;  // s around the stamp of a Doppler speed
 constexpr double kLeastCorrelation = 0.25;
 constexpr std::size_t kLeastSamples = 30;
-constexpr double kAnyGap = std::numeric_limits<double>::infinity();
 constexpr double kOutlier = 4;  // median absolute deviations, scaled to a standard deviation
 
 /// What the GNSS says of a stretch of time.
@@ -35,16 +33,6 @@ struct Comparison {
   std::string against;
   std::vector<Stretch> stretches;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-Stamp moved(Stamp stamp, double seconds) {
-  return {stamp.nanoseconds + std::llround(seconds * 1e9)};
-}
 
 Stamp halfway(Stamp a, Stamp b) {
   return {a.nanoseconds + (b.nanoseconds - a.nanoseconds) / 2};
@@ -197,7 +185,7 @@ class Correlator {
     std::vector<double> lively;
     for (std::size_t i = by_motion.size() / 2; i < by_motion.size(); ++i)
       lively.push_back(by_motion[i].second);
-    const double limit = kOutlier * 1.4826 * median(std::move(lively));
+    const double limit = kOutlier * 1.4826 * median_of(std::move(lively));
     std::size_t index = 0;
     std::erase_if(stretches_, [&](const Stretch&) { return std::abs(left[index++]) > limit; });
   }
@@ -253,51 +241,16 @@ std::optional<ClockOffset> compare(const TimeSeries& odometry, const Comparison&
   return ClockOffset{gnss.against, late, correlator.sigma(late), correlation, correlator.size()};
 }
 
-/// Speeds of a receiver have no sign.
-TimeSeries series_of(const std::vector<OdometrySample>& odometry, bool speed, bool without_sign) {
-  TimeSeries series;
-  for (const OdometrySample& sample : odometry) {
-    series.stamps.push_back(sample.stamp);
-    const double value = speed ? sample.speed_mps : sample.yaw_rate_radps;
-    series.values.push_back(without_sign ? std::abs(value) : value);
-  }
-  return series;
-}
-
 }  // namespace
 
 SyncReport estimate_clock_offsets(const PreparedDrive& drive, const SyncOptions& options) {
   const std::vector<const Fix*> fixes = of_one_receiver(drive.fixes);
   const double length = seconds_between(drive.odometry.front().stamp, drive.odometry.back().stamp);
   const double largest = std::min(options.largest_s, 0.25 * length);
-  return {compare(series_of(drive.odometry, true, true), gnss_speeds(fixes), largest),
-          compare(series_of(drive.odometry, false, false), gnss_turns(fixes), largest)};
-}
-
-std::optional<ClockReport> clock_of(const DriveLogs::Log& log) {
-  if (log.data.clocks.empty()) return std::nullopt;
-  std::vector<double> ahead;
-  for (const ClockPair& pair : log.data.clocks) ahead.push_back(seconds_between(pair.told, pair.logged));
-  ClockReport clock{log.file, ahead.size(), median(ahead), 0};
-  for (double& value : ahead) value = std::abs(value - clock.ahead_s);
-  clock.spread_s = median(std::move(ahead));
-  return clock;
-}
-
-std::vector<OdometrySample> without_delays(const std::vector<OdometrySample>& odometry, double speed_delay_s,
-                                           double yaw_rate_delay_s) {
-  const bool same_sense = speed_delay_s * yaw_rate_delay_s > 0;
-  const bool speed_less = std::abs(speed_delay_s) < std::abs(yaw_rate_delay_s);
-  const double common = same_sense ? (speed_less ? speed_delay_s : yaw_rate_delay_s) : 0;
-  const TimeSeries speed = series_of(odometry, true, false);
-  const TimeSeries yaw_rate = series_of(odometry, false, false);
-  std::vector<OdometrySample> result;
-  for (const OdometrySample& sample : odometry) {
-    const auto v = value_at(speed, moved(sample.stamp, speed_delay_s - common), kAnyGap);
-    const auto w = value_at(yaw_rate, moved(sample.stamp, yaw_rate_delay_s - common), kAnyGap);
-    if (v && w) result.push_back({moved(sample.stamp, -common), *v, *w});
-  }
-  return result;
+  TimeSeries speed = speed_series(drive.odometry);
+  for (double& value : speed.values) value = std::abs(value);  // a receiver's has no sign
+  return {compare(speed, gnss_speeds(fixes), largest),
+          compare(yaw_rate_series(drive.odometry), gnss_turns(fixes), largest)};
 }
 
 }  // namespace waymark

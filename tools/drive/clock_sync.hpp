@@ -41,6 +41,9 @@ struct SyncOptions {
 /// What the messages of a log say of the clock that stamped them; empty where it holds no GNSS time.
 [[nodiscard]] std::optional<ClockReport> clock_of(const DriveLogs::Log& log);
 
+/// Puts fixes onto the GNSS time that their log tells of. @return what was done, a sentence for each such log
+std::vector<std::string> put_on_told_time(DriveLogs& logs);
+
 /// Odometry with speed and yaw rate moved earlier by their delays: all stamps by what both have in common,
 /// the rest on the lines between readings. Samples whose reading would lie beyond an end are dropped.
 [[nodiscard]] std::vector<OdometrySample> without_delays(const std::vector<OdometrySample>& odometry,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace waymark {
 namespace {
@@ -28,14 +29,35 @@ double value_held(const TimeSeries& series, Stamp moment) {
 
 }  // namespace
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+TimeSeries speed_series(const std::vector<OdometrySample>& odometry) {
+  TimeSeries series;
+  for (const OdometrySample& sample : odometry) {
+    series.stamps.push_back(sample.stamp);
+    series.values.push_back(sample.speed_mps);
+  }
+  return series;
+}
+
+TimeSeries yaw_rate_series(const std::vector<OdometrySample>& odometry) {
+  TimeSeries series;
+  for (const OdometrySample& sample : odometry) {
+    series.stamps.push_back(sample.stamp);
+    series.values.push_back(sample.yaw_rate_radps);
+  }
+  return series;
+}
+
 double median_interval_s(const TimeSeries& series) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < series.stamps.size(); ++i)
     intervals.push_back(seconds_between(series.stamps[i - 1], series.stamps[i]));
-  if (intervals.empty()) return 0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return intervals.empty() ? 0 : median_of(std::move(intervals));
 }
 
 std::optional<double> value_at(const TimeSeries& series, Stamp moment, double gap_s) {

@@ -1,12 +1,19 @@
 /// One quantity over time, its readings joined by straight lines.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
+#include <waymark/core/sample.hpp>
 #include <waymark/core/stamp.hpp>
 
 namespace waymark {
+
+/// The instant so many seconds later, to the nanosecond.
+[[nodiscard]] inline Stamp moved(Stamp stamp, double seconds) {
+  return {stamp.nanoseconds + std::llround(seconds * 1e9)};
+}
 
 struct TimeSeries {
   std::vector<Stamp> stamps;  ///< ascending
@@ -14,6 +21,12 @@ struct TimeSeries {
 
   [[nodiscard]] bool empty() const { return stamps.empty(); }
 };
+
+/// The upper median. @param values  at least one
+[[nodiscard]] double median_of(std::vector<double> values);
+
+[[nodiscard]] TimeSeries speed_series(const std::vector<OdometrySample>& odometry);
+[[nodiscard]] TimeSeries yaw_rate_series(const std::vector<OdometrySample>& odometry);
 
 /// Median of the intervals between readings, s; 0 for fewer than two.
 [[nodiscard]] double median_interval_s(const TimeSeries& series);

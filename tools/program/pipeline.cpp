@@ -165,21 +165,6 @@ std::string fingerprint(const std::string& path) {
   return file_name(path) + " fnv1a64:" + hash.hex();
 }
 
-/// Puts fixes onto the GNSS time that their log tells of. @return what was done
-std::vector<std::string> put_on_told_time(DriveLogs& logs) {
-  std::vector<std::string> notes;
-  for (DriveLogs::Log& log : logs.gnss) {
-    const std::optional<ClockReport> clock = clock_of(log);
-    if (!clock) continue;
-    const std::int64_t ahead = std::llround(clock->ahead_s * 1e9);
-    for (GeodeticFix& fix : log.data.fixes) fix.stamp.nanoseconds -= ahead;
-    for (ClockPair& pair : log.data.clocks) pair.logged.nanoseconds -= ahead;
-    notes.push_back(fmt::format("sync: {}: the stamps were {:.3f} s ahead of the GNSS time it tells; applied",
-                                log.file, clock->ahead_s));
-  }
-  return notes;
-}
-
 /// Prepares the drive again with the fixes on GNSS time, where their log tells it, and the odometry moved by
 /// the offsets that its motion shows.
 void synchronise(DriveLogs& logs, LoadedDrive& loaded, const Console& console) {
