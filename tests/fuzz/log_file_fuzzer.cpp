@@ -69,7 +69,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
         waymark::read_in_pieces(file.path(), [&](std::string_view piece) { read += piece; });
     if (compress && !cut && !flip && (read != plain || !trouble.empty()))
       broken("a sound file is not read as it is");
-    if (compress && cut && !flip && read != plain.substr(0, read.size()))
+    // A single byte is not known for the beginning of a compressed file.
+    if (compress && cut && !flip && content.size() > 1 && read != plain.substr(0, read.size()))
       broken("a cut file gives other bytes");
   } catch (const waymark::InputError& error) {
     broken(error.what());
