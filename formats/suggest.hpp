@@ -17,5 +17,9 @@ namespace waymark {
 
 /// "a, b, c".
 [[nodiscard]] std::string joined(std::span<const std::string_view> words);
+[[nodiscard]] std::string joined(std::span<const std::string> words);
+
+/// The same text with ASCII letters in lower case, whatever the locale.
+[[nodiscard]] std::string lower_case(std::string_view text);
 
 }  // namespace waymark

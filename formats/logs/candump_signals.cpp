@@ -15,14 +15,6 @@ namespace {
 /// So many signals are listed in a message.
 constexpr std::size_t kMostListed = 12;
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
 /// Names in a message, the first few of them.
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -42,7 +34,7 @@ std::vector<std::string> likely_signals(const Dbc& dbc, StreamKind stream) {
   std::vector<std::string> names;
   for (const DbcMessage& message : dbc.messages) {
     for (const DbcSignal& signal : message.signals) {
-      const std::string name = lower(signal.name);
+      const std::string name = lower_case(signal.name);
       for (const std::string_view word : words) {
         if (name.find(word) == std::string::npos) continue;
         names.push_back(message.name + "." + signal.name);

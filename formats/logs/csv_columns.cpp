@@ -16,14 +16,6 @@
 namespace waymark {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
 /// A column given by number; empty for a name.
 std::optional<std::size_t> column_number(std::string_view column) {
   std::size_t number = 0;
@@ -62,7 +54,7 @@ std::optional<double> number_from_field(std::string_view field) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (field.empty()) return kNone;
   if (const std::optional<double> value = field_number(field)) return value;
-  const std::string word = lower(field);
+  const std::string word = lower_case(field);
   for (const std::string_view none : {"nan", "na", "n/a", "null", "none"}) {
     if (word == none) return kNone;
   }

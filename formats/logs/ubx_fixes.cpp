@@ -9,7 +9,6 @@ namespace waymark {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::uint32_t kWeekMs = 604'800'000;
 
 /// Clockwise from north, degrees -> counter-clockwise from east, radians in (-pi, pi].
 double heading_from_course(double course_deg) {
@@ -125,12 +124,12 @@ void UbxFixDecoder::end_epoch() {
   const UbxEpoch epoch = *epoch_;
   epoch_.reset();
   // Time is learnt from every epoch: one without a position may be the only one that tells the week.
-  const std::optional<std::int64_t> gps = epoch.itow_ms < kWeekMs ? time_of(epoch) : std::nullopt;
+  const std::optional<std::int64_t> gps = epoch.itow_ms < kItowWeekMs ? time_of(epoch) : std::nullopt;
   if (!epoch.has_position()) return;
   ++data_.records;
   if (ended_ == epoch.itow_ms) ++counts_.repeated;
   ended_ = epoch.itow_ms;
-  if (epoch.itow_ms >= kWeekMs)
+  if (epoch.itow_ms >= kItowWeekMs)
     return corrupt(epoch.byte, fmt::format("iTOW {} ms lies beyond the end of a week", epoch.itow_ms));
 
   const std::optional<UbxFixState> state = epoch.solution ? epoch.solution->state : epoch.state;

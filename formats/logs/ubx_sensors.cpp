@@ -14,7 +14,6 @@ namespace {
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kOtherLog = 10 * kSecond;  // so far back goes GNSS time only where logs were joined
-constexpr std::uint32_t kWeekMs = 604'800'000;
 constexpr std::uint32_t kTickRange = 1U << 23U;
 /// Rows wait so long for messages that come out of order, and for the first navigation messages.
 constexpr std::int64_t kHeldMs = 2000;
@@ -129,7 +128,7 @@ void UbxSensorDecoder::take_frame(const UbxFrame& frame) {
 
 void UbxSensorDecoder::take_time(std::uint16_t key, const UbxPayload& payload) {
   const std::uint32_t itow_ms = ubx_itow(key, payload);
-  if (itow_ms >= kWeekMs) return;
+  if (itow_ms >= kItowWeekMs) return;
   std::optional<std::int64_t> gps;
   if (key == ubx::kNavPvt || key == ubx::kHnrPvt) {
     const UbxSolution solution = key == ubx::kNavPvt ? read_nav_pvt(payload) : read_hnr_pvt(payload);

@@ -9,6 +9,9 @@
 
 namespace waymark {
 
+/// iTOW counts milliseconds up to here.
+inline constexpr std::uint32_t kItowWeekMs = 604'800'000;
+
 /// Keeps the GPS week. All times are nanoseconds on the GPS scale.
 class UbxTime {
  public:

@@ -48,7 +48,7 @@ void read_columns(const YamlSection& section, const std::string& format, LogRequ
   std::vector<Quantity> known = quantities(request);
   const YamlSection columns =
       open ? *section.free_section("columns")
-                : YamlSection(section.node("columns"), "columns", section.file(), names_of(known));
+           : YamlSection(section.node("columns"), "columns", section.file(), names_of(known));
   for (const std::string& key : columns.keys()) {
     request.columns[key] = read_column(columns, key);
     if (open) continue;

@@ -69,7 +69,7 @@ Channels collect_channels(std::span<const OdometryPart> parts) {
 template <typename Combine>
 TimeSeries combined(const TimeSeries& a, const TimeSeries& b, double gap_s, Combine combine) {
   TimeSeries result;
-  const double limit = std::max(gap_s, 2.5 * median_interval_s(b));
+  const double limit = longest_silence_s(b, gap_s);
   for (std::size_t i = 0; i < a.stamps.size(); ++i) {
     const std::optional<double> other = value_at(b, a.stamps[i], limit);
     if (!other) continue;
@@ -83,7 +83,7 @@ TimeSeries combined(const TimeSeries& a, const TimeSeries& b, double gap_s, Comb
 /// @param range  where the count starts again from 0; 0: never
 TimeSeries rate_of_count(const TimeSeries& count, double range, double gap_s) {
   TimeSeries rate;
-  const double limit = std::max(gap_s, 2.5 * median_interval_s(count));
+  const double limit = longest_silence_s(count, gap_s);
   std::size_t first = 0;
   double change = 0;
   for (std::size_t i = 1; i < count.stamps.size(); ++i) {
@@ -240,7 +240,7 @@ class Assembler {
             present()));
     }
     const Eigen::Vector3d up = upward(forces);
-    const double limit = std::max(gap_s_, 2.5 * median_interval_s(*axes[1]));
+    const double limit = longest_silence_s(*axes[1], gap_s_);
     TimeSeries rate;
     for (std::size_t i = 0; i < axes[0]->stamps.size(); ++i) {
       const Stamp stamp = axes[0]->stamps[i];
@@ -312,8 +312,8 @@ class Assembler {
     const auto period = static_cast<std::int64_t>(std::llround(1e9 / rate));
     const std::int64_t first = std::max(speed_.stamps.front(), yaw_rate.stamps.front()).nanoseconds;
     const std::int64_t last = std::min(speed_.stamps.back(), yaw_rate.stamps.back()).nanoseconds;
-    const double speed_gap = std::max(gap_s_, 2.5 * median_interval_s(speed_));
-    const double yaw_gap = std::max(gap_s_, 2.5 * median_interval_s(yaw_rate));
+    const double speed_gap = longest_silence_s(speed_, gap_s_);
+    const double yaw_gap = longest_silence_s(yaw_rate, gap_s_);
     const SeriesIntegral way(speed_);
     const SeriesIntegral turn(yaw_rate);
     std::int64_t t = first - first % period;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -26,9 +27,10 @@ std::int64_t nanoseconds(double seconds) {
 template <typename Sample>
 void append_log(const std::vector<Sample>& from, const DriveLogs::Log& log, TimeScale scale,
                 std::vector<Sample>& to, StreamReport& stream, PrepareReport& report) {
-  std::vector<Sample> samples = from;
-  put_on_scale(samples, log, scale, [](Sample& sample) -> Stamp& { return sample.stamp; });
-  to.insert(to.end(), samples.begin(), samples.end());
+  const std::size_t before = to.size();
+  to.insert(to.end(), from.begin(), from.end());
+  put_on_scale(std::span(to).subspan(before), log, scale,
+               [](Sample& sample) -> Stamp& { return sample.stamp; });
   add_log_report(log.data, stream, report);
 }
 
@@ -152,7 +154,7 @@ void report_clock(const DriveLogs::Log& log, PrepareReport& report) {
       log.file, clock->ahead_s, clock->messages, clock->spread_s));
 }
 
-void add_logged_velocity(const DriveLogs::Log& log, TimeScale scale, std::vector<GeodeticFix>& fixes,
+void add_logged_velocity(const DriveLogs::Log& log, TimeScale scale, std::span<GeodeticFix> fixes,
                          PrepareReport& report) {
   SensorTable readings = log.data.readings;
   put_on_scale(readings.stamps, log, scale, [](Stamp& stamp) -> Stamp& { return stamp; });
@@ -167,11 +169,10 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig&
   std::vector<GeodeticFix> fixes;
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
     const DriveLogs::Log& log = logs.gnss[i];
-    std::vector<GeodeticFix> own;
-    append_log(log.data.fixes, log, config.time_scale, own, report.gnss, report);
+    const std::size_t before = fixes.size();
+    append_log(log.data.fixes, log, config.time_scale, fixes, report.gnss, report);
     if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)
-      add_logged_velocity(logs.velocity[i], config.time_scale, own, report);
-    fixes.insert(fixes.end(), own.begin(), own.end());
+      add_logged_velocity(logs.velocity[i], config.time_scale, std::span(fixes).subspan(before), report);
     report_clock(log, report);
   }
   clean_stream(

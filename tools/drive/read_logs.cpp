@@ -16,8 +16,8 @@ void check_readings(const SensorTable& readings, const LogConfig& log) {
   if (readings.size() > 0 && readings.columns == columns &&
       readings.values.size() == readings.size() * columns)
     return;
-  throw InputError(fmt::format("{}{}: format '{}' gives no readings of a sensor; csv and candump do", log.place,
-                               log.file, log.format));
+  throw InputError(fmt::format("{}{}: format '{}' gives no readings of a sensor; csv and candump do",
+                               log.place, log.file, log.format));
 }
 
 std::vector<LogReaderType> readers_of(const TypeRegistry& registry) {

@@ -8,7 +8,9 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/stamp.hpp>
+#include <waymark/formats/logs/gps_time.hpp>
 #include <waymark/tools/drive/prepare.hpp>
+#include <waymark/tools/drive/time_series.hpp>
 
 namespace waymark {
 
@@ -54,12 +56,11 @@ inline void add_log_report(const LogData& data, StreamReport& stream, PrepareRep
 
 /// Puts the stamps of a log onto the drive's scale. @param stamp_of  Stamp&(Sample&)
 /// @throws InputError for seconds of week that would need a date
-template <typename Sample, typename StampOf>
-void put_on_scale(std::vector<Sample>& samples, const DriveLogs::Log& log, TimeScale scale,
-                  StampOf stamp_of) {
-  constexpr std::int64_t kTwoWeeks = 2 * 604'800'000'000'000;
+template <typename Samples, typename StampOf>
+void put_on_scale(Samples&& samples, const DriveLogs::Log& log, TimeScale scale, StampOf stamp_of) {
+  constexpr std::int64_t kTwoWeeks = 2 * kGpsWeekNanoseconds;
   const bool changes_scale = convert(Stamp{}, log.scale, scale) != Stamp{};
-  for (Sample& sample : samples) {
+  for (auto& sample : samples) {
     Stamp& stamp = stamp_of(sample);
     if (changes_scale && log.scale == TimeScale::gps && stamp.nanoseconds < kTwoWeeks)
       throw InputError(log.file + ": seconds of week cannot be put onto the scale '" +
@@ -73,18 +74,14 @@ void put_on_scale(std::vector<Sample>& samples, const DriveLogs::Log& log, TimeS
 template <typename Sample>
 void describe_stream(const std::vector<Sample>& samples, double gap_s, StreamReport& report) {
   report.used = samples.size();
-  std::vector<std::int64_t> intervals;
+  std::vector<double> intervals;
   for (std::size_t i = 1; i < samples.size(); ++i)
-    intervals.push_back(samples[i].stamp.nanoseconds - samples[i - 1].stamp.nanoseconds);
+    intervals.push_back(seconds_between(samples[i - 1].stamp, samples[i].stamp));
   if (intervals.empty()) return;
-  std::vector<std::int64_t> ordered = intervals;
-  const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2);
-  std::nth_element(ordered.begin(), middle, ordered.end());
-  report.median_interval_s = static_cast<double>(*middle) * 1e-9;
+  report.median_interval_s = median_of(intervals);
   const double limit = gap_s > 0 ? gap_s : 2.5 * report.median_interval_s;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
-    const double length = static_cast<double>(intervals[i]) * 1e-9;
-    if (length > limit) report.gaps.push_back({samples[i].stamp, length});
+    if (intervals[i] > limit) report.gaps.push_back({samples[i].stamp, intervals[i]});
   }
 }
 

@@ -60,6 +60,10 @@ double median_interval_s(const TimeSeries& series) {
   return intervals.empty() ? 0 : median_of(std::move(intervals));
 }
 
+double longest_silence_s(const TimeSeries& series, double gap_s) {
+  return std::max(gap_s, 2.5 * median_interval_s(series));
+}
+
 std::optional<double> value_at(const TimeSeries& series, Stamp moment, double gap_s) {
   const std::size_t i = first_after(series, moment);
   if (i == 0) return std::nullopt;

@@ -31,6 +31,9 @@ struct TimeSeries {
 /// Median of the intervals between readings, s; 0 for fewer than two.
 [[nodiscard]] double median_interval_s(const TimeSeries& series);
 
+/// How long a series may be silent before that is a gap: gap_s, and 2.5 of its usual intervals.
+[[nodiscard]] double longest_silence_s(const TimeSeries& series, double gap_s);
+
 /// Value at an instant; empty outside the series, and between readings that are more than `gap_s` apart.
 [[nodiscard]] std::optional<double> value_at(const TimeSeries& series, Stamp moment, double gap_s);
 

@@ -24,24 +24,35 @@ TimeSeries column(const SensorTable& readings, std::size_t c, bool is_angle) {
   return series;
 }
 
-}  // namespace
+/// A channel of the log, and how long it may be silent: its median interval is found once.
+struct Channel {
+  Channel(const SensorTable& readings, std::size_t c, bool is_angle)
+      : series(column(readings, c, is_angle)), silence_s(longest_silence_s(series, 0)) {}
 
-std::size_t add_velocity(const SensorTable& readings, std::vector<GeodeticFix>& fixes) {
-  const TimeSeries speed = column(readings, 0, false);
-  const TimeSeries speed_sigma = column(readings, 1, false);
-  const TimeSeries course = column(readings, 2, true);
-  const TimeSeries course_sigma = column(readings, 3, false);
-  std::size_t given = 0;
-  const auto give = [](const TimeSeries& series, Stamp stamp, std::optional<double>& value) {
-    const std::optional<double> found = value_at(series, stamp, 2.5 * median_interval_s(series));
+  /// Sets the value where the channel has one. @return whether it has
+  bool give(Stamp stamp, std::optional<double>& value) const {
+    const std::optional<double> found = value_at(series, stamp, silence_s);
     if (found) value = found;
     return found.has_value();
-  };
+  }
+
+  TimeSeries series;
+  double silence_s;
+};
+
+}  // namespace
+
+std::size_t add_velocity(const SensorTable& readings, std::span<GeodeticFix> fixes) {
+  const Channel speed(readings, 0, false);
+  const Channel speed_sigma(readings, 1, false);
+  const Channel course(readings, 2, true);
+  const Channel course_sigma(readings, 3, false);
+  std::size_t given = 0;
   for (GeodeticFix& fix : fixes) {
-    const bool has_speed = give(speed, fix.stamp, fix.speed_mps);
-    const bool has_course = give(course, fix.stamp, fix.course_rad);
-    if (has_speed) give(speed_sigma, fix.stamp, fix.speed_sigma_mps);
-    if (has_course) give(course_sigma, fix.stamp, fix.course_sigma_rad);
+    const bool has_speed = speed.give(fix.stamp, fix.speed_mps);
+    const bool has_course = course.give(fix.stamp, fix.course_rad);
+    if (has_speed) speed_sigma.give(fix.stamp, fix.speed_sigma_mps);
+    if (has_course) course_sigma.give(fix.stamp, fix.course_sigma_rad);
     if (has_course) fix.course_rad = std::remainder(*fix.course_rad, 2 * std::numbers::pi);
     given += has_speed || has_course ? 1 : 0;
   }

@@ -1,8 +1,8 @@
 /// Speed and course of a receiver that stand in a log of their own.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <cstddef>
+#include <span>
 
 #include <waymark/core/sample.hpp>
 
@@ -12,6 +12,6 @@ namespace waymark {
 /// fixes' scale): those between the two readings around a fix where they are at most 2.5 usual intervals
 /// apart, else none. What a fix has of itself is replaced where the readings have it.
 /// @return how many fixes got something
-std::size_t add_velocity(const SensorTable& readings, std::vector<GeodeticFix>& fixes);
+std::size_t add_velocity(const SensorTable& readings, std::span<GeodeticFix> fixes);
 
 }  // namespace waymark

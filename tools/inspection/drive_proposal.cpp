@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/suggest.hpp>
+
 namespace waymark {
 namespace {
 
@@ -92,12 +94,6 @@ Names yaw_rate_channels(const std::set<std::string>& channels) {
     if (has_all(channels, way)) return way;
   }
   return {};
-}
-
-std::string joined_names(const Names& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 /// Two logs of one receiver, one perhaps extracted from the other.
@@ -243,8 +239,8 @@ class Deciding {
     Names left;
     for (const std::string& name : channels_of(logs_[i]))
       if (std::find(taken.begin(), taken.end(), name) == taken.end()) left.push_back(name);
-    say(i, fmt::format("odometry{}: {}{}", proposal_.in_parts ? " part" : "", joined_names(taken),
-                       left.empty() ? "" : "; left aside: " + joined_names(left)));
+    say(i, fmt::format("odometry{}: {}{}", proposal_.in_parts ? " part" : "", joined(taken),
+                       left.empty() ? "" : "; left aside: " + joined(left)));
   }
 
   const std::vector<LogInspection>& logs_;
