@@ -1,0 +1,652 @@
+// Moves the figures of a Waymark report: pan, zoom, a cursor that is linked through all figures by time, series
+// switched off and on by the legend, files of what is seen. Without it the page is complete, but still.
+"use strict";
+(() => {
+  const data = JSON.parse(document.getElementById("page-data").textContent);
+  const plots = [];
+
+  // Numbers. The packing is described in tools/report/packed_column.hpp.
+
+  const columns = new Map();
+  function unpack(text) {
+    const colon = text.indexOf(":");
+    // A step of 0.001 is no binary number, 1000 is: dividing by it gives the decimal that was meant.
+    const step = Number(text.slice(0, colon));
+    const perUnit = step < 1 ? Math.round(1 / step) : 1;
+    const bytes = atob(text.slice(colon + 1));
+    const values = [];
+    let sum = 0;
+    for (let i = 0; i < bytes.length;) {
+      let value = 0;
+      let factor = 1;
+      let byte;
+      do {
+        byte = bytes.charCodeAt(i++);
+        value += (byte & 127) * factor;
+        factor *= 128;
+      } while (byte > 127);
+      if (value === 0) {
+        values.push(NaN);
+        continue;
+      }
+      const zigzag = value - 1;
+      sum += zigzag % 2 === 0 ? zigzag / 2 : -(zigzag + 1) / 2;
+      values.push(perUnit > 1 ? sum / perUnit : sum * step);
+    }
+    return Float64Array.from(values);
+  }
+  function column(index) {
+    if (index === undefined) return null;
+    if (!columns.has(index)) {
+      const stored = data.columns[index];
+      const values = typeof stored === "string" ? unpack(stored)
+        : Float64Array.from(stored, (value) => (value === null ? NaN : value));
+      columns.set(index, values);
+    }
+    return columns.get(index);
+  }
+
+  /// Index of the first value that is not below `wanted`. values: ascending
+  function lowerBound(values, wanted) {
+    let low = 0;
+    let high = values.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (values[middle] < wanted) low = middle + 1; else high = middle;
+    }
+    return low;
+  }
+  /// Index of the value nearest to `wanted`, -1 where none is within `tolerance`.
+  function nearest(values, wanted, tolerance) {
+    let i = lowerBound(values, wanted);
+    if (i > 0 && (i === values.length || wanted - values[i - 1] < values[i] - wanted)) i -= 1;
+    return i < values.length && Math.abs(values[i] - wanted) <= tolerance ? i : -1;
+  }
+  function ascends(values) {
+    for (let i = 1; i < values.length; i += 1) if (!(values[i] >= values[i - 1])) return false;
+    return true;
+  }
+  /// Half as far again as neighbours usually are apart.
+  function reach(times) {
+    const steps = [];
+    for (let i = 1; i < times.length; i += Math.ceil(times.length / 1000)) steps.push(times[i] - times[i - 1]);
+    steps.sort((a, b) => a - b);
+    return steps.length === 0 ? 1 : Math.max(1.5 * steps[steps.length >> 1], 0.5);
+  }
+
+  // Texts.
+
+  function escaped(text) {
+    const references = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;" };
+    return String(text).replace(/[&<>"']/g, (c) => references[c]);
+  }
+  const px = (value) => String(Math.round(value * 10) / 10);
+  function readable(value, unit) {
+    const text = Number.isFinite(value) ? String(Number(value.toPrecision(4))) : "-";
+    return unit ? text + " " + unit : text;
+  }
+
+  // Axes. The same rules as view.cpp, for what is in view.
+
+  function ticks(low, high, logarithmic, count) {
+    const result = [];
+    if (logarithmic) {
+      const first = Math.floor(Math.log10(low));
+      const last = Math.ceil(Math.log10(high));
+      const every = Math.max(1, Math.floor((last - first) / 8));
+      for (let power = first; power <= last; power += every) {
+        for (const factor of last - first <= 2 ? [1, 2, 5] : [1]) {
+          const value = factor * 10 ** power;
+          if (value >= low && value <= high) result.push({ value, label: String(Number(value.toPrecision(4))) });
+        }
+      }
+      return result;
+    }
+    const least = (high - low) / Math.max(count, 1);
+    const power = 10 ** Math.floor(Math.log10(least));
+    const step = [1, 2, 5, 10].map((factor) => factor * power).find((value) => value >= least) || 10 * power;
+    const digits = Math.min(Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), 12);
+    for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9 && result.length < 100; k += 1) {
+      const value = Math.abs(k * step) < step * 1e-6 ? 0 : k * step;
+      result.push({ value, label: Math.abs(value) >= 1e6 ? String(Number(value.toPrecision(4))) : value.toFixed(digits) });
+    }
+    return result;
+  }
+
+  class Plot {
+    constructor(element, figure) {
+      this.element = element;
+      this.figure = figure;
+      this.svg = element.querySelector("svg");
+      this.marks = this.svg.querySelector(".marks");
+      this.axes = this.svg.querySelector(".axes");
+      this.ornaments = this.svg.querySelector(".ornaments");
+      [this.left, this.top, this.width, this.height] = figure.box;
+      this.home = { x: [figure.x.low, figure.x.high], y: [figure.y.low, figure.y.high] };
+      this.view = this.home;
+      this.hidden = new Set();
+      this.series = figure.series.map((series, index) => ({ ...series, index, isLoaded: false }));
+      this.cursor = this.add("g", { class: "cursor" });
+      this.tip = document.createElement("div");
+      this.tip.className = "tip";
+      element.append(this.tip);
+      this.listen();
+    }
+
+    add(name, attributes) {
+      const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+      for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+      this.svg.append(element);
+      return element;
+    }
+
+    /// The series with its columns, which are unpacked when first needed.
+    loaded(index) {
+      const series = this.series[index];
+      if (!series.isLoaded) {
+        for (const key of ["x", "y", "low", "high", "time", "note"]) series[key] = column(series[key]);
+        series.ascends = series.x !== null && ascends(series.x);
+        series.reach = series.time === null ? 0 : reach(series.time);
+        series.isLoaded = true;
+      }
+      return series;
+    }
+    *visible() {
+      for (let i = 0; i < this.series.length; i += 1) if (!this.hidden.has(i)) yield this.loaded(i);
+    }
+
+    // Data to px and back.
+
+    static part(axis, range, value) {
+      return axis.log ? Math.log(value / range[0]) / Math.log(range[1] / range[0])
+        : (value - range[0]) / (range[1] - range[0]);
+    }
+    toX(value) { return this.left + this.width * Plot.part(this.figure.x, this.view.x, value); }
+    toY(value) {
+      const up = Plot.part(this.figure.y, this.view.y, value);
+      return this.top + this.height * (this.figure.downwards ? up : 1 - up);
+    }
+    fromX(place) {
+      const part = (place - this.left) / this.width;
+      const [low, high] = this.view.x;
+      return this.figure.x.log ? low * (high / low) ** part : low + part * (high - low);
+    }
+    fromY(place) {
+      const part = 1 - (place - this.top) / this.height;
+      return this.view.y[0] + part * (this.view.y[1] - this.view.y[0]);
+    }
+    /// Of a pointer event, in the units of the drawing.
+    place(event) {
+      const box = this.svg.getBoundingClientRect();
+      const scale = this.svg.viewBox.baseVal.width / box.width;
+      return { x: (event.clientX - box.left) * scale, y: (event.clientY - box.top) * scale, scale };
+    }
+
+    // Drawing.
+
+    /// Part of a series that is in view along x, and one more at each end.
+    inView(series) {
+      if (!series.ascends) return [0, series.x.length];
+      return [Math.max(lowerBound(series.x, this.view.x[0]) - 1, 0),
+        Math.min(lowerBound(series.x, this.view.x[1]) + 1, series.x.length)];
+    }
+
+    linePath(series, ys, first = "M") {
+      const [begin, end] = this.inView(series);
+      return series.ascends ? this.columnsPath(series.x, ys, begin, end, first) : this.trackPath(series.x, ys);
+    }
+    /// First, lowest, highest and last point of each column of pixels.
+    columnsPath(xs, ys, begin, end, first) {
+      let path = "";
+      let pen = first;
+      let last = NaN;
+      let kept = [];
+      const flush = () => {
+        let before = -1;
+        for (const point of kept.sort((a, b) => a.i - b.i)) {
+          if (point.i !== before) { path += pen + px(point.x) + " " + px(point.y); pen = "L"; }
+          before = point.i;
+        }
+        kept = [];
+      };
+      for (let i = begin; i < end; i += 1) {
+        const point = { i, x: this.toX(xs[i]), y: this.toY(ys[i]) };
+        if (!Number.isFinite(point.x) || !Number.isFinite(point.y)) {
+          flush();
+          if (first === "M") pen = "M";
+          continue;
+        }
+        if (kept.length > 0 && Math.floor(point.x) !== last) flush();
+        last = Math.floor(point.x);
+        if (kept.length === 0) kept = [point, point, point, point];
+        if (point.y < kept[1].y) kept[1] = point;
+        if (point.y > kept[2].y) kept[2] = point;
+        kept[3] = point;
+      }
+      flush();
+      return path;
+    }
+    /// Points less than 0.4 px from the last one are left out, and what is far outside.
+    trackPath(xs, ys) {
+      const scaleX = this.width / (this.view.x[1] - this.view.x[0]);
+      const scaleY = this.height / (this.view.y[1] - this.view.y[0]);
+      const right = this.left + this.width;
+      const bottom = this.top + this.height;
+      const parts = [];
+      let pen = false;
+      let lastX = 0;
+      let lastY = 0;
+      let beforeX = NaN;
+      let beforeY = NaN;
+      for (let i = 0; i < xs.length; i += 1) {
+        const x = this.left + (xs[i] - this.view.x[0]) * scaleX;
+        const y = bottom - (ys[i] - this.view.y[0]) * scaleY;
+        // A piece is left out where both its ends lie on one outer side.
+        const misses = !(Math.max(x, beforeX) >= this.left && Math.min(x, beforeX) <= right &&
+          Math.max(y, beforeY) >= this.top && Math.min(y, beforeY) <= bottom);
+        if (misses) {
+          pen = false;
+        } else if (!pen) {
+          parts.push("M" + px(beforeX) + " " + px(beforeY) + "L" + px(x) + " " + px(y));
+          [lastX, lastY] = [x, y];
+          pen = true;
+        } else if (Math.abs(x - lastX) + Math.abs(y - lastY) >= 0.4) {
+          parts.push("L" + px(x) + " " + px(y));
+          [lastX, lastY] = [x, y];
+        }
+        [beforeX, beforeY] = [x, y];
+      }
+      return parts.join("");
+    }
+    markersPath(series) {
+      const [begin, end] = this.inView(series);
+      const taken = new Set();
+      const parts = [];
+      for (let i = begin; i < end; i += 1) {
+        const x = this.toX(series.x[i]);
+        const y = this.toY(series.y[i]);
+        if (!(x >= this.left - 5 && x <= this.left + this.width + 5 && y >= this.top - 5 &&
+              y <= this.top + this.height + 5)) continue;
+        const square = Math.floor(x / 1.5) * 8192 + Math.floor(y / 1.5);
+        if (taken.has(square)) continue;
+        taken.add(square);
+        parts.push("M" + px(x) + " " + px(y) + series.marker);
+      }
+      return parts.join("");
+    }
+    errorBarsPath(series) {
+      let path = "";
+      for (let i = 0; i < series.low.length; i += 1) {
+        const [x, low, high] = [this.toX(series.x[i]), this.toY(series.low[i]), this.toY(series.high[i])];
+        if (Number.isFinite(low) && Number.isFinite(high)) path += "M" + px(x) + " " + px(low) + "V" + px(high);
+      }
+      return path;
+    }
+    spansPath(series) {
+      let path = "";
+      for (let i = 0; i < series.low.length; i += 1) {
+        const left = this.toX(series.low[i]);
+        const right = Math.max(this.toX(series.high[i]), left + 1);
+        if (right < this.left || left > this.left + this.width) continue;
+        path += "M" + px(left) + " " + px(this.top) + "H" + px(right) + "v" + px(this.height) + "H" + px(left) + "z";
+      }
+      return path;
+    }
+    bandPath(series) {
+      const back = { ...series, x: series.x };
+      const upper = this.linePath(series, series.high);
+      const lower = this.linePath(back, series.low, "L").split("L").filter((pair) => pair !== "").reverse();
+      return upper === "" || lower.length === 0 ? "" : upper + "L" + lower.join("L") + "Z";
+    }
+    pathOf(series, element) {
+      if (element.classList.contains("spread")) return this.errorBarsPath(series);
+      switch (series.mark) {
+        case "line": return this.linePath(series, series.y);
+        case "points": return this.markersPath(series);
+        case "spans": return this.spansPath(series);
+        case "band": return this.bandPath(series);
+        default: return null;
+      }
+    }
+
+    drawAxes() {
+      const [bottom, box] = [this.top + this.height, this.figure];
+      let grid = "";
+      let labels = "";
+      for (const tick of ticks(...this.view.x, box.x.log, Math.floor(this.width / 90) + 1)) {
+        const x = px(this.toX(tick.value));
+        grid += "M" + x + " " + px(this.top) + "v" + px(this.height);
+        labels += `<text class="tick-x" x="${x}" y="${px(bottom + 16)}">${tick.label}</text>`;
+      }
+      for (const tick of ticks(...this.view.y, box.y.log, Math.floor(this.height / 45) + 1)) {
+        const y = this.toY(tick.value);
+        grid += "M" + px(this.left) + " " + px(y) + "h" + px(this.width);
+        labels += `<text class="tick-y" x="${px(this.left - 8)}" y="${px(y + 4)}">${tick.label}</text>`;
+      }
+      for (const label of this.axes.querySelectorAll(".tick-x, .tick-y")) label.remove();
+      this.axes.querySelector(".grid").setAttribute("d", grid);
+      this.axes.querySelector(".grid").insertAdjacentHTML("afterend", labels);
+    }
+    drawScaleBar() {
+      const perMetre = this.width / (this.view.x[1] - this.view.x[0]);
+      const longest = this.width / 4 / perMetre;
+      const power = 10 ** Math.floor(Math.log10(longest));
+      const length = [5, 2, 1].map((factor) => factor * power).find((value) => value <= longest * 1.0000001);
+      const bar = this.ornaments.querySelector(".scale-bar");
+      const start = bar.getAttribute("d").split("h")[0];
+      bar.setAttribute("d", start + "h" + px(length * perMetre) + "v-6");
+      const text = this.ornaments.querySelector(".scale-text");
+      text.setAttribute("x", px(this.left + 16 + (length * perMetre) / 2));
+      text.textContent = length >= 1000 ? Number((length / 1000).toPrecision(4)) + " km"
+        : Number(length.toPrecision(4)) + " m";
+    }
+    draw() {
+      for (const path of this.marks.querySelectorAll("[data-series]")) {
+        const index = Number(path.dataset.series);
+        path.classList.toggle("off", this.hidden.has(index));
+        if (this.figure.motion === "still" || this.hidden.has(index)) continue;
+        const drawn = this.pathOf(this.loaded(index), path);
+        if (drawn !== null) path.setAttribute("d", drawn);
+      }
+      if (this.figure.motion !== "still") this.drawAxes();
+      if (this.ornaments) this.drawScaleBar();
+      this.element.dataset.view = [...this.view.x, ...this.view.y].map((v) => v.toPrecision(9)).join(" ");
+      this.drawCursor();
+    }
+    /// Once before the next picture, however many events came.
+    drawSoon() {
+      if (this.isDue) return;
+      this.isDue = true;
+      requestAnimationFrame(() => { this.isDue = false; this.draw(); });
+    }
+
+    // Moving.
+
+    moveTo(view) {
+      if (this.figure.motion === "x") {
+        for (const plot of plots) {
+          if (plot !== this && !(this.figure.link !== "" && plot.figure.link === this.figure.link)) continue;
+          plot.view = { x: view.x, y: plot.fitted(view.x) };
+          plot.drawSoon();
+        }
+        return;
+      }
+      this.view = view;
+      this.drawSoon();
+    }
+    /// The y axis for what is seen of x.
+    fitted(range) {
+      const isHome = range[0] === this.home.x[0] && range[1] === this.home.x[1];
+      if (isHome || this.figure.y.log || this.figure.y.rows) return this.home.y;
+      let low = Infinity;
+      let high = -Infinity;
+      for (const series of this.visible()) {
+        if (series.mark !== "line" && series.mark !== "points") continue;
+        for (let i = 0; i < series.x.length; i += 1) {
+          if (!(series.x[i] >= range[0] && series.x[i] <= range[1]) || !Number.isFinite(series.y[i])) continue;
+          low = Math.min(low, series.y[i]);
+          high = Math.max(high, series.y[i]);
+        }
+      }
+      if (!(low < high)) return this.home.y;
+      const pad = 0.06 * (high - low);
+      return [this.figure.y.held ? this.home.y[0] : low - pad, high + pad];
+    }
+    zoom(factor, place) {
+      const centre = place || { x: this.left + this.width / 2, y: this.top + this.height / 2 };
+      const about = (range, middle) => range.map((end) => middle + (end - middle) * factor);
+      const x = about(this.view.x, this.fromX(centre.x));
+      const tooFar = x[1] - x[0] > 50 * (this.home.x[1] - this.home.x[0]);
+      const tooNear = x[1] - x[0] < 1e-6 * (this.home.x[1] - this.home.x[0]);
+      if (tooFar || tooNear) return;
+      this.moveTo({ x, y: this.figure.motion === "map" ? about(this.view.y, this.fromY(centre.y)) : this.view.y });
+    }
+    pan(dx, dy, from) {
+      const shift = (range, by) => [range[0] + by, range[1] + by];
+      const perPxX = (from.x[1] - from.x[0]) / this.width;
+      const perPxY = (from.y[1] - from.y[0]) / this.height;
+      this.moveTo({ x: shift(from.x, -dx * perPxX),
+        y: this.figure.motion === "map" ? shift(from.y, dy * perPxY) : from.y });
+    }
+    reset() { this.moveTo(this.home); }
+
+    // Pointing.
+
+    /// The time that a place stands for: the x axis of figures over time, else that of the nearest point.
+    timeAt(place) {
+      if (this.figure.link === "time") return this.fromX(place.x);
+      const found = this.nearestPoint(place, true);
+      return found === null ? null : found.series.time[found.i];
+    }
+    nearestPoint(place, timed) {
+      let best = null;
+      let least = 40 * 40;
+      for (const series of this.visible()) {
+        if (series.x === null || series.y === null || (timed && series.time === null)) continue;
+        if (series.mark !== "line" && series.mark !== "points") continue;
+        for (let i = 0; i < series.x.length; i += 1) {
+          const distance = (this.toX(series.x[i]) - place.x) ** 2 + (this.toY(series.y[i]) - place.y) ** 2;
+          // What says something of itself is preferred to the line that it lies on.
+          const weighed = series.note && series.note[i] >= 0 ? distance - 30 : distance;
+          if (weighed < least) {
+            least = weighed;
+            best = { series, i };
+          }
+        }
+      }
+      return best;
+    }
+    /// What there is to read at a time.
+    readingsAt(time) {
+      const readings = [];
+      for (const series of this.visible()) {
+        if (series.time === null || series.time === undefined || series.y === null) continue;
+        const i = nearest(series.time, time, series.reach);
+        if (i < 0 || !Number.isFinite(series.y[i]) || !Number.isFinite(series.x[i])) continue;
+        readings.push({ series, i });
+      }
+      return readings;
+    }
+    drawCursor() {
+      const parts = [];
+      if (Plot.time !== null) {
+        if (this.figure.link === "time") {
+          const x = this.toX(Plot.time);
+          if (x >= this.left && x <= this.left + this.width)
+            parts.push(`<path d="M${px(x)} ${px(this.top)}v${px(this.height)}"/>`);
+        }
+        for (const { series, i } of this.readingsAt(Plot.time)) {
+          const [x, y] = [this.toX(series.x[i]), this.toY(series.y[i])];
+          if (x < this.left || x > this.left + this.width || y < this.top || y > this.top + this.height) continue;
+          parts.push(`<circle class="look-${series.look}" cx="${px(x)}" cy="${px(y)}" r="5"/>`);
+        }
+      }
+      this.cursor.innerHTML = parts.join("");
+    }
+    showTip(place) {
+      const lines = [];
+      const { x, y } = this.figure;
+      const isTimed = this.figure.link === "time";
+      const found = isTimed ? null : this.nearestPoint(place, false);
+      const readings = Plot.time === null ? [] : this.readingsAt(Plot.time);
+      if (Plot.time !== null && readings.length > 0) lines.push("<div>" + readable(Plot.time, "s") + "</div>");
+      const remarks = new Set();
+      for (const { series, i } of readings) {
+        if (isTimed) lines.push(`<div>${escaped(series.name || y.title)}: ${readable(series.y[i], y.unit)}</div>`);
+        if (series.note && series.note[i] >= 0) remarks.add(series.notes[series.note[i]]);
+      }
+      if (found !== null && found.series.time === null) {
+        const { series, i } = found;
+        lines.push(`<div>${escaped(series.name)}</div><div>${escaped(x.title)}: ${readable(series.x[i], x.unit)}</div>` +
+          `<div>${escaped(y.title)}: ${readable(series.y[i], y.unit)}</div>`);
+      }
+      if (found !== null && found.series.note && found.series.note[found.i] >= 0)
+        remarks.add(found.series.notes[found.series.note[found.i]]);
+      for (const remark of remarks) lines.push(`<div class="remark">${escaped(remark)}</div>`);
+      this.tip.innerHTML = lines.join("");
+      const toCss = 1 / place.scale;
+      const isRight = place.x > this.left + this.width / 2;
+      this.tip.style.left = isRight ? "" : px(place.x * toCss + 14) + "px";
+      this.tip.style.right = isRight ? px(this.element.clientWidth - place.x * toCss + 14) + "px" : "";
+      this.tip.style.top = px(this.svg.offsetTop + place.y * toCss + 10) + "px";
+    }
+    point(place) {
+      Plot.time = this.timeAt(place);
+      for (const plot of plots) plot.drawCursor();
+      this.showTip(place);
+    }
+    leave() {
+      this.tip.innerHTML = "";
+      Plot.time = null;
+      for (const plot of plots) plot.drawCursor();
+    }
+    /// The cursor by so many samples of the longest series.
+    step(samples) {
+      const timed = [...this.visible()].filter((series) => series.time !== null);
+      if (timed.length === 0) return;
+      const { time } = timed.reduce((a, b) => (b.time.length > a.time.length ? b : a));
+      const at = Plot.time === null ? 0 : lowerBound(time, Plot.time) + samples;
+      Plot.time = time[Math.min(Math.max(at, 0), time.length - 1)];
+      for (const plot of plots) plot.drawCursor();
+      const x = this.figure.link === "time" ? this.toX(Plot.time) : this.left;
+      this.showTip({ x, y: this.top, scale: this.place({ clientX: 0, clientY: 0 }).scale });
+    }
+
+    // Events.
+
+    listen() {
+      const moves = this.figure.motion !== "still";
+      if (moves) {
+        this.element.classList.add("moves");
+        this.listenToMoves();
+      }
+      this.svg.setAttribute("tabindex", "0");
+      this.svg.addEventListener("pointermove", (event) => { if (!this.drag) this.point(this.place(event)); });
+      this.svg.addEventListener("pointerleave", () => this.leave());
+      this.svg.addEventListener("keydown", (event) => this.onKey(event));
+      for (const entry of this.svg.querySelectorAll(".entry")) this.listenToEntry(entry);
+      this.addTools(moves);
+    }
+    listenToMoves() {
+      this.svg.addEventListener("wheel", (event) => {
+        // Pages must scroll: the wheel zooms a figure that was clicked, or with a key held.
+        const wanted = document.activeElement === this.svg || event.ctrlKey || event.shiftKey || event.metaKey;
+        if (!wanted) return;
+        event.preventDefault();
+        this.zoom(1.0015 ** (event.deltaY || event.deltaX), this.place(event));
+      }, { passive: false });
+      this.svg.addEventListener("pointerdown", (event) => {
+        if (event.button !== 0 || event.target.closest(".entry")) return;
+        this.drag = { ...this.place(event), view: this.view };
+        this.svg.setPointerCapture(event.pointerId);
+        this.svg.focus({ preventScroll: true });
+        this.element.classList.add("dragged");
+      });
+      this.svg.addEventListener("pointermove", (event) => {
+        if (!this.drag) return;
+        const place = this.place(event);
+        this.pan(place.x - this.drag.x, place.y - this.drag.y, this.drag.view);
+      });
+      for (const end of ["pointerup", "pointercancel"]) {
+        this.svg.addEventListener(end, () => {
+          this.drag = null;
+          this.element.classList.remove("dragged");
+        });
+      }
+      this.svg.addEventListener("dblclick", () => this.reset());
+    }
+    onKey(event) {
+      const many = event.shiftKey ? 10 : 1;
+      const moves = this.figure.motion !== "still";
+      const actions = { ArrowLeft: () => this.step(-many), ArrowRight: () => this.step(many), Escape: () => this.leave() };
+      if (moves) {
+        actions["+"] = () => this.zoom(0.7);
+        actions["-"] = () => this.zoom(1 / 0.7);
+        actions["0"] = () => this.reset();
+      }
+      if (actions[event.key] === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      actions[event.key]();
+    }
+    listenToEntry(entry) {
+      const index = Number(entry.dataset.series);
+      entry.setAttribute("role", "button");
+      entry.setAttribute("tabindex", "0");
+      entry.setAttribute("aria-pressed", "true");
+      entry.setAttribute("aria-label", "show " + this.series[index].name);
+      const toggle = () => {
+        if (this.hidden.has(index)) this.hidden.delete(index); else this.hidden.add(index);
+        entry.classList.toggle("off", this.hidden.has(index));
+        entry.setAttribute("aria-pressed", String(!this.hidden.has(index)));
+        this.drawSoon();
+      };
+      entry.addEventListener("click", toggle);
+      entry.addEventListener("keydown", (event) => {
+        if (event.key !== "Enter" && event.key !== " ") return;
+        event.preventDefault();
+        toggle();
+      });
+    }
+    addTools(moves) {
+      const tools = document.createElement("span");
+      tools.className = "tools";
+      const button = (text, title, action) => {
+        const made = document.createElement("button");
+        made.type = "button";
+        made.textContent = text;
+        made.title = title;
+        made.setAttribute("aria-label", title);
+        made.addEventListener("click", action);
+        tools.append(made);
+      };
+      if (moves) {
+        button("+", "Zoom in (+, or the wheel over a figure that was clicked)", () => this.zoom(0.6));
+        button("\u2212", "Zoom out (-)", () => this.zoom(1 / 0.6));
+        button("whole", "The whole again (0, or a double click)", () => this.reset());
+      }
+      button("SVG", "Save this view as SVG", () => this.saveSvg());
+      button("CSV", "Save the numbers as CSV", () => this.saveCsv());
+      this.element.querySelector("figcaption").prepend(tools);
+    }
+
+    // Files.
+
+    save(text, type, ending) {
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(new Blob([text], { type }));
+      link.download = this.element.id + ending;
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    }
+    saveSvg() {
+      const copy = this.svg.cloneNode(true);
+      copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+      for (const odd of copy.querySelectorAll(".cursor, .off")) odd.remove();
+      const style = document.createElementNS("http://www.w3.org/2000/svg", "style");
+      style.textContent = document.querySelector("style").textContent;
+      copy.prepend(style);
+      this.save(new XMLSerializer().serializeToString(copy), "image/svg+xml", ".svg");
+    }
+    saveCsv() {
+      const quoted = (text) => (/[",\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text);
+      const keys = ["x", "y", "low", "high", "time"];
+      const all = this.series.map((series, index) => this.loaded(index));
+      const used = keys.filter((key) => all.some((series) => series[key]));
+      const headings = { x: this.figure.x.heading, y: this.figure.y.heading, low: "low", high: "high", time: "time [s]" };
+      const rows = [["series", ...used.map((key) => headings[key]), "note"].map(quoted).join(",")];
+      for (const series of all) {
+        const length = Math.max(...used.map((key) => (series[key] ? series[key].length : 0)));
+        for (let i = 0; i < length; i += 1) {
+          const cells = used.map((key) => (series[key] && Number.isFinite(series[key][i]) ? String(series[key][i]) : ""));
+          const note = series.note && series.note[i] >= 0 ? series.notes[series.note[i]] : "";
+          rows.push([quoted(series.name), ...cells, quoted(note)].join(","));
+        }
+      }
+      this.save(rows.join("\n") + "\n", "text/csv", ".csv");
+    }
+  }
+  Plot.time = null;
+
+  for (const [id, figure] of Object.entries(data.figures)) plots.push(new Plot(document.getElementById(id), figure));
+  document.documentElement.dataset.ready = String(plots.length);
+})();
