@@ -210,3 +210,45 @@ TEST_CASE("inputs that do not belong together are refused", "[evaluation]") {
     CHECK_THROWS_WITH(evaluate(input), Contains("does not overlap"));
   }
 }
+
+TEST_CASE("an epoch says what was stated of it, and which way the truth went", "[evaluation]") {
+  EvaluationInput input = northwards(true);
+  input.fixes[1].status = FixStatus::rejected;
+  input.fixes[1].reason = "displacement";
+  for (Fix& fix : input.fixes) fix.covariance = Eigen::Vector2d(4, 9).asDiagonal();
+  input.position_covariances.assign(4, Eigen::Vector2d(0.25, 1).asDiagonal());
+  const Evaluation e = evaluate(input);
+  double sum = 0;
+  for (const EpochResult& epoch : e.epochs) {
+    CHECK(epoch.fix_sigma_m.isApprox(Eigen::Vector2d(2, 3)));
+    CHECK(*epoch.speed_mps == Approx(10));
+    CHECK(*epoch.direction_rad == Approx(kNorth));
+    CHECK(epoch.nees == Approx(4));  // 1 m to the east where 0.5 m is stated
+    sum += epoch.nees;
+  }
+  CHECK(e.truth->consistency->nees_mean == Approx(sum / 4));
+  CHECK(e.epochs[1].reason == "displacement");
+}
+
+TEST_CASE("an epoch without truth or covariance leaves them open", "[evaluation]") {
+  EvaluationInput input = northwards(false);
+  input.truth.clear();
+  const Evaluation e = evaluate(input);
+  CHECK_FALSE(e.epochs[0].direction_rad);
+  CHECK_FALSE(e.epochs[0].position_covariance);
+  CHECK(std::isnan(e.epochs[0].nees));
+  CHECK(e.epochs[0].speed_mps);
+}
+
+TEST_CASE("speed of fused poses: chords, reverse, gaps, poses at one stamp", "[evaluation]") {
+  const std::vector<StampedPose> poses = {pose_at(0, 0, 0, 0), pose_at(1, 4, 0, 0), pose_at(1, 4, 0, 0),
+                                          pose_at(2, 2, 0, 0), pose_at(3, 1, 0, 0), pose_at(60, 9, 0, 0)};
+  const auto speeds = fused_speeds(poses);
+  CHECK(*speeds[0] == Approx(4));
+  CHECK(*speeds[1] == Approx(1));  // the chord from 0 s to 2 s
+  CHECK(*speeds[2] == Approx(1));
+  CHECK(*speeds[3] == Approx(-1.5));
+  CHECK(*speeds[4] == Approx(-1));
+  CHECK_FALSE(speeds[5]);  // 57 s from its neighbour
+  CHECK(fused_speeds({}).empty());
+}

@@ -109,12 +109,15 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
     if (!truth) continue;
     EpochResult& epoch = epochs[i];
     compare_with_truth(input, i, truth->pose, epoch);
-    const std::optional<double> direction =
-        truth->pose.heading_rad ? truth->pose.heading_rad : truth->direction_rad;
-    gnss.add(epoch.stamp, *epoch.gnss_offset_m, direction);
-    fused.add(epoch.stamp, *epoch.fused_offset_m, direction);
-    if (!input.position_covariances.empty()) covariances.push_back(input.position_covariances[i]);
-    if (epoch.status == FixStatus::accepted) gnss_accepted.add(epoch.stamp, *epoch.gnss_offset_m, direction);
+    epoch.direction_rad = truth->pose.heading_rad ? truth->pose.heading_rad : truth->direction_rad;
+    gnss.add(epoch.stamp, *epoch.gnss_offset_m, epoch.direction_rad);
+    fused.add(epoch.stamp, *epoch.fused_offset_m, epoch.direction_rad);
+    if (epoch.position_covariance) {
+      covariances.push_back(*epoch.position_covariance);
+      epoch.nees = normalised_innovation_squared(*epoch.fused_offset_m, *epoch.position_covariance);
+    }
+    if (epoch.status == FixStatus::accepted)
+      gnss_accepted.add(epoch.stamp, *epoch.gnss_offset_m, epoch.direction_rad);
     if (epoch.heading_error_rad) fused.heading_errors.push_back(*epoch.heading_error_rad);
   }
   evaluation.gnss = gnss.metrics();
@@ -126,6 +129,22 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
   if (!input.position_covariances.empty())
     evaluation.consistency = consistency_statistics(fused.stamps, fused.offsets, covariances);
   return evaluation;
+}
+
+/// What every fix has, truth or not; `nu` is not among it.
+std::vector<EpochResult> epochs_without_truth(const EvaluationInput& input) {
+  const std::vector<std::optional<double>> speeds = fused_speeds(input.fused);
+  std::vector<EpochResult> epochs(input.fixes.size());
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    const Fix& fix = input.fixes[i];
+    epochs[i].stamp = fix.stamp;
+    epochs[i].status = fix.status;
+    epochs[i].reason = fix.reason;
+    epochs[i].fix_sigma_m = fix.covariance.diagonal().cwiseSqrt();
+    epochs[i].speed_mps = speeds[i];
+    if (!input.position_covariances.empty()) epochs[i].position_covariance = input.position_covariances[i];
+  }
+  return epochs;
 }
 
 /// Residuals of all fixes against the fused trajectory: no truth needed.
@@ -180,17 +199,35 @@ void compare_at_withheld(const EvaluationInput& input, Evaluation& evaluation) {
 
 }  // namespace
 
+std::vector<std::optional<double>> fused_speeds(std::span<const StampedPose> poses) {
+  constexpr double kLongestSide = 5;  // a chord over more says little of the speed here
+  std::vector<std::optional<double>> speeds(poses.size());
+  std::size_t before = 0;  // the last pose with an earlier stamp, where there is one
+  std::size_t after = 0;   // the first with a later one
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Stamp now = poses[i].stamp;
+    if (i > 0 && poses[i - 1].stamp < now) before = i - 1;
+    while (after < poses.size() && poses[after].stamp <= now) ++after;
+    const auto reaches = [&](std::size_t j) {
+      const double dt = j < poses.size() ? std::abs(seconds_between(poses[j].stamp, now)) : 0;
+      return dt > 0 && dt <= kLongestSide;
+    };
+    const StampedPose& from = poses[reaches(before) ? before : i];
+    const StampedPose& to = poses[reaches(after) ? after : i];
+    const double dt = seconds_between(from.stamp, to.stamp);
+    if (!(dt > 0)) continue;
+    const Eigen::Vector2d chord = to.pose.head<2>() - from.pose.head<2>();
+    const double ahead = track_offset(chord, poses[i].pose[2]).along_m;
+    speeds[i] = std::copysign(chord.norm() / dt, ahead);
+  }
+  return speeds;
+}
+
 Evaluation evaluate(const EvaluationInput& input) {
   check(input);
   Evaluation evaluation;
   evaluation.frame = input.frame;
-  evaluation.epochs.reserve(input.fixes.size());
-  for (const Fix& fix : input.fixes)
-    evaluation.epochs.push_back(EpochResult{.stamp = fix.stamp,
-                                            .status = fix.status,
-                                            .gnss_offset_m = {},
-                                            .fused_offset_m = {},
-                                            .heading_error_rad = {}});
+  evaluation.epochs = epochs_without_truth(input);
   evaluate_residuals(input, evaluation);
   compare_at_withheld(input, evaluation);
   if (!input.truth.empty()) evaluation.truth = evaluate_truth(input, evaluation.epochs);

@@ -9,6 +9,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -49,14 +51,21 @@ struct SystemMetrics {
   ScalarStatistics heading;  ///< heading error, rad, wrapped; only where the truth has a heading
 };
 
-/// What was found at one fix; for plots and reports.
+/// What was found at one fix; for plots, reports and PREFIX.epochs.csv (epochs_csv.hpp).
 struct EpochResult {
   Stamp stamp;
   FixStatus status = FixStatus::accepted;
-  std::optional<Eigen::Vector2d> gnss_offset_m;   ///< raw fix - truth, at the body point
-  std::optional<Eigen::Vector2d> fused_offset_m;  ///< fused - truth, at the body point
-  std::optional<double> heading_error_rad;        ///< fused - truth
-  double nu = kUndefined;                         ///< normalised innovation squared
+  std::string reason;                                   ///< of the status
+  Eigen::Vector2d fix_sigma_m{kUndefined, kUndefined};  ///< stated by the receiver: grid east, north
+  std::optional<double> speed_mps;                      ///< fused; see fused_speeds
+  std::optional<Eigen::Matrix2d> position_covariance;   ///< stated, of the fused position, m^2
+  std::optional<Eigen::Vector2d> gnss_offset_m;         ///< raw fix - truth, at the body point
+  std::optional<Eigen::Vector2d> fused_offset_m;        ///< fused - truth, at the body point
+  std::optional<double> direction_rad;                  ///< what along and across track refer to: the
+                                                        ///< truth's heading, else that of its motion
+  std::optional<double> heading_error_rad;              ///< fused - truth
+  double nees = kUndefined;                             ///< d^T P^-1 d of the fused offset d
+  double nu = kUndefined;                               ///< normalised innovation squared
 };
 
 struct TruthEvaluation {
@@ -94,6 +103,11 @@ struct Evaluation {
 
   [[nodiscard]] std::size_t fixes() const { return accepted + rejected + withheld; }
 };
+
+/// Speed at each of a row of fused poses, m/s: the chord between the poses before and after it, or between
+/// one of them and it where the other is more than 5 s away; negative in reverse, against the heading. Empty
+/// where both are that far. Poses of the same stamp (fixes of two receivers) are one.
+[[nodiscard]] std::vector<std::optional<double>> fused_speeds(std::span<const StampedPose> poses);
 
 /// Evaluates one fused drive. O(n log n).
 /// @throws UsageError where the vectors do not belong together;

@@ -80,6 +80,11 @@ ScalarStatistics scalar_statistics(std::span<const double> values) {
   return statistics;
 }
 
+TrackOffset track_offset(const Eigen::Vector2d& offset, double direction_rad) {
+  const Eigen::Vector2d ahead(std::cos(direction_rad), std::sin(direction_rad));
+  return {.along_m = ahead.dot(offset), .cross_m = ahead.x() * offset.y() - ahead.y() * offset.x()};
+}
+
 TrackMetrics track_metrics(std::span<const Eigen::Vector2d> offsets,
                            std::span<const std::optional<double>> directions_rad) {
   if (offsets.size() != directions_rad.size())
@@ -89,9 +94,9 @@ TrackMetrics track_metrics(std::span<const Eigen::Vector2d> offsets,
   std::vector<double> cross;
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     if (!directions_rad[i]) continue;
-    const Eigen::Vector2d ahead(std::cos(*directions_rad[i]), std::sin(*directions_rad[i]));
-    along.push_back(ahead.dot(offsets[i]));
-    cross.push_back(ahead.x() * offsets[i].y() - ahead.y() * offsets[i].x());
+    const TrackOffset offset = track_offset(offsets[i], *directions_rad[i]);
+    along.push_back(offset.along_m);
+    cross.push_back(offset.cross_m);
   }
   return TrackMetrics{.along = scalar_statistics(along), .cross = scalar_statistics(cross)};
 }

@@ -58,6 +58,15 @@ struct Improvement {
   double cep95_percent = kUndefined;
 };
 
+/// An offset split along a direction (positive: ahead) and across it (positive: to the left), metres.
+struct TrackOffset {
+  double along_m = 0;
+  double cross_m = 0;
+};
+
+/// @param direction_rad  counter-clockwise from grid east
+[[nodiscard]] TrackOffset track_offset(const Eigen::Vector2d& offset, double direction_rad);
+
 [[nodiscard]] PositionMetrics position_metrics(std::span<const Eigen::Vector2d> offsets);
 
 [[nodiscard]] ScalarStatistics scalar_statistics(std::span<const double> values);
