@@ -141,8 +141,8 @@ TEST_CASE("sync: Aarhus' fixes lag the speed of its OBD by 0.4 s") {
     std::cout << "SKIPPED: " << data << " is absent\n";
     return;
   }
-  DriveConfig config = load_drive_config(
-      std::string(WAYMARK_SOURCE_DIR) + "/examples/drives/aarhus_horsens.yaml", data.string());
+  DriveConfig config =
+      load_drive_config(WAYMARK_SOURCE_DIR "/examples/drives/aarhus_horsens.yaml", data.string());
   config.gnss_delay_s = 0;
   TypeRegistry registry;
   register_log_readers(registry);
