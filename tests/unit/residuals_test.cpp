@@ -11,6 +11,7 @@
 #include <waymark/core/algorithm.hpp>
 #include <waymark/core/optimizer.hpp>
 #include <waymark/plugins/gnss_correlated/gnss_bias.hpp>
+#include <waymark/plugins/odometry/calibration.hpp>
 #include <waymark/tools/evaluation/residuals.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/g2o_edges.hpp>
@@ -166,8 +167,12 @@ TEST_CASE("residuals: measurements, steps of a state, and what was said beforeha
                  Eigen::MatrixXd::Identity(5, 5));
   graph.add_edge(EdgeGnssBiasDecay{}, {0, 1}, 4 * Eigen::Matrix2d::Identity());
   graph.add_edge(EdgePriorSe2{}, {2}, Eigen::Matrix3d::Identity());
+  graph.add_vertex<VertexGyroBias>(3, {0});
+  graph.add_edge(EdgeGyroAtRest{}, {3}, Eigen::Matrix<double, 1, 1>(1.0));
   const GraphResiduals residuals = residuals_by_type(graph);
-  REQUIRE(residuals.types.size() == 3);
+  REQUIRE(residuals.types.size() == 4);
+  CHECK(residuals.types[3].role == EdgeRole::measurement);  // a reading of a state
+  CHECK(residuals.types[1].components[1].name == "gnss_bias_y");
   CHECK(residuals.types[0].role == EdgeRole::prior);
   CHECK(residuals.types[1].role == EdgeRole::process);
   CHECK(residuals.types[1].whitened == std::vector<double>{1, 0});
@@ -175,7 +180,7 @@ TEST_CASE("residuals: measurements, steps of a state, and what was said beforeha
   // Edges of different sizes in one batch: the table is as wide as the largest.
   CHECK(residuals.types[0].dimension == 5);
   CHECK(residuals.types[0].components[4].statistics.count == 1);
-  CHECK(residuals.components == 2 + 5 + 2 + 3);
+  CHECK(residuals.components == 2 + 5 + 2 + 3 + 1);
 }
 
 TEST_CASE("residuals: of an empty graph there are none", "[residuals]") {

@@ -36,9 +36,11 @@ std::vector<std::string> split_at_commas(const std::string& form) {
   return words;
 }
 
-/// Names of an error's components, by how it is formed.
-std::vector<std::string> component_names(const EdgeType& type, std::size_t dimension) {
-  const std::string& form = type.form;
+/// Names of the components of a batch's errors, by how they are formed.
+std::vector<std::string> component_names(const Graph& graph, std::size_t batch, std::size_t dimension) {
+  const std::string& form = graph.edge_type(batch).form;
+  const VertexType& first = graph.vertex_type(graph.batch(batch).vertices(0).front());
+  if (form == "difference" && first.value_names.size() == dimension) return first.value_names;
   if (dimension == 3 && (form == "log" || form == "(t, theta)")) return {"x", "y", "heading"};
   if (dimension == 2 && (form == "position" || form == "body frame" || form == "sensor frame"))
     return {"x", "y"};
@@ -54,7 +56,7 @@ EdgeRole role_of(const Graph& graph, std::size_t batch) {
   const auto vertices = graph.batch(batch).vertices(0);
   const auto has_place = [&](VertexIndex v) { return graph.vertex_type(v).position != nullptr; };
   if (std::any_of(vertices.begin(), vertices.end(), has_place)) return EdgeRole::measurement;
-  return vertices.size() == 1 ? EdgeRole::prior : EdgeRole::process;
+  return vertices.size() > 1 ? EdgeRole::process : EdgeRole::measurement;
 }
 
 std::optional<Stamp> latest_stamp(const Graph& graph, std::span<const VertexIndex> vertices) {
@@ -96,9 +98,9 @@ void add_edges(const Graph& graph, std::size_t b, TypeResiduals& type) {
   }
 }
 
-void add_statistics(const EdgeType& edge_type, TypeResiduals& type) {
+void add_statistics(const Graph& graph, std::size_t b, TypeResiduals& type) {
   std::vector<double> values;
-  for (const std::string& name : component_names(edge_type, type.dimension)) {
+  for (const std::string& name : component_names(graph, b, type.dimension)) {
     const std::size_t k = type.components.size();
     values.clear();
     for (std::size_t at = k; at < type.whitened.size(); at += type.dimension) {
@@ -154,7 +156,7 @@ GraphResiduals residuals_by_type(const Graph& graph, std::size_t most) {
     type.form = graph.edge_type(b).form;
     type.role = role_of(graph, b);
     add_edges(graph, b, type);
-    add_statistics(graph.edge_type(b), type);
+    add_statistics(graph, b, type);
     list_largest(graph, b, most, type);
     result.squared += type.squared;
     result.chi2 += type.chi2;

@@ -28,7 +28,7 @@ namespace waymark {
 
 /// What the edges of a type stand for.
 enum class EdgeRole {
-  measurement,  ///< a reading: odometry, a fix, a loop closure
+  measurement,  ///< a reading: odometry, a fix, a loop closure, a gyro at rest
   process,      ///< how a state without a place (a bias, a scale) goes on from one of its values to the next
   prior         ///< what was said beforehand of a state, or what marginalised vertices left
 };
@@ -89,7 +89,7 @@ struct GraphResiduals {
   [[nodiscard]] double expected_rms(std::int64_t unknowns) const;
 };
 
-/// Residuals of every edge at the graph's present values. Linear in the number of edges; 0.1 s for 100,000.
+/// Residuals of every edge at the graph's present values. Linear in the number of edges; 30 ms for 100,000.
 /// @param most  edges to be listed as the largest, per type
 [[nodiscard]] GraphResiduals residuals_by_type(const Graph& graph, std::size_t most = 10);
 
