@@ -7,6 +7,7 @@
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/pipeline.hpp>
 #include <waymark/tools/program/program_registry.hpp>
+#include <waymark/tools/program/report_files.hpp>
 
 namespace waymark {
 namespace {
@@ -33,6 +34,15 @@ std::vector<std::string> labels_of(const std::vector<std::string>& paths) {
   return labels;
 }
 
+/// Empty where their sigmas cannot be had: the graph is then not at a minimum, or not determined.
+std::vector<StateReport> states_at(const GraphDocument& document) {
+  try {
+    return report_states(document);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 ExitCode evaluate_files(const EvaluateOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry_for(options.truth, options.common);
@@ -52,9 +62,17 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
     evaluations.push_back({label, evaluate_document(document, truth)});
     add_provenance(document, label, header);
     if (options.folder.empty()) continue;
-    for (const std::string& file : write_trajectories(document, options.folder + "/" + label, label)) {
-      console.detail("written " + file);
-    }
+    const std::vector<std::string> files = write_trajectories(document, options.folder + "/" + label, label);
+    for (const std::string& file : files) console.detail("written " + file);
+    const std::string report = write_drive_report({.drive = header.drive,
+                                                   .page = options.inputs.size() == 1 ? "report" : label,
+                                                   .document = document,
+                                                   .evaluated = evaluations.back(),
+                                                   .truth = truth,
+                                                   .states = states_at(document),
+                                                   .files = files},
+                                                  options.folder, console);
+    console.note("written " + report);
   }
   const std::string json = metrics_json(evaluations, header);
   if (!options.folder.empty()) write_file_atomically(options.folder + "/metrics.json", json);
@@ -72,7 +90,7 @@ void add_evaluate(CLI::App& app, Action& action) {
                       "Truth: a drive.yaml with a truth section, or a TUM file in the frame");
   command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own");
   command->add_option("-o,--out", options->folder,
-                      "Folder for metrics.json and the trajectories (CSV, TUM, GeoJSON)");
+                      "Folder for the report, metrics.json and the trajectories");
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark evaluate fused.graph --truth drive.yaml --out results");
   command->callback([options, &action] { action = [options] { return evaluate_files(*options); }; });

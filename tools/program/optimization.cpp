@@ -115,6 +115,17 @@ MultiStartSummary optimize_document(GraphDocument& document, const OptimizationC
   return result;
 }
 
+std::vector<StateReport> states_of_minimum(const GraphDocument& document, const Summary& summary,
+                                           const Console& console) {
+  if (!summary.converged()) return {};
+  try {
+    return report_states(document);
+  } catch (const InputError& error) {
+    console.note("warning: the estimated states have no sigmas: " + std::string(error.what()));
+    return {};
+  }
+}
+
 std::string describe_optimization(const MultiStartSummary& result) {
   const Summary& summary = result.summary;
   return fmt::format("waymark {} algorithm {} start {} solver {} {}", WAYMARK_VERSION, summary.algorithm,

@@ -9,6 +9,7 @@
 
 #include <waymark/core/multi_start.hpp>
 #include <waymark/formats/graph_document.hpp>
+#include <waymark/tools/evaluation/estimated_states.hpp>
 #include <waymark/tools/program/console.hpp>
 #include <waymark/tools/program/exit_codes.hpp>
 
@@ -50,6 +51,11 @@ void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry
 
 /// What the user is told of vertices that are not joined to the rest.
 [[nodiscard]] std::string apart_note(std::size_t vertices);
+
+/// The estimated states of an optimised document: empty without a minimum; where their sigmas cannot be had,
+/// that is told.
+[[nodiscard]] std::vector<StateReport> states_of_minimum(const GraphDocument& document,
+                                                         const Summary& summary, const Console& console);
 
 /// 0, 4 or 130.
 [[nodiscard]] ExitCode exit_code(const Summary& summary);

@@ -7,7 +7,6 @@
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 #include <waymark/tools/program/robust.hpp>
-#include <waymark/tools/program/state_report.hpp>
 
 namespace waymark {
 namespace {
@@ -60,7 +59,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
     write_covariances(options.covariance_file, document, result.summary);
     written += " " + options.covariance_file;
   }
-  const std::vector<StateReport> states = report_states(document, result.summary, console);
+  const std::vector<StateReport> states = states_of_minimum(document, result.summary, console);
   if (options.common.json) {
     nlohmann::ordered_json json = summary_json(result);
     json["states"] = states_json(states);

@@ -275,15 +275,19 @@ void add_provenance(const GraphDocument& document, const std::string& label, Rep
   }
 }
 
-std::string describe_drive(const LoadedDrive& loaded) {
+std::string left_out(const LoadedDrive& loaded) {
   const PrepareReport& report = loaded.drive.report;
+  return fmt::format("{} fixes outside the odometry, {} by thinning, {} withheld",
+                     report.fixes_outside_odometry, report.fixes_thinned, report.fixes_withheld);
+}
+
+std::string describe_drive(const LoadedDrive& loaded) {
   std::string text;
   const auto& odometry = loaded.drive.odometry;
   text += fmt::format("drive       {}: {:.0f} s, {:.0f} m by odometry, {} odometry samples, {} fixes\n",
                       loaded.config.name, seconds_between(odometry.front().stamp, odometry.back().stamp),
                       distance_by(odometry), odometry.size(), loaded.drive.fixes.size());
-  text += fmt::format("left out    {} fixes outside the odometry, {} by thinning, {} withheld\n",
-                      report.fixes_outside_odometry, report.fixes_thinned, report.fixes_withheld);
+  text += "left out    " + left_out(loaded) + "\n";
   return text;
 }
 

@@ -57,6 +57,9 @@ struct LoadedDrive {
 /// Puts a document's provenance into a report, keys as "LABEL.KEY" (numbered where a key repeats).
 void add_provenance(const GraphDocument& document, const std::string& label, ReportHeader& header);
 
+/// What of the logs did not go in, in words.
+[[nodiscard]] std::string left_out(const LoadedDrive& loaded);
+
 /// A paragraph on what went in: samples, fixes, what was left out.
 [[nodiscard]] std::string describe_drive(const LoadedDrive& loaded);
 

@@ -8,7 +8,7 @@
 #include <waymark/tools/program/model_report.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
-#include <waymark/tools/program/state_report.hpp>
+#include <waymark/tools/program/report_files.hpp>
 
 namespace waymark {
 namespace {
@@ -84,13 +84,24 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, M
   run.result = optimize_document(document, options.choice, registry, console);
   document.provenance.emplace_back("optimized", describe_optimization(run.result));
   write(prefix + ".fused.graph");
-  run.states = report_states(document, run.result.summary, console);
+  run.states = states_of_minimum(document, run.result.summary, console);
   for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
   add_covariances_at_fixes(document, run.result.summary, console);
   std::vector<Prediction> further;
   if (options.causal) further.push_back(predict_causally(options, loaded, modeling, registry, console));
   run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth, further)};
   add_provenance(document, modeling, header);
+  const bool alone = loaded.modelings.size() == 1;
+  run.files.push_back(write_drive_report({.drive = loaded.config.name,
+                                          .page = alone ? "report" : modeling,
+                                          .document = document,
+                                          .evaluated = run.evaluation,
+                                          .truth = loaded.drive.truth,
+                                          .optimization = &run.result,
+                                          .states = run.states,
+                                          .left_out = left_out(loaded),
+                                          .files = run.files},
+                                         options.folder, console));
   return run;
 }
 

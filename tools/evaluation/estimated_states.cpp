@@ -1,4 +1,4 @@
-#include <waymark/tools/program/state_report.hpp>
+#include <waymark/tools/evaluation/estimated_states.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <waymark/core/error.hpp>
 #include <waymark/core/gaussian_prior.hpp>
 #include <waymark/core/marginals.hpp>
 #include <waymark/tools/evaluation/json_number.hpp>
@@ -75,6 +74,12 @@ StateReport report(const Graph& graph, const StateVertices& state, int axis,
   result.last = value(state.vertices.back());
   result.smallest = value(*smallest);
   result.largest = value(*largest);
+  if (state.vertices.size() > 1) {
+    for (const VertexIndex v : state.vertices) {
+      result.stamps.push_back(*graph.stamp(v));
+      result.wandering.push_back(value(v));
+    }
+  }
   const double variance = last_covariance(axis, axis);  // 0: not estimated, no edge touches it
   result.sigma = variance > 0 ? std::sqrt(variance) : std::numeric_limits<double>::quiet_NaN();
   return result;
@@ -110,17 +115,6 @@ std::vector<StateReport> report_states(const GraphDocument& document) {
     }
   }
   return reports;
-}
-
-std::vector<StateReport> report_states(const GraphDocument& document, const Summary& summary,
-                                       const Console& console) {
-  if (!summary.converged()) return {};
-  try {
-    return report_states(document);
-  } catch (const InputError& error) {
-    console.note("warning: the estimated states have no sigmas: " + std::string(error.what()));
-    return {};
-  }
 }
 
 std::string states_text(const std::vector<StateReport>& states) {

@@ -6,9 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <waymark/core/summary.hpp>
+#include <waymark/core/stamp.hpp>
 #include <waymark/formats/graph_document.hpp>
-#include <waymark/tools/program/console.hpp>
 
 namespace waymark {
 
@@ -22,8 +21,10 @@ struct StateReport {
   double smallest = 0;
   double largest = 0;
   double sigma = 0;  ///< of the last value, from the marginal covariance; NaN where it is not determined
-  double prior_sigma = 0;  ///< of the first value before anything was measured; NaN where it has no prior
-  bool observed = true;    ///< whether the drive said more of the first value than its prior
+  double prior_sigma = 0;     ///< of the first value before anything was measured; NaN where it has no prior
+  bool observed = true;       ///< whether the drive said more of the first value than its prior
+  std::vector<Stamp> stamps;  ///< of the values of a state that wanders; empty for a constant
+  std::vector<double> wandering;  ///< one value per stamp
 };
 
 /// Vertices of types that state units and have no place in the plane, as far as they were estimated, in the
@@ -31,9 +32,6 @@ struct StateReport {
 /// wanders, others are states of their own.
 /// Sigmas are those at the document's values. @throws what marginal_covariances throws
 [[nodiscard]] std::vector<StateReport> report_states(const GraphDocument& document);
-/// The same after an optimisation: empty without a minimum; where the sigmas cannot be had, that is told.
-[[nodiscard]] std::vector<StateReport> report_states(const GraphDocument& document, const Summary& summary,
-                                                     const Console& console);
 
 /// A table for the terminal; empty where there are no states.
 [[nodiscard]] std::string states_text(const std::vector<StateReport>& states);

@@ -1,0 +1,39 @@
+#include <filesystem>
+#include <optional>
+
+#include <waymark/core/error.hpp>
+#include <waymark/tools/program/report_files.hpp>
+#include <waymark/tools/report/drive_report.hpp>
+
+namespace waymark {
+
+std::string write_drive_report(const DriveReportRequest& request, const std::string& folder,
+                               const Console& console) {
+  console.progress("writing report " + request.page + ".html");
+  const GraphResiduals residuals = residuals_by_type(request.document.graph);
+  std::optional<Sparsity> sparsity;
+  try {
+    sparsity = sparsity_of(request.document.graph);
+  } catch (const InputError& error) {  // an undetermined graph has residuals, but no normal equations to show
+    console.note("warning: the report has no matrices: " + std::string(error.what()));
+  }
+  ReportedDrive drive{.name = request.drive,
+                      .label = request.evaluated.label,
+                      .document = request.document,
+                      .evaluation = request.evaluated.evaluation,
+                      .truth = request.truth,
+                      .optimization = request.optimization,
+                      .states = &request.states,
+                      .residuals = &residuals,
+                      .sparsity = sparsity ? &*sparsity : nullptr};
+  if (!request.left_out.empty()) drive.went_in.emplace_back("left out", request.left_out);
+  for (const std::string& file : request.files)
+    drive.files.push_back(std::filesystem::path(file).filename().string());
+  Page page = drive_page(drive);
+  const std::vector<std::string> written = write_page(page, folder, request.page);
+  for (std::size_t i = 1; i < written.size(); ++i) console.detail("written " + written[i]);
+  console.end_progress();
+  return written.front();
+}
+
+}  // namespace waymark

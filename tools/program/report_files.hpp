@@ -1,0 +1,32 @@
+/// The reports that commands write beside their results.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <waymark/core/multi_start.hpp>
+#include <waymark/formats/graph_document.hpp>
+#include <waymark/tools/evaluation/estimated_states.hpp>
+#include <waymark/tools/evaluation/report.hpp>
+#include <waymark/tools/program/console.hpp>
+
+namespace waymark {
+
+/// What a drive report is written of.
+struct DriveReportRequest {
+  std::string drive;              ///< name of the drive
+  std::string page;               ///< name of the file, without ending
+  const GraphDocument& document;  ///< at its minimum
+  const LabelledEvaluation& evaluated;
+  const std::vector<TruthPose>& truth;
+  const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
+  std::vector<StateReport> states{};
+  std::string left_out{};            ///< of the logs; empty: not known
+  std::vector<std::string> files{};  ///< to be linked; paths
+};
+
+/// Writes FOLDER/PAGE.html and its figures. Returns the page's name: the figures are too many to be told.
+std::string write_drive_report(const DriveReportRequest& request, const std::string& folder,
+                               const Console& console);
+
+}  // namespace waymark

@@ -1,0 +1,34 @@
+/// The figures of a drive report. Each says in its caption how it is formed; all over time are linked.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <waymark/tools/report/drive_report.hpp>
+#include <waymark/tools/report/figure.hpp>
+
+namespace waymark {
+
+/// Poses, raw fixes with what became of them, truth; east and north on the grid.
+[[nodiscard]] Figure trajectory_figure(const ReportedDrive& drive);
+
+/// The paper's tile: errors on a plane of 2 x 2 m about the truth with their mean and one-sigma ellipse;
+/// wider where most errors lie outside. Raw and fused at one scale.
+[[nodiscard]] FigureRow error_tiles(const ReportedDrive& drive);
+
+/// Position error, along and across the direction of travel, heading error, speed; rejected spans.
+[[nodiscard]] std::vector<Figure> errors_over_time(const ReportedDrive& drive);
+
+/// Share of epochs with an error below x; CEP50 and CEP95.
+[[nodiscard]] Figure error_distribution(const ReportedDrive& drive);
+
+/// Autocorrelation of the errors, raw and fused, up to 2 min or a quarter of the drive.
+[[nodiscard]] Figure autocorrelation_figure(const ReportedDrive& drive);
+
+/// What was stated against what was: by sigma, over time, and as shares. Empty without covariances.
+[[nodiscard]] std::vector<Figure> consistency_figures(const ReportedDrive& drive);
+
+/// Fix minus fused antenna over time, east and north: all that a drive without truth can show of errors.
+[[nodiscard]] Figure fix_residuals_over_time(const ReportedDrive& drive);
+
+}  // namespace waymark
