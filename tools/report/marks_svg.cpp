@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/report/bars.hpp>
 #include <waymark/tools/report/look.hpp>
 #include <waymark/tools/report/marks_svg.hpp>
 #include <waymark/tools/report/markup.hpp>
@@ -75,45 +76,28 @@ std::string spans_path(const Series& series, const View& view) {
   return d;
 }
 
-/// Bars of a row stand one below the other, in the order of the series.
-struct BarPlace {
-  double offset = 0;  ///< of the bar's middle from the row's, px
-  double height = 0;  ///< px
-};
-
-BarPlace bar_place(const Figure& figure, std::size_t index, const View& view) {
-  std::size_t bars = 0;
-  std::size_t before = 0;
-  for (std::size_t s = 0; s < figure.series.size(); ++s) {
-    if (figure.series[s].mark != Mark::bars) continue;
-    ++bars;
-    if (s < index) ++before;
-  }
-  const double row = std::abs(view.px_y(1) - view.px_y(0));
-  const double height = 0.8 * row / static_cast<double>(bars);
-  return {height * (static_cast<double>(before) + 0.5) - 0.4 * row, height};
-}
-
 std::string bars(const Figure& figure, std::size_t index, const View& view) {
   const Series& series = figure.series[index];
-  const BarPlace place = bar_place(figure, index, view);
+  const double row_height = std::abs(view.px_y(1) - view.px_y(0));
   const double origin = view.logarithmic_x ? view.box.left : view.px_x(std::max(view.x.low, 0.0));
   std::string boxes;
   std::string spread;
   std::string values;
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!view.shows(series.x[i], series.y[i])) continue;
-    const double y = view.px_y(series.y[i]) + place.offset;
+    const BarPlace place = bar_place(figure, index, series.y[i]);
+    const double height = place.height * row_height;
+    const double y = view.px_y(series.y[i]) + place.offset * row_height;
     double end = view.px_x(series.x[i]);
-    boxes += fmt::format("M{} {}H{}v{}H{}z", px(origin), px(y - 0.45 * place.height), px(end),
-                         px(0.9 * place.height), px(origin));
+    boxes += fmt::format("M{} {}H{}v{}H{}z", px(origin), px(y - 0.45 * height), px(end), px(0.9 * height),
+                         px(origin));
     if (i < series.high.size() && view.shows(series.low[i], 0.0 + series.y[i])) {
       const double low = view.px_x(series.low[i]);
       const double high = view.px_x(series.high[i]);
       spread += fmt::format("M{} {}H{}m0-3v6M{} {}v6", px(low), px(y), px(high), px(low), px(y - 3));
       end = std::max(end, high);
     }
-    if (place.height >= 8) {
+    if (height >= 8) {
       values += fmt::format("<text class=\"value\" data-series=\"{}\" x=\"{}\" y=\"{}\">{}</text>", index,
                             px(std::max(end, origin) + 5), px(y + 4), escaped(readable(series.x[i])));
     }
