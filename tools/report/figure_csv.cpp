@@ -38,6 +38,15 @@ std::size_t length(const Series& series) {
   return std::max({series.x.size(), series.y.size(), series.low.size()});
 }
 
+/// The category where the column is of the rows of bars, else the number; empty where it is none.
+std::string field(const Figure& figure, const Column& column, double value) {
+  if (!std::isfinite(value)) return "";
+  const std::vector<std::string>& rows = figure.y.categories;
+  const bool is_row = column.values == &Series::y && value >= 0 && value == std::floor(value) &&
+                      value < static_cast<double>(rows.size());
+  return is_row ? quoted(rows[static_cast<std::size_t>(value)]) : fmt::format("{}", value);
+}
+
 std::string note_of(const Series& series, std::size_t i) {
   if (i >= series.note.size() || series.note[i] < 0) return "";
   return quoted(series.notes[static_cast<std::size_t>(series.note[i])]);
@@ -59,8 +68,7 @@ std::string figure_csv(const Figure& figure) {
       for (const Column& column : columns) {
         const std::vector<double>& values = series.*column.values;
         csv += ',';
-        if (i < values.size() && std::isfinite(values[i]))
-          fmt::format_to(std::back_inserter(csv), "{}", values[i]);
+        if (i < values.size()) csv += field(figure, column, values[i]);
       }
       if (has_notes) csv += "," + note_of(series, i);
       csv += '\n';
