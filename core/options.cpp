@@ -4,6 +4,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/options.hpp>
+#include <waymark/core/suggest.hpp>
 
 namespace waymark {
 namespace {
@@ -37,10 +38,11 @@ void check_option_names(std::string_view owner, const Options& given, std::span<
   for (const auto& entry : given) {
     const std::string& name = entry.first;
     if (has_option(known, name)) continue;
-    std::string message = std::string(owner) + ": unknown option '" + name + "'; it has";
-    if (known.empty()) message += " none";
-    for (std::size_t i = 0; i < known.size(); ++i) message += (i > 0 ? ", " : " ") + known[i].name;
-    throw UsageError(message);
+    std::vector<std::string_view> names;
+    for (const OptionInfo& option : known) names.push_back(option.name);
+    std::string hint = did_you_mean(name, names);
+    if (hint.empty()) hint = known.empty() ? "; it has none" : "; it has " + joined(names);
+    throw UsageError(std::string(owner) + ": unknown option '" + name + "'" + hint);
   }
 }
 

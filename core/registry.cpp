@@ -1,6 +1,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/core/gaussian_prior.hpp>
 #include <waymark/core/registry.hpp>
+#include <waymark/core/suggest.hpp>
 
 namespace waymark {
 namespace {
@@ -38,9 +39,9 @@ void add(RegistryTable<T>& table, T type, const std::string& origin, const char*
 template <typename T>
 const T& require(const RegistryTable<T>& table, std::string_view name, const char* kind) {
   if (const T* found = find(table, name)) return *found;
-  std::string message = std::string("unknown ") + kind + " '" + std::string(name) + "'; there are:";
-  for (const Registered<T>& entry : table) message += " " + name_of(entry.type);
-  throw UsageError(message);
+  std::vector<std::string_view> names;
+  for (const Registered<T>& entry : table) names.push_back(name_of(entry.type));
+  throw UsageError(std::string("unknown ") + kind + " '" + std::string(name) + "'" + suggestion(name, names));
 }
 
 }  // namespace

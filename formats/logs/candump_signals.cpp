@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/logs/csv_columns.hpp>
-#include <waymark/formats/suggest.hpp>
 
 namespace waymark {
 namespace {
@@ -88,11 +88,9 @@ void Binder::check_request(const std::vector<Quantity>& quantities) const {
       fail(
           "frames of a candump log are stamped by the logger, no signal can be their 'time'; map the "
           "receiver's clock as gnss_time, then the logger's offset is known");
-    if (quantity == nullptr) {
-      const std::string nearest = did_you_mean(name, known);
+    if (quantity == nullptr)
       fail(fmt::format("'{}' is no quantity of the {} stream{}", name, to_string(request_.stream),
-                       nearest.empty() ? "; there are: " + joined(known) : nearest));
-    }
+                       suggestion(name, known)));
     if (const std::string error = column_request_error(*quantity, wanted); !error.empty()) fail(error);
   }
   std::string missing;

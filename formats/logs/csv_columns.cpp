@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/iso8601.hpp>
 #include <waymark/formats/line_scanner.hpp>
 #include <waymark/formats/logs/record_fields.hpp>
 #include <waymark/formats/stamp_text.hpp>
-#include <waymark/formats/suggest.hpp>
 
 namespace waymark {
 namespace {
@@ -94,12 +94,9 @@ void CsvColumns::check_request(const std::string& place, const LogRequest& reque
   const std::vector<std::string_view> known = names_of(quantities_);
   for (const auto& [name, wanted] : request.columns) {
     const Quantity* quantity = find_quantity(quantities_, name);
-    if (quantity == nullptr) {
-      const std::string nearest = did_you_mean(name, known);
+    if (quantity == nullptr)
       throw InputError(fmt::format("{}'{}' is no quantity of the {} stream{}", place, name,
-                                   to_string(request.stream),
-                                   nearest.empty() ? "; there are: " + joined(known) : nearest));
-    }
+                                   to_string(request.stream), suggestion(name, known)));
     if (const std::string error = column_request_error(*quantity, wanted); !error.empty())
       throw InputError(place + error);
   }

@@ -4,9 +4,9 @@
 #include <string>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/logs/csv_log.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
-#include <waymark/formats/suggest.hpp>
 
 #include "logs/log_pieces.hpp"
 

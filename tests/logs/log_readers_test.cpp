@@ -3,8 +3,8 @@
 #include <string>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
-#include <waymark/formats/suggest.hpp>
 
 using namespace waymark;
 using Catch::Matchers::Message;
@@ -24,4 +24,9 @@ TEST_CASE("suggestions") {
   const std::vector<std::string_view> words{"columns", "format", "file"};
   CHECK(did_you_mean("colums", words) == "; did you mean 'columns'?");
   CHECK(did_you_mean("xyz", words).empty());
+  CHECK(suggestion("colums", words) == "; did you mean 'columns'?");
+  CHECK(suggestion("xyz", words) == "; there are: columns, format, file");
+  // Where several are as near, none of them is more likely to be meant.
+  const std::vector<std::string_view> alike{"g1", "g2"};
+  CHECK(suggestion("g9", alike) == "; there are: g1, g2");
 }

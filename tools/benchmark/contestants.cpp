@@ -5,7 +5,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/multi_start.hpp>
-#include <waymark/formats/suggest.hpp>
+#include <waymark/core/suggest.hpp>
 #ifdef WAYMARK_HAVE_CERES
 #include <waymark/tools/benchmark/ceres/ceres_peer.hpp>
 #endif
@@ -65,7 +65,7 @@ Contestant default_contestant(const std::string& algorithm, const std::string& s
 
 Contestant peer_contestant(std::string_view name, const OptimizerOptions& options) {
   if (name != kPeerNames[0] && name != kPeerNames[1]) {
-    throw UsageError("unknown peer '" + std::string(name) + "'; there are: " + joined(kPeerNames));
+    throw UsageError("unknown peer '" + std::string(name) + "'" + suggestion(name, kPeerNames));
   }
 #ifdef WAYMARK_HAVE_CERES
   const CeresOptions ceres{name == "ceres" ? CeresMethod::levenberg_marquardt : CeresMethod::dogleg,

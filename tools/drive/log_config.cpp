@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/iso8601.hpp>
 #include <waymark/formats/logs/csv_columns.hpp>
 #include <waymark/formats/logs/quantity.hpp>
-#include <waymark/formats/suggest.hpp>
 
 namespace waymark {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/suggest.hpp>
 #include <waymark/tools/drive/prepare.hpp>
 
 namespace waymark {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/suggest.hpp>
+#include <waymark/core/suggest.hpp>
 
 namespace waymark {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <waymark/formats/suggest.hpp>
+#include <waymark/core/suggest.hpp>
 
 namespace waymark {
 namespace {

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/logs/quantity.hpp>
-#include <waymark/formats/suggest.hpp>
 #include <waymark/tools/inspection/log_clock.hpp>
 #include <waymark/tools/inspection/suspicions.hpp>
 
@@ -82,8 +82,7 @@ LogReaderType reader_for(const std::string& path, std::span<const LogReaderType>
     if (reader.name == options.format) return reader;
     names.push_back(reader.name);
   }
-  throw UsageError(fmt::format("unknown log format '{}'{}; there are: {}", options.format,
-                               did_you_mean(options.format, names), joined(names)));
+  throw UsageError("unknown log format '" + options.format + "'" + suggestion(options.format, names));
 }
 
 /// The files that belong to the log: a DBC where one was given, the stamps of a KITTI folder beside it.

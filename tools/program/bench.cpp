@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/suggest.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/benchmark/benchmark_report.hpp>
 #include <waymark/tools/benchmark/contestants.hpp>
@@ -46,7 +46,7 @@ void check_start(const std::string& name, const TypeRegistry& registry) {
   std::vector<std::string_view> known{"file"};
   for (const auto& [start, origin] : registry.starts()) known.push_back(start.name);
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  throw UsageError("unknown start '" + name + "'; there are: " + joined(known));
+  throw UsageError("unknown start '" + name + "'" + suggestion(name, known));
 }
 
 /// Empty: what `optimize` takes; "all": every registered one.

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/suggest.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>

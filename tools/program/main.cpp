@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/suggest.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/tools/benchmark/contestants.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/program_registry.hpp>

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/tools/evaluation/json_number.hpp>
 #include <waymark/tools/program/covariance.hpp>
 #include <waymark/tools/program/optimization.hpp>
@@ -21,13 +23,10 @@ constexpr std::string_view kAutoStart = "auto";
 constexpr std::string_view kFileStart = "file";
 
 void check_start(const std::string& start, const TypeRegistry& registry) {
-  std::string names = fmt::format("{} {}", kAutoStart, kFileStart);
-  bool known = start == kAutoStart || start == kFileStart;
-  for (const auto& [type, origin] : registry.starts()) {
-    known = known || start == type.name;
-    names += " " + type.name;
-  }
-  if (!known) throw UsageError("unknown start '" + start + "'; there are: " + names);
+  std::vector<std::string_view> names = {kAutoStart, kFileStart};
+  for (const auto& [type, origin] : registry.starts()) names.push_back(type.name);
+  if (std::find(names.begin(), names.end(), start) != names.end()) return;
+  throw UsageError("unknown start '" + start + "'" + suggestion(start, names));
 }
 
 /// From the start that was asked for. A search for outliers begins at the values at hand: chi2 over all edges

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/suggest.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/formats/text_builder.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/robust.hpp>
@@ -20,7 +20,7 @@ void require_edge(const TypeRegistry& registry, const std::string& tag, const st
   if (registry.find_edge(tag) != nullptr) return;
   std::vector<std::string_view> tags;
   for (const auto& [type, origin] : registry.edges()) tags.push_back(type.tag);
-  throw UsageError(option + ": unknown edge type '" + tag + "'" + did_you_mean(tag, tags));
+  throw UsageError(option + ": unknown edge type '" + tag + "'" + suggestion(tag, tags));
 }
 
 // [TAG=]NAME:SCALE
@@ -76,7 +76,7 @@ Loss named_loss(const std::string& text, const std::string& place, const TypeReg
   if (type == nullptr) {
     std::vector<std::string_view> names;
     for (const auto& [known, origin] : registry.losses()) names.push_back(known.name);
-    throw UsageError(place + ": unknown loss '" + name + "'; there are: " + joined(names));
+    throw UsageError(place + ": unknown loss '" + name + "'" + suggestion(name, names));
   }
   double scale = 0;
   const char* first = text.data() + (colon == std::string::npos ? text.size() : colon + 1);

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <waymark/core/error.hpp>
-#include <waymark/formats/suggest.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 
 namespace waymark {
@@ -262,9 +262,7 @@ const SimulationPreset& simulation_preset(std::string_view name) {
     if (preset.name == name) return preset;
     names.push_back(preset.name);
   }
-  const std::string nearest = did_you_mean(name, names);
-  throw UsageError("unknown preset '" + std::string(name) + "'" +
-                   (nearest.empty() ? "; there are: " + joined(names) : nearest));
+  throw UsageError("unknown preset '" + std::string(name) + "'" + suggestion(name, names));
 }
 
 }  // namespace waymark

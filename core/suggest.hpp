@@ -15,6 +15,10 @@ namespace waymark {
 /// the first of equals; empty where none is near.
 [[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 
+/// What ends a message about an unknown word: did_you_mean where one candidate is nearer than all others,
+/// else "; there are: a, b, c".
+[[nodiscard]] std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
+
 /// "a, b, c".
 [[nodiscard]] std::string joined(std::span<const std::string_view> words);
 [[nodiscard]] std::string joined(std::span<const std::string> words);
