@@ -26,14 +26,14 @@ std::string axes_svg(const Figure& figure, const View& view) {
   const double bottom = box.top + box.height;
   std::string grid;
   std::string labels;
-  for (const Tick& tick : ticks(view.x, view.logarithmic_x, static_cast<int>(box.width / 90) + 1)) {
+  for (const Tick& tick : ticks(view.x, view.logarithmic_x, ticks_in_width(box.width))) {
     const double x = view.px_x(tick.value);
     grid += fmt::format("M{} {}v{}", px(x), px(box.top), px(box.height));
     labels += label("tick-x", x, bottom + 16, tick.label);
   }
-  const std::vector<Tick> rows =
-      figure.y.categories.empty() ? ticks(view.y, view.logarithmic_y, static_cast<int>(box.height / 45) + 1)
-                                  : category_ticks(figure.y);
+  const std::vector<Tick> rows = figure.y.categories.empty()
+                                     ? ticks(view.y, view.logarithmic_y, ticks_in_height(box.height))
+                                     : category_ticks(figure.y);
   for (const Tick& tick : rows) {
     const double y = view.px_y(tick.value);
     if (figure.y.categories.empty()) grid += fmt::format("M{} {}h{}", px(box.left), px(y), px(box.width));

@@ -6,8 +6,12 @@
 
 #include <waymark/tools/report/drive_report.hpp>
 #include <waymark/tools/report/figure.hpp>
+#include <waymark/tools/report/view.hpp>
 
 namespace waymark {
+
+/// From the first fix to the last, seconds since the start: what all figures over time show.
+[[nodiscard]] Range epochs_extent(const ReportedDrive& drive);
 
 /// Poses, raw fixes with what became of them, truth; east and north on the grid.
 [[nodiscard]] Figure trajectory_figure(const ReportedDrive& drive);

@@ -48,10 +48,8 @@ PageTable truth_table(const ReportedDrive& drive) {
                         percent(i.cep50_percent), percent(i.cep95_percent)});
   table.notes = {
       "Max: largest error. Acc: length of the mean error. Prec: standard deviation about it. CEP50, CEP95: "
-      "radius "
-      "about the truth that holds 50 and 95 % of the epochs. Raw and fused at the same epochs: the stamps of "
-      "all "
-      "fixes with a truth."};
+      "radius about the truth that holds 50 and 95 % of the epochs. Raw and fused at the same epochs: the "
+      "stamps of all fixes with a truth."};
   return table;
 }
 
@@ -72,10 +70,8 @@ PageTable track_table(const TruthEvaluation& truth) {
 std::string describe_consistency(const ConsistencyStatistics& stated) {
   return fmt::format(
       "Mean NEES {:.2f}, honest between {:.2f} and {:.2f}; {:.0f} % of the epochs inside their 95 % region, "
-      "honest between "
-      "{:.0f} and {:.0f} %. The errors last, so {} epochs are worth {:.1f} independent ones. Median of "
-      "actual over stated "
-      "error: {:.2f}.",
+      "honest between {:.0f} and {:.0f} %. The errors last, so {} epochs are worth {:.1f} independent ones. "
+      "Median of actual over stated error: {:.2f}.",
       stated.nees_mean, stated.nees_mean_honest.low, stated.nees_mean_honest.high, 100 * stated.coverage,
       100 * stated.coverage_honest.low, 100 * stated.coverage_honest.high, stated.count,
       stated.effective_samples, stated.median_error_ratio);
@@ -177,8 +173,7 @@ void summarise(const ReportedDrive& drive, Page& page) {
   page.verdict = better >= 0 ? Verdict::better : Verdict::worse;
   page.summary += fmt::format(
       "Fused positions are {:.0f} % {} than raw GNSS: RMSE {:.3f} m against {:.3f} m, largest error {:.3f} m "
-      "against {:.3f} m, "
-      "at {} epochs.",
+      "against {:.3f} m, at {} epochs.",
       std::abs(better), better >= 0 ? "better" : "worse", truth.fused.position.rmse_m,
       truth.gnss.position.rmse_m, truth.fused.position.max_m, truth.gnss.position.max_m,
       truth.fused.position.count);
@@ -225,7 +220,8 @@ void add_states(const ReportedDrive& drive, Page& page) {
   const auto seconds = [&](Stamp stamp) { return drive.seconds(stamp); };
   Section section{"calibration", "Calibration", {}};
   section.blocks.emplace_back(state_table(*drive.states));
-  for (Figure& figure : state_figures(*drive.states, seconds)) section.blocks.emplace_back(std::move(figure));
+  for (Figure& figure : state_figures(*drive.states, seconds, epochs_extent(drive)))
+    section.blocks.emplace_back(std::move(figure));
   page.sections.push_back(std::move(section));
 }
 

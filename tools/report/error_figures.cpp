@@ -68,11 +68,9 @@ Figure time_figure(const ReportedDrive& drive, const std::string& id, const std:
                                     spans(drive, FixStatus::withheld, "fixes withheld", Look::withheld)}) {
     if (!series.low.empty()) figure.series.push_back(std::move(series));
   }
-  // All figures over time begin and end alike.
-  if (!drive.evaluation.epochs.empty()) {
-    figure.x.low = drive.seconds(drive.evaluation.epochs.front().stamp);
-    figure.x.high = std::max(drive.seconds(drive.evaluation.epochs.back().stamp), *figure.x.low + 1e-3);
-  }
+  const Range extent = epochs_extent(drive);
+  figure.x.low = extent.low;
+  figure.x.high = extent.high;
   return figure;
 }
 
@@ -134,7 +132,7 @@ Figure tile(const ReportedDrive& drive, Offset which, const std::string& name, L
   figure.title = "Error tile, " + name;
   figure.x = {.title = "east error", .unit = "m", .low = -half_m, .high = half_m};
   figure.y = {.title = "north error", .unit = "m", .low = -half_m, .high = half_m};
-  figure.square = true;
+  figure.motion = Motion::map;
   figure.width = 430;
   figure.height = 440;
   Series errors{.name = "error", .mark = Mark::points, .look = look};
@@ -156,27 +154,37 @@ Figure tile(const ReportedDrive& drive, Offset which, const std::string& name, L
   });
   figure.description = fmt::format(
       "{} epochs, {} of them outside the tile of {:g} x {:g} m; mean ({:.2f}, {:.2f}) m, |mean| = Acc = "
-      "{:.3f} m; "
-      "the ellipse has the errors' covariance about their mean, sigma east {:.2f} m, north {:.2f} m.",
+      "{:.3f} m; the ellipse has the errors' covariance about their mean, sigma east {:.2f} m, north {:.2f} "
+      "m.",
       all.size(), outside, 2 * half_m, 2 * half_m, mean.x(), mean.y(), mean.norm(),
       std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)));
   Series centre{.name = "mean", .mark = Mark::points, .look = Look::truth, .x = {mean.x()}, .y = {mean.y()}};
   Series origin{.name = "truth", .mark = Mark::points, .look = Look::reference, .x = {0}, .y = {0}};
   figure.series = {std::move(errors), ellipse(mean, covariance, Look::truth), std::move(centre),
                    std::move(origin)};
+  if (half_m > 1) {
+    figure.series.push_back({.name = "2 x 2 m",
+                             .mark = Mark::line,
+                             .look = Look::reference,
+                             .x = {-1, 1, 1, -1, -1},
+                             .y = {-1, -1, 1, 1, -1}});
+  }
   return figure;
 }
 
-/// The paper's metre to each side where it holds half of the fused errors, else the next round number that
-/// does.
+/// The paper's metre to each side where it holds half of the fused errors and the mean of both systems, else
+/// the next round number that does.
 double half_width(const ReportedDrive& drive) {
   std::vector<double> largest;
   for (const Eigen::Vector2d& offset : offsets(drive, &EpochResult::fused_offset_m))
     largest.push_back(offset.cwiseAbs().maxCoeff());
   std::sort(largest.begin(), largest.end());
-  const double middle = nearest_rank_quantile(largest, 0.5);
+  double needed = nearest_rank_quantile(largest, 0.5);
+  const TruthEvaluation& truth = *drive.evaluation.truth;
+  for (const SystemMetrics* system : {&truth.gnss, &truth.fused})
+    needed = std::max(needed, 1.05 * system->position.mean_m.cwiseAbs().maxCoeff());
   for (const double half : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0}) {
-    if (!(middle > half)) return half;
+    if (!(needed > half)) return half;
   }
   return 1000;
 }
@@ -195,6 +203,13 @@ Series distribution(const ReportedDrive& drive, Offset which, const std::string&
 
 }  // namespace
 
+Range epochs_extent(const ReportedDrive& drive) {
+  const auto& epochs = drive.evaluation.epochs;
+  if (epochs.empty()) return {0, 1};
+  const double first = drive.seconds(epochs.front().stamp);
+  return {first, std::max(drive.seconds(epochs.back().stamp), first + 1e-3)};
+}
+
 FigureRow error_tiles(const ReportedDrive& drive) {
   const double half_m = half_width(drive);
   return {{tile(drive, &EpochResult::gnss_offset_m, "raw GNSS", Look::raw, half_m),
@@ -205,8 +220,7 @@ std::vector<Figure> errors_over_time(const ReportedDrive& drive) {
   std::vector<Figure> figures;
   Figure position = time_figure(drive, "error-position", "Position error",
                                 "Distance from the truth at the stamps of the fixes. Drag to move, click and "
-                                "turn the wheel to zoom: all "
-                                "figures over time follow.",
+                                "turn the wheel to zoom: all figures over time follow.",
                                 {.title = "position error", .unit = "m", .low = 0});
   position.series.push_back(
       over_time(drive, "raw GNSS", Look::raw, [](const EpochResult& e) { return length(e.gnss_offset_m); }));
@@ -231,11 +245,11 @@ std::vector<Figure> errors_over_time(const ReportedDrive& drive) {
 }
 
 Figure fix_residuals_over_time(const ReportedDrive& drive) {
-  Figure figure = time_figure(drive, "fix-residuals", "Fix minus fused position",
-                              "How far each raw fix lies from the fused antenna's place, whether it was used "
-                              "or not. Not an error: where fixes "
-                              "pull the poses they look better than they are.",
-                              {.title = "fix - fused", .unit = "m", .low = 0});
+  Figure figure =
+      time_figure(drive, "fix-residuals", "Fix minus fused position",
+                  "How far each raw fix lies from the fused antenna's place, whether it was used or not. Not "
+                  "an error: where fixes pull the poses they look better than they are.",
+                  {.title = "fix - fused", .unit = "m", .low = 0});
   const std::vector<Fix>& fixes = drive.document.fixes;
   const Graph& graph = drive.document.graph;
   Series series{.name = "fix - fused", .mark = Mark::line, .look = Look::raw};
@@ -287,8 +301,7 @@ Figure autocorrelation_figure(const ReportedDrive& drive) {
   figure.title = "Autocorrelation of the error";
   figure.description =
       "Of the errors about their mean, both axes together. 1: the same error still, 0: forgotten. Errors "
-      "that last make "
-      "many fixes worth few, which white noise in a graph denies.";
+      "that last make many fixes worth few, which white noise in a graph denies.";
   figure.x = {.title = "lag", .unit = "s", .low = 0};
   figure.y = {.title = "autocorrelation", .unit = "", .high = 1};
   figure.motion = Motion::x;
@@ -339,8 +352,7 @@ std::vector<Figure> consistency_figures(const ReportedDrive& drive) {
   by_sigma.title = "Stated sigma against actual error";
   by_sigma.description =
       "Stated sigma (root mean square of both axes) of each fused position and its distance from the truth. "
-      "An honest "
-      "sigma leaves 39 % of the points below the first line and 95 % below the second.";
+      "An honest sigma leaves 39 % of the points below the first line and 95 % below the second.";
   by_sigma.x = {.title = "stated sigma", .unit = "m", .low = 0};
   by_sigma.y = {.title = "position error", .unit = "m", .low = 0};
   by_sigma.square = false;
@@ -360,8 +372,7 @@ std::vector<Figure> consistency_figures(const ReportedDrive& drive) {
   shares.title = "Coverage";
   shares.description =
       "Share of epochs whose truth lies in the region that is stated to hold a share p of them. Below the "
-      "diagonal the "
-      "stated covariances are too small, above it too large.";
+      "diagonal the stated covariances are too small, above it too large.";
   shares.x = {.title = "stated", .unit = "%", .low = 0, .high = 100};
   shares.y = {.title = "found", .unit = "%", .low = 0, .high = 100};
   shares.width = 430;
@@ -378,11 +389,10 @@ std::vector<Figure> consistency_figures(const ReportedDrive& drive) {
       std::move(found),
       {.name = "honest", .mark = Mark::line, .look = Look::reference, .x = {0, 100}, .y = {0, 100}}};
 
-  Figure nees = time_figure(
-      drive, "nees", "NEES over time",
-      "Squared error in units of the stated covariance: 2 on average and below 5.99 at 95 % of the "
-      "epochs where the covariance is honest.",
-      {.title = "NEES", .unit = "", .low = 0});
+  Figure nees = time_figure(drive, "nees", "NEES over time",
+                            "Squared error in units of the stated covariance: 2 on average and below 5.99 at "
+                            "95 % of the epochs where the covariance is honest.",
+                            {.title = "NEES", .unit = "", .low = 0});
   nees.series.push_back(over_time(drive, "fused", Look::fused, [](const EpochResult& e) {
     return std::isfinite(e.nees) ? std::optional(e.nees) : std::nullopt;
   }));

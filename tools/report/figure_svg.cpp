@@ -72,7 +72,9 @@ std::string figure_svg(const Figure& figure) {
 }
 
 std::string inline_svg(const Figure& figure) {
-  return opening(figure, "") + title_and_description(figure) + drawing(figure) + "</svg>\n";
+  // Beyond its own size a drawing would only be coarse.
+  const std::string attributes = fmt::format("style=\"max-width:{}px\" ", figure.width * 11 / 10);
+  return opening(figure, attributes) + title_and_description(figure) + drawing(figure) + "</svg>\n";
 }
 
 }  // namespace waymark

@@ -10,7 +10,6 @@
 namespace waymark {
 namespace {
 
-constexpr double kLetter = 6.6;
 constexpr double kSample = 34;  // px, with the space after it
 constexpr double kBetween = 18;
 constexpr double kRow = 20;
@@ -27,7 +26,7 @@ std::vector<Entry> entries(const Figure& figure) {
   int row = 0;
   for (std::size_t s = 0; s < figure.series.size(); ++s) {
     if (figure.series[s].name.empty()) continue;
-    const double width = kSample + kLetter * static_cast<double>(figure.series[s].name.size());
+    const double width = kSample + text_width(figure.series[s].name);
     if (x > 0 && x + width > figure.width - 20) {
       x = 0;
       ++row;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -26,6 +27,7 @@ double normal_quantile(double probability) {
 /// At most so many points of a type's quantiles, the outermost all.
 constexpr std::size_t kMostQuantiles = 400;
 constexpr std::size_t kOutermost = 50;
+constexpr std::size_t kMostListed = 5;  // edges of a type
 
 Series quantiles(const TypeResiduals& type, Look look) {
   std::vector<double> whitened;
@@ -131,17 +133,16 @@ Figure residual_figure(const GraphResiduals& residuals) {
   figure.id = "residuals";
   figure.title = "Whitened residuals";
   figure.description =
-      "Ordered whitened residuals of each edge type against the quantiles of a normal distribution of "
-      "variance 1. On the "
-      "line the noise is as stated; flatter: it was stated too large; steeper, or bent up at the ends: too "
-      "small, or "
-      "outliers.";
+      "Ordered whitened residuals of each type of measurement against the quantiles of a normal distribution "
+      "of variance 1. On the line the noise is as stated; flatter: it was stated too large; steeper, or bent "
+      "up at the ends: too small, or outliers.";
   figure.x = {.title = "normal quantile", .unit = "sigma"};
   figure.y = {.title = "whitened residual", .unit = "sigma"};
   figure.height = 360;
   std::size_t index = 0;
-  for (const TypeResiduals& type : residuals.types)
-    figure.series.push_back(quantiles(type, look_of_system(index++)));
+  for (const TypeResiduals& type : residuals.types) {
+    if (type.role == EdgeRole::measurement) figure.series.push_back(quantiles(type, look_of_system(index++)));
+  }
   figure.series.push_back(
       {.name = "as stated", .mark = Mark::line, .look = Look::reference, .x = {-4, 4}, .y = {-4, 4}});
   return figure;
@@ -171,7 +172,8 @@ PageTable largest_residuals(const GraphResiduals& residuals, const std::function
                   {}};
   for (const TypeResiduals& type : residuals.types) {
     if (type.role != EdgeRole::measurement) continue;
-    for (const LargeResidual& large : type.largest) {
+    const std::size_t most = std::min(type.largest.size(), kMostListed);
+    for (const LargeResidual& large : std::span(type.largest).first(most)) {
       std::string vertices;
       for (const VertexId id : large.vertices) vertices += (vertices.empty() ? "" : " ") + std::to_string(id);
       const EdgeResidual& edge = large.residual;
@@ -198,17 +200,18 @@ PageTable state_table(const std::vector<StateReport>& states) {
 }
 
 std::vector<Figure> state_figures(const std::vector<StateReport>& states,
-                                  const std::function<double(Stamp)>& seconds) {
+                                  const std::function<double(Stamp)>& seconds, Range time) {
   std::vector<Figure> figures;
   for (const StateReport& state : states) {
     if (state.stamps.size() < 2) continue;
     Figure figure;
     figure.id = fmt::format("state-{}", figures.size() + 1);
     figure.title = state.name + " over time";
-    figure.description = fmt::format("Estimated with the poses; {} values. Sigma of the last: {} {}.",
-                                     state.values, readable(state.sigma), state.unit);
-    figure.x = {.title = "time since start", .unit = "s"};
-    figure.y = {.title = state.name, .unit = state.unit};
+    const std::string unit = state.unit == "1" ? "" : state.unit;
+    figure.description = fmt::format("Estimated with the poses: {} values. Sigma of the last: {}{}{}.",
+                                     state.values, readable(state.sigma), unit.empty() ? "" : " ", unit);
+    figure.x = {.title = "time since start", .unit = "s", .low = time.low, .high = time.high};
+    figure.y = {.title = state.name, .unit = unit};
     figure.motion = Motion::x;
     figure.link = "time";
     figure.height = 220;
@@ -218,6 +221,15 @@ std::vector<Figure> state_figures(const std::vector<StateReport>& states,
       series.y.push_back(state.wandering[i]);
     }
     series.time = series.x;
+    if (std::isfinite(state.sigma)) {
+      figure.series.push_back({.name = "last, with its sigma",
+                               .mark = Mark::points,
+                               .look = Look::first,
+                               .x = {series.x.back()},
+                               .y = {state.last},
+                               .low = {state.last - state.sigma},
+                               .high = {state.last + state.sigma}});
+    }
     figure.series.push_back(std::move(series));
     figures.push_back(std::move(figure));
   }
@@ -237,8 +249,7 @@ FigureRow sparsity_figures(const Sparsity& sparsity) {
 std::string describe_sparsity(const Sparsity& sparsity) {
   return fmt::format(
       "{} unknowns in {} block columns. H has {} blocks with {} numbers in its lower triangle, the factor {} "
-      "blocks with {} "
-      "numbers: {:.4g} times as many. Ordering: {}.",
+      "blocks with {} numbers: {:.4g} times as many. Ordering: {}.",
       sparsity.dimension, sparsity.columns, sparsity.matrix.blocks, sparsity.matrix.scalars,
       sparsity.factor.blocks, sparsity.factor.scalars, sparsity.fill_ratio(), sparsity.ordering);
 }

@@ -10,6 +10,7 @@
 #include <waymark/tools/evaluation/residuals.hpp>
 #include <waymark/tools/evaluation/sparsity.hpp>
 #include <waymark/tools/report/page.hpp>
+#include <waymark/tools/report/view.hpp>
 
 namespace waymark {
 
@@ -25,9 +26,9 @@ namespace waymark {
                                           const std::function<double(Stamp)>& seconds);
 
 [[nodiscard]] PageTable state_table(const std::vector<StateReport>& states);
-/// States that wander, each over time.
+/// States that wander, each over time; `time` is the extent of the drive, in seconds.
 [[nodiscard]] std::vector<Figure> state_figures(const std::vector<StateReport>& states,
-                                                const std::function<double(Stamp)>& seconds);
+                                                const std::function<double(Stamp)>& seconds, Range time);
 
 /// H in the order of the graph, H and its factor in the order of elimination.
 [[nodiscard]] FigureRow sparsity_figures(const Sparsity& sparsity);

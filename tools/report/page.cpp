@@ -62,8 +62,8 @@ std::string html(const PageTable& table) {
 
 std::string html(const Figure& figure) {
   return fmt::format(
-      "<figure class=\"figure\" id=\"{}\">\n{}<figcaption><b>{}.</b> {}</figcaption></figure>\n", figure.id,
-      inline_svg(figure), escaped(figure.title), escaped(figure.description));
+      "<figure class=\"figure\" id=\"{}\">\n{}<figcaption><span><b>{}.</b> {}</span></figcaption></figure>\n",
+      figure.id, inline_svg(figure), escaped(figure.title), escaped(figure.description));
 }
 
 std::string html(const PageBlock& block) {

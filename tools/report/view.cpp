@@ -12,9 +12,9 @@ namespace {
 constexpr double kMarginTop = 10;
 constexpr double kMarginRight = 18;
 constexpr double kMarginBottom = 44;
-constexpr double kMarginLeft = 64;
+constexpr double kLeastMarginLeft = 56;
+constexpr double kMostMarginLeft = 300;
 constexpr double kLegendRow = 20;
-constexpr double kLetter = 6.4;  // px, mean width at the size of labels
 
 /// The extent of what is put in.
 class Extent {
@@ -99,18 +99,25 @@ double position(Range range, bool logarithmic, double value) {
   return std::log(value / range.low) / std::log(range.high / range.low);
 }
 
-double left_margin(const Figure& figure) {
-  std::size_t longest = 0;
-  for (const std::string& name : figure.y.categories) longest = std::max(longest, name.size());
-  return longest == 0 ? kMarginLeft : std::min(24 + kLetter * static_cast<double>(longest), 300.0);
+/// Room for the names of rows, or for the axis' title and the labels of its ticks.
+double left_margin(const Figure& figure, Range y, double height) {
+  double longest = 0;
+  for (const std::string& name : figure.y.categories) longest = std::max(longest, text_width(name));
+  if (longest > 0) return std::min(24 + longest, kMostMarginLeft);
+  for (const Tick& tick : ticks(y, figure.y.logarithmic, ticks_in_height(height)))
+    longest = std::max(longest, text_width(tick.label));
+  return std::clamp(34 + longest, kLeastMarginLeft, kMostMarginLeft);
 }
 
 /// "0.25" has as many digits as the step between ticks needs.
 std::string tick_label(double value, double step) {
   const double size = std::max(std::abs(value), step);
-  if (size >= 1e6 || step < 1e-5) return fmt::format("{:.4g}", std::abs(value) < step * 1e-6 ? 0.0 : value);
-  const int digits = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   const double rounded = std::abs(value) < step * 1e-6 ? 0.0 : value;
+  if (size >= 1e6 || step < 1e-5) {
+    const int significant = static_cast<int>(std::ceil(std::log10(size / step) - 1e-9)) + 1;
+    return fmt::format("{:.{}g}", rounded, std::clamp(significant, 1, 15));
+  }
+  const int digits = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   return fmt::format("{:.{}f}", rounded, digits);
 }
 
@@ -132,6 +139,23 @@ std::vector<Tick> logarithmic_ticks(Range range) {
 
 }  // namespace
 
+double text_width(std::string_view text) {
+  double width = 0;
+  for (const char c : text) {
+    const bool wide = (c >= 'A' && c <= 'Z') || c == '_' || c == 'm' || c == 'w' || c == '%';
+    width += wide ? 8.6 : 6.5;
+  }
+  return width;
+}
+
+int ticks_in_height(double height) {
+  return static_cast<int>(height / 45) + 1;
+}
+
+int ticks_in_width(double width) {
+  return static_cast<int>(width / 90) + 1;
+}
+
 double View::px_x(double value) const {
   return box.left + box.width * position(x, logarithmic_x, value);
 }
@@ -151,12 +175,12 @@ View full_view(const Figure& figure, int rows_of_legend) {
   view.logarithmic_x = figure.x.logarithmic;
   view.logarithmic_y = figure.y.logarithmic;
   view.downwards = figure.downwards || !figure.y.categories.empty();
-  const double left = left_margin(figure);
-  const double top = kMarginTop + kLegendRow * rows_of_legend;
-  view.box = {left, top, std::max(figure.width - left - kMarginRight, 10.0),
-              std::max(figure.height - top - kMarginBottom, 10.0)};
   view.x = range_x(figure);
   view.y = range_y(figure);
+  const double top = kMarginTop + kLegendRow * rows_of_legend;
+  const double height = std::max(figure.height - top - kMarginBottom, 10.0);
+  const double left = left_margin(figure, view.y, height);
+  view.box = {left, top, std::max(figure.width - left - kMarginRight, 10.0), height};
   if (figure.square || figure.motion == Motion::map) make_scales_equal(view);
   return view;
 }

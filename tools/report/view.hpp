@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <waymark/tools/report/figure.hpp>
@@ -43,6 +44,13 @@ struct Tick {
   double value = 0;
   std::string label;
 };
+
+/// How many ticks an axis of so many px has room for.
+[[nodiscard]] int ticks_in_width(double width);
+[[nodiscard]] int ticks_in_height(double height);
+
+/// About what a text takes at the size of labels, px: fonts differ.
+[[nodiscard]] double text_width(std::string_view text);
 
 /// Round numbers (1, 2 or 5 times a power of ten), about `count` of them; on a logarithmic axis the powers of
 /// ten, with 2 and 5 between where those are few.

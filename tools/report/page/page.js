@@ -108,7 +108,10 @@
     const digits = Math.min(Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), 12);
     for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9 && result.length < 100; k += 1) {
       const value = Math.abs(k * step) < step * 1e-6 ? 0 : k * step;
-      result.push({ value, label: Math.abs(value) >= 1e6 ? String(Number(value.toPrecision(4))) : value.toFixed(digits) });
+      const size = Math.max(Math.abs(value), step);
+      const significant = Math.min(Math.max(Math.ceil(Math.log10(size / step) - 1e-9) + 1, 1), 15);
+      const label = size >= 1e6 || step < 1e-5 ? String(Number(value.toPrecision(significant))) : value.toFixed(digits);
+      result.push({ value, label });
     }
     return result;
   }
