@@ -591,7 +591,7 @@
       });
     }
     addTools(moves) {
-      const tools = document.createElement("span");
+      const tools = document.createElement("div");
       tools.className = "tools";
       const button = (text, title, action) => {
         const made = document.createElement("button");

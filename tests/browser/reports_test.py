@@ -1,0 +1,333 @@
+"""The program's pages in a real browser (headless Chromium): no errors, and what moves, moves rightly.
+
+Usage: reports_test.py PROGRAM SOURCE_FOLDER   (ctest calls it)
+"""
+
+import csv
+import json
+import math
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
+    from selenium.webdriver.chrome.service import Service
+except ImportError:
+    print("SKIPPED: python3-selenium is not installed")
+    sys.exit(0)
+
+CHROMIUM = pathlib.Path("/usr/bin/chromium")
+CHROMEDRIVER = pathlib.Path("/usr/bin/chromedriver")
+POSES_OF_LONG_DRIVE = 104949
+
+
+def start_browser():
+    options = webdriver.ChromeOptions()
+    options.binary_location = str(CHROMIUM)
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                     "--window-size=1100,1000"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(str(CHROMEDRIVER)), options=options)
+
+
+def run(*arguments):
+    done = subprocess.run([PROGRAM, *map(str, arguments), "--quiet"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"waymark {arguments}: {done.returncode}: {done.stderr}")
+
+
+class Pages(unittest.TestCase):
+    """What the program writes, opened once for all cases."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="waymark_pages_"))
+        bundled = SOURCE / "examples/berlin_potsdamer_platz/drive.yaml"
+        run("run", bundled, "-o", cls.folder / "gated", "-m", "g2")
+        run("run", bundled, "-o", cls.folder / "all", "-m", "g1,correlated")
+        run("simulate", "--preset", "paper-8", "-o", cls.folder / "simulated")
+        run("run", cls.folder / "simulated/drive.yaml", "-o", cls.folder / "long", "-m", "g1")
+        cls.pages = sorted(cls.folder.rglob("*.html"))
+        cls.browser = start_browser()
+        cls.browser.set_script_timeout(60)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()
+
+    # What the cases are made of.
+
+    def open(self, page):
+        self.browser.get((self.folder / page).as_uri())
+        self.assertEqual(self.browser.get_log("browser"), [])
+
+    def figure(self, name):
+        element = self.browser.find_element(By.ID, name).find_element(By.TAG_NAME, "svg")
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
+        return element
+
+    def settle(self):
+        """Two pictures later all drawing is done."""
+        self.browser.execute_async_script(
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done));")
+
+    def view(self, name):
+        """Low and high of x and y."""
+        self.settle()
+        return [float(v) for v in self.browser.find_element(By.ID, name).get_attribute("data-view").split()]
+
+    def data(self, name):
+        text = self.browser.execute_script("return document.getElementById('page-data').textContent")
+        return json.loads(text)["figures"][name]
+
+    def scale(self, name):
+        """CSS px per px of the drawing."""
+        return self.browser.execute_script(
+            "const s = arguments[0]; return s.getBoundingClientRect().width / s.viewBox.baseVal.width", self.figure(name))
+
+    def move_to(self, name, x, y):
+        """The pointer to a place of the drawing, px."""
+        svg = self.figure(name)
+        size, scale = svg.size, self.scale(name)
+        return ActionChains(self.browser, duration=0).move_to_element_with_offset(
+            svg, round(x * scale - size["width"] / 2), round(y * scale - size["height"] / 2))
+
+    def wheel(self, name, x, y, turn):
+        svg = self.figure(name)
+        size, scale = svg.size, self.scale(name)
+        origin = ScrollOrigin.from_element(svg, round(x * scale - size["width"] / 2),
+                                           round(y * scale - size["height"] / 2))
+        ActionChains(self.browser).scroll_from_origin(origin, 0, turn).perform()
+        self.settle()
+
+    def middle(self, name):
+        left, top, width, height = self.data(name)["box"]
+        return left + width / 2, top + height / 2
+
+    def place(self, name, x, y):
+        """Of a point of the data in the drawing, for linear axes."""
+        left, top, width, height = self.data(name)["box"]
+        low_x, high_x, low_y, high_y = self.view(name)
+        return (left + width * (x - low_x) / (high_x - low_x), top + height * (1 - (y - low_y) / (high_y - low_y)))
+
+    def rows(self, page, figure):
+        path = (self.folder / page).parent / "figures" / f"{pathlib.Path(page).stem}-{figure}.csv"
+        with path.open(encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def tip(self, name):
+        return self.browser.find_element(By.ID, name).find_element(By.CLASS_NAME, "tip").text
+
+    def wake(self, name):
+        """Draws once by the script, so that data-view tells the view at rest."""
+        self.figure(name).send_keys("0")
+        return self.view(name)
+
+    # The cases.
+
+    def test_every_page_loads_alone_and_silently(self):
+        self.assertGreaterEqual(len(self.pages), 4)
+        for page in self.pages:
+            with self.subTest(page=page.relative_to(self.folder)):
+                self.browser.get(page.as_uri())
+                self.assertEqual(self.browser.get_log("browser"), [])
+                self.assertEqual(
+                    self.browser.execute_script("return performance.getEntriesByType('resource').length"), 0)
+                text = page.read_text(encoding="utf-8")
+                self.assertEqual(set(re.findall(r"https?://[^\s\"']+", text)), {"http://www.w3.org/2000/svg"})
+
+    def test_every_figure_has_a_title_a_description_and_files(self):
+        for page in self.pages:
+            self.browser.get(page.as_uri())
+            ids = [e.get_attribute("id") for e in self.browser.find_elements(By.CSS_SELECTOR, "[id]")]
+            self.assertEqual(len(ids), len(set(ids)), page)
+            for figure in self.browser.find_elements(By.CSS_SELECTOR, "figure.figure"):
+                svg = figure.find_element(By.TAG_NAME, "svg")
+                self.assertEqual(svg.get_attribute("role"), "img")
+                for part in ("title", "desc"):
+                    text = self.browser.execute_script(
+                        "return arguments[0].querySelector(arguments[1]).textContent", svg, part)
+                    self.assertGreater(len(text), 3, figure.get_attribute("id"))
+                stem = page.parent / "figures" / f"{page.stem}-{figure.get_attribute('id')}"
+                for ending in (".svg", ".csv"):
+                    self.assertTrue(stem.with_name(stem.name + ending).is_file(), stem)
+
+    def test_pointing_at_a_rejected_fix_tells_why(self):
+        self.open("gated/report.html")
+        self.wake("trajectory")
+        fix = next(r for r in self.rows("gated/report.html", "trajectory") if "rejected, angle" in r["note"])
+        self.move_to("trajectory", *self.place("trajectory", float(fix["east [m]"]), float(fix["north [m]"]))).perform()
+        self.assertIn("rejected, angle", self.tip("trajectory"))
+        self.assertIn("deg", self.tip("trajectory"))
+
+    def test_the_cursor_is_linked_by_time(self):
+        self.open("gated/report.html")
+        self.wake("error-position")
+        self.wake("trajectory")
+        fused = [r for r in self.rows("gated/report.html", "trajectory") if r["series"] == "fused"]
+        x, y = self.middle("error-position")
+        self.move_to("error-position", x, y).perform()
+        low, high = self.view("error-position")[:2]
+        left, _, width, _ = self.data("error-position")["box"]
+        time = low + (high - low) * (x - left) / width
+        nearest = min(fused, key=lambda r: abs(float(r["time [s]"]) - time))
+        expected = self.place("trajectory", float(nearest["east [m]"]), float(nearest["north [m]"]))
+        ring = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .cursor circle.look-fused")
+        self.assertAlmostEqual(float(ring.get_attribute("cx")), expected[0], delta=1.5)
+        self.assertAlmostEqual(float(ring.get_attribute("cy")), expected[1], delta=1.5)
+        for other in ("error-along", "speed"):
+            line = self.browser.find_element(By.CSS_SELECTOR, f"#{other} .cursor path").get_attribute("d")
+            other_left, _, other_width, _ = self.data(other)["box"]
+            at = low + (high - low) * (float(re.match(r"M([\d.]+)", line)[1]) - other_left) / other_width
+            self.assertAlmostEqual(at, time, delta=1.5 * (high - low) / width)
+
+    def test_the_wheel_zooms_about_the_pointer_once_the_figure_was_clicked(self):
+        self.open("gated/report.html")
+        before = self.wake("trajectory")
+        x, y = self.middle("trajectory")
+        drawn = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .marks .line.look-fused")
+        path = drawn.get_attribute("d")
+        self.move_to("trajectory", x + 100, y).click().perform()
+        self.wheel("trajectory", x + 100, y, -400)
+        after = self.view("trajectory")
+        ratio = (after[1] - after[0]) / (before[1] - before[0])
+        self.assertLess(ratio, 1.0015 ** -390)
+        self.assertAlmostEqual((after[3] - after[2]) / (before[3] - before[2]), ratio, places=6)
+        self.assertNotEqual(drawn.get_attribute("d"), path)
+
+    def test_a_page_scrolls_over_a_figure_that_was_not_clicked(self):
+        self.open("gated/report.html")
+        before = self.wake("trajectory")
+        self.browser.execute_script("document.activeElement.blur()")
+        self.wheel("trajectory", *self.middle("trajectory"), -400)
+        self.assertEqual(self.view("trajectory"), before)
+
+    def test_the_scale_bar_is_as_long_as_it_says(self):
+        self.open("gated/report.html")
+        self.wake("trajectory")
+        for keys in ("", "++++", "---------"):
+            self.figure("trajectory").send_keys(keys)
+            low, high = self.view("trajectory")[:2]
+            bar = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .scale-bar").get_attribute("d")
+            text = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .scale-text").text
+            metres = float(text.split()[0]) * (1000 if text.endswith("km") else 1)
+            pixels = float(re.search(r"h([\d.]+)", bar)[1])
+            width = self.data("trajectory")["box"][2]
+            self.assertAlmostEqual(metres, pixels * (high - low) / width, delta=0.01 * metres)
+
+    def test_dragging_moves_by_what_was_dragged_and_takes_linked_figures_along(self):
+        self.open("gated/report.html")
+        low, high = self.wake("error-position")[:2]
+        x, y = self.middle("error-position")
+        self.move_to("error-position", x, y).click_and_hold().move_by_offset(-120, 0).release().perform()
+        moved = self.view("error-position")[0] - low
+        width = self.data("error-position")["box"][2]
+        self.assertAlmostEqual(moved, 120 / self.scale("error-position") * (high - low) / width,
+                               delta=2 * (high - low) / width)
+        for other in ("error-along", "error-across", "speed"):
+            self.assertAlmostEqual(self.view(other)[0] - low, moved, places=5)
+        x, y = self.middle("speed")
+        self.move_to("speed", x, y).double_click().perform()
+        self.assertAlmostEqual(self.view("error-position")[0], low, places=6)
+
+    def test_the_legend_switches_series_by_mouse_and_by_key(self):
+        self.open("gated/report.html")
+        entry = self.figure("error-position").find_element(By.CSS_SELECTOR, ".entry[data-series]")
+        index = entry.get_attribute("data-series")
+        mark = self.browser.find_element(By.CSS_SELECTOR, f"#error-position .marks [data-series='{index}']")
+        entry.click()
+        self.settle()
+        self.assertFalse(mark.is_displayed())
+        self.assertEqual(entry.get_attribute("aria-pressed"), "false")
+        entry.send_keys(Keys.ENTER)
+        self.settle()
+        self.assertNotIn("off", mark.get_attribute("class").split())
+        self.assertEqual(entry.get_attribute("aria-pressed"), "true")
+
+    def test_arrow_keys_move_the_cursor_epoch_by_epoch(self):
+        self.open("gated/report.html")
+        svg = self.figure("error-position")
+        svg.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+        times = [float(r["time [s]"]) for r in self.rows("gated/report.html", "error-position")
+                 if r["series"] == "fused"]
+        told = float(self.tip("error-position").split()[0])
+        self.assertTrue(any(abs(told - t) < 0.05 for t in times[1:5]), (told, times[:5]))
+
+    def test_of_a_long_drive_nothing_is_lost_in_a_small_file(self):
+        page = self.folder / "long/report.html"
+        self.assertLess(page.stat().st_size, 5_000_000)
+        fused = [r for r in self.rows("long/report.html", "trajectory") if r["series"] == "fused"]
+        self.assertGreaterEqual(len(fused), POSES_OF_LONG_DRIVE)  # and nodes for the fixes between
+        self.open("long/report.html")
+        self.wake("trajectory")
+        self.figure("trajectory").click()
+        # Somewhere where the vehicle moves, the whole of five seconds must be drawn pose by pose.
+        drive = [(float(r["east [m]"]), float(r["north [m]"])) for r in fused]
+        start = next(i for i in range(50000, len(drive) - 125)
+                     if math.hypot(drive[i + 125][0] - drive[i][0], drive[i + 125][1] - drive[i][1]) > 50)
+        piece = drive[start:start + 125]
+        for _ in range(40):
+            low_x, high_x, low_y, high_y = self.view("trajectory")
+            if high_x - low_x < 60:
+                break
+            x, y = self.place("trajectory", *piece[62])
+            self.wheel("trajectory", x, y, -500)
+        path = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .marks .line.look-fused").get_attribute("d")
+        drawn = [tuple(map(float, pair.split())) for pair in re.findall(r"[ML]([-\d. ]+)", path)]
+        view = self.view("trajectory")
+        inside = [p for p in piece if view[0] < p[0] < view[1] and view[2] < p[1] < view[3]]
+        self.assertGreater(len(inside), 20)
+        for point in inside:
+            x, y = self.place("trajectory", *point)
+            self.assertTrue(any(abs(x - dx) < 0.5 and abs(y - dy) < 0.5 for dx, dy in drawn), point)
+
+    def test_print_leaves_out_what_paper_cannot_do(self):
+        self.open("gated/report.html")
+        self.assertTrue(self.browser.find_element(By.CLASS_NAME, "tools").is_displayed())
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        try:
+            self.assertFalse(self.browser.find_element(By.CLASS_NAME, "tools").is_displayed())
+            self.assertFalse(self.browser.find_element(By.TAG_NAME, "nav").is_displayed())
+        finally:
+            self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+    def test_without_script_the_page_is_complete(self):
+        self.browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+        try:
+            self.browser.get((self.folder / "gated/report.html").as_uri())
+            for figure in self.browser.find_elements(By.CSS_SELECTOR, "figure.figure"):
+                drawn = figure.find_elements(By.CSS_SELECTOR, ".marks path")
+                self.assertTrue(any(path.get_attribute("d") for path in drawn), figure.get_attribute("id"))
+        finally:
+            self.browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
+
+    def test_words_are_apart_from_their_ground(self):
+        """Contrast of text on white: at least 4.5 to 1 (WCAG 2.1, 1.4.3)."""
+        self.open("gated/report.html")
+        for selector in ("figcaption", ".tick-x", "footer", "td", ".note", "nav a"):
+            element = self.browser.find_element(By.CSS_SELECTOR, selector)
+            colour = self.browser.execute_script(
+                "const s = getComputedStyle(arguments[0]);"
+                "return arguments[0] instanceof SVGElement ? s.fill : s.color", element)
+            parts = [int(v) / 255 for v in re.findall(r"\d+", colour)[:3]]
+            linear = [v / 12.92 if v <= 0.03928 else ((v + 0.055) / 1.055) ** 2.4 for v in parts]
+            luminance = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+            self.assertGreaterEqual(1.05 / (luminance + 0.05), 4.5, selector)
+
+
+if __name__ == "__main__":
+    if not CHROMIUM.exists() or not CHROMEDRIVER.exists():
+        print("SKIPPED: chromium and chromium-driver are not installed")
+        sys.exit(0)
+    PROGRAM = sys.argv[1]
+    SOURCE = pathlib.Path(sys.argv[2])
+    unittest.main(argv=sys.argv[:1], verbosity=2)
