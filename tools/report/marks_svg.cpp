@@ -113,6 +113,7 @@ std::string cells(const Series& series, std::size_t index, const View& view) {
   const double side_x = view.px_x(view.x.low + 1) - view.box.left;
   const double side_y = std::abs(view.px_y(view.y.low + 1) - view.px_y(view.y.low));
   for (std::size_t i = 0; i < series.x.size(); ++i) {
+    if (!view.shows(series.x[i], series.y[i])) continue;
     const int shade = static_cast<int>(std::clamp(series.weight[i], 0.0, 0.999) * kShades);
     of_shade[static_cast<std::size_t>(shade)] +=
         fmt::format("M{:.2f} {:.2f}h{:.2f}v{:.2f}h-{:.2f}z", view.px_x(series.x[i]), view.px_y(series.y[i]),

@@ -9,6 +9,8 @@
 namespace waymark {
 namespace {
 
+constexpr double kLargest = 1e150;    // of which a difference is finite too
+constexpr double kSmallest = 1e-150;  // on a logarithmic axis
 constexpr double kMarginTop = 10;
 constexpr double kMarginRight = 18;
 constexpr double kMarginBottom = 44;
@@ -22,7 +24,7 @@ class Extent {
   explicit Extent(bool logarithmic) : logarithmic_(logarithmic) {}
 
   void add(double value) {
-    if (!std::isfinite(value) || (logarithmic_ && value <= 0)) return;
+    if (!(std::abs(value) <= kLargest) || (logarithmic_ && value < kSmallest)) return;
     low_ = std::min(low_, value);
     high_ = std::max(high_, value);
   }
@@ -126,7 +128,7 @@ std::vector<Tick> logarithmic_ticks(Range range) {
   const int first = static_cast<int>(std::floor(std::log10(range.low)));
   const int last = static_cast<int>(std::ceil(std::log10(range.high)));
   const int every = std::max(1, (last - first) / 8);
-  const bool between = last - first <= 2;
+  const bool between = range.high < 100 * range.low;
   for (int power = first; power <= last; power += every) {
     for (const int factor : {1, 2, 5}) {
       if (factor > 1 && !between) continue;
@@ -166,8 +168,8 @@ double View::px_y(double value) const {
 }
 
 bool View::shows(double x_value, double y_value) const {
-  return std::isfinite(x_value) && std::isfinite(y_value) && (!logarithmic_x || x_value > 0) &&
-         (!logarithmic_y || y_value > 0);
+  return std::abs(x_value) <= kLargest && std::abs(y_value) <= kLargest &&
+         (!logarithmic_x || x_value >= kSmallest) && (!logarithmic_y || y_value >= kSmallest);
 }
 
 View full_view(const Figure& figure, int rows_of_legend) {

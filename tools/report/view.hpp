@@ -33,7 +33,7 @@ struct View {
 
   [[nodiscard]] double px_x(double value) const;
   [[nodiscard]] double px_y(double value) const;
-  /// Whether a point has a place: finite, and positive on a logarithmic axis.
+  /// Whether a point has a place: at most 1e150, and at least 1e-150 on a logarithmic axis.
   [[nodiscard]] bool shows(double x_value, double y_value) const;
 };
 

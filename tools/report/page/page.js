@@ -95,7 +95,7 @@
       const last = Math.ceil(Math.log10(high));
       const every = Math.max(1, Math.floor((last - first) / 8));
       for (let power = first; power <= last; power += every) {
-        for (const factor of last - first <= 2 ? [1, 2, 5] : [1]) {
+        for (const factor of high < 100 * low ? [1, 2, 5] : [1]) {
           const value = factor * 10 ** power;
           if (value >= low && value <= high) result.push({ value, label: String(Number(value.toPrecision(4))) });
         }

@@ -1,0 +1,42 @@
+/// Looks at XML texts with expat, which nobody here wrote.
+#pragma once
+
+#include <expat.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What is not well-formed; empty where all is.
+inline std::string xml_error(const std::string& text) {
+  XML_Parser parser = XML_ParserCreate(nullptr);
+  std::string error;
+  if (XML_Parse(parser, text.data(), static_cast<int>(text.size()), 1) != XML_STATUS_OK) {
+    error = XML_ErrorString(XML_GetErrorCode(parser));
+    error += " in line ";
+    error += std::to_string(XML_GetCurrentLineNumber(parser));
+  }
+  XML_ParserFree(parser);
+  return error;
+}
+
+/// An attribute of every element of a name.
+inline std::vector<std::string> xml_attributes(const std::string& text, const std::string& element,
+                                               const std::string& attribute) {
+  struct Search {
+    const std::string& element;
+    const std::string& attribute;
+    std::vector<std::string> found;
+  } search{element, attribute, {}};
+  XML_Parser parser = XML_ParserCreate(nullptr);
+  XML_SetUserData(parser, &search);
+  XML_SetStartElementHandler(parser, [](void* user, const XML_Char* name, const XML_Char** attributes) {
+    auto& wanted = *static_cast<Search*>(user);
+    if (wanted.element != name) return;
+    for (; *attributes != nullptr; attributes += 2) {
+      if (wanted.attribute == attributes[0]) wanted.found.emplace_back(attributes[1]);
+    }
+  });
+  (void)XML_Parse(parser, text.data(), static_cast<int>(text.size()), 1);
+  XML_ParserFree(parser);
+  return search.found;
+}
