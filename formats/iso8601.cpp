@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include <fmt/format.h>
+
 #include <waymark/formats/stamp_text.hpp>
 
 namespace waymark {
@@ -96,6 +98,22 @@ std::optional<Stamp> stamp_from_iso8601(std::string_view text) {
   const std::int64_t days = std::chrono::sys_days{date}.time_since_epoch().count();
   const std::int64_t seconds = 86400 * days + 3600 * hour + 60 * minute + second - zone;
   return Stamp{seconds * kNanosecondsPerSecond + nanoseconds};
+}
+
+std::string iso8601_from_stamp(Stamp utc) {
+  using std::chrono::days;
+  const std::chrono::sys_time<std::chrono::nanoseconds> instant{std::chrono::nanoseconds(utc.nanoseconds)};
+  const auto day = std::chrono::floor<days>(instant);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss time(instant - day);
+  std::string text = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", static_cast<int>(date.year()),
+                                 static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                                 time.hours().count(), time.minutes().count(), time.seconds().count());
+  if (const auto fraction = time.subseconds().count(); fraction != 0) {
+    text += fmt::format(".{:09}", fraction);
+    text.erase(text.find_last_not_of('0') + 1);
+  }
+  return text + 'Z';
 }
 
 }  // namespace waymark

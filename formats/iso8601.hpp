@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <waymark/core/stamp.hpp>
@@ -14,5 +15,9 @@ namespace waymark {
 /// @return POSIX nanoseconds (TimeScale::utc); empty where the text is no such date or does not exist (June
 /// 31).
 [[nodiscard]] std::optional<Stamp> stamp_from_iso8601(std::string_view text);
+
+/// Inverse of stamp_from_iso8601: "2023-06-28T14:52:12.25Z", with as many decimals as it needs, none for
+/// whole seconds. @param utc  POSIX nanoseconds
+[[nodiscard]] std::string iso8601_from_stamp(Stamp utc);
 
 }  // namespace waymark

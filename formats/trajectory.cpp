@@ -2,10 +2,8 @@
 
 #include <charconv>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/stamp_text.hpp>
@@ -14,12 +12,6 @@
 namespace waymark {
 namespace {
 
-[[noreturn]] void throw_bad_point(std::string_view format, std::string_view what, std::size_t index,
-                                  Stamp stamp, std::string_view problem) {
-  throw OutputError(
-      fmt::format("{}: {} {} at {} s: {}", format, what, index + 1, decimal_seconds(stamp), problem));
-}
-
 void append_number(std::string& out, double value) {
   char buffer[32];
   const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
@@ -27,7 +19,9 @@ void append_number(std::string& out, double value) {
 }
 
 void check_finite(std::string_view format, std::size_t index, const TrajectoryPoint& point) {
-  if (!point.pose.allFinite()) throw_bad_point(format, "pose", index, point.stamp, "not finite");
+  if (point.pose.allFinite()) return;
+  throw OutputError(
+      fmt::format("{}: pose {} at {} s: not finite", format, index + 1, decimal_seconds(point.stamp)));
 }
 
 /// A field as RFC 4180 wants it: quoted where it holds a separator, a quote or a line end.
@@ -66,56 +60,6 @@ void append_csv_point(std::string& out, const TrajectoryPoint& point) {
   out += '\n';
 }
 
-/// A JSON string with its quotes; bytes that are no UTF-8 are replaced, a reason must not make the file
-/// unreadable.
-std::string json_text(std::string_view text) {
-  return nlohmann::json(std::string(text)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-void append_position(std::string& out, double longitude_deg, double latitude_deg) {
-  out += '[';
-  append_number(out, longitude_deg);
-  out += ',';
-  append_number(out, latitude_deg);
-  out += ']';
-}
-
-void append_line_string(std::string& out, std::span<const TrajectoryPoint> points, std::string_view name) {
-  out += fmt::format(
-      R"({{"type":"Feature","properties":{{"name":{},"kind":"fused","first_stamp_ns":{},"last_stamp_ns":{}}},)",
-      json_text(name), points.front().stamp.nanoseconds, points.back().stamp.nanoseconds);
-  out += R"("geometry":{"type":"LineString","coordinates":[)";
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const TrajectoryPoint& point = points[i];
-    if (!point.latitude_deg || !point.longitude_deg)
-      throw_bad_point("GeoJSON", "pose", i, point.stamp, "no latitude and longitude");
-    if (!std::isfinite(*point.latitude_deg) || !std::isfinite(*point.longitude_deg))
-      throw_bad_point("GeoJSON", "pose", i, point.stamp, "latitude or longitude not finite");
-    if (i > 0) out += ',';
-    append_position(out, *point.longitude_deg, *point.latitude_deg);
-  }
-  out += "]}}";
-}
-
-std::string_view marker_color(std::string_view status) {
-  if (status == to_string(FixStatus::rejected)) return "#d62728";
-  if (status == to_string(FixStatus::withheld)) return "#1f77b4";
-  return {};
-}
-
-void append_fix(std::string& out, std::size_t index, const FixPoint& fix) {
-  if (!std::isfinite(fix.latitude_deg) || !std::isfinite(fix.longitude_deg))
-    throw_bad_point("GeoJSON", "fix", index, fix.stamp, "latitude or longitude not finite");
-  out +=
-      fmt::format(R"({{"type":"Feature","properties":{{"kind":"fix","stamp_ns":{},"status":{},"reason":{})",
-                  fix.stamp.nanoseconds, json_text(fix.status), json_text(fix.reason));
-  if (const std::string_view color = marker_color(fix.status); !color.empty())
-    out += fmt::format(R"(,"marker-color":"{}")", color);
-  out += R"(},"geometry":{"type":"Point","coordinates":)";
-  append_position(out, fix.longitude_deg, fix.latitude_deg);
-  out += "}}";
-}
-
 }  // namespace
 
 std::string trajectory_csv(std::span<const TrajectoryPoint> points) {
@@ -141,23 +85,6 @@ std::string trajectory_tum(std::span<const TrajectoryPoint> points) {
     }
     out.finish();
   });
-}
-
-std::string trajectory_geojson(std::span<const TrajectoryPoint> points, std::span<const FixPoint> fixes,
-                               std::string_view name) {
-  std::string out = "{\"type\":\"FeatureCollection\",\"features\":[\n";
-  bool first = true;
-  if (points.size() > 1) {
-    append_line_string(out, points, name);
-    first = false;
-  }
-  for (std::size_t i = 0; i < fixes.size(); ++i) {
-    if (!first) out += ",\n";
-    first = false;
-    append_fix(out, i, fixes[i]);
-  }
-  out += "\n]}\n";
-  return out;
 }
 
 }  // namespace waymark

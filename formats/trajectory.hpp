@@ -1,9 +1,8 @@
-/// Trajectories out, as text: CSV for tables, TUM for evo and its kin, GeoJSON for maps; and TUM in, for
-/// truth given so.
+/// Trajectories out, as text: CSV for tables, TUM for evo and its kin (maps: map_formats.hpp); and TUM in,
+/// for truth given so.
 ///
 /// Numbers are written with the shortest digits that read back to the same double, stamps exactly. A number
-/// that is not finite, or a place that a format needs and a point lacks, is an OutputError that names the
-/// point: nothing is written.
+/// that is not finite is an OutputError that names the point: nothing is written.
 #pragma once
 
 #include <optional>
@@ -30,15 +29,6 @@ struct TrajectoryPoint {
   std::string reason;                    ///< of that status
 };
 
-/// A fix on a map.
-struct FixPoint {
-  Stamp stamp;
-  double latitude_deg = 0;  ///< WGS84
-  double longitude_deg = 0;
-  std::string status;
-  std::string reason;
-};
-
 /// Comma-separated values (RFC 4180 with "\n" line ends) under one header line: stamp_ns, x_m, y_m,
 /// heading_rad, latitude_deg, longitude_deg, sigma_x_m, sigma_y_m, sigma_heading_rad, status, reason. The
 /// columns are always the same; what a point lacks is an empty field.
@@ -47,14 +37,6 @@ struct FixPoint {
 /// "t x y z qx qy qz qw" a line, t in seconds with nine decimals on the trajectory's own time scale, z = 0,
 /// the quaternion a turn about z. Points are written as given: evo expects them in order of time.
 [[nodiscard]] std::string trajectory_tum(std::span<const TrajectoryPoint> points);
-
-/// A GeoJSON FeatureCollection (RFC 7946: WGS84, longitude first): the fused trajectory as one LineString
-/// (left out below two points), every fix as a Point with properties "stamp_ns", "status", "reason"; rejected
-/// and withheld ones carry a "marker-color" (simplestyle), so that they show on common viewers. Lines over
-/// the antimeridian are not cut.
-/// @param name  of the trajectory; goes into its properties.
-[[nodiscard]] std::string trajectory_geojson(std::span<const TrajectoryPoint> points,
-                                             std::span<const FixPoint> fixes, std::string_view name);
 
 /// Reads a TUM trajectory: eight numbers a line, separated by blanks; lines that start with '#' and empty
 /// ones are skipped. Stamps are exact to the nanosecond. z is dropped; heading is the yaw of the quaternion

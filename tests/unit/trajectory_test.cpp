@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/stamp_text.hpp>
@@ -21,13 +20,6 @@ TrajectoryPoint point(std::int64_t nanoseconds, double x, double y, double headi
   TrajectoryPoint p;
   p.stamp = Stamp{nanoseconds};
   p.pose = {x, y, heading};
-  return p;
-}
-
-TrajectoryPoint on_map(std::int64_t nanoseconds, double latitude, double longitude) {
-  TrajectoryPoint p = point(nanoseconds, 0, 0, 0);
-  p.latitude_deg = latitude;
-  p.longitude_deg = longitude;
   return p;
 }
 
@@ -153,44 +145,8 @@ TEST_CASE("TUM: errors name file, line, column, found and expected", "[trajector
   CHECK(tum_error("# only a comment") == "truth.tum: TUM: no pose in it");
 }
 
-TEST_CASE("GeoJSON: a line of longitude, latitude and marked fixes", "[trajectory]") {
-  const std::vector<TrajectoryPoint> points{on_map(1, 52.5, 13.25), on_map(2, 52.6, 13.35)};
-  const std::vector<FixPoint> fixes{
-      {.stamp = Stamp{1}, .latitude_deg = 52.5, .longitude_deg = 13.3, .status = "accepted", .reason = "ok"},
-      {.stamp = Stamp{1149206567040000001},
-       .latitude_deg = 52.7,
-       .longitude_deg = 13.4,
-       .status = "rejected",
-       .reason = "say \"far\""}};
-  const auto json = nlohmann::json::parse(trajectory_geojson(points, fixes, "drive \"1\""));
-  CHECK(json["type"] == "FeatureCollection");
-  REQUIRE(json["features"].size() == 3);
-  const auto& line = json["features"][0];
-  CHECK(line["geometry"]["type"] == "LineString");
-  CHECK(line["geometry"]["coordinates"] == nlohmann::json::parse("[[13.25,52.5],[13.35,52.6]]"));
-  CHECK(line["properties"]["name"] == "drive \"1\"");
-  CHECK_FALSE(json["features"][1]["properties"].contains("marker-color"));
-  const auto& rejected = json["features"][2];
-  CHECK(rejected["geometry"]["coordinates"] == nlohmann::json::parse("[13.4,52.7]"));
-  CHECK(rejected["properties"]["status"] == "rejected");
-  CHECK(rejected["properties"]["reason"] == "say \"far\"");
-  CHECK(rejected["properties"]["stamp_ns"] == 1149206567040000001);
-  CHECK(rejected["properties"].contains("marker-color"));
-}
-
-TEST_CASE("GeoJSON of nothing and of one pose is valid", "[trajectory]") {
-  CHECK(nlohmann::json::parse(trajectory_geojson({}, {}, ""))["features"].empty());
-  const std::vector<TrajectoryPoint> one{on_map(1, 1, 2)};
-  CHECK(nlohmann::json::parse(trajectory_geojson(one, {}, ""))["features"].empty());
-}
-
 TEST_CASE("what cannot be written is an error that names the point", "[trajectory]") {
   const std::vector<TrajectoryPoint> nan{point(0, 0, 0, 0), point(1'000'000'000, std::nan(""), 0, 0)};
   CHECK_THROWS_AS(trajectory_csv(nan), OutputError);
   CHECK_THROWS_WITH(trajectory_tum(nan), Contains("pose 2 at 1.000000000 s: not finite"));
-  const std::vector<TrajectoryPoint> no_place{on_map(1, 1, 2), point(2, 0, 0, 0)};
-  CHECK_THROWS_WITH(trajectory_geojson(no_place, {}, ""), Contains("no latitude and longitude"));
-  const std::vector<FixPoint> bad_fix{
-      {.stamp = {}, .latitude_deg = std::nan(""), .longitude_deg = 0, .status = "", .reason = ""}};
-  CHECK_THROWS_AS(trajectory_geojson({}, bad_fix, ""), OutputError);
 }

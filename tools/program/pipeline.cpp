@@ -8,6 +8,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/core/options.hpp>
 #include <waymark/formats/logs/log_file.hpp>
+#include <waymark/formats/map_formats.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/formats/trajectory.hpp>
 #include <waymark/tools/drive/clock_sync.hpp>
@@ -351,8 +352,8 @@ std::vector<std::string> write_trajectories(const GraphDocument& document, const
     if (const auto v = graph.find(fix.vertex)) fix_of[static_cast<std::size_t>(*v)] = &fix;
     if (!mapped) continue;
     const GeodeticPoint place = projection->to_geodetic(fix.position);
-    fix_points.push_back(
-        {fix.stamp, place.latitude_deg, place.longitude_deg, std::string(to_string(fix.status)), fix.reason});
+    fix_points.push_back({fix.stamp, place.latitude_deg, place.longitude_deg,
+                          std::string(to_string(fix.status)), fix.reason, fix.source});
   }
   std::vector<const Eigen::MatrixXd*> covariance_of(graph.vertex_count(), nullptr);
   for (const VertexCovariance& block : document.covariances) {
@@ -381,12 +382,17 @@ std::vector<std::string> write_trajectories(const GraphDocument& document, const
     points.push_back(std::move(point));
   }
   if (points.empty()) return {};
-  std::vector<std::string> files = {prefix + ".csv", prefix + ".tum"};
-  write_file_atomically(files[0], trajectory_csv(points));
-  write_file_atomically(files[1], trajectory_tum(points));
+  std::vector<std::string> files;
+  const auto write = [&](const char* suffix, const std::string& text) {
+    files.push_back(prefix + suffix);
+    write_file_atomically(files.back(), text);
+  };
+  write(".csv", trajectory_csv(points));
+  write(".tum", trajectory_tum(points));
   if (mapped) {
-    files.push_back(prefix + ".geojson");
-    write_file_atomically(files[2], trajectory_geojson(points, fix_points, name));
+    write(".geojson", trajectory_geojson(points, fix_points, name));
+    write(".kml", trajectory_kml(points, fix_points, name, document.time_scale));
+    write(".gpx", trajectory_gpx(points, fix_points, name, document.time_scale));
   }
   return files;
 }

@@ -74,8 +74,8 @@ void add_provenance(const GraphDocument& document, const std::string& label, Rep
 [[nodiscard]] std::vector<TruthPose> read_truth(const std::string& path, const std::string& data_folder,
                                                 const GraphDocument& document, const TypeRegistry& registry);
 
-/// Writes the trajectory of all poses as PREFIX.csv, PREFIX.tum and PREFIX.geojson (the last where the frame
-/// is known); returns the names.
+/// Writes the trajectory of all poses as PREFIX.csv and PREFIX.tum and, where the frame is known, for maps as
+/// PREFIX.geojson, PREFIX.kml and PREFIX.gpx; returns the names.
 std::vector<std::string> write_trajectories(const GraphDocument& document, const std::string& prefix,
                                             const std::string& name);
 
