@@ -1,22 +1,16 @@
 #include <waymark/formats/trajectory.hpp>
 
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/csv_text.hpp>
 #include <waymark/formats/stamp_text.hpp>
 #include <waymark/formats/text_builder.hpp>
 
 namespace waymark {
 namespace {
-
-void append_number(std::string& out, double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  out.append(buffer, result.ptr);
-}
 
 void check_finite(std::string_view format, std::size_t index, const TrajectoryPoint& point) {
   if (point.pose.allFinite()) return;
@@ -24,35 +18,13 @@ void check_finite(std::string_view format, std::size_t index, const TrajectoryPo
       fmt::format("{}: pose {} at {} s: not finite", format, index + 1, decimal_seconds(point.stamp)));
 }
 
-/// A field as RFC 4180 wants it: quoted where it holds a separator, a quote or a line end.
-void append_csv_text(std::string& out, std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    out += text;
-    return;
-  }
-  out += '"';
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  out += '"';
-}
-
-void append_csv_optional(std::string& out, const std::optional<double>& value) {
-  out += ',';
-  if (value && std::isfinite(*value)) append_number(out, *value);
-}
-
 void append_csv_point(std::string& out, const TrajectoryPoint& point) {
   out += std::to_string(point.stamp.nanoseconds);
-  for (const double value : point.pose) {
-    out += ',';
-    append_number(out, value);
-  }
-  append_csv_optional(out, point.latitude_deg);
-  append_csv_optional(out, point.longitude_deg);
+  for (const double value : point.pose) append_csv_number(out, value);
+  append_csv_number(out, point.latitude_deg);
+  append_csv_number(out, point.longitude_deg);
   for (Eigen::Index axis = 0; axis < 3; ++axis)
-    append_csv_optional(out, point.sigma ? std::optional<double>((*point.sigma)[axis]) : std::nullopt);
+    append_csv_number(out, point.sigma ? std::optional<double>((*point.sigma)[axis]) : std::nullopt);
   out += ',';
   append_csv_text(out, point.status);
   out += ',';

@@ -1,5 +1,7 @@
 // What `run` says of its own accuracy: on the terminal and in metrics.json, in the same numbers.
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <vector>
 
@@ -130,4 +132,75 @@ TEST_CASE("causal predictions without outages are refused") {
   CHECK(refused.code == 2);
   CHECK(contains(refused.err, "--causal: there are no outages to be predicted; name them with --outage"));
   CHECK_FALSE(exists(folder + "r"));
+}
+
+namespace {
+
+/// Statistics of the columns of epochs.csv; fields of the bundled drive hold no separators.
+struct EpochsTable {
+  explicit EpochsTable(const std::string& text) {
+    std::istringstream stream(text);
+    std::string line;
+    std::getline(stream, line);
+    names = split(line);
+    while (std::getline(stream, line)) rows.push_back(split(line));
+  }
+  static std::vector<std::string> split(const std::string& line) {
+    std::vector<std::string> fields(1);
+    for (const char c : line) {
+      if (c == ',') {
+        fields.emplace_back();
+      } else {
+        fields.back() += c;
+      }
+    }
+    return fields;
+  }
+  [[nodiscard]] std::vector<double> column(const std::string& name) const {
+    const auto place = std::find(names.begin(), names.end(), name) - names.begin();
+    std::vector<double> values;
+    for (const auto& row : rows) {
+      const std::string& field = row.at(static_cast<std::size_t>(place));
+      if (!field.empty()) values.push_back(std::stod(field));
+    }
+    return values;
+  }
+  [[nodiscard]] double mean_square(const std::string& name) const {
+    const auto values = column(name);
+    double sum = 0;
+    for (const double value : values) sum += value * value;
+    return sum / static_cast<double>(values.size());
+  }
+  std::vector<std::string> names;
+  std::vector<std::vector<std::string>> rows;
+};
+
+}  // namespace
+
+TEST_CASE("epochs.csv holds what metrics.json is made of") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"run", bundled_drive(), "-m", "g1", "--out", folder, "-q"}).code == 0);
+  const EpochsTable epochs(read_text(folder + "g1.epochs.csv"));
+  const Json evaluation = Json::parse(read_text(folder + "metrics.json"))["evaluations"][0];
+  const Json& truth = evaluation["truth"];
+  CHECK(epochs.rows.size() == evaluation["fixes"]["total"]);
+  for (const char* system : {"gnss", "fused"}) {
+    const std::string name = system;
+    const Json& metrics = truth[name];
+    const double square = epochs.mean_square(name + "_east_m") + epochs.mean_square(name + "_north_m");
+    CHECK(std::sqrt(square) == Approx(metrics["position"]["rmse_m"].get<double>()));
+    const double along = epochs.mean_square(name + "_along_m");
+    const double cross = epochs.mean_square(name + "_cross_m");
+    CHECK(std::sqrt(along) == Approx(metrics["along_track"]["rms_m"].get<double>()));
+    CHECK(std::sqrt(cross) == Approx(metrics["cross_track"]["rms_m"].get<double>()));
+    CHECK(epochs.column(name + "_along_m").size() == metrics["along_track"]["n"]);
+  }
+  constexpr double kDegree = 3.14159265358979323846 / 180;
+  CHECK(std::sqrt(epochs.mean_square("heading_error_deg")) * kDegree ==
+        Approx(truth["fused"]["heading"]["rms_rad"].get<double>()));
+  const auto nees = epochs.column("nees");
+  CHECK(std::accumulate(nees.begin(), nees.end(), 0.0) / static_cast<double>(nees.size()) ==
+        Approx(truth["consistency"]["nees_mean"].get<double>()));
+  CHECK(nees.size() == truth["consistency"]["n"]);
+  CHECK(epochs.column("covariance_xx_m2").size() == epochs.rows.size());
 }

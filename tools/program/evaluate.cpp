@@ -62,7 +62,8 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
     evaluations.push_back({label, evaluate_document(document, truth)});
     add_provenance(document, label, header);
     if (options.folder.empty()) continue;
-    const std::vector<std::string> files = write_trajectories(document, options.folder + "/" + label, label);
+    std::vector<std::string> files = write_trajectories(document, options.folder + "/" + label, label);
+    files.push_back(write_epochs(evaluations.back().evaluation, options.folder + "/" + label));
     for (const std::string& file : files) console.detail("written " + file);
     const std::string report = write_drive_report({.drive = header.drive,
                                                    .page = options.inputs.size() == 1 ? "report" : label,

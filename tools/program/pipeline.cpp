@@ -14,6 +14,7 @@
 #include <waymark/tools/drive/clock_sync.hpp>
 #include <waymark/tools/drive/projection.hpp>
 #include <waymark/tools/drive/sensors.hpp>
+#include <waymark/tools/evaluation/epochs_csv.hpp>
 #include <waymark/tools/program/hash.hpp>
 #include <waymark/tools/program/optimization.hpp>
 #include <waymark/tools/program/pipeline.hpp>
@@ -395,6 +396,12 @@ std::vector<std::string> write_trajectories(const GraphDocument& document, const
     write(".gpx", trajectory_gpx(points, fix_points, name, document.time_scale));
   }
   return files;
+}
+
+std::string write_epochs(const Evaluation& evaluation, const std::string& prefix) {
+  const std::string file = prefix + ".epochs.csv";
+  write_file_atomically(file, epochs_csv(evaluation.epochs));
+  return file;
 }
 
 }  // namespace waymark

@@ -79,4 +79,7 @@ void add_provenance(const GraphDocument& document, const std::string& label, Rep
 std::vector<std::string> write_trajectories(const GraphDocument& document, const std::string& prefix,
                                             const std::string& name);
 
+/// Writes what was found at every fix as PREFIX.epochs.csv; returns the name.
+std::string write_epochs(const Evaluation& evaluation, const std::string& prefix);
+
 }  // namespace waymark

@@ -90,6 +90,7 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, M
   std::vector<Prediction> further;
   if (options.causal) further.push_back(predict_causally(options, loaded, modeling, registry, console));
   run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth, further)};
+  run.files.push_back(write_epochs(run.evaluation.evaluation, prefix));
   add_provenance(document, modeling, header);
   const bool alone = loaded.modelings.size() == 1;
   run.files.push_back(write_drive_report({.drive = loaded.config.name,
