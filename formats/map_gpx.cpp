@@ -17,10 +17,6 @@ std::string_view symbol(std::string_view status) {
   return "Flag, Green";
 }
 
-std::string described(const FixPoint& fix) {
-  return xml_text(fix.reason.empty() ? fix.status : fix.status + ": " + fix.reason);
-}
-
 }  // namespace
 
 std::string trajectory_gpx(std::span<const TrajectoryPoint> points, std::span<const FixPoint> fixes,
@@ -41,7 +37,7 @@ std::string trajectory_gpx(std::span<const TrajectoryPoint> points, std::span<co
     const FixPoint& fix = fixes[i];
     append_place("wpt", place_of("GPX", fixes, i), fix.stamp);
     fmt::format_to(end, "<name>fix {}</name><desc>{}</desc><sym>{}</sym><type>{}</type></wpt>\n", i + 1,
-                   described(fix), symbol(fix.status), xml_text(fix.status));
+                   xml_text(verdict(fix)), symbol(fix.status), xml_text(fix.status));
   }
   if (!points.empty()) {
     fmt::format_to(end, "<trk><name>{}</name><trkseg>\n", xml_text(name));

@@ -137,8 +137,8 @@ class KmlWriter {
     const FixPoint& fix = fixes_[i];
     const std::string when =
         dates_.known() ? dates_.text(fix.stamp) : fmt::format("{} s", decimal_seconds(fix.stamp));
-    append("<Placemark><name>fix {}</name><description>{}{}, {}</description>", i + 1, fix.status,
-           fix.reason.empty() ? "" : ": " + xml_text(fix.reason), when);
+    append("<Placemark><name>fix {}</name><description>{}, {}</description>", i + 1, xml_text(verdict(fix)),
+           when);
     if (dates_.known()) append("<TimeStamp><when>{}</when></TimeStamp>", when);
     append("<styleUrl>#{}</styleUrl><Point><coordinates>", fix.status);
     append_coordinates(place_of("KML", fixes_, i), ',');

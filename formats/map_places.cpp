@@ -40,6 +40,10 @@ MapPlace place_of(std::string_view format, std::span<const FixPoint> fixes, std:
   return checked(format, "fix", index, fix.stamp, fix.latitude_deg, fix.longitude_deg);
 }
 
+std::string verdict(const FixPoint& fix) {
+  return fix.reason.empty() || fix.reason == fix.status ? fix.status : fix.status + ": " + fix.reason;
+}
+
 std::optional<Stamp> date_of(Stamp stamp, TimeScale scale) {
   if (stamp.nanoseconds >= kLatestDate) return std::nullopt;  // before convert() could overflow
   const Stamp date = convert(stamp, scale, TimeScale::utc);

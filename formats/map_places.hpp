@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <waymark/formats/map_formats.hpp>
@@ -20,6 +21,9 @@ struct MapPlace {
 [[nodiscard]] MapPlace place_of(std::string_view format, std::span<const TrajectoryPoint> points,
                                 std::size_t index);
 [[nodiscard]] MapPlace place_of(std::string_view format, std::span<const FixPoint> fixes, std::size_t index);
+
+/// "rejected: displacement"; the status alone where the reason adds nothing.
+[[nodiscard]] std::string verdict(const FixPoint& fix);
 
 /// The stamp as a date: POSIX nanoseconds; empty where it is none (see map_formats.hpp).
 [[nodiscard]] std::optional<Stamp> date_of(Stamp stamp, TimeScale scale);

@@ -1,4 +1,4 @@
-/// Text as XML 1.0 may hold it.
+/// Text as XML 1.0, and HTML, may hold it.
 #pragma once
 
 #include <string>
@@ -6,8 +6,9 @@
 
 namespace waymark {
 
-/// Escapes & < > " ' for content and attributes alike. Bytes that are no UTF-8, and characters that XML 1.0
-/// does not allow even when escaped (most control characters), become U+FFFD.
+/// Escapes & < > " ' for elements and quoted attributes alike. Bytes that are no UTF-8, characters that
+/// XML 1.0 does not allow even when escaped, and the other control characters but tab and line feed become
+/// U+FFFD.
 [[nodiscard]] std::string xml_text(std::string_view text);
 
 }  // namespace waymark

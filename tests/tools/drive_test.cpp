@@ -36,12 +36,13 @@ TEST_CASE("the bundled drive: three steps give what run gives") {
   CHECK(evaluated.code == 0);
   const RunResult ran = run({"run", bundled_drive(), "--out", folder + "results", "-m", "g1,g1", "--json"});
   CHECK(ran.code == 0);
-  CHECK(names_in(folder + "results") == std::vector<std::string>{"g1.csv", "g1.epochs.csv", "g1.fused.graph",
-                                                                 "g1.geojson", "g1.gpx", "g1.graph", "g1.kml",
-                                                                 "g1.tum", "metrics.json", "summary.json"});
-  CHECK(names_in(folder + "e") == std::vector<std::string>{"fused.csv", "fused.epochs.csv", "fused.geojson",
-                                                           "fused.gpx", "fused.kml", "fused.tum",
-                                                           "metrics.json"});
+  CHECK(names_in(folder + "results") ==
+        std::vector<std::string>{"figures", "g1.csv", "g1.epochs.csv", "g1.fused.graph", "g1.geojson",
+                                 "g1.gpx", "g1.graph", "g1.kml", "g1.tum", "metrics.json", "report.html",
+                                 "summary.json"});
+  CHECK(names_in(folder + "e") == std::vector<std::string>{"figures", "fused.csv", "fused.epochs.csv",
+                                                           "fused.geojson", "fused.gpx", "fused.kml",
+                                                           "fused.tum", "metrics.json", "report.html"});
   CHECK(read_text(folder + "drive.graph") == read_text(folder + "results/g1.graph"));
   CHECK(read_text(folder + "e/fused.csv") == read_text(folder + "results/g1.csv"));
 }

@@ -35,7 +35,7 @@ TEST_CASE("epochs.csv: what is not defined is an empty field", "[epochs]") {
 }
 
 TEST_CASE("epochs.csv: numbers, and offsets turned into the direction of travel", "[epochs]") {
-  EpochResult epoch = epoch_at(3'500'000'000);
+  EpochResult epoch = epoch_at(2'900'000'000);
   epoch.status = FixStatus::rejected;
   epoch.reason = "far, \"very\"";
   epoch.fix_sigma_m = {2, 3};
@@ -50,7 +50,7 @@ TEST_CASE("epochs.csv: numbers, and offsets turned into the direction of travel"
   const auto lines = lines_of(epochs_csv(std::vector{epoch_at(1'000'000'000), epoch}));
   REQUIRE(lines.size() == 3);
   CHECK(lines[2] ==
-        "3500000000,2.5,rejected,\"far, "
+        "2900000000,1.9,rejected,\"far, "
         "\"\"very\"\"\",2,3,1,4,-0.5,0.25,1,4,-0.5,0.25,-180,-1.5,4,1,9,0.125,6");
 }
 
