@@ -1,19 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
+#include <waymark/formats/csv_text.hpp>
+#include <waymark/tools/evaluation/metrics.hpp>
 #include <waymark/tools/report/figure_csv.hpp>
 
 namespace waymark {
 namespace {
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
 
 /// A column that some series have.
 struct Column {
@@ -39,17 +32,19 @@ std::size_t length(const Series& series) {
 }
 
 /// The category where the column is of the rows of bars, else the number; empty where it is none.
-std::string field(const Figure& figure, const Column& column, double value) {
-  if (!std::isfinite(value)) return "";
+void append_field(const Figure& figure, const Column& column, double value, std::string& csv) {
   const std::vector<std::string>& rows = figure.y.categories;
   const bool is_row = column.values == &Series::y && value >= 0 && value == std::floor(value) &&
                       value < static_cast<double>(rows.size());
-  return is_row ? quoted(rows[static_cast<std::size_t>(value)]) : fmt::format("{}", value);
+  if (!is_row) return append_csv_number(csv, value);
+  csv += ',';
+  append_csv_text(csv, rows[static_cast<std::size_t>(value)]);
 }
 
-std::string note_of(const Series& series, std::size_t i) {
-  if (i >= series.note.size() || series.note[i] < 0) return "";
-  return quoted(series.notes[static_cast<std::size_t>(series.note[i])]);
+void append_note(const Series& series, std::size_t i, std::string& csv) {
+  csv += ',';
+  if (i < series.note.size() && series.note[i] >= 0)
+    append_csv_text(csv, series.notes[static_cast<std::size_t>(series.note[i])]);
 }
 
 }  // namespace
@@ -59,18 +54,19 @@ std::string figure_csv(const Figure& figure) {
   const bool has_notes = std::any_of(figure.series.begin(), figure.series.end(),
                                      [](const Series& s) { return !s.note.empty(); });
   std::string csv = "series";
-  for (const Column& column : columns) csv += "," + quoted(column.heading);
+  for (const Column& column : columns) {
+    csv += ',';
+    append_csv_text(csv, column.heading);
+  }
   csv += has_notes ? ",note\n" : "\n";
   for (const Series& series : figure.series) {
-    const std::string name = quoted(series.name.empty() ? figure.title : series.name);
     for (std::size_t i = 0; i < length(series); ++i) {
-      csv += name;
+      append_csv_text(csv, series.name.empty() ? figure.title : series.name);
       for (const Column& column : columns) {
         const std::vector<double>& values = series.*column.values;
-        csv += ',';
-        if (i < values.size()) csv += field(figure, column, values[i]);
+        append_field(figure, column, i < values.size() ? values[i] : kUndefined, csv);
       }
-      if (has_notes) csv += "," + note_of(series, i);
+      if (has_notes) append_note(series, i, csv);
       csv += '\n';
     }
   }

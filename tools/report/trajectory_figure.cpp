@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -36,8 +37,32 @@ Series truth(const ReportedDrive& drive, double end_s) {
   return series;
 }
 
-/// What the gate found; a number that it did not form is not told.
-std::string describe(const Fix& fix, double seconds) {
+/// A fix that counts for less is as good as rejected.
+constexpr double kSmallWeight = 1.0 / 3;
+
+/// Weights that the losses of GNSS edges leave, by vertex; 1 for all others.
+std::vector<double> weights_of_fixes(const ReportedDrive& drive) {
+  const Graph& graph = drive.document.graph;
+  std::vector<double> weights(graph.vertex_count(), 1);
+  if (drive.residuals == nullptr) return weights;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const std::string& tag = graph.edge_type(b).tag;
+    if (tag.find("GNSS") == std::string::npos) continue;
+    for (const TypeResiduals& type : drive.residuals->types) {
+      if (type.tag != tag || type.robust == 0) continue;
+      for (const EdgeResidual& edge : type.edges) {
+        for (const VertexIndex v : graph.batch(b).vertices(edge.edge)) {
+          double& weight = weights[static_cast<std::size_t>(v)];
+          weight = std::min(weight, edge.weight);
+        }
+      }
+    }
+  }
+  return weights;
+}
+
+/// What the gate and the loss made of a fix; a number that was not formed is not told.
+std::string describe(const Fix& fix, double seconds, double weight) {
   std::string text = fmt::format("fix {} at {:.1f} s: {}", fix.epoch, seconds, to_string(fix.status));
   if (fix.status == FixStatus::rejected) {
     text += ", " + fix.reason;
@@ -45,19 +70,37 @@ std::string describe(const Fix& fix, double seconds) {
       text += fmt::format(", angle {:.1f} deg", fix.chord_angle_rad * 180 / std::numbers::pi);
     if (std::isfinite(fix.displacement_m)) text += fmt::format(", displacement {:.2f} m", fix.displacement_m);
   }
+  if (weight < 1) text += fmt::format(", weight {:.2f}", weight);
   return text + fmt::format(", stated sigma {:.3g} m", std::sqrt(fix.covariance.trace() / 2));
 }
 
-Series fixes(const ReportedDrive& drive, FixStatus status, const std::string& name, Look look) {
-  Series series{.name = name, .mark = Mark::points, .look = look};
+/// Raw fixes by what became of them.
+struct FixSeries {
+  Series accepted{.name = "raw GNSS", .mark = Mark::points, .look = Look::raw};
+  Series light{.name = "raw GNSS, weight below 1/3", .mark = Mark::points, .look = Look::second};
+  Series rejected{.name = "raw GNSS, rejected", .mark = Mark::points, .look = Look::rejected};
+  Series withheld{.name = "raw GNSS, withheld", .mark = Mark::points, .look = Look::withheld};
+
+  [[nodiscard]] Series& of(const Fix& fix, double weight) {
+    if (fix.status == FixStatus::rejected) return rejected;
+    if (fix.status == FixStatus::withheld) return withheld;
+    return weight < kSmallWeight ? light : accepted;
+  }
+};
+
+FixSeries fixes(const ReportedDrive& drive) {
+  const std::vector<double> weights = weights_of_fixes(drive);
+  FixSeries all;
   for (const Fix& fix : drive.document.fixes) {
-    if (fix.status != status) continue;
+    const auto v = drive.document.graph.find(fix.vertex);
+    const double weight = v && fix.status == FixStatus::accepted ? weights[static_cast<std::size_t>(*v)] : 1;
+    Series& series = all.of(fix, weight);
     const double seconds = drive.seconds(fix.stamp);
     add_point(series, fix.position.x(), fix.position.y(), seconds);
     series.note.push_back(static_cast<int>(series.notes.size()));
-    series.notes.push_back(describe(fix, seconds));
+    series.notes.push_back(describe(fix, seconds, weight));
   }
-  return series;
+  return all;
 }
 
 }  // namespace
@@ -77,10 +120,9 @@ Figure trajectory_figure(const ReportedDrive& drive) {
   figure.height = 620;
   Series fused = poses(drive);
   const double end_s = fused.time.empty() ? 0 : fused.time.back();
-  const std::vector<Series> layers = {
-      truth(drive, end_s), fixes(drive, FixStatus::accepted, "raw GNSS", Look::raw),
-      fixes(drive, FixStatus::rejected, "raw GNSS, rejected", Look::rejected),
-      fixes(drive, FixStatus::withheld, "raw GNSS, withheld", Look::withheld), std::move(fused)};
+  FixSeries raw = fixes(drive);
+  const std::vector<Series> layers = {truth(drive, end_s),     std::move(raw.accepted), std::move(raw.light),
+                                      std::move(raw.rejected), std::move(raw.withheld), std::move(fused)};
   for (const Series& series : layers) {
     if (!series.x.empty()) figure.series.push_back(series);
   }
