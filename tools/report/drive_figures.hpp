@@ -13,6 +13,9 @@ namespace waymark {
 /// From the first fix to the last, seconds since the start: what all figures over time show.
 [[nodiscard]] Range epochs_extent(const ReportedDrive& drive);
 
+/// Accepted fixes that a loss leaves less than a third of their weight; 0 where the residuals are not known.
+[[nodiscard]] std::size_t nearly_left_out(const ReportedDrive& drive);
+
 /// Poses, raw fixes with what became of them, truth; east and north on the grid.
 [[nodiscard]] Figure trajectory_figure(const ReportedDrive& drive);
 

@@ -98,6 +98,8 @@ std::string count_of_rejections(const ReportedDrive& drive) {
       100 * static_cast<double>(e.rejected) / std::max<double>(1, static_cast<double>(e.fixes())));
   for (const auto& [reason, count] : of_reason)
     text += fmt::format("{} {} for {}", text.back() == ')' ? ":" : ",", count, reason);
+  const std::size_t light = nearly_left_out(drive);
+  if (light > 0) text += fmt::format("; {} count for less than a third of their weight", light);
   if (e.withheld > 0) text += fmt::format("; {} withheld on purpose", e.withheld);
   return text;
 }
@@ -155,6 +157,20 @@ PageTable provenance(const ReportedDrive& drive) {
   return table;
 }
 
+/// What got worse, for a summary must not only praise.
+std::string describe_losses(const Improvement& i) {
+  constexpr double kWorthTelling = -2;  // percent
+  std::string text;
+  for (const auto& [name, percent] :
+       {std::pair{"the mean offset (Acc)", i.accuracy_percent},
+        std::pair{"the spread (Prec)", i.precision_percent},
+        std::pair{"the largest error (Max)", i.max_percent}, std::pair{"the median", i.median_percent}}) {
+    if (percent < kWorthTelling)
+      text += fmt::format("{} {} by {:.0f} %", text.empty() ? " Worse:" : ",", name, -percent);
+  }
+  return text.empty() ? text : text + ".";
+}
+
 void summarise(const ReportedDrive& drive, Page& page) {
   if (drive.optimization != nullptr && !drive.optimization->summary.converged())
     page.summary = "No minimum was reached: " + drive.optimization->summary.message + ". ";
@@ -177,6 +193,7 @@ void summarise(const ReportedDrive& drive, Page& page) {
       std::abs(better), better >= 0 ? "better" : "worse", truth.fused.position.rmse_m,
       truth.gnss.position.rmse_m, truth.fused.position.max_m, truth.gnss.position.max_m,
       truth.fused.position.count);
+  page.summary += describe_losses(truth.improvement);
 }
 
 Section summary_section(const ReportedDrive& drive) {

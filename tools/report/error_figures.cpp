@@ -172,8 +172,8 @@ Figure tile(const ReportedDrive& drive, Offset which, const std::string& name, L
   return figure;
 }
 
-/// The paper's metre to each side where it holds half of the fused errors and the mean of both systems, else
-/// the next round number that does.
+/// The paper's metre to each side where it holds half of the fused errors, their ellipse and the mean of both
+/// systems, else the next round number that does.
 double half_width(const ReportedDrive& drive) {
   std::vector<double> largest;
   for (const Eigen::Vector2d& offset : offsets(drive, &EpochResult::fused_offset_m))
@@ -181,8 +181,10 @@ double half_width(const ReportedDrive& drive) {
   std::sort(largest.begin(), largest.end());
   double needed = nearest_rank_quantile(largest, 0.5);
   const TruthEvaluation& truth = *drive.evaluation.truth;
-  for (const SystemMetrics* system : {&truth.gnss, &truth.fused})
-    needed = std::max(needed, 1.05 * system->position.mean_m.cwiseAbs().maxCoeff());
+  needed = std::max(needed, 1.05 * truth.gnss.position.mean_m.cwiseAbs().maxCoeff());
+  const double spread =
+      std::isfinite(truth.fused.position.precision_m) ? truth.fused.position.precision_m : 0;
+  needed = std::max(needed, truth.fused.position.mean_m.cwiseAbs().maxCoeff() + spread);
   for (const double half : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0}) {
     if (!(needed > half)) return half;
   }
@@ -216,6 +218,26 @@ FigureRow error_tiles(const ReportedDrive& drive) {
            tile(drive, &EpochResult::fused_offset_m, "fused", Look::fused, half_m)}};
 }
 
+namespace {
+
+/// Beyond this ratio of the largest raw to the largest fused error the latter is a flat line; an axis in
+/// powers of ten shows both.
+constexpr double kTooFarApart = 8;
+constexpr double kLeastError = 0.01;  // m, where such an axis begins at the earliest
+
+void fit_error_axis(Figure& figure, const TruthEvaluation& truth) {
+  const double fused = truth.fused.position.max_m;
+  if (!(truth.gnss.position.max_m > kTooFarApart * fused) || !(fused > kLeastError)) return;
+  double smallest = fused;
+  for (const Series& series : figure.series) {
+    for (const double error : series.y) smallest = std::min(smallest, error);
+  }
+  figure.y.logarithmic = true;
+  figure.y.low = std::max(0.9 * smallest, kLeastError);
+}
+
+}  // namespace
+
 std::vector<Figure> errors_over_time(const ReportedDrive& drive) {
   std::vector<Figure> figures;
   Figure position = time_figure(drive, "error-position", "Position error",
@@ -226,6 +248,7 @@ std::vector<Figure> errors_over_time(const ReportedDrive& drive) {
       over_time(drive, "raw GNSS", Look::raw, [](const EpochResult& e) { return length(e.gnss_offset_m); }));
   position.series.push_back(
       over_time(drive, "fused", Look::fused, [](const EpochResult& e) { return length(e.fused_offset_m); }));
+  if (drive.evaluation.truth) fit_error_axis(position, *drive.evaluation.truth);
   add_if_seen(std::move(position), figures);
   add_if_seen(track_figure(drive, true), figures);
   add_if_seen(track_figure(drive, false), figures);

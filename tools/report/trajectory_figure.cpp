@@ -105,6 +105,10 @@ FixSeries fixes(const ReportedDrive& drive) {
 
 }  // namespace
 
+std::size_t nearly_left_out(const ReportedDrive& drive) {
+  return fixes(drive).light.x.size();
+}
+
 Figure trajectory_figure(const ReportedDrive& drive) {
   Figure figure;
   figure.id = "trajectory";
