@@ -190,30 +190,38 @@ ExitCode bench(const BenchOptions& options) {
   return kInterrupted;
 }
 
-void add_name_list(CLI::App& command, const std::string& flags, Names& names, const std::string& about) {
+/// @param type  of one name, for the help
+void add_name_list(CLI::App& command, const std::string& flags, Names& names, const std::string& type,
+                   const std::string& about) {
   command.add_option(flags, names, about)
       ->delimiter(',')
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->type_name("NAME[,NAME]");
+      ->type_name(type + "[,...]");
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("bench", "Measure algorithms, solvers and peers on a list of graphs");
+  auto* command = app.add_subcommand(
+      "bench",
+      "Measure algorithms, solvers and peers on a list of graphs\n\n"
+      "Runs each contestant on each graph in turn and prints the median time with its spread, iterations, "
+      "memory, and whether the known optimum was reached.");
   const auto options = std::make_shared<BenchOptions>();
   command->add_option("graphs", options->files, "Graph files: .graph, g2o, or as --input-format says")
-      ->required();
+      ->required()
+      ->type_name("GRAPH");
   add_input_format(*command, options->input_format);
   add_name_list(
-      *command, "-a,--algorithm", options->algorithms,
+      *command, "-a,--algorithm", options->algorithms, "ALGORITHM|all|default",
       "Algorithms, 'all', or 'default': the configuration of 'optimize', starts included (default)");
-  add_name_list(*command, "-s,--solver", options->solvers, "Linear solvers, 'all' or 'auto' (default)");
-  add_name_list(*command, "--start", options->starts,
+  add_name_list(*command, "-s,--solver", options->solvers, "SOLVER|all|auto",
+                "Linear solvers, 'all' or 'auto' (default)");
+  add_name_list(*command, "--start", options->starts, "START|file",
                 "Starts: file (default), and those that `waymark info` lists");
-  add_name_list(*command, "--peer", options->peers,
+  add_name_list(*command, "--peer", options->peers, "ceres|ceres_dogleg",
                 "Measure in turn with: ceres (Levenberg-Marquardt), ceres_dogleg");
   command->add_option("--repeat", options->repeat, "Timed runs of each cell")
       ->check(CLI::Validator(
@@ -227,7 +235,7 @@ void add_bench(CLI::App& app, Action& action) {
   command
       ->add_option("--optima", options->optima,
                    "Known optima, CSV 'file,chi2' (examples/benchmarks/standard_graphs.csv)")
-      ->type_name("FILE");
+      ->type_name("FILE.csv");
   add_stopping_options(*command, options->choice);
   command->add_option("-o,--out", options->folder, "Folder for bench.csv and bench.json")->type_name("DIR");
   add_common_options(*command, options->common);

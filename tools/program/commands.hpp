@@ -25,8 +25,29 @@ void add_simulate(CLI::App& app, Action& action);
 void add_inspect(CLI::App& app, Action& action);
 void add_init(CLI::App& app, Action& action);
 void add_reproduce(CLI::App& app, Action& action);
+void add_doctor(CLI::App& app, Action& action);
+void add_help(CLI::App& app, Action& action);
+void add_completion(CLI::App& app, Action& action);
+
+/// Options that are added while it lives stand under this heading in the help.
+class OptionHeading {
+ public:
+  OptionHeading(CLI::App& command, const std::string& heading)
+      : command_(command), before_(command.option_defaults()->get_group()) {
+    command_.option_defaults()->group(heading);
+  }
+  ~OptionHeading() { command_.option_defaults()->group(before_); }
+  OptionHeading(const OptionHeading&) = delete;
+  OptionHeading& operator=(const OptionHeading&) = delete;
+
+ private:
+  CLI::App& command_;
+  std::string before_;
+};
 
 /// --quiet, -v, --json, --plugin.
 void add_common_options(CLI::App& command, CommonOptions& options);
+/// --plugin alone.
+void add_plugin_option(CLI::App& command, CommonOptions& options);
 
 }  // namespace waymark

@@ -143,14 +143,20 @@ std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options
 
 void add_convert(CLI::App& app, Action& action) {
   auto* command =
-      app.add_subcommand("convert", "Raw logs to a graph file, or a graph file to another format");
+      app.add_subcommand("convert",
+                         "Raw logs to a graph file, or a graph file to another format\n\n"
+                         "From a drive.yaml it reads the logs, puts them on one clock and into one frame, "
+                         "judges the fixes and writes the graph. A graph file is written in another format; "
+                         "what would move the minimum there is refused, what is left out is counted.");
   const auto options = std::make_shared<ConvertOptions>();
   command
       ->add_option("input", options->input,
                    "Description of a drive and its logs (drive.yaml), or a graph file (any other name)")
-      ->required();
+      ->required()
+      ->type_name("DRIVE.yaml|GRAPH");
   command->add_option("-o,--output", options->output, "Graph file to write ('-': standard output)")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   const auto of_graphs = added_by(*command, [&] {
     add_input_format(*command, options->input_format);
     command->add_flag("--lenient", options->lenient, "Skip and count wrong lines of a graph file");

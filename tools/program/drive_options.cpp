@@ -24,20 +24,26 @@ bool at_least_zero(double value) {
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
+  const OptionHeading heading(command, "Common options");
   command.add_flag("-q,--quiet", options.quiet, "Print errors only (and what --json asks for)");
   command.add_flag("-v,--verbose", options.verbosity, "Print what is done (iterations, files)");
   command.add_flag("--json", options.json, "Print the result as JSON on standard output");
+  add_plugin_option(command, options);
+}
+
+void add_plugin_option(CLI::App& command, CommonOptions& options) {
   command
       .add_option(
           "--plugin", options.plugins,
           "Load a plugin module: a file, or a name looked up in WAYMARK_PLUGIN_PATH (may be repeated)")
-      ->type_name("FILE.so")
+      ->type_name("FILE.so|PLUGIN")
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
+  const OptionHeading heading(command, "The drive");
   command.add_option("--data", overrides.data_folder, "Folder of the logs, instead of the drive.yaml's own")
       ->type_name("DIR");
   command
@@ -47,7 +53,7 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->type_name("NAME[,NAME]");
+      ->type_name("MODELING|all[,...]");
   command
       .add_option("--modeling-option", overrides.modeling_options,
                   "Option of the modeling, see 'waymark info'")
@@ -74,12 +80,12 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
   command.add_option("--start", overrides.start, "Where the optimisation starts")
       ->check(CLI::IsMember({"anchored", "dead_reckoning"}));
   command.add_option("--loss", overrides.loss, "Robust loss of the fixes, or 'none'")
-      ->type_name("NAME:SCALE");
+      ->type_name("LOSS:SCALE|none");
   command
       .add_option("--calibrate", overrides.calibrate,
                   "States to estimate with the poses: 'on' (gyro_bias, speed_scale, time_offset), 'off', or "
                   "options of the odometry model or the modeling, such as gyro_bias=constant")
-      ->type_name("on|off|NAME=VALUE")
+      ->type_name("on|off|NAME=VALUE[,...]")
       ->delimiter(',')
       ->expected(1)
       ->allow_extra_args(false)
@@ -94,27 +100,31 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
 }
 
 void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
+  const OptionHeading heading(command, "Optimisation");
   command
       .add_option("-a,--algorithm", choice.algorithm,
                   "gauss_newton, levenberg_marquardt, dogleg or a plugin's")
+      ->type_name("ALGORITHM")
       ->capture_default_str();
   command
       .add_option("-s,--solver", choice.solver,
                   "Linear solver, see 'waymark info'; auto: the fastest by measurement")
+      ->type_name("SOLVER|auto")
       ->capture_default_str();
   command.add_option("--algorithm-option", choice.options, "Option of the algorithm, see 'waymark info'")
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add_stopping_options(command, choice);
   command
       .add_option("--covariance", choice.covariance, "Covariances to write: of no, the fixes' or all poses")
       ->check(CLI::IsMember({"none", "fixes", "all"}))
       ->capture_default_str();
+  add_stopping_options(command, choice);
 }
 
 void add_stopping_options(CLI::App& command, OptimizationChoice& choice) {
+  const OptionHeading heading(command, "Optimisation");
   command
       .add_option("--threads", choice.threads, "Threads to work with; the result is the same for any number")
       ->check(CLI::Range(1, 256))

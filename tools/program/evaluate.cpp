@@ -84,14 +84,22 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("evaluate", "Metrics of fused graphs against truth and withheld fixes");
+  auto* command = app.add_subcommand("evaluate",
+                                     "Metrics of fused graphs against truth and withheld fixes\n\n"
+                                     "Prints a table of errors: accuracy, precision, largest error, along "
+                                     "and across the track, heading, and "
+                                     "how honest the stated errors are. Without --truth the fixes that were "
+                                     "kept out of the graph judge it.");
   const auto options = std::make_shared<EvaluateOptions>();
-  command->add_option("graphs", options->inputs, "Optimised .graph files")->required();
-  command->add_option("--truth", options->truth,
-                      "Truth: a drive.yaml with a truth section, or a TUM file in the frame");
-  command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own");
-  command->add_option("-o,--out", options->folder,
-                      "Folder for the report, metrics.json and the trajectories");
+  command->add_option("graphs", options->inputs, "Optimised .graph files")->required()->type_name("GRAPH");
+  command
+      ->add_option("--truth", options->truth,
+                   "Truth: a drive.yaml with a truth section, or a TUM file in the frame")
+      ->type_name("DRIVE.yaml|FILE");
+  command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own")
+      ->type_name("DIR");
+  command->add_option("-o,--out", options->folder, "Folder for the report, metrics.json and the trajectories")
+      ->type_name("DIR");
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark evaluate fused.graph --truth drive.yaml --out results");
   command->callback([options, &action] { action = [options] { return evaluate_files(*options); }; });

@@ -1,6 +1,8 @@
-/// Exit codes of the program `waymark`: one per kind of failure. Documented in README.md and `waymark
-/// --help`.
+/// Exit codes of the program `waymark`: one per kind of failure. Documented in README.md; `--help` and the
+/// man pages have them from here.
 #pragma once
+
+#include <array>
 
 namespace waymark {
 
@@ -13,5 +15,19 @@ enum ExitCode {
   kOutputError = 5,    ///< a result could not be written
   kInterrupted = 130   ///< Ctrl-C: the best state so far was written
 };
+
+/// An exit code in words.
+struct ExitCodeMeaning {
+  ExitCode code;
+  const char* meaning;
+};
+inline constexpr std::array kExitCodeMeanings = {
+    ExitCodeMeaning{kSuccess, "success"},
+    ExitCodeMeaning{kInternalError, "internal error"},
+    ExitCodeMeaning{kUsageError, "wrong usage"},
+    ExitCodeMeaning{kInputError, "bad input"},
+    ExitCodeMeaning{kNotConverged, "no convergence (the result is written and marked)"},
+    ExitCodeMeaning{kOutputError, "output not written"},
+    ExitCodeMeaning{kInterrupted, "interrupted (the best state so far is written)"}};
 
 }  // namespace waymark

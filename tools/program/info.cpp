@@ -5,6 +5,7 @@
 #include <waymark/formats/graph_document.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/output.hpp>
+#include <waymark/tools/program/plugin_list.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 
 namespace waymark {
@@ -39,37 +40,6 @@ Json sensor_json(const SensorModelType& type, const std::string& origin) {
           {"description", type.description},
           {"columns", columns},
           {"options", options_json(type.options)}};
-}
-
-/// Names of the entries of one table that come from a plugin, appended.
-template <typename T, typename NameOf>
-void add_names(const RegistryTable<T>& table, const std::string& origin, NameOf name_of, Json& names) {
-  for (const Registered<T>& entry : table) {
-    if (entry.origin == origin) names.push_back(name_of(entry.type));
-  }
-}
-
-/// Every plugin with what it registered.
-Json plugins_json(const TypeRegistry& registry) {
-  const auto tag_of = [](const auto& type) { return type.tag; };
-  const auto name_of = [](const auto& type) { return type.name; };
-  Json plugins = Json::array();
-  for (const PluginRecord& plugin : registry.plugins()) {
-    Json brings = Json::array();
-    add_names(registry.vertices(), plugin.name, tag_of, brings);
-    add_names(registry.edges(), plugin.name, tag_of, brings);
-    add_names(registry.gnss_modelings(), plugin.name, name_of, brings);
-    add_names(registry.odometry_models(), plugin.name, name_of, brings);
-    add_names(registry.sensor_models(), plugin.name, name_of, brings);
-    add_names(registry.log_readers(), plugin.name, name_of, brings);
-    add_names(registry.losses(), plugin.name, name_of, brings);
-    add_names(registry.linear_solvers(), plugin.name, name_of, brings);
-    add_names(registry.algorithms(), plugin.name, name_of, brings);
-    add_names(registry.starts(), plugin.name, name_of, brings);
-    plugins.push_back(
-        {{"name", plugin.name}, {"version", plugin.version}, {"place", plugin.place}, {"brings", brings}});
-  }
-  return plugins;
 }
 
 std::string plugins_text(const Json& plugins) {
@@ -185,8 +155,11 @@ void add_info(CLI::App& app, Action& action) {
     CommonOptions common;
     bool plugins = false;
   };
-  auto* command =
-      app.add_subcommand("info", "Types, modelings, solvers, algorithms, formats, with their fields");
+  auto* command = app.add_subcommand(
+      "info",
+      "Types, modelings, solvers, algorithms, formats, with their fields\n\n"
+      "Everything that a name on the command line or in a drive.yaml can stand for, plugins included, with "
+      "options and defaults.");
   const auto options = std::make_shared<InfoOptions>();
   command->add_flag("--plugins", options->plugins, "Only the plugins: where each is from and what it brings");
   add_common_options(*command, options->common);

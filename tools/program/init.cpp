@@ -27,7 +27,11 @@ ExitCode initialise(const InspectCommand& command) {
 }  // namespace
 
 void add_init(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("init", "A drive.yaml for the logs of a drive");
+  auto* command = app.add_subcommand(
+      "init",
+      "A drive.yaml for the logs of a drive\n\n"
+      "Says which log got which role and why. What was assumed is marked '# CHECK' in the file. Without logs "
+      "it writes a template with comments. An existing file is replaced only with --force.");
   const auto options = std::make_shared<InspectCommand>();
   command->add_option("logs", options->logs, "Logs, and the DBC of CAN logs; none: a template")
       ->type_name("LOG");

@@ -32,8 +32,10 @@ ExitCode inspect(const InspectCommand& command) {
 }  // namespace
 
 void add_inspect(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("inspect", "What is in raw logs: streams, rates, gaps, what looks wrong");
+  auto* command = app.add_subcommand(
+      "inspect",
+      "What is in raw logs: streams, rates, gaps, what looks wrong\n\n"
+      "Formats are known by their content. With -o a drive.yaml is written as well, as 'waymark init' does.");
   const auto options = std::make_shared<InspectCommand>();
   command->add_option("logs", options->logs, "Logs, and the DBC of CAN logs")->required()->type_name("LOG");
   add_inspection_options(*command, *options);

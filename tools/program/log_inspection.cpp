@@ -31,8 +31,8 @@ bool is_dbc(const std::string& path) {
 
 void add_inspection_options(CLI::App& command, InspectCommand& options) {
   command.add_option("--format", options.format, "The logs' format; default: known by their content")
-      ->type_name("NAME");
-  command.add_option("--dbc", options.dbc, "Which signals CAN frames hold")->type_name("FILE");
+      ->type_name("LOG_FORMAT");
+  command.add_option("--dbc", options.dbc, "Which signals CAN frames hold")->type_name("FILE.dbc");
   command.add_option("-o,--out", options.output, "Write a drive.yaml to edit")->type_name("DRIVE.yaml");
   command.add_flag("--force", options.force, "Replace an existing drive.yaml");
   options.common = {};

@@ -76,11 +76,19 @@ ExitCode optimize_file(const OptimizeOptions& options) {
 }  // namespace
 
 void add_optimize(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("optimize", "Minimise chi2 of a graph");
+  auto* command = app.add_subcommand(
+      "optimize",
+      "Minimise chi2 of a graph\n\n"
+      "Reads a graph, finds the poses that explain its edges best and writes the graph with them. It says "
+      "whether a minimum was reached. A graph without a fixed vertex or a prior has its first vertex held; "
+      "that is said, not written.");
   const auto options = std::make_shared<OptimizeOptions>();
   command->add_option("graph", options->input, "Graph file: .graph, g2o, or as --input-format says")
-      ->required();
-  command->add_option("-o,--output", options->output, "File to write ('-': standard output)")->required();
+      ->required()
+      ->type_name("GRAPH");
+  command->add_option("-o,--output", options->output, "File to write ('-': standard output)")
+      ->required()
+      ->type_name("FILE");
   add_input_format(*command, options->input_format);
   add_output_format(*command, options->format, false);
   options->choice.start = "auto";
@@ -88,11 +96,14 @@ void add_optimize(CLI::App& app, Action& action) {
       ->add_option("--start", options->choice.start,
                    "Where to begin: 'file' (its values), a start that `waymark info` lists, or 'auto': what "
                    "promises most, and others where the minimum found is implausible")
+      ->type_name("START|file|auto")
       ->capture_default_str();
   command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");
   add_optimization_options(*command, options->choice);
-  command->add_option("--covariance-file", options->covariance_file,
-                      "The covariances as a table too: FILE.csv or FILE.json");
+  command
+      ->add_option("--covariance-file", options->covariance_file,
+                   "The covariances as a table too: FILE.csv or FILE.json")
+      ->type_name("FILE.csv|FILE.json");
   add_robust_options(*command, options->robust);
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark optimize drive.graph -o fused.graph --algorithm dogleg");

@@ -23,4 +23,34 @@ namespace waymark {
 /// The registry for a command whose input may be a drive.yaml: with the plugins that it names.
 [[nodiscard]] TypeRegistry make_registry_for(const std::string& input, const CommonOptions& options);
 
+/// A folder in which plugins are looked for.
+struct PluginFolder {
+  std::string path;
+  bool installed = false;  ///< the program's own; else of WAYMARK_PLUGIN_PATH
+  std::string problem;     ///< why nothing can come from it; empty: none
+};
+
+/// A module that was asked for or lay in a folder.
+struct PluginModule {
+  enum class State { loaded, refused, no_plugin };
+  std::string file;        ///< where it was not found: the name
+  bool asked_for = false;  ///< by --plugin or a drive.yaml
+  State state = State::loaded;
+  std::string problem;  ///< reason and remedy where it was not loaded
+};
+
+/// The registry, and how the search for plugins went.
+struct PluginSearch {
+  TypeRegistry registry;
+  std::vector<PluginFolder> folders;
+  std::vector<PluginModule> modules;  ///< in the order in which they were tried
+};
+
+/// What make_registry does, without a word: what cannot be loaded is in the result.
+/// @param wanted  files or names
+[[nodiscard]] PluginSearch search_plugins(const std::vector<std::string>& wanted);
+
+/// Names by which --plugin finds the modules of the folders.
+[[nodiscard]] std::vector<std::string> installed_plugin_names();
+
 }  // namespace waymark

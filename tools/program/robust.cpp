@@ -5,6 +5,7 @@
 #include <waymark/core/error.hpp>
 #include <waymark/core/suggest.hpp>
 #include <waymark/formats/text_builder.hpp>
+#include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/robust.hpp>
 
@@ -89,9 +90,10 @@ Loss named_loss(const std::string& text, const std::string& place, const TypeReg
 }
 
 void add_robust_options(CLI::App& command, RobustChoice& choice) {
+  const OptionHeading heading(command, "Outliers");
   command
       .add_option("--loss", choice.losses, "Robust loss of all edges that are not trusted, or of one type")
-      ->type_name("[TAG=]NAME:SCALE")
+      ->type_name("[TAG=]LOSS:SCALE")
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -104,9 +106,12 @@ void add_robust_options(CLI::App& command, RobustChoice& choice) {
       .add_option("--trusted", choice.trusted,
                   "Edges that get no loss and are no outliers: odometry (between consecutive ids), none, or "
                   "those of a TAG")
+      ->type_name("odometry|none|TAG")
       ->capture_default_str();
-  command.add_option("--outliers", choice.outliers,
-                     "File for the edges judged outliers, a line each ('-': standard output)");
+  command
+      .add_option("--outliers", choice.outliers,
+                  "File for the edges judged outliers, a line each ('-': standard output)")
+      ->type_name("FILE");
 }
 
 void check_robust(const RobustChoice& choice, const TypeRegistry& registry) {

@@ -167,14 +167,23 @@ ExitCode run_drive(const RunOptions& options) {
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("run", "The whole job: convert, optimise, evaluate");
+  auto* command = app.add_subcommand(
+      "run",
+      "The whole job: convert, optimise, evaluate\n\n"
+      "Reads the logs that the drive.yaml names, makes the graph, optimises it and compares the result with "
+      "truth and with the fixes that were kept out. The folder then holds graphs, trajectories and metrics, "
+      "for each modeling.");
   const auto options = std::make_shared<RunOptions>();
   command->add_option("drive", options->input, "Description of the drive and its logs (drive.yaml)")
-      ->required();
-  command->add_option("-o,--out", options->folder, "Folder for all results")->required();
+      ->required()
+      ->type_name("DRIVE.yaml");
+  command->add_option("-o,--out", options->folder, "Folder for all results")->required()->type_name("DIR");
   add_drive_options(*command, options->overrides);
-  command->add_flag("--causal", options->causal,
-                    "Also predict each outage of --outage from what was known before its end");
+  {
+    const OptionHeading heading(*command, "The drive");
+    command->add_flag("--causal", options->causal,
+                      "Also predict each outage of --outage from what was known before its end");
+  }
   add_optimization_options(*command, options->choice);
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark run drive.yaml --out results --modeling all");

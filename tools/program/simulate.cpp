@@ -128,16 +128,20 @@ std::string wrong_seed(const std::string& text) {
 }  // namespace
 
 void add_simulate(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("simulate", "Raw logs of a simulated drive, with truth and drive.yaml");
+  auto* command = app.add_subcommand("simulate",
+                                     "Raw logs of a simulated drive, with truth and drive.yaml\n\n"
+                                     "The errors of the logs are like those of real receivers and wheels, "
+                                     "biases and gaps included. The same "
+                                     "seed gives the same logs. What the drive is like is printed.");
   const auto options = std::make_shared<SimulateOptions>();
   auto* list = command->add_flag("--list", options->list, "The presets");
   auto* preset =
-      command->add_option("--preset", options->preset, "Which drive to simulate")->type_name("NAME");
+      command->add_option("--preset", options->preset, "Which drive to simulate")->type_name("PRESET");
   command->add_option("--seed", options->seed, "Seed of all random numbers; default: the preset's")
       ->check(CLI::Validator(wrong_seed, ""))
       ->needs(preset);
   command->add_option("--duration", options->duration_s, "Seconds, instead of the preset's")
-      ->type_name("S")
+      ->type_name("SECONDS")
       ->needs(preset);
   command
       ->add_option("-o,--out", options->folder, "Folder for odometry.csv, gnss.json, truth.csv, drive.yaml")
@@ -146,7 +150,7 @@ void add_simulate(CLI::App& app, Action& action) {
   command
       ->add_option("--describe", options->describe,
                    "Instead of simulating: the same table of any drive.yaml, to compare with")
-      ->type_name("FILE")
+      ->type_name("DRIVE.yaml")
       ->excludes(list)
       ->excludes(preset);
   list->excludes(preset);

@@ -97,7 +97,11 @@ ExitCode synchronise(const SyncCommand& command) {
 }  // namespace
 
 void add_sync(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("sync", "How late a drive's odometry is stamped against its GNSS");
+  auto* command = app.add_subcommand(
+      "sync",
+      "How late a drive's odometry is stamped against its GNSS\n\n"
+      "Compares the odometry's speed and yaw rate with those of the fixes, and the stamps of a log with the "
+      "GNSS time it holds. Nothing is changed; --sync of 'waymark run' and 'waymark convert' applies it.");
   const auto options = std::make_shared<SyncCommand>();
   command->add_option("drive", options->input, "drive.yaml")->required()->type_name("DRIVE.yaml");
   command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own")
