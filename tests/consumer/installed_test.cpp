@@ -47,6 +47,13 @@ TEST_CASE("installed: the program runs from any prefix, and nothing points into 
   }
 }
 
+TEST_CASE("installed: a man page of every subcommand, and the completion where bash-completion looks") {
+  CHECK(contains(read_text(kPrefix + "/share/man/man1/waymark.1"), "waymark \\- fuses odometry with GNSS"));
+  CHECK(contains(read_text(kPrefix + "/share/man/man1/waymark-run.1"), ".SH SYNOPSIS\n\\fBwaymark run\\fR"));
+  const std::string script = read_text(kPrefix + "/share/bash-completion/completions/waymark");
+  CHECK(script == run({"completion", "bash"}, {.program = kPrefix + "/bin/waymark"}).out);
+}
+
 TEST_CASE("installed: the shared library has a version and a soname") {
   CHECK(fs::is_symlink(INSTALLED_LIBDIR "/libwaymark_core.so"));
   const RunResult result =

@@ -1,6 +1,6 @@
 // A plugin in many variants, each wrong in one way (tests/CMakeLists.txt): compiled with other flags, linked
-// with -Ofast, a tag that is taken, a registration that throws, no descriptor. A sound one tells, by a file,
-// when any of its code runs.
+// with -Ofast, a tag that is taken, a registration that throws, a solver that fails, no descriptor. A sound
+// one tells, by a file, when any of its code runs.
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -46,8 +46,26 @@ struct EdgeSample {
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
 };
 
+#if defined(SAMPLE_BROKEN_SOLVER)
+/// Calls every matrix indefinite.
+class Refusing final : public waymark::LinearSolver {
+ public:
+  void analyze(const waymark::BlockPattern&) override {}
+  [[nodiscard]] waymark::FactorStatus factorize(std::span<const double>) override {
+    return waymark::FactorStatus::not_positive_definite;
+  }
+  void solve(std::span<const double>, std::span<double>) override {}
+  [[nodiscard]] std::int64_t factor_size() const override { return 0; }
+  [[nodiscard]] std::string description() const override { return "refuses"; }
+};
+#endif
+
 [[maybe_unused]] void register_types(waymark::TypeRegistry& registry) {
   registry.add_edge<EdgeSample>();
+#if defined(SAMPLE_BROKEN_SOLVER)
+  registry.add_linear_solver(
+      {"refusing", "refuses", "BSD-3-Clause", [] { return std::make_unique<Refusing>(); }});
+#endif
 #if defined(SAMPLE_THROWS)
   throw std::runtime_error("the sensor is not plugged in");
 #elif defined(SAMPLE_THROWS_NUMBER)

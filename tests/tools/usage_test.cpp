@@ -7,8 +7,9 @@
 
 namespace {
 
-const std::vector<std::string> kCommands = {"convert", "optimize", "evaluate", "run",
-                                            "bench",   "info",     "check"};
+const std::vector<std::string> kCommands = {"inspect",  "init",   "sync",  "convert",  "optimize",
+                                            "evaluate", "run",    "bench", "info",     "check",
+                                            "simulate", "doctor", "help",  "reproduce"};
 
 }  // namespace
 
@@ -26,10 +27,11 @@ TEST_CASE("help of every subcommand has an example, and the program's the exit c
                  "Exit codes: 0 success, 1 internal error, 2 wrong usage, 3 bad input, 4 no convergence"));
 }
 
-TEST_CASE("the version names the program first") {
+TEST_CASE("the version is one line that names the program first") {
   const RunResult result = run({"--version"});
   CHECK(result.code == 0);
-  CHECK(result.out.rfind("waymark ", 0) == 0);
+  CHECK(result.out.starts_with("waymark "));
+  CHECK(result.out.find('\n') == result.out.size() - 1);
 }
 
 TEST_CASE("wrong words on the command line are usage errors that name them") {

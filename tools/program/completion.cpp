@@ -147,6 +147,7 @@ _waymark_offer()
   [[ ${{#COMPREPLY[@]}} -eq 0 ]] || COMPREPLY=($(printf '%s\n' "${{COMPREPLY[@]}}" | sort -u))
   # "huber:" waits for its scale.
   [[ ${{COMPREPLY[*]}} != *: ]] || compopt -o nospace 2>/dev/null
+  return 0
 }}
 
 _waymark()

@@ -32,7 +32,10 @@ ExitCode help(const CLI::App& app, const HelpOptions& options) {
     write_pages(app, options.folder);
     return kSuccess;
   }
-  write_file_atomically("-", options.man ? man_page(command, source_date()) : command.help());
+  // Not command.help(): of the program that would be the help of the subcommand that was chosen, this one.
+  write_file_atomically(
+      "-", options.man ? man_page(command, source_date())
+                       : command.get_formatter()->make_help(&command, "", CLI::AppFormatMode::Normal));
   return kSuccess;
 }
 

@@ -28,6 +28,10 @@ void split_type(const std::string& type, OptionText& text) {
   if (text.value == "FLOAT") text.value = "NUMBER";
 }
 
+std::string name_of(const CLI::Option& option) {
+  return option.nonpositional() ? option.get_name() : option.get_type_name();
+}
+
 OptionText describe(const CLI::Option& option) {
   OptionText text;
   for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
@@ -39,8 +43,8 @@ OptionText describe(const CLI::Option& option) {
   text.group = option.get_group();
   text.required = option.get_required();
   text.repeated = text.positional() && option.get_expected_max() >= CLI::detail::expected_max_vector_size;
-  for (const CLI::Option* other : option.get_needs()) text.needs.push_back(other->get_name());
-  for (const CLI::Option* other : option.get_excludes()) text.excludes.push_back(other->get_name());
+  for (const CLI::Option* other : option.get_needs()) text.needs.push_back(name_of(*other));
+  for (const CLI::Option* other : option.get_excludes()) text.excludes.push_back(name_of(*other));
   std::sort(text.needs.begin(), text.needs.end());  // the parser has them in the order of addresses
   std::sort(text.excludes.begin(), text.excludes.end());
   return text;
