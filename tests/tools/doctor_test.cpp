@@ -98,6 +98,7 @@ TEST_CASE("doctor: broken plugins in a folder are named with reason and remedy, 
   CHECK(plugins.at("folders").back().at("problem") == "No such file or directory");
   CHECK(plugins.at("loaded").back().at("name") == "sample");
   CHECK(plugins.at("loaded").back().at("version") == "1.2.3");
+  CHECK(plugins.at("loaded").back().at("abi") == 3);
   CHECK(plugins.at("loaded").back().at("brings") == Json::array({"EDGE_SAMPLE"}));
   REQUIRE(plugins.at("left_out").size() == 2);
   CHECK(plugins.at("left_out")[0].at("file") == folder + "old.so");

@@ -78,6 +78,9 @@ TEST_CASE("a report that cannot be written is an error too") {
                                                     {"info"},
                                                     {"info", "--json"},
                                                     {"--help"},
+                                                    {"help", "run"},
+                                                    {"completion", "bash"},
+                                                    {"doctor"},
                                                     {"--version"}}) {
     INFO(arguments[0]);
     const RunResult result = run(arguments, {.out_file = "/dev/full", .folder = folder});

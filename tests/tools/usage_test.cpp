@@ -116,6 +116,7 @@ TEST_CASE("quiet prints nothing and json only json, for every subcommand") {
       {"evaluate", folder + "b.graph", "--truth", drive},
       {"run", drive, "--out", folder + "results"},
       {"info"},
+      {"doctor", drive},
       {"check", folder + "b.graph"}};
   for (std::vector<std::string> arguments : commands) {
     INFO(arguments[0]);

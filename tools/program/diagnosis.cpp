@@ -103,6 +103,8 @@ Json plugin_search_json(const PluginSearch& search, Diagnosis& diagnosis) {
     if (!folder.installed && !folder.problem.empty())
       diagnosis.json["warnings"].push_back("no plugins from " + folder.path + ": " + folder.problem);
   }
+  Json loaded = plugins_json(search.registry);
+  for (Json& plugin : loaded) plugin["abi"] = kPluginAbi;  // others are not loaded
   Json left_out = Json::array();
   for (const PluginModule& module : search.modules) {
     if (module.state == PluginModule::State::loaded) continue;
@@ -116,7 +118,7 @@ Json plugin_search_json(const PluginSearch& search, Diagnosis& diagnosis) {
   return {{"variable", "WAYMARK_PLUGIN_PATH"},
           {"value", environment("WAYMARK_PLUGIN_PATH")},
           {"folders", folders},
-          {"loaded", plugins_json(search.registry)},
+          {"loaded", loaded},
           {"left_out", left_out}};
 }
 

@@ -94,11 +94,11 @@ std::string plugins_text(const Json& plugins) {
   text += columns(rows);
   if (string_of(plugins, "value").empty())
     text += "  " + string_of(plugins, "variable") + " is not set; it may name more, separated by ':'\n";
-  text += "\nplugins\n";
+  text += "\nplugins: version, ABI, place, what they bring\n";
   rows.clear();
   for (const Json& plugin : plugins["loaded"])
-    rows.push_back({string_of(plugin, "name"), string_of(plugin, "version"), string_of(plugin, "place"),
-                    words(plugin["brings"], " ")});
+    rows.push_back({string_of(plugin, "name"), string_of(plugin, "version"), plugin["abi"].dump(),
+                    string_of(plugin, "place"), words(plugin["brings"], " ")});
   text += columns(rows);
   for (const Json& module : plugins["left_out"]) text += "  left out: " + string_of(module, "problem") + "\n";
   return text;

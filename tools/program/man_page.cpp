@@ -192,6 +192,7 @@ std::string man_page(const CLI::App& command, const std::string& date) {
   if (summary.ends_with('.')) summary.pop_back();
   std::string page =
       fmt::format(".TH {} 1 \"{}\" \"waymark {}\" \"Waymark manual\"\n", title, date, WAYMARK_VERSION);
+  page += ".nh\n.ad l\n";  // names such as WAYMARK_PLUGIN_PATH are not to be divided
   page += ".SH NAME\n" + escaped(page_name(command)) + " \\- " + escaped(summary) + "\n";
   page += ".SH SYNOPSIS\n" + synopsis(command);
   const std::string details = details_of(command);

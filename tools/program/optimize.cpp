@@ -100,10 +100,13 @@ void add_optimize(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");
   add_optimization_options(*command, options->choice);
-  command
-      ->add_option("--covariance-file", options->covariance_file,
-                   "The covariances as a table too: FILE.csv or FILE.json")
-      ->type_name("FILE.csv|FILE.json");
+  {
+    const OptionHeading heading(*command, "Optimisation");
+    command
+        ->add_option("--covariance-file", options->covariance_file,
+                     "The covariances as a table too: FILE.csv or FILE.json")
+        ->type_name("FILE.csv|FILE.json");
+  }
   add_robust_options(*command, options->robust);
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark optimize drive.graph -o fused.graph --algorithm dogleg");
