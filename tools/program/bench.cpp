@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/format.h>
+
 #include <waymark/core/error.hpp>
 #include <waymark/core/suggest.hpp>
 #include <waymark/formats/text_file.hpp>
