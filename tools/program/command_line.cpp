@@ -61,9 +61,7 @@ const CLI::App& find_command(const CLI::App& app, const std::string& name) {
     names.push_back(command->get_name());
   }
   const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::string nearest = did_you_mean(name, views);
-  throw UsageError("unknown subcommand '" + name + "'" +
-                   (nearest.empty() ? "; there are: " + joined(views) : nearest));
+  throw UsageError("unknown subcommand '" + name + "'" + suggestion(name, views));
 }
 
 std::vector<Surrounding> environment_variables() {
