@@ -222,7 +222,7 @@ std::vector<std::string> wanted_plugins(const CommonOptions& options,
 Diagnosis diagnose(const CommonOptions& options, const std::vector<std::string>& inputs) {
   Diagnosis diagnosis;
   Json& json = diagnosis.json;
-  json = {{"schema", "waymark-doctor"}, {"version", 1}, {"program", WAYMARK_VERSION}};
+  json = {{"schema", "waymark-doctor"}, {"version", 1}, {"program_version", WAYMARK_VERSION}};
   json["problems"] = Json::array();
   json["warnings"] = Json::array();
   json["build"] = build_json();

@@ -50,7 +50,7 @@ std::string program_text(const Json& json) {
   const Json& licence = json["licence"];
   const std::string features = words(processor["features"], " ");
   const std::string because = words(licence["because"], ", ");
-  return line("waymark", string_of(json, "program")) +
+  return line("waymark", string_of(json, "program_version")) +
          line("build", fmt::format("{}, {}; plugin ABI {}, Eigen's alignment {}",
                                    string_of(build, "compiler"), string_of(build, "type"),
                                    build["plugin_abi"].get<int>(), build["eigen_alignment"].get<int>())) +
