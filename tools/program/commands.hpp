@@ -16,6 +16,7 @@ using Action = std::function<ExitCode()>;
 void add_convert(CLI::App& app, Action& action);
 void add_optimize(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_sync(CLI::App& app, Action& action);

@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/report/bars.hpp>
+#include <waymark/tools/report/comparison_parts.hpp>
+#include <waymark/tools/report/look.hpp>
+
+namespace waymark {
+namespace {
+
+using Groups = std::vector<DriveGroup>;
+
+constexpr std::size_t kRunsInFigure = 7;  // as many as there are looks of systems
+constexpr int kHalfWidth = 460;
+constexpr std::size_t kLongName = 22;  // characters: its bars need the whole width
+
+/// Metrics that have a figure of their own; the others are in the table.
+bool is_drawn(const PositionColumn& column) {
+  return column.name != "median" && column.name != "CEP50";
+}
+
+/// The width for figures of bars under these names.
+int width_for(const std::vector<std::string>& names) {
+  const bool has_long =
+      std::any_of(names.begin(), names.end(), [](const auto& name) { return name.size() > kLongName; });
+  return has_long ? Figure().width : kHalfWidth;
+}
+
+/// At most seven runs of a drive that have epochs.
+struct Part {
+  const DriveGroup* group = nullptr;
+  std::vector<const ComparedRun*> runs;
+  std::size_t first = 0;  ///< index of the first of them in the group
+  std::size_t number = 0;
+};
+
+std::vector<Part> parts_with_epochs(const Groups& groups) {
+  std::vector<Part> parts;
+  for (const DriveGroup& group : groups) {
+    Part part{&group, {}, 0, parts.size()};
+    for (std::size_t r = 0; r < group.runs.size(); ++r) {
+      const Evaluation& evaluation = group.runs[r]->evaluation;
+      if (evaluation.epochs.empty() || !evaluation.truth) continue;
+      if (part.runs.size() == kRunsInFigure) {
+        parts.push_back(part);
+        part = {&group, {}, r, parts.size()};
+      }
+      part.runs.push_back(group.runs[r]);
+    }
+    if (!part.runs.empty()) parts.push_back(part);
+  }
+  return parts;
+}
+
+double length_of(const std::optional<Eigen::Vector2d>& offset) {
+  return offset ? offset->norm() : kUndefined;
+}
+
+using Offset = std::optional<Eigen::Vector2d> EpochResult::*;
+
+Series distribution_of(const ComparedRun& run, Offset offset, const std::string& name, Look look) {
+  Series series{.name = name, .mark = Mark::line, .look = look};
+  for (const EpochResult& epoch : run.evaluation.epochs)
+    if (epoch.*offset) series.x.push_back((epoch.*offset)->norm());
+  std::sort(series.x.begin(), series.x.end());
+  for (std::size_t i = 0; i < series.x.size(); ++i)
+    series.y.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(series.x.size()));
+  return series;
+}
+
+Series course_of(const ComparedRun& run, Offset offset, Stamp begin, const std::string& name, Look look) {
+  Series series{.name = name, .mark = Mark::line, .look = look};
+  for (const EpochResult& epoch : run.evaluation.epochs) {
+    series.x.push_back(seconds_between(begin, epoch.stamp));
+    series.y.push_back(length_of(epoch.*offset));
+  }
+  series.time = series.x;
+  return series;
+}
+
+/// One line for the raw fixes of the first run, and one for each run.
+template <typename MakeSeries>
+void add_systems(const Part& part, const MakeSeries& make, Figure& figure) {
+  figure.series.push_back(make(*part.runs.front(), &EpochResult::gnss_offset_m, "raw GNSS", Look::raw));
+  for (std::size_t r = 0; r < part.runs.size(); ++r)
+    figure.series.push_back(
+        make(*part.runs[r], &EpochResult::fused_offset_m, part.runs[r]->label, look_of_system(r)));
+}
+
+std::string titled(const Groups& groups, const Part& part, const std::string& title) {
+  std::string text = groups.size() > 1 ? part.group->drive + ": " + title : title;
+  if (part.group->runs.size() > kRunsInFigure)
+    text += fmt::format(", runs {} to {}", part.first + 1, part.first + part.runs.size());
+  return text;
+}
+
+/// The error that 99 % of the epochs of the worst system stay below.
+double common_end(const Figure& figure) {
+  double end = 0;
+  for (const Series& series : figure.series)
+    if (!series.x.empty()) end = std::max(end, nearest_rank_quantile(series.x, 0.99));
+  return end;
+}
+
+Figure bars_of_endings(const std::string& id, const std::string& title, const std::string& description,
+                       const Axis& axis) {
+  return {.id = id, .title = title, .description = description, .x = axis, .y = {}, .series = {}};
+}
+
+}  // namespace
+
+std::vector<Figure> error_bars(const Groups& groups) {
+  std::vector<Figure> figures;
+  for (const PositionColumn& column : position_columns()) {
+    if (!is_drawn(column)) continue;
+    Figure figure{.id = "error-" + column.id,
+                  .title = column.name,
+                  .description = column.about + ".",
+                  .x = {.title = column.name, .unit = "m"},
+                  .y = {},
+                  .series = {}};
+    Series raw{.name = "raw GNSS", .mark = Mark::bars, .look = Look::raw};
+    Series fused{.name = "fused", .mark = Mark::bars, .look = Look::fused};
+    for (const DriveGroup& group : groups) {
+      for (const SystemRow& row : rows_against_truth(group)) {
+        Series& series = row.run == nullptr ? raw : fused;
+        series.x.push_back(row.metrics.position.*column.value);
+        series.y.push_back(static_cast<double>(figure.y.categories.size()));
+        figure.y.categories.push_back(row_name(groups, group, row.label));
+      }
+    }
+    if (figure.y.categories.empty()) return {};
+    figure.series = {raw, fused};
+    figure.width = width_for(figure.y.categories);
+    fit_bars(figure);
+    figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+std::vector<Figure> distribution_figures(const Groups& groups) {
+  std::vector<Figure> figures;
+  for (const Part& part : parts_with_epochs(groups)) {
+    Figure figure{.id = fmt::format("distribution-{}", part.number + 1),
+                  .title = titled(groups, part, "distribution of the position error"),
+                  .description =
+                      "Share of the epochs whose error is at most so large. The axis ends where 99 % "
+                      "of the worst system's errors lie; the largest ones are in the table.",
+                  .x = {.title = "position error", .unit = "m", .low = 0},
+                  .y = {.title = "epochs", .unit = "%", .low = 0, .high = 100},
+                  .series = {}};
+    add_systems(part, distribution_of, figure);
+    figure.x.high = common_end(figure);
+    figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+std::vector<Figure> course_figures(const Groups& groups) {
+  std::vector<Figure> figures;
+  for (const Part& part : parts_with_epochs(groups)) {
+    Stamp begin = part.runs.front()->evaluation.epochs.front().stamp;
+    for (const ComparedRun* run : part.runs) begin = std::min(begin, run->evaluation.epochs.front().stamp);
+    Figure figure{.id = fmt::format("course-{}", part.number + 1),
+                  .title = titled(groups, part, "position error over time"),
+                  .description = "Distance from the truth at each fix. Drag to move, wheel to zoom.",
+                  .x = {.title = "time since the first fix", .unit = "s"},
+                  .y = {.title = "position error", .unit = "m", .logarithmic = true},
+                  .series = {},
+                  .motion = Motion::x,
+                  .link = "time-" + std::to_string(part.number + 1)};
+    add_systems(
+        part,
+        [&](const ComparedRun& run, Offset offset, const std::string& name, Look look) {
+          return course_of(run, offset, begin, name, look);
+        },
+        figure);
+    figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+std::vector<Figure> ending_figures(const std::vector<ComparedRun>& runs) {
+  Figure iterations =
+      bars_of_endings("iterations", "Iterations", "Accepted and rejected steps. A cross: not converged.",
+                      {.title = "iterations", .unit = ""});
+  Figure seconds =
+      bars_of_endings("seconds", "Time of the minimisation", "Wall time of one run. A cross: not converged.",
+                      {.title = "time", .unit = "s"});
+  for (Figure* figure : {&iterations, &seconds}) {
+    Series bars{.name = "converged", .mark = Mark::bars, .look = Look::fused};
+    Series missed{.name = "not converged", .mark = Mark::points, .look = Look::rejected};
+    for (const ComparedRun& run : runs) {
+      if (!run.ending) continue;
+      const double row = static_cast<double>(figure->y.categories.size());
+      const double value =
+          figure == &seconds ? run.ending->seconds : static_cast<double>(run.ending->iterations);
+      figure->y.categories.push_back(run.label);
+      bars.x.push_back(value);
+      bars.y.push_back(row);
+      if (run.ending->converged) continue;
+      missed.x.push_back(value);
+      missed.y.push_back(row);
+    }
+    if (figure->y.categories.empty()) return {};
+    figure->series = {bars};
+    if (!missed.x.empty()) figure->series.push_back(missed);
+    figure->width = width_for(figure->y.categories);
+    fit_bars(*figure);
+  }
+  return {iterations, seconds};
+}
+
+}  // namespace waymark

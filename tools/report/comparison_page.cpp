@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/core/error.hpp>
+#include <waymark/tools/report/comparison_page.hpp>
+#include <waymark/tools/report/comparison_parts.hpp>
+#include <waymark/tools/report/honesty_figures.hpp>
+
+namespace waymark {
+namespace {
+
+using Groups = std::vector<DriveGroup>;
+using Runs = std::vector<ComparedRun>;
+
+void add_table(PageTable table, Section& section) {
+  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+}
+
+/// Narrow figures in pairs, wide ones below each other.
+void add_figures(std::vector<Figure> figures, Section& section) {
+  if (figures.empty()) return;
+  if (figures.front().width >= Figure().width) {
+    for (Figure& figure : figures) section.blocks.emplace_back(std::move(figure));
+    return;
+  }
+  for (std::size_t i = 0; i < figures.size(); i += 2) {
+    FigureRow row;
+    for (std::size_t k = i; k < std::min(i + 2, figures.size()); ++k)
+      row.figures.push_back(std::move(figures[k]));
+    section.blocks.emplace_back(std::move(row));
+  }
+}
+
+/// The run of a drive with the smallest RMSE; null where no truth is.
+const ComparedRun* best_run(const DriveGroup& group) {
+  const ComparedRun* best = nullptr;
+  const auto rmse = [](const ComparedRun* run) { return run->evaluation.truth->fused.position.rmse_m; };
+  for (const ComparedRun* run : group.runs) {
+    if (!run->evaluation.truth || !std::isfinite(rmse(run))) continue;
+    if (best == nullptr || rmse(run) < rmse(best)) best = run;
+  }
+  return best;
+}
+
+std::string best_sentence(const DriveGroup& group, const ComparedRun& best) {
+  const TruthEvaluation& truth = *best.evaluation.truth;
+  const double percent = truth.improvement.rmse_percent;
+  const std::string change = std::isfinite(percent) ? fmt::format(", {:.1f} % {}", std::abs(percent),
+                                                                  percent < 0 ? "worse" : "better")
+                                                    : std::string();
+  return fmt::format("{}: {} has the smallest RMSE, {:.3f} m (raw GNSS {:.3f} m{}).",
+                     group.drive.empty() ? "The drive" : group.drive, best.label, truth.fused.position.rmse_m,
+                     truth.gnss.position.rmse_m, change);
+}
+
+/// Counts of what went wrong in words; empty where nothing did.
+std::string failures_sentence(const Runs& runs) {
+  std::string names;
+  for (const ComparedRun& run : runs) {
+    if (run.ending && !run.ending->converged) names.append(names.empty() ? "" : ", ").append(run.label);
+  }
+  return names.empty() ? "" : " Not converged: " + names + ".";
+}
+
+void add_summary(const Runs& runs, const Groups& groups, Page& page) {
+  std::string text;
+  bool all_better = true;
+  bool all_worse = true;
+  for (const DriveGroup& group : groups) {
+    const ComparedRun* best = best_run(group);
+    if (best == nullptr) continue;
+    text.append(text.empty() ? "" : " ").append(best_sentence(group, *best));
+    const bool better = best->evaluation.truth->improvement.rmse_percent > 0;
+    all_better = all_better && better;
+    all_worse = all_worse && !better;
+  }
+  if (text.empty())
+    text = "No run has a truth to be compared with.";
+  else if (all_better || all_worse)
+    page.verdict = all_better ? Verdict::better : Verdict::worse;
+  page.summary = text + failures_sentence(runs);
+}
+
+Section errors_section(const Groups& groups) {
+  Section section{"errors", "Errors", {}};
+  if (groups.size() > 1)
+    section.blocks.emplace_back(Paragraph{
+        "The runs are of several drives. Errors are comparable within a drive only: each has fixes of its "
+        "own."});
+  add_table(error_table(groups), section);
+  add_figures(error_bars(groups), section);
+  add_table(improvement_table(groups), section);
+  add_table(track_table(groups), section);
+  add_table(withheld_error_table(groups), section);
+  return section;
+}
+
+Section course_section(const Groups& groups) {
+  Section section{"course", "Distribution and course", {}};
+  add_figures(distribution_figures(groups), section);
+  add_figures(course_figures(groups), section);
+  return section;
+}
+
+Section honesty_section(const Groups& groups) {
+  Section section{"honesty", "Stated against actual errors", {}};
+  std::vector<StatedErrors> rows;
+  for (const DriveGroup& group : groups) {
+    for (const ComparedRun* run : group.runs) {
+      if (run->evaluation.truth && run->evaluation.truth->consistency)
+        rows.push_back({row_name(groups, group, run->label), *run->evaluation.truth->consistency});
+    }
+  }
+  add_table(stated_error_table(groups), section);
+  add_figures(honesty_figures("stated", rows), section);
+  return section;
+}
+
+Section ending_section(const Runs& runs) {
+  Section section{"convergence", "Convergence", {}};
+  add_table(ending_table(runs), section);
+  add_figures(ending_figures(runs), section);
+  return section;
+}
+
+Section differences_section(const Runs& runs, const Groups& groups) {
+  Section section{"differences", "What differs", {}};
+  PageTable differences = provenance_differences(runs);
+  if (differences.rows.empty())
+    section.blocks.emplace_back(Paragraph{"Program, inputs and options are the same in all runs."});
+  add_table(std::move(differences), section);
+  add_table(fixes_table(groups), section);
+  return section;
+}
+
+std::string subtitle(const Runs& runs, const Groups& groups) {
+  std::string text = fmt::format("{} run{} of ", runs.size(), runs.size() == 1 ? "" : "s");
+  if (groups.size() > 1) text += fmt::format("{} drives: ", groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    text.append(g == 0 ? "" : ", ").append(groups[g].drive.empty() ? "an unnamed drive" : groups[g].drive);
+  return text;
+}
+
+}  // namespace
+
+Page comparison_page(const Runs& runs, const std::string& version) {
+  if (runs.empty()) throw UsageError("a comparison of no runs was asked for");
+  const Groups groups = groups_by_drive(runs);
+  Page page;
+  page.title = "Comparison of runs";
+  page.subtitle = subtitle(runs, groups);
+  page.footer = "Made by waymark " + version + ".";
+  add_summary(runs, groups, page);
+  for (Section section : {errors_section(groups), course_section(groups), honesty_section(groups),
+                          ending_section(runs), differences_section(runs, groups)}) {
+    if (!section.blocks.empty()) page.sections.push_back(std::move(section));
+  }
+  return page;
+}
+
+}  // namespace waymark

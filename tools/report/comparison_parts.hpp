@@ -1,0 +1,63 @@
+/// Tables and figures of a comparison page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <waymark/tools/report/compared_run.hpp>
+#include <waymark/tools/report/page.hpp>
+
+namespace waymark {
+
+/// The runs of one drive.
+struct DriveGroup {
+  std::string drive;
+  std::vector<const ComparedRun*> runs;
+};
+/// In order of their first runs.
+[[nodiscard]] std::vector<DriveGroup> groups_by_drive(const std::vector<ComparedRun>& runs);
+
+/// What one system achieved on a drive against truth: the raw fixes, or a run.
+struct SystemRow {
+  std::string label;
+  const ComparedRun* run = nullptr;  ///< null: raw fixes
+  SystemMetrics metrics;
+};
+/// Raw fixes, again where they differ between the runs (other epochs), and the runs. Empty without truth.
+[[nodiscard]] std::vector<SystemRow> rows_against_truth(const DriveGroup& group);
+/// The runs at their withheld fixes, by what was predicted there ("fused", "dead reckoning").
+[[nodiscard]] std::vector<SystemRow> rows_at_withheld(const DriveGroup& group);
+
+/// A metric of positions.
+struct PositionColumn {
+  std::string name;  ///< "RMSE"
+  std::string id;    ///< "rmse"
+  std::string about;
+  double PositionMetrics::*value;
+};
+[[nodiscard]] const std::vector<PositionColumn>& position_columns();
+
+[[nodiscard]] PageTable error_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] PageTable improvement_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] PageTable track_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] PageTable withheld_error_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] PageTable stated_error_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] PageTable fixes_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] PageTable ending_table(const std::vector<ComparedRun>& runs);
+
+/// A figure of bars for each metric, a row for each system.
+[[nodiscard]] std::vector<Figure> error_bars(const std::vector<DriveGroup>& groups);
+/// Distribution of the errors, a figure for each drive and seven runs.
+[[nodiscard]] std::vector<Figure> distribution_figures(const std::vector<DriveGroup>& groups);
+/// Errors over time, likewise.
+[[nodiscard]] std::vector<Figure> course_figures(const std::vector<DriveGroup>& groups);
+/// Iterations, seconds, and chi2 over the accepted steps.
+[[nodiscard]] std::vector<Figure> ending_figures(const std::vector<ComparedRun>& runs);
+
+/// With the drive before it where there are several.
+[[nodiscard]] std::string row_name(const std::vector<DriveGroup>& groups, const DriveGroup& group,
+                                   const std::string& label);
+/// "-" where it is not defined.
+[[nodiscard]] std::string decimals(double value, int digits);
+
+}  // namespace waymark

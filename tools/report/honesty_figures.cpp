@@ -1,0 +1,69 @@
+#include <cmath>
+
+#include <waymark/tools/report/bars.hpp>
+#include <waymark/tools/report/honesty_figures.hpp>
+
+namespace waymark {
+namespace {
+
+/// A dashed line across all rows.
+Series expected_line(const std::string& name, double value, std::size_t rows) {
+  return {.name = name,
+          .mark = Mark::line,
+          .look = Look::reference,
+          .x = {value, value},
+          .y = {-0.5, static_cast<double>(rows) - 0.5}};
+}
+
+}  // namespace
+
+std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector<StatedErrors>& rows) {
+  Figure nees{
+      .id = prefix + "-nees",
+      .title = "Mean NEES",
+      .description =
+          "Squared error in units of the stated covariance, averaged; 2 is honest. A bracket is where "
+          "an honest covariance leaves the mean on 95 of 100 drives. A bar that ends right of it: "
+          "the stated errors are too small; left of it: too large.",
+      .x = {.title = "mean NEES", .unit = "", .logarithmic = true},
+      .y = {},
+      .series = {}};
+  Figure coverage{.id = prefix + "-coverage",
+                  .title = "Coverage of the stated 95 % regions",
+                  .description =
+                      "Share of the epochs whose stated region holds the truth. A bracket is where an honest "
+                      "covariance leaves the share on 95 of 100 drives.",
+                  .x = {.title = "epochs with the truth inside", .unit = "%", .low = 0},
+                  .y = {},
+                  .series = {}};
+  Series nees_bars{.name = "mean NEES", .mark = Mark::bars, .look = Look::fused};
+  Series coverage_bars{.name = "coverage", .mark = Mark::bars, .look = Look::fused};
+  for (const auto& [label, s] : rows) {
+    if (!std::isfinite(s.nees_mean)) continue;
+    const auto add = [&](Figure& figure, Series& bars, double value, const Interval95& honest, double unit) {
+      bars.y.push_back(static_cast<double>(figure.y.categories.size()));
+      figure.y.categories.push_back(label);
+      bars.x.push_back(unit * value);
+      bars.low.push_back(unit * honest.low);
+      bars.high.push_back(unit * honest.high);
+    };
+    add(nees, nees_bars, s.nees_mean, s.nees_mean_honest, 1);
+    add(coverage, coverage_bars, s.coverage, s.coverage_honest, 100);
+  }
+  const std::size_t count = nees.y.categories.size();
+  if (count == 0) return {};
+  nees.series = {nees_bars, expected_line("honest: 2", ConsistencyStatistics::kExpectedMean, count)};
+  coverage.series = {coverage_bars,
+                     expected_line("honest: 95 %", 100 * ConsistencyStatistics::kExpectedCoverage, count)};
+  fit_bars(nees);
+  fit_bars(coverage);
+  return {nees, coverage};
+}
+
+std::string honesty(const ConsistencyStatistics& s) {
+  if (!std::isfinite(s.nees_mean) || !std::isfinite(s.nees_mean_honest.low)) return "-";
+  if (s.nees_mean > s.nees_mean_honest.high) return "too small";
+  return s.nees_mean < s.nees_mean_honest.low ? "too large" : "honest";
+}
+
+}  // namespace waymark
