@@ -67,8 +67,8 @@ std::vector<EpochResult> read_epochs_table(std::string_view text, const std::str
   const auto offset_columns = [&](const std::string& system) {
     return std::pair{table.column(system + "_east_m"), table.column(system + "_north_m")};
   };
-  const auto gnss = offset_columns("gnss_offset");
-  const auto fused = offset_columns("fused_offset");
+  const auto gnss = offset_columns("gnss");
+  const auto fused = offset_columns("fused");
   const auto offset = [&](const std::pair<std::size_t, std::size_t>& columns) {
     const auto east = table.number<double>(columns.first);
     const auto north = table.number<double>(columns.second);
