@@ -60,6 +60,15 @@ using BenchmarkHeader = std::vector<std::pair<std::string, std::string>>;
 /// Sets the optimum (from the list, else the lowest chi2 of the cells) and judges every cell by it.
 void judge_cells(FileSummary& file, const KnownOptima& known);
 
+/// What a file's cells gave, for readers.
+struct FileTable {
+  std::string title;  ///< the file, its size, its optimum
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;  ///< one per cell
+  std::vector<std::string> notes;              ///< what must be known of single cells, each sentence once
+};
+[[nodiscard]] FileTable file_table(const FileSummary& file);
+
 /// For the terminal, a table per file; what a reader must know of single cells follows it.
 [[nodiscard]] std::string benchmark_table(const std::vector<FileSummary>& files);
 /// One line per cell; empty fields where something is not known.

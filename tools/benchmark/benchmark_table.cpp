@@ -40,14 +40,36 @@ std::string ratio_to(const CellSummary& cell, const std::string& peer) {
   return "-";
 }
 
-std::string file_table(const FileSummary& file) {
+/// Each sentence once, however many cells it holds for.
+std::vector<std::string> remarks_of(const FileSummary& file) {
+  std::vector<std::string> remarks;
+  const auto add = [&](std::string text) {
+    if (std::find(remarks.begin(), remarks.end(), text) == remarks.end()) remarks.push_back(std::move(text));
+  };
+  for (const CellSummary& c : file.cells) {
+    for (const std::string& note : c.notes) add("note: " + note);
+    if (c.converged) continue;
+    const std::string who = c.solver.empty() ? c.name : c.name + " with " + c.solver;
+    add("! start " + c.start + ", " + who + ": " + c.message);
+  }
+  return remarks;
+}
+
+}  // namespace
+
+FileTable file_table(const FileSummary& file) {
   const std::vector<std::string> peers = peers_of(file);
   std::vector<std::string> heading = {"start", "algorithm", "solver",    "its",   "median ms", "min",
                                       "max",   "structure", "linearise", "solve", "rest"};
   if (!peers.empty()) heading.emplace_back("setup");
   heading.insert(heading.end(), {"MB before", "peak", "chi2", "optimum"});
   for (const std::string& peer : peers) heading.push_back(peer + "/this");
-  TextTable table(std::move(heading));
+  FileTable table{
+      fmt::format("{}: {} vertices, {} edges; optimum {:.9g} ({})", file.file, file.vertices, file.edges,
+                  file.optimum, file.optimum_listed ? "listed" : "lowest chi2 of this run, none is listed"),
+      std::move(heading),
+      {},
+      remarks_of(file)};
   for (const CellSummary& c : file.cells) {
     std::vector<std::string> row = {c.start,
                                     c.name,
@@ -66,36 +88,19 @@ std::string file_table(const FileSummary& file) {
     row.push_back(fmt::format("{:.9g}", c.final_chi2));
     row.push_back(describe_optimality(c, file.optimum));
     for (const std::string& peer : peers) row.push_back(ratio_to(c, peer));
-    table.add(std::move(row));
+    table.rows.push_back(std::move(row));
   }
-  return table.text();
+  return table;
 }
-
-/// Each sentence once, however many cells it holds for.
-std::vector<std::string> remarks_of(const FileSummary& file) {
-  std::vector<std::string> remarks;
-  const auto add = [&](std::string text) {
-    if (std::find(remarks.begin(), remarks.end(), text) == remarks.end()) remarks.push_back(std::move(text));
-  };
-  for (const CellSummary& c : file.cells) {
-    for (const std::string& note : c.notes) add("note: " + note);
-    if (c.converged) continue;
-    const std::string who = c.solver.empty() ? c.name : c.name + " with " + c.solver;
-    add("! start " + c.start + ", " + who + ": " + c.message);
-  }
-  return remarks;
-}
-
-}  // namespace
 
 std::string benchmark_table(const std::vector<FileSummary>& files) {
   std::string text;
   for (const FileSummary& file : files) {
-    text += fmt::format("{}{}: {} vertices, {} edges; optimum {:.9g} ({})\n", text.empty() ? "" : "\n",
-                        file.file, file.vertices, file.edges, file.optimum,
-                        file.optimum_listed ? "listed" : "lowest chi2 of this run, none is listed");
-    text += file_table(file);
-    for (const std::string& remark : remarks_of(file)) text += remark + "\n";
+    const FileTable of_file = file_table(file);
+    TextTable table(of_file.columns);
+    for (const auto& row : of_file.rows) table.add(row);
+    text.append(text.empty() ? "" : "\n").append(of_file.title).append("\n").append(table.text());
+    for (const std::string& remark : of_file.notes) text.append(remark).append("\n");
   }
   return text;
 }

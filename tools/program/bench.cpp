@@ -15,6 +15,7 @@
 #include <waymark/tools/program/hash.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
+#include <waymark/tools/report/benchmark_page.hpp>
 
 namespace waymark {
 namespace {
@@ -181,10 +182,12 @@ ExitCode bench(const BenchOptions& options) {
     files.push_back(std::move(*file));
   }
   if (files.empty()) throw Interrupted();
-  const std::string json = benchmark_json(files, make_header(options));
+  const BenchmarkHeader header = make_header(options);
+  const std::string json = benchmark_json(files, header);
   if (!options.folder.empty()) {
     write_file_atomically(options.folder + "/bench.csv", benchmark_csv(files));
     write_file_atomically(options.folder + "/bench.json", json);
+    write_page(benchmark_page(files, header), options.folder, "bench");
   }
   console.result(options.common.json ? json : benchmark_table(files));
   if (!interrupted) return kSuccess;
@@ -239,7 +242,10 @@ void add_bench(CLI::App& app, Action& action) {
                    "Known optima, CSV 'file,chi2' (examples/benchmarks/standard_graphs.csv)")
       ->type_name("FILE.csv");
   add_stopping_options(*command, options->choice);
-  command->add_option("-o,--out", options->folder, "Folder for bench.csv and bench.json")->type_name("DIR");
+  command
+      ->add_option("-o,--out", options->folder,
+                   "Folder for bench.html with its figures, bench.csv and bench.json")
+      ->type_name("DIR");
   add_common_options(*command, options->common);
   command->footer(
       "A cell that does not converge is marked '!' and does not change the exit code.\n"

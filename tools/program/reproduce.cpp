@@ -11,6 +11,7 @@
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/pipeline.hpp>
 #include <waymark/tools/program/program_registry.hpp>
+#include <waymark/tools/report/reproduction_page.hpp>
 #include <waymark/tools/reproduction/consistency_study.hpp>
 #include <waymark/tools/reproduction/experiment.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
@@ -191,13 +192,16 @@ ExitCode reproduce(const ReproduceOptions& options) {
   console.end_progress();
   const ReproductionReport report = experiment.report(results, introduction(options));
   const std::string json = report_json(report, results);
-  const std::vector<std::string> files = write_report(report, json, options.folder);
+  std::vector<std::string> files = write_report(report, json, options.folder);
+  const Page page = reproduction_page(report, results, WAYMARK_VERSION);
+  files.push_back(write_page(page, options.folder, report.name).front());
   if (options.common.json) {
     console.result(json);
     return kSuccess;
   }
   std::string text = report_text(report) + "\nwritten:\n";
   for (const std::string& file : files) text += "  " + file + "\n";
+  text += fmt::format("  {} figures as SVG and CSV in {}/figures\n", figures_of(page).size(), options.folder);
   console.result(text);
   return kSuccess;
 }
@@ -215,7 +219,7 @@ void add_reproduce(CLI::App& app, Action& action) {
       ->add_option("drives", options->files,
                    "drive.yaml files to run the experiment on; without: the paper's eight drives, simulated")
       ->type_name("DRIVE.yaml");
-  command->add_option("-o,--out", options->folder, "Folder for tables and report")
+  command->add_option("-o,--out", options->folder, "Folder for tables, report and page")
       ->required()
       ->type_name("DIR");
   command->add_option("--drives", options->presets, "Which of the paper's drives to simulate; default: all")

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@ constexpr std::size_t kLongName = 22;  // characters: its bars need the whole wi
 
 /// Metrics that have a figure of their own; the others are in the table.
 bool is_drawn(const PositionColumn& column) {
-  return column.name != "median" && column.name != "CEP50";
+  return column.name != "CEP50";  // next to the median
 }
 
 /// The width for figures of bars under these names.
@@ -106,7 +107,8 @@ double common_end(const Figure& figure) {
 
 Figure bars_of_endings(const std::string& id, const std::string& title, const std::string& description,
                        const Axis& axis) {
-  return {.id = id, .title = title, .description = description, .x = axis, .y = {}, .series = {}};
+  return {
+      .id = id, .title = title, .description = description, .x = axis, .y = {.title = "run"}, .series = {}};
 }
 
 }  // namespace
@@ -119,7 +121,7 @@ std::vector<Figure> error_bars(const Groups& groups) {
                   .title = column.name,
                   .description = column.about + ".",
                   .x = {.title = column.name, .unit = "m"},
-                  .y = {},
+                  .y = {.title = "run"},
                   .series = {}};
     Series raw{.name = "raw GNSS", .mark = Mark::bars, .look = Look::raw};
     Series fused{.name = "fused", .mark = Mark::bars, .look = Look::fused};
@@ -179,6 +181,30 @@ std::vector<Figure> course_figures(const Groups& groups) {
         figure);
     figures.push_back(std::move(figure));
   }
+  return figures;
+}
+
+std::vector<Figure> chi2_figures(const std::vector<ComparedRun>& runs) {
+  std::vector<Figure> figures;
+  std::vector<Series> lines;
+  const auto finish = [&] {
+    if (lines.empty()) return;
+    figures.push_back({.id = fmt::format("chi2-{}", figures.size() + 1),
+                       .title = "chi2 over the accepted steps",
+                       .description = "Of the graph of each run; only graphs of one modeling are comparable.",
+                       .x = {.title = "accepted steps", .unit = ""},
+                       .y = {.title = "chi2", .unit = "", .logarithmic = true},
+                       .series = std::exchange(lines, {})});
+  };
+  for (const ComparedRun& run : runs) {
+    if (!run.ending || run.ending->chi2.size() < 2) continue;
+    Series line{.name = run.label, .mark = Mark::line, .look = look_of_system(lines.size())};
+    for (std::size_t i = 0; i < run.ending->chi2.size(); ++i) line.x.push_back(static_cast<double>(i));
+    line.y = run.ending->chi2;
+    lines.push_back(std::move(line));
+    if (lines.size() == kRunsInFigure) finish();
+  }
+  finish();
   return figures;
 }
 

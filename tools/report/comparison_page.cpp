@@ -33,26 +33,28 @@ void add_figures(std::vector<Figure> figures, Section& section) {
   }
 }
 
-/// The run of a drive with the smallest RMSE; null where no truth is.
-const ComparedRun* best_run(const DriveGroup& group) {
-  const ComparedRun* best = nullptr;
-  const auto rmse = [](const ComparedRun* run) { return run->evaluation.truth->fused.position.rmse_m; };
-  for (const ComparedRun* run : group.runs) {
-    if (!run->evaluation.truth || !std::isfinite(rmse(run))) continue;
-    if (best == nullptr || rmse(run) < rmse(best)) best = run;
+/// The run with the smallest RMSE of these rows; null where there is none.
+const SystemRow* best_row(const std::vector<SystemRow>& rows) {
+  const SystemRow* best = nullptr;
+  for (const SystemRow& row : rows) {
+    const double rmse = row.metrics.position.rmse_m;
+    if (row.run == nullptr || !std::isfinite(rmse)) continue;
+    if (best == nullptr || rmse < best->metrics.position.rmse_m) best = &row;
   }
   return best;
 }
 
-std::string best_sentence(const DriveGroup& group, const ComparedRun& best) {
-  const TruthEvaluation& truth = *best.evaluation.truth;
+std::string against_raw(const SystemRow& best) {
+  const TruthEvaluation& truth = *best.run->evaluation.truth;
   const double percent = truth.improvement.rmse_percent;
-  const std::string change = std::isfinite(percent) ? fmt::format(", {:.1f} % {}", std::abs(percent),
-                                                                  percent < 0 ? "worse" : "better")
-                                                    : std::string();
-  return fmt::format("{}: {} has the smallest RMSE, {:.3f} m (raw GNSS {:.3f} m{}).",
-                     group.drive.empty() ? "The drive" : group.drive, best.label, truth.fused.position.rmse_m,
-                     truth.gnss.position.rmse_m, change);
+  std::string text = fmt::format(" (raw GNSS {:.3f} m", truth.gnss.position.rmse_m);
+  if (std::isfinite(percent))
+    text += fmt::format(", {:.1f} % {}", std::abs(percent), percent < 0 ? "worse" : "better");
+  return text + ")";
+}
+
+std::string name_of_drive(const DriveGroup& group) {
+  return group.drive.empty() ? "The drive" : group.drive;
 }
 
 /// Counts of what went wrong in words; empty where nothing did.
@@ -68,17 +70,25 @@ void add_summary(const Runs& runs, const Groups& groups, Page& page) {
   std::string text;
   bool all_better = true;
   bool all_worse = true;
+  bool any = false;
   for (const DriveGroup& group : groups) {
-    const ComparedRun* best = best_run(group);
+    const std::vector<SystemRow> rows = rows_against_truth(group);
+    const std::vector<SystemRow> withheld = rows_at_withheld(group);
+    const SystemRow* by_truth = best_row(rows);
+    const SystemRow* best = by_truth != nullptr ? by_truth : best_row(withheld);
     if (best == nullptr) continue;
-    text.append(text.empty() ? "" : " ").append(best_sentence(group, *best));
-    const bool better = best->evaluation.truth->improvement.rmse_percent > 0;
+    text += fmt::format("{}{}: {} has the smallest RMSE{}, {:.3f} m{}.", text.empty() ? "" : " ",
+                        name_of_drive(group), best->label, by_truth != nullptr ? "" : " at withheld fixes",
+                        best->metrics.position.rmse_m, by_truth != nullptr ? against_raw(*best) : "");
+    if (by_truth == nullptr) continue;
+    any = true;
+    const bool better = best->run->evaluation.truth->improvement.rmse_percent > 0;
     all_better = all_better && better;
     all_worse = all_worse && !better;
   }
   if (text.empty())
-    text = "No run has a truth to be compared with.";
-  else if (all_better || all_worse)
+    text = "No run has a truth or withheld fixes to be compared with.";
+  else if (any && (all_better || all_worse))
     page.verdict = all_better ? Verdict::better : Verdict::worse;
   page.summary = text + failures_sentence(runs);
 }
@@ -122,6 +132,7 @@ Section ending_section(const Runs& runs) {
   Section section{"convergence", "Convergence", {}};
   add_table(ending_table(runs), section);
   add_figures(ending_figures(runs), section);
+  add_figures(chi2_figures(runs), section);
   return section;
 }
 

@@ -51,7 +51,9 @@ struct PositionColumn {
 [[nodiscard]] std::vector<Figure> distribution_figures(const std::vector<DriveGroup>& groups);
 /// Errors over time, likewise.
 [[nodiscard]] std::vector<Figure> course_figures(const std::vector<DriveGroup>& groups);
-/// Iterations, seconds, and chi2 over the accepted steps.
+/// chi2 over the accepted steps, seven runs a figure.
+[[nodiscard]] std::vector<Figure> chi2_figures(const std::vector<ComparedRun>& runs);
+/// Iterations and seconds.
 [[nodiscard]] std::vector<Figure> ending_figures(const std::vector<ComparedRun>& runs);
 
 /// With the drive before it where there are several.

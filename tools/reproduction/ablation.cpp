@@ -113,23 +113,6 @@ const Outcome* outcome_of(const DriveResult& drive, const std::string& setting) 
   return outcome != nullptr && outcome->failure.empty() ? outcome : nullptr;
 }
 
-/// Against truth, else at the withheld fixes.
-PositionMetrics errors_of(const DriveResult& drive, const std::string& setting) {
-  const Outcome* outcome = outcome_of(drive, setting);
-  if (outcome == nullptr) return {};
-  if (outcome->evaluation.truth) return outcome->evaluation.truth->fused.position;
-  for (const WithheldMetrics& at : outcome->evaluation.at_withheld) {
-    if (at.label == "fused") return at.at_fixes;
-  }
-  return {};
-}
-
-ConsistencyStatistics stated_errors_of(const DriveResult& drive, const std::string& setting) {
-  const Outcome* outcome = outcome_of(drive, setting);
-  if (outcome == nullptr || !outcome->evaluation.truth) return {};
-  return outcome->evaluation.truth->consistency.value_or(ConsistencyStatistics());
-}
-
 using Drives = std::vector<DriveResult>;
 
 /// A line for each ablation, a column for each drive.
@@ -151,7 +134,7 @@ ReportTable table_of(const Drives& drives, const std::string& file, const std::s
 
 std::vector<double> rms_errors(const Drives& drives, const std::string& setting) {
   std::vector<double> errors;
-  for (const DriveResult& drive : drives) errors.push_back(errors_of(drive, setting).rmse_m);
+  for (const DriveResult& drive : drives) errors.push_back(judged_errors(drive, setting).rmse_m);
   return errors;
 }
 
@@ -179,9 +162,10 @@ void note_failures(const Drives& drives, ReportTable& table) {
 }
 
 ReportTable error_table(const Drives& drives) {
-  ReportTable table = table_of(
-      drives, "ablation_error", "RMS errors, m", 2,
-      [](const DriveResult& drive, const std::string& setting) { return errors_of(drive, setting).rmse_m; });
+  ReportTable table = table_of(drives, "ablation_error", "RMS errors, m", 2,
+                               [](const DriveResult& drive, const std::string& setting) {
+                                 return judged_errors(drive, setting).rmse_m;
+                               });
   add_changes(drives, table);
   table.notes = {
       "Against truth; where the drive's name says so, at fixes kept out of the graph, whose own errors are "
@@ -203,6 +187,22 @@ const std::vector<Ablation>& ablations() {
     return rows;
   }();
   return all;
+}
+
+PositionMetrics judged_errors(const DriveResult& drive, const std::string& setting) {
+  const Outcome* outcome = outcome_of(drive, setting);
+  if (outcome == nullptr) return {};
+  if (outcome->evaluation.truth) return outcome->evaluation.truth->fused.position;
+  for (const WithheldMetrics& at : outcome->evaluation.at_withheld) {
+    if (at.label == "fused") return at.at_fixes;
+  }
+  return {};
+}
+
+ConsistencyStatistics judged_stated_errors(const DriveResult& drive, const std::string& setting) {
+  const Outcome* outcome = outcome_of(drive, setting);
+  if (outcome == nullptr || !outcome->evaluation.truth) return {};
+  return outcome->evaluation.truth->consistency.value_or(ConsistencyStatistics());
 }
 
 std::vector<Setting> ablation_settings() {
@@ -232,9 +232,10 @@ ReproductionReport ablation_report(const Drives& drives, const std::string& intr
   report.title = "One ingredient at a time";
   report.introduction = introduction;
   report.tables.push_back(error_table(drives));
-  report.tables.push_back(table_of(
-      drives, "ablation_max", "Largest errors, m", 2,
-      [](const DriveResult& drive, const std::string& setting) { return errors_of(drive, setting).max_m; }));
+  report.tables.push_back(table_of(drives, "ablation_max", "Largest errors, m", 2,
+                                   [](const DriveResult& drive, const std::string& setting) {
+                                     return judged_errors(drive, setting).max_m;
+                                   }));
   Drives with_truth;
   for (const DriveResult& drive : drives) {
     if (metrics_of(drive, "gnss")) with_truth.push_back(drive);
@@ -243,12 +244,12 @@ ReproductionReport ablation_report(const Drives& drives, const std::string& intr
     report.tables.push_back(table_of(with_truth, "ablation_nees",
                                      "Mean NEES, drives with truth; 2 where covariances are honest", 2,
                                      [](const DriveResult& drive, const std::string& setting) {
-                                       return stated_errors_of(drive, setting).nees_mean;
+                                       return judged_stated_errors(drive, setting).nees_mean;
                                      }));
     report.tables.push_back(table_of(with_truth, "ablation_coverage",
                                      "Truth within the stated 95 % regions, percent", 0,
                                      [](const DriveResult& drive, const std::string& setting) {
-                                       return 100 * stated_errors_of(drive, setting).coverage;
+                                       return 100 * judged_stated_errors(drive, setting).coverage;
                                      }));
   }
   report.runs = run_table(drives);

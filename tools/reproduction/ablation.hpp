@@ -28,6 +28,12 @@ inline constexpr const char* kWhiteReference = "ours_g1";
 [[nodiscard]] double mean_change_percent(const std::vector<double>& errors,
                                          const std::vector<double>& references);
 
+/// Errors of a setting against truth, else at the withheld fixes; no numbers where it gave no result.
+[[nodiscard]] PositionMetrics judged_errors(const DriveResult& drive, const std::string& setting);
+/// The same for stated against actual errors, which need a truth.
+[[nodiscard]] ConsistencyStatistics judged_stated_errors(const DriveResult& drive,
+                                                         const std::string& setting);
+
 /// Errors, Max, NEES and coverage: a table each, a line for each setting, a column for each drive. Drives
 /// with truth are judged by it; the others by the first way in which fixes were kept out.
 [[nodiscard]] ReproductionReport ablation_report(const std::vector<DriveResult>& drives,
