@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tools/material.hpp"
+#include "tools/page_checks.hpp"
 #include "tools/program.hpp"
 
 using Json = nlohmann::json;
@@ -53,7 +54,8 @@ TEST_CASE("bench measures algorithm x solver x start, in the order asked for") {
   INFO(result.err);
   CHECK(result.code == 0);
   CHECK(result.err.empty());
-  CHECK(names_in(folder + "out") == std::vector<std::string>{"bench.csv", "bench.json"});
+  CHECK(names_in(folder + "out") ==
+        std::vector<std::string>{"bench.csv", "bench.html", "bench.json", "figures"});
   CHECK(read_text(folder + "out/bench.json") == result.out);
 
   const Json json = Json::parse(result.out);
@@ -117,6 +119,52 @@ TEST_CASE("bench writes a CSV line per cell and a table per file") {
   CHECK(commas(lines[1]) == commas(lines[0]));
   CHECK(lines[1].rfind("a.graph,4,4,file,default,", 0) == 0);
   CHECK(lines[2].rfind("b.graph,50,", 0) == 0);
+}
+
+TEST_CASE("bench writes a page with the numbers of its JSON, and what did not converge") {
+  const std::string folder = fresh_folder();
+  write_text(folder + "a.graph", square_graph());
+  write_text(folder + "b.graph", slow_graph(50));
+  const RunResult result = run({"bench", "a.graph", "b.graph", "-a", "dogleg,levenberg_marquardt", "--repeat",
+                                "3", "--max-iterations", "1", "--json", "-o", "out"},
+                               {.folder = folder});
+  REQUIRE(result.code == 0);
+  const std::string html = read_text(folder + "out/bench.html");
+  CHECK(page_flaws(html) == std::vector<std::string>{});
+  const Json json = Json::parse(result.out);
+  CHECK(contains(html, json.at("header").at("processor").get<std::string>()));
+
+  std::istringstream csv(read_text(folder + "out/figures/bench-time.csv"));
+  std::string line;
+  std::getline(csv, line);
+  CHECK(line == "series,time [ms],file,low,high");
+  std::getline(csv, line);
+  const Json& cell = json.at("files").at(0).at("cells").at(0);
+  REQUIRE(line.rfind("dogleg,", 0) == 0);
+  CHECK(std::stod(line.substr(7)) == Approx(1e3 * cell.at("median_seconds").get<double>()));
+  CHECK(contains(line, ",a.graph,"));
+
+  const std::string caption = "Not converged, or above the optimum";
+  int missed = 0;
+  for (const Json& file : json.at("files"))
+    for (const Json& of_file : file.at("cells")) missed += of_file.at("converged") == false ? 1 : 0;
+  CHECK(missed > 0);
+  const std::vector<std::string> row = table_row(html, caption, "a.graph");
+  REQUIRE(row.size() == 5);
+  CHECK(row[2] == "! not converged");
+  CHECK(contains(html, "not converged (!)"));  // the crosses' entry in a legend
+}
+
+TEST_CASE("a page of many contestants has a figure for each file") {
+  const std::string folder = fresh_folder();
+  write_text(folder + "a.graph", square_graph());
+  REQUIRE(run({"bench", "a.graph", "-a", "all", "-s", "all", "--repeat", "1", "-o", "out", "-q"},
+              {.folder = folder})
+              .code == 0);
+  const std::string html = read_text(folder + "out/bench.html");
+  CHECK(page_flaws(html) == std::vector<std::string>{});
+  CHECK(contains(html, "id=\"time-1\""));
+  CHECK(contains(read_text(folder + "out/figures/bench-time-1.csv"), ",dogleg block_cholesky,"));
 }
 
 TEST_CASE("bench judges by listed optima: reached, above, lower") {

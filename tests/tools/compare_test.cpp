@@ -180,8 +180,7 @@ TEST_CASE("compare refuses what is no run, with place and remedy") {
   put(folder + "other", "metrics.json", R"({"schema": "waymark-inspection"})");
   put(folder + "newer", "metrics.json", R"({"schema": "waymark-metrics", "version": 2})");
   put(folder + "list", "metrics.json", "[]");
-  write_text(
-      folder + "none/metrics.json",
+  put(folder + "none", "metrics.json",
       R"({"schema": "waymark-metrics", "version": 1, "drive": "", "provenance": {}, "evaluations": []})");
   put(folder + "empty", "readme.txt", "");
   struct Case {
@@ -197,7 +196,7 @@ TEST_CASE("compare refuses what is no run, with place and remedy") {
        "empty: has no metrics.json; name a folder that `waymark run DRIVE -o DIR`"},
       {{"nowhere", "-o", "out"}, 3, "nowhere: is no folder; name a folder that "},
       {{"empty/readme.txt", "-o", "out"}, 3, "empty/readme.txt: is no folder; "},
-      {{"broken", "-o", "out"}, 3, "broken/metrics.json:2:57: is no JSON: "},
+      {{"broken", "-o", "out"}, 3, "broken/metrics.json:2:58: is no JSON: "},
       {{"zone", "-o", "out"},
        3,
        "zone/metrics.json: evaluations[0].frame.utm_zone: expected a whole number, at least 0, got -1"},

@@ -1,10 +1,12 @@
 // `waymark reproduce`: on a real drive, and what it refuses.
 #include <map>
+#include <sstream>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "tools/material.hpp"
+#include "tools/page_checks.hpp"
 #include "tools/program.hpp"
 
 using Json = nlohmann::json;
@@ -18,7 +20,8 @@ TEST_CASE("reproduce on the bundled drive: one minimum for all, every file, noth
   CHECK(read_text(folder + "out/reproduction.json") == result.out);
   CHECK(names_in(folder + "out") ==
         std::vector<std::string>{"REPRODUCTION.md", "convergence_literal.csv", "convergence_ours.csv",
-                                 "drives_overview.csv", "drives_truth.csv", "reproduction.json", "runs.csv"});
+                                 "drives_overview.csv", "drives_truth.csv", "figures", "reproduction.html",
+                                 "reproduction.json", "runs.csv"});
 
   const Json json = Json::parse(result.out);
   CHECK(json.at("schema") == "waymark-reproduction");
@@ -42,6 +45,13 @@ TEST_CASE("reproduce on the bundled drive: one minimum for all, every file, noth
   CHECK(contains(report, "Berlin, Potsdamer Platz"));
   CHECK(contains(report, "| ours_g2 |"));
   CHECK(contains(report, "| waymark |"));
+
+  const std::string html = read_text(folder + "out/reproduction.html");
+  CHECK(page_flaws(html) == std::vector<std::string>{});
+  CHECK(contains(html, "does\u00a0not\u00a0hold"));
+  std::ostringstream raw;
+  raw << "raw GNSS," << drive.at("gnss").at("max_m").dump() << ",";
+  CHECK(contains(read_text(folder + "out/figures/reproduction-error-max.csv"), raw.str()));
 }
 
 TEST_CASE("reproduce keeps fixes out of a drive without truth, and runs the same twice") {
@@ -73,9 +83,12 @@ TEST_CASE("the default model of reproduce is what run does") {
   const Json metrics = Json::parse(read_text(folder + "b/metrics.json"));
   const std::string rmse = runs.at(0).at("fused").at("rmse_m").dump();
   CHECK(contains(metrics.dump(), "\"rmse_m\":" + rmse));
-  CHECK(names_in(folder + "a") ==
-        std::vector<std::string>{"ABLATION.md", "ablation.json", "ablation_coverage.csv",
-                                 "ablation_error.csv", "ablation_max.csv", "ablation_nees.csv", "runs.csv"});
+  CHECK(names_in(folder + "a") == std::vector<std::string>{"ABLATION.md", "ablation.html", "ablation.json",
+                                                           "ablation_coverage.csv", "ablation_error.csv",
+                                                           "ablation_max.csv", "ablation_nees.csv", "figures",
+                                                           "runs.csv"});
+  CHECK(page_flaws(read_text(folder + "a/ablation.html")) == std::vector<std::string>{});
+  CHECK(contains(read_text(folder + "a/figures/ablation-ablation-error.csv"), ",default,1,1\n"));
 }
 
 TEST_CASE("the ablation's remedies for outliers find wild fixes, and squared errors do not") {
@@ -130,6 +143,10 @@ TEST_CASE("reproduce --consistency: white noise is many times too sure, drives a
   CHECK(json.at("drives").at(3).at("group") == "mixed");
   CHECK(contains(read_text(folder + "out/CONSISTENCY.md"), "SIMULATED drives: seeds 1000 to 1003"));
   CHECK(contains(read_text(folder + "out/consistency.csv"), "together,default,4,4,"));
+  CHECK(page_flaws(read_text(folder + "out/consistency.html")) == std::vector<std::string>{});
+  const Json& first = json.at("drives").at(0).at("runs").at(0).at("consistency").at("nees_mean");
+  CHECK(contains(read_text(folder + "out/figures/consistency-nees-default.csv"),
+                 "drives,1," + first.dump() + ","));
 }
 
 TEST_CASE("reproduce refuses what it cannot do before any work") {

@@ -7,9 +7,9 @@
 
 namespace {
 
-const std::vector<std::string> kCommands = {"inspect",  "init",   "sync",  "convert",  "optimize",
-                                            "evaluate", "run",    "bench", "info",     "check",
-                                            "simulate", "doctor", "help",  "reproduce"};
+const std::vector<std::string> kCommands = {"inspect",  "init",     "sync",    "convert", "optimize",
+                                            "evaluate", "run",      "compare", "bench",   "info",
+                                            "check",    "simulate", "doctor",  "help",    "reproduce"};
 
 }  // namespace
 
@@ -47,7 +47,8 @@ TEST_CASE("wrong words on the command line are usage errors that name them") {
       {{}, "A subcommand is required"},
       {{"optimise"}, "unknown subcommand 'optimise'; did you mean 'optimize'?"},
       {{"xyz"},
-       "unknown subcommand 'xyz'; there are: inspect, init, sync, convert, optimize, evaluate, run, bench, "
+       "unknown subcommand 'xyz'; there are: inspect, init, sync, convert, optimize, evaluate, run, compare, "
+       "bench, "
        "info, check"},
       {{"optimize", graph}, "--output is required"},
       {{"optimize", "-o", out}, "graph is required"},
@@ -115,6 +116,7 @@ TEST_CASE("quiet prints nothing and json only json, for every subcommand") {
       {"optimize", folder + "a.graph", "-o", folder + "b.graph"},
       {"evaluate", folder + "b.graph", "--truth", drive},
       {"run", drive, "--out", folder + "results"},
+      {"compare", folder + "results", "-o", folder + "comparison"},
       {"info"},
       {"doctor", drive},
       {"check", folder + "b.graph"}};

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/output.hpp>
@@ -79,7 +81,10 @@ ExitCode compare(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("compare", "One report of several runs: modelings, settings, drives");
+  auto* command =
+      app.add_subcommand("compare",
+                         "One report of several runs: modelings, settings, drives\n\n"
+                         "Errors are comparable within one drive; runs of several drives stand in groups.");
   const auto options = std::make_shared<CompareOptions>();
   command->add_option("runs", options->folders, "Folders that `run -o` or `evaluate -o` wrote")
       ->required()

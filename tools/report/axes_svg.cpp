@@ -8,10 +8,19 @@
 namespace waymark {
 namespace {
 
-std::vector<Tick> category_ticks(const Axis& axis) {
+/// The end of a long name tells it from others as often as its beginning: the middle is left out.
+std::string fitted(const std::string& name, double width) {
+  std::string text = name;
+  for (std::size_t half = name.size() / 2; half > 4 && text_width(text) > width; --half)
+    text = name.substr(0, half) + "..." + name.substr(name.size() - half);
+  return text;
+}
+
+/// @param width  px that a name may take
+std::vector<Tick> category_ticks(const Axis& axis, double width) {
   std::vector<Tick> result;
   for (std::size_t i = 0; i < axis.categories.size(); ++i)
-    result.push_back({static_cast<double>(i), axis.categories[i]});
+    result.push_back({static_cast<double>(i), fitted(axis.categories[i], width)});
   return result;
 }
 
@@ -33,7 +42,7 @@ std::string axes_svg(const Figure& figure, const View& view) {
   }
   const std::vector<Tick> rows = figure.y.categories.empty()
                                      ? ticks(view.y, view.logarithmic_y, ticks_in_height(box.height))
-                                     : category_ticks(figure.y);
+                                     : category_ticks(figure.y, box.left - 16);
   for (const Tick& tick : rows) {
     const double y = view.px_y(tick.value);
     if (figure.y.categories.empty()) grid += fmt::format("M{} {}h{}", px(box.left), px(y), px(box.width));

@@ -113,7 +113,7 @@ std::vector<Figure> bar_figures(const Files& files, const ContestantNames& names
     for (std::size_t f = 0; f < files.size(); ++f) {
       Figure figure = about;
       figure.id += fmt::format("-{}", f + 1);
-      figure.title = files[f].file + ": " + about.title;
+      figure.title = about.title + ": " + files[f].file;
       figure.y.title = "contestant";
       figures.push_back(of_file(files[f], names, figure, measure));
     }
@@ -191,11 +191,11 @@ std::vector<Figure> time_figures(const Files& files, const ContestantNames& name
   return bar_figures(
       files, names,
       {.id = "time",
-       .title = "time to the result",
+       .title = "Time to the result",
        .description = "Median of the repetitions; a bracket goes from the shortest to the longest. "
                       "The scale is logarithmic: lengths of bars are no ratios.",
        .x = {.title = "time", .unit = "ms", .logarithmic = true},
-       .y = {.title = "file"},
+       .y = {.title = "file", .unit = ""},
        .series = {}},
       [](const FileSummary&, const CellSummary& cell) -> std::optional<Bar> {
         const Spread& s = cell.seconds;
@@ -207,11 +207,11 @@ std::vector<Figure> memory_figures(const Files& files, const ContestantNames& na
   return bar_figures(
       files, names,
       {.id = "memory",
-       .title = "peak memory",
+       .title = "Peak memory",
        .description = "Largest resident set during one run, the graph and the program included, in "
                       "1e6 bytes.",
        .x = {.title = "memory", .unit = "MB"},
-       .y = {.title = "file"},
+       .y = {.title = "file", .unit = ""},
        .series = {}},
       [](const FileSummary&, const CellSummary& cell) -> std::optional<Bar> {
         if (!cell.memory_peak_mb) return std::nullopt;
@@ -222,10 +222,10 @@ std::vector<Figure> memory_figures(const Files& files, const ContestantNames& na
 std::vector<Figure> iteration_figures(const Files& files, const ContestantNames& names) {
   return bar_figures(files, names,
                      {.id = "iterations",
-                      .title = "iterations",
+                      .title = "Iterations",
                       .description = "Proposed steps, accepted or not.",
                       .x = {.title = "iterations", .unit = ""},
-                      .y = {.title = "file"},
+                      .y = {.title = "file", .unit = ""},
                       .series = {}},
                      [](const FileSummary&, const CellSummary& cell) -> std::optional<Bar> {
                        return Bar{static_cast<double>(cell.iterations)};
@@ -239,7 +239,7 @@ std::vector<Figure> excess_figures(const Files& files, const ContestantNames& na
                       .description = "chi2 / optimum - 1 where a run ended above the optimum; no bar: it was "
                                      "reached, within 1e-6.",
                       .x = {.title = "chi2 / optimum - 1", .unit = "", .logarithmic = true},
-                      .y = {.title = "file"},
+                      .y = {.title = "file", .unit = ""},
                       .series = {}},
                      [](const FileSummary& file, const CellSummary& cell) -> std::optional<Bar> {
                        const double excess = cell.final_chi2 / file.optimum - 1;
@@ -257,13 +257,13 @@ std::vector<Figure> ratio_figures(const Files& files, const ContestantNames& nam
     std::vector<Figure> of_peer = bar_figures(
         files, names,
         {.id = "ratio-" + id,
-         .title = "time of " + peer + " over this one's",
+         .title = "Time of " + peer + " over this one's",
          .description =
              "Median over the repetitions of the ratio of two runs that were made in turn. Above 1: "
              "faster than " +
              peer + ".",
          .x = {.title = peer + " / this", .unit = ""},
-         .y = {.title = "file"},
+         .y = {.title = "file", .unit = ""},
          .series = {}},
         [&](const FileSummary&, const CellSummary& cell) -> std::optional<Bar> {
           for (const auto& [name, ratio] : cell.peer_ratios)

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -80,8 +81,26 @@ std::string convergence_sentence(const Files& files) {
   }
   if (missed == 0 && above == 0)
     return fmt::format(" All {} measurements converged and reached the optimum.", cells);
+  if (missed == 0) return fmt::format(" All {} measurements converged, {} above the optimum.", cells, above);
   return fmt::format(" Of {} measurements {} did not converge (marked !) and {} ended above the optimum.",
                      cells, missed, above);
+}
+
+/// What does not count, and why.
+PageTable missed_table(const Files& files, const ContestantNames& names) {
+  PageTable table{.title = "Not converged, or above the optimum",
+                  .columns = {"file", "contestant", "ended", "chi2 / optimum - 1", "message"},
+                  .rows = {}};
+  for (const FileSummary& file : files) {
+    for (const CellSummary& cell : file.cells) {
+      if (counts(cell)) continue;
+      const double excess = cell.final_chi2 / file.optimum - 1;
+      table.rows.push_back({file.file, names.name_of(cell),
+                            cell.converged ? "above the optimum" : "! not converged",
+                            std::isfinite(excess) ? fmt::format("{:.2g}", excess) : "-", cell.message});
+    }
+  }
+  return table;
 }
 
 void add_figures(std::vector<Figure> figures, Section& section) {
@@ -131,6 +150,8 @@ Page benchmark_page(const Files& files, const BenchmarkHeader& header) {
   add_figures(size_figures(files, names), times);
   add_figures(ratio_figures(files, names), times);
   Section results{"results", "Results", {}};
+  PageTable missed = missed_table(files, names);
+  if (!missed.rows.empty()) results.blocks.emplace_back(std::move(missed));
   add_figures(excess_figures(files, names), results);
   add_figures(iteration_figures(files, names), results);
   add_figures(memory_figures(files, names), results);

@@ -107,8 +107,12 @@ double common_end(const Figure& figure) {
 
 Figure bars_of_endings(const std::string& id, const std::string& title, const std::string& description,
                        const Axis& axis) {
-  return {
-      .id = id, .title = title, .description = description, .x = axis, .y = {.title = "run"}, .series = {}};
+  return {.id = id,
+          .title = title,
+          .description = description,
+          .x = axis,
+          .y = {.title = "run", .unit = ""},
+          .series = {}};
 }
 
 }  // namespace
@@ -121,7 +125,7 @@ std::vector<Figure> error_bars(const Groups& groups) {
                   .title = column.name,
                   .description = column.about + ".",
                   .x = {.title = column.name, .unit = "m"},
-                  .y = {.title = "run"},
+                  .y = {.title = "run", .unit = ""},
                   .series = {}};
     Series raw{.name = "raw GNSS", .mark = Mark::bars, .look = Look::raw};
     Series fused{.name = "fused", .mark = Mark::bars, .look = Look::fused};

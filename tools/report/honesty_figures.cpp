@@ -26,7 +26,7 @@ std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector
           "an honest covariance leaves the mean on 95 of 100 drives. A bar that ends right of it: "
           "the stated errors are too small; left of it: too large.",
       .x = {.title = "mean NEES", .unit = "", .logarithmic = true},
-      .y = {.title = "run"},
+      .y = {.title = "run", .unit = ""},
       .series = {}};
   Figure coverage{.id = prefix + "-coverage",
                   .title = "Coverage of the stated 95 % regions",
@@ -34,7 +34,7 @@ std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector
                       "Share of the epochs whose stated region holds the truth. A bracket is where an honest "
                       "covariance leaves the share on 95 of 100 drives.",
                   .x = {.title = "epochs with the truth inside", .unit = "%", .low = 0},
-                  .y = {.title = "run"},
+                  .y = {.title = "run", .unit = ""},
                   .series = {}};
   Series nees_bars{.name = "mean NEES", .mark = Mark::bars, .look = Look::fused};
   Series coverage_bars{.name = "coverage", .mark = Mark::bars, .look = Look::fused};

@@ -14,6 +14,8 @@ namespace waymark {
 namespace {
 
 constexpr int kShades = 4;
+constexpr double kMarkerRadius = 3;  // px
+constexpr double kNumberWidth = 44;  // px, of one behind a bar
 
 std::string path(const Series& series, std::size_t index, const std::string& d, std::string_view kind) {
   return fmt::format("<path class=\"{} look-{}\" data-series=\"{}\" d=\"{}\"/>\n", kind,
@@ -76,6 +78,19 @@ std::string spans_path(const Series& series, const View& view) {
   return d;
 }
 
+/// Where the number of a bar begins, px: behind the bar and behind points that stand at it.
+double behind_points(const Figure& figure, const View& view, double row, double height, double end) {
+  for (const Series& series : figure.series) {
+    if (series.mark != Mark::points) continue;
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      if (std::abs(series.y[i] - row) > 0.5 * height || !view.shows(series.x[i], series.y[i])) continue;
+      const double x = view.px_x(series.x[i]) + kMarkerRadius;
+      if (x > end && x < end + kNumberWidth) end = x;
+    }
+  }
+  return end;
+}
+
 std::string bars(const Figure& figure, std::size_t index, const View& view) {
   const Series& series = figure.series[index];
   const double row_height = std::abs(view.px_y(1) - view.px_y(0));
@@ -98,6 +113,7 @@ std::string bars(const Figure& figure, std::size_t index, const View& view) {
       end = std::max(end, high);
     }
     if (height >= 8) {
+      end = behind_points(figure, view, series.y[i] + place.offset, place.height, end);
       values += fmt::format("<text class=\"value\" data-series=\"{}\" x=\"{}\" y=\"{}\">{}</text>", index,
                             px(std::max(end, origin) + 5), px(y + 4), escaped(readable(series.x[i])));
     }

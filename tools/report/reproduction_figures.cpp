@@ -96,7 +96,7 @@ Figure paper_error_figure(const Drives& drives, const PaperColumn& column) {
                 .title = column.name,
                 .description = column.about,
                 .x = {.title = column.name, .unit = "m"},
-                .y = {.title = "drive"},
+                .y = {.title = "drive", .unit = ""},
                 .series = {}};
   for (const DriveResult& drive : drives) figure.y.categories.push_back(labelled(drive));
   figure.y.categories.emplace_back("average");
@@ -152,7 +152,7 @@ std::vector<Figure> withheld_figures(const Drives& drives) {
           "Drives without truth: distance of the fused antenna from fixes that the graph did not have. "
           "The fixes' own errors are in it.",
       .x = {.title = "RMS error", .unit = "m"},
-      .y = {.title = "drive"},
+      .y = {.title = "drive", .unit = ""},
       .series = {}};
   std::vector<Series> of_system;
   for (const System& system : kSystems)

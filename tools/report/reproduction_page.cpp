@@ -14,17 +14,24 @@ using Drives = std::vector<DriveResult>;
 
 std::string in_words(const std::optional<bool>& holds) {
   if (!holds) return "-";
-  return *holds ? "holds" : "does not hold";
+  return *holds ? "holds" : "does\u00a0not\u00a0hold";
+}
+
+/// "ours/east/default" may be broken into lines at its parts.
+std::string spaced(const std::string& source) {
+  std::string text;
+  for (const char c : source) text += c == '/' ? std::string(" / ") : std::string(1, c);
+  return text;
 }
 
 Section findings_section(const std::vector<Finding>& findings) {
   PageTable table{.title = "What the paper found, and what these drives say",
-                  .columns = {"finding", "source", "it", "figures"},
+                  .columns = {"finding", "source", "verdict", "figures"},
                   .rows = {}};
   for (const Finding& finding : findings) {
     std::string statement = finding.statement;
     for (const Evidence& evidence : finding.evidence) {
-      table.rows.push_back({statement, evidence.source, in_words(evidence.holds), evidence.figures});
+      table.rows.push_back({statement, spaced(evidence.source), in_words(evidence.holds), evidence.figures});
       statement.clear();
     }
   }

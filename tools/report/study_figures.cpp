@@ -91,7 +91,7 @@ std::vector<Figure> ablation_figures(const Drives& drives) {
            "Geometric mean over the drives; a bracket goes from the best drive to the worst. Right of "
            "the dashed line: worse than the default. The scale is logarithmic.",
        .x = {.title = "RMS error / default's", .unit = "", .logarithmic = true},
-       .y = {.title = "setting"},
+       .y = {.title = "setting", .unit = ""},
        .series = {}},
       [](const DriveResult& drive, const std::string& setting) {
         return judged_errors(drive, setting).rmse_m / judged_errors(drive, kDefaultModel).rmse_m;
@@ -103,7 +103,7 @@ std::vector<Figure> ablation_figures(const Drives& drives) {
        .description = "Geometric mean over the drives with truth; a bracket goes from the smallest to the "
                       "largest. 2 is honest, more: the stated errors are too small.",
        .x = {.title = "mean NEES", .unit = "", .logarithmic = true},
-       .y = {.title = "setting"},
+       .y = {.title = "setting", .unit = ""},
        .series = {}},
       [](const DriveResult& drive, const std::string& setting) {
         return judged_stated_errors(drive, setting).nees_mean;

@@ -105,7 +105,7 @@ double position(Range range, bool logarithmic, double value) {
 double left_margin(const Figure& figure, Range y, double height) {
   double longest = 0;
   for (const std::string& name : figure.y.categories) longest = std::max(longest, text_width(name));
-  if (longest > 0) return std::min(24 + longest, kMostMarginLeft);
+  if (longest > 0) return std::min(24 + longest, std::max(kMostMarginLeft, 0.42 * figure.width));
   for (const Tick& tick : ticks(y, figure.y.logarithmic, ticks_in_height(height)))
     longest = std::max(longest, text_width(tick.label));
   return std::clamp(34 + longest, kLeastMarginLeft, kMostMarginLeft);
@@ -133,7 +133,7 @@ std::vector<Tick> logarithmic_ticks(Range range) {
     for (const int factor : {1, 2, 5}) {
       if (factor > 1 && !between) continue;
       const double value = factor * std::pow(10.0, power);
-      if (value >= range.low && value <= range.high) result.push_back({value, fmt::format("{:.4g}", value)});
+      if (value >= range.low && value <= range.high) result.push_back({value, fmt::format("{:.6g}", value)});
     }
   }
   return result;
