@@ -93,9 +93,7 @@ void add_compare(CLI::App& app, Action& action) {
       ->required()
       ->type_name("DIR");
   add_common_options(*command, options->common);
-  command->footer(
-      "Runs are named by their folders and modelings.\n"
-      "Example:\n  waymark compare results/g1 results/no_gate --out comparison");
+  command->footer("Example:\n  waymark compare results/g1 results/no_gate --out comparison");
   command->callback([options, &action] { action = [options] { return compare(*options); }; });
 }
 

@@ -17,8 +17,16 @@ std::string key_without_number(const std::string& key) {
 /// "option" is "option start", a log's fingerprint is that of its name.
 std::pair<std::string, std::string> parted(const std::string& key, const std::string& text) {
   const std::size_t place = key == "input" ? text.find_last_of(' ') : text.find('=');
-  if (place == std::string::npos || key == "assumed" || key == "optimized") return {key, text};
+  if (place == std::string::npos || key == "assumed") return {key, text};
   return {key + " " + text.substr(0, place), text.substr(place + 1)};
+}
+
+/// The word behind another one in "waymark 0.1.0 algorithm dogleg start file solver block_cholesky, ...".
+std::string word_behind(const std::string& text, const std::string& word) {
+  const std::size_t at = text.find(" " + word + " ");
+  if (at == std::string::npos) return "";
+  const std::size_t begin = at + word.size() + 2;
+  return text.substr(begin, text.find_first_of(" ,", begin) - begin);
 }
 
 std::vector<std::pair<std::string, std::string>> provenance_of(const std::string& label,
@@ -28,6 +36,12 @@ std::vector<std::pair<std::string, std::string>> provenance_of(const std::string
     if (!name.starts_with(label + ".")) continue;
     const std::string key = key_without_number(name.substr(label.size() + 1));
     if (key.empty()) continue;
+    if (key == "optimized") {  // how it ended is told elsewhere
+      entries["algorithm"] = word_behind(text, "algorithm");
+      entries["linear solver"] = word_behind(text, "solver");
+      entries["start of the optimisation"] = word_behind(text, "start");
+      continue;
+    }
     const auto [part, value] = parted(key, text);
     std::string& entry = entries[part];
     entry.append(entry.empty() ? "" : "; ").append(value);

@@ -91,7 +91,7 @@ void add_systems(const Part& part, const MakeSeries& make, Figure& figure) {
 }
 
 std::string titled(const Groups& groups, const Part& part, const std::string& title) {
-  std::string text = groups.size() > 1 ? part.group->drive + ": " + title : title;
+  std::string text = groups.size() > 1 ? title + ", " + part.group->drive : title;
   if (part.group->runs.size() > kRunsInFigure)
     text += fmt::format(", runs {} to {}", part.first + 1, part.first + part.runs.size());
   return text;
@@ -103,6 +103,39 @@ double common_end(const Figure& figure) {
   for (const Series& series : figure.series)
     if (!series.x.empty()) end = std::max(end, nearest_rank_quantile(series.x, 0.99));
   return end;
+}
+
+/// A figure for a metric. Predictions other than the fused poses are in the table only: dead reckoning would
+/// leave no room for the others.
+Figure bars_of(const Groups& groups, const PositionColumn& column, const std::string& prefix,
+               std::vector<SystemRow> (*rows_of)(const DriveGroup&)) {
+  Figure figure{.id = prefix + column.id,
+                .title = column.name,
+                .description = column.about + ".",
+                .x = {.title = column.name, .unit = "m"},
+                .y = {.title = "run", .unit = ""},
+                .series = {}};
+  Series raw{.name = "raw GNSS", .mark = Mark::bars, .look = Look::raw};
+  Series fused{.name = "fused", .mark = Mark::bars, .look = Look::fused};
+  for (const DriveGroup& group : groups) {
+    for (const SystemRow& row : rows_of(group)) {
+      if (row.run != nullptr && row.label != row.run->label) continue;
+      Series& series = row.run == nullptr ? raw : fused;
+      series.x.push_back(row.metrics.position.*column.value);
+      series.y.push_back(static_cast<double>(figure.y.categories.size()));
+      figure.y.categories.push_back(row_name(groups, group, row.label));
+    }
+  }
+  if (!raw.x.empty()) figure.series.push_back(std::move(raw));
+  figure.series.push_back(std::move(fused));
+  figure.width = width_for(figure.y.categories);
+  fit_bars(figure);
+  return figure;
+}
+
+std::vector<Figure> without_empty(std::vector<Figure> figures) {
+  std::erase_if(figures, [](const Figure& figure) { return figure.y.categories.empty(); });
+  return figures;
 }
 
 Figure bars_of_endings(const std::string& id, const std::string& title, const std::string& description,
@@ -119,38 +152,27 @@ Figure bars_of_endings(const std::string& id, const std::string& title, const st
 
 std::vector<Figure> error_bars(const Groups& groups) {
   std::vector<Figure> figures;
+  for (const PositionColumn& column : position_columns())
+    if (is_drawn(column)) figures.push_back(bars_of(groups, column, "error-", rows_against_truth));
+  return without_empty(std::move(figures));
+}
+
+std::vector<Figure> withheld_bars(const Groups& groups) {
+  std::vector<Figure> figures;
   for (const PositionColumn& column : position_columns()) {
-    if (!is_drawn(column)) continue;
-    Figure figure{.id = "error-" + column.id,
-                  .title = column.name,
-                  .description = column.about + ".",
-                  .x = {.title = column.name, .unit = "m"},
-                  .y = {.title = "run", .unit = ""},
-                  .series = {}};
-    Series raw{.name = "raw GNSS", .mark = Mark::bars, .look = Look::raw};
-    Series fused{.name = "fused", .mark = Mark::bars, .look = Look::fused};
-    for (const DriveGroup& group : groups) {
-      for (const SystemRow& row : rows_against_truth(group)) {
-        Series& series = row.run == nullptr ? raw : fused;
-        series.x.push_back(row.metrics.position.*column.value);
-        series.y.push_back(static_cast<double>(figure.y.categories.size()));
-        figure.y.categories.push_back(row_name(groups, group, row.label));
-      }
-    }
-    if (figure.y.categories.empty()) return {};
-    figure.series = {raw, fused};
-    figure.width = width_for(figure.y.categories);
-    fit_bars(figure);
-    figures.push_back(std::move(figure));
+    if (column.name != "RMSE" && column.name != "CEP95") continue;
+    figures.push_back(bars_of(groups, column, "withheld-", rows_at_withheld));
+    figures.back().title += " at withheld fixes";
+    figures.back().description = "Of the fused antenna from fixes that the graph did not have.";
   }
-  return figures;
+  return without_empty(std::move(figures));
 }
 
 std::vector<Figure> distribution_figures(const Groups& groups) {
   std::vector<Figure> figures;
   for (const Part& part : parts_with_epochs(groups)) {
     Figure figure{.id = fmt::format("distribution-{}", part.number + 1),
-                  .title = titled(groups, part, "distribution of the position error"),
+                  .title = titled(groups, part, "Distribution of the position error"),
                   .description =
                       "Share of the epochs whose error is at most so large. The axis ends where 99 % "
                       "of the worst system's errors lie; the largest ones are in the table.",
@@ -170,7 +192,7 @@ std::vector<Figure> course_figures(const Groups& groups) {
     Stamp begin = part.runs.front()->evaluation.epochs.front().stamp;
     for (const ComparedRun* run : part.runs) begin = std::min(begin, run->evaluation.epochs.front().stamp);
     Figure figure{.id = fmt::format("course-{}", part.number + 1),
-                  .title = titled(groups, part, "position error over time"),
+                  .title = titled(groups, part, "Position error over time"),
                   .description = "Distance from the truth at each fix. Drag to move, wheel to zoom.",
                   .x = {.title = "time since the first fix", .unit = "s"},
                   .y = {.title = "position error", .unit = "m", .logarithmic = true},

@@ -104,6 +104,7 @@ Section errors_section(const Groups& groups) {
   add_table(improvement_table(groups), section);
   add_table(track_table(groups), section);
   add_table(withheld_error_table(groups), section);
+  add_figures(withheld_bars(groups), section);
   return section;
 }
 

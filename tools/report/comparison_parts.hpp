@@ -47,6 +47,8 @@ struct PositionColumn {
 
 /// A figure of bars for each metric, a row for each system.
 [[nodiscard]] std::vector<Figure> error_bars(const std::vector<DriveGroup>& groups);
+/// The same at withheld fixes.
+[[nodiscard]] std::vector<Figure> withheld_bars(const std::vector<DriveGroup>& groups);
 /// Distribution of the errors, a figure for each drive and seven runs.
 [[nodiscard]] std::vector<Figure> distribution_figures(const std::vector<DriveGroup>& groups);
 /// Errors over time, likewise.

@@ -169,9 +169,9 @@ PageTable improvement_table(const Groups& groups) {
 }
 
 PageTable track_table(const Groups& groups) {
-  PageTable table = table_with(groups, "Along and across the direction of travel, and heading",
-                               {"n", "along mean [m]", "along rms [m]", "across mean [m]", "across rms [m]",
-                                "heading rms [deg]", "heading max [deg]"});
+  PageTable table = table_with(
+      groups, "Along and across the direction of travel, and heading",
+      {"n", "along mean [m]", "rms [m]", "across mean [m]", "rms [m]", "heading rms [deg]", "max [deg]"});
   for (const DriveGroup& group : groups) {
     for (const SystemRow& row : rows_against_truth(group)) {
       const SystemMetrics& m = row.metrics;
@@ -217,7 +217,8 @@ PageTable fixes_table(const Groups& groups) {
   for (const DriveGroup& group : groups) {
     for (const ComparedRun* run : group.runs) {
       const Evaluation& e = run->evaluation;
-      const double share = 100 * static_cast<double>(e.rejected) / static_cast<double>(e.fixes());
+      const double share =
+          100 * static_cast<double>(e.rejected) / static_cast<double>(e.accepted + e.rejected);
       add_row(groups, group, run->label,
               {counted(e.fixes()), counted(e.accepted), counted(e.rejected), decimals(share, 2),
                counted(e.withheld)},

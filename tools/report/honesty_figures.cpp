@@ -38,11 +38,12 @@ std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector
                   .series = {}};
   Series nees_bars{.name = "mean NEES", .mark = Mark::bars, .look = Look::fused};
   Series coverage_bars{.name = "coverage", .mark = Mark::bars, .look = Look::fused};
-  for (const auto& [label, s] : rows) {
+  for (const StatedErrors& row : rows) {
+    const ConsistencyStatistics& s = row.statistics;
     if (!std::isfinite(s.nees_mean)) continue;
     const auto add = [&](Figure& figure, Series& bars, double value, const Interval95& honest, double unit) {
       bars.y.push_back(static_cast<double>(figure.y.categories.size()));
-      figure.y.categories.push_back(label);
+      figure.y.categories.push_back(row.label);
       bars.x.push_back(unit * value);
       bars.low.push_back(unit * honest.low);
       bars.high.push_back(unit * honest.high);
