@@ -9,6 +9,7 @@
 #include <waymark/tools/benchmark/known_optima.hpp>
 #include <waymark/tools/benchmark/measure.hpp>
 #include <waymark/tools/benchmark/statistics.hpp>
+#include <waymark/tools/evaluation/text_look.hpp>
 
 namespace waymark {
 
@@ -70,7 +71,7 @@ struct FileTable {
 [[nodiscard]] FileTable file_table(const FileSummary& file);
 
 /// For the terminal, a table per file; what a reader must know of single cells follows it.
-[[nodiscard]] std::string benchmark_table(const std::vector<FileSummary>& files);
+[[nodiscard]] std::string benchmark_table(const std::vector<FileSummary>& files, const TextLook& look = {});
 /// One line per cell; empty fields where something is not known.
 [[nodiscard]] std::string benchmark_csv(const std::vector<FileSummary>& files);
 [[nodiscard]] std::string benchmark_json(const std::vector<FileSummary>& files,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -59,10 +60,11 @@ std::vector<std::string> remarks_of(const FileSummary& file) {
 
 FileTable file_table(const FileSummary& file) {
   const std::vector<std::string> peers = peers_of(file);
-  std::vector<std::string> heading = {"start", "algorithm", "solver",    "its",   "median ms", "min",
-                                      "max",   "structure", "linearise", "solve", "rest"};
-  if (!peers.empty()) heading.emplace_back("setup");
-  heading.insert(heading.end(), {"MB before", "peak", "chi2", "optimum"});
+  std::vector<std::string> heading = {"start",          "algorithm",  "solver",   "iterations",
+                                      "median [ms]",    "min [ms]",   "max [ms]", "structure [ms]",
+                                      "linearise [ms]", "solve [ms]", "rest [ms]"};
+  if (!peers.empty()) heading.emplace_back("setup [ms]");
+  heading.insert(heading.end(), {"before [MB]", "peak [MB]", "chi2", "optimum"});
   for (const std::string& peer : peers) heading.push_back(peer + "/this");
   FileTable table{
       fmt::format("{}: {} vertices, {} edges; optimum {:.9g} ({})", file.file, file.vertices, file.edges,
@@ -93,13 +95,13 @@ FileTable file_table(const FileSummary& file) {
   return table;
 }
 
-std::string benchmark_table(const std::vector<FileSummary>& files) {
+std::string benchmark_table(const std::vector<FileSummary>& files, const TextLook& look) {
   std::string text;
   for (const FileSummary& file : files) {
     const FileTable of_file = file_table(file);
     TextTable table(of_file.columns);
     for (const auto& row : of_file.rows) table.add(row);
-    text.append(text.empty() ? "" : "\n").append(of_file.title).append("\n").append(table.text());
+    text.append(text.empty() ? "" : "\n").append(of_file.title).append("\n").append(table.text(look));
     for (const std::string& remark : of_file.notes) text.append(remark).append("\n");
   }
   return text;

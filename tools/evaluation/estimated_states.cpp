@@ -117,7 +117,7 @@ std::vector<StateReport> report_states(const GraphDocument& document) {
   return reports;
 }
 
-std::string states_text(const std::vector<StateReport>& states) {
+std::string states_text(const std::vector<StateReport>& states, const TextLook& look) {
   if (states.empty()) return {};
   TextTable table(
       {"estimated state", "unit", "values", "first", "last", "smallest", "largest", "sigma", "prior", ""});
@@ -126,7 +126,7 @@ std::string states_text(const std::vector<StateReport>& states) {
     table.add({s.name, s.unit, fmt::to_string(s.values), number(s.first), number(s.last), number(s.smallest),
                number(s.largest), number(s.sigma), number(s.prior_sigma), s.observed ? "" : "not observed"});
   }
-  return table.text();
+  return table.text(look);
 }
 
 nlohmann::ordered_json states_json(const std::vector<StateReport>& states) {

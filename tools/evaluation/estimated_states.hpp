@@ -8,6 +8,7 @@
 
 #include <waymark/core/stamp.hpp>
 #include <waymark/formats/graph_document.hpp>
+#include <waymark/tools/evaluation/text_look.hpp>
 
 namespace waymark {
 
@@ -34,7 +35,7 @@ struct StateReport {
 [[nodiscard]] std::vector<StateReport> report_states(const GraphDocument& document);
 
 /// A table for the terminal; empty where there are no states.
-[[nodiscard]] std::string states_text(const std::vector<StateReport>& states);
+[[nodiscard]] std::string states_text(const std::vector<StateReport>& states, const TextLook& look = {});
 [[nodiscard]] nlohmann::ordered_json states_json(const std::vector<StateReport>& states);
 
 }  // namespace waymark

@@ -1,6 +1,7 @@
 #include <waymark/tools/evaluation/report.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -39,15 +40,17 @@ Row position_row(const std::string& label, const PositionMetrics& m) {
           metres(m.cep95_m)};
 }
 
-Row improvement_row(const std::string& label, const Improvement& i) {
-  return {label,
-          percent(i.max_percent),
-          percent(i.accuracy_percent),
-          percent(i.precision_percent),
-          percent(i.rmse_percent),
-          percent(i.median_percent),
-          percent(i.cep50_percent),
-          percent(i.cep95_percent)};
+/// What became better is green, what became worse red.
+void add_improvement(TextTable& table, const std::string& label, const Improvement& i) {
+  const std::array values = {i.max_percent,    i.accuracy_percent, i.precision_percent, i.rmse_percent,
+                             i.median_percent, i.cep50_percent,    i.cep95_percent};
+  Row row{label};
+  for (const double value : values) row.push_back(percent(value));
+  table.add(std::move(row));
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    if (values[c] > 0) table.paint(c + 1, Tone::better);
+    if (values[c] < 0) table.paint(c + 1, Tone::worse);
+  }
 }
 
 Row track_row(const std::string& label, const SystemMetrics& m) {
@@ -81,7 +84,7 @@ void add_raw_rows(TextTable& table, std::span<const LabelledEvaluation> evaluati
   }
 }
 
-std::string truth_block(std::span<const LabelledEvaluation> evaluations) {
+std::string truth_block(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
   TextTable table(position_heading("against truth"));
   TextTable better({"improvement over raw gnss", "Max [%]", "Acc [%]", "Prec [%]", "RMSE [%]", "median [%]",
                     "CEP50 [%]", "CEP95 [%]"});
@@ -95,26 +98,26 @@ std::string truth_block(std::span<const LabelledEvaluation> evaluations) {
   for (const auto& [label, evaluation] : evaluations) {
     if (!evaluation.truth) continue;
     table.add(position_row(label, evaluation.truth->fused.position));
-    better.add(improvement_row(label, evaluation.truth->improvement));
+    add_improvement(better, label, evaluation.truth->improvement);
   }
-  return table.empty() ? "" : table.text() + "\n" + better.text() + "\n";
+  return table.empty() ? "" : table.text(look) + "\n" + better.text(look) + "\n";
 }
 
-std::string track_block(std::span<const LabelledEvaluation> evaluations) {
+std::string track_block(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
   TextTable table({"along / across track", "n", "along mean [m]", "std [m]", "rms [m]", "across mean [m]",
                    "std [m]", "rms [m]", "heading rms [deg]", "max [deg]"});
   add_raw_rows(table, evaluations, "raw gnss",
                [](const std::string& label, const TruthEvaluation& t) { return track_row(label, t.gnss); });
   for (const auto& [label, evaluation] : evaluations)
     if (evaluation.truth) table.add(track_row(label, evaluation.truth->fused));
-  return table.empty() ? "" : table.text() + "\n";
+  return table.empty() ? "" : table.text(look) + "\n";
 }
 
 std::string interval(const Interval95& i, double factor, int decimals) {
   return number(factor * i.low, decimals) + " - " + number(factor * i.high, decimals);
 }
 
-std::string consistency_block(std::span<const LabelledEvaluation> evaluations) {
+std::string consistency_block(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
   TextTable table({"stated against actual error", "n", "effective n", "NEES mean", "honest",
                    "inside 95 % [%]", "honest [%]", "actual / stated"});
   for (const auto& [label, evaluation] : evaluations) {
@@ -124,10 +127,10 @@ std::string consistency_block(std::span<const LabelledEvaluation> evaluations) {
                interval(s.nees_mean_honest, 1, 2), number(100 * s.coverage, 1),
                interval(s.coverage_honest, 100, 1), number(s.median_error_ratio, 2)});
   }
-  return table.empty() ? "" : table.text() + "\n";
+  return table.empty() ? "" : table.text(look) + "\n";
 }
 
-std::string autocorrelation_block(std::span<const LabelledEvaluation> evaluations) {
+std::string autocorrelation_block(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
   Row heading{"error autocorrelation"};
   for (const double lag_s : kAutocorrelationLags) heading.push_back(fmt::format("{} s", lag_s));
   TextTable table(std::move(heading));
@@ -141,11 +144,11 @@ std::string autocorrelation_block(std::span<const LabelledEvaluation> evaluation
   });
   for (const auto& [label, evaluation] : evaluations)
     if (evaluation.truth) table.add(row(label, evaluation.truth->fused_autocorrelation));
-  return table.empty() ? "" : table.text() + "\n";
+  return table.empty() ? "" : table.text(look) + "\n";
 }
 
 /// Rows of the fused poses ("g1") and of each prediction beside them ("g1, dead reckoning").
-std::string withheld_block(std::span<const LabelledEvaluation> evaluations) {
+std::string withheld_block(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
   Row heading = position_heading("against withheld fixes");
   heading.push_back("inside 95 % [%]");
   TextTable table(std::move(heading));
@@ -161,7 +164,7 @@ std::string withheld_block(std::span<const LabelledEvaluation> evaluations) {
     }
   }
   if (table.empty()) return "";
-  return table.text() + "\n" + (ends.empty() ? "" : ends.text() + "\n");
+  return table.text(look) + "\n" + (ends.empty() ? "" : ends.text(look) + "\n");
 }
 
 void add_innovations(TextTable& table, const std::string& label, const InnovationStatistics& s) {
@@ -170,7 +173,7 @@ void add_innovations(TextTable& table, const std::string& label, const Innovatio
              percent(100 * s.fraction_inside), "95", number(s.max, 1), std::to_string(s.undefined)});
 }
 
-std::string innovation_block(std::span<const LabelledEvaluation> evaluations) {
+std::string innovation_block(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
   TextTable table({"normalised innovation squared", "n", "mean", "expected", "inside 5.991 [%]",
                    "expected [%]", "max", "undefined"});
   for (const auto& [label, evaluation] : evaluations) {
@@ -178,10 +181,10 @@ std::string innovation_block(std::span<const LabelledEvaluation> evaluations) {
     add_innovations(table, label, evaluation.gated);
     add_innovations(table, label, evaluation.prediction);
   }
-  return table.empty() ? "" : table.text() + "\n";
+  return table.empty() ? "" : table.text(look) + "\n";
 }
 
-std::string count_block(std::span<const LabelledEvaluation> evaluations) {
+std::string count_block(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
   TextTable table(
       {"epochs", "fixes", "accepted", "rejected", "withheld", "rejected [%]", "matched", "unmatched"});
   for (const auto& [label, e] : evaluations) {
@@ -193,15 +196,16 @@ std::string count_block(std::span<const LabelledEvaluation> evaluations) {
                e.truth ? std::to_string(e.truth->match.matched) : "-",
                e.truth ? std::to_string(e.truth->match.unmatched()) : "-"});
   }
-  return table.empty() ? "" : table.text();
+  return table.empty() ? "" : table.text(look);
 }
 
 }  // namespace
 
-std::string metrics_table(std::span<const LabelledEvaluation> evaluations) {
-  return truth_block(evaluations) + track_block(evaluations) + consistency_block(evaluations) +
-         autocorrelation_block(evaluations) + withheld_block(evaluations) + innovation_block(evaluations) +
-         count_block(evaluations);
+std::string metrics_table(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
+  return truth_block(evaluations, look) + track_block(evaluations, look) +
+         consistency_block(evaluations, look) + autocorrelation_block(evaluations, look) +
+         withheld_block(evaluations, look) + innovation_block(evaluations, look) +
+         count_block(evaluations, look);
 }
 
 }  // namespace waymark

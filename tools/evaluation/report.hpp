@@ -6,6 +6,7 @@
 #include <string>
 
 #include <waymark/tools/evaluation/evaluation.hpp>
+#include <waymark/tools/evaluation/text_look.hpp>
 
 namespace waymark {
 
@@ -27,7 +28,8 @@ struct ReportHeader {
 /// is left out. Raw GNSS rows that differ between the evaluations (another gate, other epochs) are printed
 /// for each. Metres and degrees as headed, "-" where a number is not defined. UTF-8 is not needed. Lines end
 /// with "\n".
-[[nodiscard]] std::string metrics_table(std::span<const LabelledEvaluation> evaluations);
+[[nodiscard]] std::string metrics_table(std::span<const LabelledEvaluation> evaluations,
+                                        const TextLook& look = {});
 
 /// metrics.json, schema "waymark-metrics" version 1 (tools/evaluation/README.md): SI units, radians, null
 /// where a number is not defined. Numbers read back to the same doubles.

@@ -1,16 +1,18 @@
 /// Tables for the terminal.
 #pragma once
 
-#include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <fmt/format.h>
+#include <waymark/tools/evaluation/text_look.hpp>
 
 namespace waymark {
 
-/// Rows under a heading, columns as wide as their widest cell; the first is flush left, the others flush
-/// right.
+/// Rows under a heading, columns as wide as their widest cell. The first column and columns of words are
+/// flush left, columns with numbers flush right. On a terminal too narrow for it a table goes on below
+/// itself, each part with the first column.
 class TextTable {
  public:
   using Row = std::vector<std::string>;
@@ -18,32 +20,21 @@ class TextTable {
   explicit TextTable(Row heading) { rows_.push_back(std::move(heading)); }
 
   /// A row whose numbers stand there already under another label is not added again.
-  void add_unless_known(Row row) {
-    const bool known = std::any_of(rows_.begin() + 1, rows_.end(), [&](const Row& other) {
-      return std::equal(row.begin() + 1, row.end(), other.begin() + 1, other.end());
-    });
-    if (!known) add(std::move(row));
-  }
-
+  void add_unless_known(Row row);
   void add(Row row) { rows_.push_back(std::move(row)); }
-  [[nodiscard]] bool empty() const { return rows_.size() < 2; }
+  /// Paints a cell of the row added last.
+  void paint(std::size_t column, Tone tone) { tones_[{rows_.size() - 1, column}] = tone; }
 
-  [[nodiscard]] std::string text() const {
-    std::vector<std::size_t> widths(rows_.front().size(), 0);
-    for (const Row& row : rows_)
-      for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-    std::string out;
-    for (const Row& row : rows_) {
-      std::string line = fmt::format("{:<{}}", row[0], widths[0]);
-      for (std::size_t c = 1; c < row.size(); ++c) line += fmt::format("  {:>{}}", row[c], widths[c]);
-      line.erase(line.find_last_not_of(' ') + 1);
-      out += line + "\n";
-    }
-    return out;
-  }
+  [[nodiscard]] bool empty() const { return rows_.size() < 2; }
+  [[nodiscard]] std::string text(const TextLook& look = {}) const;
 
  private:
-  std::vector<Row> rows_;
+  [[nodiscard]] bool of_words(std::size_t column) const;
+  [[nodiscard]] std::string part(std::size_t first, std::size_t last, const std::vector<std::size_t>& widths,
+                                 const TextLook& look) const;
+
+  std::vector<Row> rows_;  ///< the heading first
+  std::map<std::pair<std::size_t, std::size_t>, Tone> tones_;
 };
 
 }  // namespace waymark

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/log_reader.hpp>
+#include <waymark/tools/evaluation/text_look.hpp>
 #include <waymark/tools/inspection/can_survey.hpp>
 #include <waymark/tools/inspection/fix_statistics.hpp>
 #include <waymark/tools/inspection/odometry_statistics.hpp>
@@ -79,7 +80,7 @@ struct InspectionOptions {
 [[nodiscard]] std::string date_text(Stamp stamp, const LogClock& clock);
 
 /// For people.
-[[nodiscard]] std::string inspection_text(const LogInspection& log);
+[[nodiscard]] std::string inspection_text(const LogInspection& log, const TextLook& look = {});
 [[nodiscard]] nlohmann::ordered_json inspection_json(const LogInspection& log);
 
 }  // namespace waymark

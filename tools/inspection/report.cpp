@@ -28,22 +28,29 @@ double rate_of(const StampSeries& stamps) {
   return 1 / stamps.median_interval_s();
 }
 
-std::string range_text(const Range& range) {
-  if (range.count == 0) return "-";
-  return fmt::format("{:.10g} .. {:.10g}", range.smallest, range.largest);
+/// Names and comments are the log's: nothing in them may steer a terminal.
+std::string harmless(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; },
+      '?');
+  return text;
 }
 
 class Text {
  public:
-  explicit Text(std::string title) : text_(std::move(title) + "\n") {}
-  void line(const std::string& label, const std::string& value) {
-    text_ += fmt::format("  {:<14} {}\n", label, value);
+  Text(std::string title, const TextLook& look) : look_(look) {
+    text_ = painted(harmless(std::move(title)), Tone::heading, look) + "\n";
+    if (look_.columns > kTableIndent) look_.columns -= kTableIndent;
   }
-  void block(const std::string& table) {
+  void line(const std::string& label, const std::string& value) {
+    text_ += fmt::format("  {:<14} {}\n", harmless(label), harmless(value));
+  }
+  void table(const TextTable& rows) {
+    const std::string lines = rows.text(look_);
     std::size_t begin = 0;
-    while (begin < table.size()) {
-      const std::size_t end = table.find('\n', begin);
-      text_ += "    " + table.substr(begin, end - begin) + "\n";
+    while (begin < lines.size()) {
+      const std::size_t end = lines.find('\n', begin);
+      text_ += std::string(kTableIndent, ' ') + lines.substr(begin, end - begin) + "\n";
       begin = end + 1;
     }
   }
@@ -54,7 +61,9 @@ class Text {
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
+  static constexpr std::size_t kTableIndent = 4;
   std::string text_;
+  TextLook look_;  ///< of tables
 };
 
 std::string percent(std::size_t part, std::size_t all) {
@@ -120,15 +129,16 @@ void add_fixes(Text& text, const LogInspection& log) {
 void add_odometry(Text& text, const LogInspection& log) {
   const OdometrySummary& odometry = *log.odometry;
   text.line("odometry", fmt::format("{} rows", odometry.stamps.count()));
-  TextTable table({"channel", "values", "rate", "unit", "smallest", "largest", "gaps", "longest s"});
+  TextTable table({"channel", "values", "rate", "unit", "smallest", "largest", "gaps", "longest gap [s]"});
   for (const ChannelSummary& channel : odometry.channels) {
     const auto gaps = channel.stamps.longest_gaps();
-    table.add({channel.name, std::to_string(channel.range.count), rate_text(rate_of(channel.stamps)),
-               channel.unit, fmt::format("{:.5g}", channel.range.smallest),
-               fmt::format("{:.5g}", channel.range.largest), std::to_string(channel.stamps.gaps()),
+    table.add({harmless(channel.name), std::to_string(channel.range.count),
+               rate_text(rate_of(channel.stamps)), harmless(channel.unit),
+               fmt::format("{:.5g}", channel.range.smallest), fmt::format("{:.5g}", channel.range.largest),
+               std::to_string(channel.stamps.gaps()),
                gaps.empty() ? "-" : fmt::format("{:.3g}", gaps[0].seconds)});
   }
-  text.block(table.text());
+  text.table(table);
 }
 
 /// "speed, km/h", "yaw_rate (CHECK: ...)".
@@ -141,23 +151,21 @@ std::string proposal_text(const ColumnProposal& proposal) {
   return text;
 }
 
-/// Rows flush left with the proposal behind.
 void add_columns(Text& text, const std::vector<ColumnSummary>& columns, bool of_bus) {
-  std::size_t name = 6;
-  for (const ColumnSummary& column : columns) name = std::max(name, column.name.size());
-  std::string rows = fmt::format("{:<{}}  {:>8}  {:>9}  {:<32}  {}\n", of_bus ? "signal" : "column", name,
-                                 "values", of_bus ? "rate" : "empty", "range", "proposed as");
+  TextTable table({of_bus ? "signal" : "column", "values", of_bus ? "rate" : "empty", "smallest", "largest",
+                   "unit", "proposed as"});
   for (const ColumnSummary& column : columns) {
-    std::string range =
-        column.range.count == 0 ? fmt::format("{} words", column.words) : range_text(column.range);
-    if (!column.unit.empty()) range += " " + column.unit;
+    const Range& range = column.range;
+    const auto bound = [&](double value) { return range.count == 0 ? "-" : fmt::format("{:.10g}", value); };
     std::string proposal = proposal_text(column.proposal);
+    if (range.count == 0 && column.words > 0) proposal += " (words)";
     if (!of_bus && column.rate_hz > 0 && !column.proposal.quantity.empty())
       proposal += ", " + rate_text(column.rate_hz);
-    rows += fmt::format("{:<{}}  {:>8}  {:>9}  {:<32}  {}\n", column.name, name, column.values,
-                        of_bus ? rate_text(column.rate_hz) : std::to_string(column.empty), range, proposal);
+    table.add({harmless(column.name), std::to_string(column.values),
+               of_bus ? rate_text(column.rate_hz) : std::to_string(column.empty), bound(range.smallest),
+               bound(range.largest), harmless(column.unit), harmless(proposal)});
   }
-  text.block(rows);
+  text.table(table);
 }
 
 void add_ids(Text& text, const LogInspection& log) {
@@ -169,13 +177,13 @@ void add_ids(Text& text, const LogInspection& log) {
   for (std::size_t i = 0; i < log.can->ids.size(); ++i) {
     const ColumnSummary& id = log.can->ids[i];
     if (i < kMostRows)
-      table.add({id.name, std::to_string(id.values), rate_text(id.rate_hz), id.detail});
+      table.add({harmless(id.name), std::to_string(id.values), rate_text(id.rate_hz), id.detail});
     else
       rest += id.values;
   }
   if (rest > 0)
     table.add({fmt::format("{} more ids", log.can->ids.size() - kMostRows), std::to_string(rest)});
-  text.block(table.text());
+  text.table(table);
   if (log.can->signals.empty()) return;
   add_columns(text, log.can->signals, true);
 }
@@ -187,18 +195,18 @@ void add_kinds(Text& text, const LogInspection& log) {
   std::size_t rows = 0;
   for (const auto& [kind, count] : log.kinds) {
     if (++rows > kMostRows) continue;
-    table.add(
-        {kind, std::to_string(count), seconds > 0 ? rate_text(static_cast<double>(count) / seconds) : "-"});
+    table.add({harmless(kind), std::to_string(count),
+               seconds > 0 ? rate_text(static_cast<double>(count) / seconds) : "-"});
   }
   if (rows > kMostRows) table.add({fmt::format("{} more kinds", rows - kMostRows)});
   text.line("messages", fmt::format("{} kind{}", log.kinds.size(), log.kinds.size() == 1 ? "" : "s"));
-  text.block(table.text());
+  text.table(table);
 }
 
 }  // namespace
 
-std::string inspection_text(const LogInspection& log) {
-  Text text(log.path);
+std::string inspection_text(const LogInspection& log, const TextLook& look) {
+  Text text(log.path, look);
   text.line("size", size_text(log.size));
   text.line("format", log.format + (log.evidence.empty() ? " (stated)" : ": " + log.evidence));
   for (const auto& [key, path] : log.companions) text.line(key, path);
@@ -229,12 +237,7 @@ std::string inspection_text(const LogInspection& log) {
     if (note.starts_with(log.path + ": ")) note.erase(0, log.path.size() + 2);
   text.list("notes", notes);
   text.list("suspicious", log.suspicions.empty() ? std::vector<std::string>{"nothing"} : log.suspicions);
-  // Names and comments are the log's: nothing in them may steer a terminal.
-  std::string result = text.text();
-  std::replace_if(
-      result.begin(), result.end(),
-      [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f; }, '?');
-  return result;
+  return text.text();
 }
 
 }  // namespace waymark

@@ -103,8 +103,7 @@ void apply_start(const std::string& name, LoadedGraph& loaded, const TypeRegistr
     throw InputError(loaded.name + ": start " + name + " cannot be made: " + start.note);
   }
   loaded.graph.set_values(std::move(start.values));
-  if (start.apart > 0)
-    console.note("note: " + loaded.name + ", start " + name + ": " + apart_note(start.apart));
+  if (start.apart > 0) console.note(loaded.name + ", start " + name + ": " + apart_note(start.apart));
 }
 
 /// The starts that differ for this file: one without vertices has no values of its own.
@@ -112,7 +111,7 @@ Names starts_of(const LoadedGraph& loaded, const Names& asked, const Console& co
   Names starts = asked;
   const bool both = std::find(asked.begin(), asked.end(), "odometry") != asked.end();
   if (loaded.edges_only) {
-    console.note("note: " + loaded.name + " has edges only: its start 'file' is the odometry chain");
+    console.note(loaded.name + " has edges only: its start 'file' is the odometry chain");
     if (both) starts.erase(std::remove(starts.begin(), starts.end(), "file"), starts.end());
   }
   return starts;
@@ -121,7 +120,7 @@ Names starts_of(const LoadedGraph& loaded, const Names& asked, const Console& co
 /// All starts of a file. @return nothing when interrupted
 std::optional<FileSummary> bench_file(const std::string& path, const BenchOptions& options,
                                       std::span<const Contestant> contestants, const TypeRegistry& registry,
-                                      const Console& console) {
+                                      const Console& console, StepProgress& progress) {
   console.progress("reading " + path);
   LoadedGraph loaded = load(path, options.input_format, registry);
   FileSummary file{loaded.name, loaded.fingerprint, loaded.graph.vertex_count(), loaded.graph.edge_count()};
@@ -132,7 +131,7 @@ std::optional<FileSummary> bench_file(const std::string& path, const BenchOption
     const std::string what = loaded.name + " from " + start;
     console.detail("measuring " + what);
     const MeasureOptions measuring{options.repeat, &interrupted,
-                                   [&](const std::string& run) { console.progress(what + "  " + run); }};
+                                   [&](const std::string& run) { progress.next(what + "  " + run); }};
     const std::vector<Cell> cells = measure(loaded.graph, contestants, measuring);
     if (cells.empty()) return std::nullopt;
     for (CellSummary& cell : summarize_cells(start, cells)) file.cells.push_back(std::move(cell));
@@ -175,8 +174,10 @@ ExitCode bench(const BenchOptions& options) {
   }
 
   std::vector<FileSummary> files;
+  const std::size_t runs_of_start = contestants.size() * (1 + static_cast<std::size_t>(options.repeat));
+  StepProgress progress(console, options.files.size() * options.starts.size() * runs_of_start);
   for (const std::string& path : options.files) {
-    auto file = bench_file(path, options, contestants, registry, console);
+    auto file = bench_file(path, options, contestants, registry, console, progress);
     if (!file) break;
     judge_cells(*file, known);
     files.push_back(std::move(*file));
@@ -189,9 +190,9 @@ ExitCode bench(const BenchOptions& options) {
     write_file_atomically(options.folder + "/bench.json", json);
     write_page(benchmark_page(files, header), options.folder, "bench");
   }
-  console.result(options.common.json ? json : benchmark_table(files));
+  console.result(options.common.json ? json : benchmark_table(files, console.look()));
   if (!interrupted) return kSuccess;
-  console.note("warning: interrupted; only files that were finished are reported");
+  console.warning("interrupted; only files that were finished are reported");
   return kInterrupted;
 }
 

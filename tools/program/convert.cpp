@@ -77,7 +77,7 @@ ExitCode convert_drive(const ConvertOptions& options, const TypeRegistry& regist
     console.result(json_text(json), is_stdout(options.output));
     return kSuccess;
   }
-  console.result(describe_drive(loaded) + describe_model(modeled) +
+  console.result(describe_drive(loaded) + describe_model(modeled, console.look(is_stdout(options.output))) +
                      fmt::format("written     {}: {} vertices, {} edges, modeling {}\n", options.output,
                                  document.graph.vertex_count(), document.graph.edge_count(), modeling),
                  is_stdout(options.output));

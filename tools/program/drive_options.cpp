@@ -2,6 +2,7 @@
 
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/drive_options.hpp>
+#include <waymark/tools/program/usage_hints.hpp>
 
 namespace waymark {
 namespace {
@@ -78,7 +79,7 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
           "Keep the last LENGTH of every EVERY seconds of fixes out of the graph, to evaluate against")
       ->type_name("LENGTH/EVERY");
   command.add_option("--start", overrides.start, "Where the optimisation starts")
-      ->check(CLI::IsMember({"anchored", "dead_reckoning"}));
+      ->check(one_of("start", {"anchored", "dead_reckoning"}));
   command.add_option("--loss", overrides.loss, "Robust loss of the fixes, or 'none'")
       ->type_name("LOSS:SCALE|none");
   command
@@ -93,7 +94,7 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
   command
       .add_option("--noise", overrides.noise,
                   "Noise parameters: estimated from the drive, or as stated (default: the modeling decides)")
-      ->check(CLI::IsMember({"estimate", "stated"}));
+      ->check(one_of("way", {"estimate", "stated"}));
   command.add_flag("--no-gate", overrides.no_gate, "Accept every fix");
   command.add_flag("--sync", overrides.sync,
                    "Estimate how late speed and yaw rate are stamped against the GNSS, and apply it");
@@ -118,7 +119,7 @@ void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--covariance", choice.covariance, "Covariances to write: of no, the fixes' or all poses")
-      ->check(CLI::IsMember({"none", "fixes", "all"}))
+      ->check(one_of("choice", {"none", "fixes", "all"}))
       ->capture_default_str();
   add_stopping_options(command, choice);
 }

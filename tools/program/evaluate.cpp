@@ -77,7 +77,7 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
   }
   const std::string json = metrics_json(evaluations, header);
   if (!options.folder.empty()) write_file_atomically(options.folder + "/metrics.json", json);
-  console.result(options.common.json ? json : metrics_table(evaluations));
+  console.result(options.common.json ? json : metrics_table(evaluations, console.look()));
   return kSuccess;
 }
 

@@ -4,6 +4,7 @@
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/graph_files.hpp>
 #include <waymark/tools/program/optimization.hpp>
+#include <waymark/tools/program/usage_hints.hpp>
 
 namespace waymark {
 namespace {
@@ -31,19 +32,19 @@ void add_input_format(CLI::App& command, std::string& format) {
       .add_option("--input-format", format,
                   "graph and g2o are told apart by the first line; toro and covariance (GTSAM's .graph) look "
                   "alike, so they are never guessed")
-      ->check(CLI::IsMember(format_names()))
+      ->check(one_of("format", format_names()))
       ->capture_default_str();
 }
 
 void add_output_format(CLI::App& command, OutputFormat& output, bool with_profile) {
   command.add_option("--format", output.format, "Format to write: graph (default), g2o, toro, covariance")
-      ->check(CLI::IsMember(format_names()));
+      ->check(one_of("format", format_names()));
   if (!with_profile) return;
   command
       .add_option(
           "--profile", output.profile,
           "Write what this program's reader understands, and refuse what would move the minimum there")
-      ->check(CLI::IsMember(profile_names()));
+      ->check(one_of("profile", profile_names()));
 }
 
 GraphFormat chosen_format(const OutputFormat& output) {
@@ -65,12 +66,13 @@ GraphDocument read_graph_file(const std::string& text, const std::string& name, 
   ReadReport report;
   GraphDocument document =
       read_graph_as(*graph_format_from_string(format), text, name, registry, lenient, &report);
+  console.end_progress();
   if (report.skipped > 0) {
-    console.note("warning: " + std::to_string(report.skipped) + " lines were skipped; the first ones:");
-    for (const std::string& example : report.examples) console.note("  " + example);
+    console.warning(std::to_string(report.skipped) + " lines were skipped; the first ones:");
+    for (const std::string& example : report.examples) console.tell("  " + example);
   }
-  if (report.edges_only) console.note("note: the file has edges only; started along the odometry chain");
-  if (report.apart > 0) console.note("note: " + apart_note(report.apart));
+  if (report.edges_only) console.note("the file has edges only; started along the odometry chain");
+  if (report.apart > 0) console.note(apart_note(report.apart));
   return document;
 }
 
@@ -80,9 +82,9 @@ void announce_output(const OutputFormat& output, const GraphDocument& document, 
   if (format == GraphFormat::graph) return;
   const Recipient& recipient = recipient_of(output, format);
   const ForeignGraph foreign(document, name, recipient, format);
-  for (const std::string& change : foreign.changes()) console.note("note: " + change);
+  for (const std::string& change : foreign.changes()) console.note(change);
   if (const std::string left_out = foreign.left_out(); !left_out.empty()) {
-    console.note("note: left out, as " + std::string(recipient.reader) + " has no place for it: " + left_out);
+    console.note("left out, as " + std::string(recipient.reader) + " has no place for it: " + left_out);
   }
 }
 

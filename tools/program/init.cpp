@@ -16,7 +16,7 @@ ExitCode initialise(const InspectCommand& command) {
   require_new_file(command);
   if (command.logs.empty()) {
     write_file_atomically(command.output, drive_template());
-    console.note(command.output +
+    console.tell(command.output +
                  ": a template was written, as no log was named; fill in its 'file' entries");
     return kSuccess;
   }

@@ -22,7 +22,8 @@ ExitCode inspect(const InspectCommand& command) {
     console.result(json_text(json), is_stdout(command.output));
   } else {
     std::string text;
-    for (const LogInspection& log : logs) text += (text.empty() ? "" : "\n") + inspection_text(log);
+    for (const LogInspection& log : logs)
+      text += (text.empty() ? "" : "\n") + inspection_text(log, console.look(is_stdout(command.output)));
     console.result(text, is_stdout(command.output));
   }
   if (!command.output.empty()) write_proposal(command, logs, console);

@@ -73,9 +73,9 @@ std::vector<LogInspection> inspect_files(const InspectCommand& command, const Co
 void write_proposal(const InspectCommand& command, const std::vector<LogInspection>& logs,
                     const Console& console) {
   const DriveProposal proposal = propose_drive(logs);
-  for (const std::string& decision : proposal.decisions) console.note(decision);
+  for (const std::string& decision : proposal.decisions) console.tell(decision);
   write_file_atomically(command.output, drive_yaml(proposal, logs, command.output));
-  if (!is_stdout(command.output)) console.note(command.output + ": written; look for '# CHECK' in it");
+  if (!is_stdout(command.output)) console.tell(command.output + ": written; look for '# CHECK' in it");
 }
 
 }  // namespace waymark

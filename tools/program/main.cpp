@@ -4,12 +4,13 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/tools/program/command_line.hpp>
+#include <waymark/tools/program/usage_hints.hpp>
 
 namespace waymark {
 namespace {
 
-ExitCode fail(ExitCode code, const char* message) {
-  std::fprintf(stderr, "waymark: error: %s\n", message);
+ExitCode fail(ExitCode code, const std::string& message) {
+  std::fputs(error_line(message).c_str(), stderr);
   return code;
 }
 
@@ -25,13 +26,17 @@ ExitCode run(int argc, char** argv) {
   Action action;
   build_command_line(app, action);
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return std::string("waymark: error: ") + error.what() + "\nRun with --help for more information.\n";
+    return error_line(error.what()) + "Run with --help for more information.\n";
   });
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);
     return action();
   } catch (const CLI::ParseError& error) {
+    const std::string unknown = error.get_exit_code() == 0
+                                    ? ""
+                                    : unknown_option(app, std::vector<std::string>(argv + 1, argv + argc));
+    if (!unknown.empty()) return fail(kUsageError, unknown);
     if (app.exit(error) != 0) return kUsageError;
     std::cout.flush();
     return std::cout.good() ? kSuccess : fail(kOutputError, "standard output: cannot write");
@@ -44,7 +49,7 @@ ExitCode run(int argc, char** argv) {
   } catch (const OutputError& error) {
     return fail(kOutputError, error.what());
   } catch (const std::exception& error) {
-    return fail(kInternalError, (std::string("internal error, please report: ") + error.what()).c_str());
+    return fail(kInternalError, std::string("internal error, please report: ") + error.what());
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace waymark {
 
-std::string describe_model(const ModeledDrive& modeled) {
+std::string describe_model(const ModeledDrive& modeled, const TextLook& look) {
   std::string text;
   const GateSummary& gate = modeled.gate;
   std::string reasons;
@@ -28,7 +28,7 @@ std::string describe_model(const ModeledDrive& modeled) {
                fmt::format("{:.3g}", moved(p.deviation)),
                p.observed() ? fmt::format("{:.3g}", p.prior.mean) : "not observed"});
   }
-  return text + table.text();
+  return text + table.text(look);
 }
 
 nlohmann::ordered_json noise_json(const NoiseEstimate& noise) {

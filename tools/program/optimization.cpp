@@ -7,17 +7,11 @@
 #include <waymark/core/suggest.hpp>
 #include <waymark/tools/evaluation/json_number.hpp>
 #include <waymark/tools/program/covariance.hpp>
+#include <waymark/tools/program/iteration_table.hpp>
 #include <waymark/tools/program/optimization.hpp>
 
 namespace waymark {
 namespace {
-
-std::string iteration_line(const IterationRecord& r) {
-  return fmt::format(
-      "{:4d}  {:<7} chi2 {:<16.10g} decrease {:<12.5g} predicted {:<12.5g} gradient {:<10.3g} {}",
-      r.iteration, r.kind, r.chi2, r.decrease, r.predicted_decrease, r.gradient,
-      r.accepted ? "" : "rejected");
-}
 
 constexpr std::string_view kAutoStart = "auto";
 constexpr std::string_view kFileStart = "file";
@@ -88,29 +82,29 @@ void check_choice(const OptimizationChoice& choice, const TypeRegistry& registry
 
 MultiStartSummary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
                                     const TypeRegistry& registry, const Console& console,
-                                    const Minimizer& minimize) {
+                                    const Minimizer& minimize, const std::string& work) {
   const auto algorithm = registry.make_algorithm(choice.algorithm, parse_options(choice.options));
   const auto solver = registry.make_linear_solver(solver_name(choice, registry));
   OptimizerOptions options = optimizer_options(choice);
-  options.observer = [&](const IterationRecord& record) {
-    if (console.verbosity() > 0) {
-      console.detail(iteration_line(record));
-    } else {
-      console.progress(fmt::format("iteration {}  chi2 {:.8g}", record.iteration, record.chi2));
-    }
-  };
+  IterationTable iterations(console, work);
+  options.observer = [&](const IterationRecord& record) { iterations.add(record); };
   MultiStartSummary result =
       optimize_from(choice.start, document.graph, registry, *algorithm, *solver, options, minimize);
   Summary& summary = result.summary;
   summary.algorithm = choice.algorithm;
   console.end_progress();
-  for (const std::string& note : summary.notes) console.note("note: " + note);
+  for (const std::string& note : summary.notes) console.note(note);
   if (!summary.converged()) {
-    console.note("warning: no minimum was reached: " + summary.message +
-                 (summary.termination == Termination::interrupted ? "; the best state so far is kept" : ""));
+    console.warning(
+        "no minimum was reached: " + summary.message +
+        (summary.termination == Termination::interrupted ? "; the best state so far is kept" : ""));
   }
   document.covariances.clear();
-  if (summary.converged()) add_covariances(document, choice.covariance);
+  if (summary.converged()) {
+    if (choice.covariance != "none") console.progress(work + (work.empty() ? "" : "  ") + "covariances");
+    add_covariances(document, choice.covariance);
+    console.end_progress();
+  }
   return result;
 }
 

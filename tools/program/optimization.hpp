@@ -31,11 +31,12 @@ struct OptimizationChoice {
 };
 
 /// Optimises; fills document.covariances as asked. Iterations are shown by the console. A result that is no
-/// minimum is said on stderr. @param minimize instead of optimize(). @throws InputError where the start asked
+/// minimum is said on stderr. @param minimize instead of optimize(). @param work of which it is a part, shown
+/// beside the iterations. @throws InputError where the start asked
 /// for cannot be made
 MultiStartSummary optimize_document(GraphDocument& document, const OptimizationChoice& choice,
                                     const TypeRegistry& registry, const Console& console,
-                                    const Minimizer& minimize = {});
+                                    const Minimizer& minimize = {}, const std::string& work = {});
 
 /// Name of the linear solver that was chosen.
 [[nodiscard]] std::string solver_name(const OptimizationChoice& choice, const TypeRegistry& registry);

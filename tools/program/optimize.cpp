@@ -54,8 +54,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   write_graph_file(options.output, options.format, document, options.input, registry);
   std::string written = options.output;
   if (!options.covariance_file.empty()) {
-    if (document.covariances.empty())
-      console.note("note: " + options.covariance_file + " has no covariances");
+    if (document.covariances.empty()) console.note(options.covariance_file + " has no covariances");
     write_covariances(options.covariance_file, document, result.summary);
     written += " " + options.covariance_file;
   }
@@ -67,7 +66,8 @@ ExitCode optimize_file(const OptimizeOptions& options) {
     console.result(json_text(json), to_stdout);
   } else {
     const std::string outliers = graduated ? graduation_text(graduated->result) : "";
-    console.result(summary_text(result) + states_text(states) + outliers + "written     " + written + "\n",
+    console.result(summary_text(result) + states_text(states, console.look(to_stdout)) + outliers +
+                       "written     " + written + "\n",
                    to_stdout);
   }
   return exit_code(result.summary);

@@ -123,12 +123,12 @@ std::vector<std::string> chosen_modelings(const DriveOverrides& overrides, const
 }
 
 void tell(const PrepareReport& report, const Console& console) {
-  for (const std::string& note : report.notes) console.note("note: " + note);
+  for (const std::string& note : report.notes) console.note(note);
   const std::size_t corrupt =
       report.odometry.corrupt + report.gnss.corrupt + report.truth.corrupt + report.sensor.corrupt;
   if (corrupt > 0) {
-    console.note(fmt::format("warning: {} corrupt records were left out; the first ones:", corrupt));
-    for (const std::string& example : report.corrupt_examples) console.note("  " + example);
+    console.warning(fmt::format("{} corrupt records were left out; the first ones:", corrupt));
+    for (const std::string& example : report.corrupt_examples) console.tell("  " + example);
   }
 }
 
@@ -221,14 +221,14 @@ ModeledDrive model_loaded(const LoadedDrive& loaded, const std::string& modeling
   console.progress(modeling + ": start and noise");
   ModeledDrive modeled = model_drive(loaded.drive, loaded.config, modeling, options, registry, loaded.loss);
   console.end_progress();
-  for (const std::string& warning : modeled.warnings) console.note("warning: " + warning);
-  if (!modeled.start.note.empty()) console.note("note: start: " + modeled.start.note);
+  for (const std::string& warning : modeled.warnings) console.warning(warning);
+  if (!modeled.start.note.empty()) console.note("start: " + modeled.start.note);
   const DriveConfig& config = modeled.config;
   const auto scale = config.calibration.find("speed_scale");
   const bool calibrates_scale = scale != config.calibration.end() && scale->second != "off";
   if (calibrates_scale && !loaded.loss && !registry.gnss_modeling(modeling).complete) {
     console.note(
-        "note: squared errors let biased fixes bend speed_scale; a robust loss protects it: --loss cauchy:1");
+        "squared errors let biased fixes bend speed_scale; a robust loss protects it: --loss cauchy:1");
   }
   GraphDocument& document = modeled.document;
   document.provenance = {{"program", "waymark " WAYMARK_VERSION}, {"drive", loaded.config.name}};

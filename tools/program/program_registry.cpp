@@ -151,11 +151,11 @@ TypeRegistry make_registry(const CommonOptions& options, const std::vector<std::
   const Console console(options);
   for (const PluginFolder& folder : search.folders) {
     if (!folder.problem.empty() && !folder.installed)
-      console.note("warning: no plugins from " + folder.path + ": " + folder.problem);
+      console.warning("no plugins from " + folder.path + ": " + folder.problem);
   }
   for (const PluginModule& module : search.modules) {  // other shared objects are none of ours
     if (module.state == PluginModule::State::refused)
-      console.note("warning: plugin left out: " + module.problem);
+      console.warning("plugin left out: " + module.problem);
   }
   return std::move(search.registry);
 }

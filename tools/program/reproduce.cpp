@@ -48,14 +48,46 @@ Evaluation evaluate_fused(GraphDocument& document, const std::vector<TruthPose>&
   return evaluate_document(document, truth);
 }
 
+/// All runs of all drives.
+class StudyProgress {
+ public:
+  StudyProgress(const Experiment& experiment, const std::vector<Subject>& subjects, const Console& console)
+      : drives_(subjects.size()), steps_(console, runs_of(experiment, subjects)), experiment_(experiment) {}
+
+  void begin_drive(const DriveConfig& config) {
+    ++drive_;
+    run_ = 0;
+    runs_ = run_count(experiment_, config.truth.has_value());
+  }
+  void begin_run(const std::string& setting) {
+    steps_.next(fmt::format("{}: drive {} of {}  setting {} of {}", setting, drive_, drives_, ++run_, runs_));
+  }
+
+ private:
+  static std::size_t runs_of(const Experiment& experiment, const std::vector<Subject>& subjects) {
+    std::size_t runs = 0;
+    for (const Subject& subject : subjects)
+      runs += run_count(experiment, load_drive_config(subject.path).truth.has_value());
+    return runs;
+  }
+
+  std::size_t drives_;
+  StepProgress steps_;
+  const Experiment& experiment_;
+  std::size_t drive_ = 0;  ///< 1, 2, ...
+  std::size_t run_ = 0;    ///< of the drive
+  std::size_t runs_ = 0;   ///< of the drive
+};
+
 DriveResult study(const Experiment& experiment, const Subject& subject, const TypeRegistry& registry,
-                  const Console& console) {
+                  const Console& console, StudyProgress& progress) {
   const DriveConfig config = load_drive_config(subject.path);
+  progress.begin_drive(config);
   const DriveLogs logs = read_drive_logs(config, registry, watch_reading(console));
   const Laboratory laboratory{registry, evaluate_fused,
                               [&](const std::string& setting) {
                                 stop_if_interrupted();
-                                console.progress(config.name + ": " + setting);
+                                progress.begin_run(setting);
                               },
                               &interrupted};
   DriveResult result = run_experiment(experiment, subject.dataset, config, logs, laboratory);
@@ -110,9 +142,9 @@ std::vector<int> chosen_datasets(const ReproduceOptions& options) {
 
 /// Written as raw logs: simulated drives come in by the door of real ones. Returns the drive.yaml.
 std::string write_simulated(const SimulationPreset& preset, std::uint64_t seed, const std::string& folder,
-                            const Console& console) {
+                            StepProgress& progress) {
   stop_if_interrupted();
-  console.progress("simulating " + preset.name);
+  progress.next("simulating " + preset.name);
   make_folder(folder);
   write_simulated_drive(simulate(preset.recipe, seed), folder);
   return folder + "/drive.yaml";
@@ -121,10 +153,12 @@ std::string write_simulated(const SimulationPreset& preset, std::uint64_t seed, 
 /// The paper's drives.
 std::vector<Subject> simulated_subjects(const ReproduceOptions& options, const Console& console) {
   std::vector<Subject> subjects;
-  for (const int dataset : chosen_datasets(options)) {
+  const std::vector<int> datasets = chosen_datasets(options);
+  StepProgress progress(console, datasets.size());
+  for (const int dataset : datasets) {
     const SimulationPreset& preset = simulation_preset(fmt::format("paper-{}", dataset));
     subjects.push_back({write_simulated(preset, options.seed.value_or(preset.default_seed),
-                                        options.folder + "/drives/" + preset.name, console),
+                                        options.folder + "/drives/" + preset.name, progress),
                         dataset});
   }
   return subjects;
@@ -133,10 +167,12 @@ std::vector<Subject> simulated_subjects(const ReproduceOptions& options, const C
 /// The drives of the consistency study.
 std::vector<Subject> drawn_subjects(const ReproduceOptions& options, const Console& console) {
   std::vector<Subject> subjects;
-  for (const Draw& draw : consistency_draws(*options.consistency)) {
+  const std::vector<Draw> draws = consistency_draws(*options.consistency);
+  StepProgress progress(console, draws.size());
+  for (const Draw& draw : draws) {
     const std::string folder = fmt::format("{}/drives/{}-{}", options.folder, draw.preset, draw.seed);
     subjects.push_back(
-        {write_simulated(simulation_preset(draw.preset), draw.seed, folder, console), 0, draw.preset});
+        {write_simulated(simulation_preset(draw.preset), draw.seed, folder, progress), 0, draw.preset});
   }
   return subjects;
 }
@@ -186,9 +222,11 @@ ExitCode reproduce(const ReproduceOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
   const Experiment experiment = chosen_experiment(options);
+  const std::vector<Subject> subjects = find_subjects(options, console);
+  StudyProgress progress(experiment, subjects, console);
   std::vector<DriveResult> results;
-  for (const Subject& subject : find_subjects(options, console))
-    results.push_back(study(experiment, subject, registry, console));
+  for (const Subject& subject : subjects)
+    results.push_back(study(experiment, subject, registry, console, progress));
   console.end_progress();
   const ReproductionReport report = experiment.report(results, introduction(options));
   const std::string json = report_json(report, results);
@@ -199,7 +237,7 @@ ExitCode reproduce(const ReproduceOptions& options) {
     console.result(json);
     return kSuccess;
   }
-  std::string text = report_text(report) + "\nwritten:\n";
+  std::string text = report_text(report, console.look()) + "\nwritten:\n";
   for (const std::string& file : files) text += "  " + file + "\n";
   text += fmt::format("  {} figures as SVG and CSV in {}/figures\n", figures_of(page).size(), options.folder);
   console.result(text);

@@ -8,6 +8,7 @@
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/robust.hpp>
+#include <waymark/tools/program/usage_hints.hpp>
 
 namespace waymark {
 namespace {
@@ -100,7 +101,7 @@ void add_robust_options(CLI::App& command, RobustChoice& choice) {
   command
       .add_option("--robust", choice.method,
                   "Look for outliers by graduated non-convexity, and leave them out of the result")
-      ->check(CLI::IsMember({"none", "gnc"}))
+      ->check(one_of("method", {"none", "gnc"}))
       ->capture_default_str();
   command
       .add_option("--trusted", choice.trusted,

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <waymark/core/error.hpp>
@@ -38,7 +40,7 @@ void add_covariances_at_fixes(GraphDocument& document, const Summary& summary, c
   try {
     add_covariances(document, "fixes");
   } catch (const InputError& error) {
-    console.note("warning: stated errors cannot be judged: " + std::string(error.what()));
+    console.warning("stated errors cannot be judged: " + std::string(error.what()));
   }
 }
 
@@ -47,24 +49,29 @@ Prediction predict_causally(const RunOptions& options, const LoadedDrive& loaded
                             const TypeRegistry& registry, const Console& console) {
   OptimizationChoice choice = options.choice;
   choice.covariance = "fixes";
+  const auto runs = withheld_runs(loaded.drive.fixes);
+  const auto outages = std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.begin > 0; });
+  StepProgress progress(console, static_cast<std::size_t>(outages));
   const FuseDrive fuse = [&](const PreparedDrive& known) -> std::optional<GraphDocument> {
     if (interrupted) return std::nullopt;
+    progress.next(fmt::format("{}: causal, outage {} of {}", modeling, progress.step() + 1, outages));
     try {
       GraphDocument document =
           model_drive(known, loaded.config, modeling, known_options(modeling, options.overrides, registry),
                       registry, loaded.loss)
               .document;
-      const Summary summary = optimize_document(document, choice, registry, console).summary;
+      const Summary summary =
+          optimize_document(document, choice, registry, console, {}, progress.line()).summary;
       if (summary.termination == Termination::interrupted) return std::nullopt;
       return document;
     } catch (const InputError& error) {
-      console.note(fmt::format("warning: nothing is known causally of the outage that ends with epoch {}: {}",
-                               known.fixes.back().epoch, error.what()));
+      console.warning(fmt::format("nothing is known causally of the outage that ends with epoch {}: {}",
+                                  known.fixes.back().epoch, error.what()));
       return std::nullopt;
     }
   };
   Prediction causal = as_prediction("causal", causal_at_withheld(loaded.drive, fuse));
-  if (interrupted) console.note("warning: interrupted: the causal predictions end early");
+  if (interrupted) console.warning("interrupted: the causal predictions end early");
   return causal;
 }
 
@@ -74,23 +81,26 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, M
   ModelingRun run;
   const std::string prefix = options.folder + "/" + modeling;
   run.noise = modeled.noise;
-  run.description = describe_model(modeled);
+  run.description = describe_model(modeled, console.look());
   GraphDocument& document = modeled.document;
   const auto write = [&](const std::string& name) {
     write_file_atomically(name, [&](const TextSink& sink) { write_graph(document, registry, sink); });
     run.files.push_back(name);
   };
   write(prefix + ".graph");
-  run.result = optimize_document(document, options.choice, registry, console);
+  console.detail("optimising " + modeling);
+  run.result = optimize_document(document, options.choice, registry, console, {}, modeling + ":");
   document.provenance.emplace_back("optimized", describe_optimization(run.result));
   write(prefix + ".fused.graph");
   run.states = states_of_minimum(document, run.result.summary, console);
   for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
+  console.progress(modeling + ": covariances");
   add_covariances_at_fixes(document, run.result.summary, console);
   std::vector<Prediction> further;
   if (options.causal) further.push_back(predict_causally(options, loaded, modeling, registry, console));
   run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth, further)};
   run.files.push_back(write_epochs(run.evaluation.evaluation, prefix));
+  console.end_progress();
   add_provenance(document, modeling, header);
   const bool alone = loaded.modelings.size() == 1;
   run.files.push_back(write_drive_report({.drive = loaded.config.name,
@@ -137,7 +147,7 @@ ExitCode run_drive(const RunOptions& options) {
     const std::string modeling = modeled.modeling;
     ModelingRun run = run_modeling(options, loaded, std::move(modeled), registry, console, header);
     if (text.find(run.description) == std::string::npos) text += run.description;
-    text += run_line(modeling, run.result.summary) + states_text(run.states);
+    text += run_line(modeling, run.result.summary) + states_text(run.states, console.look());
     summaries[modeling] = summary_json(run.result);
     summaries[modeling]["states"] = states_json(run.states);
     summaries[modeling]["noise"] = noise_json(run.noise);
@@ -158,7 +168,7 @@ ExitCode run_drive(const RunOptions& options) {
     console.result(json);
     return code;
   }
-  text += "\n" + metrics_table(evaluations) + "\nwritten:\n";
+  text += "\n" + metrics_table(evaluations, console.look()) + "\nwritten:\n";
   for (const std::string& file : files) text += "  " + file + "\n";
   console.result(text);
   return code;

@@ -28,7 +28,7 @@ struct SimulateOptions {
 };
 
 ExitCode list_presets(const Console& console) {
-  TextTable table({"preset", "seed", "duration s", "description"});
+  TextTable table({"preset", "seed", "duration [s]", "description"});
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const SimulationPreset& preset : simulation_presets()) {
     table.add({preset.name, std::to_string(preset.default_seed),
@@ -38,7 +38,7 @@ ExitCode list_presets(const Console& console) {
                     {"duration_s", preset.recipe.duration_s},
                     {"description", preset.description}});
   }
-  console.result(console.json() ? json_text(json) : table.text());
+  console.result(console.json() ? json_text(json) : table.text(console.look()));
   return kSuccess;
 }
 

@@ -49,11 +49,11 @@ TextTable::Row row_of(const std::string& quantity, const ClockOffset& offset) {
           offset.against};
 }
 
-std::string table_of(const SyncReport& report, const DriveConfig& config) {
+std::string table_of(const SyncReport& report, const DriveConfig& config, const TextLook& look) {
   TextTable table({"odometry's", "late by [s]", "sigma [s]", "correlation", "samples", "against"});
   if (report.speed) table.add(row_of("speed", *report.speed));
   if (report.yaw_rate) table.add(row_of("yaw rate", *report.yaw_rate));
-  std::string text = table.empty() ? "" : table.text();
+  std::string text = table.empty() ? "" : table.text(look);
   if (!report.speed) text += "speed: no offset found (too little driving, or no correlation beyond chance)\n";
   if (!report.yaw_rate)
     text += "yaw rate: no offset found (too few turns, or no correlation beyond chance)\n";
@@ -83,7 +83,7 @@ ExitCode synchronise(const SyncCommand& command) {
     console.result(json_text(json_of(report, drive.report.clocks)));
     return kSuccess;
   }
-  std::string text = table_of(report, config);
+  std::string text = table_of(report, config, console.look());
   for (const ClockReport& clock : drive.report.clocks)
     text += fmt::format(
         "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual deviation "

@@ -37,6 +37,11 @@ Experiment consistency_experiment() {
   return {.settings = consistency_settings(), .report = consistency_report};
 }
 
+std::size_t run_count(const Experiment& experiment, bool has_truth) {
+  const std::size_t whole = has_truth || !experiment.truth_only ? experiment.settings.size() : 0;
+  return has_truth ? whole : whole + experiment.ways.size() * experiment.withheld_settings.size();
+}
+
 DriveResult run_experiment(const Experiment& experiment, int dataset, DriveConfig config,
                            const DriveLogs& logs, const Laboratory& laboratory) {
   config.withhold_every = 0;

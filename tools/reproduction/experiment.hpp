@@ -33,6 +33,9 @@ struct Experiment {
 /// Stated against actual errors (consistency_study.hpp).
 [[nodiscard]] Experiment consistency_experiment();
 
+/// Settings that are run on a drive, those with fixes kept out included.
+[[nodiscard]] std::size_t run_count(const Experiment& experiment, bool has_truth);
+
 /// Runs an experiment on a drive. @param dataset of the paper, or 0
 /// @param config what it keeps out itself is not kept out here
 [[nodiscard]] DriveResult run_experiment(const Experiment& experiment, int dataset, DriveConfig config,

@@ -44,10 +44,10 @@ std::string markdown_row(const std::vector<std::string>& cells) {
 
 }  // namespace
 
-std::string table_text(const ReportTable& table) {
+std::string table_text(const ReportTable& table, const TextLook& look) {
   TextTable text(table.columns);
   for (const auto& row : table.rows) text.add(row);
-  std::string out = table.title + "\n" + text.text();
+  std::string out = table.title + "\n" + text.text(look);
   for (const std::string& note : table.notes) out += "  " + note + "\n";
   return out;
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <waymark/tools/evaluation/text_look.hpp>
+
 namespace waymark {
 
 struct ReportTable {
@@ -15,7 +17,7 @@ struct ReportTable {
 };
 
 /// For the terminal: title, aligned columns, notes.
-[[nodiscard]] std::string table_text(const ReportTable& table);
+[[nodiscard]] std::string table_text(const ReportTable& table, const TextLook& look = {});
 /// GitHub's Markdown, under a heading of second level.
 [[nodiscard]] std::string table_markdown(const ReportTable& table);
 /// RFC 4180: the columns' names, then the rows. Without title and notes.

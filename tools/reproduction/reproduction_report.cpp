@@ -35,10 +35,10 @@ ReproductionReport make_report(const std::vector<DriveResult>& drives, const std
   return report;
 }
 
-std::string report_text(const ReproductionReport& report) {
+std::string report_text(const ReproductionReport& report, const TextLook& look) {
   std::string text = report.introduction;
   text += "\n";
-  for (const ReportTable& table : report.tables) text.append("\n").append(table_text(table));
+  for (const ReportTable& table : report.tables) text.append("\n").append(table_text(table, look));
   if (!report.findings.empty())
     text.append("\nWhat the paper found, and what these drives say\n").append(findings_text(report.findings));
   return text;

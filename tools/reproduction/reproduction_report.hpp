@@ -24,7 +24,7 @@ struct ReproductionReport {
                                              const std::string& introduction);
 
 /// For the terminal.
-[[nodiscard]] std::string report_text(const ReproductionReport& report);
+[[nodiscard]] std::string report_text(const ReproductionReport& report, const TextLook& look = {});
 /// NAME.md, the name in capitals
 [[nodiscard]] std::string report_markdown(const ReproductionReport& report);
 /// NAME.json, schema "waymark-NAME" version 1 (README.md of this folder): all numbers in full.
