@@ -111,7 +111,7 @@ std::string benchmark_csv(const std::vector<FileSummary>& files) {
 }
 
 std::string benchmark_json(const std::vector<FileSummary>& files, const BenchmarkHeader& header) {
-  Json json;
+  Json json = {{"schema", "waymark-bench"}, {"version", 1}};
   for (const auto& [key, text] : header) json["header"][key] = text;
   json["files"] = Json::array();
   for (const FileSummary& file : files) {

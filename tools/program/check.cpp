@@ -32,7 +32,7 @@ ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) 
   for (const std::string& problem : report.problems) text += "problem: " + problem + "\n";
   if (report.problems.empty()) text += "no problems found\n";
   const nlohmann::ordered_json json = {{"derivatives", report.json}, {"problems", report.problems}};
-  Console(options.common).result(options.common.json ? json_text(json) : text);
+  Console(options.common).result(options.common.json ? json_document("derivatives", json) : text);
   return report.problems.empty() ? kSuccess : kInputError;
 }
 
@@ -49,6 +49,8 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
     problems.push_back(fmt::format("{} more wrong lines", report.skipped - problems.size()));
   }
   nlohmann::ordered_json json = {{"file", options.input}, {"vertices", graph.vertex_count()}};
+  json["edges"] = nlohmann::ordered_json::array();
+  json["notes"] = nlohmann::ordered_json::array();
   std::string text = fmt::format("{}: {} vertices, {} edges, {} GNSS records\n", options.input,
                                  graph.vertex_count(), graph.edge_count(), document.fixes.size());
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
@@ -76,7 +78,7 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
   for (const std::string& problem : problems) text += "problem: " + problem + "\n";
   if (problems.empty()) text += "no problems found\n";
   json["problems"] = problems;
-  console.result(options.common.json ? json_text(json) : text);
+  console.result(options.common.json ? json_document("check", json) : text);
   return problems.empty() ? kSuccess : kInputError;
 }
 

@@ -74,7 +74,7 @@ ExitCode convert_drive(const ConvertOptions& options, const TypeRegistry& regist
     json["distance_m"] = modeled.distance_m;
     json["noise"] = noise_json(modeled.noise);
     json["start_chi2"] = document.graph.chi2();
-    console.result(json_text(json), is_stdout(options.output));
+    console.result(json_document("convert", json), is_stdout(options.output));
     return kSuccess;
   }
   console.result(describe_drive(loaded) + describe_model(modeled, console.look(is_stdout(options.output))) +
@@ -102,7 +102,7 @@ ExitCode convert_graph(const ConvertOptions& options, const TypeRegistry& regist
     json["input_format"] = options.input_format;
     if (!options.format.profile.empty()) json["profile"] = options.format.profile;
     json["chi2"] = document.graph.chi2();
-    console.result(json_text(json), is_stdout(options.output));
+    console.result(json_document("convert", json), is_stdout(options.output));
     return kSuccess;
   }
   console.result(fmt::format("written     {}: {} vertices, {} edges, chi2 {:.10g}, format {}\n",

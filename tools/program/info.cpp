@@ -42,12 +42,12 @@ Json sensor_json(const SensorModelType& type, const std::string& origin) {
           {"options", options_json(type.options)}};
 }
 
-std::string plugins_text(const Json& plugins) {
+std::string plugins_text(const Json& plugins, const TextLook& look) {
   const BuildTraits traits = build_traits();
   std::string text = fmt::format("plugin ABI {}, Eigen {} with alignment {}, layout {:08x}\n", kPluginAbi,
                                  traits.eigen_version, traits.eigen_max_align, traits.layout);
   for (const Json& plugin : plugins) {
-    text += fmt::format("{} {}, {}\n", plugin["name"].get<std::string>(),
+    text += fmt::format("{} {}, {}\n", painted(plugin["name"].get<std::string>(), Tone::heading, look),
                         plugin["version"].get<std::string>(), plugin["place"].get<std::string>());
     for (const Json& name : plugin["brings"]) text += "  " + name.get<std::string>() + "\n";
   }
@@ -56,7 +56,7 @@ std::string plugins_text(const Json& plugins) {
 
 /// Everything that is registered, as JSON; the text is made from the same.
 Json registry_json(const TypeRegistry& registry) {
-  Json json = {{"version", WAYMARK_VERSION}};
+  Json json = {{"program_version", WAYMARK_VERSION}};
   for (const auto& [type, origin] : registry.vertices()) {
     json["vertices"].push_back(
         {{"name", type.tag},
@@ -121,11 +121,11 @@ Json registry_json(const TypeRegistry& registry) {
   return json;
 }
 
-std::string registry_text(const Json& json) {
-  std::string text = "waymark " + json["version"].get<std::string>() + "\n";
+std::string registry_text(const Json& json, const TextLook& look) {
+  std::string text = "waymark " + json["program_version"].get<std::string>() + "\n";
   for (const auto& [section, entries] : json.items()) {
     if (!entries.is_array()) continue;
-    text += "\n" + section + "\n";
+    text += "\n" + painted(section, Tone::heading, look) + "\n";
     for (const Json& entry : entries) {
       const std::string origin = entry["origin"];
       text += fmt::format("  {:<22} {}{}\n", entry["name"].get<std::string>(),
@@ -167,9 +167,15 @@ void add_info(CLI::App& app, Action& action) {
   command->callback([options, &action] {
     action = [options] {
       const TypeRegistry registry = make_registry(options->common);
-      const Json json = options->plugins ? plugins_json(registry) : registry_json(registry);
-      const std::string text = options->plugins ? plugins_text(json) : registry_text(json);
-      Console(options->common).result(options->common.json ? json_text(json) : text);
+      const Console console(options->common);
+      if (options->plugins) {
+        const Json plugins = plugins_json(registry);
+        console.result(console.json() ? json_document("plugins", {{"plugins", plugins}})
+                                      : plugins_text(plugins, console.look()));
+      } else {
+        const Json json = registry_json(registry);
+        console.result(console.json() ? json_document("info", json) : registry_text(json, console.look()));
+      }
       return kSuccess;
     };
   });

@@ -1,26 +1,52 @@
 #include <memory>
+#include <sstream>
 
 #include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/inspection/drive_proposal.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/log_inspection.hpp>
+#include <waymark/tools/program/output.hpp>
 
 namespace waymark {
 namespace {
+
+/// The lines of a drive.yaml that are marked as assumed.
+nlohmann::ordered_json checks_in(const std::string& yaml) {
+  constexpr std::string_view kMark = "# CHECK";
+  nlohmann::ordered_json checks = nlohmann::ordered_json::array();
+  std::istringstream lines(yaml);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const auto mark = line.find(kMark);
+    const auto begin = line.find_first_not_of(' ');
+    // A line of comment that speaks of the mark marks nothing.
+    if (mark == std::string::npos || (line[begin] == '#' && mark != begin)) continue;
+    checks.push_back({{"line", number}, {"text", line.substr(begin)}});
+  }
+  return checks;
+}
 
 ExitCode initialise(const InspectCommand& command) {
   const Console console(command.common);
   if (command.output.empty())
     throw UsageError("-o is required: the drive.yaml to write ('-': standard output)");
   require_new_file(command);
+  std::string text;
   if (command.logs.empty()) {
-    write_file_atomically(command.output, drive_template());
+    text = drive_template();
+    write_file_atomically(command.output, text);
     console.tell(command.output +
                  ": a template was written, as no log was named; fill in its 'file' entries");
-    return kSuccess;
+  } else {
+    text = write_proposal(command, inspect_files(command, console), console);
   }
-  write_proposal(command, inspect_files(command, console), console);
+  if (command.common.json) {
+    console.result(json_document("init", {{"file", command.output},
+                                          {"template", command.logs.empty()},
+                                          {"checks", checks_in(text)}}),
+                   is_stdout(command.output));
+  }
   return kSuccess;
 }
 

@@ -19,7 +19,7 @@ ExitCode inspect(const InspectCommand& command) {
   if (command.common.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const LogInspection& log : logs) json.push_back(inspection_json(log));
-    console.result(json_text(json), is_stdout(command.output));
+    console.result(json_document("inspect", {{"logs", json}}), is_stdout(command.output));
   } else {
     std::string text;
     for (const LogInspection& log : logs)

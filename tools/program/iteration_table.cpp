@@ -8,10 +8,10 @@ namespace {
 // 80 columns. Time apart all are numbers without unit: chi2, its actual and predicted decrease, and the
 // largest gradient in units of its unknown's sigma.
 constexpr const char* kHeading =
-    "  no  step               chi2    decrease   predicted   gradient  taken  time [s]";
+    "  no  step               chi2    decrease   predicted  gradient  taken  time [s]";
 
 std::string line_of(const IterationRecord& r) {
-  return fmt::format("{:>4}  {:<7}  {:>14.9g}  {:>10.4g}  {:>10.4g}  {:>9.3g}  {:<5}  {:>8.3f}", r.iteration,
+  return fmt::format("{:>4}  {:<7}  {:>14.9g}  {:>10.4g}  {:>10.4g}  {:>8.3g}  {:<5}  {:>8.3f}", r.iteration,
                      r.kind, r.chi2, r.decrease, r.predicted_decrease, r.gradient, r.accepted ? "yes" : "no",
                      r.seconds);
 }

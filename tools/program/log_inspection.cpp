@@ -70,12 +70,14 @@ std::vector<LogInspection> inspect_files(const InspectCommand& command, const Co
   return inspected;
 }
 
-void write_proposal(const InspectCommand& command, const std::vector<LogInspection>& logs,
-                    const Console& console) {
+std::string write_proposal(const InspectCommand& command, const std::vector<LogInspection>& logs,
+                           const Console& console) {
   const DriveProposal proposal = propose_drive(logs);
   for (const std::string& decision : proposal.decisions) console.tell(decision);
-  write_file_atomically(command.output, drive_yaml(proposal, logs, command.output));
+  std::string text = drive_yaml(proposal, logs, command.output);
+  write_file_atomically(command.output, text);
   if (!is_stdout(command.output)) console.tell(command.output + ": written; look for '# CHECK' in it");
+  return text;
 }
 
 }  // namespace waymark

@@ -24,10 +24,10 @@ void add_inspection_options(CLI::App& command, InspectCommand& options);
 /// @throws InputError, UsageError as inspect_logs; OutputError where the drive.yaml could not be written
 [[nodiscard]] std::vector<LogInspection> inspect_files(const InspectCommand& command, const Console& console);
 
-/// Writes the drive.yaml; what was decided and what is left to check goes to stderr.
+/// Writes the drive.yaml; what was decided and what is left to check goes to stderr. @return its text
 /// @throws OutputError
-void write_proposal(const InspectCommand& command, const std::vector<LogInspection>& logs,
-                    const Console& console);
+std::string write_proposal(const InspectCommand& command, const std::vector<LogInspection>& logs,
+                           const Console& console);
 
 /// A place that a drive.yaml may be written to. @throws OutputError for an existing file without --force
 void require_new_file(const InspectCommand& command);

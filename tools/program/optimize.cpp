@@ -63,7 +63,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
     nlohmann::ordered_json json = summary_json(result);
     json["states"] = states_json(states);
     if (graduated) json["graduation"] = graduation_json(*graduated);
-    console.result(json_text(json), to_stdout);
+    console.result(json_document("optimize", json), to_stdout);
   } else {
     const std::string outliers = graduated ? graduation_text(graduated->result) : "";
     console.result(summary_text(result) + states_text(states, console.look(to_stdout)) + outliers +

@@ -29,6 +29,12 @@ void make_folder(const std::string& folder) {
   if (error) throw OutputError(folder + ": cannot make the folder: " + error.message());
 }
 
+std::string json_document(const std::string& kind, const nlohmann::ordered_json& json) {
+  nlohmann::ordered_json document = {{"schema", "waymark-" + kind}, {"version", 1}};
+  document.update(json);
+  return json_text(document);
+}
+
 std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

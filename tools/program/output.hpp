@@ -18,6 +18,10 @@ void require_output_place(const std::string& path);
 /// Makes a folder and those above it. @throws OutputError
 void make_folder(const std::string& folder);
 
+/// What --json prints: a document of this kind, "schema": "waymark-KIND", "version": 1, then the keys of
+/// `json`. README.md of this folder lists the keys of every kind; a test compares the two.
+[[nodiscard]] std::string json_document(const std::string& kind, const nlohmann::ordered_json& json);
+
 /// JSON for people and files: indented; what is not UTF-8 (a file name may be anything) is replaced.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& json);
 

@@ -89,7 +89,7 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, M
   };
   write(prefix + ".graph");
   console.detail("optimising " + modeling);
-  run.result = optimize_document(document, options.choice, registry, console, {}, modeling + ":");
+  run.result = optimize_document(document, options.choice, registry, console, {}, modeling);
   document.provenance.emplace_back("optimized", describe_optimization(run.result));
   write(prefix + ".fused.graph");
   run.states = states_of_minimum(document, run.result.summary, console);

@@ -38,7 +38,7 @@ ExitCode list_presets(const Console& console) {
                     {"duration_s", preset.recipe.duration_s},
                     {"description", preset.description}});
   }
-  console.result(console.json() ? json_text(json) : table.text(console.look()));
+  console.result(console.json() ? json_document("presets", {{"presets", json}}) : table.text(console.look()));
   return kSuccess;
 }
 
@@ -93,7 +93,7 @@ ExitCode describe(const std::string& path, const CommonOptions& common, const Co
   const PreparedDrive drive = load_drive(config, registry, watch_reading(console));
   console.end_progress();
   const DriveStatistics statistics = drive_statistics(drive, config.gate);
-  console.result(console.json() ? json_text(statistics_json(drive.name, statistics))
+  console.result(console.json() ? json_document("simulate", statistics_json(drive.name, statistics))
                                 : statistics_text(drive.name, statistics));
   return kSuccess;
 }

@@ -80,7 +80,7 @@ ExitCode synchronise(const SyncCommand& command) {
   console.end_progress();
   for (const std::string& note : drive.report.notes) console.detail("note: " + note);
   if (command.common.json) {
-    console.result(json_text(json_of(report, drive.report.clocks)));
+    console.result(json_document("sync", json_of(report, drive.report.clocks)));
     return kSuccess;
   }
   std::string text = table_of(report, config, console.look());
