@@ -126,8 +126,8 @@ TEST_CASE("convert: options that do not belong to the input are refused") {
       {{drive, "--lenient", "--input-format", "toro"}, "--input-format, --lenient: the input is a drive"},
       {{graph, "--profile", "ceres", "--format", "toro"},
        "--profile ceres: Ceres' pose_graph_2d does not read the format toro; it reads: g2o"},
-      {{graph, "--profile", "isam"}, "--profile: isam not in {g2o,gtsam,ceres,toro}"},
-      {{graph, "--format", "g3o"}, "--format: g3o not in {graph,g2o,toro,covariance}"}};
+      {{graph, "--profile", "isam"}, "--profile: unknown profile 'isam'; there are: g2o, gtsam, ceres, toro"},
+      {{graph, "--format", "g3o"}, "--format: unknown format 'g3o'; did you mean 'g2o'?"}};
   for (const auto& [words, message] : cases) {
     std::vector<std::string> arguments = {"convert", "-o", folder + "out"};
     arguments.insert(arguments.end(), words.begin(), words.end());

@@ -60,7 +60,7 @@ TEST_CASE("inspect says what is in a log, as text and as JSON") {
                            "  odometry ", "suspicious"})
     CHECK(contains(text.out, part));
   const RunResult result = run({"inspect", folder + "gnss.csv", folder + "odometry.csv", "--json"});
-  const Json json = Json::parse(result.out);
+  const Json json = Json::parse(result.out).at("logs");
   REQUIRE(json.size() == 2);
   CHECK(json.at(0).at("format") == "csv");
   CHECK(json.at(0).at("gnss").at("fixes") == 41);
@@ -141,7 +141,7 @@ TEST_CASE("inspect of Aarhus's CAN log names the logger's clock and proposes its
       run({"inspect", log, "--dbc", shared_file("drives/aarhus_horsens/canmod-gps.dbc"), "--json"});
   INFO(result.err);
   REQUIRE(result.code == 0);
-  const Json json = Json::parse(result.out).at(0);
+  const Json json = Json::parse(result.out).at("logs").at(0);
   CHECK(json.at("format") == "candump");
   CHECK(json.at("gnss").at("fixes") == 2161);
   CHECK(json.at("without_fix") == 111);

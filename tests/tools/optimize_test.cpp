@@ -173,7 +173,7 @@ TEST_CASE("the start is chosen, and what was chosen is said") {
   const RunResult unknown = run({"optimize", input, "-o", folder + "c.graph", "--start", "best"});
   CHECK(unknown.code == 2);
   CHECK(unknown.err ==
-        "waymark: error: unknown start 'best'; there are: auto file linear spanning_tree odometry\n");
+        "waymark: error: unknown start 'best'; there are: auto, file, linear, spanning_tree, odometry\n");
   const std::string alone = write_text(folder + "alone.g2o", "VERTEX_SE2 0 0 0 0\n");
   const RunResult none = run({"optimize", alone, "-o", folder + "c.graph", "--start", "odometry"});
   CHECK(none.code == 3);

@@ -32,7 +32,7 @@ TEST_CASE("plugins: --plugin loads a file, and info says where each plugin comes
   CHECK(contains(result.out, "gnss_g1 0.1.0, built in\n  g1\n"));
   CHECK(contains(result.out, "sample 1.2.3, " + module_file("sound") + "\n  EDGE_SAMPLE\n"));
   const RunResult json = run({"info", "--plugins", "--json", "--plugin", module_file("sound")});
-  const auto plugins = nlohmann::json::parse(json.out);
+  const auto plugins = nlohmann::json::parse(json.out).at("plugins");
   CHECK(plugins.back()["name"] == "sample");
   CHECK(plugins.back()["brings"] == nlohmann::json::array({"EDGE_SAMPLE"}));
 }

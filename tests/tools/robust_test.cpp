@@ -85,7 +85,7 @@ TEST_CASE("wrong losses, tags and combinations are refused before anything is re
     const char* message;
   };
   const Case cases[] = {
-      {{"--loss", "hubert:1"}, "--loss: unknown loss 'hubert'; there are: huber, cauchy"},
+      {{"--loss", "hubert:1"}, "--loss: unknown loss 'hubert'; did you mean 'huber'?"},
       {{"--loss", "huber"}, "--loss: expected [TAG=]NAME:SCALE with a scale above 0, got 'huber'"},
       {{"--loss", "huber:-1"}, "with a scale above 0, got 'huber:-1'"},
       {{"--loss", "huber:1x"}, "with a scale above 0, got 'huber:1x'"},

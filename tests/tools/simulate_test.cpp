@@ -12,7 +12,7 @@ TEST_CASE("simulate lists its presets") {
   CHECK(result.code == 0);
   for (const char* name : {"highway", "urban", "rural", "mixed", "paper-1", "paper-8"})
     CHECK(contains(result.out, name));
-  const Json json = Json::parse(run({"simulate", "--list", "--json"}).out);
+  const Json json = Json::parse(run({"simulate", "--list", "--json"}).out).at("presets");
   CHECK(json.size() == 12);
   CHECK(json.at(4).at("name") == "paper-1");
 }

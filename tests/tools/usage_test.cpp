@@ -55,7 +55,7 @@ TEST_CASE("wrong words on the command line are usage errors that name them") {
       {{"optimize", graph, "-o", out, "--speed", "3"}, "--speed"},
       {{"optimize", graph, "-o", out, "--solver", "mumps"}, "unknown linear solver 'mumps'; there are: "},
       {{"optimize", graph, "-o", out, "-a", "newton"},
-       "unknown algorithm 'newton'; there are: gauss_newton levenberg_marquardt dogleg"},
+       "unknown algorithm 'newton'; there are: gauss_newton, levenberg_marquardt, dogleg"},
       {{"optimize", graph, "-o", out, "--algorithm-option", "radius"}, "expected NAME=VALUE, got 'radius'"},
       {{"optimize", graph, "-o", out, "--algorithm-option", "trust=1"}, "dogleg: unknown option 'trust'"},
       {{"optimize", graph, "-o", out, "--max-iterations", "-1"},
@@ -64,10 +64,12 @@ TEST_CASE("wrong words on the command line are usage errors that name them") {
        "--max-iterations: must be at least 0, got many"},
       {{"optimize", graph, "-o", out, "--tolerance", "0"}, "--tolerance: must be above 0, got 0"},
       {{"optimize", graph, "-o", out, "--tolerance", "nan"}, "--tolerance: must be above 0, got nan"},
-      {{"optimize", graph, "-o", out, "--format", "kml"}, "--format: kml not in {graph,g2o,toro,covariance}"},
-      {{"optimize", graph, "-o", out, "--covariance", "some"}, "--covariance: some not in {none,fixes,all}"},
+      {{"optimize", graph, "-o", out, "--format", "kml"},
+       "--format: unknown format 'kml'; there are: graph, g2o, toro, covariance"},
+      {{"optimize", graph, "-o", out, "--covariance", "some"},
+       "--covariance: unknown choice 'some'; there are: none, fixes, all"},
       {{"run", drive, "--out", out, "-m", "g9"},
-       "unknown GNSS modeling 'g9'; there are: correlated g1 g2 g3"},
+       "unknown GNSS modeling 'g9'; there are: correlated, g1, g2, g3"},
       {{"run", drive, "--out", out, "-m", "g1", "--modeling-option", "error=perfect"}, "perfect"},
       {{"run", drive, "--out", out, "--withhold", "1"}, "--withhold: must be 0 (none) or at least 2, got 1"},
       {{"run", drive, "--out", out, "--from", "nan"},
@@ -85,6 +87,81 @@ TEST_CASE("wrong words on the command line are usage errors that name them") {
     CHECK(contains(result.err, c.message));
     CHECK(result.out.empty());
     CHECK_FALSE(exists(out));
+  }
+}
+
+TEST_CASE("what is mistyped is answered by what was meant, before anything is read") {
+  const std::string drive = bundled_drive();
+  struct Case {
+    std::vector<std::string> arguments;
+    std::string message;
+  };
+  const std::vector<Case> cases = {
+      {{"run", drive, "-o", "out", "--modelling", "g2"},
+       "unknown option '--modelling'; did you mean '--modeling'?"},
+      {{"run", "--modelling=g2"},
+       "unknown option '--modelling'; did you mean '--modeling'?"},  // -o lacks, too
+      {{"bench", "a.g2o", "--withhold", "3"},
+       "unknown option '--withhold'; --withhold belongs to: convert, run"},
+      {{"optimize", "a.graph", "-o", "b", "-m", "g1"}, "unknown option '-m'; -m belongs to: convert, run"},
+      {{"info", "--frobnicate"},
+       "unknown option '--frobnicate'; 'waymark info --help' lists those there are"},
+      // A value may look like an option: it is not what is wrong here.
+      {{"optimize", "a.graph", "-o", "--odd", "--quite"},
+       "unknown option '--quite'; did you mean '--quiet'?"},
+      {{"optimize", "a.graph", "-o", "b", "-a", "dogle"},
+       "unknown algorithm 'dogle'; did you mean 'dogleg'?"},
+      {{"optimize", "a.graph", "-o", "b", "-s", "cholmd"},
+       "unknown linear solver 'cholmd'; did you mean 'cholmod'?"},
+      {{"optimize", "a.graph", "-o", "b", "--start", "spaning_tree"},
+       "unknown start 'spaning_tree'; did you mean 'spanning_tree'?"},
+      {{"optimize", "a.graph", "-o", "b", "--algorithm-option", "initial_raduis=1"},
+       "dogleg: unknown option 'initial_raduis'; did you mean 'initial_radius'?"},
+      {{"optimize", "a.graph", "-o", "b", "--trusted", "EDGE_SE"},
+       "--trusted: unknown edge type 'EDGE_SE'; did you mean 'EDGE_SE2'?"},
+      {{"optimize", "a.graph", "-o", "b", "--covariance", "fixs"},
+       "--covariance: unknown choice 'fixs'; did you mean 'fixes'?"},
+      {{"run", drive, "-o", "out", "-m", "corelated"},
+       "unknown GNSS modeling 'corelated'; did you mean 'correlated'?"},
+      {{"run", drive, "-o", "out", "-m", "g2", "--modeling-option", "idenity_information=1"},
+       "g2: unknown option 'idenity_information'; did you mean 'identity_information'?"},
+      {{"run", drive, "-o", "out", "--noise", "estimte"},
+       "--noise: unknown way 'estimte'; did you mean 'estimate'?"},
+      {{"bench", "a.g2o", "--start", "odometri"}, "unknown start 'odometri'; did you mean 'odometry'?"},
+      {{"bench", "a.g2o", "--peer", "cers"}, "unknown peer 'cers'; did you mean 'ceres'?"},
+      {{"simulate", "--preset", "urbn", "-o", "out"}, "unknown preset 'urbn'; did you mean 'urban'?"},
+      {{"inspect", drive, "--format", "cvs"}, "unknown log format 'cvs'; did you mean 'csv'?"},
+      {{"convert", "a.graph", "-o", "b", "--profile", "gtsm"},
+       "--profile: unknown profile 'gtsm'; did you mean 'gtsam'?"}};
+  const std::string folder = fresh_folder();
+  for (const Case& c : cases) {
+    const RunResult result = run(c.arguments, {.folder = folder});
+    INFO(c.message << "\n" << result.err);
+    CHECK(result.code == 2);
+    CHECK(result.err.rfind("waymark: error: ", 0) == 0);
+    CHECK(contains(result.err, c.message));
+    CHECK(names_in(folder).empty());
+  }
+}
+
+TEST_CASE("a mistyped key is answered by the right one in every section of a drive.yaml") {
+  const std::string folder = fresh_folder();
+  const std::string good = read_text(write_drive(folder));
+  const std::pair<const char*, const char*> cases[] = {
+      {"odometri: {}\n", "unknown key 'odometri'; did you mean 'odometry'?"},
+      {"time: {scael: gps}\n", "unknown key 'scael' in time; did you mean 'scale'?"},
+      {"frame: {utm_zoen: 33N}\n", "unknown key 'utm_zoen' in frame; did you mean 'utm_zone'?"},
+      {"gap: {polcy: bridge}\n", "unknown key 'polcy' in gap; did you mean 'policy'?"},
+      {"gate: {max_angel_deg: 10}\n", "unknown key 'max_angel_deg' in gate; did you mean 'max_angle_deg'?"},
+      {"modeling: {naem: g1}\n", "unknown key 'naem' in modeling; did you mean 'name'?"},
+      {"calibration: {gyro_bais: constant}\n", "'gyro_bais'; did you mean 'gyro_bias'?"},
+      {"sensors: [{naem: x}]\n", "unknown key 'naem' in sensors; did you mean 'name'?"}};
+  for (const auto& [section, message] : cases) {
+    const std::string yaml = write_text(folder + "wrong.yaml", good + section);
+    const RunResult result = run({"run", yaml, "-o", folder + "out"});
+    INFO(message << "\n" << result.err);
+    CHECK(result.code == 3);
+    CHECK(contains(result.err, message));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/core/options.hpp>
+#include <waymark/core/suggest.hpp>
 #include <waymark/tools/drive/assemble.hpp>
 #include <waymark/tools/drive/plausibility.hpp>
 #include <waymark/tools/drive/sensors.hpp>
@@ -85,13 +86,17 @@ void check_calibration(const DriveConfig& config, const std::vector<std::string>
                        const TypeRegistry& registry) {
   for (const auto& entry : config.calibration) {
     const std::string& name = entry.first;
-    bool known = has_option(registry.odometry_model(config.odometry_model).options, name);
-    for (const std::string& modeling : modelings)
-      known = known || has_option(registry.gnss_modeling(modeling).options, name);
-    if (known) continue;
+    std::vector<std::string_view> known;
+    const auto add = [&known](const std::vector<OptionInfo>& options) {
+      for (const OptionInfo& option : options) known.push_back(option.name);
+    };
+    add(registry.odometry_model(config.odometry_model).options);
+    for (const std::string& modeling : modelings) add(registry.gnss_modeling(modeling).options);
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string hint = did_you_mean(name, known);
     throw InputError(place_of(config, "calibration." + name) + "calibration: neither odometry model '" +
-                     config.odometry_model + "' nor the GNSS modeling knows '" + name +
-                     "'; `waymark info` lists their options");
+                     config.odometry_model + "' nor the GNSS modeling knows '" + name + "'" +
+                     (hint.empty() ? "; `waymark info` lists their options" : hint));
   }
 }
 
