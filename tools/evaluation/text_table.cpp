@@ -18,6 +18,11 @@ bool looks_like_number(const std::string& cell) {
   return signed_or_point && is_digit(cell[1]);
 }
 
+/// "10 minutes of motorway"; no interval "0.24 - 5.57", no "10 Hz".
+bool is_sentence(const std::string& cell) {
+  return std::count(cell.begin(), cell.end(), ' ') > 2;
+}
+
 }  // namespace
 
 void TextTable::add_unless_known(Row row) {
@@ -28,10 +33,13 @@ void TextTable::add_unless_known(Row row) {
 }
 
 bool TextTable::of_words(std::size_t column) const {
-  if (column == 0) return true;
-  return std::none_of(rows_.begin() + 1, rows_.end(), [&](const Row& row) {
-    return column < row.size() && !row[column].empty() && looks_like_number(row[column]);
-  });
+  bool numbers = false;
+  for (auto row = rows_.begin() + 1; row != rows_.end() && column > 0; ++row) {
+    if (column >= row->size() || (*row)[column].empty()) continue;
+    if (is_sentence((*row)[column])) return true;
+    numbers = numbers || looks_like_number((*row)[column]);
+  }
+  return !numbers;
 }
 
 std::string TextTable::text(const TextLook& look) const {

@@ -7,6 +7,7 @@
 #include <waymark/core/marginals.hpp>
 #include <waymark/formats/graph_format.hpp>
 #include <waymark/formats/text_file.hpp>
+#include <waymark/tools/evaluation/text_table.hpp>
 #include <waymark/tools/program/commands.hpp>
 #include <waymark/tools/program/derivatives.hpp>
 #include <waymark/tools/program/graph_files.hpp>
@@ -27,12 +28,13 @@ constexpr std::size_t kCheckedEdges = 50;  // per type
 
 /// Of every registered edge type, without a graph.
 ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) {
-  const DerivativeReport report = check_derivatives(registry);
+  const Console console(options.common);
+  const DerivativeReport report = check_derivatives(registry, console.look());
   std::string text = report.text;
   for (const std::string& problem : report.problems) text += "problem: " + problem + "\n";
   if (report.problems.empty()) text += "no problems found\n";
   const nlohmann::ordered_json json = {{"derivatives", report.json}, {"problems", report.problems}};
-  Console(options.common).result(options.common.json ? json_document("derivatives", json) : text);
+  console.result(options.common.json ? json_document("derivatives", json) : text);
   return report.problems.empty() ? kSuccess : kInputError;
 }
 
@@ -53,19 +55,23 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
   json["notes"] = nlohmann::ordered_json::array();
   std::string text = fmt::format("{}: {} vertices, {} edges, {} GNSS records\n", options.input,
                                  graph.vertex_count(), graph.edge_count(), document.fixes.size());
+  TextTable table({"edge type", "edges", "chi2", "error", "Jacobians off by"});
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     stop_if_interrupted();
+    console.progress("derivatives of " + graph.edge_type(b).tag);
     const GradientCheck gradients = check_gradients(graph, b, kCheckedEdges);
     const EdgeType& type = graph.edge_type(b);
-    text +=
-        fmt::format("  {:<24} {:>8} edges   chi2 {:<14.8g} error {:<12} Jacobians off by {:.1e}\n", type.tag,
-                    graph.batch(b).size(), graph.batch(b).chi2(graph.view()), type.form, gradients.error);
+    table.add({type.tag, std::to_string(graph.batch(b).size()),
+               fmt::format("{:.8g}", graph.batch(b).chi2(graph.view())), type.form,
+               fmt::format("{:.1e}", gradients.error)});
     json["edges"].push_back({{"type", type.tag},
                              {"count", graph.batch(b).size()},
                              {"chi2", graph.batch(b).chi2(graph.view())},
                              {"jacobian_error", gradients.error}});
     if (gradients.error > kGradientTolerance) problems.push_back(describe(graph, b, gradients));
   }
+  if (!table.empty()) text += table.text(console.look());
+  console.progress("factorising");
   try {
     (void)marginal_covariances(graph, {});  // factorises without damping
     for (const std::string& message : find_gauge(graph).messages) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/edge_type_check.hpp>
+#include <waymark/tools/evaluation/text_table.hpp>
 
 namespace waymark {
 namespace {
@@ -23,14 +24,16 @@ std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const
 
 }  // namespace
 
-DerivativeReport check_derivatives(const TypeRegistry& registry) {
+DerivativeReport check_derivatives(const TypeRegistry& registry, const TextLook& look) {
   DerivativeReport report;
   report.text = "Jacobians against differences of the error\n";
   report.json = nlohmann::ordered_json::array();
+  TextTable table({"edge type", "from", "trials", "off by", ""});
   for (const auto& [type, origin] : registry.edges()) {
     const EdgeTypeCheck check = check_edge_type(registry, type);
-    report.text += fmt::format("  {:<30} {:<16} {:>4} trials, off by {:.1e}{}\n", type.tag, origin,
-                               check.trials, check.worst.error, check.sound() ? "" : "  WRONG");
+    table.add({type.tag, origin, std::to_string(check.trials), fmt::format("{:.1e}", check.worst.error),
+               check.sound() ? "" : "WRONG"});
+    if (!check.sound()) table.paint(4, Tone::error);
     report.json.push_back({{"type", type.tag},
                            {"origin", origin},
                            {"trials", check.trials},
@@ -39,6 +42,7 @@ DerivativeReport check_derivatives(const TypeRegistry& registry) {
                            {"sound", check.sound()}});
     if (!check.sound()) report.problems.push_back(problem_of(check, type.tag, origin));
   }
+  if (!table.empty()) report.text += table.text(look);
   return report;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/registry.hpp>
+#include <waymark/tools/evaluation/text_look.hpp>
 
 namespace waymark {
 
@@ -18,6 +19,6 @@ struct DerivativeReport {
 };
 
 /// Compares each type's Jacobians with differences of its error (core/edge_type_check.hpp).
-[[nodiscard]] DerivativeReport check_derivatives(const TypeRegistry& registry);
+[[nodiscard]] DerivativeReport check_derivatives(const TypeRegistry& registry, const TextLook& look = {});
 
 }  // namespace waymark

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -121,25 +123,37 @@ Json registry_json(const TypeRegistry& registry) {
   return json;
 }
 
+/// Of the longest text that the entries have under a key.
+std::size_t width_of(const Json& entries, const char* key) {
+  std::size_t width = 0;
+  for (const Json& entry : entries) width = std::max(width, entry.at(key).get<std::string>().size());
+  return width;
+}
+
 std::string registry_text(const Json& json, const TextLook& look) {
   std::string text = "waymark " + json["program_version"].get<std::string>() + "\n";
   for (const auto& [section, entries] : json.items()) {
     if (!entries.is_array()) continue;
     text += "\n" + painted(section, Tone::heading, look) + "\n";
+    const std::size_t names = width_of(entries, "name");
     for (const Json& entry : entries) {
       const std::string origin = entry["origin"];
-      text += fmt::format("  {:<22} {}{}\n", entry["name"].get<std::string>(),
+      text += fmt::format("  {:<{}}  {}{}\n", entry["name"].get<std::string>(), names,
                           entry["description"].get<std::string>(),
                           origin == "waymark" ? "" : "  [" + origin + "]");
-      for (const Json& column : entry.value("columns", Json::array())) {
-        text += fmt::format("    column {:<27} {:<10} {}{}\n", column["name"].get<std::string>(),
-                            column["unit"].get<std::string>(), column["description"].get<std::string>(),
+      const Json columns = entry.value("columns", Json::array());
+      for (const Json& column : columns) {
+        text += fmt::format("    column {:<{}}  {:<{}}  {}{}\n", column["name"].get<std::string>(),
+                            width_of(columns, "name"), column["unit"].get<std::string>(),
+                            width_of(columns, "unit"), column["description"].get<std::string>(),
                             column["required"].get<bool>() ? "" : " (may lack)");
       }
-      for (const Json& option : entry.value("options", Json::array())) {
+      const Json options = entry.value("options", Json::array());
+      for (const Json& option : options) {
         const std::string unit = option["unit"];
         text += fmt::format(
-            "    {:<34} {:<10} {}\n", option["name"].get<std::string>(), option["default"].get<std::string>(),
+            "    {:<{}}  {:<{}}  {}\n", option["name"].get<std::string>(), width_of(options, "name"),
+            option["default"].get<std::string>(), width_of(options, "default"),
             option["description"].get<std::string>() + (unit.empty() ? "" : " [" + unit + "]") +
                 (option.contains("prior") ? "; a noise parameter, estimated on demand" : ""));
       }
