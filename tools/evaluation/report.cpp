@@ -104,8 +104,9 @@ std::string truth_block(std::span<const LabelledEvaluation> evaluations, const T
 }
 
 std::string track_block(std::span<const LabelledEvaluation> evaluations, const TextLook& look) {
-  TextTable table({"along / across track", "n", "along mean [m]", "std [m]", "rms [m]", "across mean [m]",
-                   "std [m]", "rms [m]", "heading rms [deg]", "max [deg]"});
+  TextTable table({"along / across track", "n", "along mean [m]", "along std [m]", "along rms [m]",
+                   "across mean [m]", "across std [m]", "across rms [m]", "heading rms [deg]",
+                   "heading max [deg]"});
   add_raw_rows(table, evaluations, "raw gnss",
                [](const std::string& label, const TruthEvaluation& t) { return track_row(label, t.gnss); });
   for (const auto& [label, evaluation] : evaluations)

@@ -47,7 +47,7 @@ std::string markdown_row(const std::vector<std::string>& cells) {
 std::string table_text(const ReportTable& table, const TextLook& look) {
   TextTable text(table.columns);
   for (const auto& row : table.rows) text.add(row);
-  std::string out = table.title + "\n" + text.text(look);
+  std::string out = painted(table.title, Tone::heading, look) + "\n" + text.text(look);
   for (const std::string& note : table.notes) out += "  " + note + "\n";
   return out;
 }
