@@ -20,13 +20,21 @@ struct EvaluateOptions {
   std::string folder;
 };
 
-/// The files' names without folder and suffix, made different where they are not: fused, fused_2.
+/// Name of the page that `waymark evaluate -o` writes in any case.
+constexpr const char* kReport = "report";
+
+/// The files' names without folder and suffix, made different where they are not: fused, fused_2. Of several
+/// files none is called as the page that compares them.
 std::vector<std::string> labels_of(const std::vector<std::string>& paths) {
   std::vector<std::string> labels;
   for (const std::string& path : paths) {
     const std::string stem = std::filesystem::path(path).stem().string();
+    const auto is_taken = [&](const std::string& label) {
+      return std::find(labels.begin(), labels.end(), label) != labels.end() ||
+             (paths.size() > 1 && label == kReport);
+    };
     std::string label = stem;
-    for (int n = 2; std::find(labels.begin(), labels.end(), label) != labels.end(); ++n) {
+    for (int n = 2; is_taken(label); ++n) {
       label = stem + "_" + std::to_string(n);
     }
     labels.push_back(label);
@@ -43,6 +51,38 @@ std::vector<StateReport> states_at(const GraphDocument& document) {
   }
 }
 
+/// One graph: read, compared with its truth, and, where a folder is given, told in files.
+LabelledEvaluation evaluate_file(const EvaluateOptions& options, const std::string& input,
+                                 const std::string& label, const TypeRegistry& registry,
+                                 const Console& console, ReportHeader& header) {
+  console.progress("evaluating " + input);
+  const GraphDocument document = read_graph(read_text_file(input), input, registry);
+  if (document.fixes.empty()) throw InputError(input + ": has no GNSS records to evaluate at");
+  std::vector<TruthPose> truth;
+  if (!options.truth.empty()) truth = read_truth(options.truth, options.data_folder, document, registry);
+  LabelledEvaluation evaluated{label, evaluate_document(document, truth)};
+  add_provenance(document, label, header);
+  if (options.folder.empty()) return evaluated;
+  std::vector<std::string> files = write_trajectories(document, options.folder + "/" + label, label);
+  files.push_back(write_epochs(evaluated.evaluation, options.folder + "/" + label));
+  const bool alone = options.inputs.size() == 1;
+  const std::string report = write_drive_report({.drive = header.drive,
+                                                 .page = alone ? kReport : label,
+                                                 .document = document,
+                                                 .evaluated = evaluated,
+                                                 .truth = truth,
+                                                 .states = states_at(document),
+                                                 .files = files},
+                                                options.folder, console);
+  for (const std::string& file : files) console.detail("written " + file);
+  if (alone) {
+    console.note("written " + report);
+  } else {
+    console.detail("written " + report);
+  }
+  return evaluated;
+}
+
 ExitCode evaluate_files(const EvaluateOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry_for(options.truth, options.common);
@@ -51,32 +91,18 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
   const std::vector<std::string> labels = labels_of(options.inputs);
   if (!options.folder.empty()) make_folder(options.folder);
   for (std::size_t i = 0; i < options.inputs.size(); ++i) {
-    const std::string& input = options.inputs[i];
-    const std::string& label = labels[i];
     stop_if_interrupted();
-    console.progress("evaluating " + input);
-    const GraphDocument document = read_graph(read_text_file(input), input, registry);
-    if (document.fixes.empty()) throw InputError(input + ": has no GNSS records to evaluate at");
-    std::vector<TruthPose> truth;
-    if (!options.truth.empty()) truth = read_truth(options.truth, options.data_folder, document, registry);
-    evaluations.push_back({label, evaluate_document(document, truth)});
-    add_provenance(document, label, header);
-    if (options.folder.empty()) continue;
-    std::vector<std::string> files = write_trajectories(document, options.folder + "/" + label, label);
-    files.push_back(write_epochs(evaluations.back().evaluation, options.folder + "/" + label));
-    for (const std::string& file : files) console.detail("written " + file);
-    const std::string report = write_drive_report({.drive = header.drive,
-                                                   .page = options.inputs.size() == 1 ? "report" : label,
-                                                   .document = document,
-                                                   .evaluated = evaluations.back(),
-                                                   .truth = truth,
-                                                   .states = states_at(document),
-                                                   .files = files},
-                                                  options.folder, console);
-    console.note("written " + report);
+    evaluations.push_back(evaluate_file(options, options.inputs[i], labels[i], registry, console, header));
   }
   const std::string json = metrics_json(evaluations, header);
-  if (!options.folder.empty()) write_file_atomically(options.folder + "/metrics.json", json);
+  if (!options.folder.empty()) {
+    write_file_atomically(options.folder + "/metrics.json", json);
+    if (evaluations.size() > 1) {
+      std::vector<ComparedReport> reports;
+      for (const LabelledEvaluation& evaluation : evaluations) reports.push_back({evaluation});
+      console.note("written " + write_comparison(reports, header, options.folder, console));
+    }
+  }
   console.result(options.common.json ? json : metrics_table(evaluations, console.look()));
   return kSuccess;
 }

@@ -3,6 +3,7 @@
 
 #include <waymark/core/error.hpp>
 #include <waymark/tools/program/report_files.hpp>
+#include <waymark/tools/report/comparison_page.hpp>
 #include <waymark/tools/report/drive_report.hpp>
 
 namespace waymark {
@@ -31,6 +32,24 @@ std::string write_drive_report(const DriveReportRequest& request, const std::str
     drive.files.push_back(std::filesystem::path(file).filename().string());
   Page page = drive_page(drive);
   const std::vector<std::string> written = write_page(page, folder, request.page);
+  for (std::size_t i = 1; i < written.size(); ++i) console.detail("written " + written[i]);
+  console.end_progress();
+  return written.front();
+}
+
+std::string write_comparison(const std::vector<ComparedReport>& reports, const ReportHeader& header,
+                             const std::string& folder, const Console& console) {
+  console.progress("writing report.html");
+  std::vector<ComparedRun> runs;
+  for (const ComparedReport& report : reports)
+    runs.push_back(compared_run(report.evaluated, header, report.optimization));
+  Page page = comparison_page(runs, WAYMARK_VERSION);
+  Section alone{"reports", "Each by itself", {}};
+  for (const ComparedReport& report : reports)
+    alone.blocks.emplace_back(
+        PageLink{report.evaluated.label + ".html", "Report of " + report.evaluated.label});
+  page.sections.push_back(std::move(alone));
+  const std::vector<std::string> written = write_page(page, folder, "report");
   for (std::size_t i = 1; i < written.size(); ++i) console.detail("written " + written[i]);
   console.end_progress();
   return written.front();

@@ -25,6 +25,16 @@ struct DriveReportRequest {
   std::vector<std::string> files{};  ///< to be linked; paths
 };
 
+/// One of several drive reports that a comparison stands over.
+struct ComparedReport {
+  const LabelledEvaluation& evaluated;
+  const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
+};
+
+/// Writes FOLDER/report.html, which compares what PAGE.html of each label tells alone. Returns its name.
+std::string write_comparison(const std::vector<ComparedReport>& reports, const ReportHeader& header,
+                             const std::string& folder, const Console& console);
+
 /// Writes FOLDER/PAGE.html and its figures. Returns the page's name: the figures are too many to be told.
 std::string write_drive_report(const DriveReportRequest& request, const std::string& folder,
                                const Console& console);

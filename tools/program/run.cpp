@@ -122,6 +122,52 @@ std::string run_line(const std::string& modeling, const Summary& s) {
                      s.initial_chi2, s.final_chi2, s.converged() ? "" : " (" + s.message + ")");
 }
 
+/// The modelings of a drive; what is wrong with one of them shows before anything is written.
+std::vector<ModeledDrive> model_all(const RunOptions& options, const LoadedDrive& loaded,
+                                    const TypeRegistry& registry, const Console& console) {
+  std::vector<ModeledDrive> models;
+  for (const std::string& modeling : loaded.modelings) {
+    models.push_back(model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry),
+                                  registry, console));
+    stop_if_interrupted();
+  }
+  return models;
+}
+
+/// What all modelings have in common: the comparison, metrics.json, summary.json. Returns the files.
+std::vector<std::string> write_common(const std::vector<ModelingRun>& runs, const std::string& metrics,
+                                      const ReportHeader& header, const std::string& folder,
+                                      const Console& console) {
+  std::vector<std::string> files;
+  if (runs.size() > 1) {
+    std::vector<ComparedReport> reports;
+    for (const ModelingRun& run : runs) reports.push_back({run.evaluation, &run.result});
+    files.push_back(write_comparison(reports, header, folder, console));
+  }
+  nlohmann::ordered_json summaries;
+  for (const ModelingRun& run : runs) {
+    nlohmann::ordered_json& summary = summaries[run.evaluation.label];
+    summary = summary_json(run.result);
+    summary["states"] = states_json(run.states);
+    summary["noise"] = noise_json(run.noise);
+  }
+  files.push_back(folder + "/metrics.json");
+  write_file_atomically(files.back(), metrics);
+  files.push_back(folder + "/summary.json");
+  write_file_atomically(files.back(), json_text(summaries));
+  return files;
+}
+
+std::string describe_runs(const LoadedDrive& loaded, const std::vector<ModelingRun>& runs,
+                          const Console& console) {
+  std::string text = describe_drive(loaded);
+  for (const ModelingRun& run : runs) {
+    if (text.find(run.description) == std::string::npos) text += run.description;
+    text += run_line(run.evaluation.label, run.result.summary) + states_text(run.states, console.look());
+  }
+  return text;
+}
+
 ExitCode run_drive(const RunOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common, load_drive_config(options.input).plugins);
@@ -130,46 +176,33 @@ ExitCode run_drive(const RunOptions& options) {
   if (options.causal && loaded.config.outage.length_s == 0)
     throw UsageError("--causal: there are no outages to be predicted; name them with --outage LENGTH/EVERY");
   stop_if_interrupted();
-  std::vector<ModeledDrive> models;  // what is wrong with one of them shows before anything is written
-  for (const std::string& modeling : loaded.modelings) {
-    models.push_back(model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry),
-                                  registry, console));
-    stop_if_interrupted();
-  }
+  std::vector<ModeledDrive> models = model_all(options, loaded, registry, console);
   make_folder(options.folder);
-  std::vector<LabelledEvaluation> evaluations;
   ReportHeader header{loaded.config.name, {}};
-  std::string text = describe_drive(loaded);
-  std::vector<std::string> files;
-  nlohmann::ordered_json summaries;
+  std::vector<ModelingRun> runs;
   ExitCode code = kSuccess;
   for (ModeledDrive& modeled : models) {
-    const std::string modeling = modeled.modeling;
-    ModelingRun run = run_modeling(options, loaded, std::move(modeled), registry, console, header);
-    if (text.find(run.description) == std::string::npos) text += run.description;
-    text += run_line(modeling, run.result.summary) + states_text(run.states, console.look());
-    summaries[modeling] = summary_json(run.result);
-    summaries[modeling]["states"] = states_json(run.states);
-    summaries[modeling]["noise"] = noise_json(run.noise);
-    evaluations.push_back(std::move(run.evaluation));
-    files.insert(files.end(), run.files.begin(), run.files.end());
-    if (exit_code(run.result.summary) != kSuccess) code = exit_code(run.result.summary);
+    runs.push_back(run_modeling(options, loaded, std::move(modeled), registry, console, header));
+    const ExitCode of_run = exit_code(runs.back().result.summary);
+    if (of_run != kSuccess) code = of_run;
     if (interrupted) code = kInterrupted;
     if (code == kInterrupted) break;
   }
-  const std::string metrics_file = options.folder + "/metrics.json";
-  const std::string json = metrics_json(evaluations, header);
-  write_file_atomically(metrics_file, json);
-  files.push_back(metrics_file);
-  const std::string summary_file = options.folder + "/summary.json";
-  write_file_atomically(summary_file, json_text(summaries));
-  files.push_back(summary_file);
+  std::vector<LabelledEvaluation> evaluations;
+  for (const ModelingRun& run : runs) evaluations.push_back(run.evaluation);
+  const std::string metrics = metrics_json(evaluations, header);
+  const std::vector<std::string> common = write_common(runs, metrics, header, options.folder, console);
   if (options.common.json) {
-    console.result(json);
+    console.result(metrics);
     return code;
   }
+  std::string text = describe_runs(loaded, runs, console);
   text += "\n" + metrics_table(evaluations, console.look()) + "\nwritten:\n";
-  for (const std::string& file : files) text += "  " + file + "\n";
+  for (const ModelingRun& run : runs) {
+    for (const std::string& file : run.files) text += "  " + file + "\n";
+  }
+  for (const std::string& file : common) text += "  " + file + "\n";
+  text += "  and the figures of the report as SVG and CSV in " + options.folder + "/figures\n";
   console.result(text);
   return code;
 }
