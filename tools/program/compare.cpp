@@ -29,17 +29,16 @@ void tell_limits(const std::vector<ComparedRun>& runs, const Console& console) {
   if (drives.size() > 1) {
     std::string names;
     for (const std::string& drive : drives) names.append(names.empty() ? "" : ", ").append(drive);
-    console.note(
-        fmt::format("note: the runs are of {} drives ({}): errors are comparable within a drive only",
-                    drives.size(), names));
-    if (drives.size() == runs.size()) console.note("note: no two runs are of one drive");
+    console.note(fmt::format("the runs are of {} drives ({}): errors are comparable within a drive only",
+                             drives.size(), names));
+    if (drives.size() == runs.size()) console.note("no two runs are of one drive");
   }
   const bool judged = std::any_of(runs.begin(), runs.end(), [](const ComparedRun& run) {
     return run.evaluation.truth || run.evaluation.withheld_fixes;
   });
   if (!judged)
     console.note(
-        "note: no run has a truth or withheld fixes, so there are no errors to compare; see "
+        "no run has a truth or withheld fixes, so there are no errors to compare; see "
         "`waymark run --withhold` and `waymark evaluate --truth`");
 }
 
@@ -73,8 +72,8 @@ ExitCode compare(const CompareOptions& options) {
   std::vector<LabelledEvaluation> evaluations;
   for (ComparedRun& run : runs) evaluations.push_back({run.label, std::move(run.evaluation)});
   console.result(fmt::format("{}\nwritten:\n  {}\n  {}\n  {} figures as SVG and CSV in {}/figures\n",
-                             metrics_table(evaluations), files.front(), files.back(), figures_of(page).size(),
-                             options.output));
+                             metrics_table(evaluations, console.look()), files.front(), files.back(),
+                             figures_of(page).size(), options.output));
   return kSuccess;
 }
 

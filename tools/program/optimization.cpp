@@ -114,7 +114,7 @@ std::vector<StateReport> states_of_minimum(const GraphDocument& document, const 
   try {
     return report_states(document);
   } catch (const InputError& error) {
-    console.note("warning: the estimated states have no sigmas: " + std::string(error.what()));
+    console.warning("the estimated states have no sigmas: " + std::string(error.what()));
     return {};
   }
 }

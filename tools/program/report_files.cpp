@@ -16,7 +16,7 @@ std::string write_drive_report(const DriveReportRequest& request, const std::str
   try {
     sparsity = sparsity_of(request.document.graph);
   } catch (const InputError& error) {  // an undetermined graph has residuals, but no normal equations to show
-    console.note("warning: the report has no matrices: " + std::string(error.what()));
+    console.warning("the report has no matrices: " + std::string(error.what()));
   }
   ReportedDrive drive{.name = request.drive,
                       .label = request.evaluated.label,
