@@ -1,0 +1,49 @@
+/// What tests read of the documentation: fenced blocks, so that commands, listings and files shown there are
+/// those that run, and the text outside of them.
+#pragma once
+
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace waymark_test {
+
+/// "```LANGUAGE WORDS" ... "```"
+struct FencedBlock {
+  std::string language{};            ///< first word behind the fence; may be empty
+  std::vector<std::string> words{};  ///< the others, such as a file's name
+  std::string text{};                ///< lines in between, each with "\n"
+  int line = 0;                      ///< of the opening fence, from 1
+};
+
+struct Markdown {
+  std::vector<FencedBlock> blocks{};
+  std::vector<std::string>
+      lines{};  ///< those outside of blocks; inside they are empty: numbers stay those of the file
+};
+
+[[nodiscard]] inline Markdown parse_markdown(std::string_view text) {
+  Markdown result;
+  std::istringstream in{std::string(text)};
+  bool inside = false;
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    const bool fence = line.starts_with("```");
+    if (fence && !inside) {
+      FencedBlock block{.line = number};
+      std::istringstream info(line.substr(3));
+      info >> block.language;
+      for (std::string word; info >> word;) block.words.push_back(word);
+      result.blocks.push_back(std::move(block));
+    } else if (inside && !fence) {
+      result.blocks.back().text += line + "\n";
+    }
+    result.lines.push_back(inside || fence ? std::string() : line);
+    if (fence) inside = !inside;
+  }
+  return result;
+}
+
+}  // namespace waymark_test
