@@ -1,5 +1,6 @@
 // The plugin of examples/plugin_template, built against the installed package and used by the installed
 // program, and the tutorial that shows it.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -7,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "support/markdown.hpp"
 #include "tools/program.hpp"
 
 namespace {
@@ -45,12 +47,12 @@ int code_lines(const std::string& source) {
 
 /// The fenced block of plugins/README.md that is headed by this file name: "```cpp gnss_lever_arm.cpp".
 std::string listing(const std::string& file) {
-  const std::string readme = read_text(WAYMARK_SOURCE_DIR "/plugins/README.md");
-  const auto head = readme.find(" " + file + "\n", readme.find("## Writing a plugin in an afternoon"));
-  REQUIRE(head != std::string::npos);
-  REQUIRE(readme.rfind("```", head) > readme.rfind('\n', head));
-  const auto begin = readme.find('\n', head) + 1;
-  return readme.substr(begin, readme.find("```", begin) - begin);
+  const auto readme = waymark_test::parse_markdown(read_text(WAYMARK_SOURCE_DIR "/plugins/README.md"));
+  const std::vector<std::string> wanted = {file};
+  const auto found = std::find_if(readme.blocks.begin(), readme.blocks.end(),
+                                  [&](const auto& block) { return block.words == wanted; });
+  REQUIRE(found != readme.blocks.end());
+  return found->text;
 }
 
 }  // namespace
