@@ -158,6 +158,18 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("documentation: the citation has what CFF 1.2.0 requires and the version that is built") {
+  const std::string citation = file_text(kRoot / "CITATION.cff");
+  for (const char* required : {"cff-version: 1.2.0", "message:", "title:", "authors:"}) {
+    INFO(required);
+    CHECK(("\n" + citation).find(std::string("\n") + required) != std::string::npos);
+  }
+  std::smatch built;
+  const std::string cmake = file_text(kRoot / "CMakeLists.txt");
+  REQUIRE(std::regex_search(cmake, built, std::regex(R"(project\(waymark VERSION ([0-9.]+))")));
+  CHECK(citation.find("\nversion: " + built[1].str() + "\n") != std::string::npos);
+}
+
 TEST_CASE("documentation: anchors are made as the places make them where the files are read") {
   // Rules: github.com/gjtorikian/html-pipeline, TableOfContentsFilter.
   CHECK(anchor_of("drive.yaml") == "driveyaml");
