@@ -51,12 +51,11 @@ std::optional<double> as_number(const std::string& word) {
   return value;
 }
 
-/// Half a step of a word's last digit: what rounding leaves open.
+/// One step of a word's last digit: what rounding leaves open. 0 for words without decimals.
 double last_digit(const std::string& word) {
-  const std::string mantissa = word.substr(0, word.find_first_of("eE"));
-  const auto point = mantissa.find('.');
-  if (point == std::string::npos) return 0;
-  return std::pow(10, -static_cast<double>(mantissa.size() - point - 1));
+  const auto point = word.find('.');
+  if (point == std::string::npos || word.find_first_of("eE") != std::string::npos) return 0;
+  return std::pow(10, -static_cast<double>(word.size() - point - 1));
 }
 
 bool same_word(const std::string& shown, const std::string& printed) {
@@ -64,8 +63,8 @@ bool same_word(const std::string& shown, const std::string& printed) {
   if (shown.starts_with("...")) return printed.ends_with(shown.substr(3));
   const auto a = as_number(shown);
   const auto b = as_number(printed);
-  const bool small = shown.find_first_of("eE") != std::string::npos;
-  return a && b && std::abs(*a - *b) <= 0.01 * std::abs(*a) + (small ? 0 : last_digit(shown));
+  if (!a || !b || shown.find('.') == std::string::npos) return false;  // counts are exact
+  return std::abs(*a - *b) <= 0.05 * std::abs(*a) + last_digit(shown);
 }
 
 bool same_line(Words shown, Words printed) {
@@ -174,6 +173,8 @@ TEST_CASE("tutorial: a line that was not printed is missed, whatever stands arou
   CHECK(missing_lines("g1 converged in 4 iterations, ...\nRMSE 2.208 m\n", printed).empty());
   CHECK(missing_lines("RMSE 2.21 m\n", printed).empty());
   CHECK(missing_lines("RMSE 2.35 m\n", printed) == "RMSE 2.35 m\n");
+  CHECK(missing_lines("g1 converged in 5 iterations, ...\n", printed) ==
+        "g1 converged in 5 iterations, ...\n");
   CHECK(missing_lines("... converged\n", printed) == "... converged\n");
   CHECK(missing_lines("RMSE 2.208\n", printed) == "RMSE 2.208\n");
 }
