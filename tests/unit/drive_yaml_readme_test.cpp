@@ -10,6 +10,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/quantity.hpp>
 #include <waymark/tools/drive/config.hpp>
 #include <waymark/tools/drive/odometry_parts.hpp>
 
@@ -84,5 +86,29 @@ TEST_CASE("drive.yaml: the README names every key and word that the reader knows
   for (const std::string& word : known) {
     INFO("tools/drive/README.md, section drive.yaml, lacks '" << word << "'");
     CHECK(named.contains(word));
+  }
+}
+
+TEST_CASE(
+    "drive.yaml: the README of the logs names every quantity, unit and convention that columns may state") {
+  const std::string readme = file_text("formats/logs/README.md");
+  const auto named = [&readme](std::string_view word) {
+    INFO("formats/logs/README.md lacks '" << word << "'");
+    CHECK(readme.find(word) != std::string::npos);
+  };
+  LogRequest channels;
+  channels.stream = StreamKind::odometry;
+  channels.readings = odometry_channels();
+  std::vector<LogRequest> requests = {channels};
+  for (const StreamKind stream : {StreamKind::odometry, StreamKind::gnss, StreamKind::truth}) {
+    requests.emplace_back();
+    requests.back().stream = stream;
+  }
+  for (const LogRequest& request : requests) {
+    for (const Quantity& quantity : quantities(request)) {
+      named("`" + std::string(quantity.name) + "`");
+      for (const Unit& unit : quantity.units) named(unit.name);
+      for (const Convention& convention : quantity.conventions) named(convention.name);
+    }
   }
 }
