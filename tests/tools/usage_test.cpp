@@ -48,8 +48,7 @@ TEST_CASE("wrong words on the command line are usage errors that name them") {
       {{"optimise"}, "unknown subcommand 'optimise'; did you mean 'optimize'?"},
       {{"xyz"},
        "unknown subcommand 'xyz'; there are: inspect, init, sync, convert, optimize, evaluate, run, compare, "
-       "bench, "
-       "info, check"},
+       "bench, info, check"},
       {{"optimize", graph}, "--output is required"},
       {{"optimize", "-o", out}, "graph is required"},
       {{"optimize", graph, "-o", out, "--speed", "3"}, "--speed"},

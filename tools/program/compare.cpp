@@ -80,10 +80,11 @@ ExitCode compare(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("compare",
-                         "One report of several runs: modelings, settings, drives\n\n"
-                         "Errors are comparable within one drive; runs of several drives stand in groups.");
+  auto* command = app.add_subcommand(
+      "compare",
+      "One report of several runs: modelings, settings, drives\n\n"
+      "Reads the folders that 'run' and 'evaluate' wrote. Their errors stand beside each other and beside "
+      "raw GNSS, with what was done differently. Runs are named by their folders and modelings.");
   const auto options = std::make_shared<CompareOptions>();
   command->add_option("runs", options->folders, "Folders that `run -o` or `evaluate -o` wrote")
       ->required()

@@ -46,6 +46,14 @@ BarPlace bar_place(const Figure& figure, std::size_t series, double row) {
   return {height * (before + 0.5) - 0.5 * kShareOfRow, height};
 }
 
+Series line_across(const std::string& name, double value, std::size_t rows) {
+  return {.name = name,
+          .mark = Mark::line,
+          .look = Look::reference,
+          .x = {value, value},
+          .y = {-0.5, static_cast<double>(rows) - 0.5}};
+}
+
 void fit_bars(Figure& figure) {
   const double row = std::max(kLeastRow, kBarHeight * static_cast<double>(most_bars(figure)) / kShareOfRow);
   const View bare = full_view(figure, legend_rows(figure));

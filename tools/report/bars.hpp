@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 #include <waymark/tools/report/figure.hpp>
 
@@ -20,5 +21,8 @@ struct BarPlace {
 /// Gives a figure of bars the height that its rows need, and its axis of values room for the numbers that
 /// stand behind the bars. To be called when all series are there.
 void fit_bars(Figure& figure);
+
+/// A dashed line across all rows at a value: what is honest, equal, the reference.
+[[nodiscard]] Series line_across(const std::string& name, double value, std::size_t rows);
 
 }  // namespace waymark

@@ -271,11 +271,7 @@ std::vector<Figure> ratio_figures(const Files& files, const ContestantNames& nam
           return std::nullopt;
         });
     for (Figure& figure : of_peer) {
-      figure.series.push_back({.name = "equal",
-                               .mark = Mark::line,
-                               .look = Look::reference,
-                               .x = {1, 1},
-                               .y = {-0.5, static_cast<double>(figure.y.categories.size()) - 0.5}});
+      figure.series.push_back(line_across("equal", 1, figure.y.categories.size()));
       figures.push_back(std::move(figure));
     }
   }

@@ -36,8 +36,7 @@ PageTable winners_table(const Files& files, const ContestantNames& names) {
       .rows = {}};
   table.notes = {
       "By median time, of the results that converged and reached the optimum. Ratios near 1 mean little "
-      "where "
-      "the brackets of the times overlap."};
+      "where the brackets of the times overlap."};
   for (const FileSummary& file : files) {
     const auto ranked = ranking(file);
     std::vector<std::string> row{file.file, std::to_string(file.vertices), std::to_string(file.edges)};

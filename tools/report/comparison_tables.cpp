@@ -191,9 +191,9 @@ PageTable stated_error_table(const Groups& groups) {
                                 "honest share [%]", "actual / stated", "stated errors are"});
   table.notes = {
       "Honest: a mean NEES of 2, 95 % inside, actual / stated 1. The intervals are where an honest "
-      "covariance "
-      "leaves the numbers on 95 of 100 drives. Stated errors are called honest where the mean NEES lies in "
-      "its interval."};
+      "covariance leaves the numbers on 95 of 100 drives. Stated errors are called honest where the mean "
+      "NEES "
+      "lies in its interval."};
   for (const DriveGroup& group : groups) {
     for (const ComparedRun* run : group.runs) {
       if (!run->evaluation.truth || !run->evaluation.truth->consistency) continue;

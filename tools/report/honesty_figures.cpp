@@ -4,19 +4,6 @@
 #include <waymark/tools/report/honesty_figures.hpp>
 
 namespace waymark {
-namespace {
-
-/// A dashed line across all rows.
-Series expected_line(const std::string& name, double value, std::size_t rows) {
-  return {.name = name,
-          .mark = Mark::line,
-          .look = Look::reference,
-          .x = {value, value},
-          .y = {-0.5, static_cast<double>(rows) - 0.5}};
-}
-
-}  // namespace
-
 std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector<StatedErrors>& rows) {
   Figure nees{
       .id = prefix + "-nees",
@@ -53,9 +40,9 @@ std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector
   }
   const std::size_t count = nees.y.categories.size();
   if (count == 0) return {};
-  nees.series = {nees_bars, expected_line("honest: 2", ConsistencyStatistics::kExpectedMean, count)};
+  nees.series = {nees_bars, line_across("honest: 2", ConsistencyStatistics::kExpectedMean, count)};
   coverage.series = {coverage_bars,
-                     expected_line("honest: 95 %", 100 * ConsistencyStatistics::kExpectedCoverage, count)};
+                     line_across("honest: 95 %", 100 * ConsistencyStatistics::kExpectedCoverage, count)};
   fit_bars(nees);
   fit_bars(coverage);
   return {nees, coverage};

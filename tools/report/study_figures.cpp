@@ -13,14 +13,6 @@ namespace {
 
 using Drives = std::vector<DriveResult>;
 
-Series vertical_line(const std::string& name, double value, std::size_t rows) {
-  return {.name = name,
-          .mark = Mark::line,
-          .look = Look::reference,
-          .x = {value, value},
-          .y = {-0.5, static_cast<double>(rows) - 0.5}};
-}
-
 /// A bar for each setting: the geometric mean over the drives, with the smallest and the largest.
 template <typename Value>
 Figure over_drives(const Drives& drives, Figure figure, const Value& value) {
@@ -112,8 +104,8 @@ std::vector<Figure> ablation_figures(const Drives& drives) {
   for (Figure* figure : {&errors, &nees}) {
     const std::size_t rows = figure->y.categories.size();
     if (rows == 0) continue;
-    figure->series.push_back(figure == &errors ? vertical_line("default", 1, rows)
-                                               : vertical_line("honest: 2", 2, rows));
+    figure->series.push_back(figure == &errors ? line_across("default", 1, rows)
+                                               : line_across("honest: 2", 2, rows));
     fit_bars(*figure);
     figures.push_back(std::move(*figure));
   }
