@@ -205,6 +205,7 @@ TEST_CASE("compare refuses what is no run, with place and remedy") {
        "other/metrics.json: schema: expected \"waymark-metrics\", got \"waymark-inspection\""},
       {{"newer", "-o", "out"}, 3, "newer/metrics.json: version: expected version 1, got 2"},
       {{"list", "-o", "out"}, 3, "list/metrics.json: expected an object with 'schema', got []"},
+      {{"none", "./none/", "-o", "out"}, 2, "./none/: is named twice"},
       {{"none", "-o", "out"}, 3, "none/metrics.json: has no evaluation in it"},
   };
   for (const Case& c : cases) {

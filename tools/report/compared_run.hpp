@@ -41,7 +41,8 @@ struct ComparedRun {
 /// The runs of folders that `waymark run` or `waymark evaluate -o` wrote: metrics.json, and where they are
 /// there summary.json and LABEL.epochs.csv. A label is the folder's name and the evaluation's own, without
 /// what all of them share, and made different where two are equal.
-/// @throws InputError for a folder without metrics.json, and files that cannot be read
+/// @throws UsageError for a folder that is named twice;
+///         InputError for a folder without metrics.json, and files that cannot be read
 [[nodiscard]] std::vector<ComparedRun> read_compared_runs(const std::vector<std::string>& folders);
 
 }  // namespace waymark

@@ -97,11 +97,14 @@ std::string titled(const Groups& groups, const Part& part, const std::string& ti
   return text;
 }
 
-/// The error that 99 % of the epochs of the worst system stay below.
+/// Where the distributions end that are to be compared: the raw one's tail would leave them no room.
 double common_end(const Figure& figure) {
   double end = 0;
-  for (const Series& series : figure.series)
-    if (!series.x.empty()) end = std::max(end, nearest_rank_quantile(series.x, 0.99));
+  for (const Series& series : figure.series) {
+    if (series.x.empty()) continue;
+    end = std::max(end, series.look == Look::raw ? nearest_rank_quantile(series.x, 0.9)
+                                                 : 1.2 * nearest_rank_quantile(series.x, 0.99));
+  }
   return end;
 }
 
@@ -174,8 +177,8 @@ std::vector<Figure> distribution_figures(const Groups& groups) {
     Figure figure{.id = fmt::format("distribution-{}", part.number + 1),
                   .title = titled(groups, part, "Distribution of the position error"),
                   .description =
-                      "Share of the epochs whose error is at most so large. The axis ends where 99 % "
-                      "of the worst system's errors lie; the largest ones are in the table.",
+                      "Share of the epochs whose error is at most so large. The axis holds 99 % of every "
+                      "run's errors and 90 % of the raw ones; the largest are in the table.",
                   .x = {.title = "position error", .unit = "m", .low = 0},
                   .y = {.title = "epochs", .unit = "%", .low = 0, .high = 100},
                   .series = {}};

@@ -71,11 +71,16 @@ std::vector<ComparedRun> read_folder(const std::string& folder) {
   return runs;
 }
 
+/// Absolute, without "." and a slash at its end.
+fs::path plain_path(const std::string& folder) {
+  std::error_code unknown;
+  const fs::path path = fs::absolute(folder, unknown).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
 /// The last `parts` names of a path: "results/a" of "/home/me/results/a/" with two.
 std::string tail_of(const std::string& folder, std::size_t parts) {
-  std::error_code unknown;
-  fs::path path = fs::absolute(folder, unknown).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();
+  fs::path path = plain_path(folder);
   fs::path tail;
   for (std::size_t i = 0; i < parts && path.has_filename(); ++i, path = path.parent_path())
     tail = tail.empty() ? path.filename() : path.filename() / tail;
@@ -113,6 +118,11 @@ void make_labels_differ(std::vector<ComparedRun>& runs) {
 }  // namespace
 
 std::vector<ComparedRun> read_compared_runs(const std::vector<std::string>& folders) {
+  for (std::size_t f = 1; f < folders.size(); ++f) {
+    const auto same = [&](const std::string& other) { return plain_path(other) == plain_path(folders[f]); };
+    if (std::any_of(folders.begin(), folders.begin() + static_cast<std::ptrdiff_t>(f), same))
+      throw UsageError(folders[f] + ": is named twice");
+  }
   const std::vector<std::string> names = short_names(folders);
   std::vector<std::vector<ComparedRun>> of_folder;
   bool one_each = true;
