@@ -84,7 +84,7 @@ void add_compare(CLI::App& app, Action& action) {
       "compare",
       "One report of several runs: modelings, settings, drives\n\n"
       "Reads the folders that 'run' and 'evaluate' wrote. Their errors stand beside each other and beside "
-      "raw GNSS, with what was done differently. Runs are named by their folders and modelings.");
+      "raw GNSS, with what was done differently. Errors are comparable within one drive.");
   const auto options = std::make_shared<CompareOptions>();
   command->add_option("runs", options->folders, "Folders that `run -o` or `evaluate -o` wrote")
       ->required()
