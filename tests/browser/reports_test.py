@@ -56,6 +56,13 @@ class Pages(unittest.TestCase):
         run("run", bundled, "-o", cls.folder / "all", "-m", "g1,correlated")
         run("simulate", "--preset", "paper-8", "-o", cls.folder / "simulated")
         run("run", cls.folder / "simulated/drive.yaml", "-o", cls.folder / "long", "-m", "g1")
+        run("evaluate", cls.folder / "gated/g2.fused.graph", cls.folder / "all/g1.fused.graph", "--truth", bundled,
+            "-o", cls.folder / "evaluated")
+        run("compare", cls.folder / "gated", cls.folder / "all", cls.folder / "long", "-o", cls.folder / "compared")
+        run("bench", cls.folder / "gated/g2.graph", cls.folder / "long/g1.graph", "-a", "all", "--repeat", "2",
+            "-o", cls.folder / "bench")
+        run("reproduce", bundled, "-o", cls.folder / "reproduced")
+        run("reproduce", bundled, "--ablation", "-o", cls.folder / "ablation")
         cls.pages = sorted(cls.folder.rglob("*.html"))
         cls.browser = start_browser()
         cls.browser.set_script_timeout(60)
@@ -135,7 +142,11 @@ class Pages(unittest.TestCase):
     # The cases.
 
     def test_every_page_loads_alone_and_silently(self):
-        self.assertGreaterEqual(len(self.pages), 4)
+        names = {str(page.relative_to(self.folder)) for page in self.pages}
+        self.assertEqual(names, {"gated/report.html", "all/report.html", "all/g1.html", "all/correlated.html",
+                                 "long/report.html", "evaluated/report.html", "evaluated/g1.fused.html",
+                                 "evaluated/g2.fused.html", "compared/comparison.html", "bench/bench.html",
+                                 "reproduced/reproduction.html", "ablation/ablation.html"})
         for page in self.pages:
             with self.subTest(page=page.relative_to(self.folder)):
                 self.browser.get(page.as_uri())

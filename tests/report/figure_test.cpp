@@ -89,17 +89,19 @@ TEST_CASE("a figure without points is drawn with its axes") {
   CHECK(svg.find("class=\"tick-x\"") != std::string::npos);
 }
 
-TEST_CASE("looks are told apart by each of colour, dash and marker alone") {
-  std::set<std::string_view> colours, dashes, markers;
+TEST_CASE("looks are told apart by each of colour, dash, marker and hatching alone") {
+  std::set<std::string_view> colours, dashes, markers, hatches;
   for (const LookStyle& look : all_looks()) {
     CHECK(&style_of(look.look) == &look);
     colours.insert(look.colour);
     dashes.insert(look.dash);
     markers.insert(look.marker);
+    hatches.insert(look.hatch);
   }
   CHECK(colours.size() == all_looks().size());
   CHECK(dashes.size() == all_looks().size());
   CHECK(markers.size() == all_looks().size());
+  CHECK(hatches.size() == all_looks().size());
 }
 
 TEST_CASE(

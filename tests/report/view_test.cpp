@@ -76,6 +76,7 @@ TEST_CASE("ticks are round numbers with as many digits as tell them apart") {
 TEST_CASE("logarithmic ticks are powers of ten, with 2 and 5 between where those are few") {
   CHECK(labels({0.5, 2000}, true, 5) == Labels{"1", "10", "100", "1000"});
   CHECK(labels({0.9, 11}, true, 5) == Labels{"1", "2", "5", "10"});
+  CHECK(labels({110, 150}, true, 4) == Labels{"110", "120", "130", "140", "150"});
 }
 
 TEST_CASE("ticks end, however odd the range") {

@@ -1,77 +1,20 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include <waymark/tools/report/drive_figures.hpp>
+#include <waymark/tools/report/epoch_series.hpp>
 
 namespace waymark {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-using Offset = std::optional<Eigen::Vector2d> EpochResult::*;
-
-/// One system's value at every epoch that has one.
-template <typename Value>
-Series over_time(const ReportedDrive& drive, const std::string& name, Look look, Value value) {
-  Series series{.name = name, .mark = Mark::line, .look = look};
-  for (const EpochResult& epoch : drive.evaluation.epochs) {
-    const std::optional<double> y = value(epoch);
-    if (!y) continue;
-    const double seconds = drive.seconds(epoch.stamp);
-    series.x.push_back(seconds);
-    series.y.push_back(*y);
-    series.time.push_back(seconds);
-  }
-  return series;
-}
-
 std::optional<double> length(const std::optional<Eigen::Vector2d>& offset) {
   return offset ? std::optional(offset->norm()) : std::nullopt;
-}
-
-/// Runs of rejected or withheld fixes, from the first to the last of each.
-Series spans(const ReportedDrive& drive, FixStatus status, const std::string& name, Look look) {
-  Series series{.name = name, .mark = Mark::spans, .look = look};
-  bool goes_on = false;
-  for (const EpochResult& epoch : drive.evaluation.epochs) {
-    const double seconds = drive.seconds(epoch.stamp);
-    if (epoch.status != status) {
-      goes_on = false;
-    } else if (goes_on) {
-      series.high.back() = seconds;
-    } else {
-      series.low.push_back(seconds);
-      series.high.push_back(seconds);
-      goes_on = true;
-    }
-  }
-  return series;
-}
-
-Figure time_figure(const ReportedDrive& drive, const std::string& id, const std::string& title,
-                   const std::string& description, const Axis& y) {
-  Figure figure;
-  figure.id = id;
-  figure.title = title;
-  figure.description = description;
-  figure.x = {.title = "time since start", .unit = "s"};
-  figure.y = y;
-  figure.motion = Motion::x;
-  figure.link = "time";
-  figure.height = 240;
-  for (Series& series : std::vector{spans(drive, FixStatus::rejected, "fixes rejected", Look::rejected),
-                                    spans(drive, FixStatus::withheld, "fixes withheld", Look::withheld)}) {
-    if (!series.low.empty()) figure.series.push_back(std::move(series));
-  }
-  const Range extent = epochs_extent(drive);
-  figure.x.low = extent.low;
-  figure.x.high = extent.high;
-  return figure;
 }
 
 /// Keeps the figure only where there is something to be seen.
@@ -104,93 +47,6 @@ Figure track_figure(const ReportedDrive& drive, bool along) {
   return figure;
 }
 
-std::vector<Eigen::Vector2d> offsets(const ReportedDrive& drive, Offset which) {
-  std::vector<Eigen::Vector2d> result;
-  for (const EpochResult& epoch : drive.evaluation.epochs) {
-    if (epoch.*which) result.push_back(*(epoch.*which));
-  }
-  return result;
-}
-
-Series ellipse(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance, Look look) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
-  const Eigen::Matrix2d root =
-      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal().toDenseMatrix();
-  Series series{.name = "1-sigma ellipse", .mark = Mark::line, .look = look};
-  for (int degrees = 0; degrees <= 360; degrees += 5) {
-    const double angle = degrees / kDegrees;
-    const Eigen::Vector2d point = mean + root * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    series.x.push_back(point.x());
-    series.y.push_back(point.y());
-  }
-  return series;
-}
-
-Figure tile(const ReportedDrive& drive, Offset which, const std::string& name, Look look, double half_m) {
-  Figure figure;
-  figure.id = "tile-" + std::string(look == Look::raw ? "raw" : "fused");
-  figure.title = "Error tile, " + name;
-  figure.x = {.title = "east error", .unit = "m", .low = -half_m, .high = half_m};
-  figure.y = {.title = "north error", .unit = "m", .low = -half_m, .high = half_m};
-  figure.motion = Motion::map;
-  figure.width = 430;
-  figure.height = 440;
-  Series errors{.name = "error", .mark = Mark::points, .look = look};
-  for (const EpochResult& epoch : drive.evaluation.epochs) {
-    if (!(epoch.*which)) continue;
-    errors.x.push_back((epoch.*which)->x());
-    errors.y.push_back((epoch.*which)->y());
-    errors.time.push_back(drive.seconds(epoch.stamp));
-  }
-  const std::vector<Eigen::Vector2d> all = offsets(drive, which);
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& offset : all) mean += offset / static_cast<double>(all.size());
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  for (const Eigen::Vector2d& offset : all)
-    covariance +=
-        (offset - mean) * (offset - mean).transpose() / std::max(static_cast<double>(all.size()) - 1, 1.0);
-  const auto outside = std::count_if(all.begin(), all.end(), [&](const Eigen::Vector2d& offset) {
-    return offset.cwiseAbs().maxCoeff() > half_m;
-  });
-  figure.description = fmt::format(
-      "{} epochs, {} of them outside the tile of {:g} x {:g} m; mean ({:.2f}, {:.2f}) m, |mean| = Acc = "
-      "{:.3f} m; the ellipse has the errors' covariance about their mean, sigma east {:.2f} m, north {:.2f} "
-      "m.",
-      all.size(), outside, 2 * half_m, 2 * half_m, mean.x(), mean.y(), mean.norm(),
-      std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)));
-  Series centre{.name = "mean", .mark = Mark::points, .look = Look::truth, .x = {mean.x()}, .y = {mean.y()}};
-  Series origin{.name = "truth", .mark = Mark::points, .look = Look::reference, .x = {0}, .y = {0}};
-  figure.series = {std::move(errors), ellipse(mean, covariance, Look::truth), std::move(centre),
-                   std::move(origin)};
-  if (half_m > 1) {
-    figure.series.push_back({.name = "2 x 2 m",
-                             .mark = Mark::line,
-                             .look = Look::reference,
-                             .x = {-1, 1, 1, -1, -1},
-                             .y = {-1, -1, 1, 1, -1}});
-  }
-  return figure;
-}
-
-/// The paper's metre to each side where it holds half of the fused errors, their ellipse and the mean of both
-/// systems, else the next round number that does.
-double half_width(const ReportedDrive& drive) {
-  std::vector<double> largest;
-  for (const Eigen::Vector2d& offset : offsets(drive, &EpochResult::fused_offset_m))
-    largest.push_back(offset.cwiseAbs().maxCoeff());
-  std::sort(largest.begin(), largest.end());
-  double needed = nearest_rank_quantile(largest, 0.5);
-  const TruthEvaluation& truth = *drive.evaluation.truth;
-  needed = std::max(needed, 1.05 * truth.gnss.position.mean_m.cwiseAbs().maxCoeff());
-  const double spread =
-      std::isfinite(truth.fused.position.precision_m) ? truth.fused.position.precision_m : 0;
-  needed = std::max(needed, truth.fused.position.mean_m.cwiseAbs().maxCoeff() + spread);
-  for (const double half : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0}) {
-    if (!(needed > half)) return half;
-  }
-  return 1000;
-}
-
 Series distribution(const ReportedDrive& drive, Offset which, const std::string& name, Look look) {
   std::vector<double> errors;
   for (const Eigen::Vector2d& offset : offsets(drive, which)) errors.push_back(offset.norm());
@@ -202,23 +58,6 @@ Series distribution(const ReportedDrive& drive, Offset which, const std::string&
   }
   return series;
 }
-
-}  // namespace
-
-Range epochs_extent(const ReportedDrive& drive) {
-  const auto& epochs = drive.evaluation.epochs;
-  if (epochs.empty()) return {0, 1};
-  const double first = drive.seconds(epochs.front().stamp);
-  return {first, std::max(drive.seconds(epochs.back().stamp), first + 1e-3)};
-}
-
-FigureRow error_tiles(const ReportedDrive& drive) {
-  const double half_m = half_width(drive);
-  return {{tile(drive, &EpochResult::gnss_offset_m, "raw GNSS", Look::raw, half_m),
-           tile(drive, &EpochResult::fused_offset_m, "fused", Look::fused, half_m)}};
-}
-
-namespace {
 
 /// Beyond this ratio of the largest raw to the largest fused error the latter is a flat line; an axis in
 /// powers of ten shows both.
@@ -353,78 +192,6 @@ Figure autocorrelation_figure(const ReportedDrive& drive) {
                            .x = {0, longest},
                            .y = {std::exp(-1.0), std::exp(-1.0)}});
   return figure;
-}
-
-std::vector<Figure> consistency_figures(const ReportedDrive& drive) {
-  // Radius of the circle that holds a share p of a Gaussian of sigma 1 in the plane: sqrt(-2 ln (1 - p)).
-  const double bound95 = std::sqrt(InnovationStatistics::kBound95);
-  Series points{.name = "epoch", .mark = Mark::points, .look = Look::fused};
-  std::vector<double> ratios;  // sqrt(NEES)
-  for (const EpochResult& epoch : drive.evaluation.epochs) {
-    if (!epoch.position_covariance || !epoch.fused_offset_m || !std::isfinite(epoch.nees)) continue;
-    points.x.push_back(std::sqrt(epoch.position_covariance->trace() / 2));
-    points.y.push_back(epoch.fused_offset_m->norm());
-    points.time.push_back(drive.seconds(epoch.stamp));
-    ratios.push_back(std::sqrt(epoch.nees));
-  }
-  if (ratios.size() < 2) return {};
-  const double widest = 1.05 * *std::max_element(points.x.begin(), points.x.end());
-
-  Figure by_sigma;
-  by_sigma.id = "sigma-error";
-  by_sigma.title = "Stated sigma against actual error";
-  by_sigma.description =
-      "Stated sigma (root mean square of both axes) of each fused position and its distance from the truth. "
-      "An honest sigma leaves 39 % of the points below the first line and 95 % below the second.";
-  by_sigma.x = {.title = "stated sigma", .unit = "m", .low = 0};
-  by_sigma.y = {.title = "position error", .unit = "m", .low = 0};
-  by_sigma.square = false;
-  by_sigma.width = 430;
-  by_sigma.height = 340;
-  by_sigma.series = {std::move(points)};
-  for (const double factor : {1.0, bound95}) {
-    by_sigma.series.push_back({.name = fmt::format("{:.3g} sigma", factor),
-                               .mark = Mark::line,
-                               .look = factor == 1.0 ? Look::reference : Look::truth,
-                               .x = {0, widest},
-                               .y = {0, factor * widest}});
-  }
-
-  Figure shares;
-  shares.id = "coverage";
-  shares.title = "Coverage";
-  shares.description =
-      "Share of epochs whose truth lies in the region that is stated to hold a share p of them. Below the "
-      "diagonal the stated covariances are too small, above it too large.";
-  shares.x = {.title = "stated", .unit = "%", .low = 0, .high = 100};
-  shares.y = {.title = "found", .unit = "%", .low = 0, .high = 100};
-  shares.width = 430;
-  shares.height = 340;
-  std::sort(ratios.begin(), ratios.end());
-  Series found{.name = "fused", .mark = Mark::line, .look = Look::fused, .x = {0}, .y = {0}};
-  for (std::size_t i = 0; i < ratios.size(); ++i) {
-    found.x.push_back(100 * (1 - std::exp(-0.5 * ratios[i] * ratios[i])));
-    found.y.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(ratios.size()));
-  }
-  found.x.push_back(100);
-  found.y.push_back(100);
-  shares.series = {
-      std::move(found),
-      {.name = "honest", .mark = Mark::line, .look = Look::reference, .x = {0, 100}, .y = {0, 100}}};
-
-  Figure nees = time_figure(drive, "nees", "NEES over time",
-                            "Squared error in units of the stated covariance: 2 on average and below 5.99 at "
-                            "95 % of the epochs where the covariance is honest.",
-                            {.title = "NEES", .unit = "", .low = 0});
-  nees.series.push_back(over_time(drive, "fused", Look::fused, [](const EpochResult& e) {
-    return std::isfinite(e.nees) ? std::optional(e.nees) : std::nullopt;
-  }));
-  nees.series.push_back({.name = "95 % bound",
-                         .mark = Mark::line,
-                         .look = Look::reference,
-                         .x = {*nees.x.low, *nees.x.high},
-                         .y = {InnovationStatistics::kBound95, InnovationStatistics::kBound95}});
-  return {std::move(by_sigma), std::move(shares), std::move(nees)};
 }
 
 }  // namespace waymark

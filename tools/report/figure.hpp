@@ -25,7 +25,7 @@ enum class Mark {
 enum class Look { raw, fused, truth, rejected, withheld, reference, first, second, third, fourth };
 
 struct Series {
-  std::string name;  ///< in the legend; empty: not there
+  std::string name{};  ///< in the legend; empty: not there
   Mark mark = Mark::line;
   Look look = Look::fused;
   std::vector<double> x{};
@@ -42,8 +42,8 @@ struct Series {
 };
 
 struct Axis {
-  std::string title;  ///< "position error"
-  std::string unit;   ///< "m"; empty: a pure number
+  std::string title{};  ///< "position error"
+  std::string unit{};   ///< "m"; empty: a pure number
   bool logarithmic = false;
   std::optional<double> low{};   ///< where the axis shall begin; empty: at the data
   std::optional<double> high{};  ///< where it shall end
@@ -68,7 +68,6 @@ struct Figure {
   Motion motion = Motion::still;
   std::string link{};       ///< figures of one name move along x together
   bool geographic = false;  ///< has a scale bar and a north arrow (y is north, metres)
-  bool square = false;      ///< one scale for both axes, and not moved
   bool downwards = false;   ///< y grows downwards, as the rows of a matrix
   int width = 880;          ///< px, with axes and legend
   int height = 300;         ///< px

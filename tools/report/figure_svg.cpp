@@ -26,9 +26,25 @@ std::string opening(const Figure& figure, std::string_view attributes) {
       attributes, figure.width, figure.height, figure.id);
 }
 
+/// Tiles of strokes that lie over bars, for the looks that the figure has bars of.
+std::string hatching(const Figure& figure) {
+  std::string svg;
+  for (const LookStyle& look : all_looks()) {
+    const bool used = std::any_of(figure.series.begin(), figure.series.end(), [&](const Series& series) {
+      return series.mark == Mark::bars && series.look == look.look;
+    });
+    if (!used || look.hatch.empty()) continue;
+    svg += fmt::format(
+        "<pattern id=\"{}-hatch-{}\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\"><path "
+        "class=\"hatch\" d=\"{}\"/></pattern>\n",
+        figure.id, look.name, look.hatch);
+  }
+  return svg;
+}
+
 std::string drawing(const Figure& figure) {
   const View view = drawn_view(figure);
-  std::string svg = legend_svg(figure, view);
+  std::string svg = hatching(figure) + legend_svg(figure, view);
   svg += fmt::format(
       "<clipPath id=\"{}-clip\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n", figure.id,
       px(view.box.left), px(view.box.top), px(view.box.width), px(view.box.height));

@@ -38,7 +38,7 @@ std::vector<Entry> entries(const Figure& figure) {
   return result;
 }
 
-std::string sample(const Series& series) {
+std::string sample(const Figure& figure, const Series& series) {
   const LookStyle& look = style_of(series.look);
   switch (series.mark) {
     case Mark::line:
@@ -52,7 +52,11 @@ std::string sample(const Series& series) {
       break;
   }
   const char* kind = series.mark == Mark::bars ? "bars" : series.mark == Mark::spans ? "spans" : "band";
-  return fmt::format("<path class=\"{} look-{}\" d=\"M2-5h24v10h-24z\"/>", kind, look.name);
+  static constexpr const char* kBox = "M2-5h24v10h-24z";
+  std::string svg = fmt::format("<path class=\"{} look-{}\" d=\"{}\"/>", kind, look.name, kBox);
+  if (series.mark == Mark::bars && !look.hatch.empty())
+    svg += fmt::format("<path fill=\"url(#{}-hatch-{})\" d=\"{}\"/>", figure.id, look.name, kBox);
+  return svg;
 }
 
 }  // namespace
@@ -72,7 +76,7 @@ std::string legend_svg(const Figure& figure, const View& view) {
     svg += fmt::format(
         "<g class=\"entry\" data-series=\"{}\" transform=\"translate({} {})\">{}<text x=\"{}\" "
         "y=\"4\">{}</text></g>",
-        entry.series, px(left + entry.x), px(14 + kRow * entry.row), sample(series), kSample,
+        entry.series, px(left + entry.x), px(14 + kRow * entry.row), sample(figure, series), kSample,
         escaped(series.name));
   }
   return svg + "</g>\n";

@@ -1,4 +1,4 @@
-/// Colour, dash pattern and marker of each look: told apart by each of the three alone.
+/// Colour, dash pattern, marker and hatching of each look: told apart by each of them alone.
 #pragma once
 
 #include <span>
@@ -14,6 +14,7 @@ struct LookStyle {
   std::string_view colour;  ///< of Okabe and Ito's palette, which colour-blind readers tell apart
   std::string_view dash;    ///< SVG stroke-dasharray of a line; empty: solid
   std::string_view marker;  ///< relative SVG path about a point, px
+  std::string_view hatch;   ///< SVG path of strokes in a tile of 6 x 6 px, over bars; empty: none
 };
 
 [[nodiscard]] std::span<const LookStyle> all_looks();

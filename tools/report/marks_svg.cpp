@@ -119,6 +119,9 @@ std::string bars(const Figure& figure, std::size_t index, const View& view) {
     }
   }
   std::string svg = path(series, index, boxes, "bars");
+  if (!style_of(series.look).hatch.empty())
+    svg += fmt::format("<path fill=\"url(#{}-hatch-{})\" data-series=\"{}\" d=\"{}\"/>\n", figure.id,
+                       style_of(series.look).name, index, boxes);
   if (!spread.empty()) svg += path(series, index, spread, "spread");
   return svg + values;
 }

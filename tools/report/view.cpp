@@ -183,7 +183,7 @@ View full_view(const Figure& figure, int rows_of_legend) {
   const double height = std::max(figure.height - top - kMarginBottom, 10.0);
   const double left = left_margin(figure, view.y, height);
   view.box = {left, top, std::max(figure.width - left - kMarginRight, 10.0), height};
-  if (figure.square || figure.motion == Motion::map) make_scales_equal(view);
+  if (figure.motion == Motion::map) make_scales_equal(view);
   return view;
 }
 
@@ -194,7 +194,10 @@ double round_down_125(double value) {
 }
 
 std::vector<Tick> ticks(Range range, bool logarithmic, int count) {
-  if (logarithmic) return logarithmic_ticks(range);
+  if (logarithmic) {
+    std::vector<Tick> powers = logarithmic_ticks(range);
+    if (powers.size() > 1) return powers;  // else the range is so narrow that even steps serve it
+  }
   const double least = (range.high - range.low) / std::max(count, 1);
   const double power = std::pow(10.0, std::floor(std::log10(least)));
   double step = 10 * power;

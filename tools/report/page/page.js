@@ -100,7 +100,8 @@
           if (value >= low && value <= high) result.push({ value, label: String(Number(value.toPrecision(4))) });
         }
       }
-      return result;
+      if (result.length > 1) return result;  // else the range is so narrow that even steps serve it
+      result.length = 0;
     }
     const least = (high - low) / Math.max(count, 1);
     const power = 10 ** Math.floor(Math.log10(least));
