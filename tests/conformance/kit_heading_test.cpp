@@ -140,5 +140,5 @@ TEST_CASE("heading: rows that make no sense are named, those outside the drive o
   CHECK_THROWS_WITH(kit_registry().make_sensor_model("heading", {{"offset", "maybe"}}),
                     "heading: option 'offset' must be 'off' or 'constant', got 'maybe'");
   CHECK_THROWS_WITH(kit_registry().make_sensor_model("heading", {{"mounting", "3"}}),
-                    Contains("heading: unknown option 'mounting'; it has mount_deg, sigma_deg"));
+                    Contains("heading: unknown option 'mounting'; did you mean 'mount_deg'?"));
 }

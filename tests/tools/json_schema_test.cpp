@@ -138,6 +138,8 @@ TEST_CASE("json of every subcommand is as tools/program/README.md documents it")
       {"metrics", {"evaluate", fused, "--truth", drive}},
       {"metrics", {"evaluate", fused}},
       {"metrics", {"run", drive, "-o", folder + "out", "--outage", "5/20", "--causal"}},
+      {"metrics", {"compare", folder + "out", "-o", folder + "compared"}},
+      {"doctor", {"doctor", drive}},
       {"bench", {"bench", square, "--repeat", "1"}},
       {"info", {"info"}},
       {"plugins", {"info", "--plugins"}},
@@ -169,7 +171,9 @@ TEST_CASE("json of every subcommand is as tools/program/README.md documents it")
   std::getline(lines, line);
   while (std::getline(lines, line) && line.rfind("  ", 0) == 0) {
     const std::string command = line.substr(2, line.find(' ', 2) - 2);
-    if (!command.empty()) CHECK(commands.contains(command));
+    const bool prints_text_for_programs = command == "help" || command == "completion";
+    INFO(command);
+    if (!command.empty() && !prints_text_for_programs) CHECK(commands.contains(command));
   }
 }
 

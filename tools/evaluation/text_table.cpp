@@ -33,13 +33,14 @@ void TextTable::add_unless_known(Row row) {
 }
 
 bool TextTable::of_words(std::size_t column) const {
-  bool numbers = false;
+  std::size_t numbers = 0;
+  std::size_t words = 0;
   for (auto row = rows_.begin() + 1; row != rows_.end() && column > 0; ++row) {
     if (column >= row->size() || (*row)[column].empty()) continue;
     if (is_sentence((*row)[column])) return true;
-    numbers = numbers || looks_like_number((*row)[column]);
+    ++(looks_like_number((*row)[column]) ? numbers : words);
   }
-  return !numbers;
+  return words >= numbers;  // "1" is also a unit
 }
 
 std::string TextTable::text(const TextLook& look) const {
