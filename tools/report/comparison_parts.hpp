@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <waymark/tools/report/compared_run.hpp>
+#include <waymark/tools/report/metric_columns.hpp>
 #include <waymark/tools/report/page.hpp>
 
 namespace waymark {
@@ -27,15 +28,6 @@ struct SystemRow {
 [[nodiscard]] std::vector<SystemRow> rows_against_truth(const DriveGroup& group);
 /// The runs at their withheld fixes, by what was predicted there ("fused", "dead reckoning").
 [[nodiscard]] std::vector<SystemRow> rows_at_withheld(const DriveGroup& group);
-
-/// A metric of positions.
-struct PositionColumn {
-  std::string name;  ///< "RMSE"
-  std::string id;    ///< "rmse"
-  std::string about;
-  double PositionMetrics::*value;
-};
-[[nodiscard]] const std::vector<PositionColumn>& position_columns();
 
 [[nodiscard]] PageTable error_table(const std::vector<DriveGroup>& groups);
 [[nodiscard]] PageTable improvement_table(const std::vector<DriveGroup>& groups);
@@ -61,7 +53,5 @@ struct PositionColumn {
 /// With the drive before it where there are several.
 [[nodiscard]] std::string row_name(const std::vector<DriveGroup>& groups, const DriveGroup& group,
                                    const std::string& label);
-/// "-" where it is not defined.
-[[nodiscard]] std::string decimals(double value, int digits);
 
 }  // namespace waymark

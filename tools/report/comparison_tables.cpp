@@ -80,10 +80,6 @@ double degrees(double radians) {
 
 }  // namespace
 
-std::string decimals(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
-}
-
 std::vector<DriveGroup> groups_by_drive(const std::vector<ComparedRun>& runs) {
   std::vector<DriveGroup> groups;
   for (const ComparedRun& run : runs) {
@@ -125,18 +121,6 @@ std::vector<SystemRow> rows_at_withheld(const DriveGroup& group) {
     }
   }
   return rows;
-}
-
-const std::vector<PositionColumn>& position_columns() {
-  static const std::vector<PositionColumn> columns = {
-      {"Max", "max", "Largest distance from the truth", &PositionMetrics::max_m},
-      {"Acc", "acc", "Length of the mean offset: what stays", &PositionMetrics::accuracy_m},
-      {"Prec", "prec", "Deviation about the mean offset: what scatters", &PositionMetrics::precision_m},
-      {"RMSE", "rmse", "Root of the mean squared distance", &PositionMetrics::rmse_m},
-      {"median", "median", "Median distance", &PositionMetrics::median_m},
-      {"CEP50", "cep50", "Radius that holds 50 % of the epochs", &PositionMetrics::cep50_m},
-      {"CEP95", "cep95", "Radius that holds 95 % of the epochs", &PositionMetrics::cep95_m}};
-  return columns;
 }
 
 PageTable error_table(const Groups& groups) {

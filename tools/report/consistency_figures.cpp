@@ -10,13 +10,13 @@ namespace waymark {
 namespace {
 
 /// Stated and actual error of the epochs that have both.
-struct StatedErrors {
+struct StatedAndActual {
   Series points{.name = "epoch", .mark = Mark::points, .look = Look::fused};  ///< (sigma, error), m
   std::vector<double> nees;                                                   ///< ascending
 };
 
-StatedErrors stated_errors(const ReportedDrive& drive) {
-  StatedErrors errors;
+StatedAndActual stated_errors(const ReportedDrive& drive) {
+  StatedAndActual errors;
   for (const EpochResult& epoch : drive.evaluation.epochs) {
     if (!epoch.position_covariance || !epoch.fused_offset_m || !std::isfinite(epoch.nees)) continue;
     errors.points.x.push_back(std::sqrt(epoch.position_covariance->trace() / 2));
@@ -95,7 +95,7 @@ Figure nees_figure(const ReportedDrive& drive) {
 }  // namespace
 
 std::vector<Figure> consistency_figures(const ReportedDrive& drive) {
-  const StatedErrors errors = stated_errors(drive);
+  const StatedAndActual errors = stated_errors(drive);
   if (errors.nees.size() < 2) return {};
   return {sigma_figure(errors.points), coverage_figure(errors.nees), nees_figure(drive)};
 }

@@ -7,44 +7,41 @@
 
 #include <waymark/tools/report/drive_figures.hpp>
 #include <waymark/tools/report/drive_summary.hpp>
+#include <waymark/tools/report/metric_columns.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark {
 namespace {
 
-std::string metres(double value) {
-  return std::isfinite(value) ? fmt::format("{:.3f}", value) : "-";
-}
-
-std::string percent(double value) {
-  return std::isfinite(value) ? fmt::format("{:+.1f}", value) : "-";
+/// Heading of a table of metrics, and its rows.
+std::vector<std::string> metrics_heading() {
+  std::vector<std::string> heading = {"", "epochs"};
+  for (const PositionColumn& column : position_columns()) heading.push_back(column.name + " [m]");
+  return heading;
 }
 
 std::vector<std::string> metrics_row(const std::string& name, const PositionMetrics& m) {
-  return {name,
-          fmt::to_string(m.count),
-          metres(m.max_m),
-          metres(m.accuracy_m),
-          metres(m.precision_m),
-          metres(m.rmse_m),
-          metres(m.median_m),
-          metres(m.cep50_m),
-          metres(m.cep95_m)};
+  std::vector<std::string> row = {name, fmt::to_string(m.count)};
+  for (const PositionColumn& column : position_columns()) row.push_back(decimals(m.*column.value, 3));
+  return row;
 }
 
-const std::vector<std::string> kMetrics = {"",         "epochs",     "Max [m]",   "Acc [m]",  "Prec [m]",
-                                           "RMSE [m]", "median [m]", "CEP50 [m]", "CEP95 [m]"};
+std::vector<std::string> improvement_row(const PositionMetrics& raw, const PositionMetrics& fused) {
+  std::vector<std::string> row = {"better than raw by [%]", ""};
+  for (const PositionColumn& column : position_columns()) {
+    const double percent = improvement_percent(raw.*column.value, fused.*column.value);
+    row.push_back((percent > 0 ? "+" : "") + decimals(percent, 1));
+  }
+  return row;
+}
 
 PageTable truth_table(const ReportedDrive& drive) {
   const TruthEvaluation& truth = *drive.evaluation.truth;
-  PageTable table{"Against truth", kMetrics, {}};
+  PageTable table{"Against truth", metrics_heading(), {}};
   table.rows = {metrics_row("raw GNSS", truth.gnss.position),
                 metrics_row("raw GNSS, accepted fixes only", truth.gnss_accepted.position),
                 metrics_row("fused", truth.fused.position)};
-  const Improvement& i = truth.improvement;
-  table.rows.push_back({"better than raw by [%]", "", percent(i.max_percent), percent(i.accuracy_percent),
-                        percent(i.precision_percent), percent(i.rmse_percent), percent(i.median_percent),
-                        percent(i.cep50_percent), percent(i.cep95_percent)});
+  table.rows.push_back(improvement_row(truth.gnss.position, truth.fused.position));
   table.notes = {
       "Max: largest error. Acc: length of the mean error. Prec: standard deviation about it. CEP50, CEP95: "
       "radius about the truth that holds 50 and 95 % of the epochs. Raw and fused at the same epochs: the "
@@ -53,7 +50,8 @@ PageTable truth_table(const ReportedDrive& drive) {
 }
 
 PageTable withheld_table(const Evaluation& evaluation) {
-  PageTable table{"At withheld fixes", kMetrics, {}, {"The noise of the fixes is in these numbers."}};
+  PageTable table{
+      "At withheld fixes", metrics_heading(), {}, {"The noise of the fixes is in these numbers."}};
   for (const WithheldMetrics& way : evaluation.at_withheld) {
     table.rows.push_back(metrics_row(way.label, way.at_fixes));
     if (way.at_ends.count > 0)
@@ -202,9 +200,10 @@ PageTable track_table(const TruthEvaluation& truth) {
       {"", "along: mean [m]", "rms [m]", "across: mean [m]", "rms [m]", "heading: mean [deg]", "rms [deg]"},
       {}};
   for (const auto& [name, system] : {std::pair{"raw GNSS", &truth.gnss}, std::pair{"fused", &truth.fused}}) {
-    table.rows.push_back({name, metres(system->track.along.mean), metres(system->track.along.rms),
-                          metres(system->track.cross.mean), metres(system->track.cross.rms),
-                          metres(system->heading.mean * kDegrees), metres(system->heading.rms * kDegrees)});
+    table.rows.push_back({name, decimals(system->track.along.mean, 3), decimals(system->track.along.rms, 3),
+                          decimals(system->track.cross.mean, 3), decimals(system->track.cross.rms, 3),
+                          decimals(system->heading.mean * kDegrees, 3),
+                          decimals(system->heading.rms * kDegrees, 3)});
   }
   return table;
 }
