@@ -41,6 +41,9 @@ std::string counted(std::size_t value) {
   return std::to_string(value);
 }
 
+/// Half of the last digit that tables show, m: what looks equal there is.
+constexpr double kShown = 0.0005;
+
 /// The metrics in which no other row is smaller: "Max, RMSE".
 std::string best_in(const SystemRow& row, const std::vector<SystemRow>& rows) {
   std::string names;
@@ -48,7 +51,7 @@ std::string best_in(const SystemRow& row, const std::vector<SystemRow>& rows) {
     const double own = row.metrics.position.*column.value;
     const bool best = std::isfinite(own) && rows.size() > 1 &&
                       std::none_of(rows.begin(), rows.end(), [&](const SystemRow& other) {
-                        return other.metrics.position.*column.value < own;
+                        return other.metrics.position.*column.value < own - kShown;
                       });
     if (best) names.append(names.empty() ? "" : ", ").append(column.name);
   }
