@@ -11,6 +11,7 @@ namespace waymark {
 namespace {
 
 constexpr double kLongestChord_s = 5;
+constexpr double kShortestChord_s = 0.95;
 constexpr double kShortestChord_m = 5;  // a shorter one is mostly the noise of its fixes
 constexpr std::size_t kFewestChords = 20;
 constexpr std::size_t kFewestTurns = 10;
@@ -18,27 +19,32 @@ constexpr double kLargestFactor = 1.5;
 constexpr double kSmallestTurn = 5 * std::numbers::pi / 180;
 constexpr double kOppositeSigns = -0.3;
 
-/// The way between neighbouring fixes of the first receiver.
+/// The way between two fixes of the first receiver.
 struct ChordPair {
   Eigen::Vector2d gnss;
   Eigen::Vector2d odometry;
   bool follows = false;  ///< begins where the chord before ended
 };
 
+/// Chords long enough to be judged, whatever the rate of the fixes: each goes on until it spans a second and
+/// is no longer mostly noise, at most for kLongestChord_s.
 std::vector<ChordPair> chords_of(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna) {
   std::vector<ChordPair> chords;
-  std::size_t last = fixes.size();
+  std::size_t first = fixes.size();
   bool unbroken = false;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (fixes[i].source != fixes.front().source) continue;
-    if (last < fixes.size() && seconds_between(fixes[last].stamp, fixes[i].stamp) <= kLongestChord_s) {
-      chords.push_back({fixes[i].position - fixes[last].position,
-                        antenna[i].head<2>() - antenna[last].head<2>(), unbroken});
-      unbroken = true;
-    } else {
+    const double elapsed_s = first < fixes.size() ? seconds_between(fixes[first].stamp, fixes[i].stamp) : 0;
+    if (first == fixes.size() || elapsed_s > kLongestChord_s) {
+      first = i;
       unbroken = false;
+      continue;
     }
-    last = i;
+    const Eigen::Vector2d gnss = fixes[i].position - fixes[first].position;
+    if (elapsed_s < kShortestChord_s || gnss.norm() < kShortestChord_m) continue;
+    chords.push_back({gnss, antenna[i].head<2>() - antenna[first].head<2>(), unbroken});
+    unbroken = true;
+    first = i;
   }
   return chords;
 }
@@ -80,8 +86,11 @@ std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
     if (*middle > kLargestFactor || *middle < 1 / kLargestFactor) {
       warnings.push_back(fmt::format(
           "the way of the odometry between fixes is {:.2f} times that of the fixes (median of {}): is the "
-          "unit of the speed right? (3.6: km/h read as m/s)",
-          *middle, factors.size()));
+          "unit of the speed right? ({})",
+          *middle, factors.size(),
+          *middle > 1
+              ? "3.6: km/h read as m/s"
+              : "0.28: m/s read as km/h; or the odometry stands still, or the coordinates have few digits"));
     }
   }
   if (turns >= kFewestTurns && product < kOppositeSigns * std::sqrt(gnss_squared * odometry_squared)) {

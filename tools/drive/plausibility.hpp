@@ -12,7 +12,7 @@
 
 namespace waymark {
 
-/// One sentence for each thing that looks wrong: the ways between neighbouring fixes differ by a factor
+/// One sentence for each thing that looks wrong: the ways between fixes of 1 to 5 s differ by a factor
 /// (median over at least 20 of them beyond 1.5), or the turns have opposite signs (correlation over at least
 /// 10 of them below -0.3).
 /// @param antenna  dead-reckoned antenna poses at the fixes, in any frame; same length and order as `fixes`

@@ -74,6 +74,20 @@ void assemble_parts(const DriveLogs& logs, const DriveConfig& config, std::vecto
   report.notes.insert(report.notes.end(), assembled.notes.begin(), assembled.notes.end());
 }
 
+/// What the drive does in them is not known, and the error there is not in proportion to anything.
+void note_gaps(double gap_s, Stamp start, PrepareReport& report) {
+  const std::vector<GapReport>& gaps = report.odometry.gaps;
+  if (gaps.empty()) return;
+  const GapReport& longest =
+      *std::max_element(gaps.begin(), gaps.end(),
+                        [](const GapReport& a, const GapReport& b) { return a.length_s < b.length_s; });
+  report.notes.push_back(
+      fmt::format("the odometry is silent for more than {:g} s in {} {}, the longest {:.1f} s from {:.1f} s "
+                  "after its start: the speed and turn before and after are assumed there (gap: {{policy}})",
+                  gap_s, gaps.size(), gaps.size() == 1 ? "place" : "places", longest.length_s,
+                  seconds_between(start, longest.start)));
+}
+
 std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveConfig& config,
                                              PrepareReport& report) {
   std::vector<OdometrySample> odometry;
@@ -109,6 +123,7 @@ std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveC
         odometry.size(), length_s));
   for (const OdometrySample& sample : odometry) report.reversing += sample.speed_mps < 0;
   describe_stream(odometry, config.timeline.gap_s, report.odometry);
+  note_gaps(config.timeline.gap_s, odometry.front().stamp, report);
   return odometry;
 }
 
@@ -164,6 +179,15 @@ void add_logged_velocity(const DriveLogs::Log& log, TimeScale scale, std::span<G
       fmt::format("{}: {} of {} fixes have their speed or course from it", log.file, given, fixes.size()));
 }
 
+/// Receivers without a fix write zeros; nobody drives in the Gulf of Guinea.
+void leave_out_null_island(std::vector<GeodeticFix>& fixes, PrepareReport& report) {
+  const std::size_t left_out = std::erase_if(
+      fixes, [](const GeodeticFix& fix) { return fix.latitude_deg == 0 && fix.longitude_deg == 0; });
+  if (left_out > 0)
+    report.notes.push_back(fmt::format(
+        "{} fixes at latitude 0, longitude 0 are left out: receivers write that without a fix", left_out));
+}
+
 std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig& config,
                                        const std::vector<OdometrySample>& odometry, PrepareReport& report) {
   std::vector<GeodeticFix> fixes;
@@ -175,6 +199,7 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig&
       add_logged_velocity(logs.velocity[i], config.time_scale, std::span(fixes).subspan(before), report);
     report_clock(log, report);
   }
+  leave_out_null_island(fixes, report);
   clean_stream(
       fixes, report.gnss, [](const GeodeticFix& f) { return finite_place(f) && f.covariance_en.allFinite(); },
       [](const GeodeticFix& a, const GeodeticFix& b) { return a.source == b.source; },

@@ -57,6 +57,7 @@ ExitCode convert_drive(const ConvertOptions& options, const TypeRegistry& regist
   if (loaded.modelings.size() != 1)
     throw UsageError("convert writes one graph: name one modeling ('run' takes many)");
   const std::string& modeling = loaded.modelings.front();
+  require_not_read(options.output, loaded.files);
   const ModeledDrive modeled =
       model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry), registry, console);
   const GraphDocument& document = modeled.document;

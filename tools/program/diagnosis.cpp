@@ -142,7 +142,7 @@ std::string read_input(const std::string& path, const TypeRegistry& registry) {
       throw InputError(log.place + log.file + ": there is no such log");
   }
   (void)registry.gnss_modeling(config.modeling);
-  return fmt::format("{} logs, all there; modeling {}", logs.size(), config.modeling);
+  return fmt::format("{} logs, all there (not read: `waymark inspect` does); modeling {}", logs.size(), config.modeling);
 }
 
 Json inputs_json(const std::vector<std::string>& inputs, const TypeRegistry& registry, Diagnosis& diagnosis) {

@@ -58,6 +58,10 @@ LabelledEvaluation evaluate_file(const EvaluateOptions& options, const std::stri
   console.progress("evaluating " + input);
   const GraphDocument document = read_graph(read_text_file(input), input, registry);
   if (document.fixes.empty()) throw InputError(input + ": has no GNSS records to evaluate at");
+  const bool optimised = std::any_of(document.provenance.begin(), document.provenance.end(),
+                                     [](const auto& entry) { return entry.first == "optimized"; });
+  if (!optimised)
+    console.note(input + " does not say that it was optimised: these are the metrics of its values");
   std::vector<TruthPose> truth;
   if (!options.truth.empty()) truth = read_truth(options.truth, options.data_folder, document, registry);
   LabelledEvaluation evaluated{label, evaluate_document(document, truth)};

@@ -20,6 +20,15 @@ void require_output_place(const std::string& path) {
   }
 }
 
+void require_not_read(const std::string& output, const std::vector<std::string>& read) {
+  for (const std::string& input : read) {
+    std::error_code absent;  // what is not there is not overwritten
+    if (std::filesystem::equivalent(output, input, absent))
+      throw UsageError(output +
+                       ": is read as an input and would be overwritten; choose another name or folder");
+  }
+}
+
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,10 @@ namespace waymark {
 /// @throws OutputError where the file cannot be written for a reason that shows already: it is a folder, or
 /// its folder does not exist.
 void require_output_place(const std::string& path);
+
+/// Whoever names an input as the output has made a slip; a log cannot be measured again.
+/// @throws UsageError where `output` is one of the files that are read
+void require_not_read(const std::string& output, const std::vector<std::string>& read);
 
 /// Makes a folder and those above it. @throws OutputError
 void make_folder(const std::string& folder);

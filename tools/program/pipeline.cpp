@@ -167,6 +167,25 @@ std::string fingerprint(const std::string& path) {
   return file_name(path) + " fnv1a64:" + hash.hex();
 }
 
+/// An offset within this many of its sigmas is none.
+constexpr double kOffsetSigmas = 3;
+
+/// Adds an offset to a delay where it is one; what was done is noted either way.
+bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s,
+                  std::vector<std::string>& notes) {
+  if (!offset) {
+    notes.push_back(fmt::format("sync: no offset of the {} was found; it stays as it is", quantity));
+    return false;
+  }
+  const bool is_one = std::abs(offset->late_s) > kOffsetSigmas * offset->sigma_s;
+  if (is_one) delay_s += offset->late_s;
+  notes.push_back(
+      fmt::format("sync: the odometry's {} {} late by {:.3f} s (sigma {:.3f} s, correlation {:.4f}); {}",
+                  quantity, is_one ? "was" : "seems", offset->late_s, offset->sigma_s, offset->correlation,
+                  is_one ? "applied" : "within three sigmas, so not applied"));
+  return is_one;
+}
+
 /// Prepares the drive again with the fixes on GNSS time, where their log tells it, and the odometry moved by
 /// the offsets that its motion shows.
 void synchronise(DriveLogs& logs, LoadedDrive& loaded, const Console& console) {
@@ -174,18 +193,13 @@ void synchronise(DriveLogs& logs, LoadedDrive& loaded, const Console& console) {
   std::vector<std::string> notes = put_on_told_time(logs);
   if (!notes.empty()) loaded.drive = prepare_drive(logs, loaded.config);
   const SyncReport report = estimate_clock_offsets(loaded.drive, {});
-  const auto apply = [&](const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s) {
-    if (!offset) {
-      notes.push_back(fmt::format("sync: no offset of the {} was found; it stays as it is", quantity));
-      return;
-    }
-    delay_s += offset->late_s;
-    notes.push_back(fmt::format(
-        "sync: the odometry's {} was late by {:.3f} s (sigma {:.3f} s, correlation {:.4f}); applied",
-        quantity, offset->late_s, offset->sigma_s, offset->correlation));
-  };
-  apply(report.speed, "speed", loaded.config.speed_delay_s);
-  apply(report.yaw_rate, "yaw rate", loaded.config.yaw_rate_delay_s);
+  const bool speed_moved = apply_offset(report.speed, "speed", loaded.config.speed_delay_s, notes);
+  (void)apply_offset(report.yaw_rate, "yaw rate", loaded.config.yaw_rate_delay_s, notes);
+  // One log has one clock: half of it must not be moved alone.
+  if (loaded.config.odometry.size() == 1 && speed_moved && !report.yaw_rate) {
+    loaded.config.yaw_rate_delay_s += report.speed->late_s;
+    notes.emplace_back("sync: the yaw rate stands in the log of the speed and is moved with it");
+  }
   loaded.drive = prepare_drive(logs, loaded.config);
   loaded.drive.report.notes.insert(loaded.drive.report.notes.end(), notes.begin(), notes.end());
 }
@@ -209,9 +223,11 @@ LoadedDrive load_drive_for(const std::string& path, const DriveOverrides& overri
   }
   tell(loaded.drive.report, console);
   for (const LogConfig* log : logs_of(loaded.config)) {
-    loaded.inputs.push_back(fingerprint(log->file));
-    for (const auto& [key, file] : log->companions) loaded.inputs.push_back(fingerprint(file));
+    loaded.files.push_back(log->file);
+    for (const auto& [key, file] : log->companions) loaded.files.push_back(file);
   }
+  for (const std::string& file : loaded.files) loaded.inputs.push_back(fingerprint(file));
+  loaded.files.push_back(path);
   console.end_progress();
   return loaded;
 }
@@ -256,6 +272,7 @@ ModeledDrive model_loaded(const LoadedDrive& loaded, const std::string& modeling
   document.provenance.emplace_back(
       "start", loaded.config.start.method == StartMethod::anchored ? "anchored" : "dead_reckoning");
   for (const std::string& note : loaded.drive.report.notes) document.provenance.emplace_back("assumed", note);
+  for (const std::string& warning : modeled.warnings) document.provenance.emplace_back("warning", warning);
   return modeled;
 }
 
@@ -281,6 +298,11 @@ std::string left_out(const LoadedDrive& loaded) {
   const PrepareReport& report = loaded.drive.report;
   return fmt::format("{} fixes outside the odometry, {} by thinning, {} withheld",
                      report.fixes_outside_odometry, report.fixes_thinned, report.fixes_withheld);
+}
+
+std::string odometry_in_words(const LoadedDrive& loaded) {
+  return fmt::format("{:.0f} m in {} samples", distance_by(loaded.drive.odometry),
+                     loaded.drive.odometry.size());
 }
 
 std::string describe_drive(const LoadedDrive& loaded) {

@@ -38,6 +38,7 @@ struct LoadedDrive {
   std::vector<std::string> modelings;
   std::optional<Loss> loss;         ///< of the fixes
   std::vector<std::string> inputs;  ///< name and fingerprint of each log
+  std::vector<std::string> files;   ///< that were read: drive.yaml and logs
 };
 
 /// Reads a drive.yaml and its logs; what was assumed or left out is told on the console.
@@ -56,6 +57,9 @@ struct LoadedDrive {
 
 /// Puts a document's provenance into a report, keys as "LABEL.KEY" (numbered where a key repeats).
 void add_provenance(const GraphDocument& document, const std::string& label, ReportHeader& header);
+
+/// The way that the odometry says was driven, and its samples.
+[[nodiscard]] std::string odometry_in_words(const LoadedDrive& loaded);
 
 /// What of the logs did not go in, in words.
 [[nodiscard]] std::string left_out(const LoadedDrive& loaded);

@@ -27,7 +27,7 @@ std::string write_drive_report(const DriveReportRequest& request, const std::str
                       .states = &request.states,
                       .residuals = &residuals,
                       .sparsity = sparsity ? &*sparsity : nullptr};
-  if (!request.left_out.empty()) drive.went_in.emplace_back("left out", request.left_out);
+  drive.went_in = request.went_in;
   for (const std::string& file : request.files)
     drive.files.push_back(std::filesystem::path(file).filename().string());
   Page page = drive_page(drive);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <waymark/core/multi_start.hpp>
@@ -21,7 +22,8 @@ struct DriveReportRequest {
   const std::vector<TruthPose>& truth;
   const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
   std::vector<StateReport> states{};
-  std::string left_out{};            ///< of the logs; empty: not known
+  /// Of the logs, heading and text.
+  std::vector<std::pair<std::string, std::string>> went_in{};
   std::vector<std::string> files{};  ///< to be linked; paths
 };
 

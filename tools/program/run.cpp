@@ -11,6 +11,7 @@
 #include <waymark/tools/program/output.hpp>
 #include <waymark/tools/program/program_registry.hpp>
 #include <waymark/tools/program/report_files.hpp>
+#include <waymark/tools/program/result_doubts.hpp>
 
 namespace waymark {
 namespace {
@@ -101,18 +102,23 @@ ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, M
   run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth, further)};
   run.files.push_back(write_epochs(run.evaluation.evaluation, prefix));
   console.end_progress();
+  for (const std::string& warning : doubts_of_result(run.states, run.noise, run.evaluation.evaluation)) {
+    console.warning(warning);
+    document.provenance.emplace_back("warning", warning);
+  }
   add_provenance(document, modeling, header);
   const bool alone = loaded.modelings.size() == 1;
-  run.files.push_back(write_drive_report({.drive = loaded.config.name,
-                                          .page = alone ? "report" : modeling,
-                                          .document = document,
-                                          .evaluated = run.evaluation,
-                                          .truth = loaded.drive.truth,
-                                          .optimization = &run.result,
-                                          .states = run.states,
-                                          .left_out = left_out(loaded),
-                                          .files = run.files},
-                                         options.folder, console));
+  run.files.push_back(write_drive_report(
+      {.drive = loaded.config.name,
+       .page = alone ? "report" : modeling,
+       .document = document,
+       .evaluated = run.evaluation,
+       .truth = loaded.drive.truth,
+       .optimization = &run.result,
+       .states = run.states,
+       .went_in = {{"odometry", odometry_in_words(loaded)}, {"left out", left_out(loaded)}},
+       .files = run.files},
+      options.folder, console));
   return run;
 }
 
@@ -120,6 +126,19 @@ std::string run_line(const std::string& modeling, const Summary& s) {
   return fmt::format("{:<11} {} in {} iterations, {:.3f} s, chi2 {:.10g} -> {:.10g}{}\n", modeling,
                      s.converged() ? "converged" : "NOT CONVERGED", s.iterations, s.total_seconds,
                      s.initial_chi2, s.final_chi2, s.converged() ? "" : " (" + s.message + ")");
+}
+
+/// Files of every modeling, after its name; those of the whole run.
+constexpr const char* kOfModeling[] = {".graph", ".fused.graph", ".csv",        ".tum", ".geojson",
+                                       ".kml",   ".gpx",         ".epochs.csv", ".html"};
+constexpr const char* kOfRun[] = {"report.html", "metrics.json", "summary.json"};
+
+void require_logs_stay(const RunOptions& options, const LoadedDrive& loaded) {
+  const std::string folder = options.folder + "/";
+  for (const std::string& modeling : loaded.modelings) {
+    for (const char* ending : kOfModeling) require_not_read(folder + modeling + ending, loaded.files);
+  }
+  for (const char* name : kOfRun) require_not_read(folder + name, loaded.files);
 }
 
 /// The modelings of a drive; what is wrong with one of them shows before anything is written.
@@ -175,6 +194,7 @@ ExitCode run_drive(const RunOptions& options) {
   const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
   if (options.causal && loaded.config.outage.length_s == 0)
     throw UsageError("--causal: there are no outages to be predicted; name them with --outage LENGTH/EVERY");
+  require_logs_stay(options, loaded);
   stop_if_interrupted();
   std::vector<ModeledDrive> models = model_all(options, loaded, registry, console);
   make_folder(options.folder);

@@ -1,10 +1,12 @@
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/error.hpp>
+#include <waymark/formats/text_file.hpp>
 #include <waymark/tools/drive/config.hpp>
 #include <waymark/tools/drive/prepare.hpp>
 #include <waymark/tools/evaluation/text_table.hpp>
@@ -98,6 +100,17 @@ ExitCode describe(const std::string& path, const CommonOptions& common, const Co
   return kSuccess;
 }
 
+/// Logs of a real drive must not be taken for an old simulation. @throws UsageError
+void require_no_real_drive(const std::string& folder) {
+  for (const char* name : {"drive.yaml", "odometry.csv", "truth.csv"}) {
+    const std::string path = folder + "/" + name;
+    if (!std::filesystem::exists(path)) continue;
+    const std::string text = read_text_file(path);
+    if (text.substr(0, text.find('\n')).find("no vehicle drove this") == std::string::npos)
+      throw UsageError(path + ": is there and was not made by simulate; choose another folder");
+  }
+}
+
 ExitCode simulate_drive(const SimulateOptions& options) {
   const Console console(options.common);
   if (options.list) return list_presets(console);
@@ -108,6 +121,7 @@ ExitCode simulate_drive(const SimulateOptions& options) {
   SimulationRecipe recipe = preset.recipe;
   if (options.duration_s) recipe = with_duration(recipe, *options.duration_s);
   check(recipe);
+  require_no_real_drive(options.folder);
   make_folder(options.folder);
   console.progress("simulating " + preset.name);
   const SimulatedDrive drive = simulate(recipe, options.seed.value_or(preset.default_seed));

@@ -23,7 +23,7 @@ std::string describe_consistency(const ConsistencyStatistics& stated) {
 PageTable provenance(const ReportedDrive& drive) {
   PageTable table{"Where it comes from", {"", ""}, {}};
   for (const auto& [key, text] : drive.document.provenance) {
-    if (key != "assumed") table.rows.push_back({key, text});
+    if (key != "assumed" && key != "warning") table.rows.push_back({key, text});
   }
   return table;
 }

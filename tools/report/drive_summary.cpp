@@ -131,6 +131,7 @@ std::string outcome(const ReportedDrive& drive) {
 /// What went in, what was assumed, what was rejected, what came out.
 PageTable account(const ReportedDrive& drive) {
   PageTable table{"", {"", ""}, {}};
+  for (const std::string& warning : stated(drive, "warning")) table.rows.push_back({"WARNING", warning});
   table.rows.push_back({"went in", describe_input(drive)});
   for (const std::string& log : stated(drive, "input")) table.rows.push_back({"log", log});
   for (const auto& [heading, text] : drive.went_in) table.rows.push_back({heading, text});
@@ -160,8 +161,11 @@ std::string describe_losses(const Improvement& i) {
 }  // namespace
 
 void summarise(const ReportedDrive& drive, Page& page) {
+  const std::size_t warnings = stated(drive, "warning").size();
+  if (warnings > 0)
+    page.summary = fmt::format("{} {}: see below. ", warnings, warnings == 1 ? "warning" : "warnings");
   if (drive.optimization != nullptr && !drive.optimization->summary.converged())
-    page.summary = "No minimum was reached: " + drive.optimization->summary.message + ". ";
+    page.summary += "No minimum was reached: " + drive.optimization->summary.message + ". ";
   if (!drive.evaluation.truth) {
     page.summary += "There is no truth to compare with.";
     if (drive.evaluation.withheld_fixes) {
