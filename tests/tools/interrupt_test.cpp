@@ -81,6 +81,6 @@ TEST_CASE("interrupted while reading: nothing is written, and that is said") {
           {.folder = folder, .program = "/bin/sh"});
   writer.join();
   CHECK(result.code == 130);
-  CHECK(result.err == "waymark: error: interrupted; nothing was written\n");
+  CHECK(result.err == "waymark: error: interrupted before there was a result\n");
   CHECK(names_in(folder) == std::vector<std::string>{"a.graph", "pid"});
 }

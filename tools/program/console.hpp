@@ -30,7 +30,7 @@ void install_signal_handlers();
 /// Ctrl-C before there was anything to keep.
 class Interrupted : public Error {
  public:
-  Interrupted() : Error("interrupted; nothing was written") {}
+  Interrupted() : Error("interrupted before there was a result") {}
 };
 /// Between steps other than the optimizer's. @throws Interrupted
 void stop_if_interrupted();
