@@ -230,12 +230,14 @@
       flush();
       return path;
     }
-    /// Points less than 0.4 px from the last one are left out, and what is far outside.
+    /// Points less than 0.4 px from the last one are left out, and what is far outside. While the figure is dragged it is
+    /// drawn more coarsely, so that it follows the hand.
     trackPath(xs, ys) {
       const scaleX = this.width / (this.view.x[1] - this.view.x[0]);
       const scaleY = this.height / (this.view.y[1] - this.view.y[0]);
       const right = this.left + this.width;
       const bottom = this.top + this.height;
+      const near = this.drag ? 1.5 : 0.4;
       const parts = [];
       let pen = false;
       let lastX = 0;
@@ -254,7 +256,7 @@
           parts.push("M" + px(beforeX) + " " + px(beforeY) + "L" + px(x) + " " + px(y));
           [lastX, lastY] = [x, y];
           pen = true;
-        } else if (Math.abs(x - lastX) + Math.abs(y - lastY) >= 0.4) {
+        } else if (Math.abs(x - lastX) + Math.abs(y - lastY) >= near) {
           parts.push("L" + px(x) + " " + px(y));
           [lastX, lastY] = [x, y];
         }
@@ -264,6 +266,7 @@
     }
     markersPath(series) {
       const [begin, end] = this.inView(series);
+      const side = this.drag ? 5 : 1.5;
       const taken = new Set();
       const parts = [];
       for (let i = begin; i < end; i += 1) {
@@ -271,7 +274,7 @@
         const y = this.toY(series.y[i]);
         if (!(x >= this.left - 5 && x <= this.left + this.width + 5 && y >= this.top - 5 &&
               y <= this.top + this.height + 5)) continue;
-        const square = Math.floor(x / 1.5) * 8192 + Math.floor(y / 1.5);
+        const square = Math.floor(x / side) * 8192 + Math.floor(y / side);
         if (taken.has(square)) continue;
         taken.add(square);
         parts.push("M" + px(x) + " " + px(y) + series.marker);
@@ -354,14 +357,23 @@
       }
       if (this.figure.motion !== "still") this.drawAxes();
       if (this.ornaments) this.drawScaleBar();
-      this.element.dataset.view = [...this.view.x, ...this.view.y].map((v) => v.toPrecision(9)).join(" ");
       this.drawCursor();
     }
-    /// Once before the next picture, however many events came.
+    /// Once before the next picture, however many events came; a figure out of sight when it is scrolled to.
     drawSoon() {
+      this.element.dataset.view = [...this.view.x, ...this.view.y].map((v) => v.toPrecision(9)).join(" ");
       if (this.isDue) return;
       this.isDue = true;
-      requestAnimationFrame(() => { this.isDue = false; this.draw(); });
+      requestAnimationFrame(() => { if (this.isInSight()) this.drawDue(); });
+    }
+    drawDue() {
+      if (!this.isDue) return;
+      this.isDue = false;
+      this.draw();
+    }
+    isInSight() {
+      const box = this.svg.getBoundingClientRect();
+      return box.bottom > 0 && box.top < window.innerHeight;
     }
 
     // Moving.
@@ -555,6 +567,7 @@
         this.svg.addEventListener(end, () => {
           this.drag = null;
           this.element.classList.remove("dragged");
+          this.drawSoon();
         });
       }
       this.svg.addEventListener("dblclick", () => this.reset());
@@ -652,5 +665,9 @@
   Plot.time = null;
 
   for (const [id, figure] of Object.entries(data.figures)) plots.push(new Plot(document.getElementById(id), figure));
+  addEventListener("scroll", () => {
+    for (const plot of plots) if (plot.isDue && plot.isInSight()) requestAnimationFrame(() => plot.drawDue());
+  }, { passive: true });
+  addEventListener("beforeprint", () => { for (const plot of plots) plot.drawDue(); });
   document.documentElement.dataset.ready = String(plots.length);
 })();
