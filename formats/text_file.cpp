@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -172,6 +173,15 @@ void write_file_atomically(const std::string& path, const Producer& produce) {
   // it.
   if (path.starts_with("/dev/") || path.starts_with("/proc/")) return write_directly(path, produce);
   write_aside(path, produce, status.st_mode & 07777);
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && !std::filesystem::is_directory(folder, error)) {
+    error = std::make_error_code(std::errc::not_a_directory);
+  }
+  if (error) throw OutputError(folder + ": cannot make the folder: " + error.message());
 }
 
 }  // namespace waymark

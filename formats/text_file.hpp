@@ -31,4 +31,7 @@ void write_file_atomically(const std::string& path, std::string_view content);
 /// leaves a regular file as it was; a pipe or device has the pieces that came before.
 void write_file_atomically(const std::string& path, const std::function<void(const TextSink&)>& produce);
 
+/// Makes a folder and those above it. @throws OutputError
+void make_folder(const std::string& folder);
+
 }  // namespace waymark

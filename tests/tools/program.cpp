@@ -52,6 +52,12 @@ Scratch& scratch() {
   }
   std::signal(SIGPIPE, SIG_DFL);
   if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);
+  execute(arguments);
+}
+
+}  // namespace
+
+void execute(std::vector<std::string>& arguments) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
@@ -59,15 +65,12 @@ Scratch& scratch() {
   ::_exit(127);
 }
 
-/// Reads what is there. @return false at the end of the stream
 bool read_some(int descriptor, std::string& text) {
   std::array<char, 1 << 16> buffer;
   const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());
   if (count > 0) text.append(buffer.data(), static_cast<std::size_t>(count));
   return count > 0;
 }
-
-}  // namespace
 
 RunResult run(std::vector<std::string> arguments, const RunOptions& options) {
   arguments.insert(arguments.begin(), options.program.empty() ? WAYMARK_PROGRAM : options.program);

@@ -23,6 +23,12 @@ struct RunResult {
 /// Runs the program with the arguments and waits for it. A run of over a minute is killed.
 [[nodiscard]] RunResult run(std::vector<std::string> arguments, const RunOptions& options = {});
 
+/// In a child process, after its streams were set: becomes the program, or ends with 127.
+[[noreturn]] void execute(std::vector<std::string>& arguments);
+/// Appends what is there to read. @return false at the end of the stream (a terminal whose other side has
+/// gone gives EIO)
+bool read_some(int descriptor, std::string& text);
+
 /// An empty folder for one test, removed when the test program ends. Ends with '/'.
 [[nodiscard]] std::string fresh_folder();
 

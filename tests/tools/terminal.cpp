@@ -20,19 +20,7 @@ namespace {
   for (const auto& [name, value] : terminal.environment) ::setenv(name.c_str(), value.c_str(), 1);
   ::dup2(out, STDOUT_FILENO);
   ::dup2(err, STDERR_FILENO);
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  ::execv(argv[0], argv.data());
-  ::_exit(127);
-}
-
-/// @return false at the end (a terminal whose other side has gone gives EIO)
-bool read_some(int descriptor, std::string& text) {
-  std::array<char, 1 << 16> buffer;
-  const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());
-  if (count > 0) text.append(buffer.data(), static_cast<std::size_t>(count));
-  return count > 0;
+  execute(arguments);
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -7,6 +7,7 @@
 #include <waymark/tools/drive/assemble.hpp>
 #include <waymark/tools/drive/plausibility.hpp>
 #include <waymark/tools/drive/sensors.hpp>
+#include <waymark/types_se2/stamped_pose.hpp>
 #include <waymark/types_se2/time_offset.hpp>
 
 namespace waymark {
@@ -46,9 +47,7 @@ std::optional<double> estimated_time_offset(const Graph& graph) {
 std::vector<StampedPose> stamped_poses(const Graph& graph) {
   std::vector<StampedPose> poses;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    const auto stamp = graph.stamp(v);
-    if (!stamp || graph.vertex_type(v).tag != VertexSe2::kTag) continue;
-    poses.push_back({*stamp, Eigen::Vector3d(graph.value(v)[0], graph.value(v)[1], graph.value(v)[2])});
+    if (const auto pose = stamped_pose(graph, v)) poses.push_back(*pose);
   }
   std::stable_sort(poses.begin(), poses.end(),
                    [](const auto& a, const auto& b) { return a.stamp < b.stamp; });

@@ -44,8 +44,8 @@ std::vector<OdometrySample> without_delays(const std::vector<OdometrySample>& od
   const bool same_sense = speed_delay_s * yaw_rate_delay_s > 0;
   const bool speed_less = std::abs(speed_delay_s) < std::abs(yaw_rate_delay_s);
   const double common = same_sense ? (speed_less ? speed_delay_s : yaw_rate_delay_s) : 0;
-  const TimeSeries speed = speed_series(odometry);
-  const TimeSeries yaw_rate = yaw_rate_series(odometry);
+  const TimeSeries speed = series_of(odometry, &OdometrySample::speed_mps);
+  const TimeSeries yaw_rate = series_of(odometry, &OdometrySample::yaw_rate_radps);
   std::vector<OdometrySample> result;
   for (const OdometrySample& sample : odometry) {
     const auto v = value_at(speed, moved(sample.stamp, speed_delay_s - common), kAnyGap);

@@ -247,10 +247,10 @@ SyncReport estimate_clock_offsets(const PreparedDrive& drive, const SyncOptions&
   const std::vector<const Fix*> fixes = of_one_receiver(drive.fixes);
   const double length = seconds_between(drive.odometry.front().stamp, drive.odometry.back().stamp);
   const double largest = std::min(options.largest_s, 0.25 * length);
-  TimeSeries speed = speed_series(drive.odometry);
+  TimeSeries speed = series_of(drive.odometry, &OdometrySample::speed_mps);
   for (double& value : speed.values) value = std::abs(value);  // a receiver's has no sign
   return {compare(speed, gnss_speeds(fixes), largest),
-          compare(yaw_rate_series(drive.odometry), gnss_turns(fixes), largest)};
+          compare(series_of(drive.odometry, &OdometrySample::yaw_rate_radps), gnss_turns(fixes), largest)};
 }
 
 }  // namespace waymark

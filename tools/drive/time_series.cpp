@@ -35,20 +35,11 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-TimeSeries speed_series(const std::vector<OdometrySample>& odometry) {
+TimeSeries series_of(const std::vector<OdometrySample>& odometry, double OdometrySample::*quantity) {
   TimeSeries series;
   for (const OdometrySample& sample : odometry) {
     series.stamps.push_back(sample.stamp);
-    series.values.push_back(sample.speed_mps);
-  }
-  return series;
-}
-
-TimeSeries yaw_rate_series(const std::vector<OdometrySample>& odometry) {
-  TimeSeries series;
-  for (const OdometrySample& sample : odometry) {
-    series.stamps.push_back(sample.stamp);
-    series.values.push_back(sample.yaw_rate_radps);
+    series.values.push_back(sample.*quantity);
   }
   return series;
 }

@@ -25,8 +25,9 @@ struct TimeSeries {
 /// The upper median. @param values  at least one
 [[nodiscard]] double median_of(std::vector<double> values);
 
-[[nodiscard]] TimeSeries speed_series(const std::vector<OdometrySample>& odometry);
-[[nodiscard]] TimeSeries yaw_rate_series(const std::vector<OdometrySample>& odometry);
+/// @param quantity  &OdometrySample::speed_mps or &OdometrySample::yaw_rate_radps
+[[nodiscard]] TimeSeries series_of(const std::vector<OdometrySample>& odometry,
+                                   double OdometrySample::*quantity);
 
 /// Median of the intervals between readings, s; 0 for fewer than two.
 [[nodiscard]] double median_interval_s(const TimeSeries& series);

@@ -29,15 +29,6 @@ void require_not_read(const std::string& output, const std::vector<std::string>&
   }
 }
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error && !std::filesystem::is_directory(folder, error)) {
-    error = std::make_error_code(std::errc::not_a_directory);
-  }
-  if (error) throw OutputError(folder + ": cannot make the folder: " + error.message());
-}
-
 std::string json_document(const std::string& kind, const nlohmann::ordered_json& json) {
   nlohmann::ordered_json document = {{"schema", "waymark-" + kind}, {"version", 1}};
   document.update(json);

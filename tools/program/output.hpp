@@ -20,9 +20,6 @@ void require_output_place(const std::string& path);
 /// @throws UsageError where `output` is one of the files that are read
 void require_not_read(const std::string& output, const std::vector<std::string>& read);
 
-/// Makes a folder and those above it. @throws OutputError
-void make_folder(const std::string& folder);
-
 /// What --json prints: a document of this kind, "schema": "waymark-KIND", "version": 1, then the keys of
 /// `json`. README.md of this folder lists the keys of every kind; a test compares the two.
 [[nodiscard]] std::string json_document(const std::string& kind, const nlohmann::ordered_json& json);

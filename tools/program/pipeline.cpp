@@ -19,7 +19,7 @@
 #include <waymark/tools/program/optimization.hpp>
 #include <waymark/tools/program/pipeline.hpp>
 #include <waymark/tools/program/robust.hpp>
-#include <waymark/types_se2/vertex_se2.hpp>
+#include <waymark/types_se2/stamped_pose.hpp>
 
 namespace waymark {
 namespace {
@@ -384,14 +384,13 @@ std::vector<std::string> write_trajectories(const GraphDocument& document, const
   }
   std::vector<TrajectoryPoint> points;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    const auto stamp = graph.stamp(v);
-    if (!stamp || graph.vertex_type(v).tag != VertexSe2::kTag) continue;
+    const auto pose = stamped_pose(graph, v);
+    if (!pose) continue;
     TrajectoryPoint point;
-    point.stamp = *stamp;
-    const auto value = graph.value(v);
-    point.pose = {value[0], value[1], value[2]};
+    point.stamp = pose->stamp;
+    point.pose = pose->pose;
     if (mapped) {
-      const GeodeticPoint place = projection->to_geodetic({value[0], value[1]});
+      const GeodeticPoint place = projection->to_geodetic(point.pose.head<2>());
       point.latitude_deg = place.latitude_deg;
       point.longitude_deg = place.longitude_deg;
     }

@@ -1,6 +1,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -105,8 +106,9 @@ void require_no_real_drive(const std::string& folder) {
   for (const char* name : {"drive.yaml", "odometry.csv", "truth.csv"}) {
     const std::string path = folder + "/" + name;
     if (!std::filesystem::exists(path)) continue;
-    const std::string text = read_text_file(path);
-    if (text.substr(0, text.find('\n')).find("no vehicle drove this") == std::string::npos)
+    std::string first_line;
+    std::getline(std::ifstream(path), first_line);
+    if (first_line.find("no vehicle drove this") == std::string::npos)
       throw UsageError(path + ": is there and was not made by simulate; choose another folder");
   }
 }

@@ -93,7 +93,7 @@ void add_residuals(const ReportedDrive& drive, Page& page) {
 
 }  // namespace
 
-Stamp ReportedDrive::start() const {
+Stamp start_of(const GraphDocument& document) {
   std::optional<Stamp> first;
   const auto consider = [&](Stamp stamp) { first = first ? std::min(*first, stamp) : stamp; };
   const Graph& graph = document.graph;

@@ -16,6 +16,9 @@
 
 namespace waymark {
 
+/// The first stamp of a document: of a vertex or a fix.
+[[nodiscard]] Stamp start_of(const GraphDocument& document);
+
 /// What a drive report is made of. All that is referred to must outlive it.
 struct ReportedDrive {
   std::string name;               ///< of the drive
@@ -30,12 +33,10 @@ struct ReportedDrive {
   std::vector<std::pair<std::string, std::string>> went_in{};  ///< heading, text
   std::vector<std::string> files{};                            ///< written beside the report, relative to it
 
-  /// Of the drive's first pose or fix.
-  [[nodiscard]] Stamp start() const;
-  /// Seconds since the start.
-  [[nodiscard]] double seconds(Stamp stamp) const { return seconds_between(start_, stamp); }
+  Stamp start = start_of(document);
 
-  Stamp start_ = start();
+  /// Seconds since the start.
+  [[nodiscard]] double seconds(Stamp stamp) const { return seconds_between(start, stamp); }
 };
 
 /// Summary first, then trajectory, errors, stated against actual errors, residuals, optimisation and the

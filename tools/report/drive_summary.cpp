@@ -8,7 +8,7 @@
 #include <waymark/tools/report/drive_figures.hpp>
 #include <waymark/tools/report/drive_summary.hpp>
 #include <waymark/tools/report/metric_columns.hpp>
-#include <waymark/types_se2/vertex_se2.hpp>
+#include <waymark/types_se2/stamped_pose.hpp>
 
 namespace waymark {
 namespace {
@@ -82,15 +82,15 @@ std::string describe_input(const ReportedDrive& drive) {
   const Graph& graph = drive.document.graph;
   double distance_m = 0;
   std::size_t poses = 0;
-  Stamp last = drive.start_;
+  Stamp last = drive.start;
   std::optional<Eigen::Vector2d> before;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    const auto stamp = graph.stamp(v);
-    if (!stamp || graph.vertex_type(v).tag != VertexSe2::kTag) continue;
-    const Eigen::Vector2d place(graph.value(v)[0], graph.value(v)[1]);
+    const auto pose = stamped_pose(graph, v);
+    if (!pose) continue;
+    const Eigen::Vector2d place = pose->pose.head<2>();
     if (before) distance_m += (place - *before).norm();
     before = place;
-    last = std::max(last, *stamp);
+    last = std::max(last, pose->stamp);
     ++poses;
   }
   return fmt::format("{:.0f} s, {:.0f} m along {} poses, {} fixes; a graph of {} vertices and {} edges",

@@ -1,11 +1,7 @@
 #include <algorithm>
-#include <filesystem>
-#include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include <waymark/core/error.hpp>
 #include <waymark/formats/text_file.hpp>
 #include <waymark/tools/report/figure_csv.hpp>
 #include <waymark/tools/report/figure_svg.hpp>
@@ -135,9 +131,7 @@ std::vector<std::string> write_page(const Page& page, const std::string& folder,
   std::vector<std::string> files = {folder + "/" + name + ".html"};
   write_file_atomically(files.front(), page_html(page));
   const std::string figures = folder + "/figures";
-  std::error_code failure;
-  std::filesystem::create_directories(figures, failure);
-  if (failure) throw OutputError(figures + ": cannot make the folder: " + failure.message());
+  make_folder(figures);
   for (const Figure* figure : figures_of(page)) {
     const std::string stem = fmt::format("{}/{}-{}", figures, name, figure->id);
     write_file_atomically(stem + ".svg", figure_svg(*figure));

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <waymark/tools/report/drive_figures.hpp>
-#include <waymark/types_se2/vertex_se2.hpp>
+#include <waymark/types_se2/stamped_pose.hpp>
 
 namespace waymark {
 namespace {
@@ -20,9 +20,8 @@ Series poses(const ReportedDrive& drive) {
   Series series{.name = "fused", .mark = Mark::line, .look = Look::fused};
   const Graph& graph = drive.document.graph;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    const auto stamp = graph.stamp(v);
-    if (!stamp || graph.vertex_type(v).tag != VertexSe2::kTag) continue;
-    add_point(series, graph.value(v)[0], graph.value(v)[1], drive.seconds(*stamp));
+    if (const auto pose = stamped_pose(graph, v))
+      add_point(series, pose->pose[0], pose->pose[1], drive.seconds(pose->stamp));
   }
   return series;
 }
@@ -61,6 +60,12 @@ std::vector<double> weights_of_fixes(const ReportedDrive& drive) {
   return weights;
 }
 
+/// That of a fix; one that is not in the graph has its whole.
+double weight_of(const Fix& fix, const std::vector<double>& weights, const Graph& graph) {
+  const auto v = graph.find(fix.vertex);
+  return v && fix.status == FixStatus::accepted ? weights[static_cast<std::size_t>(*v)] : 1;
+}
+
 /// What the gate and the loss made of a fix; a number that was not formed is not told.
 std::string describe(const Fix& fix, double seconds, double weight) {
   std::string text = fmt::format("fix {} at {:.1f} s: {}", fix.epoch, seconds, to_string(fix.status));
@@ -92,8 +97,7 @@ FixSeries fixes(const ReportedDrive& drive) {
   const std::vector<double> weights = weights_of_fixes(drive);
   FixSeries all;
   for (const Fix& fix : drive.document.fixes) {
-    const auto v = drive.document.graph.find(fix.vertex);
-    const double weight = v && fix.status == FixStatus::accepted ? weights[static_cast<std::size_t>(*v)] : 1;
+    const double weight = weight_of(fix, weights, drive.document.graph);
     Series& series = all.of(fix, weight);
     const double seconds = drive.seconds(fix.stamp);
     add_point(series, fix.position.x(), fix.position.y(), seconds);
@@ -106,7 +110,11 @@ FixSeries fixes(const ReportedDrive& drive) {
 }  // namespace
 
 std::size_t nearly_left_out(const ReportedDrive& drive) {
-  return fixes(drive).light.x.size();
+  const std::vector<double> weights = weights_of_fixes(drive);
+  const std::vector<Fix>& all = drive.document.fixes;
+  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](const Fix& fix) {
+    return weight_of(fix, weights, drive.document.graph) < kSmallWeight;
+  }));
 }
 
 Figure trajectory_figure(const ReportedDrive& drive) {
