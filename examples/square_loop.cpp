@@ -3,15 +3,15 @@
 #include <cstdio>
 #include <numbers>
 
-#include <waymark/core/marginals.hpp>
-#include <waymark/core/optimizer.hpp>
+#include <waymark/core/covariance/marginals.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/solvers/register.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 int main() {
   using namespace waymark;
   TypeRegistry registry;
-  register_solvers(registry);
+  solvers::register_solvers(registry);
 
   // Vertices with rough values; the first is fixed, so that the square has a place.
   constexpr double kRight = std::numbers::pi / 2;

@@ -1,8 +1,8 @@
-#include <waymark/solvers/algorithms/algorithms.hpp>
-#include <waymark/solvers/linear/backends.hpp>
+#include <waymark/solvers/algorithms/detail/algorithms.hpp>
+#include <waymark/solvers/linear/detail/backends.hpp>
 #include <waymark/solvers/register.hpp>
 
-namespace waymark {
+namespace waymark::solvers {
 
 void register_solvers(TypeRegistry& registry) {
   registry.add_linear_solver(block_cholesky_solver());
@@ -18,4 +18,4 @@ void register_solvers(TypeRegistry& registry) {
   registry.add_algorithm(dogleg());
 }
 
-}  // namespace waymark
+}  // namespace waymark::solvers

@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include <waymark/core/typed_batch.hpp>
+#include <waymark/core/graph/detail/typed_batch.hpp>
 #include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 

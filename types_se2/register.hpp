@@ -1,7 +1,7 @@
 /// Registration of the SE(2) vocabulary.
 #pragma once
 
-#include <waymark/core/registry.hpp>
+#include <waymark/core/registry/registry.hpp>
 
 namespace waymark {
 

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include <waymark/types_se2/sin_cos.hpp>
+#include <waymark/types_se2/detail/sin_cos.hpp>
 
 namespace waymark {
 

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include <waymark/core/graph.hpp>
-#include <waymark/core/sample.hpp>
+#include <waymark/core/drive/sample.hpp>
+#include <waymark/core/graph/graph.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark {

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include <waymark/core/scalar_state.hpp>
+#include <waymark/core/graph/scalar_state.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace waymark {

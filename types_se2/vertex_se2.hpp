@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include <waymark/core/vertex.hpp>
+#include <waymark/core/graph/vertex.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark {

@@ -1,13 +1,13 @@
 // A vertex type: how far a receiver's clock is ahead, as a length. A vertex type is a struct of static
 // functions. It stands in a header because any number of plugins may have edges on it: a type is known by its
 // tag, so that two plugins that include this header mean one and the same vertex. Written out here; a state of
-// one plain number may also derive from ScalarState (core/scalar_state.hpp) and give tag and names alone.
+// one plain number may also derive from ScalarState (core/graph/scalar_state.hpp) and give tag and names alone.
 #pragma once
 
 #include <array>
 #include <string_view>
 
-#include <waymark/core/vertex.hpp>
+#include <waymark/core/graph/vertex.hpp>
 
 /// Clock error times the speed of light, m: what it adds to every pseudorange.
 struct VertexClockBias {

@@ -2,8 +2,8 @@
 // one writes H out in full: slow, and as plain as a reference can be.
 #include <Eigen/Cholesky>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/plugin.hpp>
 
 using namespace waymark;
 

@@ -5,8 +5,8 @@
 #include <charconv>
 #include <cmath>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/plugin.hpp>
 
 using namespace waymark;
 

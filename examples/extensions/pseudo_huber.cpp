@@ -2,7 +2,7 @@
 // Huber's loss without the edge at k: rho = 2 k^2 (sqrt(1 + s/k^2) - 1).
 #include <cmath>
 
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/registry/plugin.hpp>
 
 using namespace waymark;
 

@@ -1,6 +1,6 @@
 // Edge types on one, two and three vertices: positioning by radio beacons whose clock the receiver does not
 // share. Every error but the last is differentiated by dual numbers.
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 #include "clock_bias.hpp"

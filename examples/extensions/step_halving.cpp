@@ -1,7 +1,7 @@
 // An algorithm: it proposes steps, and the optimiser's loop tries, judges and applies them. This one is
 // Gauss-Newton that halves a step for as long as it does not lower chi2.
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
 
 using namespace waymark;
 

@@ -1,9 +1,9 @@
 // A GNSS modeling: how fixes become vertices and edges. This one ties each fix to its pose by an edge on that
 // pose alone. It has the minimum of g1, whose edges begin at a fixed origin.
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/g2o_edges.hpp>
-#include <waymark/types_se2/gnss_edges.hpp>
+#include <waymark/types_se2/plugin_kit/gnss_edges.hpp>
 
 using namespace waymark;
 

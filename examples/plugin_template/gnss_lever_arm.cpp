@@ -1,6 +1,6 @@
 // The position of a GNSS antenna that sits on the vehicle at a lever arm. One function says what the error
 // is; its derivatives are taken by dual numbers.
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 using namespace waymark;

@@ -1,6 +1,6 @@
 #include <waymark/formats/logs/channels.hpp>
 
-namespace waymark {
+namespace waymark::formats {
 
 const std::vector<SensorColumn>& odometry_channels() {
   static const std::vector<SensorColumn> channels{
@@ -38,4 +38,4 @@ const std::vector<SensorColumn>& velocity_channels() {
   return channels;
 }
 
-}  // namespace waymark
+}  // namespace waymark::formats

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include <waymark/core/sample.hpp>
+#include <waymark/core/drive/sample.hpp>
 
-namespace waymark {
+namespace waymark::formats {
 
 /// All channels, none of them required; their names are the quantities under `columns` of an odometry part:
 /// `speed` (m/s), `yaw_rate` (rad/s, counter-clockwise), `wheel_speed_front_left` .. `_rear_right` (m/s),
@@ -20,4 +20,4 @@ namespace waymark {
 /// quantities of the gnss stream, none required.
 [[nodiscard]] const std::vector<SensorColumn>& velocity_channels();
 
-}  // namespace waymark
+}  // namespace waymark::formats

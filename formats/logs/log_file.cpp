@@ -15,9 +15,9 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 
-namespace waymark {
+namespace waymark::formats {
 namespace {
 
 constexpr std::size_t kPiece = 1U << 20U;
@@ -203,4 +203,4 @@ Recognised recognise_log(const std::string& path, std::span<const LogReaderType>
   return best;
 }
 
-}  // namespace waymark
+}  // namespace waymark::formats

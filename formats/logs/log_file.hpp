@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include <waymark/core/log_reader.hpp>
+#include <waymark/core/drive/log_reader.hpp>
 
-namespace waymark {
+namespace waymark::formats {
 
 /// Called while a file is read. @param done, size  bytes of the file as it lies on the disk; size 0: not
 /// known
@@ -41,4 +41,4 @@ struct Recognised {
 /// foreign format is named with the program that converts it), and where two readers are equally sure
 [[nodiscard]] Recognised recognise_log(const std::string& path, std::span<const LogReaderType> readers);
 
-}  // namespace waymark
+}  // namespace waymark::formats

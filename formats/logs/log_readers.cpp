@@ -2,17 +2,17 @@
 
 #include <vector>
 
-#include <waymark/formats/logs/candump.hpp>
-#include <waymark/formats/logs/csv_log.hpp>
-#include <waymark/formats/logs/gpsd_json.hpp>
-#include <waymark/formats/logs/gpx.hpp>
-#include <waymark/formats/logs/kitti_oxts.hpp>
-#include <waymark/formats/logs/nmea.hpp>
-#include <waymark/formats/logs/novatel.hpp>
-#include <waymark/formats/logs/rtklib_pos.hpp>
-#include <waymark/formats/logs/ubx.hpp>
+#include <waymark/formats/logs/detail/can/candump.hpp>
+#include <waymark/formats/logs/detail/csv/csv_log.hpp>
+#include <waymark/formats/logs/detail/gpsd/gpsd_json.hpp>
+#include <waymark/formats/logs/detail/gpx/gpx.hpp>
+#include <waymark/formats/logs/detail/kitti/kitti_oxts.hpp>
+#include <waymark/formats/logs/detail/nmea/nmea.hpp>
+#include <waymark/formats/logs/detail/novatel/novatel.hpp>
+#include <waymark/formats/logs/detail/rtklib/rtklib_pos.hpp>
+#include <waymark/formats/logs/detail/ubx/ubx.hpp>
 
-namespace waymark {
+namespace waymark::formats {
 
 std::span<const LogReaderType> builtin_log_readers() {
   static const CsvLogReader csv;
@@ -49,4 +49,4 @@ const LogReader* builtin_log_reader(std::string_view name) {
   return nullptr;
 }
 
-}  // namespace waymark
+}  // namespace waymark::formats

@@ -4,10 +4,10 @@
 #include <array>
 #include <string_view>
 
-#include <waymark/core/edge_batch.hpp>
+#include <waymark/core/graph/edge_batch.hpp>
 #include <waymark/types_se2/time_offset.hpp>
 
-namespace waymark {
+namespace waymark::plugins::gnss_correlated {
 
 /// By how much all fixes about a moment are off, for minutes: atmosphere, orbits. Metres, frame axes.
 struct VertexGnssBias : PlaneState {
@@ -87,4 +87,4 @@ struct EdgeGnssPositionBiased {
   Eigen::Vector3d scale = {1, 0, 1};
 };
 
-}  // namespace waymark
+}  // namespace waymark::plugins::gnss_correlated

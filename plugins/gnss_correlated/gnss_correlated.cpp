@@ -7,12 +7,12 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
-#include <waymark/types_se2/gnss_edges.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/gnss_edges.hpp>
 
-namespace waymark {
+namespace waymark::plugins::gnss_correlated {
 namespace {
 
 constexpr std::string_view kOwner = "correlated";
@@ -210,6 +210,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::gnss_correlated
 
-WAYMARK_PLUGIN(gnss_correlated, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(gnss_correlated, "0.1.0", waymark::plugins::gnss_correlated::register_types);

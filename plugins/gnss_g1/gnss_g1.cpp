@@ -1,10 +1,10 @@
 #include <array>
 
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
-#include <waymark/types_se2/gnss_edges.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/gnss_edges.hpp>
 
-namespace waymark {
+namespace waymark::plugins::gnss_g1 {
 namespace {
 
 /// The paper's G1: a fix is a measurement, an edge from the fixed origin to the pose.
@@ -50,6 +50,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::gnss_g1
 
-WAYMARK_PLUGIN(gnss_g1, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(gnss_g1, "0.1.0", waymark::plugins::gnss_g1::register_types);

@@ -1,10 +1,10 @@
 #include <array>
 
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
-#include <waymark/types_se2/gnss_edges.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/gnss_edges.hpp>
 
-namespace waymark {
+namespace waymark::plugins::gnss_g2 {
 namespace {
 
 /// The paper's G2: a fix is a free node, measured from the origin as in G1 and tied to the pose by a stiff
@@ -81,6 +81,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::gnss_g2
 
-WAYMARK_PLUGIN(gnss_g2, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(gnss_g2, "0.1.0", waymark::plugins::gnss_g2::register_types);

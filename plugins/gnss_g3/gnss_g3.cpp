@@ -1,10 +1,10 @@
 #include <array>
 
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
-#include <waymark/types_se2/gnss_edges.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/gnss_edges.hpp>
 
-namespace waymark {
+namespace waymark::plugins::gnss_g3 {
 namespace {
 
 /// The paper's G3: a fix is a fixed node, tied to the pose by an identity edge that carries the fix's
@@ -53,6 +53,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::gnss_g3
 
-WAYMARK_PLUGIN(gnss_g3, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(gnss_g3, "0.1.0", waymark::plugins::gnss_g3::register_types);

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <numbers>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
-#include <waymark/types_se2/sensor_readings.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
 
-namespace waymark {
+namespace waymark::plugins::gnss_velocity {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -109,6 +109,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::gnss_velocity
 
-WAYMARK_PLUGIN(gnss_velocity, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(gnss_velocity, "0.1.0", waymark::plugins::gnss_velocity::register_types);

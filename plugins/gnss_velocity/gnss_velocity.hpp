@@ -7,7 +7,7 @@
 
 #include <waymark/types_se2/edge_se2.hpp>
 
-namespace waymark {
+namespace waymark::plugins::gnss_velocity {
 
 /// Course of the antenna against the heading of the body. With the odometry's speed v and yaw rate w the
 /// antenna at a (body frame) moves at (v - w a_y, w a_x) in the body frame, so
@@ -71,4 +71,4 @@ struct EdgeGnssSpeed {
   Eigen::Vector2d antenna = Eigen::Vector2d::Zero();  ///< in the body frame: x forward, y left
 };
 
-}  // namespace waymark
+}  // namespace waymark::plugins::gnss_velocity

@@ -3,11 +3,11 @@
 #include <array>
 #include <numbers>
 
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
-#include <waymark/types_se2/sensor_readings.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
 
-namespace waymark {
+namespace waymark::plugins::heading {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -83,6 +83,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::heading
 
-WAYMARK_PLUGIN(heading, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(heading, "0.1.0", waymark::plugins::heading::register_types);

@@ -5,10 +5,10 @@
 #include <array>
 #include <string_view>
 
-#include <waymark/core/scalar_state.hpp>
+#include <waymark/core/graph/scalar_state.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
-namespace waymark {
+namespace waymark::plugins::heading {
 
 /// How much more than the heading a sensor reads, rad, counter-clockwise: reading = heading + offset. The
 /// deviation of a magnetometer (declination and the vehicle's iron), or how a baseline was mounted.
@@ -65,4 +65,4 @@ struct EdgeHeadingOffset {
   double measured = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::plugins::heading

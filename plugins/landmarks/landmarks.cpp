@@ -4,11 +4,11 @@
 #include <map>
 #include <numbers>
 
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
-#include <waymark/types_se2/sensor_readings.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
 
-namespace waymark {
+namespace waymark::plugins::landmarks {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -174,6 +174,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::landmarks
 
-WAYMARK_PLUGIN(landmarks, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(landmarks, "0.1.0", waymark::plugins::landmarks::register_types);

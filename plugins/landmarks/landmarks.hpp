@@ -7,7 +7,7 @@
 
 #include <waymark/types_se2/edge_se2.hpp>
 
-namespace waymark {
+namespace waymark::plugins::landmarks {
 
 /// A landmark seen at a distance and in a direction from a sensor at a fixed place in the body frame:
 ///   d = R^T (p_landmark - p) - sensor,  e = (|d| - range, wrap(atan2(d.y, d.x) - bearing)).
@@ -40,4 +40,4 @@ struct EdgeSe2XyRangeBearing {
   Eigen::Vector2d sensor = Eigen::Vector2d::Zero();    ///< in the body frame: x forward, y left
 };
 
-}  // namespace waymark
+}  // namespace waymark::plugins::landmarks

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
-#include <waymark/types_se2/sensor_readings.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
 
-namespace waymark {
+namespace waymark::plugins::lane {
 namespace {
 
 constexpr std::string_view kOwner = "lane";
@@ -72,6 +72,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::lane
 
-WAYMARK_PLUGIN(lane, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(lane, "0.1.0", waymark::plugins::lane::register_types);

@@ -6,7 +6,7 @@
 
 #include <waymark/types_se2/edge_se2.hpp>
 
-namespace waymark {
+namespace waymark::plugins::lane {
 
 /// How far a point of the body lies to the left of a straight line through `point` in the direction
 /// `heading`, both in the frame: with n = (-sin heading, cos heading),
@@ -37,4 +37,4 @@ struct EdgeLateralOffset {
   Eigen::Vector2d lever = Eigen::Vector2d::Zero();  ///< the body's point in the body frame
 };
 
-}  // namespace waymark
+}  // namespace waymark::plugins::lane

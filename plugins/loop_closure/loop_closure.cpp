@@ -1,12 +1,12 @@
 #include <cmath>
 #include <numbers>
 
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
-#include <waymark/types_se2/sensor_readings.hpp>
+#include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
 
-namespace waymark {
+namespace waymark::plugins::loop_closure {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -98,6 +98,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::loop_closure
 
-WAYMARK_PLUGIN(loop_closure, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(loop_closure, "0.1.0", waymark::plugins::loop_closure::register_types);

@@ -5,10 +5,10 @@
 #include <array>
 #include <string_view>
 
-#include <waymark/core/scalar_state.hpp>
+#include <waymark/core/graph/scalar_state.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
-namespace waymark {
+namespace waymark::plugins::odometry {
 
 /// What the gyro reads while nothing turns: true yaw rate = reading - bias. rad/s, counter-clockwise.
 struct VertexGyroBias : ScalarState {
@@ -102,4 +102,4 @@ struct EdgeSpeedScaleWalk : EdgeGyroBiasWalk {
   }
 };
 
-}  // namespace waymark
+}  // namespace waymark::plugins::odometry

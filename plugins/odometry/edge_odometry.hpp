@@ -7,7 +7,7 @@
 
 #include <waymark/types_se2/edge_se2.hpp>
 
-namespace waymark {
+namespace waymark::plugins::odometry {
 
 /// Constant twist over dt: Z = exp([speed dt, 0, yaw_rate dt]), e = log(Z^-1 (X_from^-1 X_to)).
 /// Units: m/s (grid metres), rad/s, s.
@@ -70,4 +70,4 @@ struct EdgeSe2Standstill {
   double dt = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::plugins::odometry

@@ -5,7 +5,7 @@
 #include <waymark/plugins/odometry/noise.hpp>
 #include <waymark/types_se2/se2.hpp>
 
-namespace waymark {
+namespace waymark::plugins::odometry {
 
 Eigen::Matrix3d process_covariance(const Interval& interval, const ProcessNoise& noise) {
   const double speed = std::abs(interval.speed_mps);
@@ -42,4 +42,4 @@ Eigen::Matrix3d paper_covariance(const Interval& interval) {
   return Eigen::Vector3d(position, position, heading).asDiagonal();
 }
 
-}  // namespace waymark
+}  // namespace waymark::plugins::odometry

@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include <waymark/core/sample.hpp>
+#include <waymark/core/drive/sample.hpp>
 
-namespace waymark {
+namespace waymark::plugins::odometry {
 
 /// Variances that grow with the way and with time. The defaults put the position sigma after 1 km at 10 m/s
 /// at 1.1 % (the paper's drift), nearly all of it through the heading: q_heading L^3 / 3 (derivation in
@@ -39,4 +39,4 @@ struct StandstillNoise {
 /// 1e-5 m^2 and 1e-6 rad^2. Depends on the log's rate; only for reproducing the paper.
 [[nodiscard]] Eigen::Matrix3d paper_covariance(const Interval& interval);
 
-}  // namespace waymark
+}  // namespace waymark::plugins::odometry

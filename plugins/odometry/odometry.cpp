@@ -3,15 +3,15 @@
 
 #include <Eigen/LU>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/options.hpp>
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/registry/plugin.hpp>
 #include <waymark/plugins/odometry/calibration.hpp>
 #include <waymark/plugins/odometry/edge_odometry.hpp>
 #include <waymark/plugins/odometry/noise.hpp>
 #include <waymark/plugins/odometry/states.hpp>
 
-namespace waymark {
+namespace waymark::plugins::odometry {
 namespace {
 
 /// One edge per interval: EDGE_SE2_ODOMETRY while driving, EDGE_SE2_STANDSTILL while standing. Where a state
@@ -174,6 +174,6 @@ void register_types(TypeRegistry& registry) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::plugins::odometry
 
-WAYMARK_PLUGIN(odometry, "0.1.0", waymark::register_types);
+WAYMARK_PLUGIN(odometry, "0.1.0", waymark::plugins::odometry::register_types);

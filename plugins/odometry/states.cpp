@@ -1,6 +1,6 @@
 #include <waymark/plugins/odometry/states.hpp>
 
-namespace waymark {
+namespace waymark::plugins::odometry {
 
 std::vector<OptionInfo> state_options(const std::string& name, const std::string& unit,
                                       const std::string& prior_sigma, const std::string& walk_sigma,
@@ -11,4 +11,4 @@ std::vector<OptionInfo> state_options(const std::string& name, const std::string
           {name + "_walk", walk_sigma, rate, "sigma of its change after one second; in [1e-12, 1]"}};
 }
 
-}  // namespace waymark
+}  // namespace waymark::plugins::odometry

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include <waymark/core/modeling.hpp>
-#include <waymark/core/scalar_state.hpp>
+#include <waymark/core/drive/modeling.hpp>
+#include <waymark/core/graph/scalar_state.hpp>
 
-namespace waymark {
+namespace waymark::plugins::odometry {
 
 /// How a state is estimated.
 enum class StateModel {
@@ -71,4 +71,4 @@ class StateAlongDrive {
                                                     const std::string& prior_sigma,
                                                     const std::string& walk_sigma, const std::string& what);
 
-}  // namespace waymark
+}  // namespace waymark::plugins::odometry

@@ -4,11 +4,11 @@
 #include <string_view>
 #include <vector>
 
-#include <waymark/core/options.hpp>
-#include <waymark/solvers/algorithms/algorithms.hpp>
-#include <waymark/solvers/algorithms/newton_step.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/solvers/algorithms/detail/algorithms.hpp>
+#include <waymark/solvers/algorithms/detail/newton_step.hpp>
 
-namespace waymark {
+namespace waymark::solvers {
 namespace {
 
 /// What its options say; the defaults are ours, the other values those of g2o's dogleg.
@@ -176,4 +176,4 @@ AlgorithmType dogleg() {
           }};
 }
 
-}  // namespace waymark
+}  // namespace waymark::solvers

@@ -1,8 +1,8 @@
-#include <waymark/core/options.hpp>
-#include <waymark/solvers/algorithms/algorithms.hpp>
-#include <waymark/solvers/algorithms/newton_step.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/solvers/algorithms/detail/algorithms.hpp>
+#include <waymark/solvers/algorithms/detail/newton_step.hpp>
 
-namespace waymark {
+namespace waymark::solvers {
 namespace {
 
 /// The plain method: full steps, taken even uphill (it often comes back), never damped.
@@ -39,4 +39,4 @@ AlgorithmType gauss_newton() {
           }};
 }
 
-}  // namespace waymark
+}  // namespace waymark::solvers

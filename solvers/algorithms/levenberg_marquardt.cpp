@@ -3,11 +3,11 @@
 #include <cmath>
 #include <vector>
 
-#include <waymark/core/options.hpp>
-#include <waymark/solvers/algorithms/algorithms.hpp>
-#include <waymark/solvers/algorithms/newton_step.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/solvers/algorithms/detail/algorithms.hpp>
+#include <waymark/solvers/algorithms/detail/newton_step.hpp>
 
-namespace waymark {
+namespace waymark::solvers {
 namespace {
 
 struct LevenbergMarquardtOptions {
@@ -130,4 +130,4 @@ AlgorithmType levenberg_marquardt() {
           }};
 }
 
-}  // namespace waymark
+}  // namespace waymark::solvers

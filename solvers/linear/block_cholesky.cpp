@@ -1,11 +1,11 @@
-#include <waymark/core/block_cholesky.hpp>
-#include <waymark/solvers/linear/backends.hpp>
+#include <waymark/core/linear/block_cholesky.hpp>
+#include <waymark/solvers/linear/detail/backends.hpp>
 
-namespace waymark {
+namespace waymark::solvers {
 
 LinearSolverType block_cholesky_solver() {
   return {"block_cholesky", "Waymark's own: chains link by link, dense fronts elsewhere; parallel",
           "BSD-3-Clause", [] { return std::make_unique<BlockCholesky>(); }};
 }
 
-}  // namespace waymark
+}  // namespace waymark::solvers

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <new>
 
-#include <waymark/solvers/linear/backends.hpp>
-#include <waymark/solvers/linear/finite.hpp>
+#include <waymark/solvers/linear/detail/backends.hpp>
+#include <waymark/solvers/linear/detail/finite.hpp>
 
-namespace waymark {
+namespace waymark::solvers {
 namespace {
 
 /// Flops per number of the factor above which the automatic choice is supernodal. CHOLMOD's own 40 presumes a
@@ -123,4 +123,4 @@ std::vector<LinearSolverType> cholmod_solvers() {
           solver("cholmod_supernodal", "CHOLMOD, supernodal (dense kernels of BLAS)", CHOLMOD_SUPERNODAL)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::solvers

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include <waymark/solvers/linear/backends.hpp>
-#include <waymark/solvers/linear/finite.hpp>
+#include <waymark/solvers/linear/detail/backends.hpp>
+#include <waymark/solvers/linear/detail/finite.hpp>
 
-namespace waymark {
+namespace waymark::solvers {
 namespace {
 
 struct FreeSymbolic {
@@ -69,4 +69,4 @@ LinearSolverType csparse_solver() {
   return {"csparse", "CSparse's up-looking LL^T", "LGPL-2.1", [] { return std::make_unique<Csparse>(); }};
 }
 
-}  // namespace waymark
+}  // namespace waymark::solvers

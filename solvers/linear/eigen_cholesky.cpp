@@ -1,10 +1,10 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
-#include <waymark/solvers/linear/backends.hpp>
-#include <waymark/solvers/linear/finite.hpp>
+#include <waymark/solvers/linear/detail/backends.hpp>
+#include <waymark/solvers/linear/detail/finite.hpp>
 
-namespace waymark {
+namespace waymark::solvers {
 namespace {
 
 /// Eigen's simplicial LL^T. EIGEN_MPL2_ONLY compatible, so a build without SuiteSparse is permissive.
@@ -59,4 +59,4 @@ LinearSolverType eigen_solver() {
   return {"eigen", "Eigen's simplicial LL^T", "MPL-2.0", [] { return std::make_unique<EigenCholesky>(); }};
 }
 
-}  // namespace waymark
+}  // namespace waymark::solvers

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/core/optimizer.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
 
 #include "allocation/counting_allocator.hpp"
 #include "allocation/problems.hpp"

@@ -1,8 +1,8 @@
 /// What the allocation tests optimise.
 #pragma once
 
-#include <waymark/core/graph.hpp>
-#include <waymark/core/registry.hpp>
+#include <waymark/core/graph/graph.hpp>
+#include <waymark/core/registry/registry.hpp>
 
 namespace waymark_test {
 

@@ -9,15 +9,17 @@
 
 #include <valgrind/callgrind.h>
 
-#include <waymark/core/gauge.hpp>
-#include <waymark/core/normal_equations.hpp>
-#include <waymark/core/plugin_loader.hpp>
-#include <waymark/formats/graph_document.hpp>
+#include <waymark/core/registry/plugin_loader.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/core/system/normal_equations.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
+using namespace waymark::solvers;
 
 namespace {
 
@@ -65,8 +67,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: waymark_instructions [--modules FOLDER] drive|grid|FILE SOLVER...\n";
     return 2;
   }
-  const TypeRegistry registry =
-      with_modules ? registry_with_modules(argv[2]) : waymark_test::full_registry();
+  const TypeRegistry registry = with_modules ? registry_with_modules(argv[2]) : waymark_test::full_registry();
   GraphDocument document;
   document.graph = make_problem(argv[first], registry);
   const Graph& graph = document.graph;

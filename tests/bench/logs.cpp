@@ -11,11 +11,12 @@
 
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
-#include <waymark/formats/text_file.hpp>
+#include <waymark/formats/text/text_file.hpp>
 
 #include "support/paths.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 
 namespace waymark_bench {
 namespace {

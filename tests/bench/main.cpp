@@ -11,11 +11,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <waymark/core/gauge.hpp>
-#include <waymark/core/incremental.hpp>
-#include <waymark/core/marginals.hpp>
-#include <waymark/core/optimizer.hpp>
-#include <waymark/formats/graph_document.hpp>
+#include <waymark/core/covariance/marginals.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/core/window/incremental.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
 
 #include "bench/logs.hpp"
 #include "support/problems.hpp"
@@ -23,6 +23,7 @@
 #include "support/replay.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include <waymark/core/gauge.hpp>
-#include <waymark/core/optimizer.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/system/gauge.hpp>
 
 #include "support/dense.hpp"
 #include "support/problems.hpp"

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/core/multi_start.hpp>
+#include <waymark/core/optimize/multi_start.hpp>
 
 #include "support/key_workload.hpp"
 #include "support/registry.hpp"

@@ -6,11 +6,12 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/formats/graph_document.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
 
 #include "support/registry.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 
 namespace {
 

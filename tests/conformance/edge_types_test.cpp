@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/core/edge_type_check.hpp>
+#include <waymark/core/graph/edge_type_check.hpp>
 
 #include "support/dense.hpp"
 #include "support/registry.hpp"

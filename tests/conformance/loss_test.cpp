@@ -6,9 +6,9 @@
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
-#include <waymark/core/edge_selection.hpp>
-#include <waymark/core/normal_equations.hpp>
-#include <waymark/core/robust_information.hpp>
+#include <waymark/core/graph/detail/robust_information.hpp>
+#include <waymark/core/robust/edge_selection.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"

@@ -9,16 +9,17 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include <waymark/core/gauge.hpp>
-#include <waymark/core/multi_start.hpp>
-#include <waymark/formats/graph_document.hpp>
-#include <waymark/formats/graph_format.hpp>
+#include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
+#include <waymark/formats/graph/graph_format.hpp>
 
 #include "support/dense.hpp"
 #include "support/paths.hpp"
 #include "support/registry.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 using namespace waymark_test;
 
 namespace {

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tools/program.hpp"
+#include "program/support/program.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "program/support/program.hpp"
 #include "support/markdown.hpp"
-#include "tools/program.hpp"
 
 namespace {
 

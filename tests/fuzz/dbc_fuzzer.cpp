@@ -1,8 +1,8 @@
 // A DBC file of any bytes, and a candump log of any bytes that is read by it: the two parted by the first
 // zero.
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/dbc.hpp>
+#include <waymark/formats/logs/detail/can/dbc.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
 #include "fuzz_input.hpp"
@@ -14,12 +14,12 @@ namespace {
 
 /// Every signal out of one frame: none may be undefined.
 void read_signals(const std::string& text) {
-  const waymark::Dbc dbc = waymark::Dbc::parse(text, "fuzz.dbc");
-  waymark::CanData frame;
-  frame.size = waymark::kMostFrameBytes;
+  const waymark::formats::Dbc dbc = waymark::Dbc::parse(text, "fuzz.dbc");
+  waymark::formats::CanData frame;
+  frame.size = waymark::formats::kMostFrameBytes;
   for (std::size_t i = 0; i < frame.size; ++i) frame.bytes[i] = static_cast<std::uint8_t>(0x9E * i + 7);
-  for (const waymark::DbcMessage& message : dbc.messages) {
-    for (const waymark::DbcSignal& signal : message.signals) {
+  for (const waymark::formats::DbcMessage& message : dbc.messages) {
+    for (const waymark::formats::DbcSignal& signal : message.signals) {
       if (!signal.trouble.empty() || signal.bytes_needed() > frame.size) continue;
       if (!message.holds(signal, frame)) continue;
       (void)signal.value(frame);
@@ -44,8 +44,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   } catch (const waymark::InputError&) {
     // The reader meets the same one below.
   }
-  const waymark::LogReader& reader = *waymark::builtin_log_reader("candump");
-  const Outcome whole = read_log(reader, log, input.request, 0);
+  const waymark::LogReader& reader = *waymark::formats::builtin_log_reader("candump");
+  const waymark::reproduction::Outcome whole = read_log(reader, log, input.request, 0);
   if (!whole.refused) check_data(whole.data, input.request);
   check_same(whole, read_log(reader, log, input.request, input.piece));
   return 0;

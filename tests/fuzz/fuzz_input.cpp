@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/novatel_message.hpp>
+#include <waymark/formats/logs/detail/novatel/novatel_message.hpp>
 
 namespace waymark_fuzz {
 namespace {
@@ -62,7 +62,7 @@ std::string repair_lines(const std::string& log, bool novatel) {
       const std::string_view covered = line.substr(1, star - 1);
       result += line.substr(0, star + 1);
       if (novatel) {
-        result += fmt::format("{:08x}", waymark::novatel_checksum(covered));
+        result += fmt::format("{:08x}", waymark::formats::novatel_checksum(covered));
       } else {
         unsigned sum = 0;
         for (const char c : covered) sum ^= static_cast<unsigned char>(c);
@@ -132,12 +132,12 @@ void set_readings(LogRequest& request, std::string_view reader, unsigned variant
     if (reader == "csv") {
       request.readings = {{"range", "m", "", true, ""}, {"bearing", "rad", "ccw", false, ""}};
     } else {
-      request.readings = waymark::odometry_channels();
+      request.readings = waymark::formats::odometry_channels();
     }
   } else if (request.stream == StreamKind::odometry && (reader != "csv" || variant == 7)) {
-    if (reader != "kitti_oxts") request.readings = waymark::odometry_channels();
+    if (reader != "kitti_oxts") request.readings = waymark::formats::odometry_channels();
   } else if (request.stream == StreamKind::gnss && variant == 7 && (reader == "csv" || reader == "candump")) {
-    request.readings = waymark::velocity_channels();
+    request.readings = waymark::formats::velocity_channels();
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
 namespace waymark_fuzz {
@@ -62,9 +62,9 @@ void broken(const std::string& what) {
   std::abort();
 }
 
-Outcome read_log(const waymark::LogReader& reader, std::string_view log, const waymark::LogRequest& request,
-                 std::size_t piece) {
-  Outcome outcome;
+waymark::reproduction::Outcome read_log(const waymark::LogReader& reader, std::string_view log,
+                                        const waymark::LogRequest& request, std::size_t piece) {
+  waymark::reproduction::Outcome outcome;
   try {
     const auto decoder = reader.open("fuzz.log", request);
     if (piece == 0) piece = log.size() + 1;
@@ -107,7 +107,7 @@ void check_data(const LogData& data, const waymark::LogRequest& request) {
   }
 }
 
-void check_same(const Outcome& a, const Outcome& b) {
+void check_same(const waymark::reproduction::Outcome& a, const waymark::reproduction::Outcome& b) {
   hold(a.refused == b.refused, "pieces: refused");
   if (a.refused) return check_text(*a.refused);
   const LogData& x = a.data;
@@ -132,7 +132,7 @@ void check_same(const Outcome& a, const Outcome& b) {
 }
 
 void check_recognition(std::string_view head) {
-  for (const waymark::LogReaderType& entry : waymark::builtin_log_readers()) {
+  for (const waymark::LogReaderType& entry : waymark::formats::builtin_log_readers()) {
     const waymark::Recognition recognition = entry.reader->recognise(head);
     hold(recognition.certainty >= 0 && recognition.certainty <= 1, "certainty");
     hold(recognition.certainty == 0 || !recognition.evidence.empty(), "evidence");

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <waymark/core/log_reader.hpp>
+#include <waymark/core/drive/log_reader.hpp>
 
 namespace waymark_fuzz {
 

@@ -7,7 +7,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
@@ -66,7 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   try {
     std::string read;
     const std::string trouble =
-        waymark::read_in_pieces(file.path(), [&](std::string_view piece) { read += piece; });
+        waymark::formats::read_in_pieces(file.path(), [&](std::string_view piece) { read += piece; });
     if (compress && !cut && !flip && (read != plain || !trouble.empty()))
       broken("a sound file is not read as it is");
     // A single byte is not known for the beginning of a compressed file.
@@ -76,10 +76,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     broken(error.what());
   }
   try {
-    const waymark::Recognised found = waymark::recognise_log(file.path(), waymark::builtin_log_readers());
+    const waymark::formats::Recognised found =
+        waymark::formats::recognise_log(file.path(), waymark::formats::builtin_log_readers());
     waymark::LogRequest request;
     request.default_sigma_m = 5;
-    check_data(waymark::read_log_file(*found.reader.reader, file.path(), request), request);
+    check_data(waymark::formats::read_log_file(*found.reader.reader, file.path(), request), request);
   } catch (const waymark::InputError&) {
     // What cannot be read is refused.
   }

@@ -3,14 +3,15 @@
 #include <numbers>
 #include <string>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/suggest.hpp>
-#include <waymark/formats/logs/csv_log.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/logs/detail/csv/csv_log.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
 #include "logs/log_pieces.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 using Catch::Matchers::Message;
 using std::numbers::pi;
 

@@ -2,9 +2,10 @@
 
 #include <cmath>
 
-#include <waymark/formats/logs/geocentric.hpp>
+#include <waymark/formats/logs/detail/common/geocentric.hpp>
 
 using namespace waymark;
+using namespace waymark::formats;
 
 TEST_CASE("ECEF to geodetic as in EPSG guidance note 7-2, method 9602") {
   const Eigen::Vector3d ecef(3771793.968, 140253.342, 5124304.349);

@@ -5,15 +5,16 @@
 #include <numbers>
 #include <string>
 
-#include <waymark/core/error.hpp>
-#include <waymark/formats/iso8601.hpp>
-#include <waymark/formats/logs/gpx.hpp>
-#include <waymark/formats/text_file.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/gpx/gpx.hpp>
+#include <waymark/formats/text/iso8601.hpp>
+#include <waymark/formats/text/text_file.hpp>
 
 #include "logs/log_pieces.hpp"
 #include "support/paths.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 using Catch::Matchers::Message;
 
 namespace {

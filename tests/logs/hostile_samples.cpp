@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/novatel/novatel_message.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
-#include <waymark/formats/logs/novatel_message.hpp>
-#include <waymark/formats/text_file.hpp>
+#include <waymark/formats/text/text_file.hpp>
 
+#include "logs/ubx/ubx_bytes.hpp"
 #include "support/paths.hpp"
-#include "ubx_bytes.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 
 namespace waymark_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <waymark/core/log_reader.hpp>
+#include <waymark/core/drive/log_reader.hpp>
 
 namespace waymark_test {
 

@@ -9,14 +9,15 @@
 
 #include <sys/resource.h>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
 #include "hostile_samples.hpp"
 #include "log_pieces.hpp"
-#include "ubx_bytes.hpp"
+#include "logs/ubx/ubx_bytes.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 using waymark_test::check_same;
 using waymark_test::hostile_samples;
 using waymark_test::HostileSample;

@@ -2,9 +2,10 @@
 
 #include <string>
 
-#include <waymark/formats/logs/kind_tally.hpp>
+#include <waymark/formats/logs/detail/common/kind_tally.hpp>
 
 using namespace waymark;
+using namespace waymark::formats;
 
 TEST_CASE("kinds of messages: names are told apart by their first 24 characters") {
   KindTally tally;

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <string>
 
-#include <waymark/core/error.hpp>
-#include <waymark/formats/logs/kitti_oxts.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/kitti/kitti_oxts.hpp>
 
 #include "logs/log_pieces.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 using Catch::Matchers::Message;
 
 namespace {

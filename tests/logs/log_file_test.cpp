@@ -8,13 +8,14 @@
 
 #include <zlib.h>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
 #include "support/paths.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 using Catch::Matchers::Message;
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/core/log_reader.hpp>
+#include <waymark/core/drive/log_reader.hpp>
 
 namespace waymark_test {
 

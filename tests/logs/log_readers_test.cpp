@@ -2,11 +2,12 @@
 
 #include <string>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/suggest.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
 using namespace waymark;
+using namespace waymark::formats;
 using Catch::Matchers::Message;
 
 TEST_CASE("the built-in readers are found by name") {

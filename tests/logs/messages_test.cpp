@@ -3,14 +3,15 @@
 
 #include <string>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/dbc.hpp>
+#include <waymark/formats/logs/detail/can/dbc.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
 #include "hostile_samples.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 
 namespace {
 

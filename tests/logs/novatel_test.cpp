@@ -6,13 +6,14 @@
 #include <numbers>
 #include <string>
 
-#include <waymark/core/error.hpp>
-#include <waymark/formats/logs/novatel.hpp>
-#include <waymark/formats/logs/novatel_message.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/novatel/novatel.hpp>
+#include <waymark/formats/logs/detail/novatel/novatel_message.hpp>
 
 #include "logs/log_pieces.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 using Catch::Matchers::Message;
 
 namespace {

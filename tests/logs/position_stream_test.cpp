@@ -3,11 +3,12 @@
 #include <limits>
 #include <string>
 
-#include <waymark/core/error.hpp>
-#include <waymark/formats/logs/log_request.hpp>
-#include <waymark/formats/logs/position_stream.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/common/log_request.hpp>
+#include <waymark/formats/logs/detail/common/position_stream.hpp>
 
 using namespace waymark;
+using namespace waymark::formats;
 using Catch::Matchers::Message;
 
 namespace {

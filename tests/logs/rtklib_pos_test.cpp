@@ -5,15 +5,16 @@
 #include <numbers>
 #include <string>
 
-#include <waymark/core/error.hpp>
-#include <waymark/formats/logs/csv_log.hpp>
-#include <waymark/formats/logs/rtklib_pos.hpp>
-#include <waymark/formats/text_file.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/csv/csv_log.hpp>
+#include <waymark/formats/logs/detail/rtklib/rtklib_pos.hpp>
+#include <waymark/formats/text/text_file.hpp>
 
 #include "logs/log_pieces.hpp"
 #include "support/paths.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 using Catch::Matchers::Message;
 
 namespace {

@@ -9,11 +9,12 @@
 
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
-#include <waymark/formats/text_file.hpp>
+#include <waymark/formats/text/text_file.hpp>
 
 #include "support/paths.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 
 namespace {
 

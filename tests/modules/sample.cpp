@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/plugin.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace {

@@ -4,7 +4,7 @@
 
 #ifdef WAYMARK_HAVE_CERES
 
-#include <waymark/core/optimizer.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/tools/benchmark/ceres/ceres_peer.hpp>
 
 #include "support/problems.hpp"
@@ -12,6 +12,7 @@
 #include "support/scalar_types.hpp"
 
 using namespace waymark;
+using namespace waymark::benchmark;
 
 namespace {
 

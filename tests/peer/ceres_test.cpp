@@ -23,15 +23,16 @@ TEST_CASE("peer: Ceres ends at the same minima") {
 #include <ceres/ceres.h>
 #include <Eigen/Cholesky>
 
-#include <waymark/core/optimizer.hpp>
-#include <waymark/formats/graph_document.hpp>
-#include <waymark/formats/graph_format.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
+#include <waymark/formats/graph/graph_format.hpp>
 
 #include "support/paths.hpp"
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
 using namespace waymark;
+using namespace waymark::formats;
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include <waymark/core/block_pattern.hpp>
+#include <waymark/core/linear/block_pattern.hpp>
 
 namespace waymark_test {
 

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include <waymark/core/graph.hpp>
-#include <waymark/core/normal_equations.hpp>
+#include <waymark/core/graph/graph.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark_test {
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include <waymark/formats/graph_document.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
 
 namespace waymark_test {
 
@@ -28,7 +28,7 @@ inline constexpr waymark::VertexId kFirstGnssNode = 1000000;  ///< G2's and G3's
   }
   std::ostringstream text;
   text << file.rdbuf();
-  return waymark::read_graph(text.str(), name, registry).graph;
+  return waymark::formats::read_graph(text.str(), name, registry).graph;
 }
 
 }  // namespace waymark_test

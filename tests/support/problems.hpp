@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include <waymark/core/graph.hpp>
-#include <waymark/core/registry.hpp>
+#include <waymark/core/graph/graph.hpp>
+#include <waymark/core/registry/registry.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace waymark_test {

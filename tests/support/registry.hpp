@@ -5,8 +5,8 @@
 #include <sstream>
 #include <string>
 
-#include <waymark/core/plugin_loader.hpp>
-#include <waymark/core/registry.hpp>
+#include <waymark/core/registry/plugin_loader.hpp>
+#include <waymark/core/registry/registry.hpp>
 #include <waymark/plugins/builtin.hpp>
 #include <waymark/solvers/register.hpp>
 #include <waymark/types_se2/register.hpp>
@@ -19,8 +19,8 @@ namespace waymark_test {
   waymark::TypeRegistry registry;
   waymark::register_core_types(registry);
   waymark::register_se2_types(registry);
-  waymark::register_solvers(registry);
-  waymark::register_builtin_plugins(registry);
+  waymark::solvers::register_solvers(registry);
+  waymark::plugins::register_builtin_plugins(registry);
   const char* named = std::getenv("WAYMARK_TEST_PLUGINS");
   std::istringstream modules(named == nullptr ? "" : named);
   for (std::string file; std::getline(modules, file, ':');) waymark::load_plugin(file, registry);

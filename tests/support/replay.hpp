@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <waymark/core/graph.hpp>
+#include <waymark/core/graph/graph.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark_test {

@@ -5,7 +5,7 @@
 
 #include <waymark/tools/benchmark/benchmark_report.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -128,4 +128,4 @@ std::string benchmark_json(const std::vector<FileSummary>& files, const Benchmar
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

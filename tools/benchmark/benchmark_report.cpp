@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 std::vector<double> collect(const std::vector<RunOutcome>& runs, double RunOutcome::*member) {
@@ -69,4 +69,4 @@ void judge_cells(FileSummary& file, const KnownOptima& known) {
   for (CellSummary& cell : file.cells) cell.optimality = compare_with_optimum(cell.final_chi2, file.optimum);
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

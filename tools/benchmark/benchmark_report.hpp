@@ -9,9 +9,9 @@
 #include <waymark/tools/benchmark/known_optima.hpp>
 #include <waymark/tools/benchmark/measure.hpp>
 #include <waymark/tools/benchmark/statistics.hpp>
-#include <waymark/tools/evaluation/text_look.hpp>
+#include <waymark/tools/text/text_look.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 
 /// The statistics of one cell. Phases are those of its median run, so that they sum to that run's time.
 struct CellSummary {
@@ -71,10 +71,11 @@ struct FileTable {
 [[nodiscard]] FileTable file_table(const FileSummary& file);
 
 /// For the terminal, a table per file; what a reader must know of single cells follows it.
-[[nodiscard]] std::string benchmark_table(const std::vector<FileSummary>& files, const TextLook& look = {});
+[[nodiscard]] std::string benchmark_table(const std::vector<FileSummary>& files,
+                                          const text::TextLook& look = {});
 /// One line per cell; empty fields where something is not known.
 [[nodiscard]] std::string benchmark_csv(const std::vector<FileSummary>& files);
 [[nodiscard]] std::string benchmark_json(const std::vector<FileSummary>& files,
                                          const BenchmarkHeader& header);
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

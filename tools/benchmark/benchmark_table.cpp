@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <waymark/tools/benchmark/benchmark_report.hpp>
-#include <waymark/tools/evaluation/text_table.hpp>
+#include <waymark/tools/text/text_table.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 std::string milliseconds(double seconds) {
@@ -95,11 +95,11 @@ FileTable file_table(const FileSummary& file) {
   return table;
 }
 
-std::string benchmark_table(const std::vector<FileSummary>& files, const TextLook& look) {
+std::string benchmark_table(const std::vector<FileSummary>& files, const text::TextLook& look) {
   std::string text;
   for (const FileSummary& file : files) {
     const FileTable of_file = file_table(file);
-    TextTable table(of_file.columns);
+    text::TextTable table(of_file.columns);
     for (const auto& row : of_file.rows) table.add(row);
     text.append(text.empty() ? "" : "\n").append(of_file.title).append("\n").append(table.text(look));
     for (const std::string& remark : of_file.notes) text.append(remark).append("\n");
@@ -107,4 +107,4 @@ std::string benchmark_table(const std::vector<FileSummary>& files, const TextLoo
   return text;
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

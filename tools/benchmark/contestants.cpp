@@ -3,14 +3,14 @@
 #include <array>
 #include <chrono>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/multi_start.hpp>
-#include <waymark/core/suggest.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/core/optimize/multi_start.hpp>
 #ifdef WAYMARK_HAVE_CERES
 #include <waymark/tools/benchmark/ceres/ceres_peer.hpp>
 #endif
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 constexpr std::array<std::string_view, 2> kPeerNames = {"ceres", "ceres_dogleg"};
@@ -87,4 +87,4 @@ std::vector<std::string> built_in_peers() {
 #endif
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

@@ -5,11 +5,11 @@
 #include <string_view>
 #include <vector>
 
-#include <waymark/core/optimizer.hpp>
-#include <waymark/core/registry.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/benchmark/measure.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 
 /// @param registry must outlive the contestant. @throws UsageError for an unknown name.
 [[nodiscard]] Contestant waymark_contestant(const std::string& algorithm, const std::string& solver,
@@ -31,4 +31,4 @@ inline constexpr std::string_view kDefaultContestant = "default";
 /// Name and version of each peer that was built in: "Ceres 2.1.0".
 [[nodiscard]] std::vector<std::string> built_in_peers();
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

@@ -5,20 +5,20 @@
 #include <cmath>
 #include <vector>
 
-#include <waymark/core/error.hpp>
-#include <waymark/formats/logs/csv_table.hpp>
-#include <waymark/formats/line_scanner.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/csv/csv_table.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 struct Place {
   const std::string& file;
-  const CsvLines& lines;
+  const formats::CsvLines& lines;
 
   [[noreturn]] void fail(std::string_view at, const std::string& message) const {
     throw InputError(file + ":" + std::to_string(lines.number()) + ":" +
-                     std::to_string(column_of(lines.line(), at)) + ": " + message);
+                     std::to_string(formats::column_of(lines.line(), at)) + ": " + message);
   }
 };
 
@@ -27,7 +27,7 @@ double parse_chi2(std::string_view word, const Place& place) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), chi2);
   const bool whole = error == std::errc() && end == word.data() + word.size();
   if (!whole || !std::isfinite(chi2) || chi2 < 0) {
-    place.fail(word, "expected a chi2 (a number, at least 0), got " + quote_word(word));
+    place.fail(word, "expected a chi2 (a number, at least 0), got " + formats::quote_word(word));
   }
   return chi2;
 }
@@ -36,22 +36,23 @@ double parse_chi2(std::string_view word, const Place& place) {
 
 KnownOptima read_known_optima(std::string_view text, const std::string& name) {
   KnownOptima optima;
-  CsvLines lines(text);
+  formats::CsvLines lines(text);
   const Place place{name, lines};
   std::vector<std::string_view> fields;
   for (bool heading = true; lines.next(); heading = false) {
-    if (!split_fields(lines.line(), ',', fields) || fields.size() != 2) {
+    if (!formats::split_fields(lines.line(), ',', fields) || fields.size() != 2) {
       place.fail(lines.line(), "expected two fields, file and chi2");
     }
     if (heading) {
       if (fields[0] != "file" || fields[1] != "chi2") {
-        place.fail(lines.line(), "expected the heading 'file,chi2', got " + quote_word(lines.line()));
+        place.fail(lines.line(),
+                   "expected the heading 'file,chi2', got " + formats::quote_word(lines.line()));
       }
       continue;
     }
     const double chi2 = parse_chi2(fields[1], place);
     if (!optima.emplace(std::string(fields[0]), chi2).second) {
-      place.fail(fields[0], quote_word(fields[0]) + " is listed a second time");
+      place.fail(fields[0], formats::quote_word(fields[0]) + " is listed a second time");
     }
   }
   if (optima.empty())
@@ -77,4 +78,4 @@ std::string_view to_string(Optimality optimality) {
   return "above";
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

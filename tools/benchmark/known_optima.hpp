@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace waymark {
+namespace waymark::benchmark {
 
 /// chi2 by file name without folder.
 using KnownOptima = std::map<std::string, double, std::less<>>;
@@ -23,4 +23,4 @@ enum class Optimality {
 [[nodiscard]] Optimality compare_with_optimum(double chi2, double optimum);
 [[nodiscard]] std::string_view to_string(Optimality optimality);
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

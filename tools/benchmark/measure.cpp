@@ -2,7 +2,7 @@
 
 #include <waymark/tools/benchmark/process_memory.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 void measure_memory(const Graph& start, const Contestant& contestant, Cell& cell) {
@@ -36,4 +36,4 @@ std::vector<Cell> measure(const Graph& start, std::span<const Contestant> contes
   return cells;
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <waymark/core/graph.hpp>
+#include <waymark/core/graph/graph.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 
 /// One optimisation. Seconds of wall time.
 struct RunOutcome {
@@ -60,4 +60,4 @@ struct MeasureOptions {
 [[nodiscard]] std::vector<Cell> measure(const Graph& start, std::span<const Contestant> contestants,
                                         const MeasureOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

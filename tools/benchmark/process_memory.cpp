@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 /// A line "NAME:   1234 kB" of /proc/self/status.
@@ -36,4 +36,4 @@ std::optional<double> peak_megabytes() {
   return status_megabytes("VmHWM");
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-namespace waymark {
+namespace waymark::benchmark {
 
 /// Resident set now, in 1e6 bytes.
 [[nodiscard]] std::optional<double> resident_megabytes();
@@ -15,4 +15,4 @@ namespace waymark {
 /// Largest resident set since restart_peak_memory, in 1e6 bytes.
 [[nodiscard]] std::optional<double> peak_megabytes();
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 void require_values(const std::vector<double>& values) {
@@ -31,4 +31,4 @@ std::size_t index_of_median(const std::vector<double>& values) {
   return order[(values.size() - 1) / 2];
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

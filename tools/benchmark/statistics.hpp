@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace waymark {
+namespace waymark::benchmark {
 
 struct Spread {
   double median = 0;  ///< the mean of the two middle ones for an even number
@@ -18,4 +18,4 @@ struct Spread {
 /// @throws UsageError for no values.
 [[nodiscard]] std::size_t index_of_median(const std::vector<double>& values);
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

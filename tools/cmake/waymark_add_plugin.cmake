@@ -49,7 +49,7 @@ function(waymark_add_plugin name)
   target_link_libraries(${name} PRIVATE waymark::types_se2)
   target_compile_features(${name} PRIVATE cxx_std_20)
   target_compile_definitions(${name} PRIVATE WAYMARK_PLUGIN_MODULE)
-  # Hidden: what the plugin shares with its host is the descriptor, marked in core/plugin.hpp.
+  # Hidden: what the plugin shares with its host is the descriptor, marked in core/registry/plugin.hpp.
   set_target_properties(${name} PROPERTIES
     PREFIX "" CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()

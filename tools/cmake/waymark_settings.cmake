@@ -50,15 +50,14 @@ if(WAYMARK_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${WAYMARK_CCACHE}")
 endif()
 
-# waymark_library(NAME [SHARED]): a library of every *.cpp beside the calling CMakeLists.txt (and in the folders
-# given after FOLDERS), with the shared settings and the alias waymark::NAME.
+# waymark_library(NAME [SHARED] [WITHOUT FOLDERS...]): a library of every *.cpp below the calling CMakeLists.txt, but for
+# those in the folders given, with the shared settings and the alias waymark::NAME.
 function(waymark_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED" "" "FOLDERS")
-  set(patterns "*.cpp")
-  foreach(folder ${ARG_FOLDERS})
-    list(APPEND patterns "${folder}/*.cpp")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED" "" "WITHOUT")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" *.cpp)
+  foreach(folder ${ARG_WITHOUT})
+    list(FILTER sources EXCLUDE REGEX "^${folder}/")
   endforeach()
-  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
   if(ARG_SHARED)
     add_library(waymark_${name} SHARED ${sources})
   else()

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <waymark/core/error.hpp>
-#include <waymark/formats/stamp_text.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/types_se2/se2.hpp>
 
-namespace waymark {
+namespace waymark::evaluation {
 namespace {
 
 void check(const EvaluationInput& input) {
@@ -27,11 +27,13 @@ void check(const EvaluationInput& input) {
     const Stamp stamp = input.fixes[i].stamp;
     if (std::abs(seconds_between(input.fused[i].stamp, stamp)) > input.max_stamp_offset_s)
       throw UsageError(fmt::format("evaluate: fused pose {} at {} s does not belong to the fix at {} s", i,
-                                   decimal_seconds(input.fused[i].stamp), decimal_seconds(stamp)));
+                                   formats::decimal_seconds(input.fused[i].stamp),
+                                   formats::decimal_seconds(stamp)));
     if (!input.fused[i].pose.allFinite())
-      throw InputError(fmt::format("evaluate: fused pose at {} s is not finite", decimal_seconds(stamp)));
+      throw InputError(
+          fmt::format("evaluate: fused pose at {} s is not finite", formats::decimal_seconds(stamp)));
     if (!input.fixes[i].position.allFinite())
-      throw InputError(fmt::format("evaluate: fix at {} s is not finite", decimal_seconds(stamp)));
+      throw InputError(fmt::format("evaluate: fix at {} s is not finite", formats::decimal_seconds(stamp)));
   }
 }
 
@@ -234,4 +236,4 @@ Evaluation evaluate(const EvaluationInput& input) {
   return evaluation;
 }
 
-}  // namespace waymark
+}  // namespace waymark::evaluation

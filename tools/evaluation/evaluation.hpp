@@ -15,16 +15,16 @@
 
 #include <Eigen/Core>
 
-#include <waymark/core/frame.hpp>
-#include <waymark/core/sample.hpp>
-#include <waymark/tools/evaluation/autocorrelation.hpp>
-#include <waymark/tools/evaluation/consistency.hpp>
-#include <waymark/tools/evaluation/innovation.hpp>
-#include <waymark/tools/evaluation/metrics.hpp>
-#include <waymark/tools/evaluation/truth_interpolation.hpp>
-#include <waymark/tools/evaluation/withheld.hpp>
+#include <waymark/core/drive/frame.hpp>
+#include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/evaluation/numbers/autocorrelation.hpp>
+#include <waymark/tools/evaluation/numbers/consistency.hpp>
+#include <waymark/tools/evaluation/numbers/innovation.hpp>
+#include <waymark/tools/evaluation/numbers/metrics.hpp>
+#include <waymark/tools/evaluation/numbers/truth_interpolation.hpp>
+#include <waymark/tools/evaluation/numbers/withheld.hpp>
 
-namespace waymark {
+namespace waymark::evaluation {
 
 struct EvaluationInput {
   /// The pose at each fix: same length, same order, stamps within max_stamp_offset_s.
@@ -114,4 +114,4 @@ struct Evaluation {
 ///         InputError for a pose or fix that is not finite and a truth that cannot be matched.
 [[nodiscard]] Evaluation evaluate(const EvaluationInput& input);
 
-}  // namespace waymark
+}  // namespace waymark::evaluation

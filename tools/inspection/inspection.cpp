@@ -8,15 +8,15 @@
 
 #include <fmt/format.h>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/suggest.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/detail/common/quantity.hpp>
 #include <waymark/formats/logs/log_file.hpp>
-#include <waymark/formats/logs/quantity.hpp>
 #include <waymark/tools/inspection/log_clock.hpp>
 #include <waymark/tools/inspection/suspicions.hpp>
 
-namespace waymark {
+namespace waymark::inspection {
 namespace {
 
 /// Of logs that tell no date, to read them all the same.
@@ -45,10 +45,10 @@ void guarded(Pass& pass, Step step) {
 
 void read_passes(const std::string& path, std::span<Pass* const> passes, const InspectionOptions& options,
                  LogInspection& log) {
-  const ReadProgress progress = [&](std::uint64_t done, std::uint64_t size) {
+  const formats::ReadProgress progress = [&](std::uint64_t done, std::uint64_t size) {
     if (options.watch) options.watch(path, done, size);
   };
-  const std::string trouble = read_in_pieces(
+  const std::string trouble = formats::read_in_pieces(
       path,
       [&](std::string_view piece) {
         for (Pass* pass : passes) guarded(*pass, [&](LogDecoder& decoder) { decoder.take(piece); });
@@ -73,7 +73,7 @@ std::uint64_t size_of(const std::string& path) {
 LogReaderType reader_for(const std::string& path, std::span<const LogReaderType> readers,
                          const InspectionOptions& options, LogInspection& log) {
   if (options.format == "auto") {
-    const Recognised found = recognise_log(path, readers);
+    const formats::Recognised found = formats::recognise_log(path, readers);
     log.evidence = found.why.evidence;
     return found.reader;
   }
@@ -99,10 +99,10 @@ LogRequest basic_request(const LogInspection& log, StreamKind stream) {
   request.stream = stream;
   request.time_scale = log.clock.scale;
   request.default_sigma_m = kNoAccuracy;
-  if (stream == StreamKind::odometry) request.readings = odometry_channels();
+  if (stream == StreamKind::odometry) request.readings = formats::odometry_channels();
   for (const auto& [key, path] : log.companions) {
     std::string text;
-    const std::string trouble = read_in_pieces(path, [&](std::string_view piece) { text += piece; });
+    const std::string trouble = formats::read_in_pieces(path, [&](std::string_view piece) { text += piece; });
     if (!trouble.empty()) throw InputError(path + ": " + trouble);
     request.companions[key] = {path, std::move(text)};
   }
@@ -119,12 +119,12 @@ bool map_columns(const LogInspection& log, LogRequest& request) {
   return columns.size() > (log.table ? 1U : 0U);
 }
 
-std::optional<Dbc> dbc_of(const LogInspection& log) {
+std::optional<formats::Dbc> dbc_of(const LogInspection& log) {
   const auto path = log.companions.find("dbc");
   if (path == log.companions.end()) return std::nullopt;
   std::string text;
-  (void)read_in_pieces(path->second, [&](std::string_view piece) { text += piece; });
-  return Dbc::parse(text, path->second);
+  (void)formats::read_in_pieces(path->second, [&](std::string_view piece) { text += piece; });
+  return formats::Dbc::parse(text, path->second);
 }
 
 /// The first pass over logs of columns: what columns there are.
@@ -187,7 +187,7 @@ void open(Pass& pass, const LogReader& reader, const std::string& path, const Lo
 class StreamReading {
  public:
   StreamReading(LogInspection& log, const LogReader& reader, const InspectionOptions& options)
-      : log_(log), reader_(reader), options_(options), motion_(odometry_channels()) {}
+      : log_(log), reader_(reader), options_(options), motion_(formats::odometry_channels()) {}
 
   void read(std::optional<Stamp> date) {
     Pass gnss, odometry;
@@ -277,9 +277,9 @@ void read_streams(LogInspection& log, const LogReader& reader, const InspectionO
 bool is_stream_quantity(std::string_view quantity, StreamKind stream) {
   LogRequest request;
   request.stream = stream;
-  if (stream == StreamKind::odometry) request.readings = odometry_channels();
-  const std::vector<Quantity> known = quantities(request);
-  return find_quantity(known, quantity) != nullptr;
+  if (stream == StreamKind::odometry) request.readings = formats::odometry_channels();
+  const std::vector<formats::Quantity> known = formats::quantities(request);
+  return formats::find_quantity(known, quantity) != nullptr;
 }
 
 /// A receiver's heading is its course, clockwise from north and within a turn; what counts on through turns,
@@ -385,4 +385,4 @@ std::vector<LogInspection> inspect_logs(const std::vector<std::string>& paths,
   return logs;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inspection

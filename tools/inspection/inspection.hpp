@@ -11,14 +11,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include <waymark/core/log_reader.hpp>
-#include <waymark/tools/evaluation/text_look.hpp>
-#include <waymark/tools/inspection/can_survey.hpp>
-#include <waymark/tools/inspection/fix_statistics.hpp>
-#include <waymark/tools/inspection/odometry_statistics.hpp>
-#include <waymark/tools/inspection/table_survey.hpp>
+#include <waymark/core/drive/log_reader.hpp>
+#include <waymark/tools/inspection/survey/can_survey.hpp>
+#include <waymark/tools/inspection/survey/fix_statistics.hpp>
+#include <waymark/tools/inspection/survey/odometry_statistics.hpp>
+#include <waymark/tools/inspection/survey/table_survey.hpp>
+#include <waymark/tools/text/text_look.hpp>
 
-namespace waymark {
+namespace waymark::inspection {
 
 /// How the stamps of a log are to be read, and why.
 struct LogClock {
@@ -80,7 +80,7 @@ struct InspectionOptions {
 [[nodiscard]] std::string date_text(Stamp stamp, const LogClock& clock);
 
 /// For people.
-[[nodiscard]] std::string inspection_text(const LogInspection& log, const TextLook& look = {});
+[[nodiscard]] std::string inspection_text(const LogInspection& log, const text::TextLook& look = {});
 [[nodiscard]] nlohmann::ordered_json inspection_json(const LogInspection& log);
 
-}  // namespace waymark
+}  // namespace waymark::inspection

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace waymark {
+namespace waymark::inspection {
 namespace {
 
 constexpr double kWeek = 604800;
@@ -92,4 +92,4 @@ std::string date_text(Stamp stamp, const LogClock& clock) {
                      of_day / 3'600'000, of_day / 60'000 % 60, of_day / 1000 % 60, of_day % 1000);
 }
 
-}  // namespace waymark
+}  // namespace waymark::inspection

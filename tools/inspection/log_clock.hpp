@@ -3,7 +3,7 @@
 
 #include <waymark/tools/inspection/inspection.hpp>
 
-namespace waymark {
+namespace waymark::inspection {
 
 /// Judged by the name of the time column and its numbers.
 /// @param time  null where the table has none
@@ -19,4 +19,4 @@ struct WeekSecond {
 };
 [[nodiscard]] WeekSecond week_second(Stamp stamp, const LogClock& clock);
 
-}  // namespace waymark
+}  // namespace waymark::inspection

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <waymark/tools/evaluation/json_number.hpp>
-#include <waymark/tools/evaluation/text_table.hpp>
 #include <waymark/tools/inspection/inspection.hpp>
+#include <waymark/tools/text/json_number.hpp>
+#include <waymark/tools/text/text_table.hpp>
 
-namespace waymark {
+namespace waymark::inspection {
 namespace {
 
 constexpr std::size_t kMostRows = 40;  // of ids and message kinds; the rest is summed up
@@ -38,14 +38,14 @@ std::string harmless(std::string text) {
 
 class Text {
  public:
-  Text(std::string title, const TextLook& look) : look_(look) {
-    text_ = painted(harmless(std::move(title)), Tone::heading, look) + "\n";
+  Text(std::string title, const text::TextLook& look) : look_(look) {
+    text_ = text::painted(harmless(std::move(title)), text::Tone::heading, look) + "\n";
     if (look_.columns > kTableIndent) look_.columns -= kTableIndent;
   }
   void line(const std::string& label, const std::string& value) {
     text_ += fmt::format("  {:<14} {}\n", harmless(label), harmless(value));
   }
-  void table(const TextTable& rows) {
+  void table(const text::TextTable& rows) {
     const std::string lines = rows.text(look_);
     std::size_t begin = 0;
     while (begin < lines.size()) {
@@ -63,7 +63,7 @@ class Text {
  private:
   static constexpr std::size_t kTableIndent = 4;
   std::string text_;
-  TextLook look_;  ///< of tables
+  text::TextLook look_;  ///< of tables
 };
 
 std::string percent(std::size_t part, std::size_t all) {
@@ -129,7 +129,8 @@ void add_fixes(Text& text, const LogInspection& log) {
 void add_odometry(Text& text, const LogInspection& log) {
   const OdometrySummary& odometry = *log.odometry;
   text.line("odometry", fmt::format("{} rows", odometry.stamps.count()));
-  TextTable table({"channel", "values", "rate", "unit", "smallest", "largest", "gaps", "longest gap [s]"});
+  text::TextTable table(
+      {"channel", "values", "rate", "unit", "smallest", "largest", "gaps", "longest gap [s]"});
   for (const ChannelSummary& channel : odometry.channels) {
     const auto gaps = channel.stamps.longest_gaps();
     table.add({harmless(channel.name), std::to_string(channel.range.count),
@@ -152,8 +153,8 @@ std::string proposal_text(const ColumnProposal& proposal) {
 }
 
 void add_columns(Text& text, const std::vector<ColumnSummary>& columns, bool of_bus) {
-  TextTable table({of_bus ? "signal" : "column", "values", of_bus ? "rate" : "empty", "smallest", "largest",
-                   "unit", "proposed as"});
+  text::TextTable table({of_bus ? "signal" : "column", "values", of_bus ? "rate" : "empty", "smallest",
+                         "largest", "unit", "proposed as"});
   for (const ColumnSummary& column : columns) {
     const Range& range = column.range;
     const auto bound = [&](double value) { return range.count == 0 ? "-" : fmt::format("{:.10g}", value); };
@@ -172,7 +173,7 @@ void add_ids(Text& text, const LogInspection& log) {
   text.line("frames", fmt::format("{} on {}", log.can->frames, log.can->interfaces));
   if (!log.companions.contains("dbc"))
     text.line("", "without a DBC (--dbc FILE) the signals in them are unknown");
-  TextTable table({"id", "frames", "rate", "length"});
+  text::TextTable table({"id", "frames", "rate", "length"});
   std::size_t rest = 0;
   for (std::size_t i = 0; i < log.can->ids.size(); ++i) {
     const ColumnSummary& id = log.can->ids[i];
@@ -191,7 +192,7 @@ void add_ids(Text& text, const LogInspection& log) {
 void add_kinds(Text& text, const LogInspection& log) {
   if (log.kinds.empty() || log.can) return;
   const double seconds = log.span() == nullptr ? 0 : log.span()->span_s();
-  TextTable table({"message", "count", "rate"});
+  text::TextTable table({"message", "count", "rate"});
   std::size_t rows = 0;
   for (const auto& [kind, count] : log.kinds) {
     if (++rows > kMostRows) continue;
@@ -205,7 +206,7 @@ void add_kinds(Text& text, const LogInspection& log) {
 
 }  // namespace
 
-std::string inspection_text(const LogInspection& log, const TextLook& look) {
+std::string inspection_text(const LogInspection& log, const text::TextLook& look) {
   Text text(log.path, look);
   text.line("size", size_text(log.size));
   text.line("format", log.format + (log.evidence.empty() ? " (stated)" : ": " + log.evidence));
@@ -240,4 +241,4 @@ std::string inspection_text(const LogInspection& log, const TextLook& look) {
   return text.text();
 }
 
-}  // namespace waymark
+}  // namespace waymark::inspection

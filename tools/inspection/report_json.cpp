@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include <waymark/tools/evaluation/json_number.hpp>
 #include <waymark/tools/inspection/inspection.hpp>
+#include <waymark/tools/text/json_number.hpp>
 
-namespace waymark {
+namespace waymark::inspection {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -19,7 +19,7 @@ Json json_of(const StampSeries& stamps, const LogClock& clock) {
             {"end", date_text(stamps.latest(), clock)},
             {"begin_s", stamps.earliest().seconds()},
             {"span_s", stamps.span_s()},
-            {"median_interval_s", number_or_null(stamps.median_interval_s())},
+            {"median_interval_s", text::number_or_null(stamps.median_interval_s())},
             {"gaps", stamps.gaps()}};
   json["longest_gaps"] = Json::array();
   for (const LongInterval& gap : stamps.longest_gaps())
@@ -31,8 +31,8 @@ Json json_of(const StampSeries& stamps, const LogClock& clock) {
 }
 
 Json json_of(const SigmaSummary& sigma) {
-  return {{"median_m", number_or_null(sigma.median)},
-          {"percent95_m", number_or_null(sigma.percent95)},
+  return {{"median_m", text::number_or_null(sigma.median)},
+          {"percent95_m", text::number_or_null(sigma.percent95)},
           {"smallest_m", sigma.range.smallest},
           {"largest_m", sigma.range.largest}};
 }
@@ -54,7 +54,7 @@ Json json_of(const FixSummary& fixes, const LogClock& clock) {
   }
   json["with_speed"] = fixes.with_speed;
   json["with_course"] = fixes.with_course;
-  json["speed_factor"] = number_or_null(fixes.speed_factor);
+  json["speed_factor"] = text::number_or_null(fixes.speed_factor);
   json["zero_positions"] = fixes.zero.count;
   json["far_positions"] = fixes.far.count;
   json["frozen"] = fixes.frozen.count;
@@ -70,7 +70,7 @@ Json json_of(const OdometrySummary& odometry, const LogClock& clock) {
     json["channels"].push_back({{"name", channel.name},
                                 {"unit", channel.unit},
                                 {"range", json_of(channel.range)},
-                                {"percent95", number_or_null(channel.percent95)},
+                                {"percent95", text::number_or_null(channel.percent95)},
                                 {"stamps", json_of(channel.stamps, clock)}});
   return json;
 }
@@ -82,7 +82,7 @@ Json json_of(const std::vector<ColumnSummary>& columns) {
     Json entry{
         {"name", column.name}, {"values", column.values}, {"empty", column.empty}, {"words", column.words}};
     entry["range"] = json_of(column.range);
-    entry["rate_hz"] = column.rate_hz > 0 ? number_or_null(column.rate_hz) : Json(nullptr);
+    entry["rate_hz"] = column.rate_hz > 0 ? text::number_or_null(column.rate_hz) : Json(nullptr);
     if (!column.unit.empty()) entry["unit"] = column.unit;
     if (!column.detail.empty()) entry["length"] = column.detail;
     entry["proposed"] = nullptr;
@@ -114,11 +114,11 @@ Json inspection_json(const LogInspection& log) {
   json["signals"] = log.can ? json_of(log.can->signals) : Json(nullptr);
   json["gnss"] = log.fixes ? json_of(*log.fixes, log.clock) : Json(nullptr);
   json["odometry"] = log.odometry ? json_of(*log.odometry, log.clock) : Json(nullptr);
-  json["logger_ahead_s"] = log.logger_ahead_s ? number_or_null(*log.logger_ahead_s) : Json(nullptr);
+  json["logger_ahead_s"] = log.logger_ahead_s ? text::number_or_null(*log.logger_ahead_s) : Json(nullptr);
   json["troubles"] = log.troubles;
   json["notes"] = log.notes;
   json["suspicious"] = log.suspicions;
   return json;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inspection

@@ -7,7 +7,7 @@
 
 #include <waymark/tools/inspection/log_clock.hpp>
 
-namespace waymark {
+namespace waymark::inspection {
 namespace {
 
 constexpr double kRollover = 1024 * 604800.0;
@@ -205,4 +205,4 @@ std::string suspicion_between(const LogInspection& log, const LogInspection& oth
   return sentence;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inspection

@@ -5,7 +5,7 @@
 
 #include <waymark/tools/inspection/inspection.hpp>
 
-namespace waymark {
+namespace waymark::inspection {
 
 /// Of one log.
 [[nodiscard]] std::vector<std::string> suspicions_of(const LogInspection& log, Stamp now);
@@ -13,4 +13,4 @@ namespace waymark {
 /// or another epoch. Empty where nothing is wrong.
 [[nodiscard]] std::string suspicion_between(const LogInspection& log, const LogInspection& other);
 
-}  // namespace waymark
+}  // namespace waymark::inspection

@@ -1,10 +1,10 @@
 #include <waymark/tools/program/command_line.hpp>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/suggest.hpp>
-#include <waymark/tools/program/option_text.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/tools/program/manual/option_text.hpp>
 
-namespace waymark {
+namespace waymark::program {
 namespace {
 
 constexpr const char* kDescription =
@@ -79,4 +79,4 @@ std::vector<Surrounding> known_files() {
           {WAYMARK_PLUGIN_FOLDER "/*.so", "Installed plugins. They are loaded by every subcommand."}};
 }
 
-}  // namespace waymark
+}  // namespace waymark::program

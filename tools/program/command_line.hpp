@@ -7,9 +7,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include <waymark/tools/program/commands.hpp>
+#include <waymark/tools/program/commands/commands.hpp>
 
-namespace waymark {
+namespace waymark::program {
 
 /// Adds every subcommand. @param action  what the chosen one does, after parsing
 void build_command_line(CLI::App& app, Action& action);
@@ -25,4 +25,4 @@ struct Surrounding {
 [[nodiscard]] std::vector<Surrounding> environment_variables();
 [[nodiscard]] std::vector<Surrounding> known_files();
 
-}  // namespace waymark
+}  // namespace waymark::program

@@ -2,11 +2,11 @@
 #include <exception>
 #include <iostream>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/tools/program/command_line.hpp>
-#include <waymark/tools/program/usage_hints.hpp>
+#include <waymark/tools/program/manual/usage_hints.hpp>
 
-namespace waymark {
+namespace waymark::program {
 namespace {
 
 ExitCode fail(ExitCode code, const std::string& message) {
@@ -54,9 +54,9 @@ ExitCode run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::program
 
 int main(int argc, char** argv) {
-  waymark::install_signal_handlers();
-  return waymark::run(argc, argv);
+  waymark::program::install_signal_handlers();
+  return waymark::program::run(argc, argv);
 }

@@ -1,11 +1,12 @@
 #include <cmath>
 
-#include <waymark/tools/report/bars.hpp>
+#include <waymark/tools/drawing/figure/bars.hpp>
 #include <waymark/tools/report/honesty_figures.hpp>
 
-namespace waymark {
-std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector<StatedErrors>& rows) {
-  Figure nees{
+namespace waymark::report {
+std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
+                                             const std::vector<StatedErrors>& rows) {
+  drawing::Figure nees{
       .id = prefix + "-nees",
       .title = "Mean NEES",
       .description =
@@ -15,20 +16,23 @@ std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector
       .x = {.title = "mean NEES", .unit = "", .logarithmic = true},
       .y = {.title = "run", .unit = ""},
       .series = {}};
-  Figure coverage{.id = prefix + "-coverage",
-                  .title = "Coverage of the stated 95 % regions",
-                  .description =
-                      "Share of the epochs whose stated region holds the truth. A bracket is where an honest "
-                      "covariance leaves the share on 95 of 100 drives.",
-                  .x = {.title = "epochs with the truth inside", .unit = "%", .low = 0},
-                  .y = {.title = "run", .unit = ""},
-                  .series = {}};
-  Series nees_bars{.name = "mean NEES", .mark = Mark::bars, .look = Look::fused};
-  Series coverage_bars{.name = "coverage", .mark = Mark::bars, .look = Look::fused};
+  drawing::Figure coverage{
+      .id = prefix + "-coverage",
+      .title = "Coverage of the stated 95 % regions",
+      .description =
+          "Share of the epochs whose stated region holds the truth. A bracket is where an honest "
+          "covariance leaves the share on 95 of 100 drives.",
+      .x = {.title = "epochs with the truth inside", .unit = "%", .low = 0},
+      .y = {.title = "run", .unit = ""},
+      .series = {}};
+  drawing::Series nees_bars{.name = "mean NEES", .mark = drawing::Mark::bars, .look = drawing::Look::fused};
+  drawing::Series coverage_bars{
+      .name = "coverage", .mark = drawing::Mark::bars, .look = drawing::Look::fused};
   for (const StatedErrors& row : rows) {
-    const ConsistencyStatistics& s = row.statistics;
+    const evaluation::ConsistencyStatistics& s = row.statistics;
     if (!std::isfinite(s.nees_mean)) continue;
-    const auto add = [&](Figure& figure, Series& bars, double value, const Interval95& honest, double unit) {
+    const auto add = [&](drawing::Figure& figure, drawing::Series& bars, double value,
+                         const evaluation::Interval95& honest, double unit) {
       bars.y.push_back(static_cast<double>(figure.y.categories.size()));
       figure.y.categories.push_back(row.label);
       bars.x.push_back(unit * value);
@@ -40,18 +44,20 @@ std::vector<Figure> honesty_figures(const std::string& prefix, const std::vector
   }
   const std::size_t count = nees.y.categories.size();
   if (count == 0) return {};
-  nees.series = {nees_bars, line_across("honest: 2", ConsistencyStatistics::kExpectedMean, count)};
+  nees.series = {nees_bars,
+                 drawing::line_across("honest: 2", evaluation::ConsistencyStatistics::kExpectedMean, count)};
   coverage.series = {coverage_bars,
-                     line_across("honest: 95 %", 100 * ConsistencyStatistics::kExpectedCoverage, count)};
-  fit_bars(nees);
-  fit_bars(coverage);
+                     drawing::line_across("honest: 95 %",
+                                          100 * evaluation::ConsistencyStatistics::kExpectedCoverage, count)};
+  drawing::fit_bars(nees);
+  drawing::fit_bars(coverage);
   return {nees, coverage};
 }
 
-std::string honesty(const ConsistencyStatistics& s) {
+std::string honesty(const evaluation::ConsistencyStatistics& s) {
   if (!std::isfinite(s.nees_mean) || !std::isfinite(s.nees_mean_honest.low)) return "-";
   if (s.nees_mean > s.nees_mean_honest.high) return "too small";
   return s.nees_mean < s.nees_mean_honest.low ? "too large" : "honest";
 }
 
-}  // namespace waymark
+}  // namespace waymark::report

@@ -4,20 +4,20 @@
 #include <string>
 #include <vector>
 
-#include <waymark/tools/evaluation/metrics.hpp>
+#include <waymark/tools/evaluation/numbers/metrics.hpp>
 
-namespace waymark {
+namespace waymark::report {
 
 /// A metric of positions.
 struct PositionColumn {
   std::string name;  ///< "RMSE"
   std::string id;    ///< "rmse"
   std::string about;
-  double PositionMetrics::*value;
+  double evaluation::PositionMetrics::*value;
 };
 [[nodiscard]] const std::vector<PositionColumn>& position_columns();
 
 /// "-" where it is not defined.
 [[nodiscard]] std::string decimals(double value, int digits);
 
-}  // namespace waymark
+}  // namespace waymark::report

@@ -6,7 +6,7 @@
 #include <waymark/tools/simulation/sensors.hpp>
 #include <waymark/tools/simulation/streams.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 constexpr double kNorthOverEast = 1.15;  // stated errors: satellites stand in the south
@@ -88,7 +88,8 @@ std::vector<Eigen::Vector2d> draw_bursts(const std::vector<bool>& canyon, const 
   return sum;
 }
 
-void sense_gnss(std::span<const PlacedState> epochs, const Projection& projection, SimulatedDrive& drive) {
+void sense_gnss(std::span<const PlacedState> epochs, const drive::Projection& projection,
+                SimulatedDrive& drive) {
   const GnssRecipe& recipe = drive.recipe.gnss;
   RandomStream bias_random(drive.seed, kGnssBiasStream);
   RandomStream fast_random(drive.seed, kGnssFastStream);
@@ -122,8 +123,8 @@ void sense_gnss(std::span<const PlacedState> epochs, const Projection& projectio
     const Eigen::Vector2d error =
         drive.gnss_bias_m + simulated.parts.fast + simulated.parts.jitter + simulated.parts.burst;
     const PlacedState& state = epochs[i];
-    const GridPoint grid = projection.to_grid(projection.to_geodetic(state.pose.head<2>()));
-    const GeodeticPoint place =
+    const drive::GridPoint grid = projection.to_grid(projection.to_geodetic(state.pose.head<2>()));
+    const drive::GeodeticPoint place =
         projection.to_geodetic(state.pose.head<2>() + grid.scale * turned(grid.convergence_rad, error));
     GeodeticFix& fix = simulated.fix;
     fix.stamp = state.stamp;
@@ -141,18 +142,19 @@ void sense_gnss(std::span<const PlacedState> epochs, const Projection& projectio
   }
 }
 
-void sense_truth(std::span<const PlacedState> states, const Projection& projection, SimulatedDrive& drive) {
+void sense_truth(std::span<const PlacedState> states, const drive::Projection& projection,
+                 SimulatedDrive& drive) {
   const TruthRecipe& recipe = drive.recipe.truth;
   RandomStream random(drive.seed, kTruthStream);
   for (const PlacedState& state : states) {
     drive.poses.push_back({state.stamp, state.pose});
     const Eigen::Vector2d position = state.pose.head<2>() + recipe.position_noise_m * normal_pair(random);
     const double heading = state.pose[2] + recipe.heading_noise_rad * random.normal();
-    const GeodeticPoint place = projection.to_geodetic(position);
+    const drive::GeodeticPoint place = projection.to_geodetic(position);
     const double convergence = projection.to_grid(place).convergence_rad;
     drive.truth.push_back({state.stamp, place.latitude_deg, place.longitude_deg, kHeight,
                            std::remainder(heading - convergence, 2 * std::numbers::pi)});
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

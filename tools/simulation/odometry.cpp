@@ -5,7 +5,7 @@
 #include <waymark/tools/simulation/sensors.hpp>
 #include <waymark/tools/simulation/streams.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 double quantised(double value, double step) {
@@ -41,4 +41,4 @@ void sense_odometry(const std::vector<DrivenState>& states, Stamp start, Simulat
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/suggest.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 RoadRecipe highway() {
@@ -265,4 +265,4 @@ const SimulationPreset& simulation_preset(std::string_view name) {
   throw UsageError("unknown preset '" + std::string(name) + "'" + suggestion(name, names));
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 /// Steele, Lea & Flood 2014.
@@ -87,4 +87,4 @@ double SmoothedGaussMarkov::next(RandomStream& random) {
   return output_ / deviation_;
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

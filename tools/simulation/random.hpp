@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace waymark {
+namespace waymark::simulation {
 
 /// xoshiro256++ 1.0 (Blackman & Vigna, "Scrambled linear pseudorandom number generators", 2021), its state
 /// filled by SplitMix64. Integers and uniform numbers are the same bits everywhere; normal and exponential
@@ -68,4 +68,4 @@ class SmoothedGaussMarkov {
   bool started_ = false;
 };
 
-}  // namespace waymark
+}  // namespace waymark::simulation

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <waymark/core/error.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/tools/simulation/road.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 void require(bool fulfilled, const char* parameter, double value, const char* rule) {
@@ -122,4 +122,4 @@ void check(const SimulationRecipe& recipe) {
   require_not_negative("truth.heading_noise_rad", recipe.truth.heading_noise_rad);
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace waymark {
+namespace waymark::simulation {
 
 /// How one kind of road is built and driven. A road is a row of legs, each with its own cruise speed, filled
 /// with straights and smooth bends, and ended by a street corner, a stop, both or nothing.
@@ -104,4 +104,4 @@ struct SimulationRecipe {
 /// @throws UsageError naming the parameter, its value and the rule.
 void check(const SimulationRecipe& recipe);
 
-}  // namespace waymark
+}  // namespace waymark::simulation

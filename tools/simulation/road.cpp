@@ -7,7 +7,7 @@
 #include <waymark/tools/simulation/random.hpp>
 #include <waymark/tools/simulation/streams.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -217,4 +217,4 @@ std::vector<DrivenState> drive_distance(const SimulationRecipe& recipe, std::uin
   return best;
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

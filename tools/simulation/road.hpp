@@ -6,7 +6,7 @@
 
 #include <waymark/tools/simulation/recipe.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 
 /// The clock of the simulation, ticks a second: odometry and truth are sampled at ticks.
 inline constexpr int kTicksPerSecond = 100;
@@ -33,4 +33,4 @@ struct DrivenState {
 [[nodiscard]] std::vector<DrivenState> drive_distance(const SimulationRecipe& recipe, std::uint64_t seed,
                                                       std::int64_t ticks);
 
-}  // namespace waymark
+}  // namespace waymark::simulation

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include <waymark/core/sample.hpp>
-#include <waymark/tools/drive/projection.hpp>
+#include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/drive/logs/projection.hpp>
 #include <waymark/tools/simulation/road.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 
 /// Fills odometry and the calibration drawn for it. The k-th sample lies one tick after k / rate: streams of
 /// 25 Hz and 1 Hz do not coincide.
@@ -26,10 +26,12 @@ struct PlacedState {
 };
 
 /// Fills the fixes and the bias drawn for them. @param epochs  the vehicle at every whole second, in order
-void sense_gnss(std::span<const PlacedState> epochs, const Projection& projection, SimulatedDrive& drive);
+void sense_gnss(std::span<const PlacedState> epochs, const drive::Projection& projection,
+                SimulatedDrive& drive);
 
 /// Fills the truth. @param states at the stamps of the truth, in order
-void sense_truth(std::span<const PlacedState> states, const Projection& projection, SimulatedDrive& drive);
+void sense_truth(std::span<const PlacedState> states, const drive::Projection& projection,
+                 SimulatedDrive& drive);
 
 /// True where the epoch has no fix: exactly `missing` of them, in outages of `mean_length` epochs in the
 /// mean.
@@ -41,4 +43,4 @@ void sense_truth(std::span<const PlacedState> states, const Projection& projecti
 [[nodiscard]] std::vector<Eigen::Vector2d> draw_bursts(const std::vector<bool>& canyon,
                                                        const GnssRecipe& recipe, std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::simulation

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include <waymark/tools/drive/projection.hpp>
+#include <waymark/tools/drive/logs/projection.hpp>
 #include <waymark/tools/simulation/road.hpp>
 #include <waymark/tools/simulation/sensors.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 /// 2021-03-15 09:00:00 UTC on the GPS scale, a whole second: where the simulated world's time begins.
@@ -15,7 +15,7 @@ constexpr Stamp kStart{1'299'834'018'000'000'000};
 /// Lays the way driven on the ground into the frame: ground lengths times the point scale of the place.
 class Placement {
  public:
-  Placement(const std::vector<DrivenState>& states, const Projection& projection)
+  Placement(const std::vector<DrivenState>& states, const drive::Projection& projection)
       : states_(states), projection_(projection) {}
 
   /// The vehicle at a tick; ticks must not decrease.
@@ -38,14 +38,14 @@ class Placement {
   }
 
   const std::vector<DrivenState>& states_;
-  const Projection& projection_;
+  const drive::Projection& projection_;
   std::size_t tick_ = 0;
   double scale_ = 1;
   Eigen::Vector2d position_{0, 0};
 };
 
 std::vector<PlacedState> place_every(std::size_t step, const std::vector<DrivenState>& states,
-                                     const Projection& projection) {
+                                     const drive::Projection& projection) {
   Placement placement(states, projection);
   std::vector<PlacedState> placed;
   for (std::size_t tick = 0; tick < states.size(); tick += step) placed.push_back(placement.at(tick));
@@ -60,8 +60,8 @@ SimulatedDrive simulate(const SimulationRecipe& recipe, std::uint64_t seed) {
   drive.name = "Simulated: " + recipe.name + ", seed " + std::to_string(seed);
   drive.seed = seed;
   drive.recipe = recipe;
-  drive.frame = choose_frame({recipe.start_latitude_deg, recipe.start_longitude_deg}, {}, {});
-  const Projection projection(drive.frame);
+  drive.frame = drive::choose_frame({recipe.start_latitude_deg, recipe.start_longitude_deg}, {}, {});
+  const drive::Projection projection(drive.frame);
 
   const double step = kTicksPerSecond / recipe.odometry.rate_hz;
   const auto samples = std::llround(recipe.duration_s * recipe.odometry.rate_hz);
@@ -79,4 +79,4 @@ SimulatedDrive simulate(const SimulationRecipe& recipe, std::uint64_t seed) {
   return drive;
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

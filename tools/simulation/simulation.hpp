@@ -9,11 +9,11 @@
 
 #include <Eigen/Core>
 
-#include <waymark/core/frame.hpp>
-#include <waymark/core/sample.hpp>
+#include <waymark/core/drive/frame.hpp>
+#include <waymark/core/drive/sample.hpp>
 #include <waymark/tools/simulation/recipe.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 
 /// A recipe with a name.
 struct SimulationPreset {
@@ -71,4 +71,4 @@ struct SimulatedDrive {
 /// @throws OutputError
 void write_simulated_drive(const SimulatedDrive& drive, const std::string& folder);
 
-}  // namespace waymark
+}  // namespace waymark::simulation

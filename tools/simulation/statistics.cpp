@@ -6,10 +6,10 @@
 
 #include <Eigen/Geometry>
 
-#include <waymark/tools/drive/timeline.hpp>
-#include <waymark/tools/evaluation/truth_interpolation.hpp>
+#include <waymark/tools/drive/nodes/timeline.hpp>
+#include <waymark/tools/evaluation/numbers/truth_interpolation.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 constexpr double kStandstill = 0.05;      // m/s, as the odometry models have it
@@ -17,7 +17,7 @@ constexpr double kLeastTruthStep = 0.05;  // m: a truth of 1 cm must not drive w
 constexpr double kYawWindow = 60;         // s
 
 double median_of(std::vector<double> values) {
-  if (values.empty()) return kUndefined;
+  if (values.empty()) return evaluation::kUndefined;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -42,22 +42,22 @@ double truth_distance(std::span<const TruthPose> truth) {
   return distance;
 }
 
-std::vector<Stamp> fix_stamps(const PreparedDrive& drive) {
+std::vector<Stamp> fix_stamps(const drive::PreparedDrive& drive) {
   std::vector<Stamp> stamps;
   for (const Fix& fix : drive.fixes) stamps.push_back(fix.stamp);
   return stamps;
 }
 
 /// Antenna and truth reference are taken for one point where the truth has no heading.
-Eigen::Vector2d truth_antenna(const TruthPose& truth, const PreparedDrive& drive) {
+Eigen::Vector2d truth_antenna(const TruthPose& truth, const drive::PreparedDrive& drive) {
   if (!truth.heading_rad) return truth.position;
   return truth.position +
          Eigen::Rotation2Dd(*truth.heading_rad) * (drive.antenna_m - drive.truth_reference_m);
 }
 
-void judge_gnss(const PreparedDrive& drive, DriveStatistics& statistics) {
+void judge_gnss(const drive::PreparedDrive& drive, DriveStatistics& statistics) {
   const std::vector<Stamp> stamps = fix_stamps(drive);
-  const TruthMatch match = interpolate_truth(drive.truth, stamps);
+  const evaluation::TruthMatch match = evaluation::interpolate_truth(drive.truth, stamps);
   std::vector<Stamp> matched;
   std::vector<Eigen::Vector2d> offsets;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
@@ -65,8 +65,9 @@ void judge_gnss(const PreparedDrive& drive, DriveStatistics& statistics) {
     matched.push_back(stamps[i]);
     offsets.push_back(drive.fixes[i].position - truth_antenna(match.at[i]->pose, drive));
   }
-  statistics.gnss = position_metrics(offsets);
-  statistics.autocorrelation = error_autocorrelation(matched, offsets, kAutocorrelationLags);
+  statistics.gnss = evaluation::position_metrics(offsets);
+  statistics.autocorrelation =
+      evaluation::error_autocorrelation(matched, offsets, evaluation::kAutocorrelationLags);
 }
 
 /// Median size of the change of (odometry - truth) heading over windows of a minute that follow each other.
@@ -86,9 +87,9 @@ double yaw_drift(std::span<const Stamp> stamps, std::span<const Eigen::Vector3d>
 }
 
 /// Dead reckoning against truth, at the truth's stamps within the odometry.
-void judge_odometry(const PreparedDrive& drive, const Timeline& timeline,
+void judge_odometry(const drive::PreparedDrive& drive, const drive::Timeline& timeline,
                     std::span<const Eigen::Vector3d> reckoned, DriveStatistics& statistics) {
-  const TruthMatch match = interpolate_truth(drive.truth, timeline.stamps);
+  const evaluation::TruthMatch match = evaluation::interpolate_truth(drive.truth, timeline.stamps);
   std::vector<Stamp> stamps;
   std::vector<Eigen::Vector3d> odometry;
   std::vector<Eigen::Vector3d> truth;
@@ -131,10 +132,10 @@ double mean_drift(std::span<const Eigen::Vector3d> odometry, std::span<const Eig
     sum += (reached - truth[end].head<2>()).norm() / (way[end] - way[begin]);
     ++pieces;
   }
-  return pieces == 0 ? kUndefined : sum / static_cast<double>(pieces);
+  return pieces == 0 ? evaluation::kUndefined : sum / static_cast<double>(pieces);
 }
 
-DriveStatistics drive_statistics(const PreparedDrive& drive, const GateOptions& gate) {
+DriveStatistics drive_statistics(const drive::PreparedDrive& drive, const drive::GateOptions& gate) {
   DriveStatistics statistics;
   statistics.duration_s = seconds_between(drive.odometry.front().stamp, drive.odometry.back().stamp);
   statistics.odometry_points = drive.odometry.size();
@@ -147,9 +148,11 @@ DriveStatistics drive_statistics(const PreparedDrive& drive, const GateOptions& 
   }
 
   std::vector<Fix> fixes = drive.fixes;
-  const Timeline timeline = build_timeline(drive.odometry, fixes, {});
-  const std::vector<Eigen::Vector3d> reckoned = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStandstill);
-  const GateSummary gated = apply_gate(fixes, antenna_at_fixes(timeline, reckoned, drive.antenna_m), gate);
+  const drive::Timeline timeline = drive::build_timeline(drive.odometry, fixes, {});
+  const std::vector<Eigen::Vector3d> reckoned =
+      drive::dead_reckon(timeline, Eigen::Vector3d::Zero(), kStandstill);
+  const drive::GateSummary gated =
+      drive::apply_gate(fixes, drive::antenna_at_fixes(timeline, reckoned, drive.antenna_m), gate);
   statistics.rejected = gated.rejected;
   statistics.rejected_percent = gated.rejected_percent();
   if (drive.truth.empty()) return statistics;
@@ -159,4 +162,4 @@ DriveStatistics drive_statistics(const PreparedDrive& drive, const GateOptions& 
   return statistics;
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

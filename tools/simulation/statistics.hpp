@@ -7,13 +7,13 @@
 
 #include <Eigen/Core>
 
-#include <waymark/core/stamp.hpp>
-#include <waymark/tools/drive/gate.hpp>
-#include <waymark/tools/drive/prepare.hpp>
-#include <waymark/tools/evaluation/autocorrelation.hpp>
-#include <waymark/tools/evaluation/metrics.hpp>
+#include <waymark/core/drive/stamp.hpp>
+#include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/drive/nodes/gate.hpp>
+#include <waymark/tools/evaluation/numbers/autocorrelation.hpp>
+#include <waymark/tools/evaluation/numbers/metrics.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 
 /// Drift of dead reckoning, over all pieces of `piece_m` of way: they start every `start_every_m`; each is
 /// laid onto the truth by position and heading at its start, and drifts by the distance at its end over its
@@ -25,17 +25,19 @@ struct DriftOptions {
 
 struct DriveStatistics {
   double duration_s = 0;
-  double distance_m = kUndefined;  ///< of the truth
+  double distance_m = evaluation::kUndefined;  ///< of the truth
   std::size_t odometry_points = 0;
   std::size_t fixes = 0;
-  std::size_t missing_epochs = 0;  ///< whole median intervals between fixes without one
-  PositionMetrics gnss;            ///< of the raw fixes against truth
-  std::size_t rejected = 0;        ///< by the gate with the drive's options
+  std::size_t missing_epochs = 0;    ///< whole median intervals between fixes without one
+  evaluation::PositionMetrics gnss;  ///< of the raw fixes against truth
+  std::size_t rejected = 0;          ///< by the gate with the drive's options
   double rejected_percent = 0;
   std::vector<double> autocorrelation;  ///< of the fixes' error, at kAutocorrelationLags
-  double drift_percent = kUndefined;    ///< mean over the pieces, see DriftOptions; NaN below one piece
-  double yaw_drift_deg_per_minute = kUndefined;  ///< median size of what the odometry's heading gains on the
-                                                 ///< truth's in a minute
+  double drift_percent =
+      evaluation::kUndefined;  ///< mean over the pieces, see DriftOptions; NaN below one piece
+  double yaw_drift_deg_per_minute =
+      evaluation::kUndefined;  ///< median size of what the odometry's heading gains on the
+                               ///< truth's in a minute
 };
 
 /// Mean drift over the pieces (DriftOptions), 0.011 for 1.1 %; NaN where none fits.
@@ -45,6 +47,7 @@ struct DriveStatistics {
                                 std::span<const Eigen::Vector3d> truth, const DriftOptions& options = {});
 
 /// Without truth all that needs one is NaN.
-[[nodiscard]] DriveStatistics drive_statistics(const PreparedDrive& drive, const GateOptions& gate);
+[[nodiscard]] DriveStatistics drive_statistics(const drive::PreparedDrive& drive,
+                                               const drive::GateOptions& gate);
 
-}  // namespace waymark
+}  // namespace waymark::simulation

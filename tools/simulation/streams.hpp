@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace waymark {
+namespace waymark::simulation {
 
 enum SimulationStream : std::uint64_t {
   kRoadStream,
@@ -22,4 +22,4 @@ enum SimulationStream : std::uint64_t {
   kTruthStream
 };
 
-}  // namespace waymark
+}  // namespace waymark::simulation

@@ -4,11 +4,11 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <waymark/formats/stamp_text.hpp>
-#include <waymark/formats/text_file.hpp>
+#include <waymark/formats/text/stamp_text.hpp>
+#include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 
-namespace waymark {
+namespace waymark::simulation {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -22,7 +22,7 @@ std::string iso8601(Stamp gps) {
 
 /// Stamps lie on the simulation's clock of 100 Hz: "1299834018.01".
 std::string centiseconds(Stamp stamp) {
-  std::string text = decimal_seconds(stamp);
+  std::string text = formats::decimal_seconds(stamp);
   text.resize(text.size() - 7);
   return text;
 }
@@ -92,10 +92,10 @@ std::string drive_yaml(const SimulatedDrive& drive) {
 }  // namespace
 
 void write_simulated_drive(const SimulatedDrive& drive, const std::string& folder) {
-  write_file_atomically(folder + "/odometry.csv", odometry_csv(drive));
-  write_file_atomically(folder + "/gnss.json", gnss_json(drive));
-  write_file_atomically(folder + "/truth.csv", truth_csv(drive));
-  write_file_atomically(folder + "/drive.yaml", drive_yaml(drive));
+  formats::write_file_atomically(folder + "/odometry.csv", odometry_csv(drive));
+  formats::write_file_atomically(folder + "/gnss.json", gnss_json(drive));
+  formats::write_file_atomically(folder + "/truth.csv", truth_csv(drive));
+  formats::write_file_atomically(folder + "/drive.yaml", drive_yaml(drive));
 }
 
-}  // namespace waymark
+}  // namespace waymark::simulation

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <numeric>
 
-#include <waymark/core/structure.hpp>
-#include <waymark/types_se2/start/least_squares.hpp>
-#include <waymark/types_se2/start/relations.hpp>
-#include <waymark/types_se2/start/starts.hpp>
+#include <waymark/core/system/structure.hpp>
+#include <waymark/types_se2/start/detail/least_squares.hpp>
+#include <waymark/types_se2/start/detail/relations.hpp>
+#include <waymark/types_se2/start/detail/starts.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark {

@@ -2,8 +2,8 @@
 #include <queue>
 #include <tuple>
 
-#include <waymark/types_se2/start/relations.hpp>
-#include <waymark/types_se2/start/starts.hpp>
+#include <waymark/types_se2/start/detail/relations.hpp>
+#include <waymark/types_se2/start/detail/starts.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark {

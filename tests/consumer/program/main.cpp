@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include <waymark/core/optimizer.hpp>
-#include <waymark/formats/graph_document.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/plugins/builtin.hpp>
 #include <waymark/solvers/register.hpp>
 #include <waymark/types_se2/register.hpp>
@@ -13,11 +13,11 @@ int main() {
   waymark::TypeRegistry registry;
   waymark::register_core_types(registry);
   waymark::register_se2_types(registry);
-  waymark::register_solvers(registry);
-  waymark::register_builtin_plugins(registry);
+  waymark::solvers::register_solvers(registry);
+  waymark::plugins::register_builtin_plugins(registry);
 
   // 2 m/s for 3 s straight ahead from a known pose.
-  waymark::GraphDocument document = waymark::read_graph(
+  waymark::formats::GraphDocument document = waymark::formats::read_graph(
       "GRAPH 1\nVERTEX_SE2 1 0 0 0\nVERTEX_SE2 2 5 1 0.1\nFIX 1\n"
       "EDGE_SE2_ODOMETRY 1 2 2 0 3 400 0 0 400 0 90000\n",
       "consumer", registry);

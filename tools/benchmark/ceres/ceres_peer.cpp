@@ -10,8 +10,8 @@
 #include <glog/logging.h>
 #include <Eigen/Cholesky>
 
-#include <waymark/core/error.hpp>
-#include <waymark/core/gauge.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/system/gauge.hpp>
 #include <waymark/plugins/odometry/edge_odometry.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
@@ -28,7 +28,7 @@ Jet<double, N> wrap_angle(const Jet<double, N>& angle) {
 
 }  // namespace ceres
 
-namespace waymark {
+namespace waymark::benchmark {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -219,8 +219,8 @@ CostMaker typed_cost(std::string_view tag) {
   static const std::map<std::string_view, CostMaker> makers = {
       {EdgeSe2::kTag, &make_typed_cost<EdgeSe2>},
       {EdgeSe2Log::kTag, &make_typed_cost<EdgeSe2Log>},
-      {EdgeSe2Odometry::kTag, &make_typed_cost<EdgeSe2Odometry>},
-      {EdgeSe2Standstill::kTag, &make_typed_cost<EdgeSe2Standstill>},
+      {plugins::odometry::EdgeSe2Odometry::kTag, &make_typed_cost<plugins::odometry::EdgeSe2Odometry>},
+      {plugins::odometry::EdgeSe2Standstill::kTag, &make_typed_cost<plugins::odometry::EdgeSe2Standstill>},
       {EdgeGnssPosition::kTag, &make_typed_cost<EdgeGnssPosition>},
       {EdgePriorSe2::kTag, &make_typed_cost<EdgePriorSe2>},
       {EdgeSe2Xy::kTag, &make_typed_cost<EdgeSe2Xy>},
@@ -344,4 +344,4 @@ std::string ceres_version() {
   return std::string("Ceres ") + CERES_VERSION_STRING;
 }
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

@@ -10,10 +10,10 @@
 #include <atomic>
 #include <string>
 
-#include <waymark/core/graph.hpp>
+#include <waymark/core/graph/graph.hpp>
 #include <waymark/tools/benchmark/measure.hpp>
 
-namespace waymark {
+namespace waymark::benchmark {
 
 enum class CeresMethod { levenberg_marquardt, dogleg };
 
@@ -31,4 +31,4 @@ struct CeresOptions {
 /// "Ceres 2.1.0".
 [[nodiscard]] std::string ceres_version();
 
-}  // namespace waymark
+}  // namespace waymark::benchmark

@@ -1,0 +1,65 @@
+#include <system_error>
+
+#include <waymark/core/base/detail/thread_pool.hpp>
+
+namespace waymark {
+
+ThreadPool::ThreadPool(int threads) {
+  try {
+    for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { wait_for_work(); });
+  } catch (const std::system_error&) {
+    // Out of threads: results do not depend on their number.
+  }
+}
+
+ThreadPool::~ThreadPool() {
+  {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+void ThreadPool::run(int count, const std::function<void(int)>& work) {
+  {
+    const std::scoped_lock lock(mutex_);
+    work_ = &work;
+    count_ = count;
+    next_ = 0;
+    ++round_;
+  }
+  wake_.notify_all();
+  take_items();
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return busy_ == 0; });
+  work_ = nullptr;
+}
+
+void ThreadPool::take_items() {
+  std::unique_lock lock(mutex_);
+  ++busy_;
+  while (next_ < count_) {
+    const int item = next_++;
+    const auto* work = work_;
+    lock.unlock();
+    (*work)(item);
+    lock.lock();
+  }
+  if (--busy_ == 0) done_.notify_all();
+}
+
+void ThreadPool::wait_for_work() {
+  std::uint64_t seen = 0;
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [&] { return stop_ || round_ != seen; });
+      if (stop_) return;
+      seen = round_;
+    }
+    take_items();
+  }
+}
+
+}  // namespace waymark

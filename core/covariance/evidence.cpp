@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <waymark/core/covariance/evidence.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/core/system/normal_equations.hpp>
+
+namespace waymark {
+namespace {
+
+/// Below this share of the largest eigenvalue an axis carries no information.
+constexpr double kNoInformation = 1e-12;
+
+template <int N>
+double log_determinant(const Eigen::MatrixXd& information) {
+  using Matrix = Eigen::Matrix<double, N, N>;
+  const Matrix fixed = information;
+  const Eigen::LLT<Matrix> root(fixed);
+  if (root.info() == Eigen::Success) {
+    const auto diagonal = root.matrixLLT().diagonal().array();
+    if (diagonal.square().minCoeff() > kNoInformation * fixed.diagonal().maxCoeff())
+      return 2 * diagonal.log().sum();
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(fixed, Eigen::EigenvaluesOnly);
+  const double largest = solver.eigenvalues().tail(1)[0];
+  double sum = 0;
+  for (const double eigenvalue : solver.eigenvalues()) {
+    if (eigenvalue > kNoInformation * largest) sum += std::log(eigenvalue);
+  }
+  return sum;
+}
+
+double log_determinant_of(const Eigen::MatrixXd& information) {
+  switch (information.rows()) {
+    case 0:
+      return 0;
+    case 1:
+      return log_determinant<1>(information);
+    case 2:
+      return log_determinant<2>(information);
+    case 3:
+      return log_determinant<3>(information);
+    default:
+      return log_determinant<Eigen::Dynamic>(information);
+  }
+}
+
+double log_det_information(const Graph& graph) {
+  double sum = 0;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeBatchBase& batch = graph.batch(b);
+    for (std::size_t i = 0; i < batch.size(); ++i) sum += log_determinant_of(batch.information(i));
+  }
+  return sum;
+}
+
+/// The weight of a robust edge at which Laplace's method gives the density exp(-rho / 2) of its error the
+/// mass that it has: a heavy tail makes the peak narrower than a normal distribution of the same mass.
+double weight_of_mass(const Loss& loss, int dimension) {
+  constexpr double kReach = 20;  // standard deviations; beyond them a bounded loss has mass without end
+  constexpr int kSteps = 4'000;
+  double heavy = 0;
+  double normal = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double r = kReach * (i + 0.5) / kSteps;
+    const double shell = std::pow(r, dimension - 1);
+    heavy += shell * std::exp(-0.5 * loss.at(r * r).rho);
+    normal += shell * std::exp(-0.5 * r * r);
+  }
+  return std::pow(normal / heavy, 2.0 / dimension);
+}
+
+/// Of each batch: the least of its losses; 1 where it has none.
+std::vector<double> evidence_weights(const Graph& graph) {
+  std::vector<double> weights(graph.batch_count(), 1.0);
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeBatchBase& batch = graph.batch(b);
+    const Loss* last = nullptr;
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const Loss* loss = batch.loss(i);
+      if (loss == nullptr || loss == last) continue;
+      weights[b] = std::min(weights[b], weight_of_mass(*loss, batch.error_dimension(i)));
+      last = loss;
+    }
+  }
+  return weights;
+}
+
+}  // namespace
+
+Evidence evidence(const Graph& graph, const Structure& structure, BlockCholesky& cholesky) {
+  NormalEquations equations(graph, structure);
+  Evidence result;
+  result.chi2 = equations.linearize(graph.values(), evidence_weights(graph));
+  result.log_det_hessian = cholesky.factorize(equations.hessian()) == FactorStatus::ok
+                               ? cholesky.log_determinant()
+                               : std::numeric_limits<double>::infinity();
+  result.log_det_information = log_det_information(graph);
+  return result;
+}
+
+Evidence evidence(const Graph& graph) {
+  Structure structure;
+  structure.build(graph, find_gauge(graph).held);
+  BlockCholesky cholesky;
+  cholesky.analyze(structure.pattern());
+  return evidence(graph, structure, cholesky);
+}
+
+}  // namespace waymark

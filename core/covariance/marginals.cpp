@@ -1,0 +1,81 @@
+#include <algorithm>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/covariance/marginals.hpp>
+#include <waymark/core/system/normal_equations.hpp>
+
+namespace waymark {
+namespace {
+
+std::size_t at(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+Marginals::Marginals(const Graph& graph) : graph_(graph), gauge_(find_gauge(graph)) {
+  structure_.build(graph, gauge_.held);
+  NormalEquations equations(graph, structure_);
+  (void)equations.linearize(graph.values());
+  cholesky_.analyze(structure_.pattern());
+  if (cholesky_.factorize(equations.hessian()) != FactorStatus::ok) {
+    throw InputError(
+        "the normal equations are not positive definite: some vertex is not determined by its edges");
+  }
+}
+
+CovarianceBlocks Marginals::blocks(std::span<const VertexIndex> vertices) const {
+  CovarianceBlocks result;
+  result.places_.reserve(vertices.size());
+  std::int64_t numbers = 0;
+  for (const VertexIndex v : vertices) {
+    const int size = graph_.vertex_type(v).tangent_size;
+    result.places_.push_back({numbers, size});
+    numbers += std::int64_t{size} * size;
+  }
+  result.numbers_.assign(at(numbers), 0.0);
+  std::vector<double*> target(structure_.pattern().size.size(), nullptr);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const int column = structure_.column_of(vertices[i]);
+    if (column >= 0) target[at(column)] = result.numbers_.data() + result.places_[i].begin;
+  }
+  cholesky_.invert_diagonal(target);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {  // a vertex asked for twice
+    const int column = structure_.column_of(vertices[i]);
+    double* own = result.numbers_.data() + result.places_[i].begin;
+    if (column < 0 || target[at(column)] == own) continue;
+    std::copy_n(target[at(column)], result.places_[i].size * result.places_[i].size, own);
+  }
+  return result;
+}
+
+Eigen::MatrixXd Marginals::joint(std::span<const VertexIndex> vertices) {
+  const BlockPattern& pattern = structure_.pattern();
+  std::vector<std::int64_t> unknown;  // per row of the result, -1: none
+  for (const VertexIndex v : vertices) {
+    const int column = structure_.column_of(v);
+    for (int i = 0; i < graph_.vertex_type(v).tangent_size; ++i) {
+      unknown.push_back(column < 0 ? -1 : pattern.start[at(column)] + i);
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(unknown.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  std::vector<double> x;
+  for (Eigen::Index c = 0; c < n; ++c) {
+    if (unknown[at(c)] < 0) continue;
+    x.assign(at(pattern.dimension()), 0.0);
+    x[at(unknown[at(c)])] = 1;
+    cholesky_.solve(x, x);
+    for (Eigen::Index r = 0; r < n; ++r) {
+      if (unknown[at(r)] >= 0) covariance(r, c) = x[at(unknown[at(r)])];
+    }
+  }
+  // Symmetric but for rounding; + 0 takes the sign off a zero.
+  return (0.5 * (covariance + covariance.transpose())).array() + 0.0;
+}
+
+CovarianceBlocks marginal_covariances(const Graph& graph, std::span<const VertexIndex> vertices) {
+  return Marginals(graph).blocks(vertices);
+}
+
+}  // namespace waymark

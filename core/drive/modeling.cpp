@@ -1,0 +1,33 @@
+#include <algorithm>
+#include <cmath>
+
+#include <waymark/core/drive/log_reader.hpp>
+#include <waymark/core/drive/modeling.hpp>
+
+namespace waymark {
+
+OdometryModel::~OdometryModel() = default;
+GnssModeling::~GnssModeling() = default;
+SensorModel::~SensorModel() = default;
+
+std::optional<NodeInTime> nearest_node(const DriveNodes& nodes, Stamp moment, double tolerance_s) {
+  if (nodes.stamps.empty()) return std::nullopt;
+  const auto after = std::lower_bound(nodes.stamps.begin(), nodes.stamps.end(), moment);
+  auto node = static_cast<std::size_t>(after - nodes.stamps.begin());
+  if (after == nodes.stamps.end()) {
+    --node;
+  } else if (node > 0 &&
+             seconds_between(nodes.stamps[node - 1], moment) < seconds_between(moment, nodes.stamps[node])) {
+    --node;
+  }
+  const double ahead = seconds_between(nodes.stamps[node], moment);
+  const bool outside = moment < nodes.stamps.front() || moment > nodes.stamps.back();
+  if (outside && std::abs(ahead) > tolerance_s) return std::nullopt;
+  return NodeInTime{node, ahead};
+}
+
+const Interval& motion_at(const DriveNodes& nodes, std::size_t node) {
+  return nodes.intervals[std::min(node, nodes.intervals.size() - 1)];
+}
+
+}  // namespace waymark

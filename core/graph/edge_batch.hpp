@@ -1,0 +1,165 @@
+/// Edge batches: all edges of one type in one contiguous array; one virtual call per type and pass.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <waymark/core/base/detail/large_array.hpp>
+#include <waymark/core/graph/edge.hpp>
+#include <waymark/core/graph/loss.hpp>
+
+namespace waymark {
+
+/// Where the product of two Jacobians of an edge goes in the normal matrix: a column-major block at
+/// values[offset]. `stride` is the distance between columns; negative: the first vertex is the block's
+/// column.
+struct BlockTarget {
+  std::uint32_t offset = 0;
+  std::int32_t stride = 0;
+};
+
+/// Edges [first, last) of a batch.
+struct EdgeRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
+/// The targets of all edges of a batch, made once per structure. Per edge of K vertices: K places in the
+/// gradient and K (K + 1) / 2 blocks, pair (k, l <= k) at k (k + 1) / 2 + l. Held vertices point to a scratch
+/// area behind the numbers, so that the kernels have no branch for them.
+///
+/// The edges are parted into chunks that write to disjoint places and may be worked on at the same time;
+/// those of the last chunk write anywhere and come after all others. Chunks do not depend on the number of
+/// threads, so sums do not either.
+struct Scatter {
+  LargeArray<std::uint32_t> gradient;
+  LargeArray<BlockTarget> blocks;
+  std::vector<EdgeRange> ranges;
+  std::vector<std::size_t> chunk{0};  ///< begin of each chunk in `ranges`; one more at the end
+};
+
+/// What a pass over the edges reads.
+struct ValueView {
+  const double* values = nullptr;         ///< all vertices' numbers
+  const std::int64_t* offsets = nullptr;  ///< start of each vertex in `values`
+};
+
+/// What linearisation adds to: H += J^T (w Omega + second-order term of the loss, robust_information.hpp) J,
+/// g += w J^T Omega e. For the evidence (evidence.hpp) H takes min(w, evidence_weight) Omega instead.
+struct NormalView {
+  double* hessian = nullptr;
+  double* gradient = nullptr;
+  double evidence_weight = 0;  ///< 0: H is for steps
+};
+
+/// What the edges know of rigid motions is added up per component of the graph.
+struct RigidMotionView {
+  /// Where a component lies; a turn is about the centre by 1 / extent radians.
+  struct Place {
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+    double extent = 1;
+  };
+  const std::int32_t* component = nullptr;  ///< per vertex; -1: it is held or does not move
+  const Place* places = nullptr;            ///< per component
+  Eigen::Matrix3d* information = nullptr;   ///< per component, added to
+};
+
+/// The vertices of all edges of a batch, where each has as many: edge e's begin `stride` bytes after those of
+/// e - 1.
+struct VertexTable {
+  const VertexIndex* first = nullptr;
+  std::size_t stride = 0;
+  int arity = 0;  ///< 0: of run-time arity; ask for each edge
+
+  [[nodiscard]] std::span<const VertexIndex> operator[](std::size_t edge) const {
+    const auto* bytes = reinterpret_cast<const char*>(first) + edge * stride;
+    return {reinterpret_cast<const VertexIndex*>(bytes), static_cast<std::size_t>(arity)};
+  }
+};
+
+class EdgeBatchBase {
+ public:
+  virtual ~EdgeBatchBase();
+  [[nodiscard]] virtual std::unique_ptr<EdgeBatchBase> clone() const = 0;
+
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  [[nodiscard]] virtual std::span<const VertexIndex> vertices(std::size_t edge) const = 0;
+  [[nodiscard]] virtual int error_dimension(std::size_t edge) const = 0;
+
+  /// Appends an edge from its numbers: vertices with their types, fields in schema order, full information
+  /// matrix.
+  virtual void append(std::span<const VertexIndex> vertices, std::span<const VertexType* const> types,
+                      std::span<const double> fields, const Eigen::MatrixXd& information) = 0;
+  /// Makes room for this many edges in all; only a matter of speed.
+  virtual void reserve(std::size_t) {}
+  /// Drops edges and renumbers the vertices of the others; their order, numbers and losses stay.
+  /// @param gone per edge: not zero drops it
+  /// @param new_index per vertex: its new index, >= 0 for every vertex of an edge that stays
+  void remove(std::span<const char> gone, std::span<const VertexIndex> new_index);
+  /// The numbers of an edge, in schema order, appended to `out`.
+  virtual void fields(std::size_t edge, std::vector<double>& out) const = 0;
+  [[nodiscard]] virtual Eigen::MatrixXd information(std::size_t edge) const = 0;
+
+  /// The vertices of all edges at once; empty for run-time arity.
+  [[nodiscard]] virtual VertexTable vertex_table() const { return {}; }
+
+  /// Sum of rho(e^T Omega e) over a range of edges. Non-finite when an error is.
+  [[nodiscard]] virtual double chi2(const ValueView& view, EdgeRange range) const = 0;
+  [[nodiscard]] double chi2(const ValueView& view) const {
+    return chi2(view, {0, static_cast<std::uint32_t>(size())});
+  }
+  /// Adds the part of a range of edges to the normal equations and returns its chi2.
+  virtual double linearize(const ValueView& view, const Scatter& scatter, EdgeRange range,
+                           const NormalView& normal) const = 0;
+  /// One edge's error and Jacobians (one matrix per vertex), without information and loss: for checks and
+  /// tests.
+  virtual void linearize_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
+                              std::vector<Eigen::MatrixXd>& jacobians) const = 0;
+  /// The same by dual numbers even where the type has a linearize(...) of its own.
+  virtual void differentiate_edge(std::size_t edge, const ValueView& view, Eigen::VectorXd& error,
+                                  std::vector<Eigen::MatrixXd>& jacobians) const = 0;
+  /// Adds (sum_k J_k T_k)^T Omega (sum_k J_k T_k) to the component of each edge, T_k the rigid motions of its
+  /// vertices (Vertex: rigid_motion).
+  virtual void add_rigid_information(const ValueView& view, const RigidMotionView& motion) const = 0;
+
+  /// The loss of every edge that has none of its own.
+  void set_loss(Loss loss) { batch_loss_ = std::move(loss); }
+  void set_loss(std::size_t edge, Loss loss);
+  /// The loss of an edge; null: none (rho(s) = s).
+  [[nodiscard]] const Loss* loss(std::size_t edge) const;
+  [[nodiscard]] const Loss* batch_loss() const { return batch_loss_.evaluate ? &batch_loss_ : nullptr; }
+
+ protected:
+  EdgeBatchBase() = default;
+  EdgeBatchBase(const EdgeBatchBase&) = default;
+  EdgeBatchBase& operator=(const EdgeBatchBase&) = default;
+
+  [[nodiscard]] bool has_loss() const { return batch_loss_.evaluate != nullptr || !edge_loss_.empty(); }
+  [[nodiscard]] LossValue evaluate_loss(std::size_t edge, double squared) const;
+
+ private:
+  /// remove() without the losses.
+  virtual void remove_records(std::span<const char> gone, std::span<const VertexIndex> new_index) = 0;
+
+  Loss batch_loss_;
+  std::vector<Loss> losses_;  // those attached to single edges, each once
+  std::vector<std::int32_t>
+      edge_loss_;  // per edge an index into losses_, -1: the batch's; empty: none attached
+};
+
+/// visit(vertices) for every edge of a batch, in order.
+template <typename Visit>
+void for_each_edge(const EdgeBatchBase& batch, Visit visit, std::size_t first = 0) {
+  const VertexTable table = batch.vertex_table();
+  if (table.arity > 0) {
+    for (std::size_t e = first; e < batch.size(); ++e) visit(table[e]);
+  } else {
+    for (std::size_t e = first; e < batch.size(); ++e) visit(batch.vertices(e));
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,108 @@
+#include <array>
+#include <numbers>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/graph/edge_type_check.hpp>
+
+namespace waymark {
+namespace {
+
+/// Vertices and reference values of one edge.
+struct Joined {
+  std::vector<VertexIndex> vertices;
+  std::vector<double> reference;  ///< the vertices' numbers, each a little off
+  std::size_t tangent_size = 0;
+};
+
+Joined add_vertices(const TypeRegistry& registry, const EdgeType& type, const EdgeScenario& scenario,
+                    std::mt19937_64& random, Graph& graph) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<std::string> tags = type.vertex_tags;
+  if (type.arity == EdgeType::kRuntimeArity) {  // takes any
+    for (const auto& [vertex, origin] : registry.vertices()) tags.push_back(vertex.tag);
+  }
+  Joined joined;
+  for (const std::string& tag : tags) {
+    const VertexType* vertex = registry.find_vertex(tag);
+    if (vertex == nullptr)
+      throw UsageError(type.tag + ": joins " + tag +
+                       ", which is not registered; load the plugin that brings it");
+    std::vector<double> value;
+    for (const std::string& name : vertex->value_names) {
+      value.push_back(name == "heading" ? scenario.heading + scenario.spread * unit(random)
+                                        : scenario.place * unit(random));
+    }
+    const std::vector<double> zero(static_cast<std::size_t>(vertex->tangent_size), 0.0);
+    vertex->retract(value.data(), zero.data());  // normalised
+    joined.vertices.push_back(
+        graph.add_vertex(*vertex, static_cast<VertexId>(joined.vertices.size()), value));
+    joined.tangent_size += zero.size();
+    for (const double x : value) joined.reference.push_back(x + scenario.field * unit(random));
+  }
+  return joined;
+}
+
+bool is_finite(const Graph& graph) {
+  Eigen::VectorXd error;
+  std::vector<Eigen::MatrixXd> jacobians;
+  graph.batch(0).linearize_edge(0, graph.view(), error, jacobians);
+  bool finite = error.allFinite();
+  for (const Eigen::MatrixXd& jacobian : jacobians) finite = finite && jacobian.allFinite();
+  return finite;
+}
+
+}  // namespace
+
+std::span<const EdgeScenario> edge_scenarios() {
+  constexpr double kPi = std::numbers::pi;
+  static constexpr std::array<EdgeScenario, 6> kScenarios = {{
+      {"identity", 0, 0, 0, 0},
+      {"tiny relative motion", 1e-8, 0.3, 1e-8, 1e-8},
+      {"tiny relative motion at heading pi", 1e-8, kPi, 1e-8, 1e-8},
+      {"headings on both sides of pi", 5, kPi, 0.1, 0.4},
+      {"random", 5, 0, 1.4, 0.7},
+      {"far away", 2000, 1, 0.5, 0.7},
+  }};
+  return kScenarios;
+}
+
+Graph single_edge(const TypeRegistry& registry, const EdgeType& type, const EdgeScenario& scenario,
+                  std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Graph graph;
+  const Joined joined = add_vertices(registry, type, scenario, random, graph);
+  const bool runtime = type.arity == EdgeType::kRuntimeArity;
+  std::vector<double> fields = runtime ? joined.reference : std::vector<double>();
+  const std::size_t rest = runtime ? joined.tangent_size : static_cast<std::size_t>(type.field_size());
+  for (std::size_t i = 0; i < rest; ++i) fields.push_back(scenario.field * unit(random));
+  const auto n =
+      runtime ? static_cast<Eigen::Index>(joined.tangent_size) : Eigen::Index{type.error_dimension};
+  const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return unit(random); });
+  const Eigen::MatrixXd information = root * root.transpose() + Eigen::MatrixXd::Identity(n, n);
+  graph.add_edge(type, joined.vertices, fields, 0.5 * (information + information.transpose()));
+  return graph;
+}
+
+EdgeTypeCheck check_edge_type(const TypeRegistry& registry, const EdgeType& type, int repetitions) {
+  EdgeTypeCheck result;
+  for (const EdgeScenario& scenario : edge_scenarios()) {
+    std::mt19937_64 random(11);
+    for (int i = 0; i < repetitions; ++i) {
+      Graph graph = single_edge(registry, type, scenario, random);
+      ++result.trials;
+      if (!is_finite(graph)) {
+        ++result.not_finite;
+        continue;
+      }
+      const GradientCheck found = check_gradients(graph, 0, 1);
+      result.judged += found.judged;
+      if (!result.scenario.empty() && found.error <= result.worst.error) continue;
+      result.worst = found;
+      result.scenario = scenario.name;
+      result.graph = std::move(graph);
+    }
+  }
+  return result;
+}
+
+}  // namespace waymark

@@ -1,0 +1,33 @@
+/// What all vertices of one plain number share: biases, scales, offsets.
+#pragma once
+
+#include <array>
+
+#include <waymark/core/graph/graph.hpp>
+
+namespace waymark {
+
+/// Derive from it and add kTag, value_names() and, for a report with units, value_units():
+///   struct VertexClockBias : ScalarState { static constexpr std::string_view kTag = "VERTEX_CLOCK_BIAS"; ...
+///   };
+/// An edge's error takes the number as a scalar T.
+struct ScalarState {
+  static constexpr int kValueSize = 1;
+  static constexpr int kTangentSize = 1;
+  static constexpr bool kLinearChart = true;
+
+  template <typename T>
+  static T at(const double* value, const T* delta) {
+    return delta[0] + T(value[0]);
+  }
+  static void retract(double* value, const double* delta) { value[0] += delta[0]; }
+  static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
+};
+
+/// Ties such a vertex to 0 by an EDGE_GAUSSIAN_PRIOR. @param sigma  in the state's unit, above 0
+inline void add_prior_about_zero(Graph& graph, VertexIndex state, double sigma) {
+  graph.add_edge(gaussian_prior_type(), std::array{state}, std::array{0.0, 0.0},
+                 Eigen::MatrixXd::Constant(1, 1, 1 / (sigma * sigma)));
+}
+
+}  // namespace waymark

@@ -1,0 +1,65 @@
+/// Cholesky factorisation of a sparse symmetric positive definite matrix of small dense blocks.
+///
+/// Chains are eliminated link by link in registers, from both ends; everything else in dense fronts, each
+/// handing its update to its parent (the multifrontal method; Duff, Reid 1983). Nothing recurses and, after
+/// the first factorisation, nothing allocates. Independent subtrees may be worked on by several threads; a
+/// sum is always formed in the same order, so the bits do not depend on their number.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <waymark/core/base/detail/large_array.hpp>
+#include <waymark/core/linear/block_symbolic.hpp>
+#include <waymark/core/linear/detail/dense_kernels.hpp>
+#include <waymark/core/linear/linear_solver.hpp>
+
+namespace waymark {
+
+class ThreadPool;
+
+class BlockCholesky final : public LinearSolver {
+ public:
+  /// @param kernels must outlive this object; results of other ones differ by rounding
+  explicit BlockCholesky(const DenseKernels& kernels = dense_kernels()) : kernels_(&kernels) {}
+
+  void analyze(const BlockPattern& pattern) override;
+  [[nodiscard]] FactorStatus factorize(std::span<const double> values) override;
+  void solve(std::span<const double> b, std::span<double> x) override;
+  [[nodiscard]] std::int64_t factor_size() const override { return symbolic_.factor_size; }
+  [[nodiscard]] std::string description() const override;
+  void set_threads(ThreadPool* pool) override { pool_ = pool; }
+
+  /// Diagonal blocks of the inverse, from the last factor, which must be ok (block_inverse.cpp).
+  /// @param blocks for each block column of the pattern given to analyze() where its block goes, whole and
+  /// column by column; null: not wanted. For all of them chains cost about as much as their factorisation,
+  /// dense fronts about four times as much; a subtree without a wanted one costs nothing.
+  void invert_diagonal(std::span<double* const> blocks) const;
+
+  /// log det of the matrix, from the last factor, which must be ok.
+  [[nodiscard]] double log_determinant() const;
+
+ private:
+  class Stream;
+  class DiagonalInverse;
+
+  /// A pass over all subtrees, side by side, and one over what is above them; false: a pivot failed.
+  template <typename Pass>
+  bool walk_subtrees(const Pass& pass);
+  template <typename Pass>
+  bool walk_top(const Pass& pass);
+  template <typename Work>
+  void for_each_subtree(Work work);
+
+  BlockSymbolic symbolic_;
+  const DenseKernels* kernels_;
+  ThreadPool* pool_ = nullptr;
+  LargeArray<double> factor_;
+  LargeArray<double> updates_;
+  std::vector<double> vectors_;
+  LargeArray<double> work_;
+};
+
+}  // namespace waymark

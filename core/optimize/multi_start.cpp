@@ -1,0 +1,261 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/optimize/multi_start.hpp>
+
+namespace waymark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr int kPatience = 30;          // steps of one start before the next is tried
+constexpr double kSameMinimum = 1e-6;  // relative difference of chi2
+constexpr double kSuspicious = 6;      // standard deviations above the degrees of freedom
+constexpr double kLoopShare = 0.02;    // loops per free vertex from which a start costs less than a step
+constexpr const char* kFile = "file";
+
+struct Size {
+  std::int64_t unknowns = 0;   ///< scalar
+  std::int64_t equations = 0;  ///< scalar
+  std::int64_t vertices = 0;   ///< free
+  std::int64_t loops = 0;      ///< edges among free vertices beyond a tree of them
+};
+
+Size measure(const Graph& graph) {
+  Size size;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (graph.fixed(v)) continue;
+    ++size.vertices;
+    size.unknowns += graph.vertex_type(v).tangent_size;
+  }
+  std::int64_t joints = 0;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeBatchBase& batch = graph.batch(b);
+    const int dimension = graph.edge_type(b).error_dimension;  // 0: each edge has its own
+    size.equations += dimension * static_cast<std::int64_t>(batch.size());
+    if (dimension == 0) {
+      for (std::size_t e = 0; e < batch.size(); ++e) size.equations += batch.error_dimension(e);
+    }
+    for_each_edge(batch, [&](std::span<const VertexIndex> vertices) {
+      std::int64_t free = 0;
+      for (const VertexIndex v : vertices) free += graph.fixed(v) ? 0 : 1;
+      joints += std::max<std::int64_t>(free - 1, 0);
+    });
+  }
+  size.loops = joints - (size.vertices - 1);
+  return size;
+}
+
+double plausible(const Size& size) {
+  const auto freedom = static_cast<double>(std::max<std::int64_t>(size.equations - size.unknowns, 1));
+  return freedom + kSuspicious * std::sqrt(2 * freedom);
+}
+
+class MultiStart {
+ public:
+  MultiStart(Graph& graph, const RegistryTable<StartType>& starts, Algorithm& algorithm, LinearSolver& solver,
+             const OptimizerOptions& options)
+      : graph_(graph), starts_(starts), algorithm_(algorithm), solver_(solver), options_(options) {}
+
+  MultiStartSummary run();
+
+ private:
+  void choose_first();
+  void try_from(const std::string& start, const std::vector<double>& values, int patience);
+  void try_others();
+  void finish_best();
+  void describe();
+  std::vector<double> make(const StartType& start);
+  double chi2_at(const std::vector<double>& values);
+
+  [[nodiscard]] bool tried(const std::string& start) const {
+    return std::find(tried_.begin(), tried_.end(), start) != tried_.end();
+  }
+  [[nodiscard]] bool settled() const {
+    if (result_.trials.empty()) return false;
+    const Summary& best = result_.summary;
+    if (best.termination == Termination::interrupted || iterations_left() <= 0) return true;
+    if (!best.converged()) return false;
+    return best.final_chi2 <= plausible_ || confirmed_;
+  }
+  [[nodiscard]] int iterations_left() const { return options_.max_iterations - iterations_; }
+
+  Graph& graph_;
+  const RegistryTable<StartType>& starts_;
+  Algorithm& algorithm_;
+  LinearSolver& solver_;
+  const OptimizerOptions& options_;
+
+  MultiStartSummary result_;
+  std::vector<double> file_values_;
+  std::vector<double> best_values_;
+  std::vector<std::string> notes_;  // starts that could not be made or used
+  std::vector<std::string> tried_;
+  std::exception_ptr refusal_;  // the first
+  double plausible_ = 0;
+  double file_chi2_ = 0;
+  bool confirmed_ = false;  // two starts have ended at the best minimum
+  int iterations_ = 0;
+  Clock::time_point begin_ = Clock::now();
+};
+
+std::vector<double> MultiStart::make(const StartType& start) {
+  graph_.set_values(file_values_);
+  InitialValues made = start.make(graph_);
+  if (made.values.empty()) notes_.push_back("start " + start.name + " could not be made: " + made.note);
+  return std::move(made.values);
+}
+
+double MultiStart::chi2_at(const std::vector<double>& values) {
+  graph_.set_values(values);
+  return graph_.chi2();
+}
+
+void MultiStart::try_from(const std::string& start, const std::vector<double>& values, int patience) {
+  const Clock::time_point begin = Clock::now();
+  graph_.set_values(values);
+  tried_.push_back(start);
+  OptimizerOptions options = options_;
+  options.max_iterations = std::min(patience, iterations_left());
+  Summary summary;
+  try {
+    summary = optimize(graph_, algorithm_, solver_, options);
+  } catch (const InputError& error) {
+    // The gauge is judged at the values: poses on one heap, say, seem to say nothing of their headings.
+    if (!refusal_) refusal_ = std::current_exception();
+    notes_.push_back("start " + start + " could not be used: " + error.what());
+    return;
+  }
+  iterations_ += summary.iterations;
+  result_.trials.push_back({start, summary.initial_chi2, summary.final_chi2, summary.iterations,
+                            summary.termination, seconds_since(begin)});
+  const Summary& best = result_.summary;
+  const bool first = result_.trials.size() == 1;
+  const bool same = !first && best.converged() && summary.converged() &&
+                    std::abs(summary.final_chi2 - best.final_chi2) <= kSameMinimum * (1 + best.final_chi2);
+  confirmed_ = confirmed_ || same;
+  if (same || (!first && !(summary.final_chi2 < best.final_chi2))) return;  // of equals the first is kept
+  confirmed_ = false;
+  result_.summary = std::move(summary);
+  result_.start = start;
+  const bool only_one = first && !refusal_ && settled();
+  if (!only_one) best_values_ = graph_.values();
+}
+
+void MultiStart::choose_first() {
+  const Size size = measure(graph_);
+  plausible_ = plausible(size);
+  const bool loopy = static_cast<double>(size.loops) > kLoopShare * static_cast<double>(size.vertices);
+  if (loopy && !starts_.empty() && options_.max_iterations > 0) {
+    file_chi2_ = graph_.chi2();
+    if (!(file_chi2_ <= plausible_)) {
+      const StartType& start = starts_.front().type;
+      const std::vector<double> values = make(start);
+      if (!values.empty() && chi2_at(values) < file_chi2_) return try_from(start.name, values, kPatience);
+    }
+  }
+  try_from(kFile, file_values_, kPatience);
+}
+
+void MultiStart::try_others() {
+  if (!settled() && !tried(kFile)) try_from(kFile, file_values_, kPatience);
+  for (const auto& [start, origin] : starts_) {
+    if (settled()) return;
+    if (tried(start.name)) continue;
+    const std::vector<double> values = make(start);
+    if (!values.empty()) try_from(start.name, values, kPatience);
+  }
+}
+
+/// The best run may have been cut short.
+void MultiStart::finish_best() {
+  if (result_.summary.termination != Termination::max_iterations || iterations_left() <= 0) return;
+  Summary& best = result_.summary;
+  graph_.set_values(best_values_);
+  OptimizerOptions options = options_;
+  options.max_iterations = iterations_left();
+  Summary rest = optimize(graph_, algorithm_, solver_, options);
+  // One run in two pieces.
+  for (IterationRecord& record : rest.records) record.iteration += best.iterations;
+  rest.records.insert(rest.records.begin(), best.records.begin(), best.records.end());
+  rest.iterations += best.iterations;
+  rest.initial_chi2 = best.initial_chi2;
+  rest.structure_seconds += best.structure_seconds;
+  rest.linearize_seconds += best.linearize_seconds;
+  rest.solve_seconds += best.solve_seconds;
+  rest.total_seconds += best.total_seconds;
+  best = std::move(rest);
+  for (StartTrial& trial : result_.trials) {
+    if (trial.start != result_.start) continue;
+    trial.final_chi2 = best.final_chi2;
+    trial.iterations = best.iterations;
+    trial.termination = best.termination;
+    trial.seconds = best.total_seconds;
+  }
+  best_values_ = graph_.values();
+}
+
+std::string number(const char* format, double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+void MultiStart::describe() {
+  std::vector<std::string>& notes = result_.summary.notes;
+  notes.insert(notes.end(), notes_.begin(), notes_.end());
+  if (result_.trials.size() == 1) {
+    if (result_.start == kFile) return;
+    std::string note = "started from " + result_.start;
+    if (!refusal_) {  // else chi2 was not asked for there
+      note += ": chi2 " + number("%.6g", result_.summary.initial_chi2) + " there, " +
+              number("%.6g", file_chi2_) + " at the values given";
+    }
+    notes.push_back(note);
+    return;
+  }
+  std::string note =
+      "the first start ended at no minimum or at one of implausible chi2, so others were tried:";
+  for (const StartTrial& trial : result_.trials) {
+    note += " " + trial.start + " (chi2 " + number("%.6g", trial.initial_chi2) + " -> " +
+            number("%.6g", trial.final_chi2) + " in " + std::to_string(trial.iterations) + ")";
+  }
+  notes.push_back(note + "; kept: " + result_.start);
+}
+
+MultiStartSummary MultiStart::run() {
+  options_.check();
+  file_values_ = graph_.values();
+  choose_first();
+  if (!settled()) {
+    try_others();
+    if (result_.trials.empty()) std::rethrow_exception(refusal_);
+    finish_best();
+    graph_.set_values(std::move(best_values_));
+  }
+  describe();
+  result_.total_seconds = seconds_since(begin_);
+  return std::move(result_);
+}
+
+}  // namespace
+
+double plausible_chi2(const Graph& graph) {
+  return plausible(measure(graph));
+}
+
+MultiStartSummary optimize_from_best_start(Graph& graph, const RegistryTable<StartType>& starts,
+                                           Algorithm& algorithm, LinearSolver& solver,
+                                           const OptimizerOptions& options) {
+  return MultiStart(graph, starts, algorithm, solver, options).run();
+}
+
+}  // namespace waymark

@@ -1,0 +1,318 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include <waymark/core/base/detail/thread_pool.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/system/gauge.hpp>
+
+namespace waymark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Adds the time until it leaves its scope to a counter.
+class Timer {
+ public:
+  explicit Timer(double& counter) : counter_(counter), start_(Clock::now()) {}
+  ~Timer() { counter_ += seconds_since(start_); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  double& counter_;
+  Clock::time_point start_;
+};
+
+template <typename... Part>
+std::string text(const Part&... part) {
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  (out << ... << part);
+  return out.str();
+}
+
+/// Below this share of chi2 a difference of two sums is rounding, not a decrease.
+constexpr double kChi2Rounding = 1e-12;
+
+class Loop {
+ public:
+  /// @param kept a structure that follows the graph, analysed by the solver; null: both are made
+  Loop(Graph& graph, const Structure* kept, Algorithm& algorithm, LinearSolver& solver,
+       const OptimizerOptions& options)
+      : graph_(graph),
+        algorithm_(algorithm),
+        solver_(solver),
+        options_(options),
+        structure_(kept == nullptr ? made_ : *kept),
+        equations_(graph, structure_) {
+    if (options.threads > 1) pool_.emplace(options.threads);
+    equations_.set_threads(pool());
+    solver_.set_threads(pool());
+  }
+  ~Loop() { solver_.set_threads(nullptr); }
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
+
+  Summary run();
+
+ private:
+  void prepare();
+  bool converged_at_gradient();
+  bool step_once();
+  bool converged_by(const Step& step, double step_size);
+  void finish(Termination termination, std::string message);
+  double linearize(const std::vector<double>& values);
+  void accept(double trial_chi2);
+  std::string singular_message() const;
+  ThreadPool* pool() { return pool_ ? &*pool_ : nullptr; }
+
+  Graph& graph_;
+  Algorithm& algorithm_;
+  LinearSolver& solver_;
+  const OptimizerOptions& options_;
+  std::optional<ThreadPool> pool_;
+  Structure made_;
+  const Structure& structure_;
+  NormalEquations equations_;
+  Summary summary_;
+  Clock::time_point start_ = Clock::now();
+
+  std::vector<double> values_;  // present
+  std::vector<double> trial_;
+  std::vector<double> best_;  // lowest chi2 seen, where that is not values_: after an uphill step
+  bool present_is_best_ = true;
+  double chi2_ = 0;
+  double best_chi2_ = 0;
+  bool last_accepted_ = true;
+  double gradient_ = 0;
+  Step step_;
+  bool done_ = false;
+};
+
+void Loop::finish(Termination termination, std::string message) {
+  summary_.termination = termination;
+  summary_.message = std::move(message);
+  done_ = true;
+}
+
+void Loop::prepare() {
+  const Timer timer(summary_.structure_seconds);
+  if (&structure_ == &made_) {
+    Gauge gauge = find_gauge(graph_);
+    summary_.notes = gauge.messages;
+    made_.build(graph_, gauge.held);
+    if (made_.pattern().dimension() > 0) solver_.analyze(made_.pattern());
+  }
+  summary_.ordering = structure_.ordering();
+  summary_.vertices = graph_.vertex_count();
+  summary_.edges = graph_.edge_count();
+  summary_.unknowns = structure_.pattern().dimension();
+  for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
+    if (graph_.batch(b).size() == 0) continue;
+    const EdgeType& type = graph_.edge_type(b);
+    if (!summary_.error_forms.empty()) summary_.error_forms += ", ";
+    summary_.error_forms += type.form.empty() ? type.tag : type.tag + " " + type.form;
+  }
+}
+
+double Loop::linearize(const std::vector<double>& values) {
+  const Timer timer(summary_.linearize_seconds);
+  return equations_.linearize(values);
+}
+
+bool Loop::converged_at_gradient() {
+  const Eigen::VectorXd& diagonal = equations_.diagonal();
+  const auto gradient = equations_.gradient();
+  double largest = 0;
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
+    const double square = gradient[i] * gradient[i];
+    if (square > largest * diagonal[i] && diagonal[i] > 0) largest = square / diagonal[i];
+  }
+  gradient_ = std::sqrt(largest);
+  const double bound = options_.gradient_tolerance * std::sqrt(1 + chi2_);
+  if (!(gradient_ <= bound)) return false;
+  finish(Termination::converged_gradient, text("converged: scaled gradient ", gradient_, " <= ", bound));
+  return true;
+}
+
+bool Loop::converged_by(const Step& step, double step_size) {
+  if (!step.full_newton) return false;
+  const double bound = options_.decrement_tolerance * (1 + chi2_);
+  if (step.newton_decrement <= bound) {
+    finish(Termination::converged_decrement,
+           text("converged: Newton decrement ", step.newton_decrement, " <= ", bound));
+    return true;
+  }
+  const double largest =
+      Eigen::Map<const Eigen::VectorXd>(values_.data(), static_cast<Eigen::Index>(values_.size()))
+          .lpNorm<Eigen::Infinity>();
+  const double step_bound = options_.step_tolerance * (1 + largest);
+  if (step_size > step_bound) return false;
+  finish(Termination::converged_step, text("converged: full Newton step ", step_size, " <= ", step_bound));
+  return true;
+}
+
+std::string Loop::singular_message() const {
+  const Eigen::VectorXd& diagonal = equations_.diagonal();
+  Eigen::Index weakest = 0;
+  diagonal.minCoeff(&weakest);
+  const VertexIndex v = equations_.vertex_of_unknown(weakest);
+  return text("the normal equations are not positive definite; the weakest unknown belongs to ",
+              graph_.vertex_type(v).tag, " ", graph_.id(v), " (H_ii = ", diagonal[weakest],
+              "): it lacks edges or information");
+}
+
+// One proposed step: from the present linearisation to the next, or to the end.
+bool Loop::step_once() {
+  // 1. Propose.
+  ProposalStatus status;
+  {
+    const Timer timer(summary_.solve_seconds);
+    status = algorithm_.propose(equations_, solver_, options_.decrement_tolerance * (1 + chi2_), step_);
+  }
+  if (status == ProposalStatus::singular) {
+    finish(Termination::singular, singular_message());
+    return false;
+  }
+  if (status == ProposalStatus::exhausted) {
+    finish(Termination::stalled,
+           "stalled: no step lowers chi2 any more, yet the Newton decrement is not small");
+    return false;
+  }
+  IterationRecord record;
+  record.iteration = ++summary_.iterations;
+  record.predicted_decrease = step_.predicted_decrease;
+  record.newton_decrement = step_.newton_decrement;
+  record.gradient = gradient_;
+  record.step = step_.delta.lpNorm<Eigen::Infinity>();
+  record.control = step_.control;
+  record.kind = step_.kind;
+
+  // 2. Test convergence, on full Newton steps only; the last step is still taken where it does not climb.
+  const bool converged = converged_by(step_, record.step);
+
+  // 3. Try it. A step is mostly taken: then its chi2 comes with the next linearisation. After a rejection,
+  // and for the last step, chi2 alone is computed.
+  equations_.retract(values_, step_.delta, trial_);
+  const bool linearized = !converged && last_accepted_;
+  const double trial_chi2 = linearized ? linearize(trial_) : equations_.chi2(trial_);
+  record.chi2 = trial_chi2;
+  record.decrease = chi2_ - trial_chi2;
+  const double noise = kChi2Rounding * chi2_;
+  const bool within_rounding = std::abs(record.decrease) <= noise && step_.predicted_decrease <= noise;
+  const double ratio = within_rounding ? 1 : record.decrease / step_.predicted_decrease;
+  const bool finite = std::isfinite(trial_chi2);
+
+  // 4. Take it or not.
+  record.accepted = finite && (converged ? record.decrease >= -noise : algorithm_.acceptable(ratio));
+  if (record.accepted) {
+    accept(trial_chi2);
+    if (!converged) {
+      algorithm_.accepted(step_, ratio);
+      if (!linearized) linearize(values_);
+    }
+  } else if (!converged) {
+    algorithm_.rejected(step_, finite ? ratio : -1);
+    if (linearized) linearize(values_);
+  }
+  last_accepted_ = record.accepted;
+  record.seconds = seconds_since(start_);
+  summary_.records.push_back(record);
+  if (options_.observer) options_.observer(record);
+  return record.accepted;
+}
+
+void Loop::accept(double trial_chi2) {
+  if (present_is_best_ && trial_chi2 > chi2_) {
+    best_ = values_;
+    present_is_best_ = false;
+  }
+  values_.swap(trial_);
+  chi2_ = trial_chi2;
+  if (chi2_ <= best_chi2_) {
+    best_chi2_ = chi2_;
+    present_is_best_ = true;
+  }
+}
+
+Summary Loop::run() {
+  prepare();
+  summary_.records.reserve(static_cast<std::size_t>(std::min(options_.max_iterations, 1000)));
+  values_ = graph_.values();
+  best_.reserve(values_.size());  // not in an iteration; pages untouched are no memory yet
+  chi2_ = best_chi2_ = summary_.initial_chi2 = linearize(values_);
+  if (!std::isfinite(chi2_)) {
+    finish(Termination::non_finite, "chi2 is not finite at the start");
+  } else if (summary_.unknowns == 0) {
+    finish(Termination::nothing_to_do, "nothing to do: every vertex is fixed, held or without edges");
+  }
+  algorithm_.reset();
+  bool moved = true;
+  while (!done_) {
+    if (moved && converged_at_gradient()) break;
+    if (options_.cancel != nullptr && options_.cancel->load()) {
+      finish(Termination::interrupted, text("interrupted after ", summary_.iterations, " iterations"));
+    } else if (summary_.iterations >= options_.max_iterations) {
+      finish(Termination::max_iterations, text("not converged after ", summary_.iterations, " iterations"));
+    } else {
+      moved = step_once();
+    }
+  }
+  // Full steps taken uphill may end at a minimum above values seen on the way: what is returned is then no
+  // minimum.
+  if (summary_.converged() && chi2_ - best_chi2_ > options_.decrement_tolerance * (1 + best_chi2_)) {
+    finish(Termination::stalled, text("the steps ended at a stationary point of chi2 ", chi2_,
+                                      ", above the lowest on the way, ", best_chi2_, ", which is kept"));
+  }
+  // Damping hides an undetermined unknown; where no minimum was reached it is named.
+  const bool gave_up =
+      summary_.termination == Termination::max_iterations || summary_.termination == Termination::stalled;
+  if (gave_up && solver_.factorize(equations_.hessian()) == FactorStatus::not_positive_definite) {
+    summary_.message += "; " + singular_message();
+  }
+  summary_.final_chi2 = best_chi2_;
+  if (summary_.unknowns > 0) {
+    summary_.factor_size = solver_.factor_size();
+    summary_.solver = solver_.description();
+  }
+  graph_.set_values(std::move(present_is_best_ ? values_ : best_));
+  summary_.total_seconds = seconds_since(start_);
+  return std::move(summary_);
+}
+
+}  // namespace
+
+void OptimizerOptions::check() const {
+  const auto require = [](bool valid, const char* field, double value, const char* rule) {
+    if (!valid) throw UsageError(text("optimizer option ", field, " = ", value, ": must be ", rule));
+  };
+  require(max_iterations >= 0, "max_iterations", max_iterations, ">= 0");
+  require(threads >= 1, "threads", threads, ">= 1");
+  require(decrement_tolerance > 0, "decrement_tolerance", decrement_tolerance, "> 0");
+  require(gradient_tolerance >= 0, "gradient_tolerance", gradient_tolerance, ">= 0");
+  require(step_tolerance >= 0, "step_tolerance", step_tolerance, ">= 0");
+}
+
+Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options) {
+  options.check();
+  return Loop(graph, nullptr, algorithm, solver, options).run();
+}
+
+Summary optimize(Graph& graph, const Structure& structure, Algorithm& algorithm, LinearSolver& solver,
+                 const OptimizerOptions& options) {
+  options.check();
+  return Loop(graph, &structure, algorithm, solver, options).run();
+}
+
+Algorithm::~Algorithm() = default;
+LinearSolver::~LinearSolver() = default;
+
+}  // namespace waymark

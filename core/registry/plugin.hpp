@@ -1,0 +1,131 @@
+/// The plugin boundary: one constant data symbol per plugin, read from its file before any of its code runs.
+/// The policy behind the numbers: plugins/README.md, "ABI and versions".
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include <waymark/core/registry/registry.hpp>
+
+namespace waymark {
+
+/// Raised whenever a type that crosses the boundary changes its layout or meaning.
+inline constexpr std::uint32_t kPluginAbi = 3;
+inline constexpr std::uint32_t kPluginMagic = 0x57415950;  // "WAYP"
+
+/// How a binary was built, as far as it decides whether two binaries may share types.
+struct BuildTraits {
+  std::uint32_t compiler = 0;          ///< 1 GCC family, 2 Clang
+  std::uint32_t standard_library = 0;  ///< 1 libstdc++ (new ABI), 2 libstdc++ (old ABI), 3 libc++
+  std::uint32_t eigen_version = 0;     ///< world * 10000 + major * 100 + minor
+  std::uint32_t eigen_max_align = 0;   ///< bytes; -mavx changes it
+  std::uint32_t fast_math = 0;
+  std::uint32_t debug_stl = 0;
+  std::uint32_t layout = 0;  ///< sizes of the types that cross the boundary, mixed into one number
+};
+
+/// A number that changes with the size of any type that both sides of the boundary touch: it catches headers
+/// of another Waymark where somebody forgot to raise kPluginAbi.
+constexpr std::uint32_t layout_fingerprint() {
+  std::uint32_t mixed = 2166136261u;  // FNV-1a
+  for (const std::size_t size : {sizeof(TypeRegistry),
+                                 sizeof(Graph),
+                                 sizeof(VertexType),
+                                 sizeof(EdgeType),
+                                 sizeof(EdgeBatchBase),
+                                 sizeof(Loss),
+                                 sizeof(LossType),
+                                 sizeof(Scatter),
+                                 sizeof(LinearSolverType),
+                                 sizeof(AlgorithmType),
+                                 sizeof(Step),
+                                 sizeof(NormalEquations),
+                                 sizeof(BlockPattern),
+                                 sizeof(OdometryModelType),
+                                 sizeof(GnssModelingType),
+                                 sizeof(GnssInput),
+                                 sizeof(SensorModelType),
+                                 sizeof(SensorInput),
+                                 sizeof(Fix),
+                                 sizeof(Interval),
+                                 sizeof(LogReaderType),
+                                 sizeof(LogRequest),
+                                 sizeof(LogData),
+                                 sizeof(StartType),
+                                 sizeof(InitialValues)}) {
+    mixed = (mixed ^ static_cast<std::uint32_t>(size)) * 16777619u;
+  }
+  return mixed;
+}
+
+/// The traits of the binary this is compiled into.
+constexpr BuildTraits build_traits() {
+  BuildTraits traits;
+#if defined(__clang__)
+  traits.compiler = 2;
+#else
+  traits.compiler = 1;
+#endif
+#if defined(_LIBCPP_VERSION)
+  traits.standard_library = 3;
+#elif defined(_GLIBCXX_USE_CXX11_ABI) && _GLIBCXX_USE_CXX11_ABI
+  traits.standard_library = 1;
+#else
+  traits.standard_library = 2;
+#endif
+  traits.eigen_version = EIGEN_WORLD_VERSION * 10000 + EIGEN_MAJOR_VERSION * 100 + EIGEN_MINOR_VERSION;
+  traits.eigen_max_align = EIGEN_MAX_ALIGN_BYTES;
+#if defined(__FAST_MATH__)
+  traits.fast_math = 1;
+#endif
+#if defined(_GLIBCXX_DEBUG)
+  traits.debug_stl = 1;
+#endif
+  traits.layout = layout_fingerprint();
+  return traits;
+}
+
+/// What the symbol `waymark_plugin` of a module holds. Data without a single pointer, so that it can be read
+/// from the file as it lies there, without loading it.
+struct PluginDescriptor {
+  std::uint32_t magic = kPluginMagic;
+  std::uint32_t abi = kPluginAbi;
+  BuildTraits traits = build_traits();
+  char name[64] = {};
+  char version[32] = {};
+};
+
+/// Registers a plugin's types: the symbol `waymark_plugin_enter` of a module. May throw waymark::Error.
+using PluginEntry = void (*)(TypeRegistry& registry);
+
+/// A descriptor of this build. @throws at compile time: a name or version that does not fit
+consteval PluginDescriptor describe_plugin(const char* name, const char* version) {
+  PluginDescriptor descriptor;
+  for (int i = 0; name[i] != 0; ++i) descriptor.name[i] = name[i];
+  for (int i = 0; version[i] != 0; ++i) descriptor.version[i] = version[i];
+  return descriptor;
+}
+
+}  // namespace waymark
+
+/// Defines a plugin: WAYMARK_PLUGIN(gnss_g1, "0.1.0", register_types). Compiled into a module
+/// (WAYMARK_PLUGIN_MODULE defined) the symbols are `waymark_plugin` and `waymark_plugin_enter`; built in,
+/// they end in _NAME, so that many fit in one program.
+#if defined(WAYMARK_PLUGIN_MODULE)
+#define WAYMARK_PLUGIN_SYMBOL(name) waymark_plugin
+#define WAYMARK_PLUGIN_ENTER_SYMBOL(name) waymark_plugin_enter
+#else
+#define WAYMARK_PLUGIN_SYMBOL(name) waymark_plugin_##name
+#define WAYMARK_PLUGIN_ENTER_SYMBOL(name) waymark_plugin_enter_##name
+#endif
+#define WAYMARK_PLUGIN(name, version, enter)                                                \
+  extern "C" __attribute__((visibility("default")))                                         \
+  const waymark::PluginDescriptor WAYMARK_PLUGIN_SYMBOL(name);                              \
+  constexpr waymark::PluginDescriptor WAYMARK_PLUGIN_SYMBOL(name) =                         \
+      waymark::describe_plugin(#name, version);                                             \
+  extern "C" __attribute__((visibility("default"))) void WAYMARK_PLUGIN_ENTER_SYMBOL(name)( \
+      waymark::TypeRegistry & registry) {                                                   \
+    enter(registry);                                                                        \
+  }                                                                                         \
+  static_assert(true)

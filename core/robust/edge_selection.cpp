@@ -1,0 +1,100 @@
+#include <limits>
+
+#include <Eigen/LU>
+
+#include <waymark/core/robust/edge_selection.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/core/system/normal_equations.hpp>
+
+namespace waymark {
+
+double squared_error(const Graph& graph, EdgePlace place) {
+  const EdgeBatchBase& batch = graph.batch(place.batch);
+  Eigen::VectorXd e;
+  std::vector<Eigen::MatrixXd> jacobians;
+  batch.linearize_edge(place.edge, graph.view(), e, jacobians);
+  return e.dot(batch.information(place.edge) * e);
+}
+
+Graph without_edges(const Graph& graph, std::span<const EdgePlace> edges) {
+  Graph result;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    result.add_vertex(graph.vertex_type(v), graph.id(v), graph.value(v));
+    if (graph.fixed(v)) result.set_fixed(v, true);
+    if (const auto stamp = graph.stamp(v)) result.set_stamp(v, *stamp);
+  }
+  std::vector<double> fields;
+  auto next = edges.begin();
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeBatchBase& from = graph.batch(b);
+    EdgeBatchBase& to = result.batch(graph.edge_type(b));
+    if (const Loss* loss = from.batch_loss()) to.set_loss(*loss);
+    for (std::size_t e = 0; e < from.size(); ++e) {
+      if (next != edges.end() && *next == EdgePlace{b, e}) {
+        ++next;
+        continue;
+      }
+      fields.clear();
+      from.fields(e, fields);
+      result.add_edge(graph.edge_type(b), from.vertices(e), fields, from.information(e));
+      if (const Loss* loss = from.loss(e); loss != from.batch_loss()) to.set_loss(to.size() - 1, *loss);
+    }
+  }
+  return result;
+}
+
+std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> edges, Membership membership,
+                                const Graph& kept, LinearSolver& solver) {
+  std::vector<double> result(edges.size(), std::numeric_limits<double>::infinity());
+  if (edges.empty()) return result;
+  Structure structure;
+  structure.build(kept, find_gauge(kept).held);
+  NormalEquations equations(kept, structure);
+  (void)equations.linearize(kept.values());
+  const BlockPattern& pattern = structure.pattern();
+  const auto unknowns = static_cast<Eigen::Index>(pattern.dimension());
+  if (unknowns > 0) {
+    solver.analyze(pattern);
+    if (solver.factorize(equations.hessian()) != FactorStatus::ok) return result;
+  }
+  Eigen::VectorXd e;
+  std::vector<Eigen::MatrixXd> jacobians;
+  Eigen::VectorXd row(unknowns);
+  Eigen::VectorXd solved(unknowns);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const EdgeBatchBase& batch = graph.batch(edges[i].batch);
+    const std::span<const VertexIndex> vertices = batch.vertices(edges[i].edge);
+    batch.linearize_edge(edges[i].edge, kept.view(), e, jacobians);
+    // J P J^T, a row of J at a time.
+    Eigen::MatrixXd predicted = Eigen::MatrixXd::Zero(e.size(), e.size());
+    for (Eigen::Index r = 0; r < e.size() && unknowns > 0; ++r) {
+      row.setZero();
+      for (std::size_t k = 0; k < vertices.size(); ++k) {
+        const int column = structure.column_of(vertices[k]);
+        if (column < 0) continue;
+        row.segment(pattern.start[static_cast<std::size_t>(column)], jacobians[k].cols()) =
+            jacobians[k].row(r).transpose();
+      }
+      solver.solve({row.data(), static_cast<std::size_t>(unknowns)},
+                   {solved.data(), static_cast<std::size_t>(unknowns)});
+      for (std::size_t k = 0; k < vertices.size(); ++k) {
+        const int column = structure.column_of(vertices[k]);
+        if (column < 0) continue;
+        predicted.col(r) += jacobians[k] * solved.segment(pattern.start[static_cast<std::size_t>(column)],
+                                                          jacobians[k].cols());
+      }
+    }
+    // (Omega^-1 + C)^-1 = Omega (I + C Omega)^-1, also where Omega is singular.
+    const Eigen::MatrixXd information = batch.information(edges[i].edge);
+    const double sign = membership == Membership::outside ? 1 : -1;
+    const Eigen::MatrixXd spread =
+        Eigen::MatrixXd::Identity(e.size(), e.size()) + sign * predicted * information;
+    const Eigen::FullPivLU<Eigen::MatrixXd> factor(spread);
+    // Inside, directions of which nobody else knows leave no spread: rounding would decide.
+    const bool checked = membership == Membership::outside || factor.rcond() > 1e-9;
+    result[i] = checked ? e.dot(information * factor.solve(e)) : 0;
+  }
+  return result;
+}
+
+}  // namespace waymark

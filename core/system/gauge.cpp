@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/system/detail/incidence.hpp>
+#include <waymark/core/system/gauge.hpp>
+
+namespace waymark {
+namespace {
+
+std::size_t at(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Components of free vertices by union-find with path halving; the root is the first vertex of each.
+std::vector<std::int32_t> find_components(const Graph& graph) {
+  std::vector<std::int32_t> parent(graph.vertex_count());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::int32_t v) {
+    while (parent[at(v)] != v) v = parent[at(v)] = parent[at(parent[at(v)])];
+    return v;
+  };
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    for_each_edge(graph.batch(b), [&](std::span<const VertexIndex> vertices) {
+      std::int32_t joined = -1;
+      for (const VertexIndex v : vertices) {
+        if (graph.fixed(v)) continue;
+        const std::int32_t r = root(v);
+        if (joined >= 0 && r != joined) {
+          parent[at(std::max(r, joined))] = std::min(r, joined);
+          joined = std::min(r, joined);
+        } else {
+          joined = r;
+        }
+      }
+    });
+  }
+  for (std::size_t v = 0; v < parent.size(); ++v) parent[v] = root(static_cast<std::int32_t>(v));
+  return parent;
+}
+
+/// The components of the vertices that move under a rigid motion.
+struct Components {
+  std::vector<std::int32_t> of;    // per vertex; -1: it is fixed or does not move
+  std::vector<VertexIndex> first;  // first vertex with edges
+  std::vector<int> count;          // vertices that move
+  std::vector<RigidMotionView::Place> places;
+};
+
+Components describe_components(const Graph& graph) {
+  const std::vector<std::int32_t> root = find_components(graph);
+  const std::vector<char> has_edge = vertices_with_edges(graph);
+  Components result;
+  result.of.assign(graph.vertex_count(), -1);
+  std::vector<std::int32_t> number(graph.vertex_count(), -1);  // of the component with that root
+  std::vector<Eigen::AlignedBox2d> boxes;
+  for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
+    const auto vertex = static_cast<VertexIndex>(v);
+    if (!has_edge[v] || graph.fixed(vertex)) continue;
+    const VertexType& type = graph.vertex_type(vertex);
+    if (type.rigid_motion == nullptr) continue;
+    std::int32_t& component = number[at(root[v])];
+    if (component < 0) {
+      component = static_cast<std::int32_t>(result.first.size());
+      result.first.push_back(vertex);
+      result.count.push_back(0);
+      boxes.emplace_back();
+    }
+    result.of[v] = component;
+    ++result.count[at(component)];
+    boxes[at(component)].extend(type.position(graph.values().data() + graph.offsets()[v]));
+  }
+  // At least a metre: below, a turn of the component means only turning its poses.
+  for (const Eigen::AlignedBox2d& box : boxes) {
+    result.places.push_back({box.center(), std::max(1.0, 0.5 * box.diagonal().norm())});
+  }
+  return result;
+}
+
+/// Number of eigenvalues above the noise of the largest; 0 where all of them are no more than rounding.
+int rank_of(const Eigen::Matrix3d& information) {
+  const Eigen::Vector3d eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(information).eigenvalues();
+  constexpr double kRounding =
+      1e-12;  // (J T) of an unanchored component cancels to about 1e-12, squared times Omega
+  constexpr double kRelative = 1e-12;
+  int rank = 0;
+  for (const double value : eigenvalues) rank += value > std::max(kRounding, kRelative * eigenvalues[2]);
+  return rank;
+}
+
+[[noreturn]] void refuse(const Graph& graph, VertexIndex v, int rank) {
+  throw InputError(
+      "vertex " + std::to_string(graph.id(v)) + " and what is joined to it are anchored in " +
+      std::to_string(rank) +
+      " of 3 rigid motions only, so the solution is not determined (typical: a single GNSS fix, or fixes "
+      "at one place); add fixes at another place, a heading, or FIX one vertex");
+}
+
+}  // namespace
+
+Gauge find_gauge(const Graph& graph) {
+  const Components components = describe_components(graph);
+  std::vector<Eigen::Matrix3d> information(components.first.size(), Eigen::Matrix3d::Zero());
+  const RigidMotionView motion{components.of.data(), components.places.data(), information.data()};
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    graph.batch(b).add_rigid_information(graph.view(), motion);
+  }
+  Gauge gauge;
+  gauge.held.assign(graph.vertex_count(), 0);
+  for (std::size_t c = 0; c < components.first.size(); ++c) {
+    const VertexIndex first = components.first[c];
+    const int rank = rank_of(information[c]);
+    if (rank == 1 || rank == 2) refuse(graph, first, rank);
+    if (rank == 0) {
+      gauge.held[at(first)] = 1;
+      gauge.messages.push_back("nothing anchors vertex " + std::to_string(graph.id(first)) + " and the " +
+                               std::to_string(components.count[c] - 1) +
+                               " vertices joined to it: it is held at its present value");
+    }
+  }
+  return gauge;
+}
+
+}  // namespace waymark

@@ -1,0 +1,122 @@
+#include <algorithm>
+
+#include <waymark/core/system/normal_equations.hpp>
+
+namespace waymark {
+namespace {
+
+std::size_t at(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+NormalEquations::NormalEquations(const Graph& graph, const Structure& structure)
+    : graph_(graph), structure_(structure) {}
+
+template <typename Work>
+double NormalEquations::sum_over_chunks(const Work& work) const {
+  const int last = structure_.chunks() - 1;
+  sums_.assign(at(last) + 1, 0.0);
+  const auto one_chunk = [&](int chunk) {
+    double sum = 0;
+    for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
+      const Scatter& scatter = structure_.scatter(b);
+      for (auto r = scatter.chunk[at(chunk)]; r < scatter.chunk[at(chunk) + 1]; ++r) {
+        sum += work(b, scatter.ranges[r]);
+      }
+    }
+    sums_[at(chunk)] = sum;
+  };
+  run_parallel(pool_, last, one_chunk);
+  one_chunk(last);
+  double total = 0;
+  for (const double sum : sums_) total += sum;
+  return total;
+}
+
+double NormalEquations::linearize(const std::vector<double>& values,
+                                  std::span<const double> evidence_weights) {
+  hessian_.assign(at(structure_.hessian_size()), 0.0);
+  gradient_.assign(at(structure_.gradient_size()), 0.0);
+  diagonal_known_ = false;
+  const ValueView view{values.data(), graph_.offsets().data()};
+  const double chi2 = sum_over_chunks([&](std::size_t batch, EdgeRange range) {
+    const NormalView normal{hessian_.data(), gradient_.data(),
+                            evidence_weights.empty() ? 0 : evidence_weights[batch]};
+    return graph_.batch(batch).linearize(view, structure_.scatter(batch), range, normal);
+  });
+  structure_.add_slots(hessian_.data(), gradient_.data());
+  return chi2;
+}
+
+double NormalEquations::chi2(const std::vector<double>& values) const {
+  const ValueView view{values.data(), graph_.offsets().data()};
+  return sum_over_chunks(
+      [&](std::size_t batch, EdgeRange range) { return graph_.batch(batch).chi2(view, range); });
+}
+
+const Eigen::VectorXd& NormalEquations::diagonal() const {
+  if (diagonal_known_) return diagonal_;
+  const BlockPattern& p = pattern();
+  diagonal_.resize(p.dimension());
+  for (std::size_t j = 0; j < p.size.size(); ++j) {
+    const int size = p.size[j];
+    const int height = p.height[j];
+    const double* block = hessian_.data() + p.value[j] + height - size;
+    for (int c = 0; c < size; ++c, block += height + 1) diagonal_[p.start[j] + c] = *block;
+  }
+  diagonal_known_ = true;
+  return diagonal_;
+}
+
+void NormalEquations::add_to_diagonal(const Eigen::VectorXd& extra, std::vector<double>& damped) const {
+  const BlockPattern& p = pattern();
+  damped.assign(hessian_.begin(), hessian_.begin() + p.value_count());
+  for (int j = 0; j < p.columns(); ++j) {
+    const int size = p.size[at(j)];
+    const int height = p.height[at(j)];
+    for (int c = 0; c < size; ++c) {
+      damped[at(p.value[at(j)] + std::int64_t{c} * height + height - size + c)] += extra[p.start[at(j)] + c];
+    }
+  }
+}
+
+void NormalEquations::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  const BlockPattern& p = pattern();
+  y.setZero(p.dimension());
+  using Block = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+  for (int j = 0; j < p.columns(); ++j) {
+    const int size = p.size[at(j)];
+    const auto x_j = x.segment(p.start[at(j)], size);
+    for (auto k = p.column[at(j)]; k < p.column[at(j) + 1]; ++k) {
+      const int i = p.row[at(k)];
+      const Block block(hessian_.data() + p.value[at(j)] + p.row_offset[at(k)], p.size[at(i)], size,
+                        Eigen::OuterStride<>(p.height[at(j)]));
+      y.segment(p.start[at(i)], p.size[at(i)]) += block * x_j;
+      if (i != j)
+        y.segment(p.start[at(j)], size) += block.transpose() * x.segment(p.start[at(i)], p.size[at(i)]);
+    }
+  }
+}
+
+void NormalEquations::retract(const std::vector<double>& values, const Eigen::VectorXd& step,
+                              std::vector<double>& moved) const {
+  if (moved.size() != values.size()) moved = values;  // what is no unknown never moves
+  const BlockPattern& p = pattern();
+  for (int j = 0; j < p.columns(); ++j) {
+    const VertexIndex v = structure_.vertex_of(j);
+    const VertexType& type = graph_.vertex_type(v);
+    const auto offset = at(graph_.offsets()[at(v)]);
+    std::copy_n(values.data() + offset, type.value_size, moved.data() + offset);
+    type.retract(moved.data() + offset, step.data() + p.start[at(j)]);
+  }
+}
+
+VertexIndex NormalEquations::vertex_of_unknown(std::int64_t unknown) const {
+  const auto& start = pattern().start;
+  const auto after = std::upper_bound(start.begin(), start.end(), unknown);
+  return structure_.vertex_of(static_cast<int>(after - start.begin()) - 1);
+}
+
+}  // namespace waymark

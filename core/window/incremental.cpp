@@ -1,0 +1,61 @@
+#include <algorithm>
+#include <utility>
+
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/core/window/incremental.hpp>
+
+namespace waymark {
+
+IncrementalOptimizer::IncrementalOptimizer(Graph& graph, std::unique_ptr<Algorithm> algorithm,
+                                           std::unique_ptr<LinearSolver> solver, OptimizerOptions options)
+    : graph_(graph),
+      algorithm_(std::move(algorithm)),
+      solver_(std::move(solver)),
+      options_(std::move(options)) {
+  options_.check();
+}
+
+void IncrementalOptimizer::follow() {
+  if (structure_.pattern().version > 0 && followed_version_ == graph_.structure_version()) return;
+  Gauge gauge = find_gauge(graph_);
+  notes_ = std::move(gauge.messages);
+  // An old vertex that is held, or no longer, changes its column: the structure starts over.
+  const bool same =
+      structure_.pattern().version > 0 && std::equal(held_.begin(), held_.end(), gauge.held.begin());
+  held_ = std::move(gauge.held);
+  if (same) {
+    structure_.extend(graph_, held_);
+  } else {
+    structure_.build(graph_, held_);
+  }
+  followed_version_ = graph_.structure_version();
+}
+
+Summary IncrementalOptimizer::update() {
+  follow();
+  const BlockPattern& pattern = structure_.pattern();
+  if (pattern.version != analysed_version_ && pattern.dimension() > 0) {
+    solver_->analyze(pattern);
+    analysed_version_ = pattern.version;
+  }
+  Summary summary = optimize(graph_, structure_, *algorithm_, *solver_, options_);
+  summary.notes.insert(summary.notes.begin(), notes_.begin(), notes_.end());
+  return summary;
+}
+
+Marginalization IncrementalOptimizer::drop_prefix(VertexIndex count) {
+  follow();
+  Marginalization result = marginalize_prefix(graph_, count, held_);
+  dropped_chi2_ += result.constant;
+  std::vector<char> held(graph_.vertex_count(), 0);
+  for (std::size_t v = 0; v < held_.size(); ++v) {
+    if (const VertexIndex now = result.removal.new_index[v]; now >= 0)
+      held[static_cast<std::size_t>(now)] = held_[v];
+  }
+  held_ = std::move(held);
+  structure_.remove(graph_, result.removal, held_);
+  followed_version_ = graph_.structure_version();
+  return result;
+}
+
+}  // namespace waymark

@@ -1,0 +1,130 @@
+#include <algorithm>
+
+#include <waymark/formats/graph/detail/graph_records.hpp>
+#include <waymark/formats/graph/detail/own_statements.hpp>
+
+namespace waymark::formats {
+
+bool OwnStatements::read(LineScanner& line, std::string_view tag, EdgeBatchBase* edge_above) {
+  if (tag == "STAMP") {
+    read_stamp(line);
+  } else if (tag == "LOSS") {
+    read_loss(line, edge_above);
+  } else if (tag == "GNSS") {
+    read_record(line);
+  } else if (tag == "COVARIANCE") {
+    read_covariance(line);
+  } else {
+    return read_header(line, tag);
+  }
+  return true;
+}
+
+bool OwnStatements::read_header(LineScanner& line, std::string_view tag) {
+  if (tag == "FRAME") {
+    only_once(line, "FRAME");
+    document_.frame = read_frame(line);
+  } else if (tag == "TIME") {
+    read_time(line);
+  } else if (tag == "PROVENANCE") {
+    const std::string key(line.word());
+    if (key.empty()) line.fail("PROVENANCE: expected a key");
+    document_.provenance.emplace_back(key, std::string(line.rest()));
+  } else if (tag == "LEVER") {
+    read_lever(line);
+  } else if (tag == "TYPE") {
+    check_type(line);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void OwnStatements::only_once(LineScanner& line, const std::string& statement) {
+  if (std::find(seen_.begin(), seen_.end(), statement) != seen_.end()) {
+    line.fail(statement + ": is given a second time");
+  }
+  seen_.push_back(statement);
+}
+
+void OwnStatements::read_time(LineScanner& line) {
+  only_once(line, "TIME");
+  const std::string_view word = line.word();
+  const auto scale = time_scale_from_string(word);
+  if (!scale) line.fail("TIME: expected gps, utc or unix, got " + quote_word(word));
+  document_.time_scale = *scale;
+  line.end("TIME");
+}
+
+void OwnStatements::read_lever(LineScanner& line) {
+  const std::string_view which = line.word();
+  if (which != "antenna" && which != "truth") {
+    line.fail("LEVER: expected antenna or truth, got " + quote_word(which));
+  }
+  only_once(line, "LEVER " + std::string(which));
+  Eigen::Vector2d& lever = which == "antenna" ? document_.antenna_m : document_.truth_reference_m;
+  lever[0] = line.number({"LEVER", "x"});
+  lever[1] = line.number({"LEVER", "y"});
+  line.end("LEVER");
+}
+
+void OwnStatements::check_type(LineScanner& line) const {
+  const std::string tag(line.word());
+  const EdgeType* type = registry_.find_edge(tag);
+  if (type == nullptr)
+    line.fail("TYPE: edge type " + quote_word(tag) + " is not known; load the plugin that defines it");
+  const std::string_view given = line.rest();
+  const std::string known = describe_schema(*type);
+  if (given != known) {
+    line.fail("TYPE: " + tag + " is described as '" + std::string(given) + "', but the registered type is '" +
+              known + "'");
+  }
+}
+
+void OwnStatements::read_stamp(LineScanner& line) {
+  const VertexIndex v = read_vertex_id(line, document_.graph, "STAMP");
+  if (document_.graph.stamp(v)) line.fail("STAMP: this vertex has a stamp already");
+  const Stamp stamp{line.integer({"STAMP", "nanoseconds"})};
+  line.end("STAMP");
+  document_.graph.set_stamp(v, stamp);
+}
+
+void OwnStatements::read_loss(LineScanner& line, EdgeBatchBase* edge_above) {
+  if (edge_above == nullptr) line.fail("LOSS: no edge stands above it");
+  const std::string_view name = line.word();
+  const LossType* type = registry_.find_loss(name);
+  if (type == nullptr) line.fail("LOSS: unknown loss " + quote_word(name));
+  const double scale = line.number({"LOSS", "scale"});
+  if (scale <= 0) line.fail("LOSS: the scale must be positive");
+  line.end("LOSS");
+  edge_above->set_loss(edge_above->size() - 1, Loss{type->name, type->evaluate, scale});
+}
+
+void OwnStatements::read_record(LineScanner& line) {
+  Fix fix = read_fix(line);
+  if (!document_.graph.find(fix.vertex)) {
+    line.fail("GNSS: vertex " + std::to_string(fix.vertex) + " is not defined");
+  }
+  document_.fixes.push_back(std::move(fix));
+}
+
+void OwnStatements::read_covariance(LineScanner& line) {
+  const VertexIndex v = read_vertex_id(line, document_.graph, "COVARIANCE");
+  const int n = document_.graph.vertex_type(v).tangent_size;
+  Eigen::MatrixXd covariance(n, n);
+  int index = 0;
+  for (int row = 0; row < n; ++row) {
+    for (int column = row; column < n; ++column) {
+      covariance(row, column) = covariance(column, row) = line.number({"COVARIANCE", "covariance", index++});
+    }
+  }
+  line.end("COVARIANCE");
+  if (!is_positive_semidefinite(covariance)) line.fail("COVARIANCE: the covariance matrix is indefinite");
+  has_covariance_.resize(document_.graph.vertex_count(), 0);
+  if (has_covariance_[static_cast<std::size_t>(v)]++ != 0) {
+    line.fail("COVARIANCE: this vertex has a covariance already");
+  }
+  document_.covariances.push_back({v, covariance});
+}
+
+}  // namespace waymark::formats

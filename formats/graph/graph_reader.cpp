@@ -1,0 +1,326 @@
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/graph/detail/graph_records.hpp>
+#include <waymark/formats/graph/detail/own_statements.hpp>
+#include <waymark/formats/graph/detail/sensor_offsets.hpp>
+#include <waymark/formats/graph/detail/toro.hpp>
+#include <waymark/formats/graph/graph_format.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
+
+namespace waymark::formats {
+namespace {
+
+constexpr std::size_t kExamples = 10;
+constexpr std::size_t kMostTags = 64;     // remembered; further ones are looked up each time
+constexpr std::int64_t kMaxArity = 1000;  // of a run-time-arity edge: 72 MB of information matrix
+
+constexpr std::string_view kOwnTags[] = {"GRAPH", "FRAME", "TIME", "PROVENANCE", "LEVER",
+                                         "TYPE",  "STAMP", "LOSS", "GNSS",       "COVARIANCE"};
+constexpr std::string_view kToroTags[] = {"VERTEX2", "EDGE2", "VERTEX", "EDGE"};
+
+template <std::size_t N>
+bool is_one_of(std::string_view tag, const std::string_view (&tags)[N]) {
+  return std::find(std::begin(tags), std::end(tags), tag) != std::end(tags);
+}
+
+std::string join(std::string_view tag, std::string_view message) {
+  return std::string(tag) + ": " + std::string(message);
+}
+
+class GraphReader {
+ public:
+  GraphReader(GraphFormat format, std::string_view text, const std::string& name,
+              const TypeRegistry& registry, bool lenient, ReadReport& report)
+      : format_(format), text_(text), name_(name), registry_(registry), lenient_(lenient), report_(report) {}
+
+  GraphDocument read() {
+    read_first_line();
+    // Vertices first, so that edges, FIX and STAMP may stand anywhere.
+    std::optional<Place> first_statement;
+    for_each_line({}, [&](LineScanner& line, std::string_view word) {
+      Tag& tag = known_tag(word);
+      ++tag.lines;
+      if (tag.vertex != nullptr) return read_vertex(line, tag);
+      if (tag.offset) return offsets_.read(line);
+      if (!first_statement) first_statement = place_;
+    });
+    if (document_.graph.vertex_count() == 0 && !is_waymark_) make_vertices_of_edges();
+    if (first_statement) {
+      for_each_line(*first_statement, [this](LineScanner& line, std::string_view word) {
+        const Tag& tag = known_tag(word);
+        if (tag.vertex == nullptr && !tag.offset) read_statement(line, tag);
+      });
+    }
+    if (report_.edges_only) place_along_odometry();
+    if (document_.graph.vertex_count() == 0) throw InputError(name_ + ": no vertices in it");
+    return std::move(document_);
+  }
+
+ private:
+  /// Where a line begins.
+  struct Place {
+    std::size_t offset = 0;
+    std::size_t line_number = 1;
+  };
+  /// A line's first word and what the registry knows by it.
+  struct Tag {
+    std::string_view word;
+    const VertexType* vertex = nullptr;
+    const EdgeType* edge = nullptr;
+    bool offset = false;    // g2o's parameter lines
+    std::size_t lines = 0;  // counted by the first pass
+  };
+
+  [[nodiscard]] bool is_toro() const {
+    return format_ == GraphFormat::toro || format_ == GraphFormat::covariance;
+  }
+
+  void place_along_odometry() {
+    InitialValues start = registry_.make_start("odometry", document_.graph);
+    report_.apart = start.apart;
+    if (!start.values.empty()) document_.graph.set_values(std::move(start.values));
+  }
+
+  void read_first_line() {
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // the byte order mark of some editors
+    const std::string_view first = text_.substr(0, text_.find('\n'));
+    LineScanner line(first, name_, 1);
+    if (line.word() != "GRAPH" || is_toro()) return;
+    is_waymark_ = true;
+    const std::int64_t version = line.integer({"GRAPH", "version"});
+    if (version != 1) {
+      line.fail("GRAPH: version " + std::to_string(version) +
+                " is not known to this program, which reads version 1");
+    }
+    line.end("GRAPH");
+  }
+
+  template <typename Visit>
+  void for_each_line(Place first, Visit visit) {
+    for (Place next = first; next.offset < text_.size(); ++next.line_number) {
+      place_ = next;
+      const std::size_t end = std::min(text_.find('\n', place_.offset), text_.size());
+      next.offset = end + 1;
+      LineScanner line(text_.substr(place_.offset, end - place_.offset), name_, place_.line_number);
+      const std::string_view word = line.word();
+      if (word.empty() || word.front() == '#' || (place_.line_number == 1 && is_waymark_)) continue;
+      try {
+        visit(line, word);
+      } catch (const InputError& error) {
+        if (!lenient_) throw;
+        ++report_.skipped;
+        if (report_.examples.size() < kExamples) report_.examples.emplace_back(error.what());
+      }
+    }
+  }
+
+  // Neighbouring lines mostly have the same tag, and a file has few: the last one found is tried first.
+  Tag& known_tag(std::string_view word) {
+    if (last_tag_ < tags_.size() && tags_[last_tag_].word == word) return tags_[last_tag_];
+    for (last_tag_ = 0; last_tag_ < tags_.size(); ++last_tag_) {
+      if (tags_[last_tag_].word == word) return tags_[last_tag_];
+    }
+    if (tags_.size() == kMostTags) tags_.pop_back();
+    last_tag_ = tags_.size();
+    const std::string_view own = is_toro() ? own_tag_of_toro(word, format_) : word;
+    const bool offset = !is_waymark_ && own == kOffsetTag;
+    return tags_.emplace_back(Tag{word, registry_.find_vertex(own), registry_.find_edge(own), offset});
+  }
+
+  void read_vertex(LineScanner& line, const Tag& tag) {
+    const VertexType& type = *tag.vertex;
+    const VertexId id = line.integer({tag.word, "id"});
+    if (document_.graph.find(id)) {
+      line.fail(join(tag.word, "vertex " + std::to_string(id) + " is defined a second time"));
+    }
+    values_.clear();
+    for (const std::string& name : type.value_names) values_.push_back(line.number({tag.word, name}));
+    line.end(tag.word);
+    document_.graph.add_vertex(type, id, values_);
+  }
+
+  void read_statement(LineScanner& line, const Tag& tag) {
+    if (tag.edge == nullptr) return read_other(line, tag.word);
+    read_edge(line, tag, *tag.edge);
+  }
+
+  void read_edge(LineScanner& line, const Tag& tag, const EdgeType& type) {
+    last_batch_ = nullptr;  // a LOSS must not go to an earlier edge where this one is skipped
+    const bool runtime = type.arity == EdgeType::kRuntimeArity;
+    const std::int64_t arity = runtime ? line.integer({tag.word, "arity"}) : type.arity;
+    if (runtime && (arity < 1 || arity > kMaxArity)) {
+      line.fail(join(tag.word, "the arity must be 1 to " + std::to_string(kMaxArity)));
+    }
+    vertices_.clear();
+    for (std::int64_t k = 0; k < arity; ++k)
+      vertices_.push_back(read_vertex_id(line, document_.graph, tag.word));
+    values_.clear();
+    Eigen::Index dimension = type.error_dimension;
+    if (runtime) {
+      dimension = 0;
+      Eigen::Index value_size = 0;
+      for (const VertexIndex v : vertices_) {
+        value_size += document_.graph.vertex_type(v).value_size;
+        dimension += document_.graph.vertex_type(v).tangent_size;
+      }
+      read_numbers(line, tag.word, "reference", value_size);
+      read_numbers(line, tag.word, "offset", dimension);
+    }
+    if (!is_waymark_ && has_offsets(type.tag)) {
+      offsets_.read_fields(line, type, values_);
+    } else {
+      for (const FieldInfo& field : type.fields) read_numbers(line, tag.word, field.name, field.size);
+    }
+    information_.resize(dimension, dimension);
+    if (is_toro()) {
+      read_toro_matrix(line, tag.word, format_, information_);
+    } else {
+      read_upper_triangle(line, tag.word);
+    }
+    line.end(tag.word);
+    check_matrix(line, tag.word);
+    try {
+      last_batch_ = &document_.graph.add_edge(type, vertices_, values_, information_);
+    } catch (const UsageError& error) {
+      line.fail(error.what());
+    }
+    if (!runtime && last_batch_->size() == 1) last_batch_->reserve(std::min(tag.lines, most_lines(type)));
+  }
+
+  void read_upper_triangle(LineScanner& line, std::string_view tag) {
+    int index = 0;
+    for (Eigen::Index row = 0; row < information_.rows(); ++row) {
+      for (Eigen::Index column = row; column < information_.cols(); ++column) {
+        const double value = line.number({tag, "information", index++});
+        information_(row, column) = information_(column, row) = value;
+      }
+    }
+  }
+
+  /// What was read must be an information matrix; a covariance becomes one.
+  void check_matrix(const LineScanner& line, std::string_view tag) {
+    if (format_ == GraphFormat::covariance) {
+      const Eigen::LLT<Eigen::MatrixXd> factor(information_);
+      information_ = factor.solve(Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
+      if (factor.info() != Eigen::Success || !information_.allFinite()) {
+        line.fail(join(tag, "the covariance matrix is not positive definite"));
+      }
+      information_ = Eigen::MatrixXd(0.5 * (information_ + information_.transpose()));
+    } else if (!is_positive_semidefinite(information_)) {
+      line.fail(join(tag, "the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)"));
+    }
+  }
+
+  /// How many edges of a type the text has room for, whatever its tags promise.
+  [[nodiscard]] std::size_t most_lines(const EdgeType& type) const {
+    const int numbers =
+        type.arity + type.field_size() + type.error_dimension * (type.error_dimension + 1) / 2;
+    return text_.size() / static_cast<std::size_t>(2 * numbers);
+  }
+
+  void read_numbers(LineScanner& line, std::string_view tag, std::string_view field, Eigen::Index count) {
+    for (int i = 0; i < count; ++i) values_.push_back(line.number({tag, field, count > 1 ? i : -1}));
+  }
+
+  void read_other(LineScanner& line, std::string_view tag) {
+    if (tag == "FIX" && !is_toro()) {
+      do {
+        document_.graph.set_fixed(read_vertex_id(line, document_.graph, tag), true);
+      } while (!line.at_end());
+    } else if (!is_waymark_ || !statements_.read(line, tag, last_batch_)) {
+      fail_unknown(line, tag);
+    }
+  }
+
+  [[noreturn]] void fail_unknown(const LineScanner& line, std::string_view tag) {
+    last_batch_ = nullptr;  // it may have been an edge: a LOSS below it belongs to none that is known
+    if (is_toro()) {
+      line.fail("unknown tag " + quote_word(tag) + "; a file of --input-format " +
+                std::string(to_string(format_)) + " has VERTEX2 and EDGE2");
+    }
+    if (is_one_of(tag, kOwnTags)) {
+      line.fail(join(tag, is_waymark_ ? "stands in the first line only"
+                                      : "is known in files only whose first line is 'GRAPH 1'"));
+    }
+    if (is_one_of(tag, kToroTags)) {
+      line.fail("tag " + quote_word(tag) +
+                " of TORO or GTSAM, which are not guessed (order and meaning of their numbers differ); a "
+                "TORO file is read with --input-format toro, GTSAM's covariances with --input-format "
+                "covariance");
+    }
+    if (tag == kOffsetTag) line.fail(join(tag, "a .graph file has the offsets in its edges"));
+    line.fail("unknown tag " + quote_word(tag) + "; if a plugin defines it, load it with --plugin");
+  }
+
+  // A file with edges only (SE-Sync's way): its vertices are those the edges name, in ascending order.
+  void make_vertices_of_edges() {
+    const ReadReport before = report_;
+    std::vector<std::pair<VertexId, const VertexType*>> named;
+    for_each_line({}, [&](LineScanner& line, std::string_view tag) {
+      const EdgeType* type = known_tag(tag).edge;
+      if (type == nullptr || type->arity == EdgeType::kRuntimeArity) return;
+      for (const std::string& vertex_tag : type->vertex_tags) {
+        named.emplace_back(line.integer({tag, "vertex"}), registry_.find_vertex(vertex_tag));
+      }
+    });
+    std::sort(named.begin(), named.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [id, type] : named) {
+      if (type == nullptr || document_.graph.find(id)) continue;
+      values_.assign(static_cast<std::size_t>(type->value_size), 0.0);
+      document_.graph.add_vertex(*type, id, values_);
+    }
+    report_.edges_only = document_.graph.vertex_count() > 0;
+    // Wrong lines are reported once, by the pass that reads the edges.
+    report_.skipped = before.skipped;
+    report_.examples = before.examples;
+  }
+
+  GraphFormat format_;
+  std::string_view text_;
+  const std::string& name_;
+  const TypeRegistry& registry_;
+  bool lenient_;
+  ReadReport& report_;
+  GraphDocument document_;
+  OwnStatements statements_{document_, registry_};
+  SensorOffsets offsets_;
+  bool is_waymark_ = false;
+  Place place_;  // of the line being read
+  std::vector<Tag> tags_;
+  std::size_t last_tag_ = 0;
+  EdgeBatchBase* last_batch_ = nullptr;
+  std::vector<VertexIndex> vertices_;
+  std::vector<double> values_;
+  Eigen::MatrixXd information_;
+};
+
+}  // namespace
+
+std::string describe_schema(const EdgeType& type) {
+  std::string text = "vertices=";
+  for (std::size_t k = 0; k < type.vertex_tags.size(); ++k) text += (k > 0 ? "," : "") + type.vertex_tags[k];
+  if (type.vertex_tags.empty()) text += "*";
+  text += " fields=";
+  for (std::size_t k = 0; k < type.fields.size(); ++k) {
+    text += (k > 0 ? "," : "") + type.fields[k].name + ":" + std::to_string(type.fields[k].size);
+  }
+  text +=
+      " information=" + (type.error_dimension > 0 ? std::to_string(type.error_dimension) : std::string("*"));
+  return text + " error=" + (type.form.empty() ? "-" : type.form);
+}
+
+GraphDocument read_graph(std::string_view text, const std::string& name, const TypeRegistry& registry,
+                         bool lenient, ReadReport* report) {
+  return read_graph_as(GraphFormat::graph, text, name, registry, lenient, report);
+}
+
+GraphDocument read_graph_as(GraphFormat format, std::string_view text, const std::string& name,
+                            const TypeRegistry& registry, bool lenient, ReadReport* report) {
+  ReadReport own;
+  return GraphReader(format, text, name, registry, lenient, report != nullptr ? *report : own).read();
+}
+
+}  // namespace waymark::formats

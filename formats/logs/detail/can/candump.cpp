@@ -1,0 +1,280 @@
+#include <waymark/formats/logs/detail/can/candump.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/can/can_frame.hpp>
+#include <waymark/formats/logs/detail/can/candump_fixes.hpp>
+#include <waymark/formats/logs/detail/can/candump_signals.hpp>
+#include <waymark/formats/logs/detail/can/candump_tables.hpp>
+#include <waymark/formats/logs/detail/can/dbc.hpp>
+#include <waymark/formats/logs/detail/common/line_decoder.hpp>
+#include <waymark/formats/logs/detail/common/log_request.hpp>
+#include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
+
+namespace waymark::formats {
+namespace {
+
+/// 2106, when 32 bits of seconds end: beyond that a number is no date.
+constexpr std::int64_t kLastDate = 4'294'967'295'000'000'000;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// What is wanted of one message, and what came.
+struct MessageUse {
+  std::size_t frames = 0;
+  std::vector<std::size_t> bound;                               ///< indices of its BoundSignals
+  std::array<std::size_t, kMostInterfaces + 1> by_interface{};  ///< counted for wanted messages only
+};
+
+class CandumpDecoder final : public LineDecoder {
+ public:
+  CandumpDecoder(const std::string& path, const LogRequest& log_request, Dbc dbc)
+      : LineDecoder(path, log_request),
+        dbc_(std::move(dbc)),
+        table_(dbc_),
+        quantities_(signal_quantities(request())),
+        bound_(bind_signals(dbc_, quantities_, request(), path + ": ", data_.notes)),
+        outside_(bound_.size()),
+        uses_(dbc_.messages.size()) {
+    offset_ = std::llround(request().time_offset_s * 1e9);
+    for (std::size_t i = 0; i < bound_.size(); ++i) uses_[bound_[i].message].bound.push_back(i);
+    const StreamKind stream = request().stream;
+    if (stream == StreamKind::gnss || stream == StreamKind::truth)
+      fixes_.emplace(quantities_, bound_, request(), this->path(), data_);
+    data_.readings.columns = request().readings.size();
+  }
+
+ private:
+  void take_line(std::string_view line, std::size_t number) override;
+  void end() override;
+  void take_message(const MessageUse& use, const CanLine& line, std::string_view text, std::size_t number);
+  void take_values(Stamp stamp, std::size_t number);
+  void take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp);
+  [[nodiscard]] double value_of(const DbcSignal& signal, std::size_t index);
+  [[nodiscard]] std::string described(const BoundSignal& bound) const;
+  [[nodiscard]] std::optional<Stamp> stamp_of(std::string_view text) const;
+  void bad_line(std::size_t number, std::size_t column, const std::string& what) {
+    ++data_.records;
+    corrupt(number, column, what);
+  }
+  void refuse_asc(std::string_view line) const;
+  void note_interfaces();
+  [[noreturn]] void refuse_silence() const;
+
+  Dbc dbc_;
+  MessageTable table_;
+  std::vector<Quantity> quantities_;
+  std::vector<BoundSignal> bound_;
+  std::vector<std::size_t> outside_;  ///< by BoundSignal: values that were none
+  std::vector<MessageUse> uses_;      ///< by message
+  std::optional<FixAssembler> fixes_;
+  std::int64_t offset_ = 0;
+  Interfaces interfaces_;
+  std::size_t unknown_ = 0, remote_ = 0, errors_ = 0;
+  bool any_frame_ = false;
+  CanData frame_;
+  std::vector<SignalValue> values_;  ///< of the frame at hand
+};
+
+void CandumpDecoder::take_line(std::string_view line, std::size_t number) {
+  if (line.empty()) return;
+  const CanLine taken = split_can_line(line);
+  if (taken.kind == FrameKind::none) {
+    if (!any_frame_) refuse_asc(line);
+    return bad_line(number, taken.column, std::string(taken.what));
+  }
+  any_frame_ = true;
+  const std::size_t interface = interfaces_.count(taken.interface);
+  if (taken.kind == FrameKind::remote) {
+    ++remote_;
+    return;
+  }
+  if (taken.kind == FrameKind::error) {
+    ++errors_;
+    return;
+  }
+  const std::uint32_t message = table_.find(taken.id);
+  if (message == MessageTable::kUnknown) {
+    ++unknown_;
+    return;
+  }
+  MessageUse& use = uses_[message];
+  ++use.frames;
+  if (use.bound.empty()) return;
+  ++use.by_interface[interface];
+  take_message(use, taken, line, number);
+}
+
+void CandumpDecoder::take_message(const MessageUse& use, const CanLine& line, std::string_view text,
+                                  std::size_t number) {
+  const auto column = [&](std::string_view part) {
+    return static_cast<std::size_t>(part.data() - text.data()) + 1;
+  };
+  const std::optional<Stamp> stamp = stamp_of(line.stamp);
+  if (!stamp)
+    return bad_line(number, column(line.stamp),
+                    fmt::format("{} is no time in decimal seconds", quote_field(line.stamp)));
+  if (const std::string_view what = read_can_data(line, frame_); !what.empty())
+    return bad_line(number, column(line.data), std::string(what));
+  values_.clear();
+  for (const std::size_t index : use.bound) {
+    const BoundSignal& bound = bound_[index];
+    const DbcMessage& message = dbc_.messages[bound.message];
+    const DbcSignal& signal = message.signals[bound.signal];
+    if (!bound.interface.empty() && bound.interface != line.interface) continue;
+    if (!message.holds(signal, frame_)) continue;
+    if (frame_.size < signal.bytes_needed())
+      return bad_line(number, column(line.data),
+                      fmt::format("{}: {} bytes, but the signal {} needs {}", message.name, frame_.size,
+                                  signal.name, signal.bytes_needed()));
+    if (quantities_[bound.quantity].name == "gnss_time") {
+      take_clock(signal, index, *stamp);
+    } else {
+      values_.push_back({bound.quantity, value_of(signal, index)});
+    }
+  }
+  if (!values_.empty()) take_values(*stamp, number);
+}
+
+void CandumpDecoder::take_values(Stamp stamp, std::size_t number) {
+  if (fixes_) return fixes_->take(stamp, number, values_);
+  ++data_.records;
+  // The quantities of these streams are the readings, but for `time`, which the log gives.
+  SensorTable& table = data_.readings;
+  const std::size_t row = table.values.size();
+  table.stamps.push_back(stamp);
+  table.values.resize(row + table.columns, kNone);
+  for (const SignalValue& signal : values_) table.values[row + signal.quantity] = signal.value;
+}
+
+/// The quantity as the frame has it; NaN, and counted, where it is outside its range.
+double CandumpDecoder::value_of(const DbcSignal& signal, std::size_t index) {
+  const BoundSignal& bound = bound_[index];
+  const Quantity& quantity = quantities_[bound.quantity];
+  const double value = bound.factor * signal.value(frame_);
+  if (std::isfinite(value) && value >= quantity.smallest && value <= quantity.largest)
+    return value + bound.offset;
+  ++outside_[index];
+  return kNone;
+}
+
+void CandumpDecoder::take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp) {
+  std::int64_t multiplier = 1'000'000'000;
+  for (int power = bound_[index].time_power; power < 0; ++power) multiplier /= 10;
+  const std::optional<std::int64_t> told = signal.integer(frame_, multiplier);
+  if (!told || *told <= 0 || *told > kLastDate) {
+    ++outside_[index];
+    return;
+  }
+  data_.clocks.push_back({stamp, convert(Stamp{*told}, TimeScale::utc, request().time_scale)});
+}
+
+std::optional<Stamp> CandumpDecoder::stamp_of(std::string_view text) const {
+  std::optional<Stamp> stamp = can_stamp(text);
+  if (stamp && __builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) return std::nullopt;
+  return stamp;
+}
+
+/// Vector's text logs begin with "date Mon Jul 26 ..." and "base hex  timestamps absolute".
+void CandumpDecoder::refuse_asc(std::string_view line) const {
+  if (!line.starts_with("date ") && !line.starts_with("base hex") && !line.starts_with("base dec")) return;
+  throw InputError(
+      fmt::format("{}: this is a Vector ASC log, which is not read here; `asc2log < {} > candump.log` "
+                  "(can-utils) writes a candump log from it",
+                  path(), path()));
+}
+
+void CandumpDecoder::end() {
+  if (fixes_) fixes_->finish();
+  for (std::size_t i = 0; i < bound_.size(); ++i) {
+    if (outside_[i] == 0) continue;
+    const Quantity& quantity = quantities_[bound_[i].quantity];
+    note(fmt::format("{}: {} values of signal {} are outside its range or no numbers, and count as not given",
+                     quantity.name, outside_[i],
+                     dbc_.messages[bound_[i].message].signals[bound_[i].signal].name));
+  }
+  note_interfaces();
+  if (any_frame_ && data_.records == 0) refuse_silence();
+  for (std::size_t i = 0; i < uses_.size(); ++i) {
+    if (uses_[i].frames > 0) data_.kinds[dbc_.messages[i].name] = uses_[i].frames;
+  }
+  if (unknown_ > 0) data_.kinds["not in the DBC"] = unknown_;
+  if (remote_ > 0) data_.kinds["remote frames"] = remote_;
+  if (errors_ > 0) data_.kinds["error frames"] = errors_;
+}
+
+/// "WHEEL_SPEEDS (id AA)", "WHEEL_SPEEDS (id AA) on can0".
+std::string CandumpDecoder::described(const BoundSignal& bound) const {
+  const DbcMessage& message = dbc_.messages[bound.message];
+  return fmt::format("{} (id {:X}){}", message.name, message.id & ~kExtendedFrame,
+                     bound.interface.empty() ? std::string() : " on " + bound.interface);
+}
+
+void CandumpDecoder::note_interfaces() {
+  if (const std::string summary = interfaces_.summary(); !summary.empty()) note("interfaces: " + summary);
+  for (const BoundSignal& bound : bound_) {
+    const MessageUse& use = uses_[bound.message];
+    const DbcMessage& message = dbc_.messages[bound.message];
+    const std::string quantity(quantities_[bound.quantity].name);
+    std::size_t on_stated = 0;
+    std::size_t first = use.by_interface.size();
+    for (std::size_t i = use.by_interface.size(); i-- > 0;) {
+      if (use.by_interface[i] == 0) continue;
+      first = i;
+      if (bound.interface.empty() || interfaces_.name(i) == bound.interface) on_stated += use.by_interface[i];
+    }
+    if (on_stated == 0) note(fmt::format("{}: the log has no frame of {}", quantity, described(bound)));
+    const auto sources = std::count_if(use.by_interface.begin(), use.by_interface.end(),
+                                       [](std::size_t count) { return count > 0; });
+    if (sources > 1 && bound.interface.empty())
+      note(fmt::format("{}: {} comes on {}, all are read; '{}:{}.{}' chooses one", quantity, message.name,
+                       interfaces_.summary(use.by_interface), interfaces_.name(first), message.name,
+                       message.signals[bound.signal].name));
+  }
+}
+
+/// Where not one frame with a wanted signal came: what was looked for, and where.
+void CandumpDecoder::refuse_silence() const {
+  std::string wanted;
+  for (const BoundSignal& bound : bound_) {
+    const std::string message = described(bound);
+    if (wanted.find(message) == std::string::npos) wanted += (wanted.empty() ? "" : ", ") + message;
+  }
+  throw InputError(fmt::format("{}: no frame holds a wanted signal ({}); there are {}", path(), wanted,
+                               interfaces_.summary()));
+}
+
+}  // namespace
+
+std::unique_ptr<LogDecoder> CandumpReader::open(const std::string& path, const LogRequest& request) const {
+  require_companions(path, request, "a candump log", "dbc");
+  const auto dbc = request.companions.find("dbc");
+  if (dbc == request.companions.end())
+    throw InputError(fmt::format("{}: a candump log needs its DBC: state 'dbc: FILE'", path));
+  return std::make_unique<CandumpDecoder>(path, request, Dbc::parse(dbc->second.text, dbc->second.path));
+}
+
+Recognition CandumpReader::recognise(std::string_view head) const {
+  HeadLines lines(head);
+  std::size_t frames = 0;
+  CanData data;
+  while (lines.next()) {
+    const CanLine taken = split_can_line(lines.line());
+    const bool sound = taken.kind == FrameKind::remote || taken.kind == FrameKind::error ||
+                       (taken.kind == FrameKind::data && read_can_data(taken, data).empty());
+    if (sound && can_stamp(taken.stamp)) ++frames;
+  }
+  if (2 * frames <= lines.count()) return {};
+  return lines.share(frames, "are CAN frames as candump writes them");
+}
+
+}  // namespace waymark::formats

@@ -1,0 +1,92 @@
+/// Look-ups that the candump reader does for every line.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <waymark/formats/logs/detail/can/dbc.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
+
+namespace waymark::formats {
+
+/// So many interfaces are told apart, by names of so many characters (Linux has at most 15).
+inline constexpr std::size_t kMostInterfaces = 16;
+inline constexpr std::size_t kLongestInterface = 31;
+
+/// From id to index in the DBC.
+class MessageTable {
+ public:
+  static constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
+
+  explicit MessageTable(const Dbc& dbc) {
+    standard_.fill(kUnknown);
+    for (std::size_t i = 0; i < dbc.messages.size(); ++i) {
+      const std::uint32_t id = dbc.messages[i].id;
+      const auto index = static_cast<std::uint32_t>(i);
+      if (id < standard_.size()) {
+        standard_[id] = index;
+      } else {
+        extended_.emplace_back(id, index);
+      }
+    }
+    std::sort(extended_.begin(), extended_.end());
+  }
+  [[nodiscard]] std::uint32_t find(std::uint32_t id) const {
+    if (id < standard_.size()) return standard_[id];
+    const auto at = std::lower_bound(extended_.begin(), extended_.end(), std::pair{id, std::uint32_t{0}});
+    return at != extended_.end() && at->first == id ? at->second : kUnknown;
+  }
+
+ private:
+  std::array<std::uint32_t, 2048> standard_{};
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> extended_;
+};
+
+/// The interfaces of a log and how many frames each brought.
+class Interfaces {
+ public:
+  /// Index of an interface; kMostInterfaces for those beyond the table.
+  std::size_t count(std::string_view name) {
+    if (last_ >= used_ || names_[last_] != name) last_ = find(name);
+    ++counts_[last_];
+    return last_;
+  }
+  [[nodiscard]] std::string name(std::size_t index) const {
+    return index < used_ ? shown_name(names_[index]) : std::string("other interfaces");
+  }
+  [[nodiscard]] std::string summary(const std::array<std::size_t, kMostInterfaces + 1>& counts) const {
+    std::string text;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      if (counts[i] > 0)
+        text += fmt::format("{}{} ({} frames)", text.empty() ? "" : ", ", name(i), counts[i]);
+    }
+    return text;
+  }
+  [[nodiscard]] std::string summary() const { return summary(counts_); }
+
+ private:
+  std::size_t find(std::string_view name) {
+    for (std::size_t i = 0; i < used_; ++i) {
+      if (names_[i] == name) return i;
+    }
+    if (used_ == kMostInterfaces || name.size() > kLongestInterface) return kMostInterfaces;
+    names_[used_] = name;
+    return used_++;
+  }
+
+  std::array<std::string, kMostInterfaces> names_;
+  std::array<std::size_t, kMostInterfaces + 1> counts_{};
+  std::size_t used_ = 0;
+  std::size_t last_ = kMostInterfaces;
+};
+
+}  // namespace waymark::formats

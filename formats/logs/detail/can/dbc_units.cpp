@@ -1,0 +1,80 @@
+#include <array>
+#include <string>
+
+#include <waymark/formats/logs/detail/can/dbc.hpp>
+
+namespace waymark::formats {
+namespace {
+
+struct UnitAlias {
+  std::string_view written;  ///< in small letters
+  std::string_view name;
+};
+constexpr std::array<UnitAlias, 51> kUnitAliases{{
+    {"m/s", "m/s"},
+    {"mps", "m/s"},
+    {"meter/sec", "m/s"},
+    {"km/h", "km/h"},
+    {"kph", "km/h"},
+    {"kmh", "km/h"},
+    {"kmph", "km/h"},
+    {"km/hr", "km/h"},
+    {"kilometers/hour", "km/h"},
+    {"mph", "mph"},
+    {"mi/h", "mph"},
+    {"kn", "kn"},
+    {"kt", "kn"},
+    {"kts", "kn"},
+    {"knots", "kn"},
+    {"mm/s", "mm/s"},
+    {"rad/s", "rad/s"},
+    {"rad/sec", "rad/s"},
+    {"deg/s", "deg/s"},
+    {"deg/sec", "deg/s"},
+    {"dps", "deg/s"},
+    {"°/s", "deg/s"},
+    {"°/sec", "deg/s"},
+    {"degree/s", "deg/s"},
+    {"degrees/s", "deg/s"},
+    {"deg", "deg"},
+    {"degree", "deg"},
+    {"degrees", "deg"},
+    {"°", "deg"},
+    {"rad", "rad"},
+    {"m", "m"},
+    {"meter", "m"},
+    {"meters", "m"},
+    {"metre", "m"},
+    {"cm", "cm"},
+    {"mm", "mm"},
+    {"m/s^2", "m/s^2"},
+    {"m/s2", "m/s^2"},
+    {"m/s²", "m/s^2"},
+    {"m/s/s", "m/s^2"},
+    {"m/ss", "m/s^2"},
+    {"m/(s^2)", "m/s^2"},
+    {"mps2", "m/s^2"},
+    {"g", "g"},
+    {"s", "s"},
+    {"sec", "s"},
+    {"seconds", "s"},
+    {"ms", "ms"},
+    {"us", "us"},
+    {"ns", "ns"},
+    {"1e-7deg", "1e-7deg"},
+}};
+
+}  // namespace
+
+std::string_view known_unit(std::string_view dbc_unit) {
+  std::string written(dbc_unit);
+  for (char& c : written) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  for (const UnitAlias& alias : kUnitAliases) {
+    if (alias.written == written) return alias.name;
+  }
+  return {};
+}
+
+}  // namespace waymark::formats

@@ -1,0 +1,21 @@
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
+
+#include <cstdint>
+
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/text/stamp_text.hpp>
+
+namespace waymark::formats {
+
+std::optional<Stamp> stamp_from_gps_week(std::string_view week, std::string_view seconds) {
+  const std::optional<int> weeks = field_count(week);
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  // A longer text allocates, and is no time.
+  if (!weeks || *weeks > 9999 || seconds.size() > 20) return std::nullopt;
+  const std::optional<Stamp> of_week = stamp_from_decimal_seconds(seconds);
+  if (!of_week || of_week->nanoseconds < 0 || of_week->nanoseconds > kGpsWeekNanoseconds + kSecond)
+    return std::nullopt;
+  return Stamp{*weeks * kGpsWeekNanoseconds + of_week->nanoseconds};
+}
+
+}  // namespace waymark::formats

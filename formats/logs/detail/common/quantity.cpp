@@ -1,0 +1,170 @@
+#include <waymark/formats/logs/detail/common/quantity.hpp>
+
+#include <array>
+#include <limits>
+#include <numbers>
+
+#include <waymark/core/base/error.hpp>
+
+namespace waymark::formats {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kDegree = pi / 180;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr std::array kTimes{Unit{"s", 0}, Unit{"ms", -3}, Unit{"us", -6}, Unit{"ns", -9}, Unit{kIso8601, 0}};
+constexpr std::array kSpeeds{Unit{"m/s", 1}, Unit{"km/h", 1 / 3.6}, Unit{"mph", 0.44704},
+                             Unit{"kn", 1852 / 3600.0}, Unit{"mm/s", 1e-3}};
+constexpr std::array kRates{Unit{"rad/s", 1}, Unit{"deg/s", kDegree}};
+constexpr std::array kDegrees{Unit{"deg", 1}, Unit{"rad", 1 / kDegree}, Unit{"1e-7deg", 1e-7}};
+constexpr std::array kLengths{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}};
+constexpr std::array kCourses{Unit{"deg", kDegree}, Unit{"rad", 1}, Unit{"1e-5deg", 1e-5 * kDegree}};
+constexpr std::array kHeadings{Unit{"rad", 1}, Unit{"deg", kDegree}};
+constexpr std::array kAccelerations{Unit{"m/s^2", 1}, Unit{"g", 9.80665}};
+constexpr std::array kFlags{Unit{"1", 1}};
+
+constexpr std::array kTurns{Convention{"ccw", 1, 0}, Convention{"cw", -1, 0}};
+// A course is kept clockwise from north, a heading counter-clockwise from east: each is pi/2 minus the other.
+constexpr std::array kCourseSenses{Convention{"cw_from_north", 1, 0},
+                                   Convention{"ccw_from_east", -1, pi / 2}};
+constexpr std::array kHeadingSenses{Convention{"ccw_from_east", 1, 0},
+                                    Convention{"cw_from_north", -1, pi / 2}};
+
+// Times and flags are not parsed as bounded numbers. The limits of speed and yaw rate are generous for a road
+// vehicle: beyond them a number is garbage or in another unit.
+constexpr Quantity kTime{"time", "time_s", true, kTimes, {}, -kInfinity, kInfinity};
+constexpr Quantity kSpeed{"speed", "speed_mps", true, kSpeeds, {}, -150, 150};
+constexpr Quantity kOptionalSpeed{"speed", "speed_mps", false, kSpeeds, {}, -150, 150};
+constexpr Quantity kLatitude{"latitude", "latitude_deg", true, kDegrees, {}, -90, 90};
+constexpr Quantity kLongitude{"longitude", "longitude_deg", true, kDegrees, {}, -180, 360};
+constexpr Quantity kHeight{"height", "height_m", false, kLengths, {}, -12e3, 100e3};
+
+constexpr std::array kOdometry{kTime, kSpeed,
+                               Quantity{"yaw_rate", "yaw_rate_radps", true, kRates, kTurns, -20, 20}};
+constexpr std::array kGnss{
+    kTime,
+    kLatitude,
+    kLongitude,
+    kHeight,
+    Quantity{"accuracy", "accuracy_m", false, kLengths, {}, -kInfinity, 1e6},
+    Quantity{"accuracy_east", "accuracy_east_m", false, kLengths, {}, -kInfinity, 1e6},
+    Quantity{"accuracy_north", "accuracy_north_m", false, kLengths, {}, -kInfinity, 1e6},
+    Quantity{"sigma_east", "sigma_east_m", false, kLengths, {}, -kInfinity, 1e6},
+    Quantity{"sigma_north", "sigma_north_m", false, kLengths, {}, -kInfinity, 1e6},
+    Quantity{"covariance_en_signed_root", "covariance_en_signed_root_m", false, kLengths, {}, -1e6, 1e6},
+    Quantity{"course", "course_deg", false, kCourses, kCourseSenses, -2 * pi, 2 * pi},
+    Quantity{"course_accuracy", "course_accuracy_deg", false, kCourses, {}, -kInfinity, kInfinity},
+    kOptionalSpeed,
+    Quantity{"speed_accuracy", "speed_accuracy_mps", false, kSpeeds, {}, -kInfinity, kInfinity},
+    Quantity{"gnss_time", "gnss_time_s", false, kTimes, {}, -kInfinity, kInfinity},
+    Quantity{"valid", "valid_flag", false, kFlags, {}, -kInfinity, kInfinity}};
+// References often count headings on through the turns of a drive.
+constexpr std::array kTruth{
+    kTime, kLatitude, kLongitude, kHeight,
+    Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -200 * pi, 200 * pi}};
+
+// What a sensor may ask for: its SI unit and, of an angle or a rate, its sense (SensorColumn).
+struct SensorKind {
+  std::string_view unit;
+  std::string_view sense;
+  std::span<const Unit> units;
+  std::span<const Convention> conventions;
+};
+constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
+constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", kDegree}};
+constexpr std::array<SensorKind, 9> kSensorKinds{{{"1", "", kFlags, {}},
+                                                  {"m", "", kLengths, {}},
+                                                  {"m/s", "", kSpeeds, {}},
+                                                  {"m/s^2", "", kAccelerations, {}},
+                                                  {"s", "", kDurations, {}},
+                                                  {"rad", "", kAngles, {}},
+                                                  {"rad", "ccw_from_east", kHeadings, kHeadingSenses},
+                                                  {"rad", "ccw", kHeadings, kTurns},
+                                                  {"rad/s", "ccw", kRates, kTurns}}};
+
+template <typename Item>
+const Item* find_named(std::span<const Item> items, std::string_view name) {
+  for (const Item& item : items) {
+    if (item.name == name) return &item;
+  }
+  return nullptr;
+}
+
+Quantity sensor_quantity(const SensorColumn& column) {
+  for (const SensorKind& kind : kSensorKinds) {
+    if (kind.unit != column.unit || kind.sense != column.sense) continue;
+    return {column.name, column.name, column.required, kind.units, kind.conventions, -kInfinity, kInfinity};
+  }
+  throw UsageError("sensor column '" + column.name + "': no unit '" + column.unit + "' of sense '" +
+                   column.sense + "'; SensorColumn in core/drive/sample.hpp lists those there are");
+}
+
+/// The channels of a stream: none is required; those that the stream has itself are the stream's.
+std::vector<Quantity> channel_quantities(std::span<const Quantity> stream,
+                                         std::span<const SensorColumn> channels) {
+  std::vector<Quantity> own{kTime};
+  for (const SensorColumn& channel : channels) {
+    const Quantity* whole = find_named(stream, channel.name);
+    own.push_back(whole != nullptr ? *whole : sensor_quantity(channel));
+    own.back().required = false;
+  }
+  return own;
+}
+
+}  // namespace
+
+std::vector<Quantity> quantities(const LogRequest& request) {
+  switch (request.stream) {
+    case StreamKind::odometry:
+      if (!request.readings.empty()) return channel_quantities(kOdometry, request.readings);
+      return {kOdometry.begin(), kOdometry.end()};
+    case StreamKind::gnss:
+      if (!request.readings.empty()) return channel_quantities(kGnss, request.readings);
+      return {kGnss.begin(), kGnss.end()};
+    case StreamKind::truth:
+      return {kTruth.begin(), kTruth.end()};
+    case StreamKind::sensor:
+      break;
+  }
+  std::vector<Quantity> own{kTime};
+  for (const SensorColumn& column : request.readings) own.push_back(sensor_quantity(column));
+  return own;
+}
+
+std::vector<std::string_view> names_of(std::span<const Quantity> quantities) {
+  std::vector<std::string_view> names;
+  for (const Quantity& quantity : quantities) names.push_back(quantity.name);
+  return names;
+}
+
+const Quantity* find_quantity(std::span<const Quantity> quantities, std::string_view name) {
+  return find_named(quantities, name);
+}
+
+const Unit* find_unit(const Quantity& quantity, std::string_view name) {
+  return name.empty() ? &quantity.units.front() : find_named(quantity.units, name);
+}
+
+const Convention* find_convention(const Quantity& quantity, std::string_view name) {
+  static constexpr Convention kNone{"", 1, 0};
+  if (quantity.conventions.empty()) return name.empty() ? &kNone : nullptr;
+  return name.empty() ? &quantity.conventions.front() : find_named(quantity.conventions, name);
+}
+
+std::string_view to_string(StreamKind stream) {
+  switch (stream) {
+    case StreamKind::odometry:
+      return "odometry";
+    case StreamKind::gnss:
+      return "gnss";
+    case StreamKind::truth:
+      return "truth";
+    case StreamKind::sensor:
+      return "sensor";
+  }
+  return "gnss";
+}
+
+}  // namespace waymark::formats

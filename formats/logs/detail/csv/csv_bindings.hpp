@@ -1,0 +1,28 @@
+/// The columns of a table by what the samples need; private to the CSV reader.
+#pragma once
+
+#include <waymark/formats/logs/detail/csv/csv_columns.hpp>
+
+namespace waymark::formats {
+
+/// The columns of the stream, looked up once; null where the table has none.
+struct Bindings {
+  explicit Bindings(const CsvColumns& columns)
+      : time(columns.find("time")),
+        speed(columns.find("speed")),
+        yaw_rate(columns.find("yaw_rate")),
+        latitude(columns.find("latitude")),
+        longitude(columns.find("longitude")),
+        height(columns.find("height")),
+        heading(columns.find("heading")),
+        course(columns.find("course")),
+        course_accuracy(columns.find("course_accuracy")),
+        speed_accuracy(columns.find("speed_accuracy")),
+        gnss_time(columns.find("gnss_time")),
+        valid(columns.find("valid")) {}
+
+  const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *height, *heading;
+  const BoundColumn *course, *course_accuracy, *speed_accuracy, *gnss_time, *valid;
+};
+
+}  // namespace waymark::formats

@@ -1,0 +1,194 @@
+#include <waymark/formats/logs/detail/csv/csv_columns.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
+#include <waymark/formats/text/iso8601.hpp>
+#include <waymark/formats/text/stamp_text.hpp>
+
+namespace waymark::formats {
+namespace {
+
+/// A column given by number; empty for a name.
+std::optional<std::size_t> column_number(std::string_view column) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(column.data(), column.data() + column.size(), number);
+  if (error != std::errc() || end != column.data() + column.size()) return std::nullopt;
+  return number;
+}
+
+template <typename Item>
+std::vector<std::string_view> names_of(std::span<const Item> items) {
+  std::vector<std::string_view> names;
+  for (const Item& item : items) names.push_back(item.name);
+  return names;
+}
+
+std::vector<std::string_view> views_of(const std::vector<std::string>& names) {
+  return {names.begin(), names.end()};
+}
+
+/// Whether the first line of a table holds values already: all of them numbers, or a time in the column that
+/// is given by number for it (a headerless table may hold dates and words beside).
+bool holds_values(const std::vector<std::string_view>& fields, const LogRequest& request) {
+  const auto is_number = [](std::string_view field) { return number_from_field(field).has_value(); };
+  if (std::all_of(fields.begin(), fields.end(), is_number)) return true;
+  const auto time = request.columns.find("time");
+  if (time == request.columns.end()) return false;
+  const std::size_t number = column_number(time->second.column).value_or(0);
+  if (number < 1 || number > fields.size()) return false;
+  const std::string_view field = fields[number - 1];
+  return stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
+}
+
+}  // namespace
+
+std::optional<double> number_from_field(std::string_view field) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (field.empty()) return kNone;
+  if (const std::optional<double> value = field_number(field)) return value;
+  const std::string word = lower_case(field);
+  for (const std::string_view none : {"nan", "na", "n/a", "null", "none"}) {
+    if (word == none) return kNone;
+  }
+  return std::nullopt;
+}
+
+std::string column_request_error(const Quantity& quantity, const ColumnRequest& request) {
+  if (request.column.empty()) return fmt::format("no column is given for {}", quantity.name);
+  if (find_unit(quantity, request.unit) == nullptr) {
+    const std::vector<std::string_view> known = names_of(quantity.units);
+    return fmt::format("unknown unit '{}' for {}{}; known: {}", request.unit, quantity.name,
+                       did_you_mean(request.unit, known), joined(known));
+  }
+  if (find_convention(quantity, request.convention) != nullptr) return {};
+  if (quantity.conventions.empty()) return fmt::format("{} has no convention to choose", quantity.name);
+  const std::vector<std::string_view> known = names_of(quantity.conventions);
+  return fmt::format("unknown convention '{}' for {}{}; known: {}", request.convention, quantity.name,
+                     did_you_mean(request.convention, known), joined(known));
+}
+
+CsvColumns::CsvColumns(const TableLine& first, const std::string& path, const LogRequest& request)
+    : quantities_(quantities(request)) {
+  check_request(path + ": ", request);
+  find_header(first, path, request);
+  const std::string place = fmt::format("{}:{}:1: ", path, first.number);
+  for (const Quantity& quantity : quantities_) {
+    const auto wanted = request.columns.find(std::string(quantity.name));
+    bind(quantity, wanted == request.columns.end() ? nullptr : &wanted->second, place);
+  }
+  const bool in_channels = request.stream != StreamKind::sensor && !request.readings.empty();
+  if (in_channels && columns_.size() == 1)
+    throw InputError(fmt::format("{}no column for {} or another channel: name it under columns{}", place,
+                                 request.readings.front().name, columns_present()));
+}
+
+void CsvColumns::check_request(const std::string& place, const LogRequest& request) const {
+  const std::vector<std::string_view> known = names_of(quantities_);
+  for (const auto& [name, wanted] : request.columns) {
+    const Quantity* quantity = find_quantity(quantities_, name);
+    if (quantity == nullptr)
+      throw InputError(fmt::format("{}'{}' is no quantity of the {} stream{}", place, name,
+                                   to_string(request.stream), suggestion(name, known)));
+    if (const std::string error = column_request_error(*quantity, wanted); !error.empty())
+      throw InputError(place + error);
+  }
+}
+
+void CsvColumns::find_header(const TableLine& first, const std::string& path, const LogRequest& request) {
+  std::vector<std::string_view> fields;
+  if (!split_fields(first.text, request.separator, fields))
+    throw InputError(fmt::format("{}:{}:1: a quoted field of the header is not closed", path, first.number));
+  field_count_ = fields.size();
+  if (!holds_values(fields, request)) {
+    names_.assign(fields.begin(), fields.end());
+    first_line_is_header_ = true;
+    return;
+  }
+  std::vector<std::string_view> comment;
+  if (first.comment_above.empty() || !split_fields(first.comment_above, request.separator, comment)) return;
+  if (comment.size() != fields.size()) return;
+  names_.assign(comment.begin(), comment.end());
+  notes_.push_back(
+      fmt::format("{}: column names were taken from the comment above line {}", path, first.number));
+}
+
+void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place) {
+  BoundColumn bound;
+  bound.quantity = &quantity;
+  std::optional<std::size_t> field;
+  if (wanted != nullptr) {
+    field = field_named(wanted->column);
+    if (const auto number = column_number(wanted->column); !field && number) {
+      if (*number < 1 || *number > field_count_)
+        throw InputError(fmt::format("{}no column {} for {}: the table has columns 1 to {}", place, *number,
+                                     quantity.name, field_count_));
+      field = *number - 1;
+    }
+    if (!field)
+      throw InputError(fmt::format("{}no column '{}' for {}{}{}", place, wanted->column, quantity.name,
+                                   did_you_mean(wanted->column, views_of(shown_names())), columns_present()));
+  } else {
+    field = field_named(quantity.name);
+    if (!field) field = field_named(quantity.default_column);
+    if (!field && quantity.required)
+      throw InputError(
+          fmt::format("{}no column for {} ({}): name it under columns{}", place, quantity.name,
+                      quantity.name == quantity.default_column
+                          ? fmt::format("no '{}'", quantity.name)
+                          : fmt::format("neither '{}' nor '{}'", quantity.name, quantity.default_column),
+                      columns_present()));
+    if (!field) return;
+    notes_.push_back(fmt::format("{}{} is column '{}' by default", place, quantity.name, names_[*field]));
+  }
+  const ColumnRequest plain;
+  const ColumnRequest& how = wanted != nullptr ? *wanted : plain;
+  const Unit& unit = *find_unit(quantity, how.unit);
+  const Convention& convention = *find_convention(quantity, how.convention);
+  bound.field = *field;
+  bound.unit = unit.name;
+  bound.factor = convention.sign * unit.factor;
+  bound.offset = convention.offset;
+  if (quantity.name == "time" || quantity.name == "gnss_time")
+    bound.time_power = static_cast<int>(unit.factor);
+  columns_.push_back(bound);
+}
+
+const BoundColumn* CsvColumns::find(std::string_view quantity) const {
+  for (const BoundColumn& column : columns_) {
+    if (column.quantity->name == quantity) return &column;
+  }
+  return nullptr;
+}
+
+std::optional<std::size_t> CsvColumns::field_named(std::string_view name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (found == names_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names_.begin());
+}
+
+std::string CsvColumns::columns_present() const {
+  if (names_.empty()) return fmt::format("; the table has no header, only columns 1 to {}", field_count_);
+  constexpr std::size_t kMostListed = 40;
+  std::vector<std::string> shown = shown_names();
+  const std::size_t more = shown.size() - std::min(shown.size(), kMostListed);
+  shown.resize(shown.size() - more);
+  return fmt::format("; columns present: {}{}", joined(views_of(shown)),
+                     more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+/// Of the header, as messages show them.
+std::vector<std::string> CsvColumns::shown_names() const {
+  std::vector<std::string> shown;
+  for (const std::string& name : names_) shown.push_back(shown_name(name));
+  return shown;
+}
+
+}  // namespace waymark::formats

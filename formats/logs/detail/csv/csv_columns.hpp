@@ -1,0 +1,69 @@
+/// Which field of a table holds which quantity.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <waymark/core/drive/log_reader.hpp>
+#include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/formats/logs/detail/csv/csv_table.hpp>
+
+namespace waymark::formats {
+
+/// A quantity tied to a field.
+struct BoundColumn {
+  const Quantity* quantity = nullptr;
+  std::size_t field = 0;
+  double factor = 1;  ///< value = sign * factor * number + offset
+  double offset = 0;
+  std::string_view unit;
+  int time_power = 0;  ///< of ten, for times
+};
+
+/// The columns of one stream in one table.
+class CsvColumns {
+ public:
+  /// Finds the header and ties the quantities.
+  /// @param first    line of the table
+  /// @param request  with the separator
+  /// @throws InputError see CsvLogReader
+  CsvColumns(const TableLine& first, const std::string& path, const LogRequest& request);
+  CsvColumns(const CsvColumns&) = delete;  // columns point to the quantities
+  CsvColumns& operator=(const CsvColumns&) = delete;
+
+  [[nodiscard]] bool first_line_is_header() const { return first_line_is_header_; }
+  [[nodiscard]] std::size_t field_count() const { return field_count_; }
+  /// Null where the table has no such quantity.
+  [[nodiscard]] const BoundColumn* find(std::string_view quantity) const;
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  void check_request(const std::string& place, const LogRequest& request) const;
+  void find_header(const TableLine& first, const std::string& path, const LogRequest& request);
+  void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
+  [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
+  [[nodiscard]] std::string columns_present() const;
+  [[nodiscard]] std::vector<std::string> shown_names() const;
+
+  std::vector<Quantity> quantities_;
+  std::vector<std::string> names_;  ///< of the header; empty where there is none
+  std::size_t field_count_ = 0;
+  bool first_line_is_header_ = false;
+  std::vector<BoundColumn> columns_;
+  std::vector<std::string> notes_;
+};
+
+/// Why a column request cannot be met by any table ("unknown unit 'kmh' for speed; did you mean 'km/h'?");
+/// empty where it is well formed.
+[[nodiscard]] std::string column_request_error(const Quantity& quantity, const ColumnRequest& request);
+
+/// A number, also with a leading '+'. NaN where the field says that there is none (empty, "nan", "na",
+/// "null", "none").
+/// @return empty for anything else, infinities included.
+[[nodiscard]] std::optional<double> number_from_field(std::string_view field);
+
+}  // namespace waymark::formats

@@ -1,0 +1,213 @@
+#include <waymark/formats/logs/detail/csv/csv_records.hpp>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/logs/detail/csv/csv_table.hpp>
+#include <waymark/formats/text/iso8601.hpp>
+#include <waymark/formats/text/stamp_text.hpp>
+
+namespace waymark::formats {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data)
+    : bound_(columns),
+      field_count_(columns.field_count()),
+      path_(path),
+      request_(std::move(request)),
+      data_(data),
+      positions_(path, request_, nullptr) {
+  offset_ = request_.gps_week * kGpsWeekNanoseconds + std::llround(request_.time_offset_s * 1e9);
+  if (request_.stream == StreamKind::gnss && request_.readings.empty()) {
+    const auto has = [&](std::string_view name) { return columns.find(name) != nullptr; };
+    accuracy_ = choose_accuracy(has, path, request_, data.notes);
+    accuracy_east_ = columns.find(accuracy_.east);
+    accuracy_north_ = columns.find(accuracy_.north);
+    covariance_root_ = columns.find(accuracy_.covariance_root);
+  }
+  for (const SensorColumn& column : request_.readings) readings_.push_back(columns.find(column.name));
+  data.readings.columns = request_.readings.size();
+}
+
+void CsvRecords::read_line(std::string_view line, std::size_t number) {
+  ++data_.records;
+  line_ = line;
+  complaint_ = {};
+  number_ = number;
+  if (check_fields()) read_sample();
+  if (complaint_.column != 0) add_corrupt(data_, path_, number_, complaint_.column, complaint_.what);
+}
+
+bool CsvRecords::check_fields() {
+  if (!split_fields(line_, request_.separator, fields_)) {
+    complaint_ = {line_.size() + 1, "a quoted field is not closed or text follows its end"};
+    return false;
+  }
+  const bool trailing_separator = fields_.size() == field_count_ + 1 && fields_.back().empty();
+  if (fields_.size() == field_count_ || trailing_separator) return true;
+  const std::size_t column =
+      fields_.size() > field_count_ ? column_of(line_, fields_[field_count_]) : line_.size() + 1;
+  complaint_ = {column, fmt::format("expected {} fields, got {}", field_count_, fields_.size())};
+  return false;
+}
+
+void CsvRecords::read_sample() {
+  if (request_.stream == StreamKind::gnss && !has_fix()) return;
+  const std::optional<Stamp> at = stamp();
+  if (!at) return;
+  if (request_.stream == StreamKind::sensor || !request_.readings.empty()) return read_readings(*at);
+  if (request_.stream == StreamKind::odometry) {
+    const OdometrySample sample{*at, number(bound_.speed, true), number(bound_.yaw_rate, true)};
+    if (complaint_.column == 0) data_.odometry.push_back(sample);
+    return;
+  }
+  const double latitude = number(bound_.latitude, true);
+  const double longitude = number(bound_.longitude, true);
+  const double height = number(bound_.height, false);
+  if (request_.stream == StreamKind::truth) {
+    const GeodeticTruth truth{*at, latitude, longitude, height, optional_number(bound_.heading)};
+    if (complaint_.column == 0) data_.truth.push_back(truth);
+    return;
+  }
+  GeodeticFix fix;
+  fix.stamp = *at;
+  fix.latitude_deg = latitude;
+  fix.longitude_deg = longitude;
+  fix.height_m = height;
+  set_covariance(fix);
+  fix.course_rad = optional_number(bound_.course);
+  fix.course_sigma_rad = optional_sigma(bound_.course_accuracy);
+  fix.speed_mps = optional_number(bound_.speed);
+  fix.speed_sigma_mps = optional_sigma(bound_.speed_accuracy);
+  fix.line = number_;
+  const std::optional<Stamp> told = bound_.gnss_time ? instant(*bound_.gnss_time) : std::nullopt;
+  if (complaint_.column != 0) return;
+  positions_.give(data_, fix);
+  if (told) data_.clocks.push_back({*at, *told});
+}
+
+void CsvRecords::read_readings(Stamp at) {
+  row_.clear();
+  for (std::size_t i = 0; i < request_.readings.size(); ++i)
+    row_.push_back(number(readings_[i], request_.readings[i].required));
+  if (complaint_.column != 0) return;
+  data_.readings.stamps.push_back(at);
+  data_.readings.values.insert(data_.readings.values.end(), row_.begin(), row_.end());
+}
+
+/// The instant in a column of times, as it stands there.
+std::optional<Stamp> CsvRecords::instant(const BoundColumn& column) {
+  const std::string_view field = fields_[column.field];
+  std::optional<Stamp> stamp;
+  if (column.unit == kIso8601) {
+    stamp = stamp_from_iso8601(field);
+    if (stamp) stamp = convert(*stamp, TimeScale::utc, request_.time_scale);
+  } else if (column.time_power == 0) {
+    stamp = stamp_from_decimal_seconds(field);
+  } else if (field.find_first_of("eE") == std::string_view::npos) {
+    stamp = stamp_from_decimal_seconds(fmt::format("{}e{}", field, column.time_power));
+  }
+  if (!stamp) {
+    const char* expected = column.unit == kIso8601 ? "an ISO 8601 date" : "a decimal number";
+    complain(column,
+             field.empty() ? "no value" : fmt::format("expected {}, got {}", expected, quote_field(field)));
+  }
+  return stamp;
+}
+
+std::optional<Stamp> CsvRecords::stamp() {
+  std::optional<Stamp> stamp = instant(*bound_.time);
+  if (!stamp) return std::nullopt;
+  const std::string_view field = fields_[bound_.time->field];
+  if (request_.gps_week != 0 && (stamp->nanoseconds < 0 || stamp->nanoseconds >= 2 * kGpsWeekNanoseconds)) {
+    complain(*bound_.time, fmt::format("{} is no second of a week", quote_field(field)));
+    return std::nullopt;
+  }
+  if (__builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) {
+    complain(*bound_.time, fmt::format("{} is too large for a stamp", quote_field(field)));
+    return std::nullopt;
+  }
+  return stamp;
+}
+
+double CsvRecords::number(const BoundColumn* column, bool required) {
+  if (column == nullptr) return kNone;
+  const std::string_view field = fields_[column->field];
+  const std::optional<double> given = number_from_field(field);
+  if (!given) {
+    const bool comma = field.find(',') != std::string_view::npos;
+    complain(*column, fmt::format("expected a number{}, got {}", comma ? " with a decimal point" : "",
+                                  quote_field(field)));
+    return kNone;
+  }
+  if (std::isnan(*given)) {
+    if (required) complain(*column, "no value");
+    return kNone;
+  }
+  const Quantity& quantity = *column->quantity;
+  const double scaled =
+      column->factor * *given;  // the range is that of the angle as given, before any offset
+  if (scaled < quantity.smallest || scaled > quantity.largest) {
+    complain(*column, fmt::format("{} {} is outside {:.6g} .. {:.6g}", quote_field(field), column->unit,
+                                  quantity.smallest / std::abs(column->factor),
+                                  quantity.largest / std::abs(column->factor)));
+    return kNone;
+  }
+  return scaled + column->offset;
+}
+
+std::optional<double> CsvRecords::optional_number(const BoundColumn* column) {
+  const double value = number(column, false);
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+std::optional<double> CsvRecords::optional_sigma(const BoundColumn* column) {
+  const double value = number(column, false);
+  return value > 0 ? std::optional(value) : std::nullopt;
+}
+
+/// Whether the receiver marks the line as a fix.
+bool CsvRecords::has_fix() {
+  if (bound_.valid == nullptr) return true;
+  const std::string_view field = fields_[bound_.valid->field];
+  for (const std::string_view yes : {"true", "True", "TRUE", "A", "yes"}) {
+    if (field == yes) return true;
+  }
+  bool fix = false;
+  bool known = false;
+  for (const std::string_view no : {"false", "False", "FALSE", "V", "no"}) known = known || field == no;
+  if (!known) {
+    const double flag = number(bound_.valid, true);
+    if (complaint_.column != 0) return false;
+    fix = flag != 0;
+  }
+  if (!fix) ++data_.without_fix;
+  return fix;
+}
+
+void CsvRecords::set_covariance(GeodeticFix& fix) {
+  const double east = number(accuracy_east_, false);
+  const double north = accuracy_north_ == accuracy_east_ ? east : number(accuracy_north_, false);
+  const double root = number(covariance_root_, false);
+  if (complaint_.column != 0) return;
+  const char* what = positions_.set_covariance(fix, table_accuracy(east, north, root, accuracy_));
+  if (what == nullptr) return;
+  const bool root_is_wrong = east > 0 && north > 0 && covariance_root_ != nullptr;
+  complain(*(root_is_wrong ? covariance_root_ : east > 0 ? accuracy_north_ : accuracy_east_), what);
+}
+
+void CsvRecords::complain(const BoundColumn& column, std::string what) {
+  if (complaint_.column != 0) return;
+  complaint_ = {column_of(line_, fields_[column.field]), fmt::format("{}: {}", column.quantity->name, what)};
+}
+
+}  // namespace waymark::formats

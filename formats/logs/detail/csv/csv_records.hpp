@@ -1,0 +1,67 @@
+/// Samples out of the lines of a table; private to the CSV reader.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <waymark/core/drive/log_reader.hpp>
+#include <waymark/formats/logs/detail/common/position_stream.hpp>
+#include <waymark/formats/logs/detail/common/table_accuracy.hpp>
+#include <waymark/formats/logs/detail/csv/csv_bindings.hpp>
+#include <waymark/formats/logs/detail/csv/csv_columns.hpp>
+
+namespace waymark::formats {
+
+/// Reads the lines below the header, one record each.
+class CsvRecords {
+ public:
+  /// The columns, the path and the data must outlive the reader.
+  /// @throws InputError for fixes without any accuracy
+  CsvRecords(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data);
+
+  /// @param line  must live during the call only
+  void read_line(std::string_view line, std::size_t number);
+  void finish() { positions_.finish(data_); }
+
+ private:
+  /// The first complaint about the line at hand.
+  struct Complaint {
+    std::size_t column = 0;  ///< 0: none
+    std::string what;
+  };
+
+  bool check_fields();
+  void read_sample();
+  void read_readings(Stamp at);
+  [[nodiscard]] std::optional<Stamp> instant(const BoundColumn& column);
+  [[nodiscard]] std::optional<Stamp> stamp();
+  [[nodiscard]] double number(const BoundColumn* column, bool required);
+  [[nodiscard]] std::optional<double> optional_number(const BoundColumn* column);
+  [[nodiscard]] std::optional<double> optional_sigma(const BoundColumn* column);
+  [[nodiscard]] bool has_fix();
+  void set_covariance(GeodeticFix& fix);
+  void complain(const BoundColumn& column, std::string what);
+
+  Bindings bound_;
+  std::vector<const BoundColumn*> readings_;  ///< of a sensor, as LogRequest::readings; null: no such column
+  std::size_t field_count_;
+  const std::string& path_;
+  const LogRequest request_;
+  LogData& data_;
+  PositionStream positions_;
+  AccuracyQuantities accuracy_;
+  const BoundColumn *accuracy_east_ = nullptr, *accuracy_north_ = nullptr, *covariance_root_ = nullptr;
+  std::int64_t offset_ = 0;
+
+  std::string_view line_;
+  std::size_t number_ = 0;
+  std::vector<std::string_view> fields_;
+  std::vector<double> row_;
+  Complaint complaint_;
+};
+
+}  // namespace waymark::formats

@@ -1,0 +1,87 @@
+/// Which messages of NovAtel are read, and where they have what (OEM7 Commands and Logs).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace waymark::formats {
+
+/// Of a field that a message does not have.
+inline constexpr std::size_t kNoField = 99;
+
+/// Where a message has what is read of it: 0-based fields of its body.
+struct NovatelLayout {
+  std::string_view name;
+  int gnss_rank;       ///< of positions for fixes: the best kind that has occurred is read; 0: no position
+  int truth_rank;      ///< of positions for truth
+  std::size_t fields;  ///< at least
+  std::size_t status;
+  std::size_t type = kNoField;
+  std::size_t latitude = 2;  ///< then longitude, height
+  std::size_t undulation = kNoField;
+  std::size_t datum = kNoField;
+  std::size_t sigma = kNoField;     ///< of latitude, then of longitude
+  std::size_t velocity = kNoField;  ///< north, then east
+  std::size_t velocity_sigma = kNoField;
+  std::size_t azimuth = kNoField;
+};
+
+[[nodiscard]] constexpr NovatelLayout novatel_best(std::string_view name, int gnss_rank, int truth_rank) {
+  return {.name = name,
+          .gnss_rank = gnss_rank,
+          .truth_rank = truth_rank,
+          .fields = 10,
+          .status = 0,
+          .type = 1,
+          .undulation = 5,
+          .datum = 6,
+          .sigma = 7};
+}
+[[nodiscard]] constexpr NovatelLayout novatel_inertial(std::string_view name, int gnss_rank, int truth_rank) {
+  return {.name = name,
+          .gnss_rank = gnss_rank,
+          .truth_rank = truth_rank,
+          .fields = 12,
+          .status = 11,
+          .velocity = 5,
+          .azimuth = 10};
+}
+inline constexpr std::array<NovatelLayout, 7> kNovatelLayouts{{
+    novatel_best("BESTGNSSPOSA", 5, 1),
+    novatel_best("BESTGPSPOSA", 5, 1),
+    novatel_best("BESTPOSA", 4, 2),
+    {.name = "INSPVAXA",
+     .gnss_rank = 3,
+     .truth_rank = 5,
+     .fields = 20,
+     .status = 0,
+     .type = 1,
+     .undulation = 5,
+     .sigma = 12,
+     .velocity = 6,
+     .velocity_sigma = 15,
+     .azimuth = 11},
+    novatel_inertial("INSPVAA", 2, 4),
+    novatel_inertial("INSPVASA", 1, 3),
+    {.name = "BESTVELA", .gnss_rank = 0, .truth_rank = 0, .fields = 7, .status = 0, .type = 1},
+}};
+
+/// Null for a message that is not read.
+[[nodiscard]] inline const NovatelLayout* novatel_layout(std::string_view name) {
+  for (const NovatelLayout& layout : kNovatelLayouts) {
+    if (layout.name == name) return &layout;
+  }
+  return nullptr;
+}
+
+/// Whether a solution status, GNSS or inertial, says that there is a position.
+[[nodiscard]] inline bool novatel_has_solution(std::string_view status) {
+  for (const std::string_view yes : {"SOL_COMPUTED", "INS_SOLUTION_GOOD", "INS_SOLUTION_FREE",
+                                     "INS_ALIGNMENT_COMPLETE", "INS_HIGH_VARIANCE"}) {
+    if (status == yes) return true;
+  }
+  return false;
+}
+
+}  // namespace waymark::formats

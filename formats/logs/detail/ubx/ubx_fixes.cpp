@@ -1,0 +1,265 @@
+#include <waymark/formats/logs/detail/ubx/ubx_fixes.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace waymark::formats {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// Clockwise from north, degrees -> counter-clockwise from east, radians in (-pi, pi].
+double heading_from_course(double course_deg) {
+  const double heading = std::remainder((90 - course_deg) * kDegree, 2 * std::numbers::pi);
+  return heading <= -std::numbers::pi ? std::numbers::pi : heading;
+}
+
+std::optional<double> if_positive(double value) {
+  return value > 0 ? std::optional<double>(value) : std::nullopt;
+}
+
+bool positive_definite(const Eigen::Matrix2d& matrix) {
+  return matrix.allFinite() && matrix(0, 0) > 0 &&
+         matrix(0, 0) * matrix(1, 1) - matrix(0, 1) * matrix(1, 0) > 0;
+}
+
+/// A message that the open epoch already has belongs to the next, even with the same iTOW.
+bool has(const UbxEpoch& epoch, std::uint16_t key) {
+  switch (key) {
+    case ubx::kNavPvt:
+      return epoch.solution.has_value();
+    case ubx::kNavHpposllh:
+      return epoch.precise.has_value();
+    case ubx::kNavPosllh:
+      return epoch.plain.has_value();
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+UbxFixDecoder::UbxFixDecoder(std::string path, LogRequest request, bool high_rate)
+    : UbxFrameDecoder(std::move(path), std::move(request)),
+      high_rate_(high_rate),
+      positions_(this->path(), this->request(), "hAcc"),
+      time_(this->request().gps_week) {}
+
+void UbxFixDecoder::take_frame(const UbxFrame& frame) {
+  const std::size_t least = least_ubx_length(frame.key);
+  if (least == 0 || frame.key == ubx::kEsfMeas) return;
+  if ((frame.key == ubx::kHnrPvt) != high_rate_) return;
+  if (frame.payload.empty()) return;  // a request for the message, in a log of both directions
+  if (frame.payload.size() < least) {
+    ++data_.records;
+    corrupt(byte(), fmt::format("{}: {} bytes, where the message has at least {}", ubx_name(frame.key),
+                                frame.payload.size(), least));
+    return;
+  }
+  const UbxPayload payload(frame.payload);
+  if (high_rate_) {
+    begin_epoch_for(frame.key, ubx_itow(frame.key, payload));
+    epoch_->solution = read_hnr_pvt(payload);
+    epoch_->number = number();
+    end_epoch();
+  } else {
+    take_navigation(frame.key, payload);
+  }
+}
+
+void UbxFixDecoder::take_navigation(std::uint16_t key, const UbxPayload& payload) {
+  const std::uint32_t itow_ms = ubx_itow(key, payload);
+  if (key == ubx::kNavEoe) return end_epoch();
+  begin_epoch_for(key, itow_ms);
+  UbxEpoch& epoch = *epoch_;
+  switch (key) {
+    case ubx::kNavPvt:
+      epoch.solution = read_nav_pvt(payload);
+      epoch.number = number();
+      break;
+    case ubx::kNavHpposllh:
+      epoch.precise = read_nav_hpposllh(payload);
+      epoch.number = number();
+      break;
+    case ubx::kNavPosllh:
+      epoch.plain = read_nav_posllh(payload);
+      epoch.number = number();
+      break;
+    case ubx::kNavVelned:
+      epoch.velned = read_nav_velned(payload);
+      break;
+    case ubx::kNavCov:
+      epoch.covariance = read_nav_cov(payload);
+      break;
+    case ubx::kNavTimeutc:
+      epoch.utc = read_nav_timeutc(payload);
+      break;
+    case ubx::kNavTimegps:
+      epoch.week = read_ubx_week(key, payload);
+      break;
+    case ubx::kNavStatus:
+      if (!epoch.state) epoch.state = read_ubx_state(key, payload);
+      break;
+    case ubx::kNavSol:
+      epoch.state = read_ubx_state(key, payload);
+      if (!epoch.week) epoch.week = read_ubx_week(key, payload);
+      break;
+    default:
+      break;
+  }
+}
+
+void UbxFixDecoder::begin_epoch_for(std::uint16_t key, std::uint32_t itow_ms) {
+  if (epoch_ && epoch_->itow_ms == itow_ms && !has(*epoch_, key)) return;
+  end_epoch();
+  epoch_.emplace();
+  epoch_->itow_ms = itow_ms;
+  epoch_->byte = byte();
+}
+
+void UbxFixDecoder::end_epoch() {
+  if (!epoch_) return;
+  const UbxEpoch epoch = *epoch_;
+  epoch_.reset();
+  // Time is learnt from every epoch: one without a position may be the only one that tells the week.
+  const std::optional<std::int64_t> gps = epoch.itow_ms < kItowWeekMs ? time_of(epoch) : std::nullopt;
+  if (!epoch.has_position()) return;
+  ++data_.records;
+  if (ended_ == epoch.itow_ms) ++counts_.repeated;
+  ended_ = epoch.itow_ms;
+  if (epoch.itow_ms >= kItowWeekMs)
+    return corrupt(epoch.byte, fmt::format("iTOW {} ms lies beyond the end of a week", epoch.itow_ms));
+
+  const std::optional<UbxFixState> state = epoch.solution ? epoch.solution->state : epoch.state;
+  if (state && !state->usable()) {
+    ++data_.without_fix;
+    return;
+  }
+  if (!gps)
+    return corrupt(epoch.byte,
+                   "neither a valid date nor a GPS week has come yet; state 'gps_week' to use the "
+                   "positions before");
+  const UbxPlace& place = epoch.precise    ? *epoch.precise
+                          : epoch.solution ? epoch.solution->place
+                                           : *epoch.plain;
+  if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 180)
+    return corrupt(epoch.byte, fmt::format("the position {}, {} is outside -90 .. 90, -180 .. 180",
+                                           place.latitude_deg, place.longitude_deg));
+  const std::optional<Stamp> stamp = positions_.stamp(Stamp{*gps}, TimeScale::gps);
+  if (!stamp) return corrupt(epoch.byte, "its time is too large for a stamp");
+  add_sample(epoch, place, *stamp);
+}
+
+std::optional<std::int64_t> UbxFixDecoder::time_of(const UbxEpoch& epoch) {
+  if (epoch.solution && epoch.solution->date && epoch.solution->date->resolved)
+    return time_.from_date(*epoch.solution->date, epoch.itow_ms);
+  if (epoch.utc) return time_.from_date(*epoch.utc, epoch.itow_ms);
+  if (epoch.week) return time_.from_week(*epoch.week, epoch.itow_ms);
+  if (epoch.solution && epoch.solution->date) return time_.from_date(*epoch.solution->date, epoch.itow_ms);
+  return epoch.has_position() ? time_.from_itow(epoch.itow_ms) : std::nullopt;
+}
+
+void UbxFixDecoder::add_sample(const UbxEpoch& epoch, const UbxPlace& place, Stamp stamp) {
+  GeodeticFix fix;
+  if (const char* complaint = positions_.set_covariance(fix, accuracy(epoch, place)))
+    return corrupt(epoch.byte, complaint);
+  count(epoch);
+  fix.stamp = stamp;
+  fix.latitude_deg = place.latitude_deg;
+  fix.longitude_deg = place.longitude_deg;
+  fix.height_m = place.height_m;
+  fix.line = epoch.number;
+  if (epoch.solution || epoch.velned) {
+    const UbxMotion& motion = epoch.solution ? epoch.solution->motion : *epoch.velned;
+    fix.speed_mps = motion.speed_mps;
+    fix.speed_sigma_mps = if_positive(motion.speed_accuracy_mps);
+    fix.course_rad = motion.course_deg * kDegree;
+    fix.course_sigma_rad = if_positive(motion.course_accuracy_deg * kDegree);
+  }
+  std::optional<double> heading;
+  if (epoch.solution && epoch.solution->vehicle_heading_deg)
+    heading = heading_from_course(*epoch.solution->vehicle_heading_deg);
+  positions_.give(data_, fix, heading);
+}
+
+StatedAccuracy UbxFixDecoder::accuracy(const UbxEpoch& epoch, const UbxPlace& place) {
+  if (positions_.wants_truth()) return {};
+  if (epoch.covariance && positive_definite(*epoch.covariance)) {
+    ++counts_.covariance;
+    return {epoch.covariance, std::nullopt};
+  }
+  if (epoch.covariance) ++counts_.bad_covariance;
+  if (!(place.accuracy_m > 0)) return {};
+  return {place.accuracy_m * place.accuracy_m * Eigen::Matrix2d::Identity(), AccuracyMeaning::drms};
+}
+
+/// Counts what the notes tell of an epoch that is used.
+void UbxFixDecoder::count(const UbxEpoch& epoch) {
+  ++(epoch.precise ? counts_.precise : epoch.solution ? counts_.solution : counts_.plain);
+  const std::optional<UbxFixState> state = epoch.solution ? epoch.solution->state : epoch.state;
+  if (!state) ++counts_.stateless;
+  if (state && state->type == 1) ++counts_.dead_reckoned;
+  if (state && state->type == 4) ++counts_.combined;
+  if (epoch.solution && epoch.solution->carrier == 1) ++counts_.carrier_float;
+  if (epoch.solution && epoch.solution->carrier == 2) ++counts_.carrier_fixed;
+}
+
+void UbxFixDecoder::end() {
+  end_epoch();
+  note_positions();
+  note_time();
+  positions_.finish(data_);
+}
+
+void UbxFixDecoder::note_positions() {
+  const std::size_t used = counts_.precise + counts_.solution + counts_.plain;
+  if (used > 0 && high_rate_) {
+    note(
+        fmt::format("{} positions of HNR-PVT: dead-reckoned on from the last GNSS epoch, so their errors are "
+                    "those of that epoch and no new ones",
+                    used));
+  } else if (used > 0) {
+    note(fmt::format("positions: {} of NAV-HPPOSLLH, {} of NAV-PVT, {} of NAV-POSLLH", counts_.precise,
+                     counts_.solution, counts_.plain));
+  }
+  if (!high_rate_ && UbxFrameDecoder::count(ubx::kHnrPvt) > 0)
+    note(
+        fmt::format("{} positions of HNR-PVT, dead-reckoned between the navigation epochs, were passed over "
+                    "('position: HNR-PVT' among the columns reads them instead)",
+                    UbxFrameDecoder::count(ubx::kHnrPvt)));
+  if (counts_.dead_reckoned + counts_.combined > 0)
+    note(fmt::format("{} positions by dead reckoning alone, {} by GNSS and dead reckoning combined",
+                     counts_.dead_reckoned, counts_.combined));
+  if (counts_.carrier_float + counts_.carrier_fixed > 0)
+    note(fmt::format("{} positions with carrier phases fixed, {} with carrier phases as floats",
+                     counts_.carrier_fixed, counts_.carrier_float));
+  if (counts_.stateless > 0)
+    note(
+        fmt::format("{} positions come without a word on the fix and are taken as fixes", counts_.stateless));
+  if (counts_.repeated > 0)
+    note(fmt::format("{} epochs repeat the iTOW of the one before", counts_.repeated));
+  if (counts_.covariance > 0)
+    note(fmt::format("{} fixes with the covariance of NAV-COV", counts_.covariance));
+  if (counts_.bad_covariance > 0)
+    note(fmt::format("{} covariances of NAV-COV are not positive definite and were passed over",
+                     counts_.bad_covariance));
+}
+
+void UbxFixDecoder::note_time() {
+  if (time_.seconds_from_itow() > 0)
+    note(
+        fmt::format("{} dates are not fully resolved and differ from iTOW by whole seconds; iTOW is followed",
+                    time_.seconds_from_itow()));
+  if (time_.disagreements() > 0)
+    note(fmt::format("{} dates differ from iTOW by a second or more; the dates are followed",
+                     time_.disagreements()));
+  if (time_.used_stated_week())
+    note(fmt::format("the first epochs tell no GPS week, the stated week {} is used", request().gps_week));
+  if (time_.continued() > 0)
+    note(fmt::format("{} epochs without a valid date or week: the week is that of the epochs before",
+                     time_.continued()));
+}
+
+}  // namespace waymark::formats

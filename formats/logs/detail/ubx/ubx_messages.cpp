@@ -1,0 +1,180 @@
+#include <waymark/formats/logs/detail/ubx/ubx_messages.hpp>
+
+#include <bit>
+#include <chrono>
+
+namespace waymark::formats {
+namespace {
+
+constexpr unsigned kPvtWithVehicle = 92;  // u-blox 6 and 7 end at 84
+constexpr std::uint32_t kNoFigure = 0xFFFFFFFF;
+
+double accuracy(std::uint32_t figure, double units_per_whole) {
+  return figure == kNoFigure ? 0 : figure / units_per_whole;
+}
+
+/// Year to second at `at`. Empty for a date that does not exist, or beyond what a Stamp holds.
+std::optional<UbxDate> read_date(const UbxPayload& payload, std::size_t at, std::int32_t nanoseconds) {
+  const int year = payload.u16(at);
+  const std::chrono::year_month_day day{std::chrono::year{year}, std::chrono::month{payload.u8(at + 2)},
+                                        std::chrono::day{payload.u8(at + 3)}};
+  const int hour = payload.u8(at + 4);
+  const int minute = payload.u8(at + 5);
+  const int second = payload.u8(at + 6);
+  if (year < 1980 || year > 2200 || !day.ok() || hour > 23 || minute > 59 || second > 60) return std::nullopt;
+  if (nanoseconds < -1'000'000'000 || nanoseconds > 1'000'000'000) return std::nullopt;
+  const std::int64_t days = std::chrono::sys_days{day}.time_since_epoch().count();
+  const bool leap = second == 60;
+  const std::int64_t seconds = 86400 * days + 3600 * hour + 60 * minute + second - (leap ? 1 : 0);
+  return UbxDate{Stamp{seconds * 1'000'000'000 + nanoseconds}, leap, true};
+}
+
+/// NAV-PVT and HNR-PVT begin alike: date at 4, its flags at 11.
+std::optional<UbxDate> read_solution_date(const UbxPayload& payload, std::size_t nano_at) {
+  const unsigned valid = payload.u8(11);
+  if ((valid & 3U) != 3U) return std::nullopt;  // validDate, validTime
+  std::optional<UbxDate> date = read_date(payload, 4, payload.i32(nano_at));
+  if (date) date->resolved = (valid & 4U) != 0;
+  return date;
+}
+
+/// Longitude, latitude (1e-7 degree) and height (mm) stand side by side.
+UbxPlace read_place(const UbxPayload& payload, std::size_t at, std::size_t accuracy_at) {
+  UbxPlace place;
+  place.longitude_deg = payload.i32(at) / 1e7;
+  place.latitude_deg = payload.i32(at + 4) / 1e7;
+  place.height_m = payload.i32(at + 8) / 1e3;
+  place.accuracy_m = accuracy(payload.u32(accuracy_at), 1e3);
+  return place;
+}
+
+}  // namespace
+
+double UbxPayload::f32(std::size_t at) const {
+  static_assert(sizeof(float) == sizeof(std::uint32_t));
+  return std::bit_cast<float>(u32(at));
+}
+
+std::size_t least_ubx_length(std::uint16_t key) {
+  switch (key) {
+    case ubx::kNavPosllh:
+      return 28;
+    case ubx::kNavStatus:
+      return 16;
+    case ubx::kNavSol:
+      return 52;
+    case ubx::kNavPvt:
+      return 84;
+    case ubx::kNavVelned:
+      return 36;
+    case ubx::kNavHpposllh:
+      return 36;
+    case ubx::kNavTimegps:
+      return 16;
+    case ubx::kNavTimeutc:
+      return 20;
+    case ubx::kNavCov:
+      return 64;
+    case ubx::kNavEoe:
+      return 4;
+    case ubx::kEsfMeas:
+      return 8;
+    case ubx::kHnrPvt:
+      return 72;
+    default:
+      return 0;
+  }
+}
+
+std::uint32_t ubx_itow(std::uint16_t key, const UbxPayload& payload) {
+  return payload.u32(key == ubx::kNavHpposllh ? 4 : 0);
+}
+
+UbxSolution read_nav_pvt(const UbxPayload& payload) {
+  UbxSolution solution;
+  solution.date = read_solution_date(payload, 16);
+  const unsigned flags = payload.u8(21);
+  const bool invalid_place = payload.size() >= kPvtWithVehicle && (payload.u8(78) & 1U) != 0;
+  solution.state = {payload.u8(20), (flags & 1U) != 0 && !invalid_place};
+  solution.carrier = static_cast<int>(flags >> 6U);
+  solution.place = read_place(payload, 24, 40);
+  solution.motion.speed_mps = payload.i32(60) / 1e3;
+  solution.motion.course_deg = payload.i32(64) / 1e5;
+  solution.motion.speed_accuracy_mps = accuracy(payload.u32(68), 1e3);
+  solution.motion.course_accuracy_deg = accuracy(payload.u32(72), 1e5);
+  if (payload.size() >= kPvtWithVehicle && (flags & 0x20U) != 0)
+    solution.vehicle_heading_deg = payload.i32(84) / 1e5;
+  return solution;
+}
+
+UbxSolution read_hnr_pvt(const UbxPayload& payload) {
+  UbxSolution solution;
+  solution.date = read_solution_date(payload, 12);
+  const unsigned flags = payload.u8(17);
+  solution.state = {payload.u8(16), (flags & 1U) != 0};
+  solution.place = read_place(payload, 20, 52);
+  solution.motion.speed_mps = payload.i32(36) / 1e3;
+  solution.motion.course_deg = payload.i32(44) / 1e5;
+  solution.motion.speed_accuracy_mps = accuracy(payload.u32(60), 1e3);
+  solution.motion.course_accuracy_deg = accuracy(payload.u32(64), 1e5);
+  if ((flags & 0x10U) != 0) solution.vehicle_heading_deg = payload.i32(48) / 1e5;
+  return solution;
+}
+
+UbxPlace read_nav_posllh(const UbxPayload& payload) {
+  return read_place(payload, 4, 20);
+}
+
+std::optional<UbxPlace> read_nav_hpposllh(const UbxPayload& payload) {
+  if (payload.u8(3) != 0) return std::nullopt;
+  const auto finer = [&](std::size_t at, std::size_t fine_at, int steps) {
+    return static_cast<double>(std::int64_t{payload.i32(at)} * steps + payload.i8(fine_at));
+  };
+  UbxPlace place;
+  place.longitude_deg = finer(8, 24, 100) / 1e9;
+  place.latitude_deg = finer(12, 25, 100) / 1e9;
+  place.height_m = finer(16, 26, 10) / 1e4;
+  place.accuracy_m = accuracy(payload.u32(28), 1e4);
+  return place;
+}
+
+UbxMotion read_nav_velned(const UbxPayload& payload) {
+  UbxMotion motion;
+  motion.speed_mps = payload.u32(20) / 1e2;
+  motion.course_deg = payload.i32(24) / 1e5;
+  motion.speed_accuracy_mps = accuracy(payload.u32(28), 1e2);
+  motion.course_accuracy_deg = accuracy(payload.u32(32), 1e5);
+  return motion;
+}
+
+std::optional<UbxDate> read_nav_timeutc(const UbxPayload& payload) {
+  if ((payload.u8(19) & 4U) == 0) return std::nullopt;  // validUTC
+  return read_date(payload, 12, payload.i32(8));
+}
+
+std::optional<UbxWeek> read_ubx_week(std::uint16_t key, const UbxPayload& payload) {
+  const unsigned both = key == ubx::kNavSol ? 0x0CU : 0x03U;  // WKNSET, TOWSET; towValid, weekValid
+  const UbxWeek week{payload.i16(8), payload.i32(4)};
+  // NAV-SOL's fraction is at most half a millisecond, NAV-TIMEGPS' too.
+  const bool sensible =
+      week.week > 0 && week.week <= 10'000 && week.fraction_ns >= -500'000 && week.fraction_ns <= 500'000;
+  if ((payload.u8(11) & both) != both || !sensible) return std::nullopt;
+  return week;
+}
+
+UbxFixState read_ubx_state(std::uint16_t key, const UbxPayload& payload) {
+  const std::size_t at = key == ubx::kNavSol ? 10 : 4;
+  return {payload.u8(at), (payload.u8(at + 1) & 1U) != 0};
+}
+
+std::optional<Eigen::Matrix2d> read_nav_cov(const UbxPayload& payload) {
+  if (payload.u8(5) == 0) return std::nullopt;  // posCovValid
+  const double north = payload.f32(16);
+  const double north_east = payload.f32(20);
+  const double east = payload.f32(28);
+  Eigen::Matrix2d covariance;
+  covariance << east, north_east, north_east, north;
+  return covariance;
+}
+
+}  // namespace waymark::formats

@@ -1,0 +1,120 @@
+/// Contents of the UBX messages that are read: layouts, units and flags as in u-blox' interface descriptions
+/// (M8: UBX-13003221, F9: UBX-18010854).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include <waymark/core/drive/stamp.hpp>
+
+namespace waymark::formats {
+
+/// Keys (class * 256 + id) of the messages that are read.
+namespace ubx {
+inline constexpr std::uint16_t kNavPosllh = 0x0102;
+inline constexpr std::uint16_t kNavStatus = 0x0103;
+inline constexpr std::uint16_t kNavSol = 0x0106;
+inline constexpr std::uint16_t kNavPvt = 0x0107;
+inline constexpr std::uint16_t kNavVelned = 0x0112;
+inline constexpr std::uint16_t kNavHpposllh = 0x0114;
+inline constexpr std::uint16_t kNavTimegps = 0x0120;
+inline constexpr std::uint16_t kNavTimeutc = 0x0121;
+inline constexpr std::uint16_t kNavCov = 0x0136;
+inline constexpr std::uint16_t kNavEoe = 0x0161;
+inline constexpr std::uint16_t kEsfMeas = 0x1002;
+inline constexpr std::uint16_t kHnrPvt = 0x2800;
+}  // namespace ubx
+
+/// The shortest payload a message that is read can have; 0 for those that are not read.
+[[nodiscard]] std::size_t least_ubx_length(std::uint16_t key);
+
+/// Little-endian numbers of a payload, byte by byte (a payload has no alignment).
+/// Offsets lie within the payload: least_ubx_length is checked before.
+class UbxPayload {
+ public:
+  explicit UbxPayload(std::string_view bytes) : bytes_(bytes) {}
+  [[nodiscard]] std::uint8_t u8(std::size_t at) const { return static_cast<std::uint8_t>(bytes_[at]); }
+  [[nodiscard]] std::int8_t i8(std::size_t at) const { return static_cast<std::int8_t>(u8(at)); }
+  [[nodiscard]] std::uint16_t u16(std::size_t at) const {
+    return static_cast<std::uint16_t>(u8(at) | u8(at + 1) << 8U);
+  }
+  [[nodiscard]] std::int16_t i16(std::size_t at) const { return static_cast<std::int16_t>(u16(at)); }
+  [[nodiscard]] std::uint32_t u32(std::size_t at) const {
+    return u16(at) | static_cast<std::uint32_t>(u16(at + 2)) << 16U;
+  }
+  [[nodiscard]] std::int32_t i32(std::size_t at) const { return static_cast<std::int32_t>(u32(at)); }
+  [[nodiscard]] double f32(std::size_t at) const;
+  [[nodiscard]] std::size_t size() const { return bytes_.size(); }
+
+ private:
+  std::string_view bytes_;
+};
+
+/// A date that the receiver calls valid.
+struct UbxDate {
+  Stamp utc;                 ///< POSIX; a second 60 is given as 59 with `leap_second`
+  bool leap_second = false;  ///< one second later than `utc`
+  bool resolved = true;      ///< false: its seconds may still be off by leap seconds
+};
+
+/// A position.
+struct UbxPlace {
+  double latitude_deg = 0;
+  double longitude_deg = 0;
+  double height_m = 0;    ///< above the ellipsoid
+  double accuracy_m = 0;  ///< hAcc; 0: none
+};
+
+/// Motion over ground. Accuracies are taken as one sigma; 0: none.
+struct UbxMotion {
+  double speed_mps = 0;
+  double speed_accuracy_mps = 0;
+  double course_deg = 0;  ///< clockwise from true north
+  double course_accuracy_deg = 0;
+};
+
+/// What a receiver says of its fix.
+struct UbxFixState {
+  int type = 0;     ///< 0 none, 1 dead reckoning, 2 2D, 3 3D, 4 GNSS and dead reckoning, 5 time only
+  bool ok = false;  ///< within the receiver's limits (gnssFixOK)
+
+  [[nodiscard]] bool usable() const { return ok && type >= 1 && type <= 4; }
+};
+
+/// NAV-PVT or HNR-PVT.
+struct UbxSolution {
+  std::optional<UbxDate> date;
+  UbxFixState state;
+  int carrier = 0;  ///< 1 float, 2 fixed
+  UbxPlace place;
+  UbxMotion motion;
+  std::optional<double> vehicle_heading_deg;  ///< clockwise from true north, where its flag says valid
+};
+
+/// GPS week, and the rest of iTOW's milliseconds.
+struct UbxWeek {
+  int week = 0;
+  std::int32_t fraction_ns = 0;
+};
+
+[[nodiscard]] std::uint32_t ubx_itow(std::uint16_t key, const UbxPayload& payload);
+[[nodiscard]] UbxSolution read_nav_pvt(const UbxPayload& payload);
+[[nodiscard]] UbxSolution read_hnr_pvt(const UbxPayload& payload);
+[[nodiscard]] UbxPlace read_nav_posllh(const UbxPayload& payload);
+/// Empty where the message calls itself invalid.
+[[nodiscard]] std::optional<UbxPlace> read_nav_hpposllh(const UbxPayload& payload);
+[[nodiscard]] UbxMotion read_nav_velned(const UbxPayload& payload);
+[[nodiscard]] std::optional<UbxDate> read_nav_timeutc(const UbxPayload& payload);
+/// Of NAV-SOL or NAV-TIMEGPS; empty where week or time of week are not valid.
+[[nodiscard]] std::optional<UbxWeek> read_ubx_week(std::uint16_t key, const UbxPayload& payload);
+/// Of NAV-SOL or NAV-STATUS.
+[[nodiscard]] UbxFixState read_ubx_state(std::uint16_t key, const UbxPayload& payload);
+/// Horizontal covariance, axes east, north, m^2; empty where its flag says invalid. Not tested for being
+/// positive definite.
+[[nodiscard]] std::optional<Eigen::Matrix2d> read_nav_cov(const UbxPayload& payload);
+
+}  // namespace waymark::formats

@@ -1,0 +1,137 @@
+// The marginal likelihood against dense linear algebra: where errors are linear, Laplace's method is exact.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <Eigen/Cholesky>
+#include <catch2/catch.hpp>
+
+#include <waymark/core/covariance/evidence.hpp>
+#include <waymark/core/system/normal_equations.hpp>
+#include <waymark/plugins/odometry/calibration.hpp>
+
+#include "plugins/kit_drive.hpp"
+
+using namespace waymark;
+using namespace waymark::plugins::odometry;
+using namespace waymark_test;
+
+namespace {
+
+constexpr int kSteps = 40;
+
+/// A bias that walks and is read at every step.
+struct Walk {
+  double prior_sigma;
+  double step_sigma;
+  double reading_sigma;
+};
+
+Eigen::Matrix<double, 1, 1> information(double sigma) {
+  return Eigen::Matrix<double, 1, 1>(1 / (sigma * sigma));
+}
+
+Graph make_graph(const Walk& walk, const Eigen::VectorXd& readings) {
+  Graph graph;
+  VertexIndex last = -1;
+  for (int i = 0; i < kSteps; ++i) {
+    const VertexIndex bias = graph.add_vertex<VertexGyroBias>(i, {0});
+    if (last < 0) {
+      add_prior_about_zero(graph, bias, walk.prior_sigma);
+    } else {
+      graph.add_edge(EdgeGyroBiasWalk{}, {last, bias}, information(walk.step_sigma));
+    }
+    graph.add_edge(EdgeGyroAtRest{readings[i]}, {bias}, information(walk.reading_sigma));
+    last = bias;
+  }
+  return graph;
+}
+
+/// The density of the readings themselves: normal, with the covariance of a walk plus that of the readings.
+double exact_negative_log(const Walk& walk, const Eigen::VectorXd& readings) {
+  Eigen::MatrixXd covariance(kSteps, kSteps);
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      covariance(i, j) = walk.prior_sigma * walk.prior_sigma +
+                         std::min(i, j) * walk.step_sigma * walk.step_sigma +
+                         (i == j ? walk.reading_sigma * walk.reading_sigma : 0.0);
+    }
+  }
+  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+  return 0.5 * readings.dot(root.solve(readings)) + root.matrixLLT().diagonal().array().log().sum();
+}
+
+/// At the minimum, which Newton's method reaches in one step.
+double negative_log(const Walk& walk, const Eigen::VectorXd& readings) {
+  Graph graph = make_graph(walk, readings);
+  Structure structure;
+  structure.build(graph, std::vector<char>(graph.vertex_count(), 0));
+  BlockCholesky cholesky;
+  cholesky.analyze(structure.pattern());
+  NormalEquations equations(graph, structure);
+  equations.linearize(graph.values());
+  REQUIRE(cholesky.factorize(equations.hessian()) == FactorStatus::ok);
+  Eigen::VectorXd step = -equations.gradient();
+  cholesky.solve({step.data(), static_cast<std::size_t>(step.size())},
+                 {step.data(), static_cast<std::size_t>(step.size())});
+  std::vector<double> moved;
+  equations.retract(graph.values(), step, moved);
+  graph.set_values(std::move(moved));
+  return evidence(graph, structure, cholesky).negative_log();
+}
+
+}  // namespace
+
+TEST_CASE("evidence: of linear errors it is the density of the readings, without its powers of 2 pi") {
+  Noise noise(17);
+  Eigen::VectorXd readings(kSteps);
+  double bias = noise(0.01);
+  for (int i = 0; i < kSteps; ++i) {
+    readings[i] = bias + noise(0.02);
+    bias += noise(0.005);
+  }
+  for (const Walk& walk : {Walk{0.01, 0.005, 0.02}, Walk{0.1, 0.005, 0.02}, Walk{0.01, 0.05, 0.02},
+                           Walk{0.01, 0.005, 0.2}, Walk{0.003, 0.001, 0.001}}) {
+    INFO(walk.prior_sigma << " " << walk.step_sigma << " " << walk.reading_sigma);
+    CHECK(negative_log(walk, readings) == Approx(exact_negative_log(walk, readings)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("evidence: an axis without information counts for nothing, H that is not definite for everything") {
+  Graph graph;
+  const VertexIndex origin = graph.add_vertex<VertexSe2>(0, {0, 0, 0});
+  graph.set_fixed(origin, true);
+  const VertexIndex pose = graph.add_vertex<VertexSe2>(1, {0, 0, 0});
+  graph.add_edge(EdgeSe2{{1, 2, 0.1}}, {origin, pose}, Eigen::Vector3d(4, 9, 0).asDiagonal().toDenseMatrix());
+  Structure structure;
+  structure.build(graph, std::vector<char>(graph.vertex_count(), 0));
+  BlockCholesky cholesky;
+  cholesky.analyze(structure.pattern());
+  CHECK(evidence(graph, structure, cholesky).log_det_information == Approx(std::log(36.0)));
+  CHECK(std::isinf(evidence(graph, structure, cholesky).negative_log()));
+  graph.add_edge(EdgeSe2{{1, 2, 0.1}}, {origin, pose}, Eigen::Matrix3d::Identity());
+  structure.build(graph, std::vector<char>(graph.vertex_count(), 0));
+  cholesky.analyze(structure.pattern());
+  const Evidence found = evidence(graph, structure, cholesky);
+  CHECK(found.log_det_information == Approx(std::log(36.0)));
+  CHECK(found.log_det_hessian == Approx(std::log(5.0 * 10.0 * 1.0)));
+}
+
+TEST_CASE("evidence: a robust edge counts by its weight, at most by what gives its density its mass") {
+  Graph graph;
+  const VertexIndex bias = graph.add_vertex<VertexGyroBias>(0, {0});
+  add_prior_about_zero(graph, bias, 1);
+  const std::vector<double> readings = {0.5, 1.5, 3, 8};
+  for (const double reading : readings)
+    graph.add_edge(EdgeGyroAtRest{reading}, {bias}, Eigen::Matrix<double, 1, 1>(1.0));
+  for (const LossType& type : builtin_losses()) {
+    if (type.name == "cauchy") graph.batch(1).set_loss(Loss{type.name, type.evaluate, std::sqrt(6.0)});
+  }
+  // exp(-rho / 2) = (1 + e^2 / 6)^-3 has the mass sqrt(6) B(1/2, 5/2) = sqrt(6) 3 pi / 8.
+  const double mass = std::sqrt(6.0) * 3 * std::numbers::pi / 8;
+  const double most = 2 * std::numbers::pi / (mass * mass);
+  double expected = 1;
+  for (const double reading : readings) expected += std::min(most, 6 / (6 + reading * reading));
+  CHECK(evidence(graph).log_det_hessian == Approx(std::log(expected)).epsilon(1e-4));
+}

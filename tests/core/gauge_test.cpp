@@ -1,0 +1,192 @@
+// What anchors a graph: rank 0 is held and said, rank 1 and 2 are refused by name, rank 3 is left alone.
+#include <algorithm>
+#include <array>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/system/gauge.hpp>
+
+#include "support/problems.hpp"
+#include "support/registry.hpp"
+
+using namespace waymark;
+using Catch::Contains;
+
+namespace {
+
+/// A chain of poses 1 m apart with a bend, ids from first_id, at an offset.
+std::vector<VertexIndex> add_chain(Graph& graph, VertexId first_id, int poses,
+                                   Eigen::Vector2d offset = {0, 0}) {
+  std::vector<VertexIndex> chain;
+  for (int i = 0; i < poses; ++i) {
+    const double turn = 0.1 * i;
+    chain.push_back(graph.add_vertex<VertexSe2>(first_id + i, {offset[0] + i, offset[1] + 0.2 * i, turn}));
+    if (i == 0) continue;
+    const auto from = graph.value(chain[static_cast<std::size_t>(i) - 1]);
+    const auto to = graph.value(chain.back());
+    const auto z = between(Pose2<double>(from[0], from[1], from[2]), Pose2<double>(to[0], to[1], to[2]));
+    graph.add_edge(EdgeSe2{z.vector()}, {chain[static_cast<std::size_t>(i) - 1], chain.back()},
+                   waymark_test::pose_information(0.01, 0.001));
+  }
+  return chain;
+}
+
+VertexIndex add_fixed_origin(Graph& graph, VertexId id) {
+  const VertexIndex origin = graph.add_vertex<VertexSe2>(id, {0, 0, 0});
+  graph.set_fixed(origin, true);
+  return origin;
+}
+
+void add_fix(Graph& graph, VertexIndex origin, VertexIndex pose) {
+  const auto value = graph.value(pose);
+  graph.add_edge(EdgeGnssPosition{{value[0], value[1]}, {0, 0}}, {origin, pose}, Eigen::Matrix2d::Identity());
+}
+
+int held_count(const Gauge& gauge) {
+  return static_cast<int>(std::count(gauge.held.begin(), gauge.held.end(), 1));
+}
+
+}  // namespace
+
+TEST_CASE("gauge rank 0: the first vertex is held, and it is said") {
+  Graph graph;
+  const auto chain = add_chain(graph, 10, 5);
+  const Gauge gauge = find_gauge(graph);
+  CHECK(held_count(gauge) == 1);
+  CHECK(gauge.held[static_cast<std::size_t>(chain[0])] == 1);
+  REQUIRE(gauge.messages.size() == 1);
+  CHECK_THAT(gauge.messages[0], Contains("vertex 10") && Contains("4 vertices") && Contains("held"));
+  CHECK_FALSE(graph.fixed(chain[0]));  // not written into the file
+}
+
+TEST_CASE("gauge: coordinates of a UTM northing change nothing") {
+  Graph graph;
+  add_chain(graph, 0, 200, {690000.125, 5701234.567});
+  CHECK(find_gauge(graph).messages.size() == 1);
+}
+
+TEST_CASE("gauge: a long unanchored chain of strong edges is still of rank 0") {
+  Graph graph = waymark_test::grid_walk(3000, 40);
+  CHECK(find_gauge(graph).messages.size() == 1);
+}
+
+TEST_CASE("gauge rank 3: a fixed vertex, a prior, or two fixes at different places hold nothing") {
+  SECTION("fixed vertex") {
+    Graph graph;
+    graph.set_fixed(add_chain(graph, 0, 5)[2], true);
+    CHECK(held_count(find_gauge(graph)) == 0);
+  }
+  SECTION("pose prior") {
+    Graph graph;
+    const auto chain = add_chain(graph, 0, 5);
+    graph.add_edge(EdgePriorSe2{}, {chain[3]}, Eigen::Matrix3d::Identity());
+    CHECK(held_count(find_gauge(graph)) == 0);
+    CHECK(find_gauge(graph).messages.empty());
+  }
+  SECTION("two fixes") {
+    Graph graph;
+    const auto chain = add_chain(graph, 0, 5);
+    const VertexIndex origin = add_fixed_origin(graph, 100);
+    add_fix(graph, origin, chain[0]);
+    add_fix(graph, origin, chain[4]);
+    CHECK(held_count(find_gauge(graph)) == 0);
+  }
+  SECTION("weak fixes of a kilometre's accuracy") {
+    Graph graph;
+    const auto chain = add_chain(graph, 0, 5);
+    const VertexIndex origin = add_fixed_origin(graph, 100);
+    for (const VertexIndex v : {chain[0], chain[4]}) {
+      graph.add_edge(EdgeGnssPosition{}, {origin, v}, 1e-6 * Eigen::Matrix2d::Identity());
+    }
+    CHECK(held_count(find_gauge(graph)) == 0);
+  }
+}
+
+TEST_CASE("gauge rank 2: a single fix is refused, the message names the vertex and the remedy") {
+  Graph graph;
+  const auto chain = add_chain(graph, 40, 5);
+  add_fix(graph, add_fixed_origin(graph, 100), chain[2]);
+  CHECK_THROWS_AS(find_gauge(graph), InputError);
+  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 40") && Contains("2 of 3") && Contains("FIX") &&
+                                           Contains("another place"));
+}
+
+TEST_CASE("gauge rank 2: a parked car with many fixes at one place is refused") {
+  Graph graph;
+  const VertexIndex origin = add_fixed_origin(graph, 100);
+  std::vector<VertexIndex> chain;
+  for (int i = 0; i < 10; ++i) {
+    chain.push_back(graph.add_vertex<VertexSe2>(i, {5, 6, 1}));
+    if (i > 0) {
+      const auto a = static_cast<std::size_t>(i);
+      graph.add_edge(EdgeSe2{}, {chain[a - 1], chain[a]}, 1e5 * Eigen::Matrix3d::Identity());
+    }
+    add_fix(graph, origin, chain.back());
+  }
+  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 0") && Contains("2 of 3"));
+}
+
+TEST_CASE("gauge rank 1: nothing but a heading is refused") {
+  Graph graph;
+  const auto chain = add_chain(graph, 0, 5);
+  graph.add_edge(EdgePriorSe2{}, {chain[0]}, Eigen::Vector3d(0, 0, 100).asDiagonal());
+  CHECK_THROWS_WITH(find_gauge(graph), Contains("vertex 0") && Contains("1 of 3"));
+}
+
+TEST_CASE("gauge: a position beside a heading make rank 3 together") {
+  Graph graph;
+  const auto chain = add_chain(graph, 0, 5);
+  add_fix(graph, add_fixed_origin(graph, 100), chain[2]);
+  graph.add_edge(EdgePriorSe2{}, {chain[0]}, Eigen::Vector3d(0, 0, 100).asDiagonal());
+  CHECK(held_count(find_gauge(graph)) == 0);
+}
+
+TEST_CASE("gauge: each component is judged by itself") {
+  Graph graph;
+  const auto first = add_chain(graph, 0, 4);
+  const auto second = add_chain(graph, 20, 6, {100, 50});
+  const auto third = add_chain(graph, 40, 3);
+  graph.add_edge(EdgePriorSe2{}, {third[1]}, Eigen::Matrix3d::Identity());
+  graph.add_vertex<VertexSe2>(60, {0, 0, 0});  // without edges: no unknown, nothing to hold
+  const Gauge gauge = find_gauge(graph);
+  CHECK(held_count(gauge) == 2);
+  CHECK(gauge.held[static_cast<std::size_t>(first[0])] == 1);
+  CHECK(gauge.held[static_cast<std::size_t>(second[0])] == 1);
+  REQUIRE(gauge.messages.size() == 2);
+  CHECK_THAT(gauge.messages[0], Contains("vertex 0 "));
+  CHECK_THAT(gauge.messages[1], Contains("vertex 20 "));
+}
+
+TEST_CASE("gauge: components joined only through a fixed vertex are separate and both anchored") {
+  Graph graph;
+  const auto first = add_chain(graph, 0, 3);
+  const auto second = add_chain(graph, 10, 3);
+  const VertexIndex middle = add_fixed_origin(graph, 100);
+  graph.add_edge(EdgeSe2{}, {first[2], middle}, Eigen::Matrix3d::Identity());
+  graph.add_edge(EdgeSe2{}, {middle, second[0]}, Eigen::Matrix3d::Identity());
+  CHECK(held_count(find_gauge(graph)) == 0);
+}
+
+TEST_CASE("gauge: a prior of run-time arity anchors like any other") {
+  const TypeRegistry registry = waymark_test::full_registry();
+  Graph graph;
+  const auto chain = add_chain(graph, 0, 5);
+  const std::array<double, 12> fields = {0, 0, 0, 1, 0.2, 0.1, 0, 0, 0, 0, 0, 0};
+  graph.add_edge(*registry.find_edge("EDGE_GAUSSIAN_PRIOR"), std::array{chain[0], chain[1]}, fields,
+                 Eigen::MatrixXd::Identity(6, 6));
+  CHECK(held_count(find_gauge(graph)) == 0);
+}
+
+TEST_CASE("optimize says in its notes what was held and leaves it in place") {
+  const TypeRegistry registry = waymark_test::full_registry();
+  Graph graph = waymark_test::noisy_circle(20);
+  const std::vector<double> first(graph.value(0).begin(), graph.value(0).end());
+  const Summary summary =
+      optimize(graph, *registry.make_algorithm("gauss_newton"), *registry.make_linear_solver("eigen"), {});
+  REQUIRE(summary.notes.size() == 1);
+  CHECK_THAT(summary.notes[0], Contains("vertex 0"));
+  CHECK(std::vector<double>(graph.value(0).begin(), graph.value(0).end()) == first);
+  CHECK(summary.unknowns == 57);
+}

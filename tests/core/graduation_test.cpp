@@ -1,0 +1,264 @@
+// Graduated non-convexity: false edges are found, good ones stay, and what remains is the optimum without
+// them.
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <set>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/core/robust/chi_square.hpp>
+#include <waymark/core/robust/graduation.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
+
+#include "support/paths.hpp"
+#include "support/problems.hpp"
+#include "support/registry.hpp"
+
+using namespace waymark;
+using namespace waymark::formats;
+using namespace waymark_test;
+
+namespace {
+
+/// A graph with false edges, and the same without.
+struct Spoiled {
+  Graph graph;
+  Graph without;
+  std::vector<EdgePlace> false_edges;
+};
+
+std::string one_blank(const std::string& line) {
+  std::istringstream words(line);
+  std::string result;
+  for (std::string word; words >> word;) result += word + " ";
+  return result;
+}
+
+/// A file of the shared data with its .outliers. False: not there.
+bool load(const std::string& name, const TypeRegistry& registry, Spoiled& spoiled) {
+  const auto folder = shared_data_dir() / "graphs";
+  std::ifstream file(folder / (name + ".g2o"));
+  std::ifstream outlier_file(folder / (name + ".g2o.outliers"));
+  if (!file || !outlier_file) {
+    std::cout << "SKIPPED: " << name << " is not in the shared data\n";
+    return false;
+  }
+  std::set<std::string> false_lines;
+  for (std::string line; std::getline(outlier_file, line);) {
+    if (!line.empty()) false_lines.insert(one_blank(line));
+  }
+  std::string all;
+  std::string good;
+  std::size_t edge = 0;
+  for (std::string line; std::getline(file, line);) {
+    const bool is_false = false_lines.count(one_blank(line)) > 0;
+    all += line + "\n";
+    if (!is_false) good += line + "\n";
+    if (is_false) spoiled.false_edges.push_back({0, edge});
+    edge += line.rfind("EDGE", 0) == 0;
+  }
+  REQUIRE(spoiled.false_edges.size() == false_lines.size());
+  spoiled.graph = read_graph(all, name, registry).graph;
+  spoiled.without = read_graph(good, name, registry).graph;
+  return true;
+}
+
+/// A walk on a grid with false closures, ten parallel ones at a time where grouped.
+Spoiled spoiled_walk(int count, bool grouped, std::uint64_t seed) {
+  Spoiled spoiled;
+  spoiled.without = grid_walk(400, 12, seed);
+  spoiled.graph = spoiled.without;
+  std::mt19937_64 random(seed + 100);
+  const int group = grouped ? 5 : 1;
+  for (int k = 0; k < count; k += group) {
+    const int from = static_cast<int>(random() % 180);
+    const int to = 200 + static_cast<int>(random() % 180);
+    const Eigen::Vector3d z = noisy({0, 0, 0}, 0.3, 0.1, random);
+    for (int i = 0; i < group; ++i) {
+      spoiled.false_edges.push_back({0, spoiled.graph.batch(0).size()});
+      spoiled.graph.add_edge(EdgeSe2{z}, {from + i, to + i}, pose_information(0.02, 0.005));
+    }
+  }
+  return spoiled;
+}
+
+struct Score {
+  double precision = 0;
+  double recall = 0;
+  double chi2_error = 0;  // relative to the optimum without the false edges
+  GraduationResult result;
+};
+
+Score graduate_and_score(const Spoiled& spoiled, const std::string& name, const TypeRegistry& registry,
+                         const GraduationOptions& options = {}) {
+  const auto algorithm = registry.make_algorithm("dogleg");
+  const auto solver = registry.make_linear_solver(registry.linear_solvers().front().type.name);
+  Graph without = spoiled.without;
+  const Summary optimum = optimize(without, *algorithm, *solver, {});
+  REQUIRE(optimum.converged());
+  Graph graph = spoiled.graph;
+  Score score;
+  score.result = graduate(graph, *algorithm, *solver, options);
+  const GraduationResult& r = score.result;
+  std::vector<EdgePlace> hits;
+  std::set_intersection(r.outliers.begin(), r.outliers.end(), spoiled.false_edges.begin(),
+                        spoiled.false_edges.end(), std::back_inserter(hits));
+  const auto share = [&](std::size_t of) {
+    return of == 0 ? 1.0 : static_cast<double>(hits.size()) / static_cast<double>(of);
+  };
+  score.precision = share(r.outliers.size());
+  score.recall = share(spoiled.false_edges.size());
+  score.chi2_error = std::abs(r.summary.final_chi2 / optimum.final_chi2 - 1);
+  std::printf(
+      "%-32s %-14s precision %.3f recall %.3f chi2 %.6f (optimum %.6f) rounds %d splits %d steps %d %.2f s\n",
+      name.c_str(), options.loss.name.c_str(), score.precision, score.recall, r.summary.final_chi2,
+      optimum.final_chi2, r.rounds, r.passes, r.iterations, r.seconds);
+  return score;
+}
+
+void check_file(const std::string& name, double least) {
+  const TypeRegistry registry = full_registry();
+  Spoiled spoiled;
+  if (!load(name, registry, spoiled)) return;
+  const Score score = graduate_and_score(spoiled, name, registry);
+  CHECK(score.precision >= least);
+  CHECK(score.recall >= least);
+  CHECK(score.result.summary.converged());
+  CHECK(score.chi2_error < 1e-6);
+}
+
+}  // namespace
+
+TEST_CASE("graduation: intel with 100 random false closures") {
+  check_file("intel_random_100", 1);
+}
+TEST_CASE("graduation: manhattanOlson3500 with 100 random false closures") {
+  check_file("manhattanOlson3500_random_100", 1);
+}
+TEST_CASE("graduation: manhattanOlson3500 with 100 false closures in groups of ten") {
+  check_file("manhattanOlson3500_grouped_100", 0.95);
+}
+TEST_CASE("graduation: ring with 20 random false closures") {
+  check_file("ring_random_20", 1);
+}
+
+TEST_CASE("graduation: every registered loss finds the false closures of a walk, and so does a foreign one") {
+  const TypeRegistry registry = full_registry();
+  std::vector<LossType> types = {{"welsch_like",
+                                  [](double s, double c) {
+                                    const double w = std::exp(-s / (c * c));
+                                    return LossValue{-c * c * std::expm1(-s / (c * c)), w, -w / (c * c)};
+                                  },
+                                  ""}};
+  for (const auto& [type, origin] : registry.losses()) types.push_back(type);
+  const Spoiled spoiled = spoiled_walk(30, false, 3);
+  for (const LossType& type : types) {
+    GraduationOptions options;
+    options.loss = Loss{type.name, type.evaluate, 1};
+    const Score score = graduate_and_score(spoiled, "walk, 30 random", registry, options);
+    INFO(type.name);
+    CHECK(score.precision == 1);
+    CHECK(score.recall == 1);
+    CHECK(score.chi2_error < 1e-6);
+  }
+}
+
+TEST_CASE("graduation: every registered loss finds the false closures of ring") {
+  const TypeRegistry registry = full_registry();
+  Spoiled spoiled;
+  if (!load("ring_random_20", registry, spoiled)) return;
+  for (const auto& [type, origin] : registry.losses()) {
+    GraduationOptions options;
+    options.loss = Loss{type.name, type.evaluate, 1};
+    const Score score = graduate_and_score(spoiled, "ring_random_20", registry, options);
+    INFO(type.name);
+    CHECK(score.precision == 1);
+    CHECK(score.recall == 1);
+    CHECK(score.chi2_error < 1e-6);
+  }
+}
+
+TEST_CASE("graduation: false closures in groups that agree among themselves are found") {
+  const TypeRegistry registry = full_registry();
+  const Score score = graduate_and_score(spoiled_walk(30, true, 5), "walk, 30 grouped", registry);
+  CHECK(score.precision >= 0.95);
+  CHECK(score.recall >= 0.95);
+  CHECK(score.chi2_error < 1e-6);
+}
+
+TEST_CASE("graduation: where no edge is beyond its quantile nothing is done but the optimisation") {
+  const TypeRegistry registry = full_registry();
+  const Score score = graduate_and_score(spoiled_walk(0, false, 4), "walk", registry);
+  CHECK(score.result.rounds == 0);
+  CHECK(score.result.outliers.empty());
+  CHECK(score.chi2_error < 1e-9);
+}
+
+TEST_CASE("graduation: trusted are edges between consecutive free poses, or what the user says") {
+  const TypeRegistry registry = full_registry();
+  Graph graph;
+  for (int id : {0, 1, 2, 5}) graph.add_vertex<VertexSe2>(id, {double(id), 0, 0});
+  const Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
+  graph.add_edge(EdgeSe2{}, {0, 1}, information);
+  graph.add_edge(EdgeSe2{}, {2, 1}, information);
+  graph.add_edge(EdgeSe2{}, {0, 2}, information);
+  graph.add_edge(EdgeSe2{}, {2, 3}, information);
+  graph.add_edge(EdgeGnssPosition{}, {0, 1}, Eigen::Matrix2d::Identity());
+  CHECK(is_odometry_edge(graph, {0, 0}));
+  CHECK(is_odometry_edge(graph, {0, 1}));
+  CHECK_FALSE(is_odometry_edge(graph, {0, 2}));
+  CHECK_FALSE(is_odometry_edge(graph, {0, 3}));  // neighbours in the file, not by id
+  CHECK_FALSE(is_odometry_edge(graph, {1, 0}));  // does not determine the heading
+  graph.set_fixed(0, true);
+  CHECK_FALSE(is_odometry_edge(graph, {0, 0}));  // absolute, not relative
+}
+
+TEST_CASE("graduation: a wrong option is refused with field, value and rule") {
+  GraduationOptions options;
+  options.factor = 1;
+  CHECK_THROWS_WITH(options.check(), "graduation option factor = 1: must be > 1");
+}
+
+TEST_CASE("innovation: the minimum rises by it with the edge, falls by it without") {
+  const TypeRegistry registry = full_registry();
+  const auto algorithm = registry.make_algorithm("gauss_newton");
+  const auto solver = registry.make_linear_solver("eigen");
+  Graph all = noisy_circle(40);
+  const std::vector<EdgePlace> edge = {{0, all.batch(0).size() - 3}};
+  const double with = optimize(all, *algorithm, *solver, {}).final_chi2;
+  Graph kept = without_edges(all, edge);
+  CHECK(kept.edge_count() + 1 == all.edge_count());
+  CHECK(innovations(all, edge, Membership::inside, all, *solver)[0] ==
+        Approx(with - optimize(kept, *algorithm, *solver, {}).final_chi2).epsilon(0.02));
+  CHECK(innovations(all, edge, Membership::outside, kept, *solver)[0] ==
+        Approx(with - kept.chi2()).epsilon(0.02));
+}
+
+TEST_CASE("a graph without some edges keeps values, ids, stamps, fixed vertices and losses of the others") {
+  Graph graph = noisy_circle(12);
+  graph.set_fixed(3, true);
+  graph.set_stamp(4, Stamp{17});
+  const LossType huber = builtin_losses()[0];
+  graph.batch(0).set_loss(Loss{huber.name, huber.evaluate, 2});
+  graph.batch(0).set_loss(5, Loss{huber.name, huber.evaluate, 0.5});
+  const std::vector<EdgePlace> edges = {{0, 0}, {0, 4}, {0, 11}};
+  const Graph result = without_edges(graph, edges);
+  CHECK(result.values() == graph.values());
+  CHECK(result.fixed(3));
+  CHECK(result.stamp(4)->nanoseconds == 17);
+  REQUIRE(result.edge_count() == graph.edge_count() - 3);
+  CHECK(result.batch(0).loss(3)->scale == 0.5);
+  CHECK(result.batch(0).loss(4)->scale == 2);
+}
+
+TEST_CASE("chi-square quantiles are those of the tables") {
+  CHECK(chi_square_quantile(0.95, 1) == Approx(3.841458820694124));
+  CHECK(chi_square_quantile(0.95, 2) == Approx(5.991464547107979));
+  CHECK(chi_square_quantile(0.99, 3) == Approx(11.344866730144373));
+  CHECK(chi_square_quantile(0.99, 10) == Approx(23.209251158954356));
+  CHECK(chi_square_tail(0, 5) == Approx(1));
+}

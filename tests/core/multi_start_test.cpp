@@ -1,0 +1,194 @@
+// The default configuration: where it begins, when it looks further, and that it survives starts that defeat
+// every algorithm.
+#include <catch2/catch.hpp>
+
+#include <waymark/core/optimize/multi_start.hpp>
+
+#include "support/problems.hpp"
+#include "support/registry.hpp"
+#include "support/spoiling.hpp"
+
+using namespace waymark;
+using namespace waymark_test;
+
+namespace {
+
+MultiStartSummary optimize_default(Graph& graph, const TypeRegistry& registry,
+                                   const std::string& algorithm = "dogleg", int max_iterations = 500) {
+  OptimizerOptions options;
+  options.max_iterations = max_iterations;
+  return optimize_from_best_start(graph, registry.starts(), *registry.make_algorithm(algorithm),
+                                  *registry.make_linear_solver(registry.linear_solvers().front().type.name),
+                                  options);
+}
+
+Summary optimize_as_is(Graph& graph, const TypeRegistry& registry, const std::string& algorithm,
+                       int max_iterations = 200) {
+  OptimizerOptions options;
+  options.max_iterations = max_iterations;
+  return optimize(graph, *registry.make_algorithm(algorithm),
+                  *registry.make_linear_solver(registry.linear_solvers().front().type.name), options);
+}
+
+constexpr const char* kAlgorithms[] = {"gauss_newton", "levenberg_marquardt", "dogleg"};
+constexpr int kPoses = 4000;
+
+/// A small drive in UTM coordinates, dead-reckoned from its first fix, under a modeling.
+Graph utm_drive(const TypeRegistry& registry, const std::string& modeling) {
+  const Eigen::Vector2d far(670000, 5700000);
+  Drive drive = make_drive(registry, kPoses);
+  for (VertexIndex v = 0; v < kPoses; ++v) {
+    const auto value = drive.graph.value(v);
+    drive.graph.set_value(v, std::array{value[0] + far[0], value[1] + far[1], value[2]});
+  }
+  for (Fix& fix : drive.fixes) fix.position += far;
+  drive.add_fixes(registry, modeling);
+  return std::move(drive.graph);
+}
+
+}  // namespace
+
+TEST_CASE("default start: a good start is used as it is, and nothing else is tried") {
+  const TypeRegistry registry = full_registry();
+  Graph graph = utm_drive(registry, "g1");
+  const MultiStartSummary result = optimize_default(graph, registry);
+  CHECK(result.summary.converged());
+  CHECK(result.start == "file");
+  CHECK(result.trials.size() == 1);
+  CHECK(result.summary.final_chi2 < plausible_chi2(graph));
+  CHECK(result.summary.notes.empty());
+}
+
+TEST_CASE("default start: loops begin from the linear start, unless the values are good already") {
+  const TypeRegistry registry = full_registry();
+  Graph graph = noisy_circle(300);
+  const MultiStartSummary first = optimize_default(graph, registry);
+  CHECK(first.start == "linear");
+  CHECK(first.trials.size() == 1);
+  REQUIRE(first.summary.converged());
+  const MultiStartSummary again = optimize_default(graph, registry);
+  CHECK(again.start == "file");
+  CHECK(again.summary.iterations <= 1);
+}
+
+TEST_CASE("default start: every spoilt start of a drive ends at the optimum, with every algorithm") {
+  const TypeRegistry registry = full_registry();
+  for (const std::string modeling : {"g1", "g2", "g3"}) {
+    const Graph drive = utm_drive(registry, modeling);
+    Graph reference = drive;
+    const double optimum = optimize_as_is(reference, registry, "dogleg").final_chi2;
+    REQUIRE(optimum < plausible_chi2(drive));
+    for (const Spoiling& how : kSpoilings) {
+      const Graph spoilt = spoil(drive, how, [](VertexIndex v) { return v >= kPoses; });
+      for (const std::string algorithm : kAlgorithms) {
+        Graph graph = spoilt;
+        const MultiStartSummary result = optimize_default(graph, registry, algorithm);
+        INFO(modeling << ", " << how.name << ", " << algorithm << ": " << result.summary.message);
+        CHECK(result.summary.converged());
+        CHECK(result.summary.final_chi2 == Approx(optimum).epsilon(1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("default start: the linear start serves every modeling and algorithm, and says that it won") {
+  const TypeRegistry registry = full_registry();
+  for (const std::string modeling : {"g1", "g2", "g3"}) {
+    const Graph drive = utm_drive(registry, modeling);
+    // Defeats Levenberg-Marquardt.
+    Graph graph = spoil(drive, {"track at (0,0)", 0, true}, [](VertexIndex v) { return v >= kPoses; });
+    const MultiStartSummary result = optimize_default(graph, registry, "levenberg_marquardt");
+    INFO(modeling);
+    CHECK(result.start == "linear");
+    REQUIRE(result.trials.size() == 2);
+    CHECK(result.trials[0].start == "file");
+    CHECK(result.trials[0].final_chi2 > plausible_chi2(graph));
+    const std::string& note = result.summary.notes.back();
+    CHECK(note.find("so others were tried: file (chi2 ") != std::string::npos);
+    CHECK(note.find("; kept: linear") != std::string::npos);
+    for (const std::string algorithm : kAlgorithms) {
+      Graph anchored = drive;
+      anchored.set_values(registry.make_start("linear", drive).values);
+      const Summary summary = optimize_as_is(anchored, registry, algorithm);
+      CHECK(summary.converged());
+      CHECK(summary.final_chi2 == Approx(result.summary.final_chi2).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("default start: a minimum that two starts agree on is believed, however high its chi2") {
+  // Noise ten times what the information says: chi2 is a hundred times the degrees of freedom.
+  const TypeRegistry registry = full_registry();
+  const Graph drive = utm_drive(registry, "g1");
+  Graph graph;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(drive.vertex_count()); ++v) {
+    graph.add_vertex(drive.vertex_type(v), drive.id(v), drive.value(v));
+    graph.set_fixed(v, drive.fixed(v));
+  }
+  for (std::size_t b = 0; b < drive.batch_count(); ++b) {
+    for (std::size_t e = 0; e < drive.batch(b).size(); ++e) {
+      std::vector<double> fields;
+      drive.batch(b).fields(e, fields);
+      graph.add_edge(drive.edge_type(b), drive.batch(b).vertices(e), fields,
+                     100 * drive.batch(b).information(e));
+    }
+  }
+  const MultiStartSummary result = optimize_default(graph, registry);
+  CHECK(result.summary.converged());
+  CHECK(result.summary.final_chi2 > plausible_chi2(graph));
+  REQUIRE(result.trials.size() == 2);
+  CHECK(result.trials[0].final_chi2 == Approx(result.trials[1].final_chi2).epsilon(1e-6));
+}
+
+TEST_CASE("default start: max_iterations bounds all runs together, and a cancelled run is the last") {
+  const TypeRegistry registry = full_registry();
+  const Graph spoilt = spoil(utm_drive(registry, "g1"), {"heading +180", 180, false},
+                             [](VertexIndex v) { return v >= kPoses; });
+  for (const int limit : {0, 1, 7}) {
+    Graph graph = spoilt;
+    const MultiStartSummary result = optimize_default(graph, registry, "dogleg", limit);
+    CHECK(result.trials.size() == 1);
+    CHECK(result.summary.iterations == limit);
+    CHECK(result.summary.termination == Termination::max_iterations);
+    CHECK(graph.chi2() == Approx(result.summary.final_chi2));
+  }
+  std::atomic<bool> cancel = true;
+  OptimizerOptions options;
+  options.cancel = &cancel;
+  Graph graph = spoilt;
+  const MultiStartSummary result =
+      optimize_from_best_start(graph, registry.starts(), *registry.make_algorithm("dogleg"),
+                               *registry.make_linear_solver("eigen"), options);
+  CHECK(result.summary.termination == Termination::interrupted);
+  CHECK(result.trials.size() == 1);
+}
+
+TEST_CASE("default start: poses on one heap are no obstacle, an undetermined graph stays an error") {
+  const TypeRegistry registry = full_registry();
+  const Graph drive = utm_drive(registry, "g1");
+  Graph reference = drive;
+  const double optimum = optimize_as_is(reference, registry, "dogleg").final_chi2;
+  Graph heap = drive;
+  for (VertexIndex v = 0; v < kPoses; ++v) heap.set_value(v, std::array{0.0, 0.0, 0.0});
+  CHECK_THROWS_WITH(optimize_as_is(heap, registry, "dogleg"), Catch::Contains("2 of 3 rigid motions"));
+  const MultiStartSummary result = optimize_default(heap, registry);
+  CHECK(result.start == "linear");
+  CHECK(result.summary.final_chi2 == Approx(optimum).epsilon(1e-9));
+  CHECK(heap.chi2() == Approx(optimum).epsilon(1e-9));
+  CHECK(result.summary.notes.front().find("start file could not be used: ") == 0);
+
+  Graph one_fix = make_drive(registry, 100).graph;
+  const VertexIndex origin = one_fix.add_vertex<VertexSe2>(1000, {0, 0, 0});
+  one_fix.set_fixed(origin, true);
+  one_fix.add_edge(EdgeGnssPosition{{5, 6}, {0, 0}}, {origin, 4}, Eigen::Matrix2d::Identity());
+  CHECK_THROWS_WITH(optimize_default(one_fix, registry), Catch::Contains("2 of 3 rigid motions"));
+}
+
+TEST_CASE("default start: without registered starts the values given are all there is") {
+  const TypeRegistry registry = full_registry();
+  Graph graph = noisy_circle(100);
+  const MultiStartSummary result = optimize_from_best_start(graph, {}, *registry.make_algorithm("dogleg"),
+                                                            *registry.make_linear_solver("eigen"), {});
+  CHECK(result.start == "file");
+  CHECK(result.summary.converged());
+}

@@ -1,0 +1,375 @@
+#include <catch2/catch.hpp>
+
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/tools/drive/description/config.hpp>
+
+using namespace waymark;
+using namespace waymark::drive;
+using namespace waymark::formats;
+using Catch::Matchers::Message;
+
+namespace {
+
+DriveConfig parse(const std::string& text, const std::string& data_folder = "") {
+  return parse_drive_config(text, "tours/drive.yaml", data_folder);
+}
+
+/// The error that a line added to a minimal drive gives.
+std::string error_of(const std::string& more) {
+  try {
+    (void)parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n" + more);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string error_of_gnss(const std::string& entries) {
+  try {
+    (void)parse("odometry: {file: o.csv}\ngnss:\n  file: g.csv\n" + entries);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("drive.yaml: the least there is, and its defaults") {
+  const DriveConfig config = parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n");
+  CHECK(config.name == "drive");
+  CHECK(config.odometry.front().file == "tours/o.csv");
+  CHECK(config.odometry.front().format == "csv");
+  CHECK(config.odometry.front().request.stream == StreamKind::odometry);
+  REQUIRE(config.gnss.size() == 1);
+  CHECK(config.gnss[0].file == "tours/g.csv");
+  CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::automatic);
+  CHECK(config.gnss[0].request.time_scale == TimeScale::gps);
+  CHECK(!config.truth);
+  CHECK(!config.utm_zone);
+  CHECK(config.gate.enabled);
+  CHECK(config.gate.max_angle_rad == Approx(1.5 * std::numbers::pi / 180));
+  CHECK(config.gate.max_displacement_m == 15);
+  CHECK(config.start.method == StartMethod::anchored);
+  CHECK(config.modeling == "correlated");
+  CHECK_FALSE(config.gate_stated);
+  CHECK_FALSE(config.calibration_stated);
+  CHECK_FALSE(config.estimates_noise.has_value());
+}
+
+TEST_CASE("drive.yaml: everything that can be said") {
+  const DriveConfig config = parse(R"(
+name: Somewhere
+folder: logs
+time: {scale: utc, from: 10, to: 70.5}
+frame: {utm_zone: 56S, origin: [300000, 6250000]}
+odometry:
+  file: can.tsv
+  separator: tab
+  columns:
+    time: 1
+    speed: {column: v, unit: km/h}
+    yaw_rate: {column: w, unit: deg/s, convention: cw}
+  time: {scale: gps, week: 1900, offset: -0.4}
+  noise: {heading_variance_per_s: 1e-7}
+gnss:
+  - {file: a.json, format: gpsd_json, accuracy: {meaning: drms, default_sigma: 5}, antenna: [1, -0.5], rate: 4,
+     delay: 0.1, withhold_every: 10}
+  - {file: /logs/b.csv, antenna: [1, -0.5], period: 0.25, delay: 0.1, withhold_every: 10}
+truth: {file: t.csv, reference: [0.1, 0.2], time: {scale: unix}}
+gate: {enabled: false, max_angle_deg: 2, max_displacement_m: 20}
+gap: {longer_than: 1, policy: error, noise_factor: 10}
+snap: 0.002
+start: dead_reckoning
+modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
+)");
+  CHECK(config.name == "Somewhere");
+  CHECK(config.time_scale == TimeScale::utc);
+  CHECK(*config.from_s == 10);
+  CHECK(*config.to_s == 70.5);
+  CHECK(*config.utm_zone == -56);
+  CHECK(*config.utm_origin == Eigen::Vector2d(300000, 6250000));
+  CHECK(config.odometry.front().file == "tours/logs/can.tsv");
+  const LogRequest& odometry = config.odometry.front().request;
+  CHECK(odometry.separator == '\t');
+  CHECK(odometry.columns.at("time").column == "1");
+  CHECK(odometry.columns.at("speed").unit == "km/h");
+  CHECK(odometry.columns.at("yaw_rate").convention == "cw");
+  CHECK(odometry.time_scale == TimeScale::gps);
+  CHECK(odometry.gps_week == 1900);
+  CHECK(odometry.time_offset_s == -0.4);
+  CHECK(config.odometry_options.at("heading_variance_per_s") == "1e-7");
+  CHECK(config.places.at("odometry.noise.heading_variance_per_s") == "tours/drive.yaml:14:35: ");
+  REQUIRE(config.gnss.size() == 2);
+  CHECK(config.gnss[0].format == "gpsd_json");
+  CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::drms);
+  CHECK(config.gnss[0].request.default_sigma_m == 5);
+  CHECK(config.gnss[0].request.time_scale == TimeScale::utc);  // the drive's, where it states none
+  CHECK(config.gnss[1].file == "/logs/b.csv");
+  CHECK(config.gnss[1].request.source == 1);
+  CHECK(config.antenna_m == Eigen::Vector2d(1, -0.5));
+  CHECK(config.gnss_period_s == 0.25);
+  CHECK(config.gnss_delay_s == 0.1);
+  CHECK(config.withhold_every == 10);
+  CHECK(config.truth->request.time_scale == TimeScale::unix_time);
+  CHECK(config.truth_reference_m == Eigen::Vector2d(0.1, 0.2));
+  CHECK(!config.gate.enabled);
+  CHECK(config.gate.max_angle_rad == Approx(2 * std::numbers::pi / 180));
+  CHECK(config.gate.max_displacement_m == 20);
+  CHECK(config.timeline.gap_s == 1);
+  CHECK(config.timeline.gap_policy == GapPolicy::error);
+  CHECK(config.timeline.gap_noise_factor == 10);
+  CHECK(config.timeline.snap_s == 0.002);
+  CHECK(config.start.method == StartMethod::dead_reckoning);
+  CHECK(config.modeling == "g2");
+  CHECK(config.loss == "cauchy:1");
+  CHECK(config.modeling_options.at("weight") == "1e6");
+}
+
+TEST_CASE("drive.yaml: a data folder given from outside replaces the stated one, absolute names stand") {
+  const DriveConfig config =
+      parse("folder: logs\nodometry: {file: o.csv}\ngnss: {file: /g.csv}\n", "/elsewhere");
+  CHECK(config.odometry.front().file == "/elsewhere/o.csv");
+  CHECK(config.gnss[0].file == "/g.csv");
+}
+
+TEST_CASE("drive.yaml: an unknown key is an error with its place and the right key") {
+  CHECK(error_of("gates: {}\n") == "tours/drive.yaml:3:1: unknown key 'gates'; did you mean 'gate'?");
+  CHECK(error_of("gate: {max_angle_dg: 1}\n") ==
+        "tours/drive.yaml:3:8: unknown key 'max_angle_dg' in gate; did you mean 'max_angle_deg'?");
+  CHECK(error_of("frame: {foo: 1}\n") ==
+        "tours/drive.yaml:3:9: unknown key 'foo' in frame; known: utm_zone, origin");
+  CHECK(error_of_gnss("  colums: {time: t}\n") ==
+        "tours/drive.yaml:4:3: unknown key 'colums' in gnss; did you mean 'columns'?");
+  CHECK(error_of_gnss("  columns:\n    lattitude: lat\n") ==
+        "tours/drive.yaml:5:5: unknown key 'lattitude' in columns; did you mean 'latitude'?");
+  CHECK(error_of_gnss("  columns:\n    latitude: {colum: lat}\n") ==
+        "tours/drive.yaml:5:16: unknown key 'colum' in columns.latitude; did you mean 'column'?");
+}
+
+TEST_CASE("drive.yaml: wrong types and ranges") {
+  CHECK(error_of("snap: soon\n") ==
+        "tours/drive.yaml:3:7: snap: expected seconds from 0 to 0.05, got 'soon'");
+  CHECK(error_of("gap: {noise_factor: 0.5}\n") ==
+        "tours/drive.yaml:3:21: gap.noise_factor: expected a number not below 1, got '0.5'");
+  CHECK(error_of("gap: {longer_than: .nan}\n") ==
+        "tours/drive.yaml:3:20: gap.longer_than: expected a number above 0, got '.nan'");
+  CHECK(error_of("gate: {enabled: maybe}\n") ==
+        "tours/drive.yaml:3:17: gate.enabled: expected true or false, got 'maybe'");
+  CHECK(error_of("gate: {chord_s: 8}\n") ==
+        "tours/drive.yaml:3:7: gate: max_chord_s (5) must not be below chord_s (8)");
+  CHECK(error_of("gate: 3\n") == "tours/drive.yaml:3:7: gate: expected a mapping (key: value), got '3'");
+  CHECK(error_of("start: somewhere\n") ==
+        "tours/drive.yaml:3:8: start: expected one of anchored, dead_reckoning, got 'somewhere'");
+  CHECK(error_of("time: {from: 5, to: 5}\n") == "tours/drive.yaml:3:21: time.to: must lie after 'from'");
+  CHECK(error_of("frame: {utm_zone: 61N}\n") ==
+        "tours/drive.yaml:3:19: frame.utm_zone: expected a zone such as 32N or 56S, got '61N'");
+  CHECK(error_of("frame: {origin: [1, 2]}\n") ==
+        "tours/drive.yaml:3:17: frame.origin: needs a stated utm_zone: it counts from that zone's corner");
+  CHECK(error_of("truth: {reference: [1, 2]}\n") == "tours/drive.yaml:3:8: truth: 'file' is missing");
+  CHECK(error_of("truth: {file: t.csv, reference: [1, 2, 3]}\n") ==
+        "tours/drive.yaml:3:33: truth.reference: expected two numbers [x, y], got a list of 3");
+  CHECK(error_of_gnss("  rate: 0\n") ==
+        "tours/drive.yaml:4:9: gnss.rate: expected a number above 0, got '0'");
+  CHECK(error_of_gnss("  rate: 1\n  period: 1\n") ==
+        "tours/drive.yaml:4:9: gnss.rate: give either period (s) or rate (Hz)");
+  CHECK(error_of_gnss("  withhold_every: 1\n") ==
+        "tours/drive.yaml:4:19: gnss.withhold_every: expected 0 (none) or a whole number from 2, got '1'");
+  CHECK(error_of_gnss("  accuracy: {meaning: 2sigma}\n") ==
+        "tours/drive.yaml:4:23: gnss.accuracy.meaning: expected one of auto, 95, 1sigma, drms, cep50, got "
+        "'2sigma'");
+  CHECK(error_of_gnss("  time: {scale: utc, week: 1900}\n") ==
+        "tours/drive.yaml:4:28: gnss.time.week: a week belongs to the scale gps");
+  CHECK(error_of_gnss("  format: gpsd_json\n  separator: ;\n") ==
+        "tours/drive.yaml:5:14: gnss.separator: belongs to the format csv, not to gpsd_json");
+  CHECK(error_of_gnss("  columns:\n    speed: {column: v, unit: kmh}\n") ==
+        "tours/drive.yaml:5:12: unknown unit 'kmh' for speed; did you mean 'km/h'?; known: m/s, km/h, mph, "
+        "kn, mm/s");
+  CHECK(error_of_gnss("  columns:\n    course: {unit: deg}\n") ==
+        "tours/drive.yaml:5:13: no column is given for course");
+}
+
+TEST_CASE("drive.yaml: odometry from parts, a CAN log with its DBC, a velocity apart") {
+  const DriveConfig config = parse(R"(
+odometry:
+  parts:
+    - {file: v.csv, columns: {time: t, speed: v}, time: {offset: -0.4}}
+    - {file: can.log, format: candump, dbc: car.dbc, columns: {gyro_x: {column: IMU.Rate, unit: deg/s}}}
+  rate: 20
+  speed_from: speed
+  yaw_rate_from: gyro
+  gyro: {axis: -x}
+  vehicle: {track_width: 1.5, wheelbase: 2.7, steering_ratio: 15, metres_per_tick: 0.02, tick_range: 65536}
+  speed_delay: 0.4
+  yaw_rate_delay: -0.1
+gnss:
+  file: g.nmea
+  format: auto
+  time: {date: 2009-04-01}
+  accuracy: {range_error: 5}
+  velocity: {file: doppler.csv, columns: {time: t, speed: v, course: c}}
+truth: {file: oxts/data, format: kitti_oxts, timestamps: oxts/times.txt}
+)");
+  REQUIRE(config.odometry.size() == 2);
+  CHECK(config.odometry[0].request.time_offset_s == -0.4);
+  CHECK(config.odometry[1].format == "candump");
+  CHECK(config.odometry[1].companions.at("dbc") == "tours/car.dbc");
+  CHECK(config.odometry[1].request.columns.at("gyro_x").column == "IMU.Rate");
+  CHECK(config.odometry[1].request.readings.size() == odometry_channels().size());
+  CHECK(config.assembly.rate_hz == 20);
+  CHECK(config.assembly.speed_from == "speed");
+  CHECK(config.assembly.yaw_rate_from == "gyro");
+  CHECK(config.assembly.gyro_axis == "-x");
+  CHECK(config.assembly.track_width_m == 1.5);
+  CHECK(config.assembly.wheelbase_m == 2.7);
+  CHECK(config.assembly.steering_ratio == 15);
+  CHECK(config.assembly.metres_per_tick == 0.02);
+  CHECK(config.assembly.tick_range == 65536);
+  CHECK(config.speed_delay_s == 0.4);
+  CHECK(config.yaw_rate_delay_s == -0.1);
+  CHECK(config.gnss[0].request.date->nanoseconds == 1'238'544'000'000'000'000);  // 2009-04-01T00:00:00Z
+  CHECK(config.gnss[0].request.range_error_m == 5);
+  CHECK(config.gnss[0].velocity->file == "tours/doppler.csv");
+  CHECK(config.gnss[0].velocity->request.readings.size() == velocity_channels().size());
+  CHECK(config.truth->companions.at("timestamps") == "tours/oxts/times.txt");
+}
+
+TEST_CASE("drive.yaml: what is wrong with parts, dates and signals is told with its place") {
+  const auto error_of_odometry = [](const std::string& more) {
+    try {
+      (void)parse("gnss: {file: g.csv}\nodometry:\n" + more);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  CHECK(error_of_odometry("  file: o.csv\n  parts: [{file: v.csv}]\n") ==
+        "tours/drive.yaml:3:9: odometry.file: give either 'file' or 'parts'");
+  CHECK(error_of_odometry("  parts: []\n") ==
+        "tours/drive.yaml:3:10: odometry.parts: at least one log is needed");
+  CHECK(error_of_odometry("  parts: [{fil: v.csv}]\n") ==
+        "tours/drive.yaml:3:12: unknown key 'fil' in odometry.parts; did you mean 'file'?");
+  CHECK(error_of_odometry("  file: o.csv\n  gyro: {axis: up}\n") ==
+        "tours/drive.yaml:4:16: odometry.gyro.axis: expected one of x, -x, y, -y, z, -z, gravity, got 'up'");
+  CHECK(error_of_odometry("  file: o.csv\n  rate: 0\n") ==
+        "tours/drive.yaml:4:9: odometry.rate: expected a rate in Hz from 0.001 to 1000, got '0'");
+  CHECK(error_of_odometry("  file: o.csv\n  speed_from: wheels\n") ==
+        "tours/drive.yaml:4:15: odometry.speed_from: expected one of speed, rear_wheels, front_wheels, "
+        "rear_ticks, "
+        "front_ticks, ticks, distance, got 'wheels'");
+  CHECK(error_of_odometry("  file: o.csv\n  columns: {wheel_speed_rear_lef: v}\n") ==
+        "tours/drive.yaml:4:13: unknown key 'wheel_speed_rear_lef' in columns; did you mean "
+        "'wheel_speed_rear_left'?");
+  CHECK(error_of_gnss("  time: {date: 1.4.2009}\n") ==
+        "tours/drive.yaml:4:16: gnss.time.date: expected a date such as 2009-04-01, got '1.4.2009'");
+}
+
+TEST_CASE("drive.yaml: calibration is on, off, or stated state by state") {
+  const auto calibration = [](const std::string& more) {
+    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n" + more).calibration;
+  };
+  using Map = std::map<std::string, std::string>;
+  CHECK(calibration("").empty());
+  CHECK(calibration("calibration: off\n").empty());
+  CHECK(calibration("calibration: false\n").empty());
+  CHECK(calibration("calibration: on\n") == default_calibration());
+  CHECK(calibration("calibration: true\n") == default_calibration());
+  CHECK(default_calibration().count("gyro_bias") == 1);
+  CHECK(default_calibration().count("speed_scale") == 1);
+  CHECK(calibration("calibration: {gyro_bias: constant, gyro_bias_sigma: 0.02}\n") ==
+        Map{{"gyro_bias", "constant"}, {"gyro_bias_sigma", "0.02"}});
+  CHECK(error_of("calibration: maybe\n") ==
+        "tours/drive.yaml:3:14: calibration: expected one of on, off, true, false, got 'maybe'");
+  const DriveConfig config =
+      parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\ncalibration: {time_offset: constant}\n");
+  CHECK(config.places.at("calibration.time_offset") == "tours/drive.yaml:3:28: ");
+}
+
+TEST_CASE("drive.yaml: the odometry's model") {
+  const DriveConfig config = parse("odometry: {file: o.csv, model: bicycle}\ngnss: {file: g.csv}\n");
+  CHECK(config.odometry_model == "bicycle");
+  CHECK(config.places.at("odometry.model") == "tours/drive.yaml:1:32: ");
+  CHECK(parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n").odometry_model == "constant_twist");
+}
+
+TEST_CASE("drive.yaml: sensors are a list or a single one, with logs and options of their own") {
+  const DriveConfig config = parse(R"(
+folder: logs
+odometry: {file: o.csv}
+gnss: {file: g.csv}
+sensors:
+  - name: heading
+    file: compass.csv
+    separator: ";"
+    columns: {heading: {column: hdg, unit: deg, convention: cw_from_north}}
+    time: {scale: unix, offset: 0.1}
+    options: {sigma_deg: 0.5}
+  - {name: gnss_velocity}
+)");
+  REQUIRE(config.sensors.size() == 2);
+  const SensorConfig& compass = config.sensors[0];
+  CHECK(compass.name == "heading");
+  CHECK(compass.place == "tours/drive.yaml:6:5: ");
+  CHECK(compass.log->file == "tours/logs/compass.csv");
+  CHECK(compass.log->request.stream == StreamKind::sensor);
+  CHECK(compass.log->request.separator == ';');
+  CHECK(compass.log->request.columns.at("heading").convention == "cw_from_north");
+  CHECK(compass.log->request.time_scale == TimeScale::unix_time);
+  CHECK(compass.log->request.time_offset_s == 0.1);
+  CHECK(compass.options.at("sigma_deg") == "0.5");
+  CHECK(!config.sensors[1].log);
+
+  const DriveConfig single =
+      parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\nsensors: {name: lane, file: m.csv}\n");
+  REQUIRE(single.sensors.size() == 1);
+  CHECK(single.sensors[0].name == "lane");
+
+  CHECK(error_of("sensors: [{file: m.csv}]\n") == "tours/drive.yaml:3:11: sensors: 'name' is missing");
+  CHECK(error_of("sensors: heading\n") ==
+        "tours/drive.yaml:3:10: sensors: expected a mapping (key: value), got 'heading'");
+  CHECK(error_of("sensors: [{name: lane, option: {}}]\n") ==
+        "tours/drive.yaml:3:24: unknown key 'option' in sensors; did you mean 'options'?");
+  CHECK(error_of("sensors: [{name: lane, antenna: [1, 2]}]\n").find("unknown key 'antenna' in sensors") !=
+        std::string::npos);
+  CHECK(error_of("sensor: {name: lane}\n") ==
+        "tours/drive.yaml:3:1: unknown key 'sensor'; did you mean 'sensors'?");
+}
+
+TEST_CASE("drive.yaml: plugins are names, or files beside the drive.yaml") {
+  const auto plugins = [](const std::string& value) {
+    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\nplugins: " + value + "\n", "/data").plugins;
+  };
+  using Names = std::vector<std::string>;
+  CHECK(plugins("[my_sensor.so, lib/other, named, /opt/third.so]") ==
+        Names{"tours/my_sensor.so", "tours/lib/other", "named", "/opt/third.so"});
+  CHECK(plugins("my_sensor.so") == Names{"tours/my_sensor.so"});
+  CHECK(plugins("[]").empty());
+  CHECK(error_of("plugins: [[a.so]]\n") ==
+        "tours/drive.yaml:3:10: plugins: expected a list of plugin files, got a list of 1");
+}
+
+TEST_CASE("drive.yaml: what is missing, doubled or no YAML") {
+  CHECK_THROWS_MATCHES(parse("gnss: {file: g.csv}\n"), InputError,
+                       Message("tours/drive.yaml:1:1: 'odometry' is missing"));
+  CHECK_THROWS_MATCHES(parse("odometry: {file: g.csv}\n"), InputError,
+                       Message("tours/drive.yaml:1:1: 'gnss' is missing"));
+  CHECK_THROWS_MATCHES(parse("odometry: {file: o.csv}\ngnss: []\n"), InputError,
+                       Message("tours/drive.yaml:2:7: gnss: at least one log is needed"));
+  CHECK(error_of("gate: {}\ngate: {}\n") == "tours/drive.yaml:4:1: key 'gate' is given twice");
+  CHECK_THROWS_MATCHES(parse("odometry: {file: [\n"), InputError,
+                       Message("tours/drive.yaml:2:1: no valid YAML: end of sequence flow not found"));
+  CHECK_THROWS_MATCHES(parse(""), InputError,
+                       Message("tours/drive.yaml: the file: expected a mapping (key: value), got nothing"));
+  CHECK_THROWS_MATCHES(
+      parse("odometry: {file: o.csv}\ngnss: [{file: a.csv}, {file: b.csv, delay: 1}]\n"), InputError,
+      Message("tours/drive.yaml:2:23: gnss: all logs must state the same antenna, period, delay and "
+              "withhold_every"));
+  CHECK_THROWS_MATCHES(load_drive_config("absent/drive.yaml"), InputError,
+                       Message("absent/drive.yaml: cannot read: No such file or directory"));
+}

@@ -1,0 +1,118 @@
+// The list of drive.yaml's keys in tools/drive/README.md is the one that the reader has: no key is missing
+// there, and none is there that the reader refuses.
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/logs/odometry_parts.hpp>
+
+#include "support/markdown.hpp"
+
+using namespace waymark;
+using namespace waymark::drive;
+using namespace waymark::formats;
+
+namespace {
+
+std::string file_text(const std::string& path) {
+  std::ifstream in(WAYMARK_SOURCE_DIR "/" + path);
+  REQUIRE(in);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+/// From the heading to the next one of its level.
+std::string drive_yaml_section() {
+  const std::string readme = file_text("tools/drive/README.md");
+  const auto begin = readme.find("\n## drive.yaml\n");
+  REQUIRE(begin != std::string::npos);
+  return readme.substr(begin, readme.find("\n## ", begin + 1) - begin);
+}
+
+bool is_word(char c) {
+  return std::islower(static_cast<unsigned char>(c)) || std::isdigit(static_cast<unsigned char>(c)) ||
+         c == '_';
+}
+
+std::set<std::string> words_of(const std::string& text) {
+  std::set<std::string> words;
+  for (auto at = text.begin(); at != text.end();) {
+    const auto begin = std::find_if(at, text.end(), is_word);
+    at = std::find_if_not(begin, text.end(), is_word);
+    if (begin != at) words.emplace(begin, at);
+  }
+  return words;
+}
+
+/// The string literals of a source that are one word: keys, and the words that values may be.
+std::set<std::string> literal_words(const std::string& source) {
+  std::set<std::string> words;
+  for (auto quote = source.find('"'); quote != std::string::npos; quote = source.find('"', quote)) {
+    const auto end = source.find('"', quote + 1);
+    const std::string literal = source.substr(quote + 1, end - quote - 1);
+    if (!literal.empty() && std::all_of(literal.begin(), literal.end(), is_word)) words.insert(literal);
+    quote = end + 1;
+  }
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("drive.yaml: the reader takes every key of the list in the README") {
+  const std::vector<waymark_test::FencedBlock> blocks =
+      waymark_test::parse_markdown(drive_yaml_section()).blocks;
+  REQUIRE(blocks.size() == 2);
+  CHECK_NOTHROW(parse_drive_config(blocks[0].text, "README.yaml", ""));
+  // The second shows another way to give odometry: on its own it lacks the GNSS log.
+  CHECK_NOTHROW(parse_drive_config(blocks[1].text + "gnss: {file: gnss.csv}\n", "README.yaml", ""));
+}
+
+TEST_CASE("drive.yaml: the README names every key and word that the reader knows") {
+  const std::set<std::string> named = words_of(drive_yaml_section());
+  std::set<std::string> known;
+  for (const char* source : {"tools/drive/description/config.cpp", "tools/drive/description/log_config.cpp"})
+    known.merge(literal_words(file_text(source)));
+  known.insert(kSpeedSources.begin(), kSpeedSources.end());
+  known.insert(kYawRateSources.begin(), kYawRateSources.end());
+  REQUIRE(known.size() > 70);
+  known.erase("true");  // YAML's own words for on and off
+  known.erase("false");
+  for (const std::string& word : known) {
+    INFO("tools/drive/README.md, section drive.yaml, lacks '" << word << "'");
+    CHECK(named.contains(word));
+  }
+}
+
+TEST_CASE(
+    "drive.yaml: the README of the logs names every quantity, unit and convention that columns may state") {
+  const std::string readme = file_text("formats/logs/README.md");
+  const auto named = [&readme](std::string_view word) {
+    INFO("formats/logs/README.md lacks '" << word << "'");
+    CHECK(readme.find(word) != std::string::npos);
+  };
+  LogRequest channels;
+  channels.stream = StreamKind::odometry;
+  channels.readings = odometry_channels();
+  std::vector<LogRequest> requests = {channels};
+  for (const StreamKind stream : {StreamKind::odometry, StreamKind::gnss, StreamKind::truth}) {
+    requests.emplace_back();
+    requests.back().stream = stream;
+  }
+  for (const LogRequest& request : requests) {
+    for (const Quantity& quantity : quantities(request)) {
+      std::string word(1, '`');  // piece by piece: g++ 12 warns of an overflow that is none
+      word += quantity.name;
+      named(word += '`');
+      for (const Unit& unit : quantity.units) named(unit.name);
+      for (const Convention& convention : quantity.conventions) named(convention.name);
+    }
+  }
+}

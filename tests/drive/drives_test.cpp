@@ -1,0 +1,129 @@
+// The real drives, through the library as the program uses it: from the anchored start every modeling and
+// every algorithm reaches one minimum; from dead reckoning a failure is reported as one.
+#include <iostream>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/formats/logs/log_readers.hpp>
+#include <waymark/tools/drive/model/assemble.hpp>
+
+#include "support/paths.hpp"
+#include "support/registry.hpp"
+
+using namespace waymark;
+using namespace waymark::drive;
+using namespace waymark::formats;
+
+namespace {
+
+struct DriveCase {
+  std::string name;
+  std::filesystem::path yaml;
+  std::filesystem::path data;
+};
+
+std::vector<DriveCase> drives() {
+  const std::filesystem::path source = WAYMARK_SOURCE_DIR;
+  std::vector<DriveCase> cases = {{"bundled", source / "examples/berlin_potsdamer_platz/drive.yaml", ""}};
+  for (const char* name :
+       {"berlin_gendarmenmarkt", "nagoya", "aarhus_horsens", "munich_2009", "pittsburgh_i376"}) {
+    cases.push_back({name, source / "examples/drives" / (std::string(name) + ".yaml"),
+                     waymark_test::shared_data_dir() / "drives" / name});
+  }
+  return cases;
+}
+
+bool is_absent(const DriveCase& drive) {
+  if (drive.data.empty() || std::filesystem::exists(drive.data)) return false;
+  std::cout << "SKIPPED: " << drive.data << " is absent\n";
+  return true;
+}
+
+DriveSkeleton skeleton_of(const DriveCase& drive, StartMethod start, const TypeRegistry& registry) {
+  DriveConfig config = load_drive_config(drive.yaml.string(), drive.data.string());
+  config.start.method = start;
+  return build_skeleton(load_drive(config, registry), config, registry);
+}
+
+Summary solve(GraphDocument& document, const std::string& algorithm, const TypeRegistry& registry) {
+  const auto method = registry.make_algorithm(algorithm);
+  const auto solver = registry.make_linear_solver("eigen");
+  return optimize(document.graph, *method, *solver, {});
+}
+
+const std::vector<std::string> kAlgorithms = {"gauss_newton", "levenberg_marquardt", "dogleg"};
+
+/// What G1 and G3 must be compared with G2 under: the fix's covariance plus that of the stiff identity edge.
+void add_identity_covariance(DriveSkeleton& skeleton) {
+  constexpr double kIdentityInformation = 1e6;  // default of g2
+  for (Fix& fix : skeleton.document.fixes)
+    fix.covariance += Eigen::Matrix2d::Identity() / kIdentityInformation;
+}
+
+}  // namespace
+
+TEST_CASE("From the anchored start all modelings and algorithms reach one minimum") {
+  const auto drive = GENERATE(from_range(drives()));
+  if (is_absent(drive)) return;
+  INFO(drive.name);
+  TypeRegistry registry = waymark_test::full_registry();
+  register_log_readers(registry);
+  const DriveSkeleton plain = skeleton_of(drive, StartMethod::anchored, registry);
+  DriveSkeleton effective = plain;
+  add_identity_covariance(effective);
+
+  double reference = 0;
+  double effective_reference = 0;
+  for (const std::string& algorithm : kAlgorithms) {
+    for (const std::string modeling : {"g1", "g3", "g2"}) {
+      INFO(modeling << " " << algorithm);
+      GraphDocument document = add_modeling(plain, modeling, {}, registry);
+      const Summary summary = solve(document, algorithm, registry);
+      CHECK(summary.converged());
+      if (modeling == "g2") {
+        CHECK(summary.final_chi2 == Approx(effective_reference).epsilon(1e-6));
+        continue;
+      }
+      if (reference == 0) {
+        reference = summary.final_chi2;
+        GraphDocument stiff = add_modeling(effective, "g1", {}, registry);
+        effective_reference = solve(stiff, algorithm, registry).final_chi2;
+      }
+      CHECK(summary.final_chi2 == Approx(reference).epsilon(1e-6));
+    }
+  }
+  std::cout << drive.name << " chi2 " << reference << " (G1, G3), " << effective_reference << " (G2)\n";
+}
+
+TEST_CASE("From dead reckoning no failure passes for a success") {
+  const auto drive = GENERATE(from_range(drives()));
+  if (is_absent(drive)) return;
+  INFO(drive.name);
+  TypeRegistry registry = waymark_test::full_registry();
+  register_log_readers(registry);
+  GraphDocument best = add_modeling(skeleton_of(drive, StartMethod::anchored, registry), "g1", {}, registry);
+  const double minimum = solve(best, "dogleg", registry).final_chi2;
+  const DriveSkeleton skeleton = skeleton_of(drive, StartMethod::dead_reckoning, registry);
+  for (const std::string modeling : {"g1", "g2", "g3"}) {
+    for (const std::string& algorithm : kAlgorithms) {
+      GraphDocument document = add_modeling(skeleton, modeling, {}, registry);
+      const double start = document.graph.chi2();
+      const Summary summary = solve(document, algorithm, registry);
+      std::cout << drive.name << " " << modeling << " " << algorithm << ": " << summary.iterations
+                << " iterations, chi2 " << summary.final_chi2
+                << (summary.final_chi2 < minimum * (1 + 1e-6) ? ", the minimum" : ", NOT the minimum") << ", "
+                << to_string(summary.termination) << "\n";
+      INFO(modeling << " " << algorithm);
+      // No start finds less than the anchored one; the best values are returned, never worse than the
+      // start's.
+      CHECK(summary.final_chi2 > minimum * (1 - 1e-6));
+      CHECK(summary.final_chi2 <= start);
+      // The graph holds what the Summary says.
+      CHECK(document.graph.chi2() == Approx(summary.final_chi2).epsilon(1e-9));
+      if (!summary.converged()) continue;
+      // Declared converged: no step from here promises more than the tolerance.
+      CHECK(solve(document, "gauss_newton", registry).final_chi2 == Approx(summary.final_chi2).epsilon(1e-5));
+    }
+  }
+}

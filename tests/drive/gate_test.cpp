@@ -1,0 +1,262 @@
+// Every ruling of the outlier gate (tools/drive/README.md, "The gate").
+#include <cmath>
+#include <numbers>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/nodes/gate.hpp>
+
+namespace {
+
+using namespace waymark;
+using namespace waymark::drive;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// Perfect fixes and the odometry that belongs to them, in a frame of its own (turned by 2 rad and moved).
+struct Scene {
+  std::vector<Fix> fixes;
+  std::vector<Eigen::Vector3d> odometry;
+
+  void add(double seconds, const Eigen::Vector2d& position, int source = 0) {
+    Fix fix;
+    fix.stamp = Stamp::from_seconds(seconds);
+    fix.position = position;
+    fix.epoch = static_cast<int>(fixes.size());
+    fix.source = source;
+    fixes.push_back(fix);
+    const double c = std::cos(2.0);
+    const double s = std::sin(2.0);
+    odometry.emplace_back(c * position[0] - s * position[1] + 70, s * position[0] + c * position[1] - 30, 0);
+  }
+  GateSummary judge(const GateOptions& options = {}) { return apply_gate(fixes, odometry, options); }
+  [[nodiscard]] std::vector<std::size_t> rejected() const {
+    std::vector<std::size_t> which;
+    for (std::size_t i = 0; i < fixes.size(); ++i)
+      if (fixes[i].status == FixStatus::rejected) which.push_back(i);
+    return which;
+  }
+};
+
+using Indices = std::vector<std::size_t>;
+
+/// Along a circle of 100 m radius.
+Scene circle(double period_s, double speed, int count) {
+  Scene scene;
+  for (int i = 0; i < count; ++i) {
+    const double angle = speed * period_s * i / 100;
+    scene.add(period_s * i, {100 * std::sin(angle), 100 * (1 - std::cos(angle))});
+  }
+  return scene;
+}
+
+Scene straight(double speed, int count) {
+  Scene scene;
+  for (int i = 0; i < count; ++i) scene.add(i, {speed * i, 0});
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("fixes that follow the odometry agree, whatever its frame", "[gate]") {
+  Scene scene = circle(1, 10, 60);
+  const GateSummary summary = scene.judge();
+  CHECK(summary.accepted == 60);
+  CHECK(summary.rejected_percent() == 0);
+  CHECK(summary.reasons.at("agrees") == 60);  // the first two too: judged backwards
+  for (const Fix& fix : scene.fixes) {
+    CHECK(std::abs(fix.chord_angle_rad) < 1e-9);
+    CHECK(fix.displacement_m < 1e-9);
+  }
+}
+
+TEST_CASE("the angle limit is 1.5 degrees between the chords of one second", "[gate]") {
+  for (const double degrees : {1.4, 1.6, -1.4, -1.6}) {
+    Scene scene = straight(10, 3);
+    scene.fixes[2].position = {10 + 10 * std::cos(degrees * kDegree), 10 * std::sin(degrees * kDegree)};
+    scene.judge();
+    CHECK(scene.fixes[2].chord_angle_rad == Approx(degrees * kDegree));
+    CHECK(scene.fixes[2].reason == (std::abs(degrees) < 1.5 ? "agrees" : "angle"));
+  }
+}
+
+TEST_CASE("the displacement is compared as a vector and its limit is 15 m", "[gate]") {
+  for (const double ahead : {14.0, 16.0}) {
+    Scene scene = straight(30, 3);
+    scene.fixes[2].position[0] += ahead;
+    scene.judge();
+    CHECK(scene.fixes[2].displacement_m == Approx(ahead));
+    CHECK(scene.fixes[2].reason == (ahead < 15 ? "agrees" : "displacement"));
+  }
+  Scene sideways = straight(30, 3);
+  sideways.fixes[2].position = {30, 30};  // right length, wrong direction
+  sideways.judge();
+  CHECK(sideways.fixes[2].displacement_m == Approx(30 * std::sqrt(2.0)));
+  CHECK(sideways.fixes[2].reason == "both");
+}
+
+TEST_CASE("one outlier costs itself and the two fixes whose chords contain it", "[gate]") {
+  Scene scene = straight(10, 20);
+  scene.fixes[10].position[1] += 40;
+  scene.judge();
+  CHECK(scene.rejected() == Indices{10, 11, 12});
+}
+
+TEST_CASE("a lasting jump does not lock the gate out", "[gate]") {
+  Scene scene = straight(10, 40);
+  for (std::size_t i = 20; i < 40; ++i) scene.fixes[i].position[1] += 25;
+  scene.judge();
+  CHECK(scene.rejected() == Indices{20, 21});
+}
+
+TEST_CASE("the first two fixes are judged by their successors", "[gate]") {
+  Scene scene = straight(10, 10);
+  scene.fixes[0].position[1] += 40;
+  scene.judge();
+  CHECK(scene.fixes[0].reason == "both");
+  CHECK(scene.fixes[1].status == FixStatus::accepted);
+  CHECK(scene.rejected() == Indices{0, 2});
+}
+
+TEST_CASE("two fixes are judged by the length of their chord, one is accepted", "[gate]") {
+  Scene two = straight(10, 2);
+  two.judge();
+  CHECK(two.fixes[0].reason == "pair");
+  CHECK(two.fixes[1].reason == "pair");
+  CHECK(std::isnan(two.fixes[1].chord_angle_rad));
+  two.fixes[1].position[0] += 20;
+  two.judge();
+  CHECK(two.rejected() == Indices{0, 1});
+  CHECK_THROWS_WITH(require_accepted_fix(two.judge()),
+                    Catch::StartsWith("all 2 fixes were rejected by the gate;"));
+
+  Scene one = straight(10, 1);
+  CHECK_NOTHROW(require_accepted_fix(one.judge()));
+  CHECK(one.fixes[0].reason == "alone");
+}
+
+TEST_CASE("no chord is formed across a gap", "[gate]") {
+  Scene scene;
+  for (int i = 0; i < 5; ++i) scene.add(i, {10.0 * i, 0});
+  for (int i = 25; i < 30; ++i) scene.add(i, {10.0 * i, 0});
+  // The odometry turned by 20 degrees unseen in the gap: no matter, each side is judged by itself.
+  for (std::size_t i = 5; i < 10; ++i) {
+    const Eigen::Vector3d p = scene.odometry[i];
+    const double a = 20 * kDegree;
+    scene.odometry[i] << std::cos(a) * p[0] - std::sin(a) * p[1], std::sin(a) * p[0] + std::cos(a) * p[1], 0;
+  }
+  CHECK(scene.judge().rejected == 0);
+  // A bad first fix after it is found by its successors.
+  scene.fixes[5].position[1] += 60;
+  scene.judge();
+  CHECK(scene.fixes[5].reason == "both");
+  CHECK(scene.fixes[6].reason == "agrees");
+}
+
+TEST_CASE("missing epochs lengthen the chords and the angle limit with them", "[gate]") {
+  const auto turned = [](double degrees) {
+    Scene scene;
+    for (const double t : {0.0, 3.0, 6.0}) scene.add(t, {10 * t, 0});
+    scene.fixes[2].position = {30 + 30 * std::cos(degrees * kDegree), 30 * std::sin(degrees * kDegree)};
+    scene.judge();
+    return scene.fixes[2].reason;
+  };
+  CHECK(turned(4.4) == "agrees");  // 1.5 degrees per second over 3 s: what a gyro bias may do
+  CHECK(turned(4.6) == "angle");
+}
+
+TEST_CASE("at other rates the chords still span a second", "[gate]") {
+  for (const double period : {0.04, 0.1, 0.2, 0.9, 1.0, 1.1}) {
+    Scene scene = circle(period, 10, 200);
+    // A sideways error of 10 cm is 0.57 degrees of a chord of 10 m: harmless, yet 5.7 degrees of one at 10
+    // Hz.
+    const Eigen::Vector2d across = (scene.fixes[100].position - Eigen::Vector2d(0, 100)).normalized();
+    scene.fixes[100].position += 0.1 * across;
+    CHECK(scene.judge().rejected == 0);
+    // One of 50 cm is 2.9 degrees at any rate: the fix itself, and those a chord later.
+    scene.fixes[100].position += 0.4 * across;
+    scene.judge();
+    CHECK(scene.fixes[100].reason == "angle");
+    CHECK(scene.fixes[99].status == FixStatus::accepted);
+    CHECK(scene.rejected().size() == 3);
+  }
+}
+
+TEST_CASE("short chords have no angle, the displacement alone decides", "[gate]") {
+  Scene creeping = straight(0.8, 10);
+  creeping.fixes[5].position[1] += 3;  // 75 degrees, and mere noise
+  const GateSummary summary = creeping.judge();
+  CHECK(summary.accepted == 10);
+  CHECK(creeping.fixes[5].reason == "short");
+  CHECK(std::isnan(creeping.fixes[5].chord_angle_rad));
+  creeping.fixes[5].position[1] += 20;
+  creeping.judge();
+  CHECK(creeping.fixes[5].reason == "displacement");
+}
+
+TEST_CASE("at standstill only a jump is rejected", "[gate]") {
+  Scene parked = straight(0, 10);
+  parked.fixes[4].position = {2, 3};
+  parked.fixes[7].position = {0, 20};
+  parked.judge();
+  CHECK(parked.fixes[4].reason == "standstill");
+  CHECK(parked.rejected() == Indices{7, 8});  // into the jump and out of it
+}
+
+TEST_CASE("a receiver that stands while the vehicle moves is frozen", "[gate]") {
+  Scene scene = straight(10, 20);
+  for (std::size_t i = 10; i < 15; ++i) scene.fixes[i].position = scene.fixes[9].position;
+  scene.judge();
+  for (std::size_t i = 10; i < 15; ++i) CHECK(scene.fixes[i].reason == "frozen");
+  for (std::size_t i = 10; i < 15; ++i) CHECK(scene.fixes[i].status == FixStatus::rejected);
+}
+
+TEST_CASE("withheld fixes are neither judged nor used", "[gate]") {
+  Scene scene = straight(10, 20);
+  scene.fixes[10].status = FixStatus::withheld;
+  scene.fixes[10].position[1] += 100;
+  const GateSummary summary = scene.judge();
+  CHECK(summary.withheld == 1);
+  CHECK(summary.rejected == 0);
+  CHECK(summary.accepted == 19);
+  CHECK(scene.fixes[10].status == FixStatus::withheld);
+  CHECK(scene.fixes[10].reason == "unjudged");
+}
+
+TEST_CASE("receivers are judged apart: their offset is not a jump", "[gate]") {
+  Scene scene;
+  for (int i = 0; i < 20; ++i) {
+    scene.add(i, {10.0 * i, 0}, 0);
+    scene.add(i, {10.0 * i, 0}, 1);
+    scene.fixes.back().position[1] += 30;
+  }
+  CHECK(scene.judge().rejected == 0);
+}
+
+TEST_CASE("the gate can be off, and options are checked", "[gate]") {
+  Scene scene = straight(10, 5);
+  scene.fixes[2].position[1] += 100;
+  scene.judge();
+  GateOptions off;
+  off.enabled = false;
+  const GateSummary summary = scene.judge(off);  // overwrites an earlier verdict
+  CHECK(summary.accepted == 5);
+  CHECK(scene.fixes[2].reason == "off");
+  CHECK(std::isnan(scene.fixes[2].displacement_m));
+
+  GateOptions bad;
+  bad.max_angle_rad = 0;
+  CHECK_THROWS_AS(scene.judge(bad), UsageError);
+  scene.odometry.pop_back();
+  CHECK_THROWS_AS(scene.judge(), UsageError);
+}
+
+TEST_CASE("a drive without a fix, or with all rejected, is an error with a remedy", "[gate]") {
+  CHECK_THROWS_WITH(require_accepted_fix(GateSummary{}), "the drive has no GNSS fix to work with");
+  GateSummary rejected;
+  rejected.rejected = 7;
+  CHECK_THROWS_WITH(
+      require_accepted_fix(rejected),
+      Catch::StartsWith("all 7 fixes were rejected by the gate;") && Catch::Contains("turn the gate off"));
+}

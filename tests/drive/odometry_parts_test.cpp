@@ -1,0 +1,232 @@
+// Odometry from pieces: values follow from how the pieces were made.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/tools/drive/logs/odometry_parts.hpp>
+#include <waymark/tools/drive/logs/time_series.hpp>
+
+using namespace waymark;
+using namespace waymark::drive;
+using namespace waymark::formats;
+using Catch::Matchers::Message;
+
+namespace {
+
+std::size_t column_of(const std::string& channel) {
+  const auto& channels = odometry_channels();
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].name == channel) return c;
+  }
+  FAIL("no channel " << channel);
+  return 0;
+}
+
+/// A log of one channel at `rate` from `from` to `to`.
+OdometryPart part(const std::string& channel, double rate, double from, double to,
+                  const std::function<double(double)>& value) {
+  OdometryPart result;
+  result.file = channel + ".csv";
+  result.readings.columns = odometry_channels().size();
+  const auto count = static_cast<int>(std::floor((to - from) * rate + 1e-9));
+  for (int i = 0; i <= count; ++i) {
+    const double t = from + i / rate;
+    result.readings.stamps.push_back(Stamp::from_seconds(t));
+    std::vector<double> row(result.readings.columns, std::numeric_limits<double>::quiet_NaN());
+    row[column_of(channel)] = value(t);
+    result.readings.values.insert(result.readings.values.end(), row.begin(), row.end());
+  }
+  return result;
+}
+
+std::function<double(double)> constant(double value) {
+  return [value](double) { return value; };
+}
+
+OdometryAssembly at_rate(double rate) {
+  OdometryAssembly how;
+  how.rate_hz = rate;
+  return how;
+}
+
+}  // namespace
+
+TEST_CASE("parts: speed at 2 Hz and yaw rate at 100 Hz meet on one clock, ways and turns kept") {
+  const auto speed = [](double t) { return 10 + 0.5 * t; };
+  const auto yaw = [](double t) { return 0.2 * std::sin(t); };
+  const std::vector<OdometryPart> parts{part("speed", 2, 0.2, 30, speed), part("yaw_rate", 100, 0, 31, yaw)};
+  const AssembledOdometry odometry = assemble_odometry(parts, at_rate(10), 0.5);
+  REQUIRE(odometry.samples.size() == 296);  // whole tenths of a second from 0.2 to 29.7
+  CHECK(odometry.samples.front().stamp == Stamp{200'000'000});
+  double turn = 0;
+  for (const OdometrySample& sample : odometry.samples) {
+    const double t = sample.stamp.seconds();
+    const bool inside = t > 0.25 && t < 29.65;
+    if (inside) CHECK(sample.speed_mps == Approx(speed(t)));
+    turn += inside ? 0.1 * sample.yaw_rate_radps : 0;
+  }
+  // The integral of 0.2 sin t over the samples' periods; the lines between readings at 100 Hz cut 1e-5 off
+  // it.
+  CHECK(turn == Approx(0.2 * (std::cos(0.25) - std::cos(29.65))).epsilon(1e-4));
+}
+
+TEST_CASE("parts: a clock that nobody stated is the yaw rate's, and said") {
+  const std::vector<OdometryPart> parts{part("speed", 10, 0, 10, constant(5)),
+                                        part("yaw_rate", 25, 0, 10, constant(0.1))};
+  const AssembledOdometry odometry = assemble_odometry(parts, {}, 0.5);
+  CHECK(odometry.samples.size() == 251);
+  CHECK(odometry.notes.back() ==
+        "odometry: 251 samples at 25 Hz (the yaw rate's own; state 'rate' for another)");
+  CHECK(odometry.notes.front() == "odometry: speed from 'speed', 10 readings a second");
+}
+
+TEST_CASE("parts: four wheel speeds give speed of the rear axle and, with the track width, the yaw rate") {
+  const std::vector<OdometryPart> parts{part("wheel_speed_rear_left", 20, 0, 5, constant(9.85)),
+                                        part("wheel_speed_rear_right", 20, 0.01, 5, constant(10.15)),
+                                        part("wheel_speed_front_left", 20, 0, 5, constant(11)),
+                                        part("wheel_speed_front_right", 20, 0, 5, constant(11))};
+  OdometryAssembly how = at_rate(20);
+  CHECK_THROWS_MATCHES(assemble_odometry(parts, how, 0.5), InputError,
+                       Message("odometry: 'rear_wheels' needs 'vehicle: {track_width: ...}'"));
+  how.track_width_m = 1.5;
+  const AssembledOdometry odometry = assemble_odometry(parts, how, 0.5);
+  CHECK(odometry.samples[50].speed_mps == Approx(10));
+  CHECK(odometry.samples[50].yaw_rate_radps == Approx(0.2));  // (10.15 - 9.85) / 1.5
+  how.speed_from = "front_wheels";
+  CHECK(assemble_odometry(parts, how, 0.5).samples[50].speed_mps == Approx(11));
+}
+
+TEST_CASE("parts: counters of ticks become speed, also where they start again from 0") {
+  const auto ticks = [](double t) { return std::fmod(std::floor(200 * t), 256); };  // 200 ticks a second
+  const std::vector<OdometryPart> parts{part("wheel_ticks", 50, 0, 20, ticks),
+                                        part("yaw_rate", 50, 0, 20, constant(0))};
+  OdometryAssembly how = at_rate(10);
+  CHECK_THROWS_MATCHES(assemble_odometry(parts, how, 0.5), InputError,
+                       Message("odometry: 'ticks' needs 'vehicle: {metres_per_tick: ...}'"));
+  how.metres_per_tick = 0.05;
+  how.tick_range = 256;
+  for (const OdometrySample& sample : assemble_odometry(parts, how, 0.5).samples)
+    CHECK(sample.speed_mps == Approx(10).margin(0.26));  // a tick within 0.2 s
+}
+
+TEST_CASE("parts: an odometer's distance becomes speed, and `reverse` its sign") {
+  const std::vector<OdometryPart> parts{part("distance", 10, 0, 20, [](double t) { return 4 * t; }),
+                                        part("reverse", 1, 0, 20, [](double t) { return t >= 10 ? 1 : 0; }),
+                                        part("yaw_rate", 10, 0, 20, constant(0))};
+  const AssembledOdometry odometry = assemble_odometry(parts, at_rate(10), 0.5);
+  CHECK(odometry.samples[50].speed_mps == Approx(4));
+  CHECK(odometry.samples[150].speed_mps == Approx(-4));
+}
+
+TEST_CASE("parts: the axis of a gyro is stated, with its sign") {
+  const std::vector<OdometryPart> parts{part("speed", 10, 0, 10, constant(5)),
+                                        part("gyro_x", 10, 0, 10, constant(-0.3))};
+  OdometryAssembly how = at_rate(10);
+  CHECK_THROWS_MATCHES(
+      assemble_odometry(parts, how, 0.5), InputError,
+      Message(
+          "odometry: the yaw rate of a gyro needs 'gyro: {axis: ...}': x, y or z for the axis that points "
+          "up, -x, -y or -z for one that points down, gravity to find it from the accelerometer"));
+  how.gyro_axis = "-x";
+  CHECK(assemble_odometry(parts, how, 0.5).samples[5].yaw_rate_radps == Approx(0.3));
+  how.gyro_axis = "y";
+  CHECK_THROWS_MATCHES(
+      assemble_odometry(parts, how, 0.5), InputError,
+      Message(
+          "odometry: no log gives 'gyro_y', which 'gyro: {axis: y}' asks for; the logs give: gyro_x, speed"));
+  how.gyro_axis = "gravity";
+  CHECK_THROWS_MATCHES(
+      assemble_odometry(parts, how, 0.5), InputError,
+      Message("odometry: 'gyro: {axis: gravity}' needs gyro_x, _y, _z and acceleration_x, _y, _z; the logs "
+              "give: gyro_x, speed"));
+}
+
+TEST_CASE("parts: gravity at standstill says which way a tilted gyro's yaw points") {
+  // Up is (0.6, 0, 0.8) of the sensor's axes; the vehicle turns by 0.5 rad/s once it drives.
+  const auto speed = [](double t) { return t < 5 ? 0 : 8; };
+  const auto rate = [](double part_of_up) {
+    return [part_of_up](double t) { return t < 5 ? 0 : 0.5 * part_of_up; };
+  };
+  const auto force = [](double part_of_up) {
+    return [part_of_up](double t) { return 9.81 * part_of_up + (t < 5 ? 0 : 2); };  // driving adds its own
+  };
+  const std::vector<OdometryPart> parts{part("speed", 10, 0, 20, speed),
+                                        part("gyro_x", 50, 0, 20, rate(0.6)),
+                                        part("gyro_y", 50, 0, 20, rate(0)),
+                                        part("gyro_z", 50, 0, 20, rate(0.8)),
+                                        part("acceleration_x", 50, 0, 20, force(0.6)),
+                                        part("acceleration_y", 50, 0, 20, force(0)),
+                                        part("acceleration_z", 50, 0, 20, force(0.8))};
+  OdometryAssembly how = at_rate(10);
+  how.gyro_axis = "gravity";
+  const AssembledOdometry odometry = assemble_odometry(parts, how, 0.5);
+  CHECK(odometry.samples[150].yaw_rate_radps == Approx(0.5));
+  CHECK(odometry.notes[1] ==
+        "odometry: up is (0.600, 0.000, 0.800) of the sensor's axes, by gravity at standstill");
+}
+
+TEST_CASE("parts: the angle of the steering wheel turns the vehicle as the bicycle model says") {
+  const std::vector<OdometryPart> parts{part("speed", 10, 0, 10, constant(10)),
+                                        part("steering_angle", 10, 0, 10, constant(1.5))};
+  OdometryAssembly how = at_rate(10);
+  how.wheelbase_m = 2.5;
+  how.steering_ratio = 15;
+  CHECK(assemble_odometry(parts, how, 0.5).samples[5].yaw_rate_radps == Approx(10 * std::tan(0.1) / 2.5));
+}
+
+TEST_CASE("parts: where a channel is silent there are no samples, so that the gap is seen") {
+  OdometryPart yaw = part("yaw_rate", 50, 0, 20, constant(0.1));
+  SensorTable kept;
+  kept.columns = yaw.readings.columns;
+  for (std::size_t row = 0; row < yaw.readings.size(); ++row) {
+    const double t = yaw.readings.stamps[row].seconds();
+    if (t > 8 && t < 12) continue;
+    kept.stamps.push_back(yaw.readings.stamps[row]);
+    for (std::size_t c = 0; c < kept.columns; ++c) kept.values.push_back(yaw.readings.at(row, c));
+  }
+  yaw.readings = kept;
+  const std::vector<OdometryPart> parts{part("speed", 10, 0, 20, constant(5)), yaw};
+  for (const OdometrySample& sample : assemble_odometry(parts, at_rate(10), 0.5).samples) {
+    const double t = sample.stamp.seconds();
+    CHECK_FALSE((t > 8.01 && t < 11.99));
+  }
+}
+
+TEST_CASE("parts: what cannot be put together is said") {
+  const std::vector<OdometryPart> twice{part("speed", 10, 0, 10, constant(5)),
+                                        part("speed", 10, 0, 10, constant(5))};
+  CHECK_THROWS_MATCHES(
+      assemble_odometry(twice, {}, 0.5), InputError,
+      Message(
+          "odometry: both speed.csv and speed.csv give 'speed'; leave it out of the columns of one of them"));
+  const std::vector<OdometryPart> half{part("speed", 10, 0, 10, constant(5))};
+  CHECK_THROWS_MATCHES(assemble_odometry(half, {}, 0.5), InputError,
+                       Message("odometry: nothing gives the yaw rate; the logs give: speed"));
+  OdometryAssembly how;
+  how.speed_from = "distance";
+  CHECK_THROWS_MATCHES(
+      assemble_odometry(half, how, 0.5), InputError,
+      Message("odometry: nothing gives the speed from 'distance', as stated; the logs give: speed"));
+  const std::vector<OdometryPart> apart{part("speed", 10, 0, 10, constant(5)),
+                                        part("yaw_rate", 10, 20, 30, constant(0))};
+  CHECK_THROWS_MATCHES(assemble_odometry(apart, {}, 0.5), InputError,
+                       Message("odometry: speed and yaw rate have no time in common; check 'time: {scale, "
+                               "week, offset}' of the parts"));
+}
+
+TEST_CASE("time series: means over a span are those of the lines between readings") {
+  const TimeSeries ramp{{Stamp{0}, Stamp{1'000'000'000}, Stamp{3'000'000'000}}, {0, 2, 2}};
+  const SeriesIntegral integral(ramp);
+  CHECK(integral.mean({0}, {1'000'000'000}) == Approx(1));
+  CHECK(integral.mean({500'000'000}, {2'000'000'000}) == Approx((0.75 + 2) / 1.5));
+  CHECK(integral.mean({3'000'000'000}, {4'000'000'000}) == Approx(2));  // constant beyond the end
+  CHECK(integral.mean({500'000'000}, {500'000'000}) == Approx(1));
+  CHECK(*value_at(ramp, {500'000'000}, 1) == Approx(1));
+  CHECK_FALSE(value_at(ramp, {2'000'000'000}, 1).has_value());  // between readings 2 s apart
+  CHECK_FALSE(value_at(ramp, {-1}, 1).has_value());
+}

@@ -1,0 +1,303 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <string>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/log_readers.hpp>
+#include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/drive/logs/projection.hpp>
+
+#include "support/paths.hpp"
+
+using namespace waymark;
+using namespace waymark::drive;
+using namespace waymark::formats;
+using Catch::Matchers::Message;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TypeRegistry registry_with_readers() {
+  TypeRegistry registry;
+  register_log_readers(registry);
+  return registry;
+}
+
+OdometrySample odometry_at(double t, double speed = 1, double yaw_rate = 0) {
+  return {Stamp::from_seconds(t), speed, yaw_rate};
+}
+
+GeodeticFix fix_at(double t, double longitude_deg = 15, int source = 0) {
+  GeodeticFix fix;
+  fix.stamp = Stamp::from_seconds(t);
+  fix.latitude_deg = 50;
+  fix.longitude_deg = longitude_deg;
+  fix.source = source;
+  return fix;
+}
+
+GeodeticTruth truth_at(double t) {
+  GeodeticTruth truth;
+  truth.stamp = Stamp::from_seconds(t);
+  truth.latitude_deg = 50;
+  truth.longitude_deg = 15;
+  return truth;
+}
+
+/// Ten seconds of odometry at 10 Hz from t = 100 s, fixes at 101, 102, ... 108 s.
+DriveLogs small_drive() {
+  DriveLogs logs;
+  logs.odometry.resize(1);
+  logs.odometry.front().file = "odometry.csv";
+  for (int i = 0; i <= 100; ++i) logs.odometry.front().data.odometry.push_back(odometry_at(100 + 0.1 * i));
+  logs.gnss.emplace_back();
+  logs.gnss[0].file = "gnss.csv";
+  for (int i = 1; i <= 8; ++i) logs.gnss[0].data.fixes.push_back(fix_at(100 + i));
+  return logs;
+}
+
+DriveConfig small_config() {
+  DriveConfig config;
+  config.path = "drive.yaml";
+  config.name = "small";
+  return config;
+}
+
+}  // namespace
+
+TEST_CASE("prepare: a clean drive passes whole") {
+  const PreparedDrive drive = prepare_drive(small_drive(), small_config());
+  CHECK(drive.name == "small");
+  CHECK(drive.odometry.size() == 101);
+  REQUIRE(drive.fixes.size() == 8);
+  CHECK(drive.frame.zone == 33);
+  CHECK(drive.frame.origin_easting_m == 500'000);
+  for (int i = 0; i < 8; ++i) {
+    CHECK(drive.fixes[static_cast<std::size_t>(i)].epoch == i);
+    CHECK(drive.fixes[static_cast<std::size_t>(i)].status == FixStatus::accepted);
+  }
+  CHECK(drive.fixes[0].grid_scale == Approx(0.9996));
+  CHECK(drive.report.odometry.median_interval_s == Approx(0.1));
+  CHECK(drive.report.gnss.median_interval_s == Approx(1));
+  CHECK(drive.report.odometry.gaps.empty());
+  CHECK(drive.truth.empty());
+}
+
+TEST_CASE("prepare: disorder, repetition, garbage and reversing are counted") {
+  DriveLogs logs = small_drive();
+  auto& odometry = logs.odometry.front().data.odometry;
+  std::swap(odometry[10], odometry[11]);
+  odometry.push_back(odometry_at(100.5));         // identical to an earlier one, and out of order
+  odometry.push_back(odometry_at(100.6, 7));      // conflicting: the first is kept
+  odometry.push_back(odometry_at(105.05, kNan));  // no number
+  odometry.push_back(odometry_at(105.06, 1, INFINITY));
+  odometry.push_back(odometry_at(105.07, -1));  // reversing
+  auto& fixes = logs.gnss[0].data.fixes;
+  fixes.push_back(fixes[2]);
+  fixes.push_back(fix_at(104, 15.1));
+  fixes.push_back(fix_at(105, kNan));
+  const PreparedDrive drive = prepare_drive(logs, small_config());
+  CHECK(drive.odometry.size() == 102);
+  const StreamReport& report = drive.report.odometry;
+  CHECK(report.read == 106);
+  CHECK(report.non_finite == 2);
+  CHECK(report.out_of_order == 2);  // the swap and the step back to 100.5
+  CHECK(report.duplicates_identical == 1);
+  CHECK(report.duplicates_conflicting == 1);
+  CHECK(report.used == 102);
+  CHECK(drive.report.reversing == 1);
+  CHECK(drive.odometry[6].speed_mps == 1);
+  for (std::size_t i = 1; i < drive.odometry.size(); ++i)
+    CHECK(drive.odometry[i - 1].stamp < drive.odometry[i].stamp);
+
+  CHECK(drive.fixes.size() == 8);
+  CHECK(drive.report.gnss.duplicates_identical == 1);
+  CHECK(drive.report.gnss.duplicates_conflicting == 1);
+  CHECK(drive.report.gnss.non_finite == 1);
+}
+
+TEST_CASE("prepare: two receivers may speak at one stamp: one epoch, two fixes") {
+  DriveLogs logs = small_drive();
+  logs.gnss.emplace_back();
+  for (int i = 1; i <= 8; ++i) logs.gnss[1].data.fixes.push_back(fix_at(100 + i, 15, 1));
+  const PreparedDrive drive = prepare_drive(logs, small_config());
+  REQUIRE(drive.fixes.size() == 16);
+  CHECK(drive.fixes[2].epoch == 1);
+  CHECK(drive.fixes[3].epoch == 1);
+  CHECK(drive.fixes[3].source == 1);
+  CHECK(drive.report.gnss.duplicates_identical == 0);
+}
+
+TEST_CASE("prepare: gaps are named") {
+  DriveLogs logs = small_drive();
+  std::erase_if(logs.odometry.front().data.odometry, [](const OdometrySample& s) {
+    return s.stamp.seconds() > 103.05 && s.stamp.seconds() < 104.95;
+  });
+  std::erase_if(logs.gnss[0].data.fixes,
+                [](const GeodeticFix& f) { return f.stamp.seconds() > 103.5 && f.stamp.seconds() < 107; });
+  const PreparedDrive drive = prepare_drive(logs, small_config());
+  REQUIRE(drive.report.odometry.gaps.size() == 1);
+  CHECK(drive.report.odometry.gaps[0].start == Stamp::from_seconds(103));
+  CHECK(drive.report.odometry.gaps[0].length_s == Approx(2));
+  REQUIRE(drive.report.gnss.gaps.size() == 1);
+  CHECK(drive.report.gnss.gaps[0].length_s == Approx(4));
+}
+
+TEST_CASE("prepare: fixes outside the odometry are dropped, those on its ends kept") {
+  DriveLogs logs = small_drive();
+  for (const double t : {99.9, 100.0, 110.0, 110.001}) logs.gnss[0].data.fixes.push_back(fix_at(t));
+  const PreparedDrive drive = prepare_drive(logs, small_config());
+  CHECK(drive.fixes.size() == 10);
+  CHECK(drive.report.fixes_outside_odometry == 2);
+}
+
+TEST_CASE("prepare: window and delay") {
+  DriveConfig config = small_config();
+  config.from_s = 2;
+  config.to_s = 5;
+  PreparedDrive drive = prepare_drive(small_drive(), config);
+  CHECK(drive.odometry.front().stamp == Stamp::from_seconds(102));
+  CHECK(drive.odometry.back().stamp == Stamp::from_seconds(105));
+  CHECK(drive.fixes.size() == 4);  // 102 .. 105
+  CHECK(drive.report.odometry_outside_window == 70);
+
+  config.gnss_delay_s = 0.25;  // stamped late: each happened a quarter second before
+  drive = prepare_drive(small_drive(), config);
+  REQUIRE(drive.fixes.size() == 3);
+  CHECK(drive.fixes[0].stamp.nanoseconds == 102'750'000'000);
+}
+
+TEST_CASE("prepare: thinning keeps the fix nearest to each whole multiple of the period") {
+  DriveLogs logs = small_drive();
+  auto& fixes = logs.gnss[0].data.fixes;
+  fixes.clear();
+  // 5 Hz as of a receiver whose epochs straddle the second: .9 and .1 are equally near, the earlier wins.
+  for (int i = 0; i < 18; ++i) fixes.push_back(fix_at(100.9 + 0.2 * i));
+  DriveConfig config = small_config();
+  config.gnss_period_s = 1;
+  PreparedDrive drive = prepare_drive(logs, config);
+  REQUIRE(drive.fixes.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i)
+    CHECK(drive.fixes[i].stamp == Stamp::from_seconds(100.9 + static_cast<double>(i)));
+  CHECK(drive.report.fixes_thinned == 14);
+
+  config.gnss_period_s = 0.5;
+  drive = prepare_drive(logs, config);
+  CHECK(drive.fixes.size() == 8);
+  CHECK(drive.fixes[1].stamp == Stamp::from_seconds(101.5));
+}
+
+TEST_CASE("prepare: every n-th epoch is withheld") {
+  DriveConfig config = small_config();
+  config.withhold_every = 3;
+  const PreparedDrive drive = prepare_drive(small_drive(), config);
+  CHECK(drive.report.fixes_withheld == 2);
+  for (const Fix& fix : drive.fixes) {
+    const bool withheld = fix.epoch == 2 || fix.epoch == 5;
+    CHECK(fix.status == (withheld ? FixStatus::withheld : FixStatus::accepted));
+    CHECK((fix.reason == "withheld") == withheld);
+  }
+}
+
+TEST_CASE("prepare: logs on other scales are converted, which needs dates") {
+  DriveLogs logs;
+  logs.odometry.resize(1);
+  logs.odometry.front().scale = TimeScale::gps;
+  logs.odometry.front().file = "odometry.csv";
+  for (int i = 0; i < 30; ++i) logs.odometry.front().data.odometry.push_back(odometry_at(1'200'000'000 + i));
+  logs.gnss.emplace_back();
+  logs.gnss[0].scale = TimeScale::utc;
+  logs.gnss[0].data.fixes.push_back(fix_at(1'200'000'000 + 315'964'800 - 18 + 5));  // 18 leap seconds in 2018
+  const PreparedDrive drive = prepare_drive(logs, small_config());
+  CHECK(drive.fixes.at(0).stamp == Stamp::from_seconds(1'200'000'005));
+
+  DriveConfig config = small_config();
+  config.time_scale = TimeScale::utc;
+  CHECK_THROWS_MATCHES(
+      prepare_drive(small_drive(), config), InputError,
+      Message("odometry.csv: seconds of week cannot be put onto the scale 'utc' of the drive; state "
+              "the log's 'time: {week: ...}'"));
+}
+
+TEST_CASE("prepare: what cannot become a drive says why and what to do") {
+  DriveLogs logs = small_drive();
+  logs.odometry.front().data.odometry.resize(1);
+  CHECK_THROWS_MATCHES(prepare_drive(logs, small_config()), InputError,
+                       Message("odometry.csv: 1 usable odometry samples; at least 2 are needed"));
+  logs = small_drive();
+  logs.gnss[0].data.fixes.clear();
+  CHECK_THROWS_MATCHES(
+      prepare_drive(logs, small_config()), InputError,
+      Message("gnss.csv: the GNSS logs hold no usable fix; a drive without a fix has no place"));
+  logs = small_drive();
+  for (GeodeticFix& fix : logs.gnss[0].data.fixes) fix.stamp.nanoseconds += 1'000'000'000'000;
+  CHECK_THROWS_MATCHES(prepare_drive(logs, small_config()), InputError,
+                       Message("drive.yaml: no fix lies within the odometry: odometry from 100.000000000 s "
+                               "to 110.000000000 s, fixes "
+                               "from 1101.000000000 s to 1108.000000000 s on the scale 'gps'; check 'time: "
+                               "{scale, week, offset}' of "
+                               "both logs and 'time: {from, to}'"));
+  logs = small_drive();
+  logs.truth.emplace_back();
+  logs.truth[0].data.truth = {truth_at(90), truth_at(91)};
+  CHECK_THROWS_MATCHES(prepare_drive(logs, small_config()), InputError,
+                       Message("drive.yaml: the truth does not overlap the odometry: odometry from "
+                               "100.000000000 s to 110.000000000 s, "
+                               "truth from 90.000000000 s to 91.000000000 s on the scale 'gps'; check 'time: "
+                               "{scale, week, offset}' of "
+                               "both logs and 'time: {from, to}'"));
+  DriveConfig config = small_config();
+  config.from_s = 20;
+  CHECK_THROWS_AS(prepare_drive(small_drive(), config), InputError);
+}
+
+TEST_CASE("prepare: reading the logs of a config") {
+  DriveConfig config = small_config();
+  CHECK_THROWS_MATCHES(load_drive(config, registry_with_readers()), InputError,
+                       Message("drive.yaml: no odometry log is named"));
+  config.odometry.emplace_back();
+  config.odometry.front().place = "drive.yaml:2:3: ";
+  config.odometry.front().format = "cvs";
+  CHECK_THROWS_MATCHES(
+      load_drive(config, registry_with_readers()), InputError,
+      Message(
+          "drive.yaml:2:3: unknown log format 'cvs'; did you mean 'csv'?; `waymark info` lists those there "
+          "are; a plugin that brings it is loaded with --plugin"));
+}
+
+TEST_CASE("prepare: the real drives that come as configs") {
+  struct Expected {
+    std::string name;
+    int zone;
+    std::size_t fixes, odometry;  // at least
+  };
+  const auto root = waymark_test::test_data_dir().parent_path().parent_path() / "examples";
+  for (const Expected& expected : {Expected{"berlin_potsdamer_platz", 33, 160, 8400},
+                                   {"berlin_gendarmenmarkt", 33, 1100, 29'000},
+                                   {"nagoya", 53, 1000, 28'000},
+                                   {"aarhus_horsens", 32, 2000, 23'000},
+                                   {"munich_2009", 32, 350, 19'000},
+                                   {"pittsburgh_i376", 17, 450, 10'000}}) {
+    const bool bundled = expected.name == "berlin_potsdamer_platz";
+    const auto yaml =
+        bundled ? root / expected.name / "drive.yaml" : root / "drives" / (expected.name + ".yaml");
+    const auto folder =
+        bundled ? root / expected.name : waymark_test::shared_data_dir() / "drives" / expected.name;
+    if (!std::filesystem::exists(folder)) {
+      std::cout << "SKIPPED: " << folder.string() << " is absent\n";
+      continue;
+    }
+    INFO(expected.name);
+    const PreparedDrive drive =
+        load_drive(load_drive_config(yaml.string(), folder.string()), registry_with_readers());
+    CHECK(drive.frame.zone == expected.zone);
+    CHECK(drive.fixes.size() >= expected.fixes);
+    CHECK(drive.odometry.size() >= expected.odometry);
+    CHECK(drive.report.odometry.corrupt + drive.report.truth.corrupt == 0);
+    CHECK(drive.fixes.front().position.norm() < 71);
+  }
+}

@@ -1,0 +1,174 @@
+// Nodes in time and dead reckoning: nothing about how a drive was sampled or split may change the motion.
+#include <cmath>
+#include <numbers>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/nodes/timeline.hpp>
+
+namespace {
+
+using namespace waymark;
+using namespace waymark::drive;
+
+Stamp at(double seconds) {
+  return Stamp::from_seconds(seconds);
+}
+
+OdometrySample sample(double seconds, double speed, double yaw_rate) {
+  return {.stamp = at(seconds), .speed_mps = speed, .yaw_rate_radps = yaw_rate};
+}
+
+Fix fix_at(double seconds, double grid_scale = 1) {
+  Fix fix;
+  fix.stamp = at(seconds);
+  fix.grid_scale = grid_scale;
+  return fix;
+}
+
+/// Ten seconds of a constant twist at a given rate.
+std::vector<OdometrySample> constant_twist(int rate_hz, double speed, double yaw_rate) {
+  std::vector<OdometrySample> odometry;
+  for (int i = 0; i <= 10 * rate_hz; ++i)
+    odometry.push_back(sample(static_cast<double>(i) / rate_hz, speed, yaw_rate));
+  return odometry;
+}
+
+Eigen::Vector3d end_pose(const Timeline& timeline) {
+  return dead_reckon(timeline, Eigen::Vector3d::Zero(), 0.05).back();
+}
+
+double total_s(const Timeline& timeline) {
+  double sum = 0;
+  for (const Interval& interval : timeline.intervals) sum += interval.dt_s;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a constant twist gives the exact arc at any odometry rate", "[timeline]") {
+  const double speed = 12.5;
+  const double yaw_rate = -0.7;  // more than one turn in ten seconds
+  const Eigen::Vector3d exact(speed / yaw_rate * std::sin(10 * yaw_rate),
+                              speed / yaw_rate * (1 - std::cos(10 * yaw_rate)), 10 * yaw_rate);
+  for (const int rate : {1, 10, 25, 100}) {
+    TimelineOptions options;
+    options.gap_s = 2;
+    const Timeline timeline = build_timeline(constant_twist(rate, speed, yaw_rate), {}, options);
+    CHECK((end_pose(timeline) - exact).norm() < 1e-11);
+  }
+}
+
+TEST_CASE("splitting at arbitrary stamps changes neither end pose nor total time", "[timeline]") {
+  std::vector<OdometrySample> odometry;
+  for (int i = 0; i <= 250; ++i) {
+    const double t = 0.04 * i;
+    odometry.push_back(sample(t, 10 + 3 * std::sin(t), 0.4 * std::cos(0.7 * t)));
+  }
+  std::vector<Fix> fixes;
+  for (int i = 0; i < 97; ++i) fixes.push_back(fix_at(0.0137 + 0.1023 * i));
+  const Timeline whole = build_timeline(odometry, {}, {});
+  const Timeline split = build_timeline(odometry, fixes, {});
+  CHECK(split.stamps.size() > whole.stamps.size() + 80);
+  CHECK((end_pose(split) - end_pose(whole)).norm() < 1e-12);
+  CHECK(total_s(split) == Approx(10.0).epsilon(1e-14));
+  CHECK(split.intervals.size() + 1 == split.stamps.size());
+  for (std::size_t i = 0; i < fixes.size(); ++i)
+    CHECK(std::abs(seconds_between(split.stamps[split.fix_node[i]], fixes[i].stamp)) < 0.001);
+}
+
+TEST_CASE("a fix in an interval splits it and both parts keep the mean twist", "[timeline]") {
+  const std::vector<OdometrySample> odometry{sample(0, 1, 0.1), sample(0.1, 3, 0.3)};
+  const Timeline timeline = build_timeline(odometry, std::vector<Fix>{fix_at(0.03)}, {});
+  REQUIRE(timeline.stamps.size() == 3);
+  CHECK(timeline.fix_node == std::vector<std::size_t>{1});
+  for (const Interval& interval : timeline.intervals) {
+    CHECK(interval.speed_mps == Approx(2));
+    CHECK(interval.yaw_rate_radps == Approx(0.2));
+    CHECK_FALSE(interval.bridged);
+  }
+  CHECK(timeline.intervals[0].dt_s == Approx(0.03));
+  CHECK(timeline.intervals[1].dt_s == Approx(0.07));
+}
+
+TEST_CASE("an epoch nearer than a millisecond shares the odometry's node", "[timeline]") {
+  const std::vector<OdometrySample> odometry{sample(0, 1, 0), sample(0.1, 1, 0), sample(0.2, 1, 0)};
+  const auto nodes = [&](std::vector<double> stamps) {
+    std::vector<Fix> fixes;
+    for (const double stamp : stamps) fixes.push_back(fix_at(stamp));
+    return build_timeline(odometry, fixes, {});
+  };
+  CHECK(nodes({0.0995, 0.1005}).fix_node == std::vector<std::size_t>{1, 1});
+  CHECK(nodes({0.0995, 0.1005}).stamps.size() == 3);
+  CHECK(nodes({0.101}).stamps.size() == 4);         // exactly the limit: its own node
+  CHECK(nodes({0.15, 0.15}).stamps.size() == 4);    // two receivers at one epoch
+  CHECK(nodes({0.15, 0.1503}).stamps.size() == 4);  // and almost at one epoch
+  CHECK(nodes({-0.0005, 0.2005}).fix_node == std::vector<std::size_t>{0, 2});
+  TimelineOptions exact;
+  exact.snap_s = 0;
+  CHECK(build_timeline(odometry, std::vector<Fix>{fix_at(0.1), fix_at(0.1001)}, exact).stamps.size() == 4);
+}
+
+TEST_CASE("a gap is bridged with the mean twist, or refused", "[timeline]") {
+  std::vector<OdometrySample> odometry = constant_twist(10, 8, 0.2);
+  odometry.erase(odometry.begin() + 40, odometry.begin() + 70);  // 3.9 s to 7.0 s
+  const std::vector<Fix> fixes{fix_at(5)};
+  const Timeline timeline = build_timeline(odometry, fixes, {});
+  int bridged = 0;
+  for (const Interval& interval : timeline.intervals) bridged += interval.bridged ? 1 : 0;
+  CHECK(bridged == 2);  // both parts of the split gap
+  const Timeline whole = build_timeline(constant_twist(10, 8, 0.2), {}, {});
+  CHECK((end_pose(timeline) - end_pose(whole)).norm() < 1e-11);
+
+  TimelineOptions strict;
+  strict.gap_policy = GapPolicy::error;
+  CHECK_THROWS_WITH(build_timeline(odometry, fixes, strict),
+                    Catch::Contains("gap of 3.100 s") && Catch::Contains("3.900 s after its start"));
+}
+
+TEST_CASE("standstill is the identity whatever the gyro says, and reversing is not", "[timeline]") {
+  const Eigen::Vector3d start(3, -4, 1);
+  const Timeline still = build_timeline(constant_twist(10, 0.04, 0.01), {}, {});
+  CHECK(dead_reckon(still, start, 0.05).back() == start);
+  CHECK(dead_reckon(still, start, 0.03).back() != start);
+
+  const Timeline back = build_timeline(constant_twist(10, -2, 0), {}, {});
+  const Eigen::Vector3d end = dead_reckon(back, Eigen::Vector3d(0, 0, std::numbers::pi / 2), 0.05).back();
+  CHECK(end[1] == Approx(-20));
+  CHECK(std::abs(end[0]) < 1e-12);
+}
+
+TEST_CASE("dead reckoning does not wrap headings", "[timeline]") {
+  const Timeline timeline = build_timeline(constant_twist(10, 5, 1.5), {}, {});
+  CHECK(end_pose(timeline)[2] == Approx(15));
+}
+
+TEST_CASE("speeds are multiplied by the grid scale of the nearest fix", "[timeline]") {
+  const std::vector<Fix> fixes{fix_at(2, 0.9996), fix_at(8, 1.0002)};
+  const Timeline timeline = build_timeline(constant_twist(10, 10, 0), fixes, {});
+  CHECK(timeline.intervals.front().speed_mps == Approx(9.996).epsilon(1e-12));
+  CHECK(timeline.intervals.back().speed_mps == Approx(10.002).epsilon(1e-12));
+  CHECK(end_pose(timeline)[0] == Approx(50 * 0.9996 + 50 * 1.0002).epsilon(1e-12));
+}
+
+TEST_CASE("the antenna at a fix turns with the body", "[timeline]") {
+  const std::vector<Fix> fixes{fix_at(2.05), fix_at(5)};
+  const Timeline timeline = build_timeline(constant_twist(10, 5, 0.3), fixes, {});
+  const auto poses = dead_reckon(timeline, {1, 2, 3}, 0.05);
+  const auto antennas = antenna_at_fixes(timeline, poses, {2, 0.5});
+  REQUIRE(antennas.size() == 2);
+  const Eigen::Vector3d body = poses[timeline.fix_node[1]];
+  CHECK(antennas[1][0] == Approx(body[0] + 2 * std::cos(body[2]) - 0.5 * std::sin(body[2])));
+  CHECK(antennas[1][1] == Approx(body[1] + 2 * std::sin(body[2]) + 0.5 * std::cos(body[2])));
+  CHECK(antennas[1][2] == body[2]);
+}
+
+TEST_CASE("what cannot be placed in time is refused", "[timeline]") {
+  const std::vector<OdometrySample> odometry = constant_twist(10, 1, 0);
+  CHECK_THROWS_AS(build_timeline(std::vector{odometry[0]}, {}, {}), InputError);
+  CHECK_THROWS_AS(build_timeline(odometry, std::vector<Fix>{fix_at(-0.5)}, {}), InputError);
+  CHECK_THROWS_AS(build_timeline(odometry, std::vector<Fix>{fix_at(10.5)}, {}), InputError);
+  CHECK_THROWS_AS(build_timeline(odometry, std::vector<Fix>{fix_at(5), fix_at(4)}, {}), UsageError);
+  CHECK_THROWS_AS(build_timeline(std::vector{odometry[1], odometry[1]}, {}, {}), UsageError);
+}

@@ -1,0 +1,177 @@
+// The ablation and the consistency study: what is switched, how figures are pooled, what inflation does.
+#include <cmath>
+#include <set>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/model/model.hpp>
+#include <waymark/tools/reproduction/experiment/ablation.hpp>
+#include <waymark/tools/reproduction/experiment/consistency_study.hpp>
+#include <waymark/tools/reproduction/experiment/outlier_treatment.hpp>
+
+#include "support/registry.hpp"
+
+using namespace waymark;
+using namespace waymark::drive;
+using namespace waymark::evaluation;
+using namespace waymark::reproduction;
+using Catch::Contains;
+
+namespace {
+
+Fix fix_at(double seconds, int source = 0) {
+  Fix fix;
+  fix.stamp = Stamp::from_seconds(seconds);
+  fix.source = source;
+  fix.covariance = Eigen::Matrix2d::Identity();
+  return fix;
+}
+
+EpochResult residual(double nu, FixStatus status = FixStatus::accepted) {
+  EpochResult result;
+  result.nu = nu;
+  result.status = status;
+  return result;
+}
+
+Outcome judged(const std::string& setting, double rmse_m, double nees, double coverage) {
+  Outcome outcome;
+  outcome.setting.name = setting;
+  outcome.ending.converged = true;
+  TruthEvaluation truth;
+  truth.fused.position.rmse_m = rmse_m;
+  truth.consistency.emplace();
+  truth.consistency->nees_mean = nees;
+  truth.consistency->coverage = coverage;
+  outcome.evaluation.truth = truth;
+  return outcome;
+}
+
+}  // namespace
+
+TEST_CASE("the default setting states nothing: all of it is the modeling's, as in run", "[reproduction]") {
+  const Setting setting = default_setting();
+  CHECK(setting.modeling == DriveConfig().modeling);
+  CHECK(setting.modeling_options.empty());
+  CHECK_FALSE(setting.changes.gate.has_value());
+  CHECK_FALSE(setting.changes.calibration.has_value());
+  CHECK_FALSE(setting.changes.estimates_noise.has_value());
+  CHECK_FALSE(setting.changes.shares_skeleton());
+  for (const Setting& other : our_settings()) CHECK(other.changes.shares_skeleton());
+}
+
+TEST_CASE("each ingredient differs from the default in one thing, and every name is its own",
+          "[reproduction]") {
+  const Setting standard = default_setting();
+  std::set<std::string> names;
+  std::set<std::string> titles;
+  int switched = 0;
+  for (const Ablation& ablation : ablations()) {
+    const Setting& setting = ablation.setting;
+    INFO(setting.name);
+    CHECK(names.insert(setting.name).second);
+    CHECK(titles.insert(ablation.title).second);
+    if (setting.modeling != standard.modeling || setting.name == standard.name) continue;
+    ++switched;
+    CHECK((setting.modeling_options != standard.modeling_options) + !(setting.changes == standard.changes) ==
+          1);
+    CHECK_FALSE(setting.loss.has_value());
+  }
+  CHECK(switched == 12);
+  CHECK(names.contains(kWhiteReference));
+  // Every registered loss has a line.
+  for (const LossType& loss : builtin_losses()) CHECK(names.contains("white/" + loss.name));
+}
+
+TEST_CASE("the options that the ablation states are there, and each state can be left out",
+          "[reproduction]") {
+  const TypeRegistry registry = waymark_test::full_registry();
+  for (const Ablation& ablation : ablations()) {
+    INFO(ablation.setting.name);
+    CHECK_NOTHROW(
+        (void)registry.make_gnss_modeling(ablation.setting.modeling, ablation.setting.modeling_options));
+    if (ablation.setting.loss) CHECK(registry.find_loss(ablation.setting.loss->name) != nullptr);
+    const auto& calibration = ablation.setting.changes.calibration;
+    if (ablation.setting.name.starts_with("waymark/no_") && calibration)
+      CHECK(calibration->size() + 1 == default_calibration().size());
+  }
+}
+
+TEST_CASE("a factor up and the same factor down are no change on the average", "[reproduction]") {
+  CHECK(mean_change_percent({2, 0.5}, {1, 1}) == Approx(0).margin(1e-12));
+  CHECK(mean_change_percent({1.1, 2.2}, {1, 2}) == Approx(10));
+  CHECK(mean_change_percent({1.1, kUndefined}, {1, 1}) ==
+        Approx(10));  // drives without a figure are left out
+  CHECK(std::isnan(mean_change_percent({kUndefined}, {1})));
+  CHECK(std::isnan(mean_change_percent({}, {})));
+}
+
+TEST_CASE("inflation multiplies a covariance by the mean of nu over 2 about it, and never shrinks it",
+          "[reproduction]") {
+  const std::vector<Fix> fixes = {fix_at(0), fix_at(10), fix_at(20), fix_at(20, 1), fix_at(100), fix_at(101)};
+  const std::vector<EpochResult> residuals = {residual(8),          residual(4),
+                                              residual(0),          residual(200),
+                                              residual(kUndefined), residual(50, FixStatus::rejected)};
+  const std::vector<Fix> inflated = inflate_fixes(fixes, residuals);
+  REQUIRE(inflated.size() == fixes.size());
+  const double expected[] = {(8.0 + 4.0) / 2 / 2, (8.0 + 4.0 + 0.0) / 3 / 2, 1, 100, 1, 1};
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    INFO(i);
+    CHECK(inflated[i].covariance.isApprox(expected[i] * Eigen::Matrix2d::Identity()));
+  }
+  CHECK_THROWS_AS(inflate_fixes(fixes, {}), UsageError);
+}
+
+TEST_CASE("the consistency study takes presets in turn and leaves no seed out", "[reproduction]") {
+  const std::vector<Draw> draws = consistency_draws(6);
+  REQUIRE(draws.size() == 6);
+  const char* presets[] = {"highway", "urban", "rural", "mixed", "highway", "urban"};
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    CHECK(draws[i].preset == presets[i]);
+    CHECK(draws[i].seed == 1000 + i);
+  }
+}
+
+TEST_CASE("pooled means count every drive once, with the standard error of independent drives",
+          "[reproduction]") {
+  const PooledMean mean = pooled_mean({1, 3, 5});
+  CHECK(mean.mean == Approx(3));
+  CHECK(mean.standard_error == Approx(2 / std::sqrt(3.0)));
+  CHECK(std::isnan(pooled_mean({1}).standard_error));
+  CHECK(std::isnan(pooled_mean({}).mean));
+
+  std::vector<DriveResult> drives(2);
+  drives[0].group = "highway";
+  drives[0].outcomes = {judged(kDefaultModel, 3, 1, 1), judged("ours_g1", 5, 40, 0.1)};
+  drives[1].group = "urban";
+  drives[1].outcomes = {judged(kDefaultModel, 4, 3, 0.9)};
+  const ReportTable table = consistency_report(drives, "").tables.front();
+  const std::vector<std::string>& together = table.rows.at(4);
+  CHECK(together == std::vector<std::string>{"together", "default", "2", "2", "2.00", "1.00", "95.0", "5.0",
+                                             "3.54"});  // sqrt((9 + 16) / 2)
+  CHECK(table.rows.at(5)[3] == "1");                    // ours_g1 has a result on one of two
+}
+
+TEST_CASE("a drive of the ablation is judged by truth, or by the fixes kept out", "[reproduction]") {
+  DriveResult with_truth;
+  with_truth.name = "A";
+  with_truth.outcomes = {judged(kDefaultModel, 2, 2, 0.95), judged(kWhiteReference, 4, 40, 0.1)};
+  DriveResult without;
+  without.name = "B";
+  Outcome outcome;
+  outcome.setting.name = kDefaultModel;
+  outcome.ending.converged = true;
+  outcome.evaluation.at_withheld.push_back({});
+  outcome.evaluation.at_withheld.back().label = "fused";
+  outcome.evaluation.at_withheld.back().at_fixes.rmse_m = 7;
+  without.withheld.push_back({"outages", {outcome}});
+  const ReproductionReport report = ablation_report({with_truth, without}, "");
+  const ReportTable& errors = report.tables.front();
+  CHECK(errors.columns[1] == "A");
+  CHECK(errors.columns[2] == "B: outages");
+  CHECK(errors.rows[0] == std::vector<std::string>{"default", "2.00", "7.00", "0.0", "-50.0"});
+  CHECK(report.tables.back().columns.size() == 2);  // no NEES without truth
+  CHECK_THAT(report_markdown(report), Contains("# One ingredient at a time"));
+  CHECK_THAT(report_json(report, {with_truth}), Contains("waymark-ablation"));
+}

@@ -1,0 +1,140 @@
+#include "logs/gpsd/gpsdecode.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <numbers>
+#include <sstream>
+
+#include <waymark/formats/text/iso8601.hpp>
+
+namespace waymark_test {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t kRollover = 1024LL * 7 * 86'400 * 1'000'000'000;
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+double number(const json& object, const char* key) {
+  return object.contains(key) ? object.at(key).get<double>() : std::nan("");
+}
+
+/// The larger of the two; a difference that is not defined changes nothing.
+void enlarge(double& largest, double difference) {
+  if (std::abs(difference) > largest) largest = std::abs(difference);
+}
+
+std::int64_t within_rollover(std::int64_t nanoseconds) {
+  return ((nanoseconds % kRollover) + kRollover) % kRollover;
+}
+
+double metres_between(const waymark::GeodeticFix& fix, const json& report) {
+  constexpr double kDegree = 6'378'137 * std::numbers::pi / 180;
+  const double north = (number(report, "lat") - fix.latitude_deg) * kDegree;
+  const double east = std::remainder(number(report, "lon") - fix.longitude_deg, 360) * kDegree *
+                      std::cos(fix.latitude_deg * std::numbers::pi / 180);
+  return std::hypot(north, east);
+}
+
+void compare_one(const waymark::GeodeticFix& fix, const json& report, Comparison& result) {
+  ++result.matched;
+  const std::int64_t theirs =
+      waymark::formats::stamp_from_iso8601(report.at("time").get<std::string>()).value().nanoseconds;
+  if (std::abs(theirs - fix.stamp.nanoseconds) > kRollover / 2) ++result.other_dates;
+  const std::int64_t apart = within_rollover(theirs - fix.stamp.nanoseconds + kRollover / 2) - kRollover / 2;
+  enlarge(result.time_s, 1e-9 * static_cast<double>(apart));
+  enlarge(result.position_m, metres_between(fix, report));
+  enlarge(result.height_m, number(report, "altHAE") - fix.height_m);
+  if (fix.speed_mps) enlarge(result.speed_mps, number(report, "speed") - *fix.speed_mps);
+  if (fix.course_rad)
+    enlarge(result.course_deg,
+            std::remainder(number(report, "track") - *fix.course_rad * 180 / std::numbers::pi, 360));
+}
+
+}  // namespace
+
+std::vector<json> gpsd_objects(const std::string& text) {
+  std::vector<json> objects;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('{')) objects.push_back(json::parse(line));
+  }
+  return objects;
+}
+
+std::optional<std::vector<json>> run_gpsdecode(const std::filesystem::path& log) {
+  if (!std::filesystem::exists(log)) {
+    std::cout << "SKIPPED: " << log.string() << " is absent\n";
+    return std::nullopt;
+  }
+  if (std::system("command -v gpsdecode > /dev/null") != 0) {
+    std::cout << "SKIPPED: gpsdecode is absent (Debian package gpsd-clients)\n";
+    return std::nullopt;
+  }
+  std::FILE* pipe = ::popen(("gpsdecode -j < '" + log.string() + "' 2> /dev/null").c_str(), "r");
+  if (pipe == nullptr) {
+    std::cout << "SKIPPED: gpsdecode cannot be run\n";
+    return std::nullopt;
+  }
+  std::string text;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    text.append(buffer.data(), count);
+  ::pclose(pipe);
+  return gpsd_objects(text);
+}
+
+Comparison compare_with_gpsd(const std::vector<waymark::GeodeticFix>& fixes,
+                             const std::vector<json>& objects) {
+  Comparison result;
+  result.ours = fixes.size();
+  // A receiver's clock may step back, so that a time comes twice.
+  std::multimap<std::int64_t, json> reports;
+  std::multimap<std::int64_t, json> accuracies;  // GST objects
+  for (const json& object : objects) {
+    if (!object.contains("time")) continue;
+    const std::int64_t time = within_rollover(
+        waymark::formats::stamp_from_iso8601(object.at("time").get<std::string>()).value().nanoseconds);
+    if (object.at("class") == "TPV" && object.value("mode", 0) >= 2 && object.contains("lat")) {
+      reports.emplace(time, object);
+    } else if (object.at("class") == "GST") {
+      accuracies.emplace(time, object);
+    }
+  }
+  result.theirs = reports.size();
+  for (const waymark::GeodeticFix& fix : fixes) {
+    const std::int64_t time = within_rollover(fix.stamp.nanoseconds);
+    const json* nearest = nullptr;
+    const auto end = reports.upper_bound(time + kMillisecond);
+    for (auto report = reports.lower_bound(time - kMillisecond); report != end; ++report) {
+      if (nearest == nullptr || metres_between(fix, report->second) < metres_between(fix, *nearest))
+        nearest = &report->second;
+    }
+    if (nearest != nullptr) compare_one(fix, *nearest, result);
+    const auto gst = accuracies.lower_bound(time - kMillisecond);
+    if (gst == accuracies.end() || gst->first > time + kMillisecond || !gst->second.contains("lat")) continue;
+    ++result.accuracies;
+    enlarge(result.accuracy_m, number(gst->second, "lon") - std::sqrt(fix.covariance_en(0, 0)));
+    enlarge(result.accuracy_m, number(gst->second, "lat") - std::sqrt(fix.covariance_en(1, 1)));
+  }
+  return result;
+}
+
+std::string table_head() {
+  return "log                                  ours theirs matched dates  pos/m   h/m     t/s     v/(m/s) "
+         "course/deg GSTs sigma/m";
+}
+
+std::string table_row(const std::string& name, const Comparison& c) {
+  std::array<char, 200> row{};
+  std::snprintf(row.data(), row.size(), "%-36s %5zu %5zu %6zu %6zu  %.5f %.5f %.5f %.5f %.5f    %4zu %.5f",
+                name.c_str(), c.ours, c.theirs, c.matched, c.other_dates, c.position_m, c.height_m, c.time_s,
+                c.speed_mps, c.course_deg, c.accuracies, c.accuracy_m);
+  return row.data();
+}
+
+}  // namespace waymark_test

@@ -1,0 +1,145 @@
+// Sensor kit: absolute headings, plain and with a deviation to be estimated.
+#include <numbers>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/plugins/heading/heading.hpp>
+
+#include "plugins/kit_drive.hpp"
+
+using namespace waymark;
+using namespace waymark::plugins::heading;
+using namespace waymark_test;
+using Catch::Contains;
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180;
+constexpr double kSigma = 1 * kDegree;
+
+/// Fixes of 10 m: on 600 m they give a heading to half a degree.
+KitRecipe coarse_fixes() {
+  KitRecipe recipe;
+  recipe.fix_sigma_m = 10;
+  return recipe;
+}
+
+/// A reading a second, 30 ms after a node.
+SensorTable readings_of(const KitDrive& drive, double offset, Noise& noise) {
+  Readings readings("heading");
+  for (std::size_t i = 0; i + 1 < drive.truth.size(); i += kNodesPerSecond) {
+    const double at_reading = drive.truth[i].heading + 0.03 * drive.intervals[i].yaw_rate_radps;
+    readings.add(Stamp{drive.stamps[i].nanoseconds + 30'000'000},
+                 {{"heading", wrap_angle(at_reading + offset + noise(kSigma))}});
+  }
+  return readings.table();
+}
+
+}  // namespace
+
+TEST_CASE("heading: the error is heading minus reading, by the shorter way") {
+  // 3.0 and -3.0 rad are 2 pi - 6 = 0.283 rad apart; the pose is clockwise of the reading.
+  CHECK(EdgeHeading{-3.0}.error(Pose2<double>(1, 2, 3.0))[0] == Approx(6 - 2 * kPi));
+  // A sensor that reads 0.2 more than the heading 0.5.
+  CHECK(EdgeHeadingOffset{0.7}.error(Pose2<double>(1, 2, 0.5), 0.2)[0] == Approx(0).margin(1e-15));
+  CHECK(EdgeHeadingOffset{0.7}.error(Pose2<double>(1, 2, 0.5), 0.0)[0] == Approx(-0.2));
+}
+
+TEST_CASE("heading: mounting is subtracted, and the turn from the node to the reading") {
+  // A baseline that points to the left, turning left by 0.5 rad/s; 30 ms after the node at 0.1 s, whose
+  // heading is 0.4 + 0.05, it reads 0.45 + 0.015 + pi/2; 20 ms before the node it reads 0.01 less.
+  KitRecipe recipe;
+  recipe.seconds = 1;
+  recipe.motion = [](double) { return Eigen::Vector2d(10, 0.5); };
+  for (const double ahead : {0.03, -0.02}) {
+    KitDrive drive = make_kit_drive(recipe, 1);
+    Readings readings("heading");
+    readings.add(kit_stamp(0.1 + ahead), {{"heading", 0.45 + 0.5 * ahead + kPi / 2}});
+    drive.add_sensor("heading", readings.table(), {{"mount_deg", "90"}});
+    const std::size_t batch = drive.graph.batch_count() - 1;
+    REQUIRE(drive.graph.edge_type(batch).tag == "EDGE_HEADING");
+    std::vector<double> fields;
+    drive.graph.batch(batch).fields(0, fields);
+    CHECK(fields[0] == Approx(0.45));
+    CHECK(drive.graph.batch(batch).vertices(0)[0] == drive.poses[1]);
+    CHECK(drive.graph.batch(batch).information(0)(0, 0) == Approx(1 / (kDegree * kDegree)));
+  }
+}
+
+TEST_CASE("heading: n readings add n / sigma^2 to the information on a stiff drive's heading") {
+  constexpr int kSeeds = 40;
+  double squared_without = 0;
+  double squared_with = 0;
+  double normalised = 0;
+  double gain = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    KitDrive without = make_kit_drive(coarse_fixes(), static_cast<std::uint64_t>(seed));
+    KitDrive with = without;
+    Noise noise(static_cast<std::uint64_t>(1000 + seed));
+    with.add_sensor("heading", readings_of(with, 0, noise));
+    const double n = static_cast<double>(edges_of(with.graph, "EDGE_HEADING"));
+    REQUIRE(n == 60);
+    const Solution before = solve(without);
+    const Solution after = solve(with);
+    const double expected = std::pow(before.sigma(300, 2), -2) + n / (kSigma * kSigma);
+    CHECK(std::pow(after.sigma(300, 2), -2) == Approx(expected).epsilon(0.02));
+    gain = before.sigma(300, 2) / after.sigma(300, 2);
+    squared_without += std::pow(before.rms_heading(), 2);
+    squared_with += std::pow(after.rms_heading(), 2);
+    normalised += after.normalised(300);
+  }
+  CHECK(gain > 3);
+  CHECK(std::sqrt(squared_without / squared_with) == Approx(gain).epsilon(0.5));
+  check_mean_chi_square(normalised, 3, kSeeds);
+}
+
+TEST_CASE("heading: a compass with 8 degrees of deviation, which the drive finds out") {
+  constexpr double kDeviation = 8 * kDegree;
+  constexpr int kSeeds = 40;
+  double normalised = 0;
+  double state = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    KitDrive without = make_kit_drive(coarse_fixes(), static_cast<std::uint64_t>(seed));
+    KitDrive believed = without;
+    KitDrive estimated = without;
+    Noise noise(static_cast<std::uint64_t>(2000 + seed));
+    const SensorTable readings = readings_of(without, kDeviation, noise);
+    believed.add_sensor("heading", readings);
+    estimated.add_sensor("heading", readings, {{"offset", "constant"}});
+    const Solution before = solve(without);
+    const Solution after = solve(estimated);
+    // Believed, the compass turns the drive; with its deviation estimated it does no harm.
+    CHECK(solve(believed).rms_heading() > 5 * kDegree);
+    CHECK(after.rms_heading() < 2 * kDegree);
+    normalised += after.normalised(300);
+
+    // The readings' mean minus the heading: the variances add.
+    const VertexIndex offset = find_state(estimated.graph, "VERTEX_HEADING_OFFSET");
+    const double variance = marginal_covariances(estimated.graph, std::array{offset})[0](0, 0);
+    CHECK(variance == Approx(std::pow(before.sigma(300, 2), 2) + kSigma * kSigma / 60).epsilon(0.02));
+    const double error = estimated.graph.value(offset)[0] - kDeviation;
+    state += error * error / variance;
+  }
+  check_mean_chi_square(normalised, 3, kSeeds);
+  check_mean_chi_square(state, 1, kSeeds);
+}
+
+TEST_CASE("heading: rows that make no sense are named, those outside the drive or in a gap left out") {
+  KitRecipe recipe;
+  recipe.seconds = 1;
+  KitDrive drive = make_kit_drive(recipe, 1);
+  Readings readings("heading");
+  readings.add(kit_stamp(-5), {{"heading", 0}});
+  readings.add(kit_stamp(0.5), {{"heading", 0}, {"sigma", -0.1}});
+  CHECK_THROWS_WITH(drive.add_sensor("heading", readings.table()),
+                    "row 2 (time 1000.5): column 'sigma': a sigma must lie in [1e-9, 1e9], got -0.1");
+  Readings outside("heading");
+  outside.add(kit_stamp(-5), {{"heading", 0}});
+  outside.add(kit_stamp(8), {{"heading", 0}});
+  drive.add_sensor("heading", outside.table());
+  CHECK(edges_of(drive.graph, "EDGE_HEADING") == 0);
+  CHECK_THROWS_WITH(kit_registry().make_sensor_model("heading", {{"offset", "maybe"}}),
+                    "heading: option 'offset' must be 'off' or 'constant', got 'maybe'");
+  CHECK_THROWS_WITH(kit_registry().make_sensor_model("heading", {{"mounting", "3"}}),
+                    Contains("heading: unknown option 'mounting'; did you mean 'mount_deg'?"));
+}

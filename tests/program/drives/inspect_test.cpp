@@ -1,0 +1,175 @@
+// `waymark inspect` and `waymark init`: what they print, write and refuse; the drive.yaml that they write
+// runs.
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <iostream>
+#include <regex>
+
+#include <nlohmann/json.hpp>
+
+#include "program/support/material.hpp"
+#include "program/support/program.hpp"
+#include "support/paths.hpp"
+
+using Json = nlohmann::json;
+
+namespace {
+
+/// A file of the shared data; empty, with a line that says so, where it is absent.
+std::string shared_file(const std::string& name) {
+  const auto path = waymark_test::shared_data_dir() / name;
+  if (std::filesystem::exists(path)) return path.string();
+  std::cout << "SKIPPED: " << path.string() << " is absent\n";
+  return {};
+}
+
+/// Logs of 40 s on a circle of 200 m at 10 m/s.
+std::string drive_folder() {
+  const std::string folder = fresh_folder();
+  std::filesystem::remove(write_drive(folder));
+  return folder;
+}
+
+void check_runs(const std::vector<std::string>& logs, double smallest_m, double largest_m) {
+  const std::string folder = fresh_folder();
+  std::vector<std::string> arguments{"init", "-o", folder + "drive.yaml"};
+  arguments.insert(arguments.end(), logs.begin(), logs.end());
+  const RunResult init = run(arguments);
+  INFO(init.err);
+  REQUIRE(init.code == 0);
+  CHECK(init.out.empty());
+  const RunResult fused = run({"run", folder + "drive.yaml", "-o", folder + "out", "-m", "g2"});
+  INFO(fused.err + fused.out);
+  REQUIRE(fused.code == 0);
+  std::smatch way;
+  REQUIRE(std::regex_search(fused.out, way, std::regex(R"((\d+) m by odometry)")));
+  CHECK(std::stod(way[1]) > smallest_m);
+  CHECK(std::stod(way[1]) < largest_m);
+}
+
+}  // namespace
+
+TEST_CASE("inspect says what is in a log, as text and as JSON") {
+  const std::string folder = drive_folder();
+  const RunResult text = run({"inspect", folder + "gnss.csv", folder + "odometry.csv"});
+  INFO(text.out);
+  CHECK(text.code == 0);
+  CHECK(text.err.empty());
+  for (const char* part : {"gnss.csv\n", "format         csv: a table", "proposed as", "latitude", "  gnss ",
+                           "  odometry ", "suspicious"})
+    CHECK(contains(text.out, part));
+  const RunResult result = run({"inspect", folder + "gnss.csv", folder + "odometry.csv", "--json"});
+  const Json json = Json::parse(result.out).at("logs");
+  REQUIRE(json.size() == 2);
+  CHECK(json.at(0).at("format") == "csv");
+  CHECK(json.at(0).at("gnss").at("fixes") == 41);
+  CHECK(json.at(0).at("gnss").at("stamps").at("median_interval_s") == Approx(1));
+  CHECK(json.at(0).at("odometry").is_null());
+  CHECK(json.at(1).at("gnss").is_null());
+  CHECK(json.at(1).at("odometry").at("channels").size() == 2);
+  CHECK(json.at(1).at("odometry").at("channels").at(0).at("range").at("largest") == Approx(10));
+}
+
+TEST_CASE("inspect and init write the same drive.yaml, tell what was decided, and replace none unasked") {
+  const std::string folder = drive_folder();
+  const std::vector<std::string> logs{folder + "gnss.csv", folder + "odometry.csv", folder + "truth.csv"};
+  std::vector<std::string> arguments{"init"};
+  arguments.insert(arguments.end(), logs.begin(), logs.end());
+  arguments.insert(arguments.end(), {"-o", folder + "drive.yaml"});
+  const RunResult init = run(arguments);
+  INFO(init.err);
+  CHECK(init.code == 0);
+  CHECK(init.out.empty());
+  CHECK(contains(init.err, "gnss.csv: gnss: it holds 41 fixes"));
+  CHECK(contains(init.err, "odometry.csv: odometry: speed, yaw_rate"));
+  CHECK(contains(init.err, "truth.csv: truth: its name says 'truth'"));
+  const std::string written = read_text(folder + "drive.yaml");
+  CHECK(contains(written, "file: gnss.csv\n"));
+
+  const RunResult again = run(arguments);
+  CHECK(again.code == 5);
+  CHECK(contains(again.err, "drive.yaml: it exists already; --force replaces it"));
+  arguments[0] = "inspect";
+  arguments.emplace_back("--force");
+  CHECK(run(arguments).code == 0);
+  CHECK(read_text(folder + "drive.yaml") == written);
+  CHECK(names_in(folder) == std::vector<std::string>{"drive.yaml", "gnss.csv", "odometry.csv", "truth.csv"});
+
+  const RunResult fused = run({"run", folder + "drive.yaml", "-o", folder + "out", "-m", "g2"});
+  INFO(fused.err);
+  CHECK(fused.code == 0);
+}
+
+TEST_CASE("init without logs writes a template, and -o - goes to the standard output") {
+  const RunResult result = run({"init", "-o", "-"});
+  CHECK(result.code == 0);
+  CHECK(contains(result.out, "FILL_IN_odometry.csv"));
+  CHECK(contains(result.err, "a template was written"));
+  const std::string folder = drive_folder();
+  const RunResult both = run({"inspect", folder + "gnss.csv", "-o", "-"});
+  CHECK(both.code == 0);
+  CHECK(both.out.starts_with("# Proposed by"));
+  CHECK(contains(both.err, "suspicious"));
+  CHECK(contains(both.err, "no log with odometry was found: fill in odometry"));
+}
+
+TEST_CASE("inspect and init refuse what they cannot read, with exit code and remedy") {
+  const std::string folder = drive_folder();
+  const auto check = [](const std::vector<std::string>& arguments, int code, const std::string& message) {
+    const RunResult result = run(arguments);
+    INFO(result.err);
+    CHECK(result.code == code);
+    CHECK(contains(result.err, message));
+    CHECK(result.out.empty());
+  };
+  check({"inspect"}, 2, "logs is required");
+  check({"inspect", folder + "nothing.csv"}, 3, "nothing.csv: cannot read: No such file or directory");
+  check({"inspect", write_text(folder + "empty", "")}, 3, "the log is empty");
+  check({"inspect", write_text(folder + "rubbish", std::string(5000, '\1'))}, 3, "format is not recognised");
+  check({"inspect", folder + "gnss.csv", "--format", "cvs"}, 2,
+        "unknown log format 'cvs'; did you mean 'csv'?");
+  check({"inspect", write_text(folder + "car.dbc", "BO_ 1 A: 8 X\n")}, 2, "name a log beside it");
+  check({"init", folder + "gnss.csv"}, 2, "-o is required");
+  check({"init", folder + "gnss.csv", "-o", folder + "no/drive.yaml"}, 5, "no/drive.yaml");
+}
+
+TEST_CASE("inspect of Aarhus's CAN log names the logger's clock and proposes its signals") {
+  const std::string log = shared_file("drives/aarhus_horsens/candump.log.gz");
+  if (log.empty()) return;
+  const RunResult result =
+      run({"inspect", log, "--dbc", shared_file("drives/aarhus_horsens/canmod-gps.dbc"), "--json"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Json json = Json::parse(result.out).at("logs").at(0);
+  CHECK(json.at("format") == "candump");
+  CHECK(json.at("gnss").at("fixes") == 2161);
+  CHECK(json.at("without_fix") == 111);
+  CHECK(json.at("logger_ahead_s").get<double>() == Approx(4.40).margin(0.01));  // by the data's own README
+}
+
+TEST_CASE("inspect finds Munich's frozen receiver and gpsd's date of another age") {
+  const std::string munich = shared_file("logs/nmea/genivi_munich_Petuelring_2009.nmea");
+  if (munich.empty()) return;
+  const RunResult nmea = run({"inspect", munich});
+  CHECK(contains(nmea.out,
+                 "the position stands still for 5 fixes or more while the receiver's speed is above 1 m/s"));
+  const RunResult gpsd = run({"inspect", shared_file("logs/gpsd/gpsd_neo-m8n.log.chk")});
+  CHECK(contains(gpsd.out, "a receiver that is off by 1024 weeks would mean 2015-03-18T17:19:26.000Z"));
+  const RunResult nofix = run({"inspect", shared_file("logs/gpsd/gpsd_bu303-nofix.log.chk")});
+  CHECK(nofix.code == 0);
+  CHECK(contains(nofix.out, "the receiver has no fix in 7 of 7 records"));
+}
+
+TEST_CASE("init makes drives that run of raw logs: Potsdamer Platz, Nagoya, Aarhus") {
+  const std::string bundled = bundled_drive();
+  const std::string folder = bundled.substr(0, bundled.rfind('/') + 1);
+  check_runs({folder + "odometry_50hz.csv", folder + "gnss_5hz.csv", folder + "truth_5hz.csv"}, 800, 900);
+  const std::string nagoya = shared_file("drives/nagoya/odometry_imitated_25hz.csv");
+  if (nagoya.empty()) return;
+  check_runs({nagoya, shared_file("logs/pos/taroz_rover_1Hz_spp.pos")}, 4300, 4500);
+  const std::string aarhus = "drives/aarhus_horsens/";
+  check_runs({shared_file(aarhus + "candump.log.gz"), shared_file(aarhus + "canmod-gps.dbc"),
+              shared_file(aarhus + "obd_speed.csv"), shared_file(aarhus + "imu.csv.gz")},
+             40e3, 42e3);
+}

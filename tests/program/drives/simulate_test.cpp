@@ -1,0 +1,124 @@
+// `waymark simulate`: raw logs through the same door as real ones, labelled as what they are.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "program/support/material.hpp"
+#include "program/support/program.hpp"
+
+using Json = nlohmann::json;
+
+TEST_CASE("simulate lists its presets") {
+  const RunResult result = run({"simulate", "--list"});
+  CHECK(result.code == 0);
+  for (const char* name : {"highway", "urban", "rural", "mixed", "paper-1", "paper-8"})
+    CHECK(contains(result.out, name));
+  const Json json = Json::parse(run({"simulate", "--list", "--json"}).out).at("presets");
+  CHECK(json.size() == 12);
+  CHECK(json.at(4).at("name") == "paper-1");
+}
+
+TEST_CASE("simulate writes a drive that runs, and its logs say that they are simulated") {
+  const std::string folder = fresh_folder();
+  const RunResult result =
+      run({"simulate", "--preset", "urban", "--duration", "120", "-o", folder + "drive"});
+  INFO(result.err);
+  CHECK(result.code == 0);
+  CHECK(contains(result.out, "Simulated: urban, seed 1"));
+  CHECK(names_in(folder + "drive") ==
+        std::vector<std::string>{"drive.yaml", "gnss.json", "odometry.csv", "truth.csv"});
+  CHECK(read_text(folder + "drive/drive.yaml").starts_with("# Simulated"));
+  CHECK(contains(read_text(folder + "drive/drive.yaml"), "\nname: \"Simulated: urban, seed 1\"\n"));
+  CHECK(read_text(folder + "drive/odometry.csv").starts_with("# Simulated"));
+  CHECK(read_text(folder + "drive/truth.csv").starts_with("# Simulated"));
+  CHECK(read_text(folder + "drive/gnss.json")
+            .starts_with(R"x({"class":"VERSION","release":"3.22 (simulated)")x"));
+
+  const RunResult fused = run({"run", folder + "drive/drive.yaml", "-o", folder + "out", "--modeling", "g1"});
+  INFO(fused.err);
+  CHECK(fused.code == 0);
+  CHECK(contains(fused.out, "Simulated: urban, seed 1"));
+  const Json metrics = Json::parse(read_text(folder + "out/metrics.json"));
+  CHECK(metrics.at("drive") == "Simulated: urban, seed 1");
+  const Json& evaluation = metrics.at("evaluations").at(0);
+  CHECK(evaluation.at("truth").at("match").at("unmatched") == 0);
+
+  // What simulate said about the drive is what evaluating it says.
+  const Json told = Json::parse(run({"simulate", "--describe", folder + "drive/drive.yaml", "--json"}).out);
+  CHECK(told.at("name") == "Simulated: urban, seed 1");
+  CHECK(told.at("odometry_points") == 120 * 25);
+  CHECK(told.at("fixes").get<int>() + told.at("missing_epochs").get<int>() == 119);
+  CHECK(told.at("rejected") == evaluation.at("fixes").at("rejected"));
+  const Json& raw = evaluation.at("truth").at("gnss").at("position");
+  CHECK(told.at("gnss_max_m").get<double>() == Approx(raw.at("max_m").get<double>()).epsilon(1e-9));
+  CHECK(told.at("gnss_accuracy_m").get<double>() == Approx(raw.at("accuracy_m").get<double>()).epsilon(1e-9));
+  CHECK(told.at("gnss_precision_m").get<double>() ==
+        Approx(raw.at("precision_m").get<double>()).epsilon(1e-9));
+}
+
+TEST_CASE("simulate writes the same bytes for the same seed, others for another") {
+  const std::string folder = fresh_folder();
+  for (const auto& [name, seed] : {std::pair{"a", "5"}, {"b", "5"}, {"c", "6"}})
+    CHECK(run({"simulate", "--preset", "mixed", "--duration", "60", "--seed", seed, "-o", folder + name})
+              .code == 0);
+  for (const char* file : {"drive.yaml", "gnss.json", "odometry.csv", "truth.csv"}) {
+    INFO(file);
+    CHECK(read_text(folder + "a/" + file) == read_text(folder + "b/" + file));
+    CHECK(read_text(folder + "a/" + file) != read_text(folder + "c/" + file));
+  }
+}
+
+TEST_CASE("simulate prints the table as JSON, and describes real drives alike") {
+  const std::string folder = fresh_folder();
+  const RunResult result =
+      run({"simulate", "--preset", "rural", "--duration", "60", "-o", folder + "d", "--json"});
+  CHECK(result.code == 0);
+  const Json json = Json::parse(result.out);
+  CHECK(json.at("odometry_points") == 1500);
+  CHECK(json.at("drift_percent").is_null());  // no piece of a kilometre in a minute
+
+  const RunResult real = run({"simulate", "--describe", bundled_drive()});
+  CHECK(real.code == 0);
+  CHECK(contains(real.out, "Potsdamer Platz"));
+  CHECK(contains(real.out, "171, 0 epochs missing"));
+}
+
+TEST_CASE("simulate: drives without truth have no errors to tell of") {
+  const std::string folder = fresh_folder();
+  const RunResult result = run({"simulate", "--describe", write_drive(folder, {.with_truth = false})});
+  CHECK(result.code == 0);
+  CHECK(contains(result.out, "- / - / - m"));
+}
+
+TEST_CASE("simulate refuses what it does not know, with the remedy") {
+  const std::string folder = fresh_folder();
+  const RunResult unknown = run({"simulate", "--preset", "highwy", "-o", folder + "x"});
+  CHECK(unknown.code == 2);
+  CHECK(contains(unknown.err, "unknown preset 'highwy'; did you mean 'highway'?"));
+  CHECK_FALSE(exists(folder + "x"));
+  CHECK(run({"simulate"}).code == 2);
+  CHECK(run({"simulate", "--preset", "urban"}).code == 2);
+  CHECK(run({"simulate", "--list", "--preset", "urban"}).code == 2);
+  for (const char* duration : {"0", "-5", "nan", "inf", "1e9", "abc"}) {
+    INFO(duration);
+    CHECK(run({"simulate", "--preset", "urban", "--duration", duration, "-o", folder + "x"}).code == 2);
+  }
+  for (const char* seed : {"-1", "1.5", "99999999999999999999"}) {
+    INFO(seed);
+    CHECK(run({"simulate", "--preset", "urban", "--seed", seed, "-o", folder + "x"}).code == 2);
+  }
+  CHECK_FALSE(exists(folder + "x"));
+}
+
+TEST_CASE("simulate cannot write where there is no folder to be made") {
+  const std::string folder = fresh_folder();
+  const std::string file = write_text(folder + "file", "taken");
+  const RunResult result = run({"simulate", "--preset", "urban", "--duration", "20", "-o", file + "/below"});
+  CHECK(result.code == 5);
+  CHECK(contains(result.err, "cannot make the folder"));
+  RunOptions limited;
+  limited.file_size_limit = 1024;
+  const RunResult full =
+      run({"simulate", "--preset", "urban", "--duration", "20", "-o", folder + "d"}, limited);
+  CHECK(full.code == 5);
+  CHECK(names_in(folder + "d").empty());
+}

@@ -1,0 +1,131 @@
+// Slips that a newcomer makes: wrong units and clocks at any rate of the fixes, inputs named as outputs. A
+// minimum is found for most of them; the program must say that it is not to be believed.
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include "program/support/material.hpp"
+#include "program/support/program.hpp"
+
+namespace {
+
+/// The bundled drive's logs with all fixes (5 Hz), its odometry changed in each row.
+std::string drive_with(const std::string& folder,
+                       const std::function<std::string(double, double, double)>& row) {
+  const std::string data = WAYMARK_SOURCE_DIR "/examples/berlin_potsdamer_platz/";
+  std::istringstream log(read_text(data + "odometry_50hz.csv"));
+  std::string text = "time,speed,yaw_rate\n";
+  for (std::string line; std::getline(log, line);) {
+    double time = 0, speed = 0, yaw_rate = 0;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &time, &speed, &yaw_rate) == 3)
+      text += row(time, speed, yaw_rate);
+  }
+  write_text(folder + "odometry.csv", text);
+  return write_text(folder + "drive.yaml",
+                    "odometry: {file: odometry.csv, time: {week: 1900}}\n"
+                    "gnss: {file: " +
+                        data +
+                        "gnss_5hz.csv, time: {week: 1900}, columns: {time: gps_sow_s, latitude: lat_deg, "
+                        "longitude: lon_deg, accuracy: hacc_m_first_60s_only}, accuracy: {meaning: drms, "
+                        "default_sigma: 5}}\n"
+                        "truth: {file: " +
+                        data +
+                        "truth_5hz.csv, time: {week: 1900}, columns: {time: gps_sow_s, latitude: lat_deg, "
+                        "longitude: lon_deg}}\n");
+}
+
+std::string line(double time, double speed, double yaw_rate) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3f,%.6f,%.8f\n", time, speed, yaw_rate);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("slips: a sound drive with fixes at 5 Hz is not doubted") {
+  const std::string folder = fresh_folder();
+  const RunResult result = run({"run", drive_with(folder, line), "-o", folder + "out"});
+  CHECK(result.code == 0);
+  CHECK_FALSE(contains(result.err, "warning"));
+}
+
+TEST_CASE("slips: a speed in km/h is named at 5 Hz too, and in the report") {
+  const std::string folder = fresh_folder();
+  const std::string drive =
+      drive_with(folder, [](double t, double v, double w) { return line(t, 3.6 * v, w); });
+  const RunResult result = run({"run", drive, "-o", folder + "out"});
+  CHECK(contains(result.err, "times that of the fixes"));
+  CHECK(contains(result.err, "(3.6: km/h read as m/s)"));
+  CHECK(contains(result.err, "warning: speed_scale came out as"));
+  CHECK(contains(result.err, "times as far from the truth as raw GNSS"));
+  const std::string report = read_text(folder + "out/report.html");
+  CHECK(contains(report, "(3.6: km/h read as m/s)"));
+  CHECK(contains(report, "3 warnings: see below."));
+  CHECK(contains(report, "<td>WARNING</td>"));
+}
+
+TEST_CASE("slips: a yaw rate of the wrong sign is named at 5 Hz too") {
+  const std::string folder = fresh_folder();
+  const std::string drive = drive_with(folder, [](double t, double v, double w) { return line(t, v, -w); });
+  CHECK(contains(run({"run", drive, "-o", folder + "out"}).err, "the odometry turns against the fixes"));
+}
+
+TEST_CASE("slips: a hole in the odometry is told with its place and length") {
+  const std::string folder = fresh_folder();
+  const std::string drive = drive_with(folder, [](double t, double v, double w) {
+    return t > 126700 && t < 126730 ? std::string() : line(t, v, w);
+  });
+  const RunResult result = run({"convert", drive, "-o", folder + "a.graph"});
+  CHECK(contains(result.err, "the odometry is silent for more than 0.5 s in 1 place, the longest 30.0 s"));
+}
+
+TEST_CASE(
+    "slips: clocks that are right within three sigmas are not moved by --sync, and one log is not torn "
+    "apart") {
+  const std::string folder = fresh_folder();
+  const std::string late = drive_with(folder, [](double t, double v, double w) { return line(t + 2, v, w); });
+  const RunResult moved = run({"convert", late, "--sync", "-o", folder + "late.graph"});
+  CHECK(contains(moved.err, "the odometry's speed was late by"));
+  CHECK(contains(moved.err, "the yaw rate stands in the log of the speed and is moved with it"));
+  const RunResult sound = run({"convert", drive_with(folder, line), "--sync", "-o", folder + "sound.graph"});
+  CHECK(contains(sound.err, "within three sigmas, so not applied"));
+  CHECK_FALSE(contains(sound.err, "; applied"));
+}
+
+TEST_CASE("slips: no command overwrites what it reads, and simulate no drive that it did not make") {
+  const std::string folder = fresh_folder();
+  const std::string drive = write_drive(folder);
+  const std::string log = read_text(folder + "gnss.csv");
+  for (const std::string& output : {drive, folder + "gnss.csv"}) {
+    const RunResult result = run({"convert", drive, "-o", output});
+    CHECK(result.code == 2);
+    CHECK(contains(result.err, output + ": is read as an input and would be overwritten"));
+  }
+  const RunResult simulated = run({"simulate", "--preset", "urban", "--duration", "60", "-o", folder});
+  CHECK(simulated.code == 2);
+  CHECK(contains(simulated.err, "drive.yaml: is there and was not made by simulate"));
+  CHECK(read_text(folder + "gnss.csv") == log);
+  const std::vector<std::string> again = {"simulate", "--preset", "urban",        "--duration",
+                                          "60",       "-o",       folder + "made"};
+  CHECK(run(again).code == 0);
+  CHECK(run(again).code == 0);  // its own may be replaced
+}
+
+TEST_CASE("slips: fixes at latitude 0, longitude 0 are left out and counted") {
+  const std::string folder = fresh_folder();
+  const std::string drive = write_drive(folder);
+  std::string log = read_text(folder + "gnss.csv");
+  const std::size_t second = log.find('\n', log.find('\n') + 1) + 1;
+  const std::string row = log.substr(second, log.find('\n', second) - second);
+  const std::string time = row.substr(0, row.find(','));
+  const std::size_t commas = static_cast<std::size_t>(std::count(row.begin(), row.end(), ','));
+  std::string zeros = time;
+  for (std::size_t i = 0; i < commas; ++i) zeros += i < 2 ? ",0" : ",1";
+  write_text(folder + "gnss.csv", log.replace(second, row.size(), zeros));
+  const RunResult result = run({"convert", drive, "-o", folder + "a.graph"});
+  CHECK(result.code == 0);
+  CHECK(contains(result.err, "1 fixes at latitude 0, longitude 0 are left out"));
+}

@@ -1,0 +1,64 @@
+/// A page of a report: text, tables and figures, as one HTML file that needs nothing else.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <waymark/tools/drawing/figure/figure.hpp>
+
+namespace waymark::drawing {
+
+struct Paragraph {
+  std::string text;
+};
+
+struct PageTable {
+  std::string title;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
+  std::vector<std::string> notes{};            ///< sentences below it
+};
+
+/// Figures beside each other where there is room.
+struct FigureRow {
+  std::vector<Figure> figures;
+};
+
+/// A file beside the page.
+struct PageLink {
+  std::string file;  ///< relative to the page
+  std::string text;
+};
+
+using PageBlock = std::variant<Paragraph, PageTable, Figure, FigureRow, PageLink>;
+
+struct Section {
+  std::string id;  ///< [a-z0-9-]
+  std::string title;
+  std::vector<PageBlock> blocks;
+};
+
+enum class Verdict { none, better, worse };
+
+struct Page {
+  std::string title;
+  std::string subtitle;
+  std::string summary;  ///< a sentence or two: what came out
+  Verdict verdict = Verdict::none;
+  std::vector<Section> sections;
+  std::string footer;  ///< who made it
+};
+
+/// HTML 5 in UTF-8 with style, script, drawings and their data inside; nothing is loaded from anywhere. The
+/// drawings are complete without the script, which lets them be moved and read.
+[[nodiscard]] std::string page_html(const Page& page);
+
+/// Every figure of a page, in order.
+[[nodiscard]] std::vector<const Figure*> figures_of(const Page& page);
+
+/// Writes FOLDER/NAME.html, and every figure as FOLDER/figures/NAME-ID.svg and .csv. Returns the files.
+/// @throws OutputError
+std::vector<std::string> write_page(const Page& page, const std::string& folder, const std::string& name);
+
+}  // namespace waymark::drawing

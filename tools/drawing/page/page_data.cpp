@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include <waymark/tools/drawing/figure/figure_svg.hpp>
+#include <waymark/tools/drawing/figure/look.hpp>
+#include <waymark/tools/drawing/figure/marks_svg.hpp>
+#include <waymark/tools/drawing/page/packed_column.hpp>
+#include <waymark/tools/drawing/page/page_data.hpp>
+
+namespace waymark::drawing {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongColumn = 64;
+
+/// The columns of all figures, each once.
+class ColumnStore {
+ public:
+  /// @param packed  whether the column may be rounded to a step: not on a logarithmic axis
+  std::size_t add(const std::vector<double>& values, bool packed) {
+    Json column;
+    if (packed && values.size() >= kLongColumn) {
+      column = pack(values);
+    } else {
+      column = Json::array();
+      for (const double value : values) column.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
+    }
+    const auto [place, is_new] = place_of_.try_emplace(column.dump(), place_of_.size());
+    if (is_new) columns_.push_back(std::move(column));
+    return place->second;
+  }
+  [[nodiscard]] Json take() { return std::move(columns_); }
+
+ private:
+  Json columns_ = Json::array();
+  std::map<std::string, std::size_t> place_of_;
+};
+
+Json series_json(const Series& series, const Figure& figure, ColumnStore& store) {
+  Json json = {{"name", series.name},
+               {"mark", name_of(series.mark)},
+               {"look", style_of(series.look).name},
+               {"marker", style_of(series.look).marker}};
+  const auto put = [&](const char* key, const std::vector<double>& values, bool packed) {
+    if (!values.empty()) json[key] = store.add(values, packed);
+  };
+  const bool linear = !figure.x.logarithmic && !figure.y.logarithmic;
+  put("x", series.x, !figure.x.logarithmic);
+  put("y", series.y, !figure.y.logarithmic);
+  put("low", series.low, linear);
+  put("high", series.high, linear);
+  put("time", series.time, true);
+  if (!series.note.empty()) {
+    put("note", std::vector<double>(series.note.begin(), series.note.end()), true);
+    json["notes"] = series.notes;
+  }
+  return json;
+}
+
+Json axis_json(const Axis& axis, Range range) {
+  return {{"title", axis.title},
+          {"unit", axis.unit},
+          {"heading", heading(axis)},
+          {"log", axis.logarithmic},
+          {"low", range.low},
+          {"high", range.high},
+          {"held", axis.low.has_value()},
+          {"rows", !axis.categories.empty()}};
+}
+
+Json figure_json(const Figure& figure, ColumnStore& store) {
+  static constexpr const char* kMotions[] = {"still", "x", "map"};
+  const View view = drawn_view(figure);
+  Json json = {{"motion", kMotions[static_cast<int>(figure.motion)]},
+               {"link", figure.link},
+               {"geographic", figure.geographic},
+               {"downwards", view.downwards},
+               {"box", {view.box.left, view.box.top, view.box.width, view.box.height}},
+               {"x", axis_json(figure.x, view.x)},
+               {"y", axis_json(figure.y, view.y)}};
+  json["series"] = Json::array();
+  for (const Series& series : figure.series) json["series"].push_back(series_json(series, figure, store));
+  return json;
+}
+
+bool has_cells(const Figure& figure) {
+  return std::any_of(figure.series.begin(), figure.series.end(),
+                     [](const Series& series) { return series.mark == Mark::cells; });
+}
+
+}  // namespace
+
+std::string page_data(const std::vector<const Figure*>& figures) {
+  ColumnStore store;
+  Json of_figures = Json::object();
+  for (const Figure* figure : figures) {
+    if (!has_cells(*figure)) of_figures[figure->id] = figure_json(*figure, store);
+  }
+  const Json json = {{"columns", store.take()}, {"figures", std::move(of_figures)}};
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;  // "</script>" and "<!--" must not stand in a script element
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace waymark::drawing

@@ -1,0 +1,134 @@
+#include <waymark/tools/drive/description/log_config.hpp>
+
+#include <array>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/formats/logs/detail/csv/csv_columns.hpp>
+#include <waymark/formats/text/iso8601.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr std::array<std::string_view, 3> kScales{"gps", "utc", "unix"};
+constexpr std::array<std::string_view, 5> kMeanings{"auto", "95", "1sigma", "drms", "cep50"};
+constexpr std::array kMeaningValues{AccuracyMeaning::automatic, AccuracyMeaning::percent95,
+                                    AccuracyMeaning::one_sigma, AccuracyMeaning::drms,
+                                    AccuracyMeaning::cep50};
+constexpr std::array<std::string_view, 8> kSeparators{",",     ";",         "tab", "blank",
+                                                      "comma", "semicolon", "\t",  "auto"};
+constexpr std::array kSeparatorValues{',', ';', '\t', ' ', ',', ';', '\t', '\0'};
+/// Keys of files that belong to a log.
+constexpr std::array<std::string_view, 2> kCompanions{"dbc", "timestamps"};
+constexpr NumberRule kWeek{0, 9999, "a GPS week from 0 to 9999"};
+constexpr NumberRule kOffset{-1e9, 1e9, "a number of seconds"};
+
+ColumnRequest read_column(const YamlSection& columns, const std::string& key) {
+  ColumnRequest request;
+  if (!columns.node(key).IsMap()) {
+    columns.read(key, request.column);
+    return request;
+  }
+  const YamlSection spec = *columns.section(key, {"column", "unit", "convention"});
+  spec.read("column", request.column);
+  spec.read("unit", request.unit);
+  spec.read("convention", request.convention);
+  return request;
+}
+
+void read_columns(const YamlSection& section, const std::string& format, LogRequest& request) {
+  if (!section.has("columns")) return;
+  // Only its plugin knows a sensor's quantities, and only its reader what else a format may name.
+  const bool of_table = format == "csv" || format == "candump" || format == "auto";
+  const bool open = request.stream == StreamKind::sensor || !of_table;
+  std::vector<formats::Quantity> known = formats::quantities(request);
+  const YamlSection columns =
+      open ? *section.free_section("columns")
+           : YamlSection(section.node("columns"), "columns", section.file(), formats::names_of(known));
+  for (const std::string& key : columns.keys()) {
+    request.columns[key] = read_column(columns, key);
+    if (open) continue;
+    const formats::Quantity& quantity = *formats::find_quantity(known, key);
+    if (const std::string error = formats::column_request_error(quantity, request.columns[key]);
+        !error.empty())
+      throw InputError(columns.place(key) + error);
+  }
+}
+
+/// UTC midnight of "2009-04-01".
+void read_date(const YamlSection& time, LogRequest& request) {
+  if (!time.has("date")) return;
+  std::string text;
+  time.read("date", text);
+  request.date = formats::stamp_from_iso8601(text + "T00:00:00Z");
+  if (!request.date) time.fail_value("date", "a date such as 2009-04-01");
+}
+
+void read_time(const YamlSection& section, LogRequest& request) {
+  const auto time = section.section("time", {"scale", "week", "date", "offset"});
+  if (!time) return;
+  if (const auto scale = time->read_word("scale", kScales))
+    request.time_scale = *time_scale_from_string(kScales[*scale]);
+  time->read("week", request.gps_week, kWeek);
+  read_date(*time, request);
+  time->read("offset", request.time_offset_s, kOffset);
+  if (request.gps_week != 0 && request.time_scale != TimeScale::gps)
+    time->fail("week", "a week belongs to the scale gps");
+}
+
+void read_accuracy(const YamlSection& section, LogRequest& request) {
+  const auto accuracy = section.section("accuracy", {"meaning", "default_sigma", "range_error"});
+  if (!accuracy) return;
+  if (const auto meaning = accuracy->read_word("meaning", kMeanings))
+    request.accuracy = kMeaningValues[*meaning];
+  accuracy->read("default_sigma", request.default_sigma_m, kNotNegative);
+  accuracy->read("range_error", request.range_error_m, kNotNegative);
+}
+
+std::string resolved(const std::string& folder, const std::string& file) {
+  return (std::filesystem::path(folder) / file).lexically_normal().string();
+}
+
+}  // namespace
+
+std::vector<std::string_view> log_keys(std::initializer_list<std::string_view> own) {
+  std::vector<std::string_view> keys{"file", "format", "separator", "columns", "time"};
+  keys.insert(keys.end(), kCompanions.begin(), kCompanions.end());
+  keys.insert(keys.end(), own);
+  return keys;
+}
+
+LogConfig read_log_config(const YamlSection& section, LogRequest request, const std::string& folder,
+                          TimeScale drive_scale) {
+  LogConfig log;
+  log.place = section.place();
+  log.request = std::move(request);
+  log.request.time_scale = drive_scale;
+  std::string file;
+  section.read("file", file);
+  if (file.empty())
+    throw InputError(
+        fmt::format("{}{}: 'file' is missing", log.place, formats::to_string(log.request.stream)));
+  log.file = resolved(folder, file);
+  section.read("format", log.format);
+  if (section.has("separator") && log.format != "csv" && log.format != "auto")
+    section.fail("separator", fmt::format("belongs to the format csv, not to {}", log.format));
+  for (const std::string_view key : kCompanions) {
+    if (!section.has(key)) continue;
+    std::string companion;
+    section.read(key, companion);
+    log.companions[std::string(key)] = resolved(folder, companion);
+  }
+  if (const auto separator = section.read_word("separator", kSeparators))
+    log.request.separator = kSeparatorValues[*separator];
+  read_columns(section, log.format, log.request);
+  read_time(section, log.request);
+  read_accuracy(section, log.request);
+  return log;
+}
+
+}  // namespace waymark::drive

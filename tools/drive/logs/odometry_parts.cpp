@@ -1,0 +1,349 @@
+#include <waymark/tools/drive/logs/odometry_parts.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+#include <Eigen/Core>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/tools/drive/logs/time_series.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr double kLargestRate = 50;        // Hz, of a clock that nobody stated
+constexpr double kCountWindow = 0.2;       // s: counts are differenced over at least so long
+constexpr double kStandstillSpeed = 0.05;  // m/s: gravity is looked for below it ...
+constexpr double kStandstillTime = 2;      // s: ... where there is so much of it
+
+using Channels = std::map<std::string, TimeSeries, std::less<>>;
+
+struct Reading {
+  Stamp stamp;
+  double value = 0;
+};
+
+/// Readings in order of time; of several at one stamp the first.
+TimeSeries series_of(std::vector<Reading> readings) {
+  std::stable_sort(readings.begin(), readings.end(),
+                   [](const Reading& a, const Reading& b) { return a.stamp < b.stamp; });
+  TimeSeries series;
+  for (const Reading& reading : readings) {
+    if (!series.empty() && series.stamps.back() == reading.stamp) continue;
+    series.stamps.push_back(reading.stamp);
+    series.values.push_back(reading.value);
+  }
+  return series;
+}
+
+Channels collect_channels(std::span<const OdometryPart> parts) {
+  Channels channels;
+  std::map<std::string, std::string> origin;
+  const std::vector<SensorColumn>& known = formats::odometry_channels();
+  for (const OdometryPart& part : parts) {
+    for (std::size_t c = 0; c < known.size(); ++c) {
+      std::vector<Reading> readings;
+      for (std::size_t row = 0; row < part.readings.size(); ++row) {
+        const double value = part.readings.at(row, c);
+        if (std::isfinite(value)) readings.push_back({part.readings.stamps[row], value});
+      }
+      if (readings.empty()) continue;
+      const auto [place, is_new] = origin.try_emplace(known[c].name, part.file);
+      if (!is_new)
+        throw InputError(
+            fmt::format("odometry: both {} and {} give '{}'; leave it out of the columns of one of them",
+                        place->second, part.file, known[c].name));
+      channels[known[c].name] = series_of(std::move(readings));
+    }
+  }
+  return channels;
+}
+
+/// Combines two channels at the times of the first, where the other has a value too.
+template <typename Combine>
+TimeSeries combined(const TimeSeries& a, const TimeSeries& b, double gap_s, Combine combine) {
+  TimeSeries result;
+  const double limit = longest_silence_s(b, gap_s);
+  for (std::size_t i = 0; i < a.stamps.size(); ++i) {
+    const std::optional<double> other = value_at(b, a.stamps[i], limit);
+    if (!other) continue;
+    result.stamps.push_back(a.stamps[i]);
+    result.values.push_back(combine(a.values[i], *other));
+  }
+  return result;
+}
+
+/// Rate of a running count, in units per second, at the middle of each interval of at least kCountWindow.
+/// @param range  where the count starts again from 0; 0: never
+TimeSeries rate_of_count(const TimeSeries& count, double range, double gap_s) {
+  TimeSeries rate;
+  const double limit = longest_silence_s(count, gap_s);
+  std::size_t first = 0;
+  double change = 0;
+  for (std::size_t i = 1; i < count.stamps.size(); ++i) {
+    double step = count.values[i] - count.values[i - 1];
+    if (range > 0 && std::abs(step) > 0.5 * range) step -= std::copysign(range, step);
+    const bool restart = seconds_between(count.stamps[i - 1], count.stamps[i]) > limit;
+    change = restart ? 0 : change + step;
+    if (restart) first = i;
+    const double time = seconds_between(count.stamps[first], count.stamps[i]);
+    if (time < kCountWindow) continue;
+    rate.stamps.push_back({std::midpoint(count.stamps[first].nanoseconds, count.stamps[i].nanoseconds)});
+    rate.values.push_back(change / time);
+    first = i;
+    change = 0;
+  }
+  return rate;
+}
+
+/// Makes speed and yaw rate of whatever channels there are.
+class Assembler {
+ public:
+  Assembler(Channels channels, const OdometryAssembly& how, double gap_s)
+      : channels_(std::move(channels)), how_(how), gap_s_(gap_s) {}
+
+  [[nodiscard]] AssembledOdometry run() {
+    speed_ = chosen("speed", kSpeedSources, how_.speed_from,
+                    [&](std::string_view source) { return speed(source); });
+    flip_in_reverse();
+    TimeSeries yaw_rate = chosen("yaw rate", kYawRateSources, how_.yaw_rate_from,
+                                 [&](std::string_view source) { return this->yaw_rate(source); });
+    sample(yaw_rate);
+    return std::move(result_);
+  }
+
+ private:
+  template <std::size_t N, typename Make>
+  TimeSeries chosen(std::string_view what, const std::array<std::string_view, N>& sources,
+                    std::string_view stated, Make make) {
+    for (const std::string_view source : sources) {
+      if (!stated.empty() && source != stated) continue;
+      std::optional<TimeSeries> series = make(source);
+      if (!series) continue;
+      if (series->stamps.size() < 2)
+        throw InputError(fmt::format("odometry: {} from '{}' has {} readings; at least 2 are needed", what,
+                                     source, series->stamps.size()));
+      note(fmt::format("{} from {}, {:.4g} readings a second", what, described(source),
+                       1 / median_interval_s(*series)));
+      return std::move(*series);
+    }
+    throw InputError(fmt::format("odometry: nothing gives the {}{}; the logs give: {}", what,
+                                 stated.empty() ? "" : fmt::format(" from '{}', as stated", stated),
+                                 present()));
+  }
+
+  [[nodiscard]] const TimeSeries* find(std::string_view channel) const {
+    const auto place = channels_.find(channel);
+    return place == channels_.end() ? nullptr : &place->second;
+  }
+  [[nodiscard]] std::string present() const {
+    std::string names;
+    for (const auto& [name, series] : channels_) names += (names.empty() ? "" : ", ") + name;
+    return names.empty() ? "nothing" : names;
+  }
+  [[nodiscard]] std::string described(std::string_view source) const {
+    if (source != "gyro") return fmt::format("'{}'", source);
+    return fmt::format("'gyro', axis {}", how_.gyro_axis);
+  }
+  void note(const std::string& text) { result_.notes.push_back("odometry: " + text); }
+  /// A number of the vehicle that a source needs.
+  [[nodiscard]] double needed(double value, std::string_view key, std::string_view source) const {
+    if (value > 0) return value;
+    throw InputError(fmt::format("odometry: '{}' needs 'vehicle: {{{}: ...}}'", source, key));
+  }
+
+  /// Half the sum of two channels of an axle, or the difference right - left over the track width.
+  [[nodiscard]] std::optional<TimeSeries> of_axle(const TimeSeries* left, const TimeSeries* right,
+                                                  std::string_view source, bool turning) const {
+    if (left == nullptr || right == nullptr) return std::nullopt;
+    if (!turning) return combined(*left, *right, gap_s_, [](double l, double r) { return 0.5 * (l + r); });
+    const double track = needed(how_.track_width_m, "track_width", source);
+    return combined(*left, *right, gap_s_, [track](double l, double r) { return (r - l) / track; });
+  }
+  [[nodiscard]] std::optional<TimeSeries> wheels(std::string_view axle, std::string_view source,
+                                                 bool turning) const {
+    return of_axle(find(fmt::format("wheel_speed_{}_left", axle)),
+                   find(fmt::format("wheel_speed_{}_right", axle)), source, turning);
+  }
+  [[nodiscard]] std::optional<TimeSeries> tick_speed(std::string_view channel,
+                                                     std::string_view source) const {
+    const TimeSeries* count = find(channel);
+    if (count == nullptr) return std::nullopt;
+    const double metres = needed(how_.metres_per_tick, "metres_per_tick", source);
+    TimeSeries speed = rate_of_count(*count, how_.tick_range, gap_s_);
+    for (double& value : speed.values) value *= metres;
+    return speed;
+  }
+  [[nodiscard]] std::optional<TimeSeries> ticks(std::string_view axle, std::string_view source,
+                                                bool turning) const {
+    const auto left = tick_speed(fmt::format("wheel_ticks_{}_left", axle), source);
+    const auto right = tick_speed(fmt::format("wheel_ticks_{}_right", axle), source);
+    return of_axle(left ? &*left : nullptr, right ? &*right : nullptr, source, turning);
+  }
+
+  [[nodiscard]] std::optional<TimeSeries> speed(std::string_view source) const {
+    if (source == "rear_wheels") return wheels("rear", source, false);
+    if (source == "front_wheels") return wheels("front", source, false);
+    if (source == "rear_ticks") return ticks("rear", source, false);
+    if (source == "front_ticks") return ticks("front", source, false);
+    if (source == "ticks") return tick_speed("wheel_ticks", source);
+    const TimeSeries* channel = find(source);
+    if (channel == nullptr) return std::nullopt;
+    return source == "distance" ? rate_of_count(*channel, 0, gap_s_) : *channel;
+  }
+
+  [[nodiscard]] std::optional<TimeSeries> yaw_rate(std::string_view source) {
+    if (source == "gyro") return gyro();
+    if (source == "rear_wheels") return wheels("rear", source, true);
+    if (source == "rear_ticks") return ticks("rear", source, true);
+    if (source == "steering") return steering();
+    const TimeSeries* channel = find(source);
+    return channel == nullptr ? std::nullopt : std::optional(*channel);
+  }
+
+  [[nodiscard]] std::optional<TimeSeries> gyro() {
+    const std::array<const TimeSeries*, 3> axes{find("gyro_x"), find("gyro_y"), find("gyro_z")};
+    if (axes[0] == nullptr && axes[1] == nullptr && axes[2] == nullptr) return std::nullopt;
+    if (how_.gyro_axis.empty())
+      throw InputError(
+          "odometry: the yaw rate of a gyro needs 'gyro: {axis: ...}': x, y or z for the axis that points "
+          "up, -x, -y or "
+          "-z for one that points down, gravity to find it from the accelerometer");
+    if (how_.gyro_axis == "gravity") return along_gravity(axes);
+    const TimeSeries* axis = axes[static_cast<std::size_t>(how_.gyro_axis.back() - 'x')];
+    if (axis == nullptr)
+      throw InputError(fmt::format(
+          "odometry: no log gives 'gyro_{}', which 'gyro: {{axis: {}}}' asks for; the logs give: {}",
+          how_.gyro_axis.back(), how_.gyro_axis, present()));
+    TimeSeries rate = *axis;
+    if (how_.gyro_axis.front() == '-') {
+      for (double& value : rate.values) value = -value;
+    }
+    return rate;
+  }
+
+  /// The rate about the direction that the accelerometer feels at rest: specific force at rest points up.
+  [[nodiscard]] TimeSeries along_gravity(const std::array<const TimeSeries*, 3>& axes) {
+    const std::array<const TimeSeries*, 3> forces{find("acceleration_x"), find("acceleration_y"),
+                                                  find("acceleration_z")};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (axes[i] == nullptr || forces[i] == nullptr)
+        throw InputError(fmt::format(
+            "odometry: 'gyro: {{axis: gravity}}' needs gyro_x, _y, _z and acceleration_x, _y, _z; "
+            "the logs give: {}",
+            present()));
+    }
+    const Eigen::Vector3d up = upward(forces);
+    const double limit = longest_silence_s(*axes[1], gap_s_);
+    TimeSeries rate;
+    for (std::size_t i = 0; i < axes[0]->stamps.size(); ++i) {
+      const Stamp stamp = axes[0]->stamps[i];
+      const std::optional<double> y = value_at(*axes[1], stamp, limit);
+      const std::optional<double> z = value_at(*axes[2], stamp, limit);
+      if (!y || !z) continue;
+      rate.stamps.push_back(stamp);
+      rate.values.push_back(up.dot(Eigen::Vector3d(axes[0]->values[i], *y, *z)));
+    }
+    return rate;
+  }
+
+  [[nodiscard]] Eigen::Vector3d upward(const std::array<const TimeSeries*, 3>& forces) {
+    Eigen::Vector3d standing = Eigen::Vector3d::Zero();
+    Eigen::Vector3d all = Eigen::Vector3d::Zero();
+    double standing_count = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      double count = 0;
+      for (std::size_t k = 0; k < forces[i]->stamps.size(); ++k) {
+        const std::optional<double> v = value_at(speed_, forces[i]->stamps[k], kStandstillTime);
+        all[static_cast<Eigen::Index>(i)] +=
+            forces[i]->values[k] / static_cast<double>(forces[i]->stamps.size());
+        if (!v || std::abs(*v) > kStandstillSpeed) continue;
+        standing[static_cast<Eigen::Index>(i)] += forces[i]->values[k];
+        ++count;
+      }
+      if (count > 0) standing[static_cast<Eigen::Index>(i)] /= count;
+      standing_count = i == 0 ? count : std::min(standing_count, count);
+    }
+    const bool stood = standing_count * median_interval_s(*forces[0]) >= kStandstillTime;
+    const Eigen::Vector3d up = stood ? standing : all;
+    if (!(up.norm() > 1))
+      throw InputError(
+          "odometry: the accelerometer feels no gravity (below 1 m/s^2); is its unit right, and does the "
+          "device remove gravity? State 'gyro: {axis: x}' or another axis instead");
+    note(fmt::format("up is ({:.3f}, {:.3f}, {:.3f}) of the sensor's axes, by {}", up.x() / up.norm(),
+                     up.y() / up.norm(), up.z() / up.norm(),
+                     stood ? "gravity at standstill" : "the mean specific force (no standstill of 2 s)"));
+    return up.normalized();
+  }
+
+  [[nodiscard]] std::optional<TimeSeries> steering() const {
+    const TimeSeries* angle = find("steering_angle");
+    if (angle == nullptr) return std::nullopt;
+    const double wheelbase = needed(how_.wheelbase_m, "wheelbase", "steering");
+    return combined(*angle, speed_, gap_s_,
+                    [&](double a, double v) { return v * std::tan(a / how_.steering_ratio) / wheelbase; });
+  }
+
+  /// A speed without a sign gets one from the channel `reverse`, whose last reading holds.
+  void flip_in_reverse() {
+    const TimeSeries* reverse = find("reverse");
+    if (reverse == nullptr) return;
+    std::size_t flipped = 0;
+    for (std::size_t i = 0; i < speed_.stamps.size(); ++i) {
+      const auto after = std::upper_bound(reverse->stamps.begin(), reverse->stamps.end(), speed_.stamps[i]);
+      if (after == reverse->stamps.begin()) continue;
+      const auto last = static_cast<std::size_t>(after - reverse->stamps.begin()) - 1;
+      if (reverse->values[last] == 0 || speed_.values[i] <= 0) continue;
+      speed_.values[i] = -speed_.values[i];
+      ++flipped;
+    }
+    note(fmt::format("{} readings of speed are negative by 'reverse'", flipped));
+  }
+
+  void sample(const TimeSeries& yaw_rate) {
+    const double rate =
+        how_.rate_hz > 0 ? how_.rate_hz : std::min(kLargestRate, 1 / median_interval_s(yaw_rate));
+    const auto period = static_cast<std::int64_t>(std::llround(1e9 / rate));
+    const std::int64_t first = std::max(speed_.stamps.front(), yaw_rate.stamps.front()).nanoseconds;
+    const std::int64_t last = std::min(speed_.stamps.back(), yaw_rate.stamps.back()).nanoseconds;
+    const double speed_gap = longest_silence_s(speed_, gap_s_);
+    const double yaw_gap = longest_silence_s(yaw_rate, gap_s_);
+    const SeriesIntegral way(speed_);
+    const SeriesIntegral turn(yaw_rate);
+    std::int64_t t = first - first % period;
+    if (t < first) t += period;
+    for (; t <= last; t += period) {
+      if (!value_at(speed_, {t}, speed_gap) || !value_at(yaw_rate, {t}, yaw_gap)) continue;
+      const Stamp from{std::max(t - period / 2, first)};
+      const Stamp to{std::min(t - period / 2 + period, last)};
+      result_.samples.push_back({{t}, way.mean(from, to), turn.mean(from, to)});
+    }
+    if (result_.samples.empty())
+      throw InputError(
+          "odometry: speed and yaw rate have no time in common; check 'time: {scale, week, offset}' of the "
+          "parts");
+    note(fmt::format("{} samples at {:.4g} Hz{}", result_.samples.size(), rate,
+                     how_.rate_hz > 0 ? "" : " (the yaw rate's own; state 'rate' for another)"));
+  }
+
+  Channels channels_;
+  const OdometryAssembly& how_;
+  double gap_s_;
+  TimeSeries speed_;
+  AssembledOdometry result_;
+};
+
+}  // namespace
+
+AssembledOdometry assemble_odometry(std::span<const OdometryPart> parts, const OdometryAssembly& how,
+                                    double gap_s) {
+  return Assembler(collect_channels(parts), how, gap_s).run();
+}
+
+}  // namespace waymark::drive

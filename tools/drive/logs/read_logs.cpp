@@ -1,0 +1,105 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/tools/drive/logs/prepare.hpp>
+
+namespace waymark::drive {
+namespace {
+
+/// Not every format knows sensors, and a plugin's reader may be wrong.
+void check_readings(const SensorTable& readings, const LogConfig& log) {
+  const std::size_t columns = log.request.readings.size();
+  if (readings.size() > 0 && readings.columns == columns &&
+      readings.values.size() == readings.size() * columns)
+    return;
+  throw InputError(fmt::format("{}{}: format '{}' gives no readings of a sensor; csv and candump do",
+                               log.place, log.file, log.format));
+}
+
+std::vector<LogReaderType> readers_of(const TypeRegistry& registry) {
+  std::vector<LogReaderType> readers;
+  for (const Registered<LogReaderType>& entry : registry.log_readers()) readers.push_back(entry.type);
+  return readers;
+}
+
+LogReaderType named_reader(const LogConfig& log, const std::vector<LogReaderType>& readers) {
+  std::vector<std::string_view> names;
+  for (const LogReaderType& reader : readers) {
+    if (reader.name == log.format) return reader;
+    names.push_back(reader.name);
+  }
+  throw InputError(
+      fmt::format("{}unknown log format '{}'{}; `waymark info` lists those there are; a plugin that brings "
+                  "it is loaded with --plugin",
+                  log.place, log.format, did_you_mean(log.format, names)));
+}
+
+/// The text of the files that belong to the log. A folder of KITTI oxts has its time stamps beside it by the
+/// layout of the data set.
+void read_companions(const LogConfig& log, LogRequest& request, std::vector<std::string>& notes) {
+  std::map<std::string, std::string> companions = log.companions;
+  const std::filesystem::path beside = std::filesystem::path(log.file).parent_path() / "timestamps.txt";
+  if (std::filesystem::is_directory(log.file) && !companions.contains("timestamps") &&
+      std::filesystem::exists(beside)) {
+    companions["timestamps"] = beside.string();
+    notes.push_back(fmt::format("{}: time stamps are those of {} (not stated)", log.file, beside.string()));
+  }
+  for (const auto& [key, path] : companions) {
+    std::string text;
+    const std::string trouble = formats::read_in_pieces(path, [&](std::string_view piece) { text += piece; });
+    if (!trouble.empty()) throw InputError(path + ": " + trouble);
+    request.companions[key] = {path, std::move(text)};
+  }
+}
+
+DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, const LogWatch& watch) {
+  const std::vector<LogReaderType> readers = readers_of(registry);
+  LogRequest request = log.request;
+  std::vector<std::string> notes;
+  LogReaderType reader;
+  if (log.format == "auto") {
+    const formats::Recognised found = formats::recognise_log(log.file, readers);
+    reader = found.reader;
+    notes.push_back(fmt::format("{}: read as '{}': {}", log.file, reader.name, found.why.evidence));
+  } else {
+    reader = named_reader(log, readers);
+  }
+  // A table tells by its columns whether it holds odometry in channels; other logs are asked for both.
+  if (request.stream == StreamKind::odometry && reader.name != "csv")
+    request.readings = formats::odometry_channels();
+  read_companions(log, request, notes);
+  const formats::ReadProgress progress = [&](std::uint64_t done, std::uint64_t size) {
+    if (watch) watch(log.file, done, size);
+  };
+  DriveLogs::Log result{formats::read_log_file(*reader.reader, log.file, request, progress),
+                        request.time_scale, log.file};
+  result.data.notes.insert(result.data.notes.begin(), notes.begin(), notes.end());
+  if (log.request.stream == StreamKind::sensor) check_readings(result.data.readings, log);
+  return result;
+}
+
+}  // namespace
+
+DriveLogs read_drive_logs(const DriveConfig& config, const TypeRegistry& registry, const LogWatch& watch) {
+  DriveLogs logs;
+  if (config.odometry.empty()) throw InputError(fmt::format("{}: no odometry log is named", config.path));
+  for (const LogConfig& log : config.odometry) logs.odometry.push_back(read_log(log, registry, watch));
+  for (const GnssConfig& log : config.gnss) {
+    logs.gnss.push_back(read_log(log, registry, watch));
+    logs.velocity.push_back(log.velocity ? read_log(*log.velocity, registry, watch) : DriveLogs::Log{});
+  }
+  if (config.truth) logs.truth.push_back(read_log(*config.truth, registry, watch));
+  for (const SensorConfig& sensor : config.sensors)
+    logs.sensors.push_back(sensor.log ? read_log(*sensor.log, registry, watch) : DriveLogs::Log{});
+  return logs;
+}
+
+PreparedDrive load_drive(const DriveConfig& config, const TypeRegistry& registry, const LogWatch& watch) {
+  return prepare_drive(read_drive_logs(config, registry, watch), config);
+}
+
+}  // namespace waymark::drive

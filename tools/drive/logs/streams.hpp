@@ -1,0 +1,88 @@
+/// What preparing a drive does to any stream of stamped samples: clean, sort, find gaps.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/drive/stamp.hpp>
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
+#include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/drive/logs/time_series.hpp>
+
+namespace waymark::drive {
+
+/// Drops non-finite samples and duplicates, sorts the rest by stamp, stable.
+/// @param is_finite  bool(const Sample&)
+/// @param same_key   bool(const Sample&, const Sample&): neighbours of one stamp that exclude each other
+/// @param same       bool(const Sample&, const Sample&): identical in content
+template <typename Sample, typename IsFinite, typename SameKey, typename Same>
+void clean_stream(std::vector<Sample>& samples, StreamReport& report, IsFinite is_finite, SameKey same_key,
+                  Same same) {
+  report.read = samples.size();
+  std::erase_if(samples, [&](const Sample& sample) { return !is_finite(sample); });
+  report.non_finite = report.read - samples.size();
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    report.out_of_order += samples[i].stamp < samples[i - 1].stamp && same_key(samples[i], samples[i - 1]);
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const Sample& a, const Sample& b) { return a.stamp < b.stamp; });
+
+  std::vector<Sample> kept;
+  kept.reserve(samples.size());
+  for (const Sample& sample : samples) {
+    const Sample* earlier = nullptr;  // kept samples of the same stamp stand at the end
+    for (auto it = kept.rbegin(); it != kept.rend() && it->stamp == sample.stamp; ++it) {
+      if (same_key(*it, sample)) earlier = &*it;
+    }
+    if (earlier == nullptr) {
+      kept.push_back(sample);
+    } else {
+      ++(same(*earlier, sample) ? report.duplicates_identical : report.duplicates_conflicting);
+    }
+  }
+  samples = std::move(kept);
+}
+
+/// Adds what a log's reader counted and noted.
+inline void add_log_report(const LogData& data, StreamReport& stream, PrepareReport& report) {
+  stream.records += data.records;
+  stream.corrupt += data.corrupt;
+  report.notes.insert(report.notes.end(), data.notes.begin(), data.notes.end());
+  report.corrupt_examples.insert(report.corrupt_examples.end(), data.corrupt_examples.begin(),
+                                 data.corrupt_examples.end());
+}
+
+/// Puts the stamps of a log onto the drive's scale. @param stamp_of  Stamp&(Sample&)
+/// @throws InputError for seconds of week that would need a date
+template <typename Samples, typename StampOf>
+void put_on_scale(Samples&& samples, const DriveLogs::Log& log, TimeScale scale, StampOf stamp_of) {
+  constexpr std::int64_t kTwoWeeks = 2 * formats::kGpsWeekNanoseconds;
+  const bool changes_scale = convert(Stamp{}, log.scale, scale) != Stamp{};
+  for (auto& sample : samples) {
+    Stamp& stamp = stamp_of(sample);
+    if (changes_scale && log.scale == TimeScale::gps && stamp.nanoseconds < kTwoWeeks)
+      throw InputError(log.file + ": seconds of week cannot be put onto the scale '" +
+                       std::string(to_string(scale)) + "' of the drive; state the log's 'time: {week: ...}'");
+    stamp = convert(stamp, log.scale, scale);
+  }
+}
+
+/// Fills used, median_interval_s and gaps.
+/// @param gap_s  longer intervals are gaps; 0: 2.5 median intervals
+template <typename Sample>
+void describe_stream(const std::vector<Sample>& samples, double gap_s, StreamReport& report) {
+  report.used = samples.size();
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    intervals.push_back(seconds_between(samples[i - 1].stamp, samples[i].stamp));
+  if (intervals.empty()) return;
+  report.median_interval_s = median_of(intervals);
+  const double limit = gap_s > 0 ? gap_s : 2.5 * report.median_interval_s;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    if (intervals[i] > limit) report.gaps.push_back({samples[i].stamp, intervals[i]});
+  }
+}
+
+}  // namespace waymark::drive

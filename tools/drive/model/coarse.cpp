@@ -1,0 +1,72 @@
+#include <waymark/tools/drive/model/coarse.hpp>
+
+#include <cmath>
+#include <map>
+
+namespace waymark::drive {
+namespace {
+
+std::vector<std::size_t> kept_fixes(const std::vector<Fix>& fixes, double period_s) {
+  std::map<int, Stamp> last;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    if (fixes[i].status != FixStatus::accepted) continue;
+    const auto before = last.find(fixes[i].source);
+    if (before != last.end() && seconds_between(before->second, fixes[i].stamp) < 0.9 * period_s) continue;
+    last[fixes[i].source] = fixes[i].stamp;
+    kept.push_back(i);
+  }
+  return kept;
+}
+
+/// Adds a part to a mean twist.
+void merge(Interval& whole, const Interval& part) {
+  const double dt = whole.dt_s + part.dt_s;
+  whole.speed_mps = (whole.speed_mps * whole.dt_s + part.speed_mps * part.dt_s) / dt;
+  whole.yaw_rate_radps = (whole.yaw_rate_radps * whole.dt_s + part.yaw_rate_radps * part.dt_s) / dt;
+  whole.dt_s = dt;
+}
+
+}  // namespace
+
+CoarseDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_period_s) {
+  const Timeline& timeline = placed.timeline;
+  const std::vector<std::size_t> kept = kept_fixes(placed.fixes, fix_period_s);
+  std::vector<char> needed(timeline.stamps.size(), 0);
+  for (const std::size_t fix : kept) needed[timeline.fix_node[fix]] = 1;
+
+  CoarseDrive coarse;
+  std::vector<std::size_t> coarse_node(timeline.stamps.size(), 0);
+  const auto add_node = [&](std::size_t node) {
+    coarse_node[node] = coarse.stamps.size();
+    coarse.stamps.push_back(timeline.stamps[node]);
+    coarse.poses.push_back(placed.start.poses[node]);
+  };
+  const auto stands = [&](const Interval& i) { return std::abs(i.speed_mps) < placed.standstill_mps; };
+  add_node(0);
+  Interval open = timeline.intervals.front();
+  for (std::size_t i = 1; i < timeline.intervals.size(); ++i) {
+    const Interval& next = timeline.intervals[i];
+    const bool alike = stands(open) == stands(next) && open.bridged == next.bridged;
+    if (alike && needed[i] == 0 && open.dt_s + next.dt_s <= node_period_s) {
+      merge(open, next);
+      continue;
+    }
+    coarse.intervals.push_back(open);
+    add_node(i);
+    open = next;
+  }
+  coarse.intervals.push_back(open);
+  add_node(timeline.intervals.size());
+
+  const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};
+  for (const std::size_t i : kept) {
+    Fix fix = placed.fixes[i];
+    fix.vertex = static_cast<VertexId>(coarse_node[timeline.fix_node[i]]) + 1;
+    coarse.fixes.push_back(fix);
+    coarse.motion.push_back(motion_at(nodes, timeline.fix_node[i]));
+  }
+  return coarse;
+}
+
+}  // namespace waymark::drive

@@ -1,0 +1,49 @@
+/// The noise of a drive, estimated from the drive itself: the options of its odometry model and its GNSS
+/// modeling that state a prior, by the marginal likelihood of the fixes (core/covariance/evidence.hpp).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <waymark/core/registry/registry.hpp>
+#include <waymark/tools/drive/model/assemble.hpp>
+
+namespace waymark::drive {
+
+/// What was found for one option.
+struct NoiseParameter {
+  std::string owner;  ///< the odometry model or the modeling it is an option of
+  std::string option;
+  std::string unit;
+  NoisePrior prior;
+  double value = 0;
+  /// Standard deviation of the posterior in the prior's sense (of the logarithm, or linear), the other
+  /// parameters held.
+  double deviation = 0;
+
+  /// Whether the drive said more of it than was known before.
+  [[nodiscard]] bool observed() const { return deviation < 0.9 * prior.deviation; }
+};
+
+struct NoiseEstimate {
+  std::vector<NoiseParameter> parameters;
+  int evaluations = 0;  ///< of the marginal likelihood
+  double seconds = 0;
+};
+
+/// Maximises prior times marginal likelihood over the options with a prior that the drive.yaml does not
+/// state. Works on fixes thinned to one in 5 s per receiver, for receivers smooth their output and white
+/// noise would be found too small, and on nodes four times a second; further sensors take no part.
+/// @param modeling_options  what is stated for the modeling
+/// @return no parameters where none is left to be estimated
+/// @throws UsageError and InputError as the odometry model and the modeling do
+[[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, const DriveConfig& config,
+                                           const std::string& modeling, const Options& modeling_options,
+                                           const TypeRegistry& registry, const Eigen::Vector2d& antenna_m,
+                                           const std::optional<Loss>& loss = std::nullopt);
+
+/// The estimated options of one owner, over those given.
+[[nodiscard]] Options with_noise(Options options, const NoiseEstimate& noise, const std::string& owner);
+
+}  // namespace waymark::drive

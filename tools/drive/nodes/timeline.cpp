@@ -1,0 +1,153 @@
+#include <waymark/tools/drive/nodes/timeline.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark::drive {
+namespace {
+
+double distance_s(Stamp a, Stamp b) {
+  return std::abs(seconds_between(a, b));
+}
+
+/// The same stamp always shares a node, otherwise two nodes would have no time between them.
+bool shares_node(Stamp a, Stamp b, double snap_s) {
+  return a == b || distance_s(a, b) < snap_s;
+}
+
+void check_inputs(std::span<const OdometrySample> odometry, std::span<const Fix> fixes,
+                  const TimelineOptions& options) {
+  if (odometry.size() < 2) throw InputError("the odometry has fewer than two samples");
+  if (!(options.snap_s >= 0) || !(options.gap_s > 0))
+    throw UsageError("timeline: snap_s must be >= 0 and gap_s > 0");
+  const auto unordered = [](const auto& a, const auto& b) { return a.stamp >= b.stamp; };
+  if (std::adjacent_find(odometry.begin(), odometry.end(), unordered) != odometry.end())
+    throw UsageError("timeline: odometry stamps must increase strictly");
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    if (i > 0 && fixes[i].stamp < fixes[i - 1].stamp)
+      throw UsageError("timeline: fixes must be sorted by stamp");
+    const bool before = fixes[i].stamp < odometry.front().stamp &&
+                        !shares_node(fixes[i].stamp, odometry.front().stamp, options.snap_s);
+    const bool after = fixes[i].stamp > odometry.back().stamp &&
+                       !shares_node(fixes[i].stamp, odometry.back().stamp, options.snap_s);
+    if (before || after) {
+      throw InputError("fix of epoch " + std::to_string(fixes[i].epoch) + " lies " +
+                       (before ? "before" : "after") + " the odometry's span");
+    }
+  }
+}
+
+void check_gap(Stamp start, Stamp left, double length_s, const TimelineOptions& options) {
+  if (options.gap_policy != GapPolicy::error || length_s <= options.gap_s) return;
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "gap of %.3f s in the odometry, %.3f s after its start; set gap: policy: bridge or raise gap: "
+      "longer_than (%.3f) to go on",
+      length_s, seconds_between(start, left), options.gap_s);
+  throw InputError(text);
+}
+
+/// Grid scale at a stamp: that of the nearest fix in time. `hint` walks forward with the calls.
+double grid_scale_at(std::int64_t middle_ns, std::span<const Fix> fixes, std::size_t& hint) {
+  if (fixes.empty()) return 1;
+  const auto away = [&](std::size_t i) { return std::abs(fixes[i].stamp.nanoseconds - middle_ns); };
+  while (hint + 1 < fixes.size() && away(hint + 1) <= away(hint)) ++hint;
+  return fixes[hint].grid_scale;
+}
+
+/// The twist between two neighbouring odometry samples; dt_s is filled per part.
+Interval twist_between(const OdometrySample& left, const OdometrySample& right, double grid_scale,
+                       double gap_s) {
+  Interval twist;
+  twist.speed_mps = 0.5 * (left.speed_mps + right.speed_mps) * grid_scale;
+  twist.yaw_rate_radps = 0.5 * (left.yaw_rate_radps + right.yaw_rate_radps);
+  twist.bridged = seconds_between(left.stamp, right.stamp) > gap_s;
+  return twist;
+}
+
+/// Appends a node at `stamp`, reached with `twist`. dt is the difference of stamps, so that parts of a split
+/// interval add up to the whole.
+void append_node(Timeline& timeline, Stamp stamp, Interval twist) {
+  twist.dt_s = seconds_between(timeline.stamps.back(), stamp);
+  timeline.stamps.push_back(stamp);
+  timeline.intervals.push_back(twist);
+}
+
+}  // namespace
+
+Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<const Fix> fixes,
+                        const TimelineOptions& options) {
+  check_inputs(odometry, fixes, options);
+  Timeline timeline;
+  timeline.stamps.reserve(odometry.size() + fixes.size());
+  timeline.intervals.reserve(odometry.size() + fixes.size());
+  timeline.fix_node.reserve(fixes.size());
+
+  std::size_t fix = 0;
+  std::size_t scale_hint = 0;
+  timeline.stamps.push_back(odometry.front().stamp);
+  // Fixes that snap to the last node so far belong to it.
+  const auto attach = [&] {
+    while (fix < fixes.size() && (fixes[fix].stamp <= timeline.stamps.back() ||
+                                  shares_node(fixes[fix].stamp, timeline.stamps.back(), options.snap_s))) {
+      timeline.fix_node.push_back(timeline.stamps.size() - 1);
+      ++fix;
+    }
+  };
+  attach();
+  for (std::size_t k = 1; k < odometry.size(); ++k) {
+    const OdometrySample& left = odometry[k - 1];
+    const OdometrySample& right = odometry[k];
+    check_gap(odometry.front().stamp, left.stamp, seconds_between(left.stamp, right.stamp), options);
+    const std::int64_t middle =
+        left.stamp.nanoseconds + (right.stamp.nanoseconds - left.stamp.nanoseconds) / 2;
+    const Interval twist =
+        twist_between(left, right, grid_scale_at(middle, fixes, scale_hint), options.gap_s);
+    // Epochs strictly inside, not near either end, split the interval.
+    while (fix < fixes.size() && fixes[fix].stamp < right.stamp &&
+           !shares_node(fixes[fix].stamp, right.stamp, options.snap_s)) {
+      append_node(timeline, fixes[fix].stamp, twist);
+      attach();
+    }
+    append_node(timeline, right.stamp, twist);
+    attach();
+  }
+  return timeline;
+}
+
+std::vector<Eigen::Vector3d> dead_reckon(const Timeline& timeline, const Eigen::Vector3d& start,
+                                         double standstill_mps) {
+  std::vector<Eigen::Vector3d> poses;
+  poses.reserve(timeline.stamps.size());
+  poses.push_back(start);
+  Pose2<double> pose(start[0], start[1], start[2]);
+  for (const Interval& interval : timeline.intervals) {
+    if (std::abs(interval.speed_mps) >= standstill_mps) {
+      const double dt = interval.dt_s;
+      const Eigen::Vector3d twist(interval.speed_mps * dt, 0, interval.yaw_rate_radps * dt);
+      pose = compose(pose, se2_exp(twist));
+    }
+    poses.push_back(pose.vector());
+  }
+  return poses;
+}
+
+std::vector<Eigen::Vector3d> antenna_at_fixes(const Timeline& timeline,
+                                              std::span<const Eigen::Vector3d> poses,
+                                              const Eigen::Vector2d& antenna_m) {
+  std::vector<Eigen::Vector3d> antennas;
+  antennas.reserve(timeline.fix_node.size());
+  for (const std::size_t node : timeline.fix_node) {
+    Eigen::Vector3d pose = poses[node];
+    pose.head<2>() += rotate(pose[2], antenna_m);
+    antennas.push_back(pose);
+  }
+  return antennas;
+}
+
+}  // namespace waymark::drive

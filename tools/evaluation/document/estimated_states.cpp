@@ -1,0 +1,149 @@
+#include <waymark/tools/evaluation/document/estimated_states.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <waymark/core/covariance/marginals.hpp>
+#include <waymark/core/graph/gaussian_prior.hpp>
+#include <waymark/tools/text/json_number.hpp>
+#include <waymark/tools/text/text_table.hpp>
+
+namespace waymark::evaluation {
+namespace {
+
+bool is_state(const VertexType& type) {
+  return !type.value_units.empty() && type.position == nullptr && type.value_size == type.tangent_size;
+}
+
+/// The estimated vertices of one type, in their order.
+struct StateVertices {
+  const VertexType* type = nullptr;
+  std::vector<VertexIndex> vertices;
+};
+
+/// Whether a vertex goes on with a state: a later value of the same type.
+bool goes_on(const Graph& graph, const StateVertices& state, VertexIndex v) {
+  const auto before = graph.stamp(state.vertices.back());
+  const auto now = graph.stamp(v);
+  return state.type->tag == graph.vertex_type(v).tag && before && now && *before < *now;
+}
+
+std::vector<StateVertices> states_of(const Graph& graph) {
+  std::vector<StateVertices> states;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const VertexType& type = graph.vertex_type(v);
+    if (!is_state(type) || graph.fixed(v)) continue;
+    auto known = std::find_if(states.begin(), states.end(),
+                              [&](const StateVertices& other) { return goes_on(graph, other, v); });
+    if (known == states.end()) known = states.insert(states.end(), {&type, {}});
+    known->vertices.push_back(v);
+  }
+  return states;
+}
+
+/// Priors of single vertices: the information of each.
+std::map<VertexIndex, Eigen::MatrixXd> single_priors(const Graph& graph) {
+  std::map<VertexIndex, Eigen::MatrixXd> priors;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    if (graph.edge_type(b).tag != GaussianPriorBatch::kTag) continue;
+    const EdgeBatchBase& batch = graph.batch(b);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (batch.vertices(i).size() == 1) priors[batch.vertices(i).front()] = batch.information(i);
+    }
+  }
+  return priors;
+}
+
+/// A posterior sigma above this share of the prior's is the prior's.
+constexpr double kNotObserved = 0.9;
+
+StateReport report(const Graph& graph, const StateVertices& state, int axis,
+                   const Eigen::MatrixXd& last_covariance) {
+  const auto value = [&](VertexIndex v) { return graph.value(v)[static_cast<std::size_t>(axis)]; };
+  const auto less = [&](VertexIndex a, VertexIndex b) { return value(a) < value(b); };
+  const auto [smallest, largest] = std::minmax_element(state.vertices.begin(), state.vertices.end(), less);
+  StateReport result;
+  result.name = state.type->value_names[static_cast<std::size_t>(axis)];
+  result.unit = state.type->value_units[static_cast<std::size_t>(axis)];
+  result.values = state.vertices.size();
+  result.first = value(state.vertices.front());
+  result.last = value(state.vertices.back());
+  result.smallest = value(*smallest);
+  result.largest = value(*largest);
+  if (state.vertices.size() > 1) {
+    for (const VertexIndex v : state.vertices) {
+      result.stamps.push_back(*graph.stamp(v));
+      result.wandering.push_back(value(v));
+    }
+  }
+  const double variance = last_covariance(axis, axis);  // 0: not estimated, no edge touches it
+  result.sigma = variance > 0 ? std::sqrt(variance) : std::numeric_limits<double>::quiet_NaN();
+  return result;
+}
+
+void judge_by_prior(const std::map<VertexIndex, Eigen::MatrixXd>& priors, VertexIndex first, int axis,
+                    const Eigen::MatrixXd& covariance, StateReport& result) {
+  result.prior_sigma = std::numeric_limits<double>::quiet_NaN();
+  const auto prior = priors.find(first);
+  if (prior == priors.end() || !(prior->second(axis, axis) > 0)) return;
+  result.prior_sigma = 1 / std::sqrt(prior->second(axis, axis));
+  result.observed =
+      covariance(axis, axis) > 0 && std::sqrt(covariance(axis, axis)) < kNotObserved * result.prior_sigma;
+}
+
+}  // namespace
+
+std::vector<StateReport> report_states(const formats::GraphDocument& document) {
+  const std::vector<StateVertices> states = states_of(document.graph);
+  if (states.empty()) return {};
+  std::vector<VertexIndex> ends;
+  for (const StateVertices& state : states) {
+    ends.push_back(state.vertices.front());
+    ends.push_back(state.vertices.back());
+  }
+  const auto covariances = marginal_covariances(document.graph, ends);
+  const auto priors = single_priors(document.graph);
+  std::vector<StateReport> reports;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    for (int axis = 0; axis < states[i].type->value_size; ++axis) {
+      reports.push_back(report(document.graph, states[i], axis, covariances[2 * i + 1]));
+      judge_by_prior(priors, states[i].vertices.front(), axis, covariances[2 * i], reports.back());
+    }
+  }
+  return reports;
+}
+
+std::string states_text(const std::vector<StateReport>& states, const text::TextLook& look) {
+  if (states.empty()) return {};
+  text::TextTable table(
+      {"estimated state", "unit", "values", "first", "last", "smallest", "largest", "sigma", "prior", ""});
+  for (const StateReport& s : states) {
+    const auto number = [](double x) { return std::isnan(x) ? "-" : fmt::format("{:.4g}", x); };
+    table.add({s.name, s.unit, fmt::to_string(s.values), number(s.first), number(s.last), number(s.smallest),
+               number(s.largest), number(s.sigma), number(s.prior_sigma), s.observed ? "" : "not observed"});
+  }
+  return table.text(look);
+}
+
+nlohmann::ordered_json states_json(const std::vector<StateReport>& states) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const StateReport& s : states) {
+    json.push_back({{"name", s.name},
+                    {"unit", s.unit},
+                    {"values", s.values},
+                    {"first", s.first},
+                    {"last", s.last},
+                    {"smallest", s.smallest},
+                    {"largest", s.largest},
+                    {"sigma", text::number_or_null(s.sigma)},
+                    {"prior_sigma", text::number_or_null(s.prior_sigma)},
+                    {"observed", s.observed}});
+  }
+  return json;
+}
+
+}  // namespace waymark::evaluation

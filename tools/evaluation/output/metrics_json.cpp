@@ -1,0 +1,159 @@
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <waymark/tools/evaluation/output/report.hpp>
+#include <waymark/tools/text/json_number.hpp>
+
+namespace waymark::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const PositionMetrics& m) {
+  return {{"n", m.count},
+          {"max_m", text::number_or_null(m.max_m)},
+          {"accuracy_m", text::number_or_null(m.accuracy_m)},
+          {"precision_m", text::number_or_null(m.precision_m)},
+          {"rmse_m", text::number_or_null(m.rmse_m)},
+          {"median_m", text::number_or_null(m.median_m)},
+          {"cep50_m", text::number_or_null(m.cep50_m)},
+          {"cep95_m", text::number_or_null(m.cep95_m)},
+          {"mean_offset_m",
+           Json::array({text::number_or_null(m.mean_m.x()), text::number_or_null(m.mean_m.y())})}};
+}
+
+/// @param unit  suffix of the keys: "m" or "rad".
+Json to_json(const ScalarStatistics& s, const std::string& unit) {
+  return {{"n", s.count},
+          {"mean_" + unit, text::number_or_null(s.mean)},
+          {"std_" + unit, text::number_or_null(s.deviation)},
+          {"rms_" + unit, text::number_or_null(s.rms)},
+          {"max_abs_" + unit, text::number_or_null(s.max_abs)}};
+}
+
+Json to_json(const SystemMetrics& m) {
+  return {{"position", to_json(m.position)},
+          {"along_track", to_json(m.track.along, "m")},
+          {"cross_track", to_json(m.track.cross, "m")},
+          {"heading", to_json(m.heading, "rad")}};
+}
+
+Json to_json(const Improvement& i) {
+  return {{"max", text::number_or_null(i.max_percent)},
+          {"accuracy", text::number_or_null(i.accuracy_percent)},
+          {"precision", text::number_or_null(i.precision_percent)},
+          {"rmse", text::number_or_null(i.rmse_percent)},
+          {"median", text::number_or_null(i.median_percent)},
+          {"cep50", text::number_or_null(i.cep50_percent)},
+          {"cep95", text::number_or_null(i.cep95_percent)}};
+}
+
+Json to_json(const InnovationStatistics& s) {
+  return {{"kind", to_string(s.kind)},
+          {"n", s.count},
+          {"undefined", s.undefined},
+          {"mean", text::number_or_null(s.mean)},
+          {"expected_mean", InnovationStatistics::kExpectedMean},
+          {"expected_deviation_of_mean", text::number_or_null(s.expected_deviation)},
+          {"bound_95", InnovationStatistics::kBound95},
+          {"fraction_inside", text::number_or_null(s.fraction_inside)},
+          {"expected_fraction_inside", InnovationStatistics::kExpectedInside},
+          {"max", text::number_or_null(s.max)}};
+}
+
+Json to_json(const TruthMatch& m) {
+  return {{"matched", m.matched},
+          {"unmatched", m.unmatched()},
+          {"before_truth", m.before_truth},
+          {"after_truth", m.after_truth},
+          {"in_gap", m.in_gap},
+          {"median_interval_s", text::number_or_null(m.median_interval_s)},
+          {"longest_interpolated_s", text::number_or_null(m.longest_interpolated_s)}};
+}
+
+Json to_json(const Interval95& i) {
+  return Json::array({text::number_or_null(i.low), text::number_or_null(i.high)});
+}
+
+Json to_json(const ConsistencyStatistics& s) {
+  return {{"n", s.count},
+          {"undefined", s.undefined},
+          {"effective_n", text::number_or_null(s.effective_samples)},
+          {"nees_mean", text::number_or_null(s.nees_mean)},
+          {"expected_nees_mean", ConsistencyStatistics::kExpectedMean},
+          {"honest_nees_mean", to_json(s.nees_mean_honest)},
+          {"coverage_95", text::number_or_null(s.coverage)},
+          {"expected_coverage_95", ConsistencyStatistics::kExpectedCoverage},
+          {"honest_coverage_95", to_json(s.coverage_honest)},
+          {"median_error_ratio", text::number_or_null(s.median_error_ratio)}};
+}
+
+Json numbers(std::span<const double> values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(text::number_or_null(value));
+  return list;
+}
+
+Json to_json(const TruthEvaluation& t) {
+  return {{"match", to_json(t.match)},
+          {"gnss", to_json(t.gnss)},
+          {"gnss_accepted", to_json(t.gnss_accepted)},
+          {"fused", to_json(t.fused)},
+          {"improvement_percent", to_json(t.improvement)},
+          {"consistency", t.consistency ? to_json(*t.consistency) : Json(nullptr)},
+          {"autocorrelation",
+           {{"lags_s", Json(kAutocorrelationLags)},
+            {"gnss", numbers(t.gnss_autocorrelation)},
+            {"fused", numbers(t.fused_autocorrelation)}}}};
+}
+
+/// What is predicted at withheld fixes, by label.
+Json predictions_json(const Evaluation& e) {
+  Json predictions = Json::object();
+  for (const WithheldMetrics& w : e.at_withheld)
+    predictions[w.label] = {{"at_fixes", to_json(w.at_fixes)},
+                            {"at_ends", to_json(w.at_ends)},
+                            {"innovation", to_json(w.innovation)}};
+  return predictions;
+}
+
+Json to_json(const Frame& frame) {
+  return {{"utm_zone", frame.zone},
+          {"north", frame.north},
+          {"origin_easting_m", text::number_or_null(frame.origin_easting_m)},
+          {"origin_northing_m", text::number_or_null(frame.origin_northing_m)}};
+}
+
+Json to_json(const LabelledEvaluation& labelled) {
+  const Evaluation& e = labelled.evaluation;
+  return {
+      {"label", labelled.label},
+      {"frame", to_json(e.frame)},
+      {"fixes",
+       {{"total", e.fixes()}, {"accepted", e.accepted}, {"rejected", e.rejected}, {"withheld", e.withheld}}},
+      {"truth", e.truth ? to_json(*e.truth) : Json(nullptr)},
+      {"withheld_fixes", e.withheld_fixes ? to_json(*e.withheld_fixes) : Json(nullptr)},
+      {"outages", e.outages},
+      {"withheld_predictions", predictions_json(e)},
+      {"innovation",
+       {{"accepted", to_json(e.post_fit)},
+        {"rejected", to_json(e.gated)},
+        {"withheld", to_json(e.prediction)}}}};
+}
+
+}  // namespace
+
+std::string metrics_json(std::span<const LabelledEvaluation> evaluations, const ReportHeader& header) {
+  Json list = Json::array();
+  for (const LabelledEvaluation& evaluation : evaluations) list.push_back(to_json(evaluation));
+  const Json document = {{"schema", "waymark-metrics"},
+                         {"version", 1},
+                         {"drive", header.drive},
+                         {"provenance", Json(header.provenance)},
+                         {"evaluations", std::move(list)}};
+  // A label that is no UTF-8 must not cost the whole file.
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace waymark::evaluation

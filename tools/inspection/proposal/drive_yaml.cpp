@@ -1,0 +1,359 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/detail/common/quantity.hpp>
+#include <waymark/tools/inspection/log_clock.hpp>
+#include <waymark/tools/inspection/proposal/drive_proposal.hpp>
+
+namespace waymark::inspection {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kCommentColumn = 44;
+
+/// A scalar as YAML reads it back: plain where that is safe.
+std::string scalar(const std::string& text) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const bool plain =
+      !text.empty() && (letter(text[0]) || text[0] == '/' || text[0] == '.') &&
+      std::all_of(
+          text.begin(), text.end(),
+          [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '/' || c == '.' || c == '-'; }) &&
+      text != "null" && text != "Null" && text != "NULL" && text != ".";
+  if (plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    if (static_cast<unsigned char>(c) < 0x20)
+      quoted += fmt::format("\\x{:02x}", static_cast<unsigned>(c));
+    else
+      quoted += c;
+  }
+  return quoted + '"';
+}
+
+/// What goes into a comment stays on its line.
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  return text;
+}
+
+/// A quantity views the text of its request, which is kept.
+std::vector<formats::Quantity> quantities_of(StreamKind stream) {
+  static const LogRequest kOdometry = [] {
+    LogRequest request;
+    request.stream = StreamKind::odometry;
+    request.readings = formats::odometry_channels();
+    return request;
+  }();
+  if (stream == StreamKind::odometry) return formats::quantities(kOdometry);
+  LogRequest request;
+  request.stream = stream;
+  return formats::quantities(request);
+}
+
+std::vector<std::string> quantity_names(StreamKind stream) {
+  std::vector<std::string> names;
+  for (const formats::Quantity& quantity : quantities_of(stream)) names.emplace_back(quantity.name);
+  return names;
+}
+
+class Writer {
+ public:
+  Writer(const DriveProposal& proposal, const std::vector<LogInspection>& logs, const std::string& path)
+      : proposal_(proposal),
+        logs_(logs),
+        folder_(fs::absolute(path == "-" ? "x" : path).lexically_normal().parent_path()) {}
+
+  std::string text() {
+    decide_scale();
+    line(
+        "# Proposed by `waymark inspect` or `waymark init` from what the logs show. Look at every '# "
+        "CHECK';");
+    line("# the keys are explained in tools/drive/README.md.");
+    line("# name: Somewhere", "default: this file's name");
+    line(fmt::format("time: {{scale: {}}}", to_string(scale_)), scale_reason_);
+    line("# frame: {utm_zone: 32N}", "default: the zone of the first fix");
+    odometry();
+    gnss();
+    truth();
+    for (const std::size_t i : proposal_.unused)
+      line(fmt::format("# not used: {}", one_line(relative(logs_[i].path))));
+    return text_;
+  }
+
+ private:
+  void line(const std::string& content, const std::string& comment = {}) {
+    text_ += content;
+    if (!comment.empty()) {
+      text_.append(content.size() < kCommentColumn ? kCommentColumn - content.size() : 2, ' ');
+      text_ += "# " + one_line(comment);
+    }
+    text_ += '\n';
+  }
+
+  /// Below the folder that both share; where that is the root alone, absolute.
+  [[nodiscard]] std::string relative(const std::string& file) const {
+    const fs::path path = fs::absolute(file).lexically_normal();
+    const auto first = [](const fs::path& whole) {
+      const fs::path below = whole.relative_path();
+      return below.empty() ? fs::path() : *below.begin();
+    };
+    if (first(path) != first(folder_)) return path.string();
+    return path.lexically_relative(folder_).string();
+  }
+
+  void decide_scale() {
+    std::vector<std::size_t> all = proposal_.odometry;
+    for (const auto* more : {&proposal_.gnss, &proposal_.velocity, &proposal_.truth})
+      all.insert(all.end(), more->begin(), more->end());
+    for (const std::size_t i : all) {
+      const LogClock& clock = logs_[i].clock;
+      if (clock.of_week && !of_week_) of_week_ = i;
+      if (clock.dated && !dated_) dated_ = i;
+    }
+    if (of_week_) {
+      scale_ = TimeScale::gps;
+      scale_reason_ = (logs_[*of_week_].clock.known ? "" : "CHECK: ") + logs_[*of_week_].clock.reason;
+    } else if (dated_) {
+      scale_ = TimeScale::utc;
+      scale_reason_ = "the logs have dates; those on another scale are converted";
+    } else {
+      scale_ = TimeScale::unix_time;
+      scale_reason_ = "CHECK: the stamps have no dates; that all logs count from the same start is assumed";
+    }
+  }
+
+  /// The log's own clock where it differs from the drive's.
+  void time_of(const LogInspection& log, const std::string& indent) {
+    const LogClock& clock = log.clock;
+    const std::string check = clock.known ? "" : "CHECK: ";
+    if (clock.of_week && dated_) {
+      const WeekSecond week = week_second(logs_[*dated_].span()->earliest(), logs_[*dated_].clock);
+      line(fmt::format("{}time: {{scale: gps, week: {}}}", indent, week.week),
+           fmt::format("{}{}; the week is that of the dated log", check, clock.reason));
+    } else if (clock.of_week) {
+      line(indent + "# time: {week: 2300}", "fill in the GPS week to get dates");
+    } else if (log.format == "nmea" && !clock.known) {
+      line(indent + "# time: {date: 2000-01-01}", "CHECK: fill in the day of the first fix; " + clock.reason);
+    } else if (!clock.dated && dated_) {
+      line(indent + "# time: {offset: 0}",
+           "CHECK: fill in what makes its stamps those of the other logs: " + clock.reason);
+    } else if (clock.dated && !clock.names_its_own) {
+      line(fmt::format("{}time: {{scale: {}}}", indent, to_string(clock.scale)), check + clock.reason);
+    }
+    if (log.logger_ahead_s && std::abs(*log.logger_ahead_s) > 0.001)
+      line(fmt::format("{}# time: {{scale: {}, offset: {:.3f}}}", indent, to_string(clock.scale),
+                       -*log.logger_ahead_s),
+           "takes the logger's clock to GNSS time (median); then for every log of this logger");
+  }
+
+  /// "speed: v_mps", "yaw_rate: {column: w, unit: deg/s}" with what there is to check.
+  void column(const std::string& quantity, const ColumnSummary& from, const LogInspection& log,
+              StreamKind stream, const std::string& indent) {
+    const std::vector<formats::Quantity> all = quantities_of(stream);
+    const formats::Quantity* known = formats::find_quantity(all, quantity);
+    const ColumnProposal& how = from.proposal;
+    const bool own_unit = known == nullptr || how.unit.empty() || how.unit == known->units.front().name;
+    const bool own_sense = known == nullptr || how.convention.empty() || known->conventions.empty() ||
+                           how.convention == known->conventions.front().name;
+    std::string value = scalar(from.name);
+    if (!own_unit || !own_sense) {
+      value = "{column: " + value;
+      if (!own_unit) value += ", unit: " + scalar(how.unit);
+      if (!own_sense) value += ", convention: " + how.convention;
+      value += "}";
+    }
+    line(indent + quantity + ": " + value, doubts(quantity, from, log, known));
+  }
+
+  static std::string doubts(const std::string& quantity, const ColumnSummary& from, const LogInspection& log,
+                            const formats::Quantity* known) {
+    std::string text;
+    const auto add = [&text](const std::string& what) { text += (text.empty() ? "CHECK: " : "; ") + what; };
+    if (!from.proposal.remark.empty()) add(from.proposal.remark);
+    const bool has_unit = known != nullptr && known->units.size() > 1;
+    const bool position = quantity == "latitude" || quantity == "longitude";
+    if (has_unit && !position && !from.proposal.unit_known && from.proposal.unit.empty() &&
+        quantity != "time")
+      add(fmt::format("no unit is named; {} is assumed", known->units.front().name));
+    const std::vector<ColumnSummary>& all = log.table ? log.table->columns : log.can->signals;
+    for (const ColumnSummary& other : all) {
+      if (other.proposal.remark ==
+          fmt::format("{} as well; '{}' is taken", from.proposal.quantity, from.name))
+        add(fmt::format("'{}' is {} as well", other.name, quantity));
+    }
+    return text;
+  }
+
+  /// file, format, companions, columns, time.
+  /// @param only  the quantities to take beside time; empty: all
+  void log_lines(const LogInspection& log, StreamKind stream, const std::string& indent, bool first_of_list,
+                 const std::vector<std::string>& only = {}) {
+    const std::string begin = first_of_list ? indent.substr(2) + "- " : indent;
+    line(begin + "file: " + scalar(relative(log.path)));
+    line(indent + "format: " + log.format, log.table ? std::string() : log.evidence);
+    for (const auto& [key, path] : log.companions) line(indent + key + ": " + scalar(relative(path)));
+    if (log.table && log.table->separator != ',')
+      line(fmt::format("{}separator: {}", indent,
+                       log.table->separator == ';'    ? "semicolon"
+                       : log.table->separator == '\t' ? "tab"
+                                                      : "blank"));
+    if (log.table || log.can) {
+      line(indent + "columns:");
+      const auto columns = proposed_columns(log, stream);
+      for (const std::string& quantity : quantity_names(stream)) {  // in their order
+        const auto from = columns.find(quantity);
+        const bool wanted =
+            only.empty() || quantity == "time" || std::find(only.begin(), only.end(), quantity) != only.end();
+        if (from != columns.end() && wanted) column(quantity, *from->second, log, stream, indent + "  ");
+      }
+    }
+    time_of(log, indent);
+  }
+
+  void odometry() {
+    line("\nodometry:");
+    if (proposal_.odometry.empty()) {
+      line("  file: FILL_IN_odometry.csv", "CHECK: no log with speed and yaw rate was found");
+      line("  # columns: {time: time_s, speed: speed_mps, yaw_rate: yaw_rate_radps}");
+      return;
+    }
+    if (proposal_.in_parts) line("  parts:");
+    for (std::size_t i = 0; i < proposal_.odometry.size(); ++i)
+      log_lines(logs_[proposal_.odometry[i]], StreamKind::odometry, proposal_.in_parts ? "      " : "  ",
+                proposal_.in_parts, proposal_.channels[i]);
+    if (!proposal_.has_speed || !proposal_.has_yaw_rate)
+      line("    # - file: FILL_IN.csv",
+           fmt::format("CHECK: no log with a {} was found; the drive does not run without",
+                       proposal_.has_speed ? "yaw rate" : "speed"));
+    vehicle();
+    line("  # speed_delay: 0", "`waymark sync` estimates it, and yaw_rate_delay");
+  }
+
+  /// What odometry from pieces needs to know beside its logs.
+  void vehicle() {
+    const auto taken = [&](std::string_view begin) {
+      for (const auto& names : proposal_.channels)
+        for (const std::string& name : names)
+          if (name.starts_with(begin)) return true;
+      return false;
+    };
+    const bool yaw = taken("yaw_rate");
+    if (!yaw && taken("gyro")) {
+      if (taken("acceleration")) {
+        line("  gyro: {axis: gravity}", "CHECK: the axis that points up is found from the accelerometer");
+      } else {
+        line(fmt::format("  gyro: {{axis: {}}}", turning_axis()),
+             "CHECK: the axis with the largest rates; with '-' where it points down");
+      }
+    } else if (!yaw && taken("wheel_")) {
+      line("  # vehicle: {track_width: 1.55}", "CHECK: fill in; m between the rear wheels");
+    } else if (!yaw && taken("steering")) {
+      line("  # vehicle: {wheelbase: 2.7, steering_ratio: 15}", "CHECK: fill in");
+    }
+    if (taken("wheel_ticks"))
+      line("  # vehicle: {metres_per_tick: 0.01}",
+           "CHECK: fill in; and tick_range where counters start again");
+  }
+
+  [[nodiscard]] std::string turning_axis() const {
+    std::string axis = "z";
+    double largest = 0;
+    for (const std::size_t i : proposal_.odometry) {
+      if (!logs_[i].odometry) continue;
+      for (const ChannelSummary& channel : logs_[i].odometry->channels) {
+        if (!channel.name.starts_with("gyro_") || channel.percent95 <= largest) continue;
+        largest = channel.percent95;
+        axis = channel.name.substr(5);
+      }
+    }
+    return axis;
+  }
+
+  void gnss() {
+    line("\ngnss:");
+    if (proposal_.gnss.empty()) {
+      line("  file: FILL_IN_gnss.nmea", "CHECK: no log with positions was found");
+      line("  format: auto");
+      return;
+    }
+    const bool several = proposal_.gnss.size() > 1;
+    const std::string indent = several ? "    " : "  ";
+    for (std::size_t i = 0; i < proposal_.gnss.size(); ++i) {
+      const LogInspection& log = logs_[proposal_.gnss[i]];
+      log_lines(log, StreamKind::gnss, indent, several);
+      accuracy(log, indent);
+      if (i == 0 && !proposal_.velocity.empty()) {
+        line(indent + "velocity:");
+        log_lines(logs_[proposal_.velocity[0]], StreamKind::gnss, indent + "  ", false,
+                  {"speed", "speed_accuracy", "course", "course_accuracy"});
+      }
+      line(indent + "# antenna: [0, 0]", "fill in: m forward and left of the rear axle");
+      const double interval = log.fixes->stamps.median_interval_s();
+      if (interval < 0.7)
+        line(indent + "# period: 1", fmt::format("keeps one fix a second of {:.3g}", 1 / interval));
+      if (proposal_.truth.empty())
+        line(indent + "# withhold_every: 10", "keeps fixes out, to evaluate against");
+    }
+  }
+
+  /// The reader tells what it took a figure for.
+  static std::string assumed_meaning(const LogInspection& log) {
+    for (const std::string& note : log.notes) {
+      const std::size_t end = note.find(" (not stated)");
+      const std::size_t begin = end == std::string::npos ? end : note.rfind(' ', end - 1);
+      if (begin == std::string::npos) continue;
+      const std::string word = note.substr(begin + 1, end - begin - 1);
+      if (word == "95" || word == "drms" || word == "1sigma" || word == "cep50") return word;
+    }
+    return {};
+  }
+
+  void accuracy(const LogInspection& log, const std::string& indent) {
+    const FixSummary& fixes = *log.fixes;
+    const std::string meaning = assumed_meaning(log);
+    const bool lacking = fixes.with_accuracy < fixes.fixes;
+    if (meaning.empty() && !lacking) return;
+    line(indent + "accuracy:");
+    if (!meaning.empty())
+      line(fmt::format("{}  meaning: {}", indent, meaning), "CHECK: assumed; 95, 1sigma, drms or cep50");
+    if (lacking)
+      line(indent + "  default_sigma: 5",
+           fmt::format("CHECK: m per axis, made up: {} of {} fixes have no accuracy",
+                       fixes.fixes - fixes.with_accuracy, fixes.fixes));
+    if (lacking && log.format == "nmea")
+      line(indent + "  # range_error: 5", "m, for sigma = HDOP times this, where the log has HDOP");
+  }
+
+  void truth() {
+    if (proposal_.truth.empty()) return;
+    line("\ntruth:");
+    log_lines(logs_[proposal_.truth[0]], StreamKind::truth, "  ", false);
+    line("  # reference: [0, 0]", "fill in: m forward and left of the rear axle");
+  }
+
+  const DriveProposal& proposal_;
+  const std::vector<LogInspection>& logs_;
+  fs::path folder_;
+  std::string text_;
+  TimeScale scale_ = TimeScale::gps;
+  std::string scale_reason_;
+  std::optional<std::size_t> of_week_, dated_;
+};
+
+}  // namespace
+
+std::string drive_yaml(const DriveProposal& proposal, const std::vector<LogInspection>& logs,
+                       const std::string& path) {
+  return Writer(proposal, logs, path).text();
+}
+
+}  // namespace waymark::inspection

@@ -1,0 +1,70 @@
+/// What a table of separated values holds, column by column, before anything is known of its columns.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <waymark/core/drive/stamp.hpp>
+#include <waymark/formats/logs/detail/common/line_decoder.hpp>
+#include <waymark/tools/inspection/survey/header_words.hpp>
+#include <waymark/tools/inspection/survey/running_statistics.hpp>
+
+namespace waymark::inspection {
+
+/// One column of a table, one id or signal of a bus.
+struct ColumnSummary {
+  std::string name;
+  std::size_t values = 0;  ///< fields that hold one; of a bus: frames
+  std::size_t empty = 0;   ///< fields that hold none
+  std::size_t words = 0;   ///< fields that are neither
+  Range range;
+  double rate_hz = 0;  ///< of the time-like column, of ids and signals
+  std::string unit;    ///< as a DBC names it
+  std::string detail;  ///< of an id: "8 bytes", "2 interfaces"
+  ColumnProposal proposal;
+};
+
+struct TableSummary {
+  char separator = ',';
+  bool has_header = true;
+  std::size_t rows = 0;
+  std::vector<ColumnSummary> columns;
+  std::string first_line;  ///< the comment above the header, if there is one
+};
+
+/// So many columns are looked at; a header of a damaged log may have any number.
+inline constexpr std::size_t kMostColumns = 1024;
+
+/// Takes a table line by line; finds no samples.
+class TableSurvey final : public formats::LineDecoder {
+ public:
+  explicit TableSurvey(const std::string& path) : formats::LineDecoder(path, {}) {}
+  /// With proposals for every column, each quantity once.
+  [[nodiscard]] TableSummary summary() const;
+
+ private:
+  struct Column {
+    ColumnSummary seen;
+    bool dates = true;  ///< all words so far are ISO 8601 dates
+    double last = 0;
+    bool is_time = false;  ///< by its name: steps are kept
+    Quantiles steps;
+  };
+  void take_line(std::string_view line, std::size_t number) override;
+  void begin(std::string_view line);
+  void take_field(Column& column, std::string_view field);
+
+  TableSummary summary_;
+  std::string comment_;
+  std::vector<Column> columns_;
+  std::size_t width_ = 0;  ///< fields of a line
+  std::vector<std::string_view> fields_;
+  bool begun_ = false;
+};
+
+/// Gives every quantity to one column: the first whose name says it, those with a known unit before others.
+void keep_one_each(std::vector<ColumnSummary>& columns);
+
+}  // namespace waymark::inspection

@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/covariance/marginals.hpp>
+#include <waymark/core/graph/gradient_check.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/formats/graph/graph_format.hpp>
+#include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/program/commands/commands.hpp>
+#include <waymark/tools/program/jobs/graph/derivatives.hpp>
+#include <waymark/tools/program/jobs/graph/graph_files.hpp>
+#include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/tools/program/terminal/output.hpp>
+#include <waymark/tools/text/text_table.hpp>
+
+namespace waymark::program {
+namespace {
+
+struct CheckOptions {
+  CommonOptions common;
+  std::string input;
+  bool derivatives = false;
+  std::string input_format = "graph";
+};
+
+constexpr std::size_t kCheckedEdges = 50;  // per type
+
+/// Of every registered edge type, without a graph.
+ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) {
+  const Console console(options.common);
+  const DerivativeReport report = check_derivatives(registry, console.look());
+  std::string text = report.text;
+  for (const std::string& problem : report.problems) text += "problem: " + problem + "\n";
+  if (report.problems.empty()) text += "no problems found\n";
+  const nlohmann::ordered_json json = {{"derivatives", report.json}, {"problems", report.problems}};
+  console.result(options.common.json ? json_document("derivatives", json) : text);
+  return report.problems.empty() ? kSuccess : kInputError;
+}
+
+ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
+  const Console console(options.common);
+  formats::ReadReport report;
+  constexpr bool kLenient = true;  // to name the first ten wrong lines, not only one
+  const formats::GraphDocument document = formats::read_graph_as(
+      *formats::graph_format_from_string(options.input_format), formats::read_text_file(options.input),
+      options.input, registry, kLenient, &report);
+  const Graph& graph = document.graph;
+  std::vector<std::string> problems = report.examples;
+  if (report.skipped > problems.size()) {
+    problems.push_back(fmt::format("{} more wrong lines", report.skipped - problems.size()));
+  }
+  nlohmann::ordered_json json = {{"file", options.input}, {"vertices", graph.vertex_count()}};
+  json["edges"] = nlohmann::ordered_json::array();
+  json["notes"] = nlohmann::ordered_json::array();
+  std::string text = fmt::format("{}: {} vertices, {} edges, {} GNSS records\n", options.input,
+                                 graph.vertex_count(), graph.edge_count(), document.fixes.size());
+  text::TextTable table({"edge type", "edges", "chi2", "error", "Jacobians off by"});
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    stop_if_interrupted();
+    console.progress("derivatives of " + graph.edge_type(b).tag);
+    const GradientCheck gradients = check_gradients(graph, b, kCheckedEdges);
+    const EdgeType& type = graph.edge_type(b);
+    table.add({type.tag, std::to_string(graph.batch(b).size()),
+               fmt::format("{:.8g}", graph.batch(b).chi2(graph.view())), type.form,
+               fmt::format("{:.1e}", gradients.error)});
+    json["edges"].push_back({{"type", type.tag},
+                             {"count", graph.batch(b).size()},
+                             {"chi2", graph.batch(b).chi2(graph.view())},
+                             {"jacobian_error", gradients.error}});
+    if (gradients.error > kGradientTolerance) problems.push_back(describe(graph, b, gradients));
+  }
+  if (!table.empty()) text += table.text(console.look());
+  console.progress("factorising");
+  try {
+    (void)marginal_covariances(graph, {});  // factorises without damping
+    for (const std::string& message : find_gauge(graph).messages) {
+      text += "note: " + message + "\n";
+      json["notes"].push_back(message);
+    }
+  } catch (const InputError& error) {
+    problems.push_back(error.what());
+  }
+  for (const std::string& problem : problems) text += "problem: " + problem + "\n";
+  if (problems.empty()) text += "no problems found\n";
+  json["problems"] = problems;
+  console.result(options.common.json ? json_document("check", json) : text);
+  return problems.empty() ? kSuccess : kInputError;
+}
+
+ExitCode check(const CheckOptions& options) {
+  const TypeRegistry registry = make_registry(options.common);
+  if (options.derivatives) {
+    if (!options.input.empty())
+      throw UsageError("--derivatives tries the types by themselves and takes no graph; leave out " +
+                       options.input);
+    return check_types(options, registry);
+  }
+  if (options.input.empty()) throw UsageError("graph is required (or --derivatives, to check the types)");
+  return check_file(options, registry);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("check",
+                         "Look a graph file over: lines, gauge, Jacobians\n\n"
+                         "Reads every line, compares the Jacobians with differences of the errors and looks "
+                         "for vertices that the edges leave undetermined. The exit code is 3 where it found "
+                         "a problem.");
+  const auto options = std::make_shared<CheckOptions>();
+  command->add_option("graph", options->input, "Graph file: .graph, g2o, or as --input-format says")
+      ->type_name("GRAPH");
+  add_input_format(*command, options->input_format);
+  command->add_flag("--derivatives", options->derivatives,
+                    "Instead of a graph: the Jacobians of every registered edge type, plugins included");
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  waymark check drive.graph");
+  command->callback([options, &action] { action = [options] { return check(*options); }; });
+}
+
+}  // namespace waymark::program

@@ -1,0 +1,178 @@
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/program/commands/commands.hpp>
+#include <waymark/tools/program/commands/drive_options.hpp>
+#include <waymark/tools/program/jobs/graph/graph_files.hpp>
+#include <waymark/tools/program/jobs/hash.hpp>
+#include <waymark/tools/program/jobs/model_report.hpp>
+#include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/tools/program/terminal/output.hpp>
+
+namespace waymark::program {
+namespace {
+
+struct ConvertOptions {
+  CommonOptions common;
+  DriveOverrides overrides;
+  std::string input;
+  std::string output;
+  std::string input_format = "graph";
+  OutputFormat format;
+  bool lenient = false;
+  std::vector<std::string> of_drives;  ///< options given that speak of logs only
+  std::vector<std::string> of_graphs;  ///< options given that speak of graph files only
+};
+
+void refuse_options(const std::vector<std::string>& given, const std::string& what) {
+  if (given.empty()) return;
+  const std::vector<std::string_view> names(given.begin(), given.end());
+  throw UsageError(joined(names) + ": the input is " + what +
+                   " (a file whose name ends in .yaml or .yml is a drive, any other a graph)");
+}
+
+/// "graph", or "g2o for GTSAM's load2D".
+std::string describe(const OutputFormat& output) {
+  const std::string format(to_string(chosen_format(output)));
+  const formats::Recipient* profile = formats::find_profile(output.profile);
+  return profile == nullptr ? format : format + " for " + std::string(profile->reader);
+}
+
+nlohmann::ordered_json graph_json(const ConvertOptions& options, const formats::GraphDocument& document) {
+  return {{"output", options.output},
+          {"format", to_string(chosen_format(options.format))},
+          {"vertices", document.graph.vertex_count()},
+          {"edges", document.graph.edge_count()},
+          {"fixes", document.fixes.size()}};
+}
+
+ExitCode convert_drive(const ConvertOptions& options, const TypeRegistry& registry, const Console& console) {
+  refuse_options(options.of_graphs, "a drive");
+  const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
+  if (loaded.modelings.size() != 1)
+    throw UsageError("convert writes one graph: name one modeling ('run' takes many)");
+  const std::string& modeling = loaded.modelings.front();
+  require_not_read(options.output, loaded.files);
+  const drive::ModeledDrive modeled =
+      model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry), registry, console);
+  const formats::GraphDocument& document = modeled.document;
+  stop_if_interrupted();
+  announce_output(options.format, document, options.input, console);
+  write_graph_file(options.output, options.format, document, options.input, registry);
+  if (options.common.json) {
+    const drive::GateSummary& gate = modeled.gate;
+    nlohmann::ordered_json json = graph_json(options, document);
+    json["modeling"] = modeling;
+    json["accepted"] = gate.accepted;
+    json["rejected"] = gate.rejected;
+    json["withheld"] = gate.withheld;
+    json["reasons"] = gate.reasons;
+    json["distance_m"] = modeled.distance_m;
+    json["noise"] = noise_json(modeled.noise);
+    json["start_chi2"] = document.graph.chi2();
+    console.result(json_document("convert", json), is_stdout(options.output));
+    return kSuccess;
+  }
+  console.result(describe_drive(loaded) + describe_model(modeled, console.look(is_stdout(options.output))) +
+                     fmt::format("written     {}: {} vertices, {} edges, modeling {}\n", options.output,
+                                 document.graph.vertex_count(), document.graph.edge_count(), modeling),
+                 is_stdout(options.output));
+  return kSuccess;
+}
+
+ExitCode convert_graph(const ConvertOptions& options, const TypeRegistry& registry, const Console& console) {
+  refuse_options(options.of_drives, "a graph file");
+  console.progress("reading " + options.input);
+  const std::string text = formats::read_text_file(options.input);
+  formats::GraphDocument document =
+      read_graph_file(text, options.input, options.input_format, options.lenient, registry, console);
+  stop_if_interrupted();
+  announce_output(options.format, document, options.input, console);
+  document.provenance.emplace_back(
+      "converted", fmt::format("waymark {} from {} fnv1a64:{} read as {}", WAYMARK_VERSION,
+                               std::filesystem::path(options.input).filename().string(), fnv1a64_hex(text),
+                               options.input_format));
+  write_graph_file(options.output, options.format, document, options.input, registry);
+  if (options.common.json) {
+    nlohmann::ordered_json json = graph_json(options, document);
+    json["input_format"] = options.input_format;
+    if (!options.format.profile.empty()) json["profile"] = options.format.profile;
+    json["chi2"] = document.graph.chi2();
+    console.result(json_document("convert", json), is_stdout(options.output));
+    return kSuccess;
+  }
+  console.result(fmt::format("written     {}: {} vertices, {} edges, chi2 {:.10g}, format {}\n",
+                             options.output, document.graph.vertex_count(), document.graph.edge_count(),
+                             document.graph.chi2(), describe(options.format)),
+                 is_stdout(options.output));
+  return kSuccess;
+}
+
+ExitCode convert(const ConvertOptions& options) {
+  const Console console(options.common);
+  const TypeRegistry registry = make_registry_for(options.input, options.common);
+  (void)chosen_format(options.format);
+  require_output_place(options.output);
+  return drive::is_drive_file(options.input) ? convert_drive(options, registry, console)
+                                             : convert_graph(options, registry, console);
+}
+
+/// The options that `add` adds to a command.
+template <typename Add>
+std::vector<const CLI::Option*> added_by(CLI::App& command, Add add) {
+  const std::size_t before = command.get_options().size();
+  add();
+  const std::vector<CLI::Option*> all = command.get_options();
+  return {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()};
+}
+
+/// The names of those of them that stand on the command line.
+std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options) {
+  std::vector<std::string> given;
+  for (const CLI::Option* option : options) {
+    if (option->count() > 0) given.push_back(option->get_name());
+  }
+  return given;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("convert",
+                         "Raw logs to a graph file, or a graph file to another format\n\n"
+                         "From a drive.yaml it reads the logs, puts them on one clock and into one frame, "
+                         "judges the fixes and writes the graph. A graph file is written in another format; "
+                         "what would move the minimum there is refused, what is left out is counted.");
+  const auto options = std::make_shared<ConvertOptions>();
+  command
+      ->add_option("input", options->input,
+                   "Description of a drive and its logs (drive.yaml), or a graph file (any other name)")
+      ->required()
+      ->type_name("DRIVE.yaml|GRAPH");
+  command->add_option("-o,--output", options->output, "Graph file to write ('-': standard output)")
+      ->required()
+      ->type_name("FILE");
+  const auto of_graphs = added_by(*command, [&] {
+    add_input_format(*command, options->input_format);
+    command->add_flag("--lenient", options->lenient, "Skip and count wrong lines of a graph file");
+  });
+  add_output_format(*command, options->format, true);
+  const auto of_drives = added_by(*command, [&] { add_drive_options(*command, options->overrides); });
+  add_common_options(*command, options->common);
+  command->footer(
+      "Example:\n  waymark convert drive.yaml -o drive.graph --modeling g2\n"
+      "  waymark convert toro.graph --input-format toro -o for_gtsam.g2o --profile gtsam");
+  command->callback([options, of_drives, of_graphs, &action] {
+    options->of_drives = given_of(of_drives);
+    options->of_graphs = given_of(of_graphs);
+    action = [options] { return convert(*options); };
+  });
+}
+
+}  // namespace waymark::program

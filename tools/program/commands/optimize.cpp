@@ -1,0 +1,116 @@
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/program/commands/commands.hpp>
+#include <waymark/tools/program/commands/drive_options.hpp>
+#include <waymark/tools/program/jobs/graph/covariance.hpp>
+#include <waymark/tools/program/jobs/graph/graph_files.hpp>
+#include <waymark/tools/program/jobs/graph/robust.hpp>
+#include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/tools/program/terminal/output.hpp>
+
+namespace waymark::program {
+namespace {
+
+struct OptimizeOptions {
+  CommonOptions common;
+  OptimizationChoice choice;
+  RobustChoice robust;
+  std::string input;
+  std::string output;
+  std::string covariance_file;
+  std::string input_format = "graph";
+  OutputFormat format;
+  bool lenient = false;
+};
+
+ExitCode optimize_file(const OptimizeOptions& options) {
+  const Console console(options.common);
+  const TypeRegistry registry = make_registry(options.common);
+  check_choice(options.choice, registry);
+  check_robust(options.robust, registry);
+  require_output_place(options.output);
+  check_covariance_file(options.covariance_file, options.choice.covariance);
+  console.progress("reading " + options.input);
+  formats::GraphDocument document = read_graph_file(formats::read_text_file(options.input), options.input,
+                                                    options.input_format, options.lenient, registry, console);
+  attach_losses(document.graph, options.robust, registry);
+  announce_output(options.format, document, options.input, console);  // before the work
+  stop_if_interrupted();
+
+  std::optional<Graduated> graduated;
+  const Minimizer minimizer = options.robust.method == "gnc"
+                                  ? graduating_minimizer(options.robust, registry, graduated)
+                                  : Minimizer();
+  const MultiStartSummary result = optimize_document(document, options.choice, registry, console, minimizer);
+  document.provenance.emplace_back("optimized", describe_optimization(result));
+  if (graduated) {
+    document.provenance.emplace_back(
+        "outliers", std::to_string(graduated->result.outliers.size()) + " edges left out by gnc");
+    if (!options.robust.outliers.empty()) {
+      formats::write_file_atomically(options.robust.outliers, graduated->outlier_lines);
+    }
+  }
+  const bool to_stdout = is_stdout(options.output) || is_stdout(options.robust.outliers);
+  write_graph_file(options.output, options.format, document, options.input, registry);
+  std::string written = options.output;
+  if (!options.covariance_file.empty()) {
+    if (document.covariances.empty()) console.note(options.covariance_file + " has no covariances");
+    write_covariances(options.covariance_file, document, result.summary);
+    written += " " + options.covariance_file;
+  }
+  const std::vector<evaluation::StateReport> states = states_of_minimum(document, result.summary, console);
+  if (options.common.json) {
+    nlohmann::ordered_json json = summary_json(result);
+    json["states"] = evaluation::states_json(states);
+    if (graduated) json["graduation"] = graduation_json(*graduated);
+    console.result(json_document("optimize", json), to_stdout);
+  } else {
+    const std::string outliers = graduated ? graduation_text(graduated->result) : "";
+    console.result(summary_text(result) + evaluation::states_text(states, console.look(to_stdout)) +
+                       outliers + "written     " + written + "\n",
+                   to_stdout);
+  }
+  return exit_code(result.summary);
+}
+
+}  // namespace
+
+void add_optimize(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand(
+      "optimize",
+      "Minimise chi2 of a graph\n\n"
+      "Reads a graph, finds the poses that explain its edges best and writes the graph with them. It says "
+      "whether a minimum was reached. A graph without a fixed vertex or a prior has its first vertex held; "
+      "that is said, not written.");
+  const auto options = std::make_shared<OptimizeOptions>();
+  command->add_option("graph", options->input, "Graph file: .graph, g2o, or as --input-format says")
+      ->required()
+      ->type_name("GRAPH");
+  command->add_option("-o,--output", options->output, "File to write ('-': standard output)")
+      ->required()
+      ->type_name("FILE");
+  add_input_format(*command, options->input_format);
+  add_output_format(*command, options->format, false);
+  options->choice.start = "auto";
+  command
+      ->add_option("--start", options->choice.start,
+                   "Where to begin: 'file' (its values), a start that `waymark info` lists, or 'auto': what "
+                   "promises most, and others where the minimum found is implausible")
+      ->type_name("START|file|auto")
+      ->capture_default_str();
+  command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");
+  add_optimization_options(*command, options->choice);
+  {
+    const OptionHeading heading(*command, "Optimisation");
+    command
+        ->add_option("--covariance-file", options->covariance_file,
+                     "The covariances as a table too: FILE.csv or FILE.json")
+        ->type_name("FILE.csv|FILE.json");
+  }
+  add_robust_options(*command, options->robust);
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  waymark optimize drive.graph -o fused.graph --algorithm dogleg");
+  command->callback([options, &action] { action = [options] { return optimize_file(*options); }; });
+}
+
+}  // namespace waymark::program

@@ -1,0 +1,120 @@
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/logs/clock_sync.hpp>
+#include <waymark/tools/program/commands/commands.hpp>
+#include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/tools/program/terminal/output.hpp>
+#include <waymark/tools/text/text_table.hpp>
+
+namespace waymark::program {
+namespace {
+
+struct SyncCommand {
+  CommonOptions common;
+  drive::SyncOptions options;
+  std::string input;
+  std::string data_folder;
+};
+
+nlohmann::ordered_json json_of(const std::optional<drive::ClockOffset>& offset) {
+  if (!offset) return nullptr;
+  return {{"against", offset->against},
+          {"late_s", offset->late_s},
+          {"sigma_s", offset->sigma_s},
+          {"correlation", offset->correlation},
+          {"samples", offset->samples}};
+}
+
+nlohmann::ordered_json json_of(const drive::SyncReport& report,
+                               const std::vector<drive::ClockReport>& clocks) {
+  nlohmann::ordered_json json{{"speed", json_of(report.speed)}, {"yaw_rate", json_of(report.yaw_rate)}};
+  json["clocks"] = nlohmann::ordered_json::array();
+  for (const drive::ClockReport& clock : clocks)
+    json["clocks"].push_back({{"file", clock.file},
+                              {"ahead_s", clock.ahead_s},
+                              {"spread_s", clock.spread_s},
+                              {"messages", clock.messages}});
+  return json;
+}
+
+text::TextTable::Row row_of(const std::string& quantity, const drive::ClockOffset& offset) {
+  return {quantity,
+          fmt::format("{:.3f}", offset.late_s),
+          fmt::format("{:.3f}", offset.sigma_s),
+          fmt::format("{:.4f}", offset.correlation),
+          fmt::format("{}", offset.samples),
+          offset.against};
+}
+
+std::string table_of(const drive::SyncReport& report, const drive::DriveConfig& config,
+                     const text::TextLook& look) {
+  text::TextTable table({"odometry's", "late by [s]", "sigma [s]", "correlation", "samples", "against"});
+  if (report.speed) table.add(row_of("speed", *report.speed));
+  if (report.yaw_rate) table.add(row_of("yaw rate", *report.yaw_rate));
+  std::string text = table.empty() ? "" : table.text(look);
+  if (!report.speed) text += "speed: no offset found (too little driving, or no correlation beyond chance)\n";
+  if (!report.yaw_rate)
+    text += "yaw rate: no offset found (too few turns, or no correlation beyond chance)\n";
+  if (!report.speed && !report.yaw_rate) return text;
+  text +=
+      "Late: stamped later than the GNSS says; negative: early.\n\nTo apply it: --sync of run and convert, "
+      "or in the drive.yaml under 'odometry':\n";
+  if (report.speed)
+    text += fmt::format("  speed_delay: {:.3f}\n", config.speed_delay_s + report.speed->late_s);
+  if (report.yaw_rate)
+    text += fmt::format("  yaw_rate_delay: {:.3f}\n", config.yaw_rate_delay_s + report.yaw_rate->late_s);
+  return text;
+}
+
+ExitCode synchronise(const SyncCommand& command) {
+  const Console console(command.common);
+  const drive::DriveConfig config = drive::load_drive_config(command.input, command.data_folder);
+  const TypeRegistry registry = make_registry(command.common, config.plugins);
+  drive::DriveConfig alone = config;
+  alone.sensors.clear();  // nothing of them is needed
+  const drive::PreparedDrive drive = drive::load_drive(alone, registry, watch_reading(console));
+  console.progress("comparing clocks");
+  const drive::SyncReport report = drive::estimate_clock_offsets(drive, command.options);
+  console.end_progress();
+  for (const std::string& note : drive.report.notes) console.detail("note: " + note);
+  if (command.common.json) {
+    console.result(json_document("sync", json_of(report, drive.report.clocks)));
+    return kSuccess;
+  }
+  std::string text = table_of(report, config, console.look());
+  for (const drive::ClockReport& clock : drive.report.clocks)
+    text += fmt::format(
+        "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual deviation "
+        "{:.3f} s),\n"
+        "with the stated 'time: {{offset: ...}}' added. --sync takes that away.\n",
+        clock.file, clock.ahead_s, clock.messages, clock.spread_s);
+  console.result(text);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_sync(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand(
+      "sync",
+      "How late a drive's odometry is stamped against its GNSS\n\n"
+      "Compares the odometry's speed and yaw rate with those of the fixes, and the stamps of a log with the "
+      "GNSS time it holds. Nothing is changed; --sync of 'waymark run' and 'waymark convert' applies it.");
+  const auto options = std::make_shared<SyncCommand>();
+  command->add_option("drive", options->input, "drive.yaml")->required()->type_name("DRIVE.yaml");
+  command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own")
+      ->type_name("DIR");
+  command->add_option("--largest", options->options.largest_s, "Offsets are looked for up to so many seconds")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  waymark sync drive.yaml");
+  command->callback([options, &action] { action = [options] { return synchronise(*options); }; });
+}
+
+}  // namespace waymark::program

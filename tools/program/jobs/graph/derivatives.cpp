@@ -1,0 +1,49 @@
+#include <waymark/tools/program/jobs/graph/derivatives.hpp>
+
+#include <fmt/format.h>
+
+#include <waymark/core/graph/edge_type_check.hpp>
+#include <waymark/tools/text/text_table.hpp>
+
+namespace waymark::program {
+namespace {
+
+std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const std::string& origin) {
+  if (check.worst.error > kGradientTolerance) {
+    return fmt::format("{} of {}, scenario '{}': {}", tag, origin, check.scenario,
+                       describe(check.graph, 0, check.worst));
+  }
+  if (check.not_finite == 0) {
+    return fmt::format(
+        "{} of {}: differences of the error say nothing in any trial; is it smooth, and computed in double?",
+        tag, origin);
+  }
+  return fmt::format("{} of {}: error or Jacobian is no number in {} of {} trials; let the error stay finite",
+                     tag, origin, check.not_finite, check.trials);
+}
+
+}  // namespace
+
+DerivativeReport check_derivatives(const TypeRegistry& registry, const text::TextLook& look) {
+  DerivativeReport report;
+  report.text = "Jacobians against differences of the error\n";
+  report.json = nlohmann::ordered_json::array();
+  text::TextTable table({"edge type", "from", "trials", "off by", ""});
+  for (const auto& [type, origin] : registry.edges()) {
+    const EdgeTypeCheck check = check_edge_type(registry, type);
+    table.add({type.tag, origin, std::to_string(check.trials), fmt::format("{:.1e}", check.worst.error),
+               check.sound() ? "" : "WRONG"});
+    if (!check.sound()) table.paint(4, text::Tone::error);
+    report.json.push_back({{"type", type.tag},
+                           {"origin", origin},
+                           {"trials", check.trials},
+                           {"not_finite", check.not_finite},
+                           {"jacobian_error", check.worst.error},
+                           {"sound", check.sound()}});
+    if (!check.sound()) report.problems.push_back(problem_of(check, type.tag, origin));
+  }
+  if (!table.empty()) report.text += table.text(look);
+  return report;
+}
+
+}  // namespace waymark::program

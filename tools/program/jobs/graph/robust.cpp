@@ -1,0 +1,189 @@
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/text/detail/text_builder.hpp>
+#include <waymark/tools/program/commands/commands.hpp>
+#include <waymark/tools/program/jobs/graph/robust.hpp>
+#include <waymark/tools/program/manual/usage_hints.hpp>
+#include <waymark/tools/program/terminal/output.hpp>
+
+namespace waymark::program {
+namespace {
+
+struct LossRequest {
+  std::string tag;  // empty: edges of all types
+  Loss loss;
+};
+
+void require_edge(const TypeRegistry& registry, const std::string& tag, const std::string& option) {
+  if (registry.find_edge(tag) != nullptr) return;
+  std::vector<std::string_view> tags;
+  for (const auto& [type, origin] : registry.edges()) tags.push_back(type.tag);
+  throw UsageError(option + ": unknown edge type '" + tag + "'" + suggestion(tag, tags));
+}
+
+// [TAG=]NAME:SCALE
+LossRequest parse_loss(const std::string& text, const TypeRegistry& registry) {
+  LossRequest request;
+  const auto equals = text.find('=');
+  if (equals != std::string::npos) {
+    request.tag = text.substr(0, equals);
+    require_edge(registry, request.tag, "--loss");
+  }
+  request.loss = named_loss(equals == std::string::npos ? text : text.substr(equals + 1), "--loss", registry);
+  return request;
+}
+
+TrustRule trust_rule(const RobustChoice& choice) {
+  if (choice.trusted == "odometry") return &is_odometry_edge;
+  if (choice.trusted == "none") return [](const Graph&, EdgePlace) { return false; };
+  return [tag = choice.trusted](const Graph& graph, EdgePlace place) {
+    return graph.edge_type(place.batch).tag == tag;
+  };
+}
+
+void describe(const Graph& graph, EdgePlace place, formats::TextBuilder& lines,
+              nlohmann::ordered_json& list) {
+  const EdgeBatchBase& batch = graph.batch(place.batch);
+  const EdgeType& type = graph.edge_type(place.batch);
+  const auto vertices = batch.vertices(place.edge);
+  nlohmann::ordered_json ids = nlohmann::ordered_json::array();
+  lines.word(type.tag);
+  if (type.arity == EdgeType::kRuntimeArity) lines.integer(static_cast<std::int64_t>(vertices.size()));
+  for (const VertexIndex v : vertices) {
+    lines.integer(graph.id(v));
+    ids.push_back(graph.id(v));
+  }
+  std::vector<double> fields;
+  batch.fields(place.edge, fields);
+  for (const double value : fields) lines.number(value);
+  const Eigen::MatrixXd information = batch.information(place.edge);
+  for (Eigen::Index row = 0; row < information.rows(); ++row) {
+    for (Eigen::Index column = row; column < information.cols(); ++column) {
+      lines.number(information(row, column));
+    }
+  }
+  lines.end_line();
+  list.push_back({{"type", type.tag}, {"vertices", std::move(ids)}});
+}
+
+}  // namespace
+
+Loss named_loss(const std::string& text, const std::string& place, const TypeRegistry& registry) {
+  const auto colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  const LossType* type = registry.find_loss(name);
+  if (type == nullptr) {
+    std::vector<std::string_view> names;
+    for (const auto& [known, origin] : registry.losses()) names.push_back(known.name);
+    throw UsageError(place + ": unknown loss '" + name + "'" + suggestion(name, names));
+  }
+  double scale = 0;
+  const char* first = text.data() + (colon == std::string::npos ? text.size() : colon + 1);
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, scale);
+  if (error != std::errc() || end != last || !(scale > 0) || !(scale < 1e300)) {
+    throw UsageError(place + ": expected [TAG=]NAME:SCALE with a scale above 0, got '" + text + "'");
+  }
+  return Loss{type->name, type->evaluate, scale};
+}
+
+void add_robust_options(CLI::App& command, RobustChoice& choice) {
+  const OptionHeading heading(command, "Outliers");
+  command
+      .add_option("--loss", choice.losses, "Robust loss of all edges that are not trusted, or of one type")
+      ->type_name("[TAG=]LOSS:SCALE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      .add_option("--robust", choice.method,
+                  "Look for outliers by graduated non-convexity, and leave them out of the result")
+      ->check(one_of("method", {"none", "gnc"}))
+      ->capture_default_str();
+  command
+      .add_option("--trusted", choice.trusted,
+                  "Edges that get no loss and are no outliers: odometry (between consecutive ids), none, or "
+                  "those of a TAG")
+      ->type_name("odometry|none|TAG")
+      ->capture_default_str();
+  command
+      .add_option("--outliers", choice.outliers,
+                  "File for the edges judged outliers, a line each ('-': standard output)")
+      ->type_name("FILE");
+}
+
+void check_robust(const RobustChoice& choice, const TypeRegistry& registry) {
+  for (const std::string& text : choice.losses) {
+    const LossRequest request = parse_loss(text, registry);
+    if (choice.method == "gnc" && (!request.tag.empty() || choice.losses.size() > 1)) {
+      throw UsageError("--robust gnc takes one loss for all edges: --loss NAME:SCALE");
+    }
+  }
+  if (choice.trusted != "odometry" && choice.trusted != "none") {
+    require_edge(registry, choice.trusted, "--trusted");
+  }
+  if (choice.outliers.empty()) return;
+  if (choice.method == "none")
+    throw UsageError("--outliers: no outliers are looked for without --robust gnc");
+  require_output_place(choice.outliers);
+}
+
+void attach_losses(Graph& graph, const RobustChoice& choice, const TypeRegistry& registry) {
+  if (choice.method != "none") return;
+  const TrustRule trusted = trust_rule(choice);
+  for (const std::string& text : choice.losses) {
+    const LossRequest request = parse_loss(text, registry);
+    for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+      if (!request.tag.empty() && graph.edge_type(b).tag != request.tag) continue;
+      for (std::size_t e = 0; e < graph.batch(b).size(); ++e) {
+        if (!trusted(graph, {b, e})) graph.batch(b).set_loss(e, request.loss);
+      }
+    }
+  }
+}
+
+Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
+                               std::optional<Graduated>& found) {
+  GraduationOptions options;
+  if (!choice.losses.empty()) options.loss = parse_loss(choice.losses.front(), registry).loss;
+  options.trusted = trust_rule(choice);
+  return [options, &found](Graph& graph, Algorithm& algorithm, LinearSolver& solver,
+                           const OptimizerOptions& optimizer) mutable {
+    options.optimizer = optimizer;
+    found.emplace();
+    found->result = graduate(graph, algorithm, solver, options);
+    found->outlier_lines = formats::collect_text([&](const formats::TextSink& sink) {
+      formats::TextBuilder lines(sink);
+      for (const EdgePlace place : found->result.outliers) {
+        describe(graph, place, lines, found->outlier_edges);
+      }
+      lines.finish();
+    });
+    graph = without_edges(graph, found->result.outliers);
+    return found->result.summary;
+  };
+}
+
+std::string graduation_text(const GraduationResult& r) {
+  return fmt::format(
+      "outliers    {} of {} edges that are not trusted (gnc: {} rounds, {} splits, {} iterations, {:.3f} "
+      "s)\n",
+      r.outliers.size(), r.candidates, r.rounds, r.passes, r.iterations, r.seconds);
+}
+
+nlohmann::ordered_json graduation_json(const Graduated& graduated) {
+  const GraduationResult& r = graduated.result;
+  return {{"candidates", r.candidates},
+          {"outliers", r.outliers.size()},
+          {"rounds", r.rounds},
+          {"splits", r.passes},
+          {"iterations", r.iterations},
+          {"seconds", r.seconds},
+          {"outlier_edges", graduated.outlier_edges}};
+}
+
+}  // namespace waymark::program

@@ -1,0 +1,84 @@
+#include <waymark/tools/program/jobs/log_inspection.hpp>
+
+#include <chrono>
+#include <filesystem>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/inspection/proposal/drive_proposal.hpp>
+#include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/tools/program/terminal/output.hpp>
+
+namespace waymark::program {
+namespace {
+
+Stamp now() {
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return Stamp{std::chrono::duration_cast<std::chrono::nanoseconds>(since_1970).count()};
+}
+
+std::vector<LogReaderType> readers_of(const TypeRegistry& registry) {
+  std::vector<LogReaderType> readers;
+  for (const Registered<LogReaderType>& entry : registry.log_readers()) readers.push_back(entry.type);
+  return readers;
+}
+
+bool is_dbc(const std::string& path) {
+  return path.ends_with(".dbc") || path.ends_with(".DBC");
+}
+
+}  // namespace
+
+void add_inspection_options(CLI::App& command, InspectCommand& options) {
+  command.add_option("--format", options.format, "The logs' format; default: known by their content")
+      ->type_name("LOG_FORMAT");
+  command.add_option("--dbc", options.dbc, "Which signals CAN frames hold")->type_name("FILE.dbc");
+  command.add_option("-o,--out", options.output, "Write a drive.yaml to edit")->type_name("DRIVE.yaml");
+  command.add_flag("--force", options.force, "Replace an existing drive.yaml");
+  options.common = {};
+  add_common_options(command, options.common);
+}
+
+void require_new_file(const InspectCommand& command) {
+  if (command.output.empty() || is_stdout(command.output)) return;
+  require_output_place(command.output);
+  if (!command.force && std::filesystem::exists(command.output))
+    throw OutputError(command.output + ": it exists already; --force replaces it");
+}
+
+std::vector<inspection::LogInspection> inspect_files(const InspectCommand& command, const Console& console) {
+  require_new_file(command);
+  const TypeRegistry registry = make_registry(command.common);
+  inspection::InspectionOptions options;
+  options.format = command.format;
+  options.dbc = command.dbc;
+  options.now = now();
+  std::vector<std::string> logs;
+  for (const std::string& path : command.logs) {
+    if (!is_dbc(path)) {
+      logs.push_back(path);
+    } else if (options.dbc.empty()) {
+      options.dbc = path;
+    } else {
+      throw UsageError(path + ": there is another DBC already: " + options.dbc);
+    }
+  }
+  if (logs.empty()) throw UsageError(options.dbc + ": a DBC says what CAN frames hold; name a log beside it");
+  options.watch = watch_reading(console);
+  std::vector<inspection::LogInspection> inspected =
+      inspection::inspect_logs(logs, readers_of(registry), options);
+  console.end_progress();
+  return inspected;
+}
+
+std::string write_proposal(const InspectCommand& command, const std::vector<inspection::LogInspection>& logs,
+                           const Console& console) {
+  const inspection::DriveProposal proposal = inspection::propose_drive(logs);
+  for (const std::string& decision : proposal.decisions) console.tell(decision);
+  std::string text = inspection::drive_yaml(proposal, logs, command.output);
+  formats::write_file_atomically(command.output, text);
+  if (!is_stdout(command.output)) console.tell(command.output + ": written; look for '# CHECK' in it");
+  return text;
+}
+
+}  // namespace waymark::program

@@ -1,0 +1,36 @@
+/// What `inspect` and `init` share: logs are looked at, and a drive.yaml is proposed from what was found.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <waymark/tools/inspection/inspection.hpp>
+#include <waymark/tools/program/commands/commands.hpp>
+
+namespace waymark::program {
+
+struct InspectCommand {
+  CommonOptions common;
+  std::vector<std::string> logs;  ///< DBC files among them
+  std::string format = "auto";
+  std::string dbc;
+  std::string output;  ///< drive.yaml; empty: none
+  bool force = false;
+};
+
+/// --format, --dbc, -o, --force and the common ones.
+void add_inspection_options(CLI::App& command, InspectCommand& options);
+
+/// @throws InputError, UsageError as inspect_logs; OutputError where the drive.yaml could not be written
+[[nodiscard]] std::vector<inspection::LogInspection> inspect_files(const InspectCommand& command,
+                                                                   const Console& console);
+
+/// Writes the drive.yaml; what was decided and what is left to check goes to stderr. @return its text
+/// @throws OutputError
+std::string write_proposal(const InspectCommand& command, const std::vector<inspection::LogInspection>& logs,
+                           const Console& console);
+
+/// A place that a drive.yaml may be written to. @throws OutputError for an existing file without --force
+void require_new_file(const InspectCommand& command);
+
+}  // namespace waymark::program

@@ -1,0 +1,22 @@
+/// Man pages, in roff with the macros of man(7), from the tree of subcommands.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace waymark::program {
+
+/// "waymark", "waymark-run": the name of a command's page.
+[[nodiscard]] std::string page_name(const CLI::App& command);
+
+/// The page of the program or of one of its subcommands: NAME, SYNOPSIS, DESCRIPTION, OPTIONS by heading,
+/// EXIT STATUS, ENVIRONMENT, FILES, EXAMPLES, SEE ALSO.
+/// @param date  for the header, "2026-11-21"; may be empty
+[[nodiscard]] std::string man_page(const CLI::App& command, const std::string& date);
+
+/// The day that the environment variable SOURCE_DATE_EPOCH names (UTC), so that a build can be repeated;
+/// empty where it is not set. @throws UsageError where it holds no number of seconds
+[[nodiscard]] std::string source_date();
+
+}  // namespace waymark::program

@@ -1,0 +1,33 @@
+/// Exit codes of the program `waymark`: one per kind of failure. Documented in README.md; `--help` and the
+/// man pages have them from here.
+#pragma once
+
+#include <array>
+
+namespace waymark::program {
+
+enum ExitCode {
+  kSuccess = 0,
+  kInternalError = 1,  ///< a defect of the program
+  kUsageError = 2,     ///< unknown command, option, name or value
+  kInputError = 3,     ///< a file or log is wrong or missing
+  kNotConverged = 4,   ///< the result was written, but no minimum was reached
+  kOutputError = 5,    ///< a result could not be written
+  kInterrupted = 130   ///< Ctrl-C: the best state so far was written
+};
+
+/// An exit code in words.
+struct ExitCodeMeaning {
+  ExitCode code;
+  const char* meaning;
+};
+inline constexpr std::array kExitCodeMeanings = {
+    ExitCodeMeaning{kSuccess, "success"},
+    ExitCodeMeaning{kInternalError, "internal error"},
+    ExitCodeMeaning{kUsageError, "wrong usage"},
+    ExitCodeMeaning{kInputError, "bad input"},
+    ExitCodeMeaning{kNotConverged, "no convergence (the result is written and marked)"},
+    ExitCodeMeaning{kOutputError, "output not written"},
+    ExitCodeMeaning{kInterrupted, "interrupted (the best state so far is written)"}};
+
+}  // namespace waymark::program

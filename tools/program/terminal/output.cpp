@@ -1,0 +1,42 @@
+#include <filesystem>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/program/terminal/output.hpp>
+
+namespace waymark::program {
+
+bool is_stdout(const std::string& path) {
+  return path == "-" || path == "/dev/stdout";
+}
+
+void require_output_place(const std::string& path) {
+  if (is_stdout(path)) return;
+  std::error_code unknown;  // what cannot be looked at fails when it is written
+  if (std::filesystem::is_directory(path, unknown))
+    throw OutputError(path + ": cannot write: it is a folder");
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty() && !std::filesystem::exists(folder, unknown)) {
+    throw OutputError(path + ": cannot write: its folder does not exist");
+  }
+}
+
+void require_not_read(const std::string& output, const std::vector<std::string>& read) {
+  for (const std::string& input : read) {
+    std::error_code absent;  // what is not there is not overwritten
+    if (std::filesystem::equivalent(output, input, absent))
+      throw UsageError(output +
+                       ": is read as an input and would be overwritten; choose another name or folder");
+  }
+}
+
+std::string json_document(const std::string& kind, const nlohmann::ordered_json& json) {
+  nlohmann::ordered_json document = {{"schema", "waymark-" + kind}, {"version", 1}};
+  document.update(json);
+  return json_text(document);
+}
+
+std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace waymark::program

@@ -1,0 +1,127 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/report/drive/drive_figures.hpp>
+#include <waymark/tools/report/drive/drive_report.hpp>
+#include <waymark/tools/report/drive/drive_summary.hpp>
+#include <waymark/tools/report/drive/optimization_figures.hpp>
+
+namespace waymark::report {
+namespace {
+
+std::string describe_consistency(const evaluation::ConsistencyStatistics& stated) {
+  return fmt::format(
+      "Mean NEES {:.2f}, honest between {:.2f} and {:.2f}; {:.0f} % of the epochs inside their 95 % region, "
+      "honest between {:.0f} and {:.0f} %. The errors last, so {} epochs are worth {:.1f} independent ones. "
+      "Median of actual over stated error: {:.2f}.",
+      stated.nees_mean, stated.nees_mean_honest.low, stated.nees_mean_honest.high, 100 * stated.coverage,
+      100 * stated.coverage_honest.low, 100 * stated.coverage_honest.high, stated.count,
+      stated.effective_samples, stated.median_error_ratio);
+}
+
+drawing::PageTable provenance(const ReportedDrive& drive) {
+  drawing::PageTable table{"Where it comes from", {"", ""}, {}};
+  for (const auto& [key, text] : drive.document.provenance) {
+    if (key != "assumed" && key != "warning") table.rows.push_back({key, text});
+  }
+  return table;
+}
+
+drawing::Section error_section(const ReportedDrive& drive) {
+  drawing::Section section{"errors", "Errors", {}};
+  if (drive.evaluation.truth) {
+    section.blocks.emplace_back(error_tiles(drive));
+    for (drawing::Figure& figure : errors_over_time(drive)) section.blocks.emplace_back(std::move(figure));
+    section.blocks.emplace_back(track_table(*drive.evaluation.truth));
+    section.blocks.emplace_back(error_distribution(drive));
+    section.blocks.emplace_back(autocorrelation_figure(drive));
+  } else {
+    section.blocks.emplace_back(fix_residuals_over_time(drive));
+    for (drawing::Figure& figure : errors_over_time(drive)) section.blocks.emplace_back(std::move(figure));
+  }
+  return section;
+}
+
+void add_consistency(const ReportedDrive& drive, drawing::Page& page) {
+  if (!drive.evaluation.truth || !drive.evaluation.truth->consistency) return;
+  drawing::Section section{"consistency", "Stated against actual errors", {}};
+  section.blocks.emplace_back(drawing::Paragraph{describe_consistency(*drive.evaluation.truth->consistency)});
+  std::vector<drawing::Figure> figures = consistency_figures(drive);
+  if (figures.size() == 3) {
+    section.blocks.emplace_back(drawing::FigureRow{{std::move(figures[0]), std::move(figures[1])}});
+    section.blocks.emplace_back(std::move(figures[2]));
+  }
+  page.sections.push_back(std::move(section));
+}
+
+void add_states(const ReportedDrive& drive, drawing::Page& page) {
+  if (drive.states == nullptr || drive.states->empty()) return;
+  const auto seconds = [&](Stamp stamp) { return drive.seconds(stamp); };
+  drawing::Section section{"calibration", "Calibration", {}};
+  section.blocks.emplace_back(state_table(*drive.states));
+  for (drawing::Figure& figure : state_figures(*drive.states, seconds, epochs_extent(drive)))
+    section.blocks.emplace_back(std::move(figure));
+  page.sections.push_back(std::move(section));
+}
+
+void add_optimization(const ReportedDrive& drive, drawing::Page& page) {
+  drawing::Section section{"optimisation", "Optimisation", {}};
+  if (drive.optimization != nullptr) {
+    const Summary& s = drive.optimization->summary;
+    section.blocks.emplace_back(drawing::Paragraph{
+        fmt::format("{}. Algorithm {}, start {}, linear solver {}, {} unknowns.", s.message, s.algorithm,
+                    drive.optimization->start, s.solver, s.unknowns)});
+    if (!s.records.empty()) section.blocks.emplace_back(convergence_figure(s));
+  }
+  if (drive.sparsity != nullptr) {
+    section.blocks.emplace_back(drawing::Paragraph{describe_sparsity(*drive.sparsity)});
+    section.blocks.emplace_back(sparsity_figures(*drive.sparsity));
+  }
+  if (!section.blocks.empty()) page.sections.push_back(std::move(section));
+}
+
+void add_residuals(const ReportedDrive& drive, drawing::Page& page) {
+  if (drive.residuals == nullptr) return;
+  const auto seconds = [&](Stamp stamp) { return drive.seconds(stamp); };
+  drawing::Section section{"residuals-by-type", "Residuals", {}};
+  section.blocks.emplace_back(residual_table(*drive.residuals));
+  section.blocks.emplace_back(residual_figure(*drive.residuals));
+  section.blocks.emplace_back(largest_residuals(*drive.residuals, seconds));
+  page.sections.push_back(std::move(section));
+}
+
+}  // namespace
+
+Stamp start_of(const formats::GraphDocument& document) {
+  std::optional<Stamp> first;
+  const auto consider = [&](Stamp stamp) { first = first ? std::min(*first, stamp) : stamp; };
+  const Graph& graph = document.graph;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (const auto stamp = graph.stamp(v)) consider(*stamp);
+  }
+  for (const Fix& fix : document.fixes) consider(fix.stamp);
+  return first.value_or(Stamp{});
+}
+
+drawing::Page drive_page(const ReportedDrive& drive) {
+  drawing::Page page;
+  page.title = (drive.name.empty() ? "Drive" : drive.name) + ": " + drive.label;
+  page.footer =
+      "Made by Waymark. All figures are beside this page as SVG, their numbers as CSV, in the folder "
+      "figures.";
+  summarise(drive, page);
+  page.sections.push_back(summary_section(drive));
+  page.sections.push_back({"trajectory-section", "Trajectory", {trajectory_figure(drive)}});
+  page.sections.push_back(error_section(drive));
+  add_consistency(drive, page);
+  add_states(drive, page);
+  add_residuals(drive, page);
+  add_optimization(drive, page);
+  drawing::Section origin{"provenance", "Provenance", {provenance(drive)}};
+  for (const std::string& file : drive.files) origin.blocks.emplace_back(drawing::PageLink{file, file});
+  page.sections.push_back(std::move(origin));
+  return page;
+}
+
+}  // namespace waymark::report

@@ -1,0 +1,46 @@
+/// The report of one fused drive.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <waymark/core/drive/sample.hpp>
+#include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
+#include <waymark/tools/drawing/page/page.hpp>
+#include <waymark/tools/evaluation/document/estimated_states.hpp>
+#include <waymark/tools/evaluation/document/residuals.hpp>
+#include <waymark/tools/evaluation/document/sparsity.hpp>
+#include <waymark/tools/evaluation/evaluation.hpp>
+
+namespace waymark::report {
+
+/// The first stamp of a document: of a vertex or a fix.
+[[nodiscard]] Stamp start_of(const formats::GraphDocument& document);
+
+/// What a drive report is made of. All that is referred to must outlive it.
+struct ReportedDrive {
+  std::string name;                        ///< of the drive
+  std::string label;                       ///< of the fusion: its modeling, or the file's name
+  const formats::GraphDocument& document;  ///< at its minimum
+  const evaluation::Evaluation& evaluation;
+  const std::vector<TruthPose>& truth;                           ///< empty: none
+  const MultiStartSummary* optimization = nullptr;               ///< null: the graph was optimised elsewhere
+  const std::vector<evaluation::StateReport>* states = nullptr;  ///< null: not looked at
+  const evaluation::GraphResiduals* residuals = nullptr;         ///< null: not looked at
+  const evaluation::Sparsity* sparsity = nullptr;                ///< null: not looked at
+  std::vector<std::pair<std::string, std::string>> went_in{};    ///< heading, text
+  std::vector<std::string> files{};  ///< written beside the report, relative to it
+
+  Stamp start = start_of(document);
+
+  /// Seconds since the start.
+  [[nodiscard]] double seconds(Stamp stamp) const { return seconds_between(start, stamp); }
+};
+
+/// Summary first, then trajectory, errors, stated against actual errors, residuals, optimisation and the
+/// calibration; what there is no material for is left out.
+[[nodiscard]] drawing::Page drive_page(const ReportedDrive& drive);
+
+}  // namespace waymark::report

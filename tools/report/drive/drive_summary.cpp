@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/report/drive/drive_figures.hpp>
+#include <waymark/tools/report/drive/drive_summary.hpp>
+#include <waymark/tools/report/metric_columns.hpp>
+#include <waymark/types_se2/stamped_pose.hpp>
+
+namespace waymark::report {
+namespace {
+
+/// Heading of a table of metrics, and its rows.
+std::vector<std::string> metrics_heading() {
+  std::vector<std::string> heading = {"", "epochs"};
+  for (const PositionColumn& column : position_columns()) heading.push_back(column.name + " [m]");
+  return heading;
+}
+
+std::vector<std::string> metrics_row(const std::string& name, const evaluation::PositionMetrics& m) {
+  std::vector<std::string> row = {name, fmt::to_string(m.count)};
+  for (const PositionColumn& column : position_columns()) row.push_back(decimals(m.*column.value, 3));
+  return row;
+}
+
+std::vector<std::string> improvement_row(const evaluation::PositionMetrics& raw,
+                                         const evaluation::PositionMetrics& fused) {
+  std::vector<std::string> row = {"better than raw by [%]", ""};
+  for (const PositionColumn& column : position_columns()) {
+    const double percent = evaluation::improvement_percent(raw.*column.value, fused.*column.value);
+    row.push_back((percent > 0 ? "+" : "") + decimals(percent, 1));
+  }
+  return row;
+}
+
+drawing::PageTable truth_table(const ReportedDrive& drive) {
+  const evaluation::TruthEvaluation& truth = *drive.evaluation.truth;
+  drawing::PageTable table{"Against truth", metrics_heading(), {}};
+  table.rows = {metrics_row("raw GNSS", truth.gnss.position),
+                metrics_row("raw GNSS, accepted fixes only", truth.gnss_accepted.position),
+                metrics_row("fused", truth.fused.position)};
+  table.rows.push_back(improvement_row(truth.gnss.position, truth.fused.position));
+  table.notes = {
+      "Max: largest error. Acc: length of the mean error. Prec: standard deviation about it. CEP50, CEP95: "
+      "radius about the truth that holds 50 and 95 % of the epochs. Raw and fused at the same epochs: the "
+      "stamps of all fixes with a truth."};
+  return table;
+}
+
+drawing::PageTable withheld_table(const evaluation::Evaluation& evaluation) {
+  drawing::PageTable table{
+      "At withheld fixes", metrics_heading(), {}, {"The noise of the fixes is in these numbers."}};
+  for (const evaluation::WithheldMetrics& way : evaluation.at_withheld) {
+    table.rows.push_back(metrics_row(way.label, way.at_fixes));
+    if (way.at_ends.count > 0)
+      table.rows.push_back(metrics_row(way.label + ", at the ends of outages", way.at_ends));
+  }
+  return table;
+}
+
+std::string count_of_rejections(const ReportedDrive& drive) {
+  std::map<std::string, std::size_t> of_reason;
+  for (const Fix& fix : drive.document.fixes) {
+    if (fix.status == FixStatus::rejected) ++of_reason[fix.reason];
+  }
+  const evaluation::Evaluation& e = drive.evaluation;
+  std::string text = fmt::format(
+      "{} of {} fixes ({:.1f} %)", e.rejected, e.fixes(),
+      100 * static_cast<double>(e.rejected) / std::max<double>(1, static_cast<double>(e.fixes())));
+  for (const auto& [reason, count] : of_reason)
+    text += fmt::format("{} {} for {}", text.back() == ')' ? ":" : ",", count, reason);
+  const std::size_t light = nearly_left_out(drive);
+  if (light > 0) text += fmt::format("; {} count for less than a third of their weight", light);
+  if (e.withheld > 0) text += fmt::format("; {} withheld on purpose", e.withheld);
+  return text;
+}
+
+/// Length in time and space, and the size of the graph.
+std::string describe_input(const ReportedDrive& drive) {
+  const Graph& graph = drive.document.graph;
+  double distance_m = 0;
+  std::size_t poses = 0;
+  Stamp last = drive.start;
+  std::optional<Eigen::Vector2d> before;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const auto pose = stamped_pose(graph, v);
+    if (!pose) continue;
+    const Eigen::Vector2d place = pose->pose.head<2>();
+    if (before) distance_m += (place - *before).norm();
+    before = place;
+    last = std::max(last, pose->stamp);
+    ++poses;
+  }
+  return fmt::format("{:.0f} s, {:.0f} m along {} poses, {} fixes; a graph of {} vertices and {} edges",
+                     drive.seconds(last), distance_m, poses, drive.document.fixes.size(),
+                     graph.vertex_count(), graph.edge_count());
+}
+
+/// The texts of a key of the provenance, in order.
+std::vector<std::string> stated(const ReportedDrive& drive, std::string_view key) {
+  std::vector<std::string> texts;
+  for (const auto& [name, text] : drive.document.provenance) {
+    if (name == key) texts.push_back(text);
+  }
+  return texts;
+}
+
+/// Modeling, noise, calibration and gate; empty where the graph does not tell.
+std::string describe_error_model(const ReportedDrive& drive) {
+  std::string text = fmt::format("{}", fmt::join(stated(drive, "modeling"), ", "));
+  if (text.empty()) return text;
+  if (!stated(drive, "noise").empty()) text += "; noise estimated from the drive";
+  const std::vector<std::string> calibration = stated(drive, "calibration");
+  if (!calibration.empty())
+    text += fmt::format("; estimated with the poses: {}", fmt::join(calibration, ", "));
+  for (const std::string& loss : stated(drive, "loss")) text += "; loss " + loss;
+  for (const std::string& gate : stated(drive, "gate")) text += "; gate " + gate;
+  return text;
+}
+
+std::string outcome(const ReportedDrive& drive) {
+  if (drive.optimization == nullptr) return "as the graph file has it";
+  const Summary& s = drive.optimization->summary;
+  return fmt::format("{} in {} iterations, {:.3f} s, chi2 {:.6g} -> {:.6g}",
+                     s.converged() ? "minimum reached" : "NO MINIMUM: " + s.message, s.iterations,
+                     s.total_seconds, s.initial_chi2, s.final_chi2);
+}
+
+/// What went in, what was assumed, what was rejected, what came out.
+drawing::PageTable account(const ReportedDrive& drive) {
+  drawing::PageTable table{"", {"", ""}, {}};
+  for (const std::string& warning : stated(drive, "warning")) table.rows.push_back({"WARNING", warning});
+  table.rows.push_back({"went in", describe_input(drive)});
+  for (const std::string& log : stated(drive, "input")) table.rows.push_back({"log", log});
+  for (const auto& [heading, text] : drive.went_in) table.rows.push_back({heading, text});
+  const std::string model = describe_error_model(drive);
+  if (!model.empty()) table.rows.push_back({"error model", model});
+  for (const std::string& assumption : stated(drive, "assumed"))
+    table.rows.push_back({"assumed", assumption});
+  table.rows.push_back({"rejected", count_of_rejections(drive)});
+  table.rows.push_back({"came out", outcome(drive)});
+  return table;
+}
+
+/// What got worse, for a summary must not only praise.
+std::string describe_losses(const evaluation::Improvement& i) {
+  constexpr double kWorthTelling = -2;  // percent
+  std::string text;
+  for (const auto& [name, percent] :
+       {std::pair{"the mean offset (Acc)", i.accuracy_percent},
+        std::pair{"the spread (Prec)", i.precision_percent},
+        std::pair{"the largest error (Max)", i.max_percent}, std::pair{"the median", i.median_percent}}) {
+    if (percent < kWorthTelling)
+      text += fmt::format("{} {} by {:.0f} %", text.empty() ? " Worse:" : ",", name, -percent);
+  }
+  return text.empty() ? text : text + ".";
+}
+
+}  // namespace
+
+void summarise(const ReportedDrive& drive, drawing::Page& page) {
+  const std::size_t warnings = stated(drive, "warning").size();
+  if (warnings > 0)
+    page.summary = fmt::format("{} {}: see below. ", warnings, warnings == 1 ? "warning" : "warnings");
+  if (drive.optimization != nullptr && !drive.optimization->summary.converged())
+    page.summary += "No minimum was reached: " + drive.optimization->summary.message + ". ";
+  if (!drive.evaluation.truth) {
+    page.summary += "There is no truth to compare with.";
+    if (drive.evaluation.withheld_fixes) {
+      page.summary += fmt::format(
+          " At {} withheld fixes the fused positions are off by {:.3f} m (RMSE, with the noise of the "
+          "fixes).",
+          drive.evaluation.withheld, drive.evaluation.withheld_fixes->position.rmse_m);
+    }
+    return;
+  }
+  const evaluation::TruthEvaluation& truth = *drive.evaluation.truth;
+  const double better = truth.improvement.rmse_percent;
+  page.verdict = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
+  page.summary += fmt::format(
+      "Fused positions are {:.0f} % {} than raw GNSS: RMSE {:.3f} m against {:.3f} m, largest error {:.3f} m "
+      "against {:.3f} m, at {} epochs.",
+      std::abs(better), better >= 0 ? "better" : "worse", truth.fused.position.rmse_m,
+      truth.gnss.position.rmse_m, truth.fused.position.max_m, truth.gnss.position.max_m,
+      truth.fused.position.count);
+  page.summary += describe_losses(truth.improvement);
+}
+
+drawing::Section summary_section(const ReportedDrive& drive) {
+  drawing::Section section{"summary", "Summary", {}};
+  if (drive.evaluation.truth) section.blocks.emplace_back(truth_table(drive));
+  if (!drive.evaluation.at_withheld.empty() && drive.evaluation.withheld > 0)
+    section.blocks.emplace_back(withheld_table(drive.evaluation));
+  section.blocks.emplace_back(account(drive));
+  return section;
+}
+
+drawing::PageTable track_table(const evaluation::TruthEvaluation& truth) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  drawing::PageTable table{
+      "Along and across track, and heading",
+      {"", "along: mean [m]", "rms [m]", "across: mean [m]", "rms [m]", "heading: mean [deg]", "rms [deg]"},
+      {}};
+  for (const auto& [name, system] : {std::pair{"raw GNSS", &truth.gnss}, std::pair{"fused", &truth.fused}}) {
+    table.rows.push_back({name, decimals(system->track.along.mean, 3), decimals(system->track.along.rms, 3),
+                          decimals(system->track.cross.mean, 3), decimals(system->track.cross.rms, 3),
+                          decimals(system->heading.mean * kDegrees, 3),
+                          decimals(system->heading.rms * kDegrees, 3)});
+  }
+  return table;
+}
+
+}  // namespace waymark::report

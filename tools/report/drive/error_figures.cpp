@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <waymark/tools/report/drive/drive_figures.hpp>
+#include <waymark/tools/report/drive/epoch_series.hpp>
+
+namespace waymark::report {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+std::optional<double> length(const std::optional<Eigen::Vector2d>& offset) {
+  return offset ? std::optional(offset->norm()) : std::nullopt;
+}
+
+/// Keeps the figure only where there is something to be seen.
+void add_if_seen(drawing::Figure figure, std::vector<drawing::Figure>& figures) {
+  const bool seen =
+      std::any_of(figure.series.begin(), figure.series.end(), [](const drawing::Series& series) {
+        return series.mark == drawing::Mark::line && series.x.size() > 1;
+      });
+  if (seen) figures.push_back(std::move(figure));
+}
+
+std::optional<double> component(const evaluation::EpochResult& epoch, Offset offset, bool along) {
+  if (!(epoch.*offset) || !epoch.direction_rad) return std::nullopt;
+  const evaluation::TrackOffset split = evaluation::track_offset(*(epoch.*offset), *epoch.direction_rad);
+  return along ? split.along_m : split.cross_m;
+}
+
+drawing::Figure track_figure(const ReportedDrive& drive, bool along) {
+  drawing::Figure figure = time_figure(
+      drive, along ? "error-along" : "error-across", along ? "Error along track" : "Error across track",
+      along ? "Positive: ahead of the truth, in the truth's direction of travel."
+            : "Positive: to the left of the truth's direction of travel.",
+      {.title = along ? "along track" : "across track", .unit = "m"});
+  for (const auto& [name, look, offset] :
+       {std::tuple{"raw GNSS", drawing::Look::raw, Offset(&evaluation::EpochResult::gnss_offset_m)},
+        std::tuple{"fused", drawing::Look::fused, Offset(&evaluation::EpochResult::fused_offset_m)}}) {
+    const Offset which = offset;
+    figure.series.push_back(over_time(drive, name, look, [&](const evaluation::EpochResult& epoch) {
+      return component(epoch, which, along);
+    }));
+  }
+  return figure;
+}
+
+drawing::Series distribution(const ReportedDrive& drive, Offset which, const std::string& name,
+                             drawing::Look look) {
+  std::vector<double> errors;
+  for (const Eigen::Vector2d& offset : offsets(drive, which)) errors.push_back(offset.norm());
+  std::sort(errors.begin(), errors.end());
+  drawing::Series series{.name = name, .mark = drawing::Mark::line, .look = look};
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    series.x.push_back(errors[i]);
+    series.y.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(errors.size()));
+  }
+  return series;
+}
+
+/// Beyond this ratio of the largest raw to the largest fused error the latter is a flat line; an axis in
+/// powers of ten shows both.
+constexpr double kTooFarApart = 8;
+constexpr double kLeastError = 0.01;  // m, where such an axis begins at the earliest
+
+void fit_error_axis(drawing::Figure& figure, const evaluation::TruthEvaluation& truth) {
+  const double fused = truth.fused.position.max_m;
+  if (!(truth.gnss.position.max_m > kTooFarApart * fused) || !(fused > kLeastError)) return;
+  double smallest = fused;
+  for (const drawing::Series& series : figure.series) {
+    for (const double error : series.y) smallest = std::min(smallest, error);
+  }
+  figure.y.logarithmic = true;
+  figure.y.low = std::max(0.9 * smallest, kLeastError);
+}
+
+}  // namespace
+
+std::vector<drawing::Figure> errors_over_time(const ReportedDrive& drive) {
+  std::vector<drawing::Figure> figures;
+  drawing::Figure position =
+      time_figure(drive, "error-position", "Position error",
+                  "Distance from the truth at the stamps of the fixes. Drag to move, click and "
+                  "turn the wheel to zoom: all figures over time follow.",
+                  {.title = "position error", .unit = "m", .low = 0});
+  position.series.push_back(
+      over_time(drive, "raw GNSS", drawing::Look::raw,
+                [](const evaluation::EpochResult& e) { return length(e.gnss_offset_m); }));
+  position.series.push_back(
+      over_time(drive, "fused", drawing::Look::fused,
+                [](const evaluation::EpochResult& e) { return length(e.fused_offset_m); }));
+  if (drive.evaluation.truth) fit_error_axis(position, *drive.evaluation.truth);
+  add_if_seen(std::move(position), figures);
+  add_if_seen(track_figure(drive, true), figures);
+  add_if_seen(track_figure(drive, false), figures);
+  drawing::Figure turned = time_figure(drive, "error-heading", "Heading error",
+                                       "Fused minus true heading; positive is turned too far to the left.",
+                                       {.title = "heading error", .unit = "deg"});
+  turned.series.push_back(
+      over_time(drive, "fused", drawing::Look::fused, [](const evaluation::EpochResult& e) {
+        return e.heading_error_rad ? std::optional(*e.heading_error_rad * kDegrees) : std::nullopt;
+      }));
+  add_if_seen(std::move(turned), figures);
+  drawing::Figure speed =
+      time_figure(drive, "speed", "Speed", "Of the fused body point; negative in reverse.",
+                  {.title = "speed", .unit = "m/s"});
+  speed.series.push_back(over_time(drive, "fused", drawing::Look::fused,
+                                   [](const evaluation::EpochResult& e) { return e.speed_mps; }));
+  add_if_seen(std::move(speed), figures);
+  return figures;
+}
+
+drawing::Figure fix_residuals_over_time(const ReportedDrive& drive) {
+  drawing::Figure figure =
+      time_figure(drive, "fix-residuals", "Fix minus fused position",
+                  "How far each raw fix lies from the fused antenna's place, whether it was used or not. Not "
+                  "an error: where fixes pull the poses they look better than they are.",
+                  {.title = "fix - fused", .unit = "m", .low = 0});
+  const std::vector<Fix>& fixes = drive.document.fixes;
+  const Graph& graph = drive.document.graph;
+  drawing::Series series{.name = "fix - fused", .mark = drawing::Mark::line, .look = drawing::Look::raw};
+  for (const Fix& fix : fixes) {
+    const auto v = graph.find(fix.vertex);
+    if (!v) continue;
+    const auto pose = graph.value(*v);
+    const Eigen::Vector2d antenna =
+        Eigen::Vector2d(pose[0], pose[1]) + Eigen::Rotation2Dd(pose[2]) * drive.document.antenna_m;
+    const double seconds = drive.seconds(fix.stamp);
+    series.x.push_back(seconds);
+    series.y.push_back((fix.position - antenna).norm());
+    series.time.push_back(seconds);
+  }
+  figure.series.push_back(std::move(series));
+  return figure;
+}
+
+drawing::Figure error_distribution(const ReportedDrive& drive) {
+  drawing::Figure figure;
+  figure.id = "error-distribution";
+  figure.title = "Distribution of the position error";
+  figure.x = {.title = "position error", .unit = "m", .low = 0};
+  figure.y = {.title = "epochs with a smaller error", .unit = "%", .low = 0, .high = 100};
+  figure.motion = drawing::Motion::x;
+  figure.series = {
+      distribution(drive, &evaluation::EpochResult::gnss_offset_m, "raw GNSS", drawing::Look::raw),
+      distribution(drive, &evaluation::EpochResult::fused_offset_m, "fused", drawing::Look::fused)};
+  const double widest = std::max(figure.series[0].x.empty() ? 0 : figure.series[0].x.back(),
+                                 figure.series[1].x.empty() ? 0 : figure.series[1].x.back());
+  for (const double level : {50.0, 95.0}) {
+    figure.series.push_back({.name = fmt::format("{:g} %", level),
+                             .mark = drawing::Mark::line,
+                             .look = drawing::Look::reference,
+                             .x = {0, widest},
+                             .y = {level, level}});
+  }
+  const evaluation::TruthEvaluation& truth = *drive.evaluation.truth;
+  figure.description = fmt::format(
+      "CEP50 {:.3f} m raw, {:.3f} m fused; CEP95 {:.3f} m raw, {:.3f} m fused: where the curves meet the "
+      "dashed lines.",
+      truth.gnss.position.cep50_m, truth.fused.position.cep50_m, truth.gnss.position.cep95_m,
+      truth.fused.position.cep95_m);
+  return figure;
+}
+
+drawing::Figure autocorrelation_figure(const ReportedDrive& drive) {
+  drawing::Figure figure;
+  figure.id = "autocorrelation";
+  figure.title = "Autocorrelation of the error";
+  figure.description =
+      "Of the errors about their mean, both axes together. 1: the same error still, 0: forgotten. Errors "
+      "that last make many fixes worth few, which white noise in a graph denies.";
+  figure.x = {.title = "lag", .unit = "s", .low = 0};
+  figure.y = {.title = "autocorrelation", .unit = "", .high = 1};
+  figure.motion = drawing::Motion::x;
+  const auto& epochs = drive.evaluation.epochs;
+  const double duration = epochs.empty() ? 0 : seconds_between(epochs.front().stamp, epochs.back().stamp);
+  const double longest = std::clamp(duration / 4, 1.0, 120.0);
+  std::vector<double> lags;
+  for (double lag = 1; lag <= longest; lag += longest > 60 ? 2 : 1) lags.push_back(lag);
+  for (const auto& [name, look, offset] :
+       {std::tuple{"raw GNSS", drawing::Look::raw, Offset(&evaluation::EpochResult::gnss_offset_m)},
+        std::tuple{"fused", drawing::Look::fused, Offset(&evaluation::EpochResult::fused_offset_m)}}) {
+    std::vector<Stamp> stamps;
+    for (const evaluation::EpochResult& epoch : epochs) {
+      if (epoch.*offset) stamps.push_back(epoch.stamp);
+    }
+    drawing::Series series{.name = name, .mark = drawing::Mark::line, .look = look};
+    series.x = lags;
+    series.y = evaluation::error_autocorrelation(stamps, offsets(drive, offset), lags);
+    series.x.insert(series.x.begin(), 0);
+    series.y.insert(series.y.begin(), 1);
+    figure.series.push_back(std::move(series));
+  }
+  figure.series.push_back({.name = "1/e",
+                           .mark = drawing::Mark::line,
+                           .look = drawing::Look::reference,
+                           .x = {0, longest},
+                           .y = {std::exp(-1.0), std::exp(-1.0)}});
+  return figure;
+}
+
+}  // namespace waymark::report

@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/report/drive/drive_figures.hpp>
+#include <waymark/types_se2/stamped_pose.hpp>
+
+namespace waymark::report {
+namespace {
+
+void add_point(drawing::Series& series, double x, double y, double seconds) {
+  series.x.push_back(x);
+  series.y.push_back(y);
+  series.time.push_back(seconds);
+}
+
+drawing::Series poses(const ReportedDrive& drive) {
+  drawing::Series series{.name = "fused", .mark = drawing::Mark::line, .look = drawing::Look::fused};
+  const Graph& graph = drive.document.graph;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (const auto pose = stamped_pose(graph, v))
+      add_point(series, pose->pose[0], pose->pose[1], drive.seconds(pose->stamp));
+  }
+  return series;
+}
+
+/// Truth inside the drive's time: a reference log may go on for hours.
+drawing::Series truth(const ReportedDrive& drive, double end_s) {
+  drawing::Series series{.name = "truth", .mark = drawing::Mark::line, .look = drawing::Look::truth};
+  for (const TruthPose& pose : drive.truth) {
+    const double seconds = drive.seconds(pose.stamp);
+    if (seconds >= 0 && seconds <= end_s) add_point(series, pose.position.x(), pose.position.y(), seconds);
+  }
+  return series;
+}
+
+/// A fix that counts for less is as good as rejected.
+constexpr double kSmallWeight = 1.0 / 3;
+
+/// Weights that the losses of GNSS edges leave, by vertex; 1 for all others.
+std::vector<double> weights_of_fixes(const ReportedDrive& drive) {
+  const Graph& graph = drive.document.graph;
+  std::vector<double> weights(graph.vertex_count(), 1);
+  if (drive.residuals == nullptr) return weights;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const std::string& tag = graph.edge_type(b).tag;
+    if (tag.find("GNSS") == std::string::npos) continue;
+    for (const evaluation::TypeResiduals& type : drive.residuals->types) {
+      if (type.tag != tag || type.robust == 0) continue;
+      for (const evaluation::EdgeResidual& edge : type.edges) {
+        for (const VertexIndex v : graph.batch(b).vertices(edge.edge)) {
+          double& weight = weights[static_cast<std::size_t>(v)];
+          weight = std::min(weight, edge.weight);
+        }
+      }
+    }
+  }
+  return weights;
+}
+
+/// That of a fix; one that is not in the graph has its whole.
+double weight_of(const Fix& fix, const std::vector<double>& weights, const Graph& graph) {
+  const auto v = graph.find(fix.vertex);
+  return v && fix.status == FixStatus::accepted ? weights[static_cast<std::size_t>(*v)] : 1;
+}
+
+/// What the gate and the loss made of a fix; a number that was not formed is not told.
+std::string describe(const Fix& fix, double seconds, double weight) {
+  std::string text = fmt::format("fix {} at {:.1f} s: {}", fix.epoch, seconds, to_string(fix.status));
+  if (fix.status == FixStatus::rejected) {
+    text += ", " + fix.reason;
+    if (std::isfinite(fix.chord_angle_rad))
+      text += fmt::format(", angle {:.1f} deg", fix.chord_angle_rad * 180 / std::numbers::pi);
+    if (std::isfinite(fix.displacement_m)) text += fmt::format(", displacement {:.2f} m", fix.displacement_m);
+  }
+  if (weight < 1) text += fmt::format(", weight {:.2f}", weight);
+  return text + fmt::format(", stated sigma {:.3g} m", std::sqrt(fix.covariance.trace() / 2));
+}
+
+/// Raw fixes by what became of them.
+struct FixSeries {
+  drawing::Series accepted{.name = "raw GNSS", .mark = drawing::Mark::points, .look = drawing::Look::raw};
+  drawing::Series light{
+      .name = "raw GNSS, weight below 1/3", .mark = drawing::Mark::points, .look = drawing::Look::second};
+  drawing::Series rejected{
+      .name = "raw GNSS, rejected", .mark = drawing::Mark::points, .look = drawing::Look::rejected};
+  drawing::Series withheld{
+      .name = "raw GNSS, withheld", .mark = drawing::Mark::points, .look = drawing::Look::withheld};
+
+  [[nodiscard]] drawing::Series& of(const Fix& fix, double weight) {
+    if (fix.status == FixStatus::rejected) return rejected;
+    if (fix.status == FixStatus::withheld) return withheld;
+    return weight < kSmallWeight ? light : accepted;
+  }
+};
+
+FixSeries fixes(const ReportedDrive& drive) {
+  const std::vector<double> weights = weights_of_fixes(drive);
+  FixSeries all;
+  for (const Fix& fix : drive.document.fixes) {
+    const double weight = weight_of(fix, weights, drive.document.graph);
+    drawing::Series& series = all.of(fix, weight);
+    const double seconds = drive.seconds(fix.stamp);
+    add_point(series, fix.position.x(), fix.position.y(), seconds);
+    series.note.push_back(static_cast<int>(series.notes.size()));
+    series.notes.push_back(describe(fix, seconds, weight));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::size_t nearly_left_out(const ReportedDrive& drive) {
+  const std::vector<double> weights = weights_of_fixes(drive);
+  const std::vector<Fix>& all = drive.document.fixes;
+  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](const Fix& fix) {
+    return weight_of(fix, weights, drive.document.graph) < kSmallWeight;
+  }));
+}
+
+drawing::Figure trajectory_figure(const ReportedDrive& drive) {
+  drawing::Figure figure;
+  figure.id = "trajectory";
+  figure.title = "Trajectory";
+  figure.description =
+      "Fused poses of the body point, raw fixes of the antenna with what became of them" +
+      std::string(drive.truth.empty() ? "" : ", and the truth") +
+      ". Grid metres of the drive's UTM frame, grid north up. Point at a fix to read its verdict.";
+  figure.x = {.title = "east", .unit = "m"};
+  figure.y = {.title = "north", .unit = "m"};
+  figure.motion = drawing::Motion::map;
+  figure.geographic = true;
+  figure.height = 620;
+  drawing::Series fused = poses(drive);
+  const double end_s = fused.time.empty() ? 0 : fused.time.back();
+  FixSeries raw = fixes(drive);
+  const std::vector<drawing::Series> layers = {truth(drive, end_s),     std::move(raw.accepted),
+                                               std::move(raw.light),    std::move(raw.rejected),
+                                               std::move(raw.withheld), std::move(fused)};
+  for (const drawing::Series& series : layers) {
+    if (!series.x.empty()) figure.series.push_back(series);
+  }
+  return figure;
+}
+
+}  // namespace waymark::report

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/reproduction/experiment/consistency_study.hpp>
+#include <waymark/tools/reproduction/tables/convergence_tables.hpp>
+
+namespace waymark::reproduction {
+namespace {
+
+constexpr const char* kPresets[] = {"highway", "urban", "rural", "mixed"};
+constexpr const char* kTogether = "together";
+
+using Drives = std::vector<DriveResult>;
+
+/// What a setting gave on the drives of one preset, or on all.
+struct Pool {
+  std::vector<double> nees;
+  std::vector<double> coverage_percent;
+  std::vector<double> squared_error;  ///< m^2, of each drive
+  int drives = 0;                     ///< with or without a result
+};
+
+Pool pool(const Drives& drives, const std::string& group, const std::string& setting) {
+  Pool pool;
+  for (const DriveResult& drive : drives) {
+    if (group != kTogether && drive.group != group) continue;
+    ++pool.drives;
+    const auto stated = consistency_of(drive, setting);
+    const auto position = metrics_of(drive, setting);
+    if (!stated || !position) continue;
+    pool.nees.push_back(stated->nees_mean);
+    pool.coverage_percent.push_back(100 * stated->coverage);
+    pool.squared_error.push_back(position->rmse_m * position->rmse_m);
+  }
+  return pool;
+}
+
+const char* model_name(const Setting& setting) {
+  return setting.name == kDefaultModel ? "default" : "white noise with gate";
+}
+
+ReportTable pooled_table(const Drives& drives) {
+  ReportTable table;
+  table.file = "consistency";
+  table.title = "Stated against actual errors, pooled over simulated drives";
+  table.columns = {"preset",    "model",          "drives",        "judged",
+                   "mean NEES", "standard error", "95 % coverage", "coverage standard error",
+                   "RMSE"};
+  std::vector<std::string> groups(std::begin(kPresets), std::end(kPresets));
+  groups.emplace_back(kTogether);
+  for (const std::string& group : groups) {
+    for (const Setting& setting : consistency_settings()) {
+      const Pool of = pool(drives, group, setting.name);
+      if (of.drives == 0) continue;
+      const PooledMean nees = pooled_mean(of.nees);
+      const PooledMean coverage = pooled_mean(of.coverage_percent);
+      table.rows.push_back({group, model_name(setting), std::to_string(of.drives),
+                            std::to_string(of.nees.size()), cell(nees.mean, 2), cell(nees.standard_error, 2),
+                            cell(coverage.mean, 1), cell(coverage.standard_error, 1),
+                            cell(std::sqrt(pooled_mean(of.squared_error).mean), 2)});
+    }
+  }
+  table.notes = {
+      "Every drive counts once. NEES: error against truth in units of the stated covariance, 2 where that is "
+      "honest. Standard errors are those over drives; the epochs of one drive have errors in common.",
+      "judged: drives with a minimum and covariances."};
+  for (const DriveResult& drive : drives) {
+    for (const Outcome& outcome : drive.outcomes) {
+      const std::string& why = outcome.failure.empty() ? outcome.ending.message : outcome.failure;
+      if (!outcome.failure.empty() || !outcome.ending.converged)
+        table.notes.push_back(drive.name + ", " + outcome.setting.name + ": " + why);
+    }
+  }
+  return table;
+}
+
+ReportTable drive_table(const Drives& drives) {
+  ReportTable table;
+  table.file = "consistency_drives";
+  table.title = "Each of the simulated drives";
+  table.columns = {"drive", "RMSE raw"};
+  for (const Setting& setting : consistency_settings()) {
+    for (const char* figure : {"NEES", "95 % coverage", "RMSE"})
+      table.columns.push_back(fmt::format("{} {}", figure, model_name(setting)));
+  }
+  for (const DriveResult& drive : drives) {
+    const auto rmse = [&](const std::string& system) {
+      const auto metrics = metrics_of(drive, system);
+      return cell(metrics ? metrics->rmse_m : evaluation::kUndefined, 2);
+    };
+    std::vector<std::string> row{drive.name, rmse("gnss")};
+    for (const Setting& setting : consistency_settings()) {
+      const auto stated = consistency_of(drive, setting.name);
+      row.push_back(cell(stated ? stated->nees_mean : evaluation::kUndefined, 2));
+      row.push_back(cell(stated ? 100 * stated->coverage : evaluation::kUndefined, 0));
+      row.push_back(rmse(setting.name));
+    }
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<Draw> consistency_draws(int count) {
+  std::vector<Draw> draws;
+  for (int i = 0; i < count; ++i)
+    draws.push_back(
+        {kPresets[static_cast<std::size_t>(i) % std::size(kPresets)], kFirstStudySeed + std::uint64_t(i)});
+  return draws;
+}
+
+std::vector<Setting> consistency_settings() {
+  Setting white = our_settings().front();
+  white.objective.clear();  // ends are not compared
+  return {default_setting(), white};
+}
+
+PooledMean pooled_mean(const std::vector<double>& of_drives) {
+  const evaluation::ScalarStatistics statistics = evaluation::scalar_statistics(of_drives);
+  return {statistics.mean, statistics.deviation / std::sqrt(static_cast<double>(statistics.count))};
+}
+
+ReproductionReport consistency_report(const Drives& drives, const std::string& introduction) {
+  ReproductionReport report;
+  report.name = "consistency";
+  report.title = "How honest the covariances are";
+  report.introduction = introduction;
+  report.tables = {pooled_table(drives), drive_table(drives)};
+  report.runs = run_table(drives);
+  return report;
+}
+
+}  // namespace waymark::reproduction

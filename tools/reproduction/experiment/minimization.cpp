@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/tools/reproduction/experiment/minimization.hpp>
+
+namespace waymark::reproduction {
+namespace {
+
+/// g2o's rule, as an observer that cancels.
+class GainRule {
+ public:
+  explicit GainRule(const std::atomic<bool>* outer) : outer_(outer) {}
+
+  void observe(const IterationRecord& record) {
+    if (outer_ != nullptr && outer_->load()) stop_ = true;
+    attempts_ = record.accepted ? 0 : attempts_ + 1;
+    if (attempts_ >= kGainAttempts) end(fmt::format("{} steps in a row were of no use", attempts_), false);
+    if (!record.accepted) return;
+    ++taken_;
+    const double gain = record.decrease / record.chi2;
+    // The first iteration has no gain in g2o: it counts from the chi2 after it.
+    if (taken_ > 1 && gain >= 0 && gain < kGain)
+      end(fmt::format("a {} step lowered chi2 by {:.2g} of it", record.kind, gain), true);
+    if (taken_ >= kGainIterations) end(fmt::format("{} iterations", taken_), false);
+  }
+
+  [[nodiscard]] bool ended() const { return !message_.empty(); }
+  [[nodiscard]] bool converged() const { return converged_; }
+  [[nodiscard]] const std::string& message() const { return message_; }
+  [[nodiscard]] const std::atomic<bool>* token() const { return &stop_; }
+
+ private:
+  void end(std::string message, bool converged) {
+    if (ended()) return;
+    message_ = std::move(message);
+    converged_ = converged;
+    stop_ = true;
+  }
+
+  const std::atomic<bool>* outer_;
+  std::atomic<bool> stop_{false};
+  int taken_ = 0;
+  int attempts_ = 0;
+  bool converged_ = false;
+  std::string message_;
+};
+
+}  // namespace
+
+Ending describe(const Summary& summary) {
+  Ending ending;
+  ending.converged = summary.converged();
+  ending.message = summary.message;
+  for (const IterationRecord& record : summary.records)
+    ++(record.accepted ? ending.iterations : ending.rejected_steps);
+  ending.initial_chi2 = summary.initial_chi2;
+  ending.chi2 = summary.final_chi2;
+  return ending;
+}
+
+Ending minimize(Graph& graph, const Minimization& how, const TypeRegistry& registry,
+                const std::atomic<bool>* cancel) {
+  const auto algorithm = registry.make_algorithm(how.algorithm, how.options);
+  const auto solver = registry.make_linear_solver(registry.linear_solvers().front().type.name);
+  OptimizerOptions options;
+  options.max_iterations = how.max_iterations;
+  options.decrement_tolerance = how.tolerance;
+  options.cancel = cancel;
+  if (how.all_starts)
+    return describe(optimize_from_best_start(graph, registry.starts(), *algorithm, *solver, options).summary);
+  if (how.stopping == StoppingRule::full_steps)
+    return describe(optimize(graph, *algorithm, *solver, options));
+
+  GainRule rule(cancel);
+  options.max_iterations = kGainIterations * kGainAttempts;
+  options.decrement_tolerance = 1e-300;  // the rule alone ends the run
+  options.gradient_tolerance = 0;
+  options.step_tolerance = 0;
+  options.cancel = rule.token();
+  options.observer = [&](const IterationRecord& record) { rule.observe(record); };
+  Ending ending = describe(optimize(graph, *algorithm, *solver, options));
+  if (rule.ended()) {
+    ending.converged = rule.converged();
+    ending.message = rule.message();
+  }
+  return ending;
+}
+
+}  // namespace waymark::reproduction

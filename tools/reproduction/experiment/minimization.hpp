@@ -1,0 +1,31 @@
+/// Minimises a graph as a setting says.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/registry/registry.hpp>
+#include <waymark/tools/reproduction/experiment/setting.hpp>
+
+namespace waymark::reproduction {
+
+/// How a minimisation ended.
+struct Ending {
+  bool converged = false;  ///< by the rule of its setting; whether at a minimum is another question
+  std::string message;     ///< why it ended, with the numbers
+  int iterations = 0;      ///< steps taken
+  int rejected_steps = 0;  ///< steps tried in vain
+  double initial_chi2 = 0;
+  double chi2 = 0;
+};
+
+/// The summary of a run by our stopping rule.
+[[nodiscard]] Ending describe(const Summary& summary);
+
+/// Minimises; the graph holds the best values found. @param cancel as OptimizerOptions::cancel
+/// @throws what optimize() throws
+[[nodiscard]] Ending minimize(Graph& graph, const Minimization& how, const TypeRegistry& registry,
+                              const std::atomic<bool>* cancel);
+
+}  // namespace waymark::reproduction

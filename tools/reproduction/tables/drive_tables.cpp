@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <waymark/tools/reproduction/tables/drive_tables.hpp>
+
+namespace waymark::reproduction {
+namespace {
+
+using Drives = std::vector<DriveResult>;
+using Row = std::vector<std::string>;
+
+void add_position(const evaluation::PositionMetrics& m, Row& row) {
+  for (const double value : {m.max_m, m.accuracy_m, m.precision_m, m.rmse_m, m.cep95_m})
+    row.push_back(cell(value, 2));
+}
+
+const char* reached_word(const Outcome& outcome) {
+  const bool alone = outcome.setting.objective.empty();  // nothing to compare its end with
+  return (alone ? outcome.ending.converged : near_minimum(outcome)) ? "yes" : "no";
+}
+
+void add_consistency(const std::optional<evaluation::ConsistencyStatistics>& stated, Row& row) {
+  if (!stated) return row.resize(row.size() + 3, "-");
+  row.push_back(cell(stated->nees_mean, 1));
+  row.push_back(cell(stated->nees_mean_honest.low, 1) + " to " + cell(stated->nees_mean_honest.high, 1));
+  row.push_back(cell(100 * stated->coverage, 0));
+}
+
+Row failed_row(const DriveResult& drive, const Outcome& outcome, std::size_t cells, ReportTable& table) {
+  Row row{labelled(drive), outcome.setting.name};
+  row.resize(cells, "-");
+  table.notes.push_back(labelled(drive) + ", " + outcome.setting.name + ": " + outcome.failure);
+  return row;
+}
+
+}  // namespace
+
+ReportTable overview_table(const Drives& drives) {
+  ReportTable table;
+  table.file = "drives_overview";
+  table.title = "The drives";
+  table.columns = {"Drive", "s", "km", "fixes", "odometry", "rejected %"};
+  for (const DriveResult& drive : drives) {
+    const Outcome* gated = find_outcome(drive.outcomes, "ours_g2");
+    const bool known = gated != nullptr && gated->failure.empty();
+    table.rows.push_back({labelled(drive), cell(drive.duration_s, 0), cell(drive.distance_m / 1000, 2),
+                          std::to_string(drive.fixes), std::to_string(drive.odometry_samples),
+                          cell(known ? gated->rejected_percent() : evaluation::kUndefined, 1)});
+  }
+  return table;
+}
+
+ReportTable truth_table(const Drives& drives) {
+  ReportTable table;
+  table.file = "drives_truth";
+  table.title = "Drives with truth: errors in metres";
+  table.columns = {"Drive",      "system",          "Max",  "Acc",         "Prec",         "RMSE", "CEP95",
+                   "rejected %", "minimum reached", "NEES", "honest NEES", "95 % coverage"};
+  table.notes = {
+      "NEES: error against truth in units of the stated covariance, 2 where that is honest; honest NEES: "
+      "where 95 of 100 "
+      "honest drives lie, by the effective number of independent epochs."};
+  for (const DriveResult& drive : drives) {
+    const auto raw = metrics_of(drive, "gnss");
+    if (!raw) continue;
+    Row row{labelled(drive), "raw"};
+    add_position(*raw, row);
+    row.resize(table.columns.size(), "-");
+    table.rows.push_back(row);
+    for (const Outcome& outcome : drive.outcomes) {
+      if (!outcome.setting.evaluated) continue;
+      if (!outcome.failure.empty()) {
+        table.rows.push_back(failed_row(drive, outcome, table.columns.size(), table));
+        continue;
+      }
+      Row fused{labelled(drive), outcome.setting.name};
+      add_position(outcome.evaluation.truth->fused.position, fused);
+      fused.push_back(cell(outcome.rejected_percent(), 1));
+      fused.push_back(reached_word(outcome));
+      add_consistency(outcome.evaluation.truth->consistency, fused);
+      table.rows.push_back(fused);
+    }
+  }
+  return table;
+}
+
+namespace {
+
+const evaluation::WithheldMetrics* find_prediction(const Outcome& outcome, const std::string& label) {
+  for (const evaluation::WithheldMetrics& at : outcome.evaluation.at_withheld) {
+    if (at.label == label) return &at;
+  }
+  return nullptr;
+}
+
+void add_withheld(const evaluation::WithheldMetrics& withheld, Row& row) {
+  const evaluation::PositionMetrics& m = withheld.at_fixes;
+  row.push_back(std::to_string(m.count));
+  for (const double value : {m.median_m, m.rmse_m, m.max_m, m.cep95_m}) row.push_back(cell(value, 2));
+}
+
+/// What odometry alone makes of the outages, from the last fix before each: the same fused poses to begin
+/// with for all systems.
+void add_dead_reckoning(const DriveResult& drive, const WithheldResult& way, ReportTable& table) {
+  const Outcome* from = find_outcome(way.outcomes, "ours_g2");
+  const evaluation::WithheldMetrics* reckoned =
+      from != nullptr ? find_prediction(*from, "dead reckoning") : nullptr;
+  if (reckoned == nullptr) return;
+  Row row{labelled(drive), way.way, "dead reckoning"};
+  add_withheld(*reckoned, row);
+  row.resize(table.columns.size(), "-");
+  table.rows.push_back(row);
+}
+
+}  // namespace
+
+ReportTable withheld_table(const Drives& drives) {
+  ReportTable table;
+  table.file = "drives_withheld";
+  table.title = "Drives without truth: errors at fixes that were kept out of the graph, in metres";
+  table.columns = {"Drive", "kept out", "system", "fixes",          "median",
+                   "RMS",   "Max",      "CEP95",  "minimum reached"};
+  table.notes = {
+      "The errors contain those of the fixes. dead reckoning: odometry alone from the last fix before each, "
+      "beginning at the pose of ours_g2."};
+  for (const DriveResult& drive : drives) {
+    for (const WithheldResult& way : drive.withheld) {
+      for (const Outcome& outcome : way.outcomes) {
+        if (!outcome.setting.evaluated) continue;
+        const evaluation::WithheldMetrics* fused = find_prediction(outcome, "fused");
+        Row row{labelled(drive), way.way, outcome.setting.name};
+        if (fused == nullptr) {
+          row.resize(table.columns.size(), "-");
+          table.notes.push_back(labelled(drive) + ", " + way.way + ", " + outcome.setting.name + ": " +
+                                (outcome.failure.empty() ? "no fix was kept out" : outcome.failure));
+        } else {
+          add_withheld(*fused, row);
+          row.push_back(reached_word(outcome));
+        }
+        table.rows.push_back(row);
+      }
+      add_dead_reckoning(drive, way, table);
+    }
+  }
+  return table;
+}
+
+}  // namespace waymark::reproduction

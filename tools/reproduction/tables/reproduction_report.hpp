@@ -1,0 +1,34 @@
+/// The whole result: all tables, the findings, files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <waymark/tools/reproduction/experiment/drive_result.hpp>
+#include <waymark/tools/reproduction/tables/findings.hpp>
+#include <waymark/tools/reproduction/tables/report_table.hpp>
+
+namespace waymark::reproduction {
+
+struct ReproductionReport {
+  std::string name = "reproduction";  ///< of its files and, after "waymark-", of its schema
+  std::string title = "The paper's experiment, reproduced";
+  std::string introduction;  ///< a paragraph: program, version, what is simulated
+  std::vector<ReportTable> tables;
+  std::vector<Finding> findings;
+  ReportTable runs;  ///< every run; in files only
+};
+
+/// The tables that the drives have material for: the paper's six, convergence, those of other drives.
+[[nodiscard]] ReproductionReport make_report(const std::vector<DriveResult>& drives,
+                                             const std::string& introduction);
+
+/// For the terminal.
+[[nodiscard]] std::string report_text(const ReproductionReport& report, const text::TextLook& look = {});
+/// NAME.md, the name in capitals
+[[nodiscard]] std::string report_markdown(const ReproductionReport& report);
+/// NAME.json, schema "waymark-NAME" version 1 (README.md of this folder): all numbers in full.
+[[nodiscard]] std::string report_json(const ReproductionReport& report,
+                                      const std::vector<DriveResult>& drives);
+
+}  // namespace waymark::reproduction

@@ -1,0 +1,89 @@
+#include <waymark/tools/text/text_look.hpp>
+
+#include <algorithm>
+
+namespace waymark::text {
+namespace {
+
+std::string_view code_of(Tone tone) {
+  switch (tone) {
+    case Tone::heading:
+      return "1";
+    case Tone::dim:
+      return "2";
+    case Tone::better:
+      return "32";
+    case Tone::worse:
+      return "31";
+    case Tone::warning:
+      return "33";
+    case Tone::error:
+      return "1;31";
+  }
+  return "0";
+}
+
+/// Bytes of the character that begins here; 1 for what is no UTF-8.
+std::size_t character_size(std::string_view text) {
+  const auto byte = static_cast<unsigned char>(text.front());
+  const std::size_t size = byte >= 0xf0 ? 4 : byte >= 0xe0 ? 3 : byte >= 0xc0 ? 2 : 1;
+  if (size > text.size()) return 1;
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80; };
+  return std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(size), continues) ? size
+                                                                                                    : 1;
+}
+
+std::size_t character_width(std::string_view character) {
+  // U+1100 is e1 84 80.
+  return character >= "\xe1\x84\x80" && character.size() >= 3 ? 2 : 1;
+}
+
+bool steers_terminals(std::string_view character) {
+  const auto byte = static_cast<unsigned char>(character.front());
+  if (character.size() == 1) return byte < 0x20 || byte == 0x7f || byte >= 0x80;
+  return byte == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0;  // C1: U+0080 to U+009F
+}
+
+template <typename Take>
+void for_characters(std::string_view text, const Take& take) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::string_view character = text.substr(at, character_size(text.substr(at)));
+    take(character);
+    at += character.size();
+  }
+}
+
+}  // namespace
+
+std::string painted(std::string_view text, Tone tone, const TextLook& look) {
+  if (!look.colours || text.empty()) return std::string(text);
+  std::string result = "\033[";
+  result += code_of(tone);
+  result += 'm';
+  result += text;
+  result += "\033[0m";
+  return result;
+}
+
+std::size_t display_width(std::string_view text) {
+  std::size_t width = 0;
+  for_characters(text, [&](std::string_view character) { width += character_width(character); });
+  return width;
+}
+
+std::string fitted(std::string_view text, std::size_t columns) {
+  constexpr std::string_view kCut = "...";
+  std::string whole;
+  std::string start;  // as much as fits before "..."
+  std::size_t width = 0;
+  const std::size_t room = columns > kCut.size() ? columns - kCut.size() : 0;
+  for_characters(text, [&](std::string_view character) {
+    whole += steers_terminals(character) ? "?" : character;
+    width += character_width(character);
+    if (width <= room) start = whole;
+  });
+  if (width <= columns) return whole;
+  return columns < kCut.size() ? std::string(columns, '.') : start.append(kCut);
+}
+
+}  // namespace waymark::text

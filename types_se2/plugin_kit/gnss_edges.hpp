@@ -1,0 +1,116 @@
+/// Small steps that every GNSS modeling takes: the information of a fix, the paper's literal edge, the origin
+/// node.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include <Eigen/LU>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/drive/modeling.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/time_offset.hpp>
+
+namespace waymark {
+
+/// Inverse of the fix's covariance: 1/m^2, frame axes.
+[[nodiscard]] inline Eigen::Matrix2d position_information(const Fix& fix) {
+  const Eigen::Matrix2d inverse = fix.covariance.inverse();
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+/// The same with a heading axis that carries no information.
+[[nodiscard]] inline Eigen::Matrix3d pose_information(const Fix& fix) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  information.topLeftCorner<2, 2>() = position_information(fix);
+  return information;
+}
+
+/// The vertex of a fix's pose. @throws UsageError where the fix names none.
+[[nodiscard]] inline VertexIndex pose_vertex(const Fix& fix, const Graph& graph) {
+  const auto found = graph.find(fix.vertex);
+  if (!found)
+    throw UsageError("fix of epoch " + std::to_string(fix.epoch) + " belongs to no pose of the graph");
+  return *found;
+}
+
+/// The fixed node at the frame's origin, "UTM origin" of the paper.
+inline VertexIndex add_origin(Graph& graph) {
+  const VertexIndex origin = graph.add_vertex<VertexSe2>(graph.free_id(), {0, 0, 0});
+  graph.set_fixed(origin, true);
+  return origin;
+}
+
+/// The options that all modelings share: which error a fix has, whether its time offset is estimated.
+[[nodiscard]] inline std::vector<OptionInfo> gnss_options() {
+  return {{"error", "decoupled", "",
+           "'decoupled': p - z in frame axes; 'literal': the paper's log with heading 0"},
+          {"time_offset", "off", "",
+           "how late the fixes are against the odometry: 'off', or estimated 'constant'"},
+          {"time_offset_sigma", "0.3", "s", "sigma of its prior about 0; in [1e-6, 100]"}};
+}
+[[nodiscard]] inline bool is_literal(std::string_view modeling, const Options& given) {
+  constexpr std::array<std::string_view, 2> kErrors = {"decoupled", "literal"};
+  return word_option(modeling, given, gnss_options(), "error", kErrors) == "literal";
+}
+
+/// Gives the last edge of a batch the loss of the fixes, where they have one.
+inline void attach_loss(EdgeBatchBase& batch, const GnssInput& input) {
+  if (input.loss) batch.set_loss(batch.size() - 1, *input.loss);
+}
+
+/// Adds position edges of fixes, with one time offset for all of them where it is to be estimated.
+class PositionEdges {
+ public:
+  /// @param prior_sigma_s  of the time offset; 0: it is not estimated
+  /// @throws UsageError where it is, and the motion at the fixes is not given
+  PositionEdges(const GnssInput& input, double prior_sigma_s, Graph& graph) : input_(input), graph_(graph) {
+    if (prior_sigma_s == 0) return;
+    if (input.motion.size() != input.fixes.size())
+      throw UsageError("a time offset needs the motion at each fix (GnssInput::motion)");
+    offset_ = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
+    add_prior_about_zero(graph, offset_, prior_sigma_s);
+  }
+
+  /// The edge of fix i. @param vertices  the reference pose and the pose that carries the antenna
+  /// @param place  of the latter in the body frame: 0, or the antenna where the node is that
+  void add(std::size_t i, const Eigen::Vector2d& measured, const Eigen::Vector2d& antenna,
+           const std::array<VertexIndex, 2>& vertices, const Eigen::Vector2d& place = {0, 0}) {
+    const Eigen::Matrix2d information = position_information(input_.fixes[i]);
+    if (offset_ < 0) {
+      attach_loss(graph_.add_edge(EdgeGnssPosition{measured, antenna}, vertices, information), input_);
+      return;
+    }
+    const double turn = input_.motion[i].yaw_rate_radps;
+    const Eigen::Vector2d velocity(input_.motion[i].speed_mps - turn * place[1], turn * place[0]);
+    attach_loss(graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, velocity, turn},
+                                {vertices[0], vertices[1], offset_}, information),
+                input_);
+  }
+
+ private:
+  const GnssInput& input_;
+  Graph& graph_;
+  VertexIndex offset_ = -1;
+};
+
+/// Sigma of the time offset's prior; 0 where it is not estimated. @throws UsageError
+[[nodiscard]] inline double time_offset_sigma(std::string_view modeling, const Options& given) {
+  constexpr std::array<std::string_view, 2> kModels = {"off", "constant"};
+  if (word_option(modeling, given, gnss_options(), "time_offset", kModels) == "off") return 0;
+  if (is_literal(modeling, given))
+    throw UsageError(std::string(modeling) +
+                     ": the paper's literal error has no time offset; use error: decoupled");
+  return number_option(modeling, given, gnss_options(), "time_offset_sigma", 1e-6, 100);
+}
+
+/// The literal error knows nothing of lever arms. @throws UsageError
+inline void require_no_lever_arm(const GnssInput& input, const char* modeling) {
+  if (input.antenna.isZero(0)) return;
+  throw UsageError(std::string(modeling) +
+                   ": the paper's literal error has no antenna lever arm; use error: decoupled");
+}
+
+}  // namespace waymark
