@@ -1,4 +1,4 @@
-// What --json prints against the tables of tools/program/README.md: every key printed is documented with its
+// What --json prints against the tables of tools/program/JSON.md: every key printed is documented with its
 // type, every key documented is printed.
 #include <map>
 #include <regex>
@@ -39,7 +39,7 @@ std::map<std::string, Table> read_tables(const std::string& markdown) {
 
 class Schema {
  public:
-  Schema() : tables_(read_tables(read_text(std::string(WAYMARK_SOURCE_DIR) + "/tools/program/README.md"))) {}
+  Schema() : tables_(read_tables(read_text(std::string(WAYMARK_SOURCE_DIR) + "/tools/program/JSON.md"))) {}
 
   /// What is wrong with a document that names its own kind; empty: nothing.
   [[nodiscard]] std::string problems_of(const Json& document) {
@@ -120,7 +120,7 @@ class Schema {
 
 }  // namespace
 
-TEST_CASE("json of every subcommand is as tools/program/README.md documents it") {
+TEST_CASE("json of every subcommand is as tools/program/JSON.md documents it") {
   const std::string folder = fresh_folder();
   const std::string drive = write_drive(folder);
   const std::string graph = folder + "a.graph";

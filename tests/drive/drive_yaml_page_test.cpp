@@ -1,5 +1,5 @@
-// The list of drive.yaml's keys in tools/drive/README.md is the one that the reader has: no key is missing
-// there, and none is there that the reader refuses.
+// tools/drive/DRIVE_YAML.md lists the keys of a drive.yaml that the reader has: no key is missing there, and
+// the reader refuses none that is there.
 #include <algorithm>
 #include <cctype>
 #include <fstream>
@@ -29,12 +29,8 @@ std::string file_text(const std::string& path) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-/// From the heading to the next one of its level.
-std::string drive_yaml_section() {
-  const std::string readme = file_text("tools/drive/README.md");
-  const auto begin = readme.find("\n## drive.yaml\n");
-  REQUIRE(begin != std::string::npos);
-  return readme.substr(begin, readme.find("\n## ", begin + 1) - begin);
+std::string drive_yaml_page() {
+  return file_text("tools/drive/DRIVE_YAML.md");
 }
 
 bool is_word(char c) {
@@ -66,17 +62,17 @@ std::set<std::string> literal_words(const std::string& source) {
 
 }  // namespace
 
-TEST_CASE("drive.yaml: the reader takes every key of the list in the README") {
+TEST_CASE("drive.yaml: the reader takes every key of the list on its page") {
   const std::vector<waymark_test::FencedBlock> blocks =
-      waymark_test::parse_markdown(drive_yaml_section()).blocks;
+      waymark_test::parse_markdown(drive_yaml_page()).blocks;
   REQUIRE(blocks.size() == 2);
-  CHECK_NOTHROW(parse_drive_config(blocks[0].text, "README.yaml", ""));
+  CHECK_NOTHROW(parse_drive_config(blocks[0].text, "page.yaml", ""));
   // The second shows another way to give odometry: on its own it lacks the GNSS log.
-  CHECK_NOTHROW(parse_drive_config(blocks[1].text + "gnss: {file: gnss.csv}\n", "README.yaml", ""));
+  CHECK_NOTHROW(parse_drive_config(blocks[1].text + "gnss: {file: gnss.csv}\n", "page.yaml", ""));
 }
 
-TEST_CASE("drive.yaml: the README names every key and word that the reader knows") {
-  const std::set<std::string> named = words_of(drive_yaml_section());
+TEST_CASE("drive.yaml: its page names every key and word that the reader knows") {
+  const std::set<std::string> named = words_of(drive_yaml_page());
   std::set<std::string> known;
   for (const char* source : {"tools/drive/description/config.cpp", "tools/drive/description/log_config.cpp"})
     known.merge(literal_words(file_text(source)));
@@ -86,7 +82,7 @@ TEST_CASE("drive.yaml: the README names every key and word that the reader knows
   known.erase("true");  // YAML's own words for on and off
   known.erase("false");
   for (const std::string& word : known) {
-    INFO("tools/drive/README.md, section drive.yaml, lacks '" << word << "'");
+    INFO("tools/drive/DRIVE_YAML.md lacks '" << word << "'");
     CHECK(named.contains(word));
   }
 }
