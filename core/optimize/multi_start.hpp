@@ -9,7 +9,7 @@
 ///   3. Else, or where the gauge cannot be judged at the values given, the other starts are tried, each for a
 ///      limited number of steps, until a minimum is plausible or a second start has ended at the lowest
 ///      minimum so far. The lowest is kept, and finished.
-/// Evidence: types_se2/start/README.md.
+/// Evidence: types_se2/start/MEASUREMENTS.md.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@ namespace waymark::solvers {
 namespace {
 
 /// Flops per number of the factor above which the automatic choice is supernodal. CHOLMOD's own 40 presumes a
-/// tuned BLAS; with Debian's reference BLAS the two are equal near 100 (figures in solvers/README.md).
+/// tuned BLAS; with Debian's reference BLAS the two are equal near 100 (solvers/README.md).
 constexpr double kSupernodalSwitch = 100;
 
 /// CHOLMOD's LL^T, simplicial or supernodal. Its workspaces live as long as this object, so that no iteration

@@ -1,5 +1,5 @@
-// The convergence table of types_se2/start/README.md, as a program: hidden, as it takes minutes and its drive
-// is made by a script. `make_drive.py DIR`, then
+// The convergence table of types_se2/start/MEASUREMENTS.md: hidden, because it takes minutes and needs a drive
+// that is not part of this repository (support/key_workload.hpp).
 //   WAYMARK_KEY_WORKLOAD=DIR waymark_conformance_tests "[.table]"
 #include <cstdio>
 

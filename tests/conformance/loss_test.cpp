@@ -116,7 +116,7 @@ TEST_CASE("Tukey is constant beyond c: a third of c squared") {
   CHECK(find("tukey").evaluate(26, 5).weight == 0);
 }
 
-TEST_CASE("DCS is as its paper continued without a jump: science.md, section 6") {
+TEST_CASE("DCS is as its paper has it, continued without a jump") {
   const LossType dcs = find("dcs");
   for (const double phi : kScales) {
     for (const double s : squares(phi)) {

@@ -275,7 +275,7 @@ TEST_CASE("prepare: the real drives that come as configs") {
     int zone;
     std::size_t fixes, odometry;  // at least
   };
-  const auto root = waymark_test::test_data_dir().parent_path().parent_path() / "examples";
+  const auto root = waymark_test::examples_dir();
   for (const Expected& expected : {Expected{"berlin_potsdamer_platz", 33, 160, 8400},
                                    {"berlin_gendarmenmarkt", 33, 1100, 29'000},
                                    {"nagoya", 53, 1000, 28'000},

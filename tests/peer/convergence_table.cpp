@@ -1,4 +1,5 @@
-// What Ceres reaches from the wrong starts of types_se2/start/README.md: hidden, as it takes minutes.
+// The minima that Ceres reaches from the wrong initial guesses of types_se2/start/MEASUREMENTS.md: hidden,
+// because it takes minutes.
 //   WAYMARK_KEY_WORKLOAD=DIR waymark_peer_tests "[.table]"
 #include <catch2/catch.hpp>
 

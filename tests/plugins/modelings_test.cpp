@@ -1,5 +1,5 @@
 // The three GNSS modelings share one minimum under the decoupled error; the paper's literal error differs by
-// the factor that science.md 3 derives.
+// the factor (theta/2) / sin(theta/2).
 #include <array>
 #include <cmath>
 

@@ -1,5 +1,5 @@
-/// The key workload of the convergence tables: a drive of 105,000 poses, written by `make_drive.py DIR`; the
-/// environment variable WAYMARK_KEY_WORKLOAD names DIR.
+/// The key workload of the convergence tables: a simulated drive of 105,000 poses as g2o files. Its generator
+/// is not part of this repository; the environment variable WAYMARK_KEY_WORKLOAD names the folder.
 #pragma once
 
 #include <cstdlib>

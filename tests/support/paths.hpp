@@ -14,9 +14,9 @@ namespace waymark_test {
   return WAYMARK_SHARED_DATA;
 }
 
-/// The small files of tests/data.
-[[nodiscard]] inline std::filesystem::path test_data_dir() {
-  return WAYMARK_TEST_DATA;
+/// The drives, graphs and descriptions that come with the repository.
+[[nodiscard]] inline std::filesystem::path examples_dir() {
+  return WAYMARK_SOURCE_DIR "/examples";
 }
 
 /// A folder of this process for files that a test writes; made on first use, removed at the end.

@@ -7,8 +7,8 @@
 /// (rho'' <= 0). Where that leaves less than kLeastCurvature of rho', the edge lies where the loss is flat or
 /// concave along e and no quadratic model with a minimum describes it: there the term is left out. What
 /// remains, rho' Omega, bounds the loss from above (rho is concave in s), so that a full step cannot climb
-/// for it; holding the factor at a small positive number instead makes steps wild (core/README.md has the
-/// figures). g = rho' J^T Omega e has no such term.
+/// for it; holding the factor at a small positive number instead makes steps wild (core/MEASUREMENTS.md has
+/// the figures). g = rho' J^T Omega e has no such term.
 #pragma once
 
 #include <Eigen/Core>

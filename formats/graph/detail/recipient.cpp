@@ -46,7 +46,7 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .least_id = 0,
      .most_id = kMostInt,
      .applies_point_offset = false},
-    // dataset.cpp, load2D: keys are unsigned; unknown tags are passed over, FIX and all edges to VERTEX_XY
+    // load2D of its dataset: keys are unsigned; unknown tags are passed over, FIX and all edges to VERTEX_XY
     // among
     // them; a zero on the diagonal is taken for a sign of another order and thrown out.
     {.name = "gtsam",
@@ -56,7 +56,7 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .least_id = 0,
      .most_id = kMostKey,
      .zero_information = false},
-    // examples/slam: two tags, any other ends the reading; the lowest id is held.
+    // Its pose_graph_2d: two tags, any other ends the reading; the lowest id is held.
     {.name = "ceres",
      .reader = "Ceres' pose_graph_2d",
      .formats = kG2o,
@@ -65,7 +65,7 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .least_id = kLeastInt,
      .most_id = kMostInt,
      .evaluates_as_example = true},
-    // posegraph2.cpp and posegraph.hxx: a second edge from one vertex to another is dropped; the tree of all
+    // Its posegraph2 and posegraph: a second edge from one vertex to another is dropped; the tree of all
     // poses has one root, the vertex of the lowest id, which stays.
     {.name = "toro",
      .reader = "TORO",

@@ -124,7 +124,7 @@ template <typename E>
 concept HasLinearize = requires {
   &E::linearize;
 };
-// Ceres at its best: by hand its linearisation of this edge is faster than automatically (README.md).
+// Ceres at its best: by hand its linearisation of this edge is faster than automatically (MEASUREMENTS.md).
 static_assert(HasLinearize<EdgeSe2>);
 
 template <Edge E, std::size_t... K>

@@ -103,7 +103,7 @@ struct DriveConfig {
 /// What `calibration: on` stands for: all states that the built-in plugins know.
 [[nodiscard]] std::map<std::string, std::string> default_calibration();
 
-/// Reads and checks a drive.yaml (schema: tools/drive/README.md). Logs are not opened.
+/// Reads and checks a drive.yaml (keys: tools/drive/DRIVE_YAML.md). Logs are not opened.
 /// @param data_folder  where relative log names are looked up, instead of the file's own `folder` (empty:
 /// that one)
 /// @throws InputError "drive.yaml:12:5: unknown key 'colums'; did you mean 'columns'?" and the like.

@@ -33,7 +33,7 @@ struct NoiseEstimate {
 };
 
 /// Maximises prior times marginal likelihood over the options with a prior that the drive.yaml does not
-/// state. Works on fixes thinned to one in 5 s per receiver, for receivers smooth their output and white
+/// state. Works on fixes thinned to one in 7.5 s per receiver, for receivers smooth their output and white
 /// noise would be found too small, and on nodes four times a second; further sensors take no part.
 /// @param modeling_options  what is stated for the modeling
 /// @return no parameters where none is left to be estimated

@@ -31,7 +31,7 @@ struct ReportHeader {
 [[nodiscard]] std::string metrics_table(std::span<const LabelledEvaluation> evaluations,
                                         const text::TextLook& look = {});
 
-/// metrics.json, schema "waymark-metrics" version 1 (tools/evaluation/README.md): SI units, radians, null
+/// metrics.json, schema "waymark-metrics" version 1 (tools/program/JSON.md): SI units, radians, null
 /// where a number is not defined. Numbers read back to the same doubles.
 [[nodiscard]] std::string metrics_json(std::span<const LabelledEvaluation> evaluations,
                                        const ReportHeader& header = {});

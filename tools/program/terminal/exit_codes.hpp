@@ -1,4 +1,4 @@
-/// Exit codes of the program `waymark`: one per kind of failure. Documented in README.md; `--help` and the
+/// Exit codes of the program `waymark`: one per kind of failure. Documented in tools/README.md; `--help` and the
 /// man pages have them from here.
 #pragma once
 

@@ -21,7 +21,7 @@ void require_output_place(const std::string& path);
 void require_not_read(const std::string& output, const std::vector<std::string>& read);
 
 /// What --json prints: a document of this kind, "schema": "waymark-KIND", "version": 1, then the keys of
-/// `json`. README.md of this folder lists the keys of every kind; a test compares the two.
+/// `json`. tools/program/JSON.md lists the keys of every kind; a test compares the two.
 [[nodiscard]] std::string json_document(const std::string& kind, const nlohmann::ordered_json& json);
 
 /// JSON for people and files: indented; what is not UTF-8 (a file name may be anything) is replaced.

@@ -27,7 +27,7 @@ struct ReproductionReport {
 [[nodiscard]] std::string report_text(const ReproductionReport& report, const text::TextLook& look = {});
 /// NAME.md, the name in capitals
 [[nodiscard]] std::string report_markdown(const ReproductionReport& report);
-/// NAME.json, schema "waymark-NAME" version 1 (README.md of this folder): all numbers in full.
+/// NAME.json, schema "waymark-NAME" version 1 (tools/program/JSON.md): all numbers in full.
 [[nodiscard]] std::string report_json(const ReproductionReport& report,
                                       const std::vector<DriveResult>& drives);
 

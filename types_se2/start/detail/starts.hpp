@@ -1,4 +1,4 @@
-/// The starts of the plane, as registry entries (types_se2/start/README.md has the methods and the evidence).
+/// The starts of the plane, as registry entries (types_se2/start/README.md has the methods).
 /// None of them looks at the graph's values beyond fixed vertices and the first vertex of each part.
 #pragma once
 
