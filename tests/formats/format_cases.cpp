@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using namespace waymark;
 using namespace waymark::formats;
 
-const fs::path kCases = fs::path(WAYMARK_SOURCE_DIR) / "tests/format/cases";
+const fs::path kCases = fs::path(WAYMARK_SOURCE_DIR) / "tests/formats/cases";
 
 bool has_part(const fs::path& input, const std::string& part) {
   return input.filename().string().find("." + part + ".") != std::string::npos;

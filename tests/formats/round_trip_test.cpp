@@ -69,7 +69,7 @@ TEST_CASE("stamps and ids at the ends of their range come back") {
 }
 
 TEST_CASE("writing is a fixed point after the first reading") {
-  for (const auto& entry : std::filesystem::directory_iterator(WAYMARK_SOURCE_DIR "/tests/format/cases")) {
+  for (const auto& entry : std::filesystem::directory_iterator(WAYMARK_SOURCE_DIR "/tests/formats/cases")) {
     if (entry.path().extension() != ".graph" && entry.path().extension() != ".g2o") continue;
     std::string once;
     try {

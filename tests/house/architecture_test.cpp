@@ -1,5 +1,6 @@
-// The arrows of the house: core <- types_se2 <- plugins, core <- solvers, core <- formats, tools ->
-// everything; solvers/linear sees block patterns and numbers, never a graph.
+// The arrows of the house: core <- types_se2 <- plugins, core <- solvers, core <- formats, and those between the
+// libraries of tools; solvers/linear sees block patterns and numbers, never a graph.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -9,21 +10,45 @@
 
 #include <catch2/catch.hpp>
 
+#include "support/paths.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
+using Rooms = std::set<std::string>;
 
-/// Room -> rooms it may include from.
-const std::map<std::string, std::set<std::string>> kArrows = {
-    {"core", {"core"}},
-    {"types_se2", {"core", "types_se2"}},
-    {"solvers", {"core", "solvers"}},
-    {"plugins", {"core", "types_se2", "plugins"}},
-    {"formats", {"core", "formats"}},
+/// The libraries: room -> rooms that it may include from, beside itself.
+const std::map<std::string, Rooms> kArrows = {
+    {"core", {}},
+    {"types_se2", {"core"}},
+    {"solvers", {"core"}},
+    {"plugins", {"core", "types_se2"}},
+    {"formats", {"core"}},
+    {"tools/text", {"core", "formats"}},
+    {"tools/drawing", {"core", "formats", "tools/text"}},
+    {"tools/drive", {"core", "types_se2", "formats"}},
+    {"tools/evaluation", {"core", "types_se2", "formats", "tools/text"}},
+    {"tools/report", {"core", "types_se2", "formats", "tools/text", "tools/drawing", "tools/evaluation"}},
+    {"tools/benchmark", {"core", "types_se2", "plugins", "formats", "tools/text", "tools/drawing"}},
+    {"tools/simulation", {"core", "formats", "tools/text", "tools/drive", "tools/evaluation"}},
+    {"tools/inspection", {"core", "formats", "tools/text", "tools/drive"}},
+    {"tools/reproduction",
+     {"core", "types_se2", "formats", "tools/text", "tools/drawing", "tools/drive", "tools/evaluation",
+      "tools/report"}},
 };
+
+fs::path root() {
+  return WAYMARK_SOURCE_DIR;
+}
 
 bool is_source(const fs::path& file) {
   return file.extension() == ".hpp" || file.extension() == ".cpp";
+}
+
+/// The room of a path below the root: "core", "tools/drive".
+std::string room_of(const std::string& path) {
+  const auto end = path.find('/', path.starts_with("tools/") ? 6 : 0);
+  return path.substr(0, end);
 }
 
 /// The paths inside <> or "" of all include lines of a file.
@@ -39,27 +64,65 @@ std::vector<std::string> includes(const fs::path& file) {
 }
 
 template <typename Visit>
-void for_each_include(const std::string& room, Visit visit) {
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(WAYMARK_SOURCE_DIR) / room)) {
-    if (!is_source(entry.path())) continue;
-    for (const std::string& include : includes(entry.path())) visit(entry.path(), include);
+void for_each_source(const std::string& room, Visit visit) {
+  for (const auto& entry : fs::recursive_directory_iterator(root() / room)) {
+    if (is_source(entry.path())) visit(entry.path());
   }
+}
+
+template <typename Visit>
+void for_each_include(const std::string& room, Visit visit) {
+  for_each_source(room, [&](const fs::path& file) {
+    for (const std::string& include : includes(file)) visit(file, include);
+  });
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
 
-TEST_CASE("Each room includes only from the rooms its arrows point to") {
+TEST_CASE("house: each library includes only from the libraries that its arrows point to") {
   for (const auto& [room, allowed] : kArrows) {
-    for_each_include(room, [&, &targets = allowed](const fs::path& file, const std::string& include) {
-      if (!include.starts_with("waymark/")) return;
-      const std::string target = include.substr(8, include.find('/', 8) - 8);
-      INFO(file << " includes " << include);
-      CHECK(targets.contains(target));
-    });
+    for_each_include(room,
+                     [&, &from = room, &targets = allowed](const fs::path& file, const std::string& include) {
+                       if (!include.starts_with("waymark/")) return;
+                       const std::string target = room_of(include.substr(8));
+                       INFO(file << " includes " << include);
+                       CHECK((target == from || targets.contains(target)));
+                     });
   }
 }
 
-TEST_CASE("Core knows Eigen and the standard library, nothing else") {
+TEST_CASE("house: every library of tools has its arrows, and only the program sees all of them") {
+  for (const auto& entry : fs::directory_iterator(root() / "tools")) {
+    const std::string name = "tools/" + entry.path().filename().string();
+    if (name == "tools/program" || !fs::exists(entry.path() / "README.md")) continue;
+    bool has_sources = false;
+    for_each_source(name, [&](const fs::path&) { has_sources = true; });
+    INFO(name);
+    CHECK(has_sources == kArrows.contains(name));
+  }
+}
+
+TEST_CASE("house: the arrows run one way") {
+  // A room is reached only by rooms from which it cannot be reached.
+  for (const auto& [room, allowed] : kArrows) {
+    Rooms reached = allowed;
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (const std::string& next : Rooms(reached)) {
+        for (const std::string& further : kArrows.at(next)) grown |= reached.insert(further).second;
+      }
+    }
+    INFO(room);
+    CHECK_FALSE(reached.contains(room));
+  }
+}
+
+TEST_CASE("house: core knows Eigen and the standard library, nothing else") {
   for_each_include("core", [](const fs::path& file, const std::string& include) {
     INFO(file << " includes " << include);
     const bool own = include.starts_with("waymark/core/");
@@ -71,30 +134,72 @@ TEST_CASE("Core knows Eigen and the standard library, nothing else") {
   });
 }
 
-TEST_CASE("Linear backends see no graph") {
-  const std::set<std::string> allowed = {"waymark/core/linear_solver.hpp", "waymark/core/block_pattern.hpp",
-                                         "waymark/core/block_cholesky.hpp"};
+TEST_CASE("house: linear backends see no graph") {
   for_each_include("solvers/linear", [&](const fs::path& file, const std::string& include) {
     INFO(file << " includes " << include);
-    const bool own = include.starts_with("waymark/solvers/linear/");
-    if (include.starts_with("waymark/") && !own) CHECK(allowed.contains(include));
+    if (!include.starts_with("waymark/")) return;
+    CHECK((include.starts_with("waymark/solvers/linear/") || include.starts_with("waymark/core/linear/") ||
+           include.starts_with("waymark/core/base/")));
   });
 }
 
-TEST_CASE("Libraries neither print nor exit") {
+TEST_CASE("house: plugins and examples use public headers only") {
+  for (const std::string room : {"plugins", "examples"}) {
+    for_each_include(room, [&](const fs::path& file, const std::string& include) {
+      INFO(file << " includes " << include);
+      const bool foreign_detail =
+          include.find("/detail/") != std::string::npos && !include.starts_with("waymark/plugins/");
+      CHECK_FALSE(foreign_detail);
+    });
+  }
+}
+
+TEST_CASE("house: each library has a namespace of its own") {
+  for (const auto& [room, allowed] : kArrows) {
+    std::string expected = "namespace waymark";
+    if (room == "formats" || room == "solvers" || room == "plugins") expected += "::" + room;
+    if (room.starts_with("tools/")) expected += "::" + room.substr(6);
+    for_each_source(room, [&](const fs::path& file) {
+      const std::string text = text_of(file);
+      INFO(file);
+      for (auto at = text.find("\nnamespace waymark"); at != std::string::npos;
+           at = text.find("\nnamespace waymark", at + 1)) {
+        const std::string found = text.substr(at + 1, expected.size());
+        const char next = text[at + 1 + expected.size()];
+        CHECK(found == expected);
+        CHECK((next == ' ' || next == ':' || next == ';'));
+      }
+    });
+  }
+}
+
+TEST_CASE("house: libraries neither print nor exit") {
   // Words with what stands before them, so that static_assert and snprintf pass.
   const std::vector<std::string> forbidden = {"std::cout", "std::cerr", " printf(",   "std::printf(",
                                               "fprintf(",  "std::exit", "std::abort", " assert("};
-  for (const std::string room : {"core", "types_se2", "solvers", "plugins", "formats"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(WAYMARK_SOURCE_DIR) / room)) {
-      if (!is_source(entry.path())) continue;
-      std::ifstream in(entry.path());
-      const std::string text((std::istreambuf_iterator<char>(in)), {});
-      INFO(entry.path());
+  for (const auto& [room, allowed] : kArrows) {
+    for_each_source(room, [&](const fs::path& file) {
+      const std::string text = text_of(file);
+      INFO(file);
       for (const std::string& word : forbidden) {
         INFO(word);
         CHECK(text.find(word) == std::string::npos);
       }
+    });
+  }
+}
+
+TEST_CASE("house: a folder shows at most some twenty names") {
+  constexpr std::size_t kMost = 22;
+  const std::set<std::string> data = {"tests/formats/cases"};  // pairs of files, listed by CMake
+  for (const std::string top :
+       {"core", "types_se2", "solvers", "plugins", "formats", "tools", "tests", "examples"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root() / top)) {
+      if (!entry.is_directory()) continue;
+      const std::string name = fs::relative(entry.path(), root()).string();
+      const auto names = std::distance(fs::directory_iterator(entry.path()), fs::directory_iterator());
+      INFO(name);
+      if (!data.contains(name)) CHECK(static_cast<std::size_t>(names) <= kMost);
     }
   }
 }

@@ -10,7 +10,7 @@
 #include <waymark/tools/drawing/figure/look.hpp>
 #include <waymark/tools/drawing/figure/markup.hpp>
 
-#include "drawing/xml.hpp"
+#include "tools/drawing/xml.hpp"
 
 using namespace waymark;
 using namespace waymark::drawing;
