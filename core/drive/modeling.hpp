@@ -12,10 +12,13 @@
 #include <Eigen/Core>
 
 #include <waymark/core/drive/sample.hpp>
-#include <waymark/core/graph/graph.hpp>
-#include <waymark/core/optimize/algorithm.hpp>
+#include <waymark/core/graph/loss.hpp>
+#include <waymark/core/graph/vertex.hpp>
+#include <waymark/core/registry/options.hpp>
 
 namespace waymark {
+
+class Graph;  // core/graph/graph.hpp
 
 /// The nodes of a drive in time: where everything that is measured finds its pose.
 struct DriveNodes {
@@ -85,14 +88,17 @@ struct OdometryModelType {
   std::string name;
   std::string description;
   std::vector<OptionInfo> options;
-  std::function<std::unique_ptr<OdometryModel>(const Options&)> make;
+  std::function<std::unique_ptr<OdometryModel>(const CheckedOptions&)> make;
+  /// The option that is the variance factor of bridged intervals (Interval::bridged); empty: there is none. A
+  /// drive sets it from its timeline if nobody states it.
+  std::string gap_factor_option = {};
 };
 
 struct GnssModelingType {
   std::string name;
   std::string description;
   std::vector<OptionInfo> options;
-  std::function<std::unique_ptr<GnssModeling>(const Options&)> make;
+  std::function<std::unique_ptr<GnssModeling>(const CheckedOptions&)> make;
   /// Whether outliers, biases and the odometry's calibration are part of its error model. Then a drive has no
   /// gate, all calibration states and an estimated noise, unless it says otherwise; else the paper's gate,
   /// none of the states and the noise as stated.
@@ -105,7 +111,7 @@ struct SensorModelType {
   std::string description;
   std::vector<SensorColumn> columns;  ///< beside `time`; empty: the sensor has no log of its own
   std::vector<OptionInfo> options;
-  std::function<std::unique_ptr<SensorModel>(const Options&)> make;
+  std::function<std::unique_ptr<SensorModel>(const CheckedOptions&)> make;
 };
 
 }  // namespace waymark

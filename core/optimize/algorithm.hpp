@@ -3,18 +3,18 @@
 
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <waymark/core/linear/linear_solver.hpp>
-#include <waymark/core/system/normal_equations.hpp>
+#include <waymark/core/registry/options.hpp>
 
 namespace waymark {
+
+class NormalEquations;  // core/system/normal_equations.hpp
 
 /// A proposed step from the present values.
 struct Step {
@@ -51,33 +51,12 @@ class Algorithm {
   virtual void rejected(const Step& step, double gain_ratio) = 0;
 };
 
-/// What is known beforehand of a noise parameter: a normal distribution of it, or of its natural logarithm.
-struct NoisePrior {
-  double mean = 0;       ///< of the parameter itself, in the option's unit
-  double deviation = 1;  ///< of its logarithm; where it is linear, of the parameter
-  bool linear = false;
-};
-
-/// An option of a registered type, as `waymark info` shows it.
-struct OptionInfo {
-  std::string name;
-  std::string value;        ///< default
-  std::string unit;         ///< empty: none
-  std::string description;  ///< one sentence with the validity rule
-  /// Where given, the option is a noise parameter that can be estimated from a drive (core/covariance/evidence.hpp).
-  std::optional<NoisePrior> prior = {};
-};
-
-/// Option name -> value as given by the user.
-using Options = std::map<std::string, std::string>;
-
 /// A registered algorithm.
 struct AlgorithmType {
   std::string name;
   std::string description;
   std::vector<OptionInfo> options;
-  /// @throws UsageError for an unknown option or a value out of range
-  std::function<std::unique_ptr<Algorithm>(const Options&)> make;
+  std::function<std::unique_ptr<Algorithm>(const CheckedOptions&)> make;
 };
 
 }  // namespace waymark

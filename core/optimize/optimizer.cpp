@@ -8,6 +8,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {
 namespace {

@@ -7,6 +7,7 @@
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/optimize/algorithm.hpp>
 #include <waymark/core/optimize/summary.hpp>
+#include <waymark/core/system/structure.hpp>
 
 namespace waymark {
 

@@ -1,29 +1,127 @@
+#include <waymark/core/registry/options.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
 
-#include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
-#include <waymark/core/registry/options.hpp>
 
 namespace waymark {
 namespace {
 
-std::string prefix(std::string_view owner, const std::string& name) {
-  return std::string(owner) + ": option '" + name + "' ";
+/// An exponent without its plus sign and zeros: "1e-06" becomes "1e-6".
+std::string with_short_exponent(std::string number) {
+  const std::size_t exponent = number.find('e');
+  if (exponent == std::string::npos) return number;
+  const std::size_t digits = exponent + 2;
+  number.erase(digits, std::min(number.find_first_not_of('0', digits), number.size() - 1) - digits);
+  if (number[exponent + 1] == '+') number.erase(exponent + 1, 1);
+  return number;
 }
 
-const std::string& given_or_default(const Options& given, std::span<const OptionInfo> known,
-                                    const std::string& name) {
-  const auto found = given.find(name);
-  if (found != given.end()) return found->second;
-  const auto info =
-      std::find_if(known.begin(), known.end(), [&](const OptionInfo& o) { return o.name == name; });
-  if (info == known.end()) throw UsageError("option '" + name + "' is not declared");
-  return info->value;
+/// A bound as people write it: "1e4", "100", "0.1".
+std::string bound(double value) {
+  if (!std::isfinite(value)) return value < 0 ? "-inf" : "inf";
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::scientific).ptr;
+  const std::string plain = with_short_exponent(shortest(value));
+  const std::string scientific = with_short_exponent({buffer, end});
+  return scientific.size() < plain.size() ? scientific : plain;
+}
+
+/// "'off' or 'constant'".
+std::string quoted(const OptionWords& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "'" : " or '") + word + "'";
+  return text;
+}
+
+std::string problem_with_name(const std::string& name, std::span<const OptionInfo> known) {
+  std::vector<std::string_view> names;
+  for (const OptionInfo& option : known) names.push_back(option.name);
+  std::string hint = did_you_mean(name, names);
+  if (hint.empty()) hint = known.empty() ? "; it has none" : "; it has " + joined(names);
+  return "unknown option '" + name + "'" + hint;
+}
+
+std::optional<double> finite_number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+template <typename Values>
+const auto& declared(const Values& values, const std::string& owner, std::string_view name) {
+  const auto found = values.find(name);
+  if (found == values.end())
+    throw std::logic_error(owner + ": option '" + std::string(name) + "' is not declared as it is read");
+  return found->second;
 }
 
 }  // namespace
+
+bool OptionRange::contains(double value) const {
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string OptionRange::text() const {
+  std::string text(1, low_open || std::isinf(low) ? '(' : '[');
+  text += bound(low);
+  text += ", ";
+  text += bound(high);
+  text += high_open || std::isinf(high) ? ')' : ']';
+  return text;
+}
+
+std::string OptionInfo::description() const {
+  const auto* range = std::get_if<OptionRange>(&allowed);
+  return range == nullptr ? text : text + "; in " + range->text();
+}
+
+OptionError::OptionError(const std::string& message, std::string owner, std::string option, std::string value)
+    : UsageError(message), owner_(std::move(owner)), option_(std::move(option)), value_(std::move(value)) {}
+OptionError::~OptionError() = default;
+
+CheckedOptions::CheckedOptions(std::string_view owner, const Options& given,
+                               std::span<const OptionInfo> known)
+    : owner_(owner) {
+  for (const auto& [name, value] : given) {
+    if (!has_option(known, name))
+      throw OptionError(owner_ + ": " + problem_with_name(name, known), owner_, name, value);
+  }
+  for (const OptionInfo& option : known) {
+    const auto stated = given.find(option.name);
+    add(option, stated == given.end() ? option.value : stated->second);
+  }
+}
+
+void CheckedOptions::add(const OptionInfo& option, const std::string& value) {
+  const auto refuse = [&](const std::string& rule, const std::string& got) {
+    throw OptionError(owner_ + ": option '" + option.name + "' must " + rule + ", got " + got, owner_,
+                      option.name, value);
+  };
+  if (const auto* words = std::get_if<OptionWords>(&option.allowed)) {
+    if (std::find(words->begin(), words->end(), value) == words->end())
+      refuse("be " + quoted(*words), "'" + value + "'");
+    words_[option.name] = value;
+    return;
+  }
+  const OptionRange& range = std::get<OptionRange>(option.allowed);
+  const std::optional<double> number = finite_number(value);
+  if (!number) refuse("be a number", "'" + value + "'");
+  if (!range.contains(*number)) refuse("lie in " + range.text(), value);
+  numbers_[option.name] = *number;
+}
+
+double CheckedOptions::number(std::string_view name) const {
+  return declared(numbers_, owner_, name);
+}
+
+const std::string& CheckedOptions::word(std::string_view name) const {
+  return declared(words_, owner_, name);
+}
 
 std::string shortest(double value) {
   char buffer[32];
@@ -32,49 +130,6 @@ std::string shortest(double value) {
 
 bool has_option(std::span<const OptionInfo> known, std::string_view name) {
   return std::any_of(known.begin(), known.end(), [&](const OptionInfo& o) { return o.name == name; });
-}
-
-void check_option_names(std::string_view owner, const Options& given, std::span<const OptionInfo> known) {
-  for (const auto& entry : given) {
-    const std::string& name = entry.first;
-    if (has_option(known, name)) continue;
-    std::vector<std::string_view> names;
-    for (const OptionInfo& option : known) names.push_back(option.name);
-    std::string hint = did_you_mean(name, names);
-    if (hint.empty()) hint = known.empty() ? "; it has none" : "; it has " + joined(names);
-    throw UsageError(std::string(owner) + ": unknown option '" + name + "'" + hint);
-  }
-}
-
-double number_option(std::string_view owner, const Options& given, std::span<const OptionInfo> known,
-                     const std::string& name) {
-  const std::string& text = given_or_default(given, known, name);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw UsageError(prefix(owner, name) + "must be a number, got '" + text + "'");
-  }
-  return value;
-}
-
-double number_option(std::string_view owner, const Options& given, std::span<const OptionInfo> known,
-                     const std::string& name, double low, double high) {
-  const double value = number_option(owner, given, known, name);
-  if (value < low || value > high) {
-    throw UsageError(prefix(owner, name) + "must lie in [" + shortest(low) + ", " + shortest(high) +
-                     "], got " + shortest(value));
-  }
-  return value;
-}
-
-std::string word_option(std::string_view owner, const Options& given, std::span<const OptionInfo> known,
-                        const std::string& name, std::span<const std::string_view> allowed) {
-  const std::string& text = given_or_default(given, known, name);
-  if (std::find(allowed.begin(), allowed.end(), text) != allowed.end()) return text;
-  std::string message = prefix(owner, name) + "must be";
-  for (std::size_t i = 0; i < allowed.size(); ++i)
-    message += (i > 0 ? " or '" : " '") + std::string(allowed[i]) + "'";
-  throw UsageError(message + ", got '" + text + "'");
 }
 
 }  // namespace waymark

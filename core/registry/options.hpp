@@ -1,32 +1,102 @@
-/// Reading the options of registered types: every name is known, every value is checked.
+/// Options of registered types: which values an option may have, and the values that a user gave. Names and
+/// values are checked in one place, CheckedOptions.
 #pragma once
 
+#include <limits>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
-#include <waymark/core/optimize/algorithm.hpp>
+#include <waymark/core/base/error.hpp>
 
 namespace waymark {
+
+/// Option name -> value as given by the user.
+using Options = std::map<std::string, std::string>;
+
+/// The numbers that an option may have.
+struct OptionRange {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;   ///< whether `low` itself is excluded
+  bool high_open = false;  ///< whether `high` itself is excluded
+
+  [[nodiscard]] bool contains(double value) const;
+  /// "[1e-6, 10]"; "(0, 1]" if `low` is excluded.
+  [[nodiscard]] std::string text() const;
+};
+
+/// The words that an option may have.
+using OptionWords = std::vector<std::string>;
+
+/// What is known beforehand of a noise parameter: a normal distribution of it, or of its natural logarithm.
+struct NoisePrior {
+  double mean = 0;       ///< of the parameter itself, in the option's unit
+  double deviation = 1;  ///< of its logarithm; of the parameter itself if `linear` is set
+  bool linear = false;
+};
+
+/// An option of a registered type.
+struct OptionInfo {
+  std::string name;
+  std::string value;  ///< the default, as a user would write it
+  std::string unit;   ///< empty: none
+  std::variant<OptionRange, OptionWords> allowed;
+  std::string text;  ///< what the option is; of words it says what each of them does
+  /// If given, the option is a noise parameter that can be estimated from a drive (core/covariance/evidence.hpp).
+  std::optional<NoisePrior> prior = {};
+
+  /// The text with the range: "sigma of the readings; in [1e-6, 10]". `waymark info` shows it.
+  [[nodiscard]] std::string description() const;
+};
+
+/// An option that does not exist, or a value that it cannot have.
+class OptionError : public UsageError {
+ public:
+  OptionError(const std::string& message, std::string owner, std::string option, std::string value);
+  ~OptionError() override;  // key function, as in error.hpp
+
+  /// The registered name of the type that has (or lacks) the option.
+  [[nodiscard]] const std::string& owner() const { return owner_; }
+  [[nodiscard]] const std::string& option() const { return option_; }
+  /// As it was given.
+  [[nodiscard]] const std::string& value() const { return value_; }
+
+ private:
+  std::string owner_;
+  std::string option_;
+  std::string value_;
+};
+
+/// The options of one type: the values given, and the defaults of all others. The registry makes it
+/// (TypeRegistry::make_...), so a type never sees a value that its OptionInfo forbids.
+class CheckedOptions {
+ public:
+  /// @throws OptionError "owner: option 'name' must lie in [0, 1], got 2", and for an unknown name the nearest
+  /// one or all that exist
+  CheckedOptions(std::string_view owner, const Options& given, std::span<const OptionInfo> known);
+
+  [[nodiscard]] const std::string& owner() const { return owner_; }
+  /// The value of an option that is declared with a range. @throws std::logic_error if none of this name is
+  [[nodiscard]] double number(std::string_view name) const;
+  /// The value of an option that is declared with words. @throws std::logic_error if none of this name is
+  [[nodiscard]] const std::string& word(std::string_view name) const;
+
+ private:
+  void add(const OptionInfo& option, const std::string& value);
+
+  std::string owner_;
+  std::map<std::string, double, std::less<>> numbers_;
+  std::map<std::string, std::string, std::less<>> words_;
+};
 
 /// A number as the value of an option: the shortest text that reads back exactly.
 [[nodiscard]] std::string shortest(double value);
 
 [[nodiscard]] bool has_option(std::span<const OptionInfo> known, std::string_view name);
-
-/// @throws UsageError naming the unknown option, its owner and the options that exist.
-void check_option_names(std::string_view owner, const Options& given, std::span<const OptionInfo> known);
-
-/// The value given, else the default. @throws UsageError "owner: option 'name' must be a number, got '...'"
-[[nodiscard]] double number_option(std::string_view owner, const Options& given,
-                                   std::span<const OptionInfo> known, const std::string& name);
-/// The same, which must lie in [low, high].
-[[nodiscard]] double number_option(std::string_view owner, const Options& given,
-                                   std::span<const OptionInfo> known, const std::string& name, double low,
-                                   double high);
-/// One of the allowed words.
-[[nodiscard]] std::string word_option(std::string_view owner, const Options& given,
-                                      std::span<const OptionInfo> known, const std::string& name,
-                                      std::span<const std::string_view> allowed);
 
 }  // namespace waymark

@@ -6,12 +6,14 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/graph/graph.hpp>
 #include <waymark/core/registry/registry.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {
 
 /// Raised whenever a type that crosses the boundary changes its layout or meaning.
-inline constexpr std::uint32_t kPluginAbi = 3;
+inline constexpr std::uint32_t kPluginAbi = 4;
 inline constexpr std::uint32_t kPluginMagic = 0x57415950;  // "WAYP"
 
 /// How a binary was built, as far as it decides whether two binaries may share types.
@@ -38,6 +40,8 @@ constexpr std::uint32_t layout_fingerprint() {
                                  sizeof(LossType),
                                  sizeof(Scatter),
                                  sizeof(LinearSolverType),
+                                 sizeof(OptionInfo),
+                                 sizeof(CheckedOptions),
                                  sizeof(AlgorithmType),
                                  sizeof(Step),
                                  sizeof(NormalEquations),

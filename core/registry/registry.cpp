@@ -44,6 +44,11 @@ const T& require(const RegistryTable<T>& table, std::string_view name, const cha
   throw UsageError(std::string("unknown ") + kind + " '" + std::string(name) + "'" + suggestion(name, names));
 }
 
+template <typename T>
+auto make(const T& type, const Options& options) {
+  return type.make(CheckedOptions(type.name, options, type.options));
+}
+
 }  // namespace
 
 void TypeRegistry::add_vertex(VertexType type) {
@@ -107,19 +112,19 @@ InitialValues TypeRegistry::make_start(std::string_view name, const Graph& graph
   return require(starts_, name, "start").make(graph);
 }
 std::unique_ptr<Algorithm> TypeRegistry::make_algorithm(std::string_view name, const Options& options) const {
-  return require(algorithms_, name, "algorithm").make(options);
+  return make(require(algorithms_, name, "algorithm"), options);
 }
 std::unique_ptr<OdometryModel> TypeRegistry::make_odometry_model(std::string_view name,
                                                                  const Options& options) const {
-  return odometry_model(name).make(options);
+  return make(odometry_model(name), options);
 }
 std::unique_ptr<GnssModeling> TypeRegistry::make_gnss_modeling(std::string_view name,
                                                                const Options& options) const {
-  return gnss_modeling(name).make(options);
+  return make(gnss_modeling(name), options);
 }
 std::unique_ptr<SensorModel> TypeRegistry::make_sensor_model(std::string_view name,
                                                              const Options& options) const {
-  return sensor_model(name).make(options);
+  return make(sensor_model(name), options);
 }
 
 const OdometryModelType& TypeRegistry::odometry_model(std::string_view name) const {

@@ -69,7 +69,8 @@ class TypeRegistry {
   [[nodiscard]] const LossType* find_loss(std::string_view name) const;
   [[nodiscard]] const LogReader* find_log_reader(std::string_view name) const;
 
-  /// Each throws UsageError for an unknown name, listing the names that exist.
+  /// Each throws UsageError for an unknown name, listing the names that exist, and OptionError for options that
+  /// the type does not have or values that they cannot have.
   [[nodiscard]] std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) const;
   [[nodiscard]] InitialValues make_start(std::string_view name, const Graph& graph) const;
   [[nodiscard]] std::unique_ptr<Algorithm> make_algorithm(std::string_view name,

@@ -2,6 +2,7 @@
 // Gauss-Newton that halves a step for as long as it does not lower chi2.
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 using namespace waymark;
 
@@ -52,13 +53,11 @@ class StepHalving final : public Algorithm {
 };
 
 static void register_types(TypeRegistry& registry) {
-  const std::vector<OptionInfo> options = {
-      {"least_fraction", "1e-6", "", "of a Newton step, below which the run has stalled; in [1e-12, 1]"}};
+  const std::vector<OptionInfo> options = {{"least_fraction", "1e-6", "", OptionRange{1e-12, 1},
+                                            "of a Newton step, below which the run has stalled"}};
   registry.add_algorithm({"step_halving", "Gauss-Newton with steps halved until chi2 falls", options,
-                          [options](const Options& given) {
-                            check_option_names("step_halving", given, options);
-                            return std::make_unique<StepHalving>(
-                                number_option("step_halving", given, options, "least_fraction", 1e-12, 1));
+                          [](const CheckedOptions& checked) {
+                            return std::make_unique<StepHalving>(checked.number("least_fraction"));
                           }});
 }
 WAYMARK_PLUGIN(step_halving, "1.0.0", register_types);

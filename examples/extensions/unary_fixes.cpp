@@ -26,15 +26,15 @@ class UnaryFixes final : public GnssModeling {
   double sigma_factor_;
 };
 
-/// Options: name, default, unit, and what is allowed. `waymark info` shows them.
+/// Options: name, default, unit, which values are allowed, and what it is. `waymark info` shows them.
 static std::vector<OptionInfo> options() {
-  return {{"sigma_factor", "1", "", "what the sigmas of the fixes are multiplied by; in [0.01, 100]"}};
+  return {
+      {"sigma_factor", "1", "", OptionRange{0.01, 100}, "what the sigmas of the fixes are multiplied by"}};
 }
 
-static std::unique_ptr<GnssModeling> make(const Options& given) {
-  const std::vector<OptionInfo> known = options();
-  check_option_names("unary", given, known);
-  return std::make_unique<UnaryFixes>(number_option("unary", given, known, "sigma_factor", 0.01, 100));
+/// The registry has checked what the user gave: these options have allowed values.
+static std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {
+  return std::make_unique<UnaryFixes>(options.number("sigma_factor"));
 }
 
 static void register_types(TypeRegistry& registry) {

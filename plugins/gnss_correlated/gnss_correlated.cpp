@@ -15,8 +15,6 @@
 namespace waymark::plugins::gnss_correlated {
 namespace {
 
-constexpr std::string_view kOwner = "correlated";
-
 /// Degrees of freedom of the white part. Student's t in two dimensions costs
 ///   6 log(1 + q / 4) = rho(1.5 q),  rho(s) = 6 log(1 + s / 6):
 /// Cauchy's loss of scale sqrt(6) on 1.5 times the information.
@@ -159,43 +157,36 @@ class GnssCorrelated final : public GnssModeling {
 
 std::vector<OptionInfo> options() {
   return {
-      {"white_sigma", "1.5", "m", "scale of the part that is new in every fix; in [1e-3, 1e3]",
+      {"white_sigma", "1.5", "m", OptionRange{1e-3, 1e3}, "scale of the part that is new in every fix",
        NoisePrior{1.5, 1}},
-      {"tails", "student", "",
+      {"tails", "student", "", OptionWords{"student", "normal"},
        "of that part: 'student', Student's t of four degrees of freedom, or 'normal'"},
-      {"multipath_sigma", "4", "m", "of the part that lasts for seconds; in [1e-3, 1e3]", NoisePrior{4, 0.6}},
-      {"multipath_time", "40", "s", "its correlation time; in [1, 1e4]", NoisePrior{40, 0.5}},
-      {"bias_floor", "1.5", "m", "of the part that lasts for minutes, at least; in [1e-3, 1e3]"},
-      {"bias_share", "0.7", "", "of multipath_sigma that is added to it; in [0, 10]"},
-      {"bias_time", "2000", "s", "its correlation time; in [1, 1e6]"},
-      {"accuracy_exponent", "0.5", "",
-       "how much the claimed accuracies count: 0 not, 1 as claimed; in [0, 1]", NoisePrior{0.5, 0.3, true}},
-      {"time_offset", "off", "",
+      {"multipath_sigma", "4", "m", OptionRange{1e-3, 1e3}, "of the part that lasts for seconds",
+       NoisePrior{4, 0.6}},
+      {"multipath_time", "40", "s", OptionRange{1, 1e4}, "its correlation time", NoisePrior{40, 0.5}},
+      {"bias_floor", "1.5", "m", OptionRange{1e-3, 1e3}, "of the part that lasts for minutes, at least"},
+      {"bias_share", "0.7", "", OptionRange{0, 10}, "of multipath_sigma that is added to it"},
+      {"bias_time", "2000", "s", OptionRange{1, 1e6}, "its correlation time"},
+      {"accuracy_exponent", "0.5", "", OptionRange{0, 1},
+       "how much the claimed accuracies count: 0 not, 1 as claimed", NoisePrior{0.5, 0.3, true}},
+      {"time_offset", "off", "", OptionWords{"off", "constant"},
        "how late the fixes are against the odometry: 'off', or estimated 'constant'"},
-      {"time_offset_sigma", "0.3", "s", "sigma of its prior about 0; in [1e-6, 100]"},
+      {"time_offset_sigma", "0.3", "s", OptionRange{1e-6, 100}, "sigma of its prior about 0"},
   };
 }
 
-std::unique_ptr<GnssModeling> make(const Options& given) {
-  const std::vector<OptionInfo> known = options();
-  check_option_names(kOwner, given, known);
-  const auto number = [&](const char* name, double low, double high) {
-    return number_option(kOwner, given, known, name, low, high);
-  };
-  constexpr std::array<std::string_view, 2> kOffsets = {"off", "constant"};
+std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {
   ErrorModel model;
-  model.white_m = number("white_sigma", 1e-3, 1e3);
-  model.multipath_m = number("multipath_sigma", 1e-3, 1e3);
-  model.multipath_time_s = number("multipath_time", 1, 1e4);
-  model.bias_floor_m = number("bias_floor", 1e-3, 1e3);
-  model.bias_share = number("bias_share", 0, 10);
-  model.bias_time_s = number("bias_time", 1, 1e6);
-  model.accuracy_exponent = number("accuracy_exponent", 0, 1);
-  constexpr std::array<std::string_view, 2> kTails = {"student", "normal"};
-  model.heavy_tails = word_option(kOwner, given, known, "tails", kTails) == "student";
-  const double offset_sigma = number("time_offset_sigma", 1e-6, 100);
-  const bool has_offset = word_option(kOwner, given, known, "time_offset", kOffsets) == "constant";
-  return std::make_unique<GnssCorrelated>(model, has_offset ? offset_sigma : 0);
+  model.white_m = options.number("white_sigma");
+  model.multipath_m = options.number("multipath_sigma");
+  model.multipath_time_s = options.number("multipath_time");
+  model.bias_floor_m = options.number("bias_floor");
+  model.bias_share = options.number("bias_share");
+  model.bias_time_s = options.number("bias_time");
+  model.accuracy_exponent = options.number("accuracy_exponent");
+  model.heavy_tails = options.word("tails") == "student";
+  const bool has_offset = options.word("time_offset") == "constant";
+  return std::make_unique<GnssCorrelated>(model, has_offset ? options.number("time_offset_sigma") : 0);
 }
 
 void register_types(TypeRegistry& registry) {

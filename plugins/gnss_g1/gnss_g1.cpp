@@ -35,18 +35,13 @@ class GnssG1 final : public GnssModeling {
   double time_offset_sigma_s_;
 };
 
-std::vector<OptionInfo> options() {
-  return gnss_options();
-}
-
-std::unique_ptr<GnssModeling> make(const Options& given) {
-  const std::vector<OptionInfo> known = options();
-  check_option_names("g1", given, known);
-  return std::make_unique<GnssG1>(is_literal("g1", given), time_offset_sigma("g1", given));
+std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {
+  return std::make_unique<GnssG1>(is_literal(options), time_offset_sigma(options));
 }
 
 void register_types(TypeRegistry& registry) {
-  registry.add_gnss_modeling({"g1", "fixes are measurements: edges from the fixed origin", options(), make});
+  registry.add_gnss_modeling(
+      {"g1", "fixes are measurements: edges from the fixed origin", gnss_options(), make});
 }
 
 }  // namespace

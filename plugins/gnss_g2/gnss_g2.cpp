@@ -56,23 +56,20 @@ class GnssG2 final : public GnssModeling {
 
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = gnss_options();
+  all.push_back({"identity_information", "1e6", "1/m^2, 1/rad^2", OptionRange{1, 1e12},
+                 "of the (virtual) identity edges"});
   all.push_back(
-      {"identity_information", "1e6", "1/m^2, 1/rad^2", "of the (virtual) identity edges; in [1, 1e12]"});
-  all.push_back(
-      {"nodes_begin", "fix", "",
+      {"nodes_begin", "fix", "", OptionWords{"fix", "pose"},
        "where the free nodes begin: at the 'fix', or at the 'pose' of the vehicle; the minimum is the same"});
   return all;
 }
 
-std::unique_ptr<GnssModeling> make(const Options& given) {
-  const std::vector<OptionInfo> known = options();
-  check_option_names("g2", given, known);
-  constexpr std::array<std::string_view, 2> kBegins = {"fix", "pose"};
-  return std::make_unique<GnssG2>(GnssG2::Configuration{
-      .literal = is_literal("g2", given),
-      .begin_at_pose = word_option("g2", given, known, "nodes_begin", kBegins) == "pose",
-      .identity_information = number_option("g2", given, known, "identity_information", 1, 1e12),
-      .time_offset_sigma_s = time_offset_sigma("g2", given)});
+std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {
+  return std::make_unique<GnssG2>(
+      GnssG2::Configuration{.literal = is_literal(options),
+                            .begin_at_pose = options.word("nodes_begin") == "pose",
+                            .identity_information = options.number("identity_information"),
+                            .time_offset_sigma_s = time_offset_sigma(options)});
 }
 
 void register_types(TypeRegistry& registry) {

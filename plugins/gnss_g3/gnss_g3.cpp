@@ -37,19 +37,13 @@ class GnssG3 final : public GnssModeling {
   double time_offset_sigma_s_;
 };
 
-std::vector<OptionInfo> options() {
-  return gnss_options();
-}
-
-std::unique_ptr<GnssModeling> make(const Options& given) {
-  const std::vector<OptionInfo> known = options();
-  check_option_names("g3", given, known);
-  return std::make_unique<GnssG3>(is_literal("g3", given), time_offset_sigma("g3", given));
+std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {
+  return std::make_unique<GnssG3>(is_literal(options), time_offset_sigma(options));
 }
 
 void register_types(TypeRegistry& registry) {
   registry.add_gnss_modeling(
-      {"g3", "fixes are fixed nodes, tied to the poses by identity edges", options(), make});
+      {"g3", "fixes are fixed nodes, tied to the poses by identity edges", gnss_options(), make});
 }
 
 }  // namespace

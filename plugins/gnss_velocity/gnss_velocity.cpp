@@ -12,29 +12,27 @@ namespace waymark::plugins::gnss_velocity {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::string_view kOwner = "gnss_velocity";
 /// A speed is that of one moment: over a longer way between poses (a gap) it says too little.
 constexpr double kLongestWay_s = 0.5;
 
 std::vector<OptionInfo> options() {
-  return {{"course", "on", "", "use the course: 'on' or 'off'"},
-          {"speed", "on", "", "use the Doppler speed: 'on' or 'off'"},
-          {"min_speed", "3", "m/s", "below this |speed| of the odometry neither is used; in [0.1, 100]"},
-          {"course_sigma_deg", "2", "deg", "sigma of courses that come without; in [1e-3, 180]"},
-          {"speed_sigma", "0.2", "m/s", "sigma of speeds that come without; in [1e-4, 100]"}};
+  const OptionWords on_or_off = {"on", "off"};
+  return {
+      {"course", "on", "", on_or_off, "use the course: 'on' or 'off'"},
+      {"speed", "on", "", on_or_off, "use the Doppler speed: 'on' or 'off'"},
+      {"min_speed", "3", "m/s", OptionRange{0.1, 100}, "below this |speed| of the odometry neither is used"},
+      {"course_sigma_deg", "2", "deg", OptionRange{1e-3, 180}, "sigma of courses that come without"},
+      {"speed_sigma", "0.2", "m/s", OptionRange{1e-4, 100}, "sigma of speeds that come without"}};
 }
 
 class GnssVelocity final : public SensorModel {
  public:
-  explicit GnssVelocity(const Options& given) {
-    const std::vector<OptionInfo> known = options();
-    check_option_names(kOwner, given, known);
-    constexpr std::array<std::string_view, 2> kSwitch = {"on", "off"};
-    uses_course_ = word_option(kOwner, given, known, "course", kSwitch) == "on";
-    uses_speed_ = word_option(kOwner, given, known, "speed", kSwitch) == "on";
-    min_speed_ = number_option(kOwner, given, known, "min_speed", 0.1, 100);
-    course_sigma_ = kDegree * number_option(kOwner, given, known, "course_sigma_deg", 1e-3, 180);
-    speed_sigma_ = number_option(kOwner, given, known, "speed_sigma", 1e-4, 100);
+  explicit GnssVelocity(const CheckedOptions& options)
+      : uses_course_(options.word("course") == "on"),
+        uses_speed_(options.word("speed") == "on"),
+        min_speed_(options.number("min_speed")),
+        course_sigma_(kDegree * options.number("course_sigma_deg")),
+        speed_sigma_(options.number("speed_sigma")) {
     if (!uses_course_ && !uses_speed_)
       throw UsageError("gnss_velocity: course and speed are both off; leave the sensor out");
   }
@@ -101,11 +99,12 @@ class GnssVelocity final : public SensorModel {
 void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeGnssCourse>();
   registry.add_edge<EdgeGnssSpeed>();
-  registry.add_sensor_model({"gnss_velocity",
-                             "course and Doppler speed of the GNSS fixes",
-                             {},
-                             options(),
-                             [](const Options& given) { return std::make_unique<GnssVelocity>(given); }});
+  registry.add_sensor_model(
+      {"gnss_velocity",
+       "course and Doppler speed of the GNSS fixes",
+       {},
+       options(),
+       [](const CheckedOptions& options) { return std::make_unique<GnssVelocity>(options); }});
 }
 
 }  // namespace

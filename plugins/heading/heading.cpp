@@ -11,7 +11,6 @@ namespace waymark::plugins::heading {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::string_view kOwner = "heading";
 
 enum Column : std::size_t { kHeading, kSigma };
 
@@ -21,27 +20,22 @@ std::vector<SensorColumn> columns() {
 }
 
 std::vector<OptionInfo> options() {
-  return {
-      {"mount_deg", "0", "deg",
-       "direction of the sensor's zero in the body, counter-clockwise from straight ahead; in [-360, 360]"},
-      {"sigma_deg", "1", "deg", "sigma of readings that state none; in [1e-4, 180]"},
-      {"offset", "off", "",
-       "reading minus heading beyond the mounting, one value for the drive: 'off' (0) or 'constant' "
-       "(estimated)"},
-      {"offset_sigma_deg", "20", "deg", "sigma of its prior about 0; in [1e-4, 1000]"}};
+  return {{"mount_deg", "0", "deg", OptionRange{-360, 360},
+           "direction of the sensor's zero in the body, counter-clockwise from straight ahead"},
+          {"sigma_deg", "1", "deg", OptionRange{1e-4, 180}, "sigma of readings that state none"},
+          {"offset", "off", "", OptionWords{"off", "constant"},
+           "reading minus heading beyond the mounting, one value for the drive: 'off' (0) or 'constant' "
+           "(estimated)"},
+          {"offset_sigma_deg", "20", "deg", OptionRange{1e-4, 1000}, "sigma of its prior about 0"}};
 }
 
 class Heading final : public SensorModel {
  public:
-  explicit Heading(const Options& given) {
-    const std::vector<OptionInfo> known = options();
-    check_option_names(kOwner, given, known);
-    constexpr std::array<std::string_view, 2> kModels = {"off", "constant"};
-    mounting_ = kDegree * number_option(kOwner, given, known, "mount_deg", -360, 360);
-    sigma_ = kDegree * number_option(kOwner, given, known, "sigma_deg", 1e-4, 180);
-    estimates_offset_ = word_option(kOwner, given, known, "offset", kModels) == "constant";
-    offset_sigma_ = kDegree * number_option(kOwner, given, known, "offset_sigma_deg", 1e-4, 1000);
-  }
+  explicit Heading(const CheckedOptions& options)
+      : mounting_(kDegree * options.number("mount_deg")),
+        sigma_(kDegree * options.number("sigma_deg")),
+        estimates_offset_(options.word("offset") == "constant"),
+        offset_sigma_(kDegree * options.number("offset_sigma_deg")) {}
 
   void build(const SensorInput& input, Graph& graph) const override {
     const VertexIndex offset = estimates_offset_ ? add_offset(graph) : -1;
@@ -77,9 +71,9 @@ void register_types(TypeRegistry& registry) {
   registry.add_vertex<VertexHeadingOffset>();
   registry.add_edge<EdgeHeading>();
   registry.add_edge<EdgeHeadingOffset>();
-  registry.add_sensor_model({"heading", "absolute heading of a dual antenna or a compass", columns(),
-                             options(),
-                             [](const Options& given) { return std::make_unique<Heading>(given); }});
+  registry.add_sensor_model(
+      {"heading", "absolute heading of a dual antenna or a compass", columns(), options(),
+       [](const CheckedOptions& options) { return std::make_unique<Heading>(options); }});
 }
 
 }  // namespace

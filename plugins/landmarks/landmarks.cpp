@@ -12,7 +12,6 @@ namespace waymark::plugins::landmarks {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::string_view kOwner = "landmarks";
 
 enum Column : std::size_t { kId, kX, kY, kRange, kBearing, kSigma, kSigmaBearing, kMapX, kMapY };
 
@@ -30,8 +29,9 @@ std::vector<SensorColumn> columns() {
 
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = {
-      {"sigma", "0.2", "m", "sigma of x and y, or of the range, where the row gives none; in [1e-6, 1e4]"},
-      {"sigma_bearing_deg", "0.5", "deg", "sigma of bearings that state none; in [1e-4, 180]"}};
+      {"sigma", "0.2", "m", OptionRange{1e-6, 1e4},
+       "sigma of x and y, or of the range, where the row gives none"},
+      {"sigma_bearing_deg", "0.5", "deg", OptionRange{1e-4, 180}, "sigma of bearings that state none"}};
   for (const OptionInfo& option : mount_options()) all.push_back(option);
   return all;
 }
@@ -84,16 +84,10 @@ class Landmarks {
 
 class LandmarkSensor final : public SensorModel {
  public:
-  explicit LandmarkSensor(const Options& given) {
-    const std::vector<OptionInfo> known = options();
-    check_option_names(kOwner, given, known);
-    const auto number = [&](const char* name, double low, double high) {
-      return number_option(kOwner, given, known, name, low, high);
-    };
-    sigma_ = number("sigma", 1e-6, 1e4);
-    sigma_bearing_ = kDegree * number("sigma_bearing_deg", 1e-4, 180);
-    mount_ = read_mount(kOwner, given);
-  }
+  explicit LandmarkSensor(const CheckedOptions& options)
+      : sigma_(options.number("sigma")),
+        sigma_bearing_(kDegree * options.number("sigma_bearing_deg")),
+        mount_(read_mount(options)) {}
 
   void build(const SensorInput& input, Graph& graph) const override {
     Landmarks landmarks(input.readings, graph);
@@ -168,9 +162,9 @@ class LandmarkSensor final : public SensorModel {
 
 void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeSe2XyRangeBearing>();
-  registry.add_sensor_model({"landmarks", "landmarks by id, seen as x and y or as range and bearing",
-                             columns(), options(),
-                             [](const Options& given) { return std::make_unique<LandmarkSensor>(given); }});
+  registry.add_sensor_model(
+      {"landmarks", "landmarks by id, seen as x and y or as range and bearing", columns(), options(),
+       [](const CheckedOptions& options) { return std::make_unique<LandmarkSensor>(options); }});
 }
 
 }  // namespace

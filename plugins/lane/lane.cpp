@@ -9,8 +9,6 @@
 namespace waymark::plugins::lane {
 namespace {
 
-constexpr std::string_view kOwner = "lane";
-
 enum Column : std::size_t { kOffset, kAx, kAy, kBx, kBy, kSigma };
 
 std::vector<SensorColumn> columns() {
@@ -23,20 +21,16 @@ std::vector<SensorColumn> columns() {
 }
 
 std::vector<OptionInfo> options() {
-  return {{"sigma", "0.2", "m", "sigma of offsets that state none; in [1e-6, 1e4]"},
-          {"lever_x", "0", "m", "the vehicle's measured point in the body frame, forward; in [-100, 100]"},
-          {"lever_y", "0", "m", "to the left; in [-100, 100]"}};
+  return {{"sigma", "0.2", "m", OptionRange{1e-6, 1e4}, "sigma of offsets that state none"},
+          {"lever_x", "0", "m", OptionRange{-100, 100},
+           "the vehicle's measured point in the body frame, forward"},
+          {"lever_y", "0", "m", OptionRange{-100, 100}, "to the left"}};
 }
 
 class Lane final : public SensorModel {
  public:
-  explicit Lane(const Options& given) {
-    const std::vector<OptionInfo> known = options();
-    check_option_names(kOwner, given, known);
-    sigma_ = number_option(kOwner, given, known, "sigma", 1e-6, 1e4);
-    lever_ = {number_option(kOwner, given, known, "lever_x", -100, 100),
-              number_option(kOwner, given, known, "lever_y", -100, 100)};
-  }
+  explicit Lane(const CheckedOptions& options)
+      : sigma_(options.number("sigma")), lever_(options.number("lever_x"), options.number("lever_y")) {}
 
   void build(const SensorInput& input, Graph& graph) const override {
     const SensorTable& readings = input.readings;
@@ -68,7 +62,7 @@ class Lane final : public SensorModel {
 void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeLateralOffset>();
   registry.add_sensor_model({"lane", "lateral offsets to straight lines of a map", columns(), options(),
-                             [](const Options& given) { return std::make_unique<Lane>(given); }});
+                             [](const CheckedOptions& options) { return std::make_unique<Lane>(options); }});
 }
 
 }  // namespace

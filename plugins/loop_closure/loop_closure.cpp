@@ -10,7 +10,6 @@ namespace waymark::plugins::loop_closure {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::string_view kOwner = "loop_closure";
 
 enum Column : std::size_t { kDt, kX, kY, kHeading, kSigma, kSigmaHeading };
 
@@ -25,24 +24,19 @@ std::vector<SensorColumn> columns() {
 
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = {
-      {"sigma", "0.1", "m", "sigma of x and y where the row gives none; in [1e-6, 1e4]"},
-      {"sigma_heading_deg", "0.5", "deg", "sigma of the heading where the row gives none; in [1e-4, 180]"}};
+      {"sigma", "0.1", "m", OptionRange{1e-6, 1e4}, "sigma of x and y where the row gives none"},
+      {"sigma_heading_deg", "0.5", "deg", OptionRange{1e-4, 180},
+       "sigma of the heading where the row gives none"}};
   for (const OptionInfo& option : mount_options()) all.push_back(option);
   return all;
 }
 
 class LoopClosure final : public SensorModel {
  public:
-  explicit LoopClosure(const Options& given) {
-    const std::vector<OptionInfo> known = options();
-    check_option_names(kOwner, given, known);
-    const auto number = [&](const char* name, double low, double high) {
-      return number_option(kOwner, given, known, name, low, high);
-    };
-    sigma_ = number("sigma", 1e-6, 1e4);
-    sigma_heading_ = kDegree * number("sigma_heading_deg", 1e-4, 180);
-    mount_ = read_mount(kOwner, given);
-  }
+  explicit LoopClosure(const CheckedOptions& options)
+      : sigma_(options.number("sigma")),
+        sigma_heading_(kDegree * options.number("sigma_heading_deg")),
+        mount_(read_mount(options)) {}
 
   void build(const SensorInput& input, Graph& graph) const override {
     const SensorTable& readings = input.readings;
@@ -92,9 +86,9 @@ class LoopClosure final : public SensorModel {
 };
 
 void register_types(TypeRegistry& registry) {
-  registry.add_sensor_model({"loop_closure", "relative poses between two moments, from scan matching",
-                             columns(), options(),
-                             [](const Options& given) { return std::make_unique<LoopClosure>(given); }});
+  registry.add_sensor_model(
+      {"loop_closure", "relative poses between two moments, from scan matching", columns(), options(),
+       [](const CheckedOptions& options) { return std::make_unique<LoopClosure>(options); }});
 }
 
 }  // namespace

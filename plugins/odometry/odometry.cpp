@@ -86,27 +86,30 @@ class ConstantTwist final : public OdometryModel {
   Configuration given_;
 };
 
+constexpr const char* kGapFactor = "gap_noise_factor";
+
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = {
-      {"noise", "process", "",
+      {"noise", "process", "", OptionWords{"process", "paper"},
        "'process': additive process noise; 'paper': 1.1 % per edge, at least 1e-5 m^2 and 1e-6 rad^2, gaps "
        "alike"},
-      {"longitudinal_variance_per_m", "2e-3", "m^2/m", "variance of the distance driven; in [1e-9, 1]",
-       NoisePrior{2e-3, 0.8}},
-      {"lateral_variance_per_m", "5e-4", "m^2/m", "variance across the way; in [1e-9, 1]"},
-      {"position_variance_per_s", "1e-4", "m^2/s",
-       "variance of the position by time, both axes; in [1e-9, 1]"},
-      {"heading_variance_per_m", "2.05e-7", "rad^2/m", "variance of the heading by way; in [0, 1]"},
-      {"heading_variance_per_s", "1.5e-6", "rad^2/s", "variance of the heading by time; in [1e-12, 1]",
-       NoisePrior{4e-6, 1.4}},
-      {"gap_noise_factor", "100", "", "factor on all of them across a gap of the odometry; in [1, 1e6]"},
-      {"standstill_speed", "0.05", "m/s", "below this |speed| the vehicle stands; in [0, 1]"},
-      {"standstill_position_variance_per_s", "1e-5", "m^2/s", "of a standing vehicle; in [1e-9, 1]"},
-      {"standstill_heading_variance_per_s", "1e-6", "rad^2/s", "of a standing vehicle; in [1e-12, 1]"},
-      {"gyro_at_rest_variance_per_s", "1.5e-6", "rad^2/s",
-       "of the turn that a standing gyro reads; in [1e-12, 1]"},
-      {"standstill_largest_variance", "1e-5", "m^2, rad^2",
-       "per edge, so that information is at least 1e5; in [1e-9, 1]"},
+      {"longitudinal_variance_per_m", "2e-3", "m^2/m", OptionRange{1e-9, 1},
+       "variance of the distance driven", NoisePrior{2e-3, 0.8}},
+      {"lateral_variance_per_m", "5e-4", "m^2/m", OptionRange{1e-9, 1}, "variance across the way"},
+      {"position_variance_per_s", "1e-4", "m^2/s", OptionRange{1e-9, 1},
+       "variance of the position by time, both axes"},
+      {"heading_variance_per_m", "2.05e-7", "rad^2/m", OptionRange{0, 1}, "variance of the heading by way"},
+      {"heading_variance_per_s", "1.5e-6", "rad^2/s", OptionRange{1e-12, 1},
+       "variance of the heading by time", NoisePrior{4e-6, 1.4}},
+      {kGapFactor, "100", "", OptionRange{1, 1e6}, "factor on all of them across a gap of the odometry"},
+      {"standstill_speed", "0.05", "m/s", OptionRange{0, 1}, "below this |speed| the vehicle stands"},
+      {"standstill_position_variance_per_s", "1e-5", "m^2/s", OptionRange{1e-9, 1}, "of a standing vehicle"},
+      {"standstill_heading_variance_per_s", "1e-6", "rad^2/s", OptionRange{1e-12, 1},
+       "of a standing vehicle"},
+      {"gyro_at_rest_variance_per_s", "1.5e-6", "rad^2/s", OptionRange{1e-12, 1},
+       "of the turn that a standing gyro reads"},
+      {"standstill_largest_variance", "1e-5", "m^2, rad^2", OptionRange{1e-9, 1},
+       "per edge, so that information is at least 1e5"},
   };
   for (const OptionInfo& option :
        state_options("gyro_bias", "rad/s", "0.01", "2e-6", "what the gyro reads while nothing turns"))
@@ -114,49 +117,38 @@ std::vector<OptionInfo> options() {
   for (const OptionInfo& option :
        state_options("speed_scale", "1", "0.01", "2e-4", "part of the speed that the odometry does not show"))
     all.push_back(option);
-  all.push_back({"calibration_period", "10", "s", "of the values of a random walk; in [0.1, 1e4]"});
+  all.push_back({"calibration_period", "10", "s", OptionRange{0.1, 1e4}, "of the values of a random walk"});
   return all;
 }
 
-StateOptions state(std::string_view owner, const Options& given, std::span<const OptionInfo> known,
-                   const std::string& name) {
-  constexpr std::array<std::string_view, 3> kModels = {"off", "constant", "random_walk"};
-  const std::string model = word_option(owner, given, known, name, kModels);
-  StateOptions options;
-  options.model = model == "off"        ? StateModel::off
-                  : model == "constant" ? StateModel::constant
-                                        : StateModel::random_walk;
-  options.prior_sigma = number_option(owner, given, known, name + "_sigma", 1e-9, 10);
-  options.walk_sigma = number_option(owner, given, known, name + "_walk", 1e-12, 1);
-  options.period_s = number_option(owner, given, known, "calibration_period", 0.1, 1e4);
-  return options;
+StateOptions state(const CheckedOptions& options, const std::string& name) {
+  const std::string& model = options.word(name);
+  return {.model = model == "off"        ? StateModel::off
+                   : model == "constant" ? StateModel::constant
+                                         : StateModel::random_walk,
+          .prior_sigma = options.number(name + "_sigma"),
+          .walk_sigma = options.number(name + "_walk"),
+          .period_s = options.number("calibration_period")};
 }
 
-std::unique_ptr<OdometryModel> make(const Options& given) {
-  constexpr std::string_view kOwner = "odometry";
-  const std::vector<OptionInfo> known = options();
-  check_option_names(kOwner, given, known);
-  const auto number = [&](const char* name, double low, double high) {
-    return number_option(kOwner, given, known, name, low, high);
-  };
-  constexpr std::array<std::string_view, 2> kNoises = {"process", "paper"};
+std::unique_ptr<OdometryModel> make(const CheckedOptions& options) {
   ConstantTwist::Configuration configuration;
   ProcessNoise& noise = configuration.noise;
-  noise.longitudinal_per_m = number("longitudinal_variance_per_m", 1e-9, 1);
-  noise.lateral_per_m = number("lateral_variance_per_m", 1e-9, 1);
-  noise.position_per_s = number("position_variance_per_s", 1e-9, 1);
-  noise.heading_per_m = number("heading_variance_per_m", 0, 1);
-  noise.heading_per_s = number("heading_variance_per_s", 1e-12, 1);
-  noise.gap_factor = number("gap_noise_factor", 1, 1e6);
+  noise.longitudinal_per_m = options.number("longitudinal_variance_per_m");
+  noise.lateral_per_m = options.number("lateral_variance_per_m");
+  noise.position_per_s = options.number("position_variance_per_s");
+  noise.heading_per_m = options.number("heading_variance_per_m");
+  noise.heading_per_s = options.number("heading_variance_per_s");
+  noise.gap_factor = options.number(kGapFactor);
   StandstillNoise& standstill = configuration.standstill;
-  standstill.position_per_s = number("standstill_position_variance_per_s", 1e-9, 1);
-  standstill.heading_per_s = number("standstill_heading_variance_per_s", 1e-12, 1);
-  standstill.largest = number("standstill_largest_variance", 1e-9, 1);
-  configuration.gyro_at_rest_per_s = number("gyro_at_rest_variance_per_s", 1e-12, 1);
-  configuration.standstill_speed = number("standstill_speed", 0, 1);
-  configuration.paper = word_option(kOwner, given, known, "noise", kNoises) == "paper";
-  configuration.gyro_bias = state(kOwner, given, known, "gyro_bias");
-  configuration.speed_scale = state(kOwner, given, known, "speed_scale");
+  standstill.position_per_s = options.number("standstill_position_variance_per_s");
+  standstill.heading_per_s = options.number("standstill_heading_variance_per_s");
+  standstill.largest = options.number("standstill_largest_variance");
+  configuration.gyro_at_rest_per_s = options.number("gyro_at_rest_variance_per_s");
+  configuration.standstill_speed = options.number("standstill_speed");
+  configuration.paper = options.word("noise") == "paper";
+  configuration.gyro_bias = state(options, "gyro_bias");
+  configuration.speed_scale = state(options, "speed_scale");
   return std::make_unique<ConstantTwist>(configuration);
 }
 
@@ -169,8 +161,8 @@ void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeGyroAtRest>();
   registry.add_edge<EdgeGyroBiasWalk>();
   registry.add_edge<EdgeSpeedScaleWalk>();
-  registry.add_odometry_model(
-      {"constant_twist", "exact constant-twist integration of speed and yaw rate", options(), make});
+  registry.add_odometry_model({"constant_twist", "exact constant-twist integration of speed and yaw rate",
+                               options(), make, kGapFactor});
 }
 
 }  // namespace

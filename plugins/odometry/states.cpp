@@ -6,9 +6,10 @@ std::vector<OptionInfo> state_options(const std::string& name, const std::string
                                       const std::string& prior_sigma, const std::string& walk_sigma,
                                       const std::string& what) {
   const std::string rate = unit == "1" ? "1/sqrt(s)" : unit + "/sqrt(s)";
-  return {{name, "off", "", what + ", estimated: 'off', 'constant' or 'random_walk'"},
-          {name + "_sigma", prior_sigma, unit, "sigma of its prior about 0; in [1e-9, 10]"},
-          {name + "_walk", walk_sigma, rate, "sigma of its change after one second; in [1e-12, 1]"}};
+  return {{name, "off", "", OptionWords{"off", "constant", "random_walk"},
+           what + ", estimated: 'off', 'constant' or 'random_walk'"},
+          {name + "_sigma", prior_sigma, unit, OptionRange{1e-9, 10}, "sigma of its prior about 0"},
+          {name + "_walk", walk_sigma, rate, OptionRange{1e-12, 1}, "sigma of its change after one second"}};
 }
 
 }  // namespace waymark::plugins::odometry

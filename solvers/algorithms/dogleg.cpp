@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
 #include <waymark/core/registry/options.hpp>
@@ -156,24 +154,21 @@ class Dogleg final : public Algorithm {
 
 AlgorithmType dogleg() {
   const std::vector<OptionInfo> options = {
-      {"scaling", "hessian", "",
+      {"scaling", "hessian", "", OptionWords{"hessian", "none"},
        "norm of the trust region: 'hessian' scales by diag(H)^(1/2), 'none' adds metres and radians as they "
        "are (g2o)"},
-      {"radius", "newton", "",
+      {"radius", "newton", "", OptionWords{"newton", "absolute"},
        "'newton': counted in lengths of the first Newton step, bound to the steps' lengths; 'absolute': a "
        "number by itself, halved by every poor or failed step (g2o)"},
-      {"initial_radius", "1", "", "first trust radius, in what 'radius' says; in [1e-6, 1e12]; g2o has 1e4"}};
-  return {"dogleg", "Powell's dogleg in the norm scaled by diag(H)^(1/2)", options,
-          [options](const Options& given) {
-            constexpr std::array<std::string_view, 2> kScalings = {"hessian", "none"};
-            constexpr std::array<std::string_view, 2> kRadii = {"newton", "absolute"};
-            check_option_names("dogleg", given, options);
-            DoglegSettings settings;
-            settings.scaled = word_option("dogleg", given, options, "scaling", kScalings) == "hessian";
-            settings.absolute = word_option("dogleg", given, options, "radius", kRadii) == "absolute";
-            settings.initial_radius = number_option("dogleg", given, options, "initial_radius", 1e-6, 1e12);
-            return std::make_unique<Dogleg>(settings);
-          }};
+      {"initial_radius", "1", "", OptionRange{1e-6, 1e12},
+       "first trust radius, in what 'radius' says; g2o has 1e4"}};
+  return {
+      "dogleg", "Powell's dogleg in the norm scaled by diag(H)^(1/2)", options,
+      [](const CheckedOptions& checked) {
+        return std::make_unique<Dogleg>(DoglegSettings{.scaled = checked.word("scaling") == "hessian",
+                                                       .absolute = checked.word("radius") == "absolute",
+                                                       .initial_radius = checked.number("initial_radius")});
+      }};
 }
 
 }  // namespace waymark::solvers

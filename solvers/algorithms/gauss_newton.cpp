@@ -1,4 +1,3 @@
-#include <waymark/core/registry/options.hpp>
 #include <waymark/solvers/algorithms/detail/algorithms.hpp>
 #include <waymark/solvers/algorithms/detail/newton_step.hpp>
 
@@ -33,8 +32,7 @@ class GaussNewton final : public Algorithm {
 }  // namespace
 
 AlgorithmType gauss_newton() {
-  return {"gauss_newton", "full Gauss-Newton steps", {}, [](const Options& given) {
-            check_option_names("gauss_newton", given, {});
+  return {"gauss_newton", "full Gauss-Newton steps", {}, [](const CheckedOptions&) {
             return std::make_unique<GaussNewton>();
           }};
 }

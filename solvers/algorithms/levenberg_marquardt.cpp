@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -116,17 +115,14 @@ class LevenbergMarquardt final : public Algorithm {
 
 AlgorithmType levenberg_marquardt() {
   const std::vector<OptionInfo> options = {
-      {"initial_damping", "1e-8", "", "first damping factor, relative to the scaling; in [1e-12, 1e6]"},
-      {"scaling", "marquardt", "",
+      {"initial_damping", "1e-8", "", OptionRange{1e-12, 1e6},
+       "first damping factor, relative to the scaling"},
+      {"scaling", "marquardt", "", OptionWords{"marquardt", "identity"},
        "what the damping multiplies: 'marquardt' diag(H), 'identity' the identity"}};
   return {"levenberg_marquardt", "damped Gauss-Newton steps, damping by Nielsen's rule", options,
-          [options](const Options& given) {
-            constexpr std::string_view kOwner = "levenberg_marquardt";
-            check_option_names(kOwner, given, options);
-            constexpr std::array<std::string_view, 2> kScalings = {"marquardt", "identity"};
+          [](const CheckedOptions& checked) {
             return std::make_unique<LevenbergMarquardt>(LevenbergMarquardtOptions{
-                number_option(kOwner, given, options, "initial_damping", 1e-12, 1e6),
-                word_option(kOwner, given, options, "scaling", kScalings) == "marquardt"});
+                checked.number("initial_damping"), checked.word("scaling") == "marquardt"});
           }};
 }
 

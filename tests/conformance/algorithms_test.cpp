@@ -29,7 +29,8 @@ void check_all_pairs(const Graph& start) {
     for (const auto& [solver, solver_origin] : registry.linear_solvers()) {
       INFO(algorithm.name << " with " << solver.name);
       Graph graph = start;
-      const Summary summary = optimize(graph, *algorithm.make({}), *solver.make(), options);
+      const Summary summary =
+          optimize(graph, *registry.make_algorithm(algorithm.name), *solver.make(), options);
       INFO(summary.message);
       REQUIRE(summary.converged());
       const DenseSystem system = assemble_dense(graph, find_gauge(graph).held);
@@ -81,8 +82,8 @@ TEST_CASE("every algorithm with every solver: robust losses") {
       Graph copy = graph;
       OptimizerOptions options;
       options.decrement_tolerance = 1e-10;  // weights that change make the last steps small ones
-      const Summary summary =
-          optimize(copy, *algorithm.make({}), *registry.make_linear_solver("eigen"), options);
+      const Summary summary = optimize(copy, *registry.make_algorithm(algorithm.name),
+                                       *registry.make_linear_solver("eigen"), options);
       INFO(summary.message);
       CHECK(summary.converged());
       const DenseSystem system = assemble_dense(copy, find_gauge(copy).held);
@@ -108,7 +109,7 @@ TEST_CASE("every algorithm with every solver: noise-free measurements are met ex
         for (int k = 0; k < 3; ++k) z = compose(z, Pose2<double>(1, 0, 0.3));
         graph.add_edge(EdgeSe2Log{z.vector()}, {i - 3, i}, pose_information(0.1, 0.1));
       }
-      const Summary summary = optimize(graph, *algorithm.make({}), *solver.make(), {});
+      const Summary summary = optimize(graph, *registry.make_algorithm(algorithm.name), *solver.make(), {});
       INFO(summary.message);
       CHECK(summary.converged());
       CHECK(summary.final_chi2 < 1e-9);

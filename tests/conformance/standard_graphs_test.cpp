@@ -45,7 +45,8 @@ Summary run(Graph& graph, const AlgorithmType& algorithm, const LinearSolverType
             int iterations = 200) {
   OptimizerOptions options;
   options.max_iterations = iterations;
-  return optimize(graph, *algorithm.make({}), *solver.make(), options);
+  return optimize(graph, *algorithm.make(CheckedOptions(algorithm.name, {}, algorithm.options)),
+                  *solver.make(), options);
 }
 
 void print(const std::string& graph, const std::string& algorithm, const std::string& solver,

@@ -352,7 +352,7 @@ TEST_CASE("options of algorithms: unknown names, words and numbers out of range 
                     Contains("gauss_newton: unknown option 'radius'") && Contains("none"));
   CHECK_THROWS_WITH(registry().make_algorithm("dogleg", {{"trust", "1"}}), Contains("initial_radius"));
   CHECK_THROWS_WITH(registry().make_algorithm("dogleg", {{"initial_radius", "1e13"}}),
-                    Contains("'initial_radius' must lie in [1e-06, 1e+12], got 1e+13"));
+                    Contains("'initial_radius' must lie in [1e-6, 1e12], got 1e13"));
   CHECK_THROWS_WITH(registry().make_algorithm("levenberg_marquardt", {{"initial_damping", "much"}}),
                     Contains("'initial_damping' must be a number, got 'much'"));
   CHECK_THROWS_WITH(registry().make_algorithm("levenberg_marquardt", {{"scaling", "none"}}),

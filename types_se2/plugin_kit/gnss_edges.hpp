@@ -45,15 +45,14 @@ inline VertexIndex add_origin(Graph& graph) {
 
 /// The options that all modelings share: which error a fix has, whether its time offset is estimated.
 [[nodiscard]] inline std::vector<OptionInfo> gnss_options() {
-  return {{"error", "decoupled", "",
+  return {{"error", "decoupled", "", OptionWords{"decoupled", "literal"},
            "'decoupled': p - z in frame axes; 'literal': the paper's log with heading 0"},
-          {"time_offset", "off", "",
+          {"time_offset", "off", "", OptionWords{"off", "constant"},
            "how late the fixes are against the odometry: 'off', or estimated 'constant'"},
-          {"time_offset_sigma", "0.3", "s", "sigma of its prior about 0; in [1e-6, 100]"}};
+          {"time_offset_sigma", "0.3", "s", OptionRange{1e-6, 100}, "sigma of its prior about 0"}};
 }
-[[nodiscard]] inline bool is_literal(std::string_view modeling, const Options& given) {
-  constexpr std::array<std::string_view, 2> kErrors = {"decoupled", "literal"};
-  return word_option(modeling, given, gnss_options(), "error", kErrors) == "literal";
+[[nodiscard]] inline bool is_literal(const CheckedOptions& options) {
+  return options.word("error") == "literal";
 }
 
 /// Gives the last edge of a batch the loss of the fixes, where they have one.
@@ -96,14 +95,13 @@ class PositionEdges {
   VertexIndex offset_ = -1;
 };
 
-/// Sigma of the time offset's prior; 0 where it is not estimated. @throws UsageError
-[[nodiscard]] inline double time_offset_sigma(std::string_view modeling, const Options& given) {
-  constexpr std::array<std::string_view, 2> kModels = {"off", "constant"};
-  if (word_option(modeling, given, gnss_options(), "time_offset", kModels) == "off") return 0;
-  if (is_literal(modeling, given))
-    throw UsageError(std::string(modeling) +
+/// Sigma of the time offset's prior; 0 if it is not estimated. @throws UsageError
+[[nodiscard]] inline double time_offset_sigma(const CheckedOptions& options) {
+  if (options.word("time_offset") == "off") return 0;
+  if (is_literal(options))
+    throw UsageError(options.owner() +
                      ": the paper's literal error has no time offset; use error: decoupled");
-  return number_option(modeling, given, gnss_options(), "time_offset_sigma", 1e-6, 100);
+  return options.number("time_offset_sigma");
 }
 
 /// The literal error knows nothing of lever arms. @throws UsageError

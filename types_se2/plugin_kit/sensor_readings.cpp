@@ -47,17 +47,14 @@ std::optional<ReadingPlace> find_place(const DriveNodes& nodes, Stamp moment) {
 }
 
 std::vector<OptionInfo> mount_options() {
-  return {{"mount_x", "0", "m", "the sensor in the body frame, forward; in [-100, 100]"},
-          {"mount_y", "0", "m", "to the left; in [-100, 100]"},
-          {"mount_deg", "0", "deg", "its heading in the body frame; in [-360, 360]"}};
+  return {{"mount_x", "0", "m", OptionRange{-100, 100}, "the sensor in the body frame, forward"},
+          {"mount_y", "0", "m", OptionRange{-100, 100}, "to the left"},
+          {"mount_deg", "0", "deg", OptionRange{-360, 360}, "its heading in the body frame"}};
 }
 
-Pose2<double> read_mount(std::string_view owner, const Options& given) {
-  const std::vector<OptionInfo> known = mount_options();
-  const double x = number_option(owner, given, known, "mount_x", -100, 100);
-  const double y = number_option(owner, given, known, "mount_y", -100, 100);
-  const double heading = number_option(owner, given, known, "mount_deg", -360, 360);
-  return {x, y, heading * std::numbers::pi / 180};
+Pose2<double> read_mount(const CheckedOptions& options) {
+  return {options.number("mount_x"), options.number("mount_y"),
+          options.number("mount_deg") * std::numbers::pi / 180};
 }
 
 double grid_scale_at(const SensorInput& input, Stamp moment) {

@@ -25,8 +25,7 @@ struct ReadingPlace {
 
 /// The options mount_x, mount_y (m) and mount_deg: where a sensor sits in the body frame, and its heading.
 [[nodiscard]] std::vector<OptionInfo> mount_options();
-/// @throws UsageError
-[[nodiscard]] Pose2<double> read_mount(std::string_view owner, const Options& given);
+[[nodiscard]] Pose2<double> read_mount(const CheckedOptions& options);
 
 /// Grid metres per metre on the ground at a moment: that of the fix nearest in time; 1 without fixes.
 [[nodiscard]] double grid_scale_at(const SensorInput& input, Stamp moment);

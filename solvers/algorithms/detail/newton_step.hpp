@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <waymark/core/optimize/algorithm.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark::solvers {
 

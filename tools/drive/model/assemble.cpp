@@ -18,12 +18,11 @@ std::string place_of(const DriveConfig& config, const std::string& key) {
   return place == config.places.end() ? config.path + ": " : place->second;
 }
 
-/// Where the option that a plugin complains of stands: its message names it in quotes.
-std::string place_of_option(const DriveConfig& config, const std::string& message) {
-  for (const auto& [key, place] : config.places) {
-    const std::string name = key.substr(key.rfind('.') + 1);
-    const bool of_odometry = key.starts_with("odometry.noise.") || key.starts_with("calibration.");
-    if (of_odometry && message.find("'" + name + "'") != std::string::npos) return place;
+/// Where an option of the odometry model stands.
+std::string place_of_option(const DriveConfig& config, const std::string& option) {
+  for (const char* section : {"odometry.noise.", "calibration."}) {
+    const auto place = config.places.find(section + option);
+    if (place != config.places.end()) return place->second;
   }
   return place_of(config, "odometry.model");
 }
@@ -103,11 +102,13 @@ std::unique_ptr<OdometryModel> make_odometry_model(const DriveConfig& config, co
   try {
     const OdometryModelType& type = registry.odometry_model(config.odometry_model);
     Options options = with_calibration(config.odometry_options, config, type.options);
-    if (has_option(type.options, "gap_noise_factor"))
-      options.try_emplace("gap_noise_factor", shortest(config.timeline.gap_noise_factor));
-    return type.make(options);
+    if (!type.gap_factor_option.empty())
+      options.try_emplace(type.gap_factor_option, shortest(config.timeline.gap_noise_factor));
+    return registry.make_odometry_model(config.odometry_model, options);
+  } catch (const OptionError& error) {
+    throw InputError(place_of_option(config, error.option()) + error.what());
   } catch (const UsageError& error) {
-    throw InputError(place_of_option(config, error.what()) + error.what());
+    throw InputError(place_of(config, "odometry.model") + error.what());
   }
 }
 

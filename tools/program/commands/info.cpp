@@ -19,7 +19,7 @@ Json options_json(const std::vector<OptionInfo>& options) {
   Json json = Json::array();
   for (const OptionInfo& o : options) {
     json.push_back(
-        {{"name", o.name}, {"default", o.value}, {"unit", o.unit}, {"description", o.description}});
+        {{"name", o.name}, {"default", o.value}, {"unit", o.unit}, {"description", o.description()}});
     if (!o.prior) continue;
     json.back()["prior"] = {{"mean", o.prior->mean},
                             {"deviation", o.prior->deviation},
