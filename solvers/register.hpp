@@ -5,8 +5,8 @@
 
 namespace waymark::solvers {
 
-/// Backends cholmod, cholmod_simplicial, cholmod_supernodal, csparse (each where built in) and eigen;
-/// algorithms gauss_newton, levenberg_marquardt, dogleg.
+/// Registers the backends cholmod, cholmod_simplicial, cholmod_supernodal and csparse (if they were
+/// built in) and eigen, and the algorithms gauss_newton, levenberg_marquardt and dogleg.
 void register_solvers(TypeRegistry& registry);
 
 }  // namespace waymark::solvers

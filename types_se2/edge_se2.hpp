@@ -1,5 +1,5 @@
-/// The classic edges of the plane. A tag has one meaning: EDGE_SE2 is always the (t, theta) form that every
-/// reader of g2o files expects; the group logarithm is EDGE_SE2_LOG.
+/// The classic edges of the plane. A tag has one meaning only. EDGE_SE2 is always the (t, theta)
+/// form that every reader of g2o files expects. The form with the group logarithm is EDGE_SE2_LOG.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace waymark {
 
-/// Relative pose, (t, theta) form: with D = Z^-1 (X_from^-1 X_to), e = (D.x, D.y, wrap(D.heading)).
-/// measured = (x, y, heading) of Z in metres and radians.
+/// A relative pose in (t, theta) form. With D = Z^-1 (X_from^-1 X_to) the error is e = (D.x, D.y,
+/// wrap(D.heading)). measured = (x, y, heading) of Z, in metres and radians.
 struct EdgeSe2 {
   static constexpr std::string_view kTag = "EDGE_SE2";
   static constexpr std::string_view kForm = "(t, theta)";
@@ -30,14 +30,15 @@ struct EdgeSe2 {
   void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<3>& e,
                  JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to) const;
 
-  /// Keeps the measured translation as seen from the measured pose.
+  /// Stores the measured translation in the axes of the measured pose.
   void prepare();
 
   Eigen::Vector3d measured = Eigen::Vector3d::Zero();
-  Eigen::Vector2d turned = Eigen::Vector2d::Zero();  ///< R(heading)^T translation of Z, by prepare()
+  /// R(heading)^T translation of Z, by prepare()
+  Eigen::Vector2d turned = Eigen::Vector2d::Zero();
 };
 
-/// What the linearisation of a relative error needs of its measurement Z.
+/// A measurement Z of a relative pose, in the form that the linearisation needs.
 struct RelativeMeasurement {
   RelativeMeasurement() = default;
   explicit RelativeMeasurement(const Pose2<double>& z)
@@ -47,10 +48,11 @@ struct RelativeMeasurement {
   Eigen::Vector2d turned = Eigen::Vector2d::Zero();  ///< R(heading)^T translation
 };
 
-/// e = log(Z^-1 (X_from^-1 X_to)) with its exact Jacobians, for every edge of that form. With D = (t, theta)
-/// = Z^-1 X_from^-1 X_to and a = theta_from + theta_Z: t = R(a)^T (p_to - p_from) - R(theta_Z)^T t_Z, and e =
-/// (V^-1 t, theta), V^-1 = [h, theta/2; -theta/2, h]. So de/dp_to = V^-1 R(a)^T and de/dtheta_to =
-/// (dV^-1/dtheta t, 1); the other Jacobian follows, since e stays when both poses move together.
+/// Computes e = log(Z^-1 (X_from^-1 X_to)) and its exact Jacobians, for every edge with that error.
+/// Let D = (t, theta) = Z^-1 X_from^-1 X_to and a = theta_from + theta_Z. Then t = R(a)^T (p_to -
+/// p_from) - R(theta_Z)^T t_Z and e = (V^-1 t, theta) with V^-1 = [h, theta/2; -theta/2, h]. So
+/// de/dp_to = V^-1 R(a)^T and de/dtheta_to = (dV^-1/dtheta t, 1). The other Jacobian follows from
+/// these, because e does not change if both poses move together.
 [[gnu::always_inline]] inline void linearize_log_error(const RelativeMeasurement& z,
                                                        const Pose2<double>& from, const Pose2<double>& to,
                                                        ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from,
@@ -83,8 +85,8 @@ struct RelativeMeasurement {
   }
 }
 
-/// Relative pose, logarithmic form, the paper's equation (1): e = log(Z^-1 (X_from^-1 X_to)), ordered (rho,
-/// theta).
+/// A relative pose in logarithmic form, equation (1) of the paper: e = log(Z^-1 (X_from^-1 X_to)),
+/// ordered (rho, theta).
 struct EdgeSe2Log {
   static constexpr std::string_view kTag = "EDGE_SE2_LOG";
   static constexpr std::string_view kForm = "log";
@@ -108,9 +110,10 @@ struct EdgeSe2Log {
   RelativeMeasurement relative{};  ///< of measured, by prepare()
 };
 
-/// Position of an antenna as seen from a reference pose (for GNSS: the fixed origin of the frame, or a fixed
-/// GNSS node): e = R_from^T (p_to + R_to antenna - p_from) - measured. With the origin as reference that is
-/// the difference in the frame's own axes, untouched by any heading error: the decoupled GNSS error. Metres.
+/// The position of an antenna, seen from a reference pose: e = R_from^T (p_to + R_to antenna -
+/// p_from) - measured. Metres. For GNSS the reference is the fixed origin of the frame or a fixed
+/// GNSS node. If it is the origin, e is the difference in the axes of the frame, and no heading
+/// error enters it. This is the decoupled GNSS error.
 struct EdgeGnssPosition {
   static constexpr std::string_view kTag = "EDGE_GNSS_POSITION";
   static constexpr std::string_view kForm = "position";
@@ -133,10 +136,12 @@ struct EdgeGnssPosition {
                  JacobianMatrix<2, 3>& by_from, JacobianMatrix<2, 3>& by_to) const;
 
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
-  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();  ///< in the body frame of `to`: x forward, y left
+  /// in the body frame of `to`: x forward, y left
+  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();
 };
 
-/// Prior on a pose, (t, theta) form: with D = Z^-1 X, e = (D.x, D.y, wrap(D.heading)).
+/// A prior on a pose in (t, theta) form. With D = Z^-1 X the error is e = (D.x, D.y,
+/// wrap(D.heading)).
 struct EdgePriorSe2 {
   static constexpr std::string_view kTag = "EDGE_PRIOR_SE2";
   static constexpr std::string_view kForm = "(t, theta)";
@@ -189,7 +194,7 @@ struct EdgeSe2Xy {
   e[0] = turned_x - turned[0];
   e[1] = turned_y - turned[1];
   e[2] = wrap_angle(to.heading - a);
-  // Entry by entry: a comma initialiser would keep the matrices in memory.
+  // The entries are set one by one, because a comma initialiser would keep the matrices in memory.
   const auto set = [](JacobianMatrix<3, 3> & m, double cosine, double sine, double x, double y, double unit)
       __attribute__((always_inline)) {
     m(0, 0) = m(1, 1) = cosine;
@@ -204,7 +209,7 @@ struct EdgeSe2Xy {
   set(by_to, c, s, 0, 0, 1);
 }
 
-// Compiled once, in edge_se2.cpp, instead of in every file that adds an edge.
+// This is compiled once, in edge_se2.cpp, and not in every file that adds an edge.
 extern template class EdgeBatch<EdgeSe2>;
 extern template class EdgeBatch<EdgeSe2Log>;
 extern template class EdgeBatch<EdgeGnssPosition>;

@@ -14,7 +14,7 @@ void EdgePriorXy::linearize(const Vector2<double>& point, ErrorVector<2>& e,
   by_point.setIdentity();
 }
 
-// With d = p_point - p and r = |d|: the direction of d turns by (d.x dy - d.y dx) / r^2.
+// With d = p_point - p and r = |d|, the direction of d turns by (d.x dy - d.y dx) / r^2.
 void EdgeBearingSe2Xy::linearize(const Pose2<double>& pose, const Vector2<double>& point, ErrorVector<1>& e,
                                  JacobianMatrix<1, 3>& by_pose, JacobianMatrix<1, 2>& by_point) const {
   e = error<double>(pose, point);
@@ -29,7 +29,7 @@ void EdgeBearingSe2Xy::linearize(const Pose2<double>& pose, const Vector2<double
   by_pose << d[1] / squared, -d[0] / squared, -1;
 }
 
-// With q = R^T (p_point - p): e = R_O^T (q - t_O) - z, and q turns with the heading as (q.y, -q.x).
+// With q = R^T (p_point - p), e = R_O^T (q - t_O) - z, and the heading turns q by (q.y, -q.x).
 void EdgeSe2PointXyOffset::linearize(const Pose2<double>& pose, const Vector2<double>& point,
                                      ErrorVector<2>& e, JacobianMatrix<2, 3>& by_pose,
                                      JacobianMatrix<2, 2>& by_point) const {

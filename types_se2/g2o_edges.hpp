@@ -1,6 +1,7 @@
-/// The rest of g2o's plane vocabulary (its types/slam2d): priors on positions, bearings, measurements of
-/// sensors that are mounted away from the body's origin. A sensor's offset is its pose in the body frame; g2o
-/// keeps it in PARAMS_SE2OFFSET lines, here it is a field of the edge (formats/README.md).
+/// The other plane edges of g2o (its types/slam2d): priors on positions, bearings, and measurements
+/// of sensors that are not mounted at the origin of the body. The offset of a sensor is its pose in
+/// the body frame. g2o keeps it in PARAMS_SE2OFFSET lines; here it is a field of the edge
+/// (formats/README.md).
 #pragma once
 
 #include <array>
@@ -12,7 +13,8 @@
 
 namespace waymark {
 
-/// The position of a pose in the frame's axes: e = p - measured. Metres. The heading is not looked at.
+/// The position of a pose in the axes of the frame: e = p - measured. Metres. The heading
+/// does not enter.
 struct EdgePriorSe2Xy {
   static constexpr std::string_view kTag = "EDGE_PRIOR_SE2_XY";
   static constexpr std::string_view kForm = "position";
@@ -29,7 +31,7 @@ struct EdgePriorSe2Xy {
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
 };
 
-/// The place of a point: e = p - measured. Metres.
+/// The position of a point: e = p - measured. Metres.
 struct EdgePriorXy {
   static constexpr std::string_view kTag = "EDGE_PRIOR_XY";
   static constexpr std::string_view kForm = "position";
@@ -46,9 +48,10 @@ struct EdgePriorXy {
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
 };
 
-/// The direction in which a pose sees a point, counter-clockwise from its heading: with q = R^T (p_point -
-/// p), e = wrap(atan2(q.y, q.x) - measured). Radians. (g2o has the opposite sign, which no chi2 sees.) At the
-/// point itself there is no direction: the error is that of straight ahead, with no derivative.
+/// The direction in which a pose sees a point, counter-clockwise from the heading of the pose. With
+/// q = R^T (p_point - p) the error is e = wrap(atan2(q.y, q.x) - measured). Radians. g2o uses the
+/// opposite sign; chi2 is the same. If the pose is at the point, there is no direction. The error
+/// is then that of a point straight ahead, and its derivative is zero.
 struct EdgeBearingSe2Xy {
   static constexpr std::string_view kTag = "EDGE_BEARING_SE2_XY";
   static constexpr std::string_view kForm = "bearing";
@@ -72,8 +75,8 @@ struct EdgeBearingSe2Xy {
   double measured = 0;
 };
 
-/// Relative pose of two sensors, (t, theta) form: with D = Z^-1 (X_from O_from)^-1 (X_to O_to),
-/// e = (D.x, D.y, wrap(D.heading)). Metres and radians.
+/// The relative pose of two sensors in (t, theta) form. With D = Z^-1 (X_from O_from)^-1 (X_to
+/// O_to) the error is e = (D.x, D.y, wrap(D.heading)). Metres and radians.
 struct EdgeSe2Offset {
   static constexpr std::string_view kTag = "EDGE_SE2_OFFSET";
   static constexpr std::string_view kForm = "(t, theta)";
@@ -88,18 +91,20 @@ struct EdgeSe2Offset {
 
   template <typename T>
   Vector3<T> error(const Pose2<T>& from, const Pose2<T>& to) const {
-    // From pose to pose first: nothing is added to large coordinates.
+    // The relative pose of the bodies comes first, so that nothing is added to large coordinates.
     const Pose2<T> moved = compose(between(from, to), constant_pose<T>(offset_to));
     const Pose2<T> d = between(constant_pose<T>(measured), between(constant_pose<T>(offset_from), moved));
     return Vector3<T>(d.position[0], d.position[1], wrap_angle(d.heading));
   }
 
   Eigen::Vector3d measured = Eigen::Vector3d::Zero();
-  Eigen::Vector3d offset_from = Eigen::Vector3d::Zero();  ///< O_from: the sensor in the body frame of `from`
-  Eigen::Vector3d offset_to = Eigen::Vector3d::Zero();    ///< O_to: the sensor in the body frame of `to`
+  /// O_from: the sensor in the body frame of `from`
+  Eigen::Vector3d offset_from = Eigen::Vector3d::Zero();
+  /// O_to: the sensor in the body frame of `to`
+  Eigen::Vector3d offset_to = Eigen::Vector3d::Zero();
 };
 
-/// A point seen by a sensor: e = (X O)^-1 p_point - measured. Metres, in the sensor's axes.
+/// A point seen by a sensor: e = (X O)^-1 p_point - measured. Metres, in the axes of the sensor.
 struct EdgeSe2PointXyOffset {
   static constexpr std::string_view kTag = "EDGE_SE2_POINTXY_OFFSET";
   static constexpr std::string_view kForm = "sensor frame";
@@ -125,7 +130,7 @@ struct EdgeSe2PointXyOffset {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< O: the sensor in the body frame
 };
 
-// Compiled once, in g2o_edges.cpp.
+// This is compiled once, in g2o_edges.cpp.
 extern template class EdgeBatch<EdgePriorSe2Xy>;
 extern template class EdgeBatch<EdgePriorXy>;
 extern template class EdgeBatch<EdgeBearingSe2Xy>;

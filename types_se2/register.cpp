@@ -21,7 +21,7 @@ void register_se2_types(TypeRegistry& registry) {
   registry.add_edge<EdgeBearingSe2Xy>();
   registry.add_edge<EdgeSe2Offset>();
   registry.add_edge<EdgeSe2PointXyOffset>();
-  registry.add_start(linear_start());  // the first one is what the default configuration prefers
+  registry.add_start(linear_start());  // the default configuration prefers the first entry
   registry.add_start(spanning_tree_start());
   registry.add_start(odometry_start());
 }

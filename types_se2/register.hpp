@@ -5,8 +5,9 @@
 
 namespace waymark {
 
-/// VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_LOG, EDGE_GNSS_POSITION, EDGE_PRIOR_SE2, EDGE_SE2_XY; the rest
-/// of g2o's plane edges (g2o_edges.hpp); the starts odometry, spanning_tree, linear.
+/// Registers VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_LOG, EDGE_GNSS_POSITION, EDGE_PRIOR_SE2,
+/// EDGE_SE2_XY, the other plane edges of g2o (g2o_edges.hpp), and the starts (initial guesses)
+/// odometry, spanning_tree and linear.
 void register_se2_types(TypeRegistry& registry);
 
 }  // namespace waymark

@@ -27,8 +27,8 @@ double cosine_remainder(double theta) {
 
 }  // namespace
 
-// Jr(xi) = [V(-theta), c; 0 1]. Equation (163) of Sola et al., "A micro Lie theory for state estimation in
-// robotics".
+// Jr(xi) = [V(-theta), c; 0 1]. Equation (163) of Sola et al., "A micro Lie theory for state
+// estimation in robotics".
 Eigen::Matrix3d se2_right_jacobian(const Eigen::Vector3d& xi) {
   const double theta = xi[2];
   const double a = detail::sinc(theta);
@@ -42,8 +42,8 @@ Eigen::Matrix3d se2_right_jacobian(const Eigen::Vector3d& xi) {
   return jacobian;
 }
 
-// The upper left block is V(-theta)^-1 = [h, -theta/2; theta/2, h]; the inverse of [A, c; 0 1] is [A^-1,
-// -A^-1 c; 0 1].
+// The upper left block is V(-theta)^-1 = [h, -theta/2; theta/2, h]; the inverse of [A, c; 0 1] is
+// [A^-1, -A^-1 c; 0 1].
 Eigen::Matrix3d se2_right_jacobian_inverse(const Eigen::Vector3d& xi) {
   const double h = detail::half_cot(xi[2]);
   const double half = 0.5 * xi[2];

@@ -1,8 +1,8 @@
 /// SE(2): planar rigid motions, generic in the scalar (double or a dual number).
 ///
-/// Conventions (stated once, in types_se2/README.md): a pose is (x, y, heading), metres and radians; tangent
-/// vectors are (rho_x, rho_y, theta) in the body frame; exp and log are those of the group, V(theta) maps rho
-/// to translation.
+/// Conventions (types_se2/README.md states them once): a pose is (x, y, heading) in metres and
+/// radians. Tangent vectors are (rho_x, rho_y, theta) in the body frame. exp and log are those of
+/// the group; V(theta) maps rho to the translation.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,8 @@ using Vector2 = Eigen::Matrix<T, 2, 1>;
 template <typename T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
 
-/// The equivalent angle in (-pi, pi]. Derivatives pass through unchanged: whole turns are constants.
+/// Returns the equivalent angle in (-pi, pi]. Derivatives pass through unchanged, because whole
+/// turns are constants.
 template <typename T>
 [[nodiscard]] [[gnu::always_inline]] inline T wrap_angle(const T& angle) {
   using std::ceil;
@@ -34,7 +35,8 @@ template <typename T>
   return angle - T(kTurn * std::ceil((value - std::numbers::pi) / kTurn));
 }
 
-/// A pose or a relative motion: translation and heading [rad]. Headings are not normalised by construction.
+/// A pose or a relative motion: translation [m] and heading [rad]. The constructor does not wrap
+/// the heading.
 template <typename T>
 struct Pose2 {
   Vector2<T> position = Vector2<T>(T(0.0), T(0.0));
@@ -47,7 +49,7 @@ struct Pose2 {
   [[nodiscard]] Vector3<T> vector() const { return Vector3<T>(position[0], position[1], heading); }
 };
 
-/// A measured pose or vector in the scalar of an error function.
+/// Converts a measured pose or vector to the scalar of an error function.
 template <typename T>
 [[nodiscard]] Pose2<T> constant_pose(const Eigen::Vector3d& v) {
   return Pose2<T>(T(v[0]), T(v[1]), T(v[2]));
@@ -73,7 +75,7 @@ template <typename T>
 
 }  // namespace detail
 
-/// R(angle) v.
+/// Returns R(angle) v.
 template <typename T>
 [[nodiscard]] [[gnu::always_inline]] inline Vector2<T> rotate(const T& angle, const Vector2<T>& v) {
   T s;
@@ -82,7 +84,7 @@ template <typename T>
   return Vector2<T>(c * v[0] - s * v[1], s * v[0] + c * v[1]);
 }
 
-/// R(angle)^T v.
+/// Returns R(angle)^T v.
 template <typename T>
 [[nodiscard]] [[gnu::always_inline]] inline Vector2<T> rotate_back(const T& angle, const Vector2<T>& v) {
   T s;
@@ -91,7 +93,7 @@ template <typename T>
   return Vector2<T>(c * v[0] + s * v[1], c * v[1] - s * v[0]);
 }
 
-/// |v|, with no derivative at 0, where it has none.
+/// Returns |v|. The norm has no derivative at 0; this one is zero there.
 template <typename T>
 [[nodiscard]] T length(const Vector2<T>& v) {
   using std::hypot;
@@ -99,13 +101,14 @@ template <typename T>
   return hypot(v[0], v[1]);
 }
 
-/// a * b: the motion b seen from a. The heading is the plain sum, so windings are kept.
+/// Returns a * b: the motion b, applied in the frame of a. The heading is the plain sum, so
+/// windings are kept.
 template <typename T>
 [[nodiscard]] [[gnu::always_inline]] inline Pose2<T> compose(const Pose2<T>& a, const Pose2<T>& b) {
   return Pose2<T>(Vector2<T>(a.position + rotate(a.heading, b.position)), T(a.heading + b.heading));
 }
 
-/// a^-1 * b: the pose b expressed in the frame of a; heading difference not normalised.
+/// Returns a^-1 * b: the pose b in the frame of a. The heading difference is not wrapped.
 template <typename T>
 [[nodiscard]] [[gnu::always_inline]] inline Pose2<T> between(const Pose2<T>& a, const Pose2<T>& b) {
   return Pose2<T>(rotate_back(a.heading, Vector2<T>(b.position - a.position)), T(b.heading - a.heading));
@@ -118,7 +121,7 @@ template <typename T>
 
 namespace detail {
 
-/// |theta| below which the series are used: their first omitted term is below 1e-18 there.
+/// The series are used for |theta| below this; their first omitted term is then below 1e-18.
 inline constexpr double kSeriesBelow = 1e-3;
 
 template <typename T>
@@ -135,7 +138,7 @@ template <typename T>
   return std::abs(real_part(theta)) < kSeriesBelow;
 }
 
-/// sin(theta) / theta.
+/// Returns sin(theta) / theta.
 template <typename T>
 [[nodiscard]] T sinc(const T& theta) {
   using std::sin;
@@ -144,18 +147,18 @@ template <typename T>
   return sin(theta) / theta;
 }
 
-/// (1 - cos(theta)) / theta.
+/// Returns (1 - cos(theta)) / theta.
 template <typename T>
 [[nodiscard]] T one_minus_cos_over(const T& theta) {
   using std::sin;
   const T t2 = theta * theta;
   if (is_small(theta))
     return theta * (T(0.5) - t2 * (T(1.0 / 24) - t2 * (T(1.0 / 720) - t2 * T(1.0 / 40320))));
-  const T half = sin(theta * T(0.5));  // 2 sin^2(theta / 2): no cancellation
+  const T half = sin(theta * T(0.5));  // 1 - cos(theta) = 2 sin^2(theta / 2): no cancellation
   return T(2.0) * half * half / theta;
 }
 
-/// (theta / 2) cot(theta / 2): 1 at 0, 0 at +-pi.
+/// Returns (theta / 2) cot(theta / 2): 1 at 0, and 0 at +-pi.
 template <typename T>
 [[nodiscard]] T half_cot(const T& theta) {
   using std::cos;
@@ -166,7 +169,7 @@ template <typename T>
   return half * cos(half) / sin(half);
 }
 
-/// Its derivative by theta.
+/// Returns the derivative of half_cot by theta.
 [[nodiscard]] inline double half_cot_slope(double theta) {
   const double t2 = theta * theta;
   if (is_small(theta)) return -theta * (1.0 / 6 + t2 * (1.0 / 180 + t2 / 5040));
@@ -176,9 +179,9 @@ template <typename T>
 
 }  // namespace detail
 
-/// Group exponential: the motion of a body that follows the constant twist xi = (rho, theta) for unit time.
-/// exp([v dt, 0, w dt]) is the exact arc of a vehicle with speed v and yaw rate w. The heading is theta, not
-/// wrapped.
+/// The group exponential: the motion of a body that follows the constant twist xi = (rho, theta)
+/// for unit time. exp([v dt, 0, w dt]) is the exact arc of a vehicle with speed v and yaw rate w.
+/// The heading of the result is theta, not wrapped.
 template <typename T>
 [[nodiscard]] Pose2<T> se2_exp(const Vector3<T>& xi) {
   const T a = detail::sinc(xi[2]);
@@ -186,8 +189,8 @@ template <typename T>
   return Pose2<T>(T(a * xi[0] - b * xi[1]), T(b * xi[0] + a * xi[1]), xi[2]);
 }
 
-/// Group logarithm, heading taken in (-pi, pi]. V(theta)^-1 = [h, theta/2; -theta/2, h], h = (theta/2)
-/// cot(theta/2).
+/// The group logarithm, with the heading taken in (-pi, pi]. V(theta)^-1 = [h, theta/2; -theta/2,
+/// h], h = (theta/2) cot(theta/2).
 template <typename T>
 [[nodiscard]] Vector3<T> se2_log(const Pose2<T>& pose) {
   const T theta = wrap_angle(pose.heading);
@@ -197,11 +200,11 @@ template <typename T>
                     T(h * pose.position[1] - half * pose.position[0]), theta);
 }
 
-/// Adjoint: Ad(X) xi is the twist xi of the body frame of X expressed in the frame in which X is given.
+/// The adjoint. Ad(X) xi is the body twist xi, expressed in the frame in which X is given.
 [[nodiscard]] Eigen::Matrix3d se2_adjoint(const Pose2<double>& pose);
-/// Right Jacobian: exp(xi + d) = exp(xi) exp(Jr(xi) d) to first order.
+/// The right Jacobian: exp(xi + d) = exp(xi) exp(Jr(xi) d) to first order.
 [[nodiscard]] Eigen::Matrix3d se2_right_jacobian(const Eigen::Vector3d& xi);
-/// Inverse of se2_right_jacobian; finite for |theta| < 2 pi.
+/// The inverse of se2_right_jacobian. It is finite for |theta| < 2 pi.
 [[nodiscard]] Eigen::Matrix3d se2_right_jacobian_inverse(const Eigen::Vector3d& xi);
 
 }  // namespace waymark

@@ -1,4 +1,4 @@
-/// The poses of a trajectory among a graph's vertices.
+/// Finds the poses of a trajectory among the vertices of a graph.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,8 @@
 
 namespace waymark {
 
-/// A vertex as a pose of the trajectory; empty where it is no VERTEX_SE2 or has no stamp.
+/// Returns a vertex as a pose of the trajectory. The result is empty if the vertex is no VERTEX_SE2
+/// or has no stamp.
 [[nodiscard]] inline std::optional<StampedPose> stamped_pose(const Graph& graph, VertexIndex v) {
   const auto stamp = graph.stamp(v);
   if (!stamp || graph.vertex_type(v).tag != VertexSe2::kTag) return std::nullopt;

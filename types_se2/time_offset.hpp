@@ -1,4 +1,4 @@
-/// The time offset between GNSS and odometry as a state of the graph.
+/// The time offset between GNSS and odometry, as a state of the graph.
 #pragma once
 
 #include <array>
@@ -9,17 +9,18 @@
 
 namespace waymark {
 
-/// How late a receiver's stamps are on the odometry's clock, s: a fix stamped t shows the antenna as it was
-/// at t - offset. The same number as `delay` of a drive.yaml.
+/// How late the stamps of a receiver are on the odometry's clock, in s. A fix with stamp t shows
+/// the antenna as it was at t - offset. It is the same number as `delay` in a drive.yaml.
 struct VertexTimeOffset : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_TIME_OFFSET";
   static constexpr std::array<std::string_view, 1> value_names() { return {"time_offset"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"s"}; }
 };
 
-/// EDGE_GNSS_POSITION of a fix that is late: with the motion at the fix, the body was at X exp(-offset
-/// [speed, 0, yaw_rate]) when the antenna was measured. e = R_from^T (p_then + R_then antenna - p_from) -
-/// measured. Metres; speed in (grid) m/s, yaw rate in rad/s, both of `to`.
+/// EDGE_GNSS_POSITION of a fix that is late. The body was at X exp(-offset [speed, 0, yaw_rate])
+/// when the antenna was measured, given the motion at the fix. e = R_from^T (p_then + R_then
+/// antenna - p_from) - measured. Metres. The speed is in (grid) m/s and the yaw rate in rad/s,
+/// both of `to`.
 struct EdgeGnssPositionDelayed {
   static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_DELAYED";
   static constexpr std::string_view kForm = "position";
@@ -48,7 +49,7 @@ struct EdgeGnssPositionDelayed {
   double yaw_rate = 0;
 };
 
-// Compiled once, in time_offset.cpp.
+// This is compiled once, in time_offset.cpp.
 extern template class EdgeBatch<EdgeGnssPositionDelayed>;
 
 }  // namespace waymark

@@ -9,8 +9,8 @@
 
 namespace waymark {
 
-/// A pose (x, y, heading). Retraction: x and y are added in world axes, the heading is added and wrapped to
-/// (-pi, pi]; covariances so read directly in the frame's axes.
+/// A pose (x, y, heading). The retraction adds x and y in world axes; it adds the heading and wraps
+/// it to (-pi, pi]. So covariances are in the axes of the frame.
 struct VertexSe2 {
   static constexpr std::string_view kTag = "VERTEX_SE2";
   static constexpr int kValueSize = 3;
@@ -39,7 +39,8 @@ struct VertexSe2 {
         0, 1, (value[0] - centre[0]) / extent,                                       //
         0, 0, 1 / extent;
   }
-  /// T = [1 0 -dy; 0 1 dx; 0 0 1] with (dx, dy) the way between the two: a turn of `from` swings `to`.
+  /// T = [1 0 -dy; 0 1 dx; 0 0 1], where (dx, dy) is the vector from one to the other: a turn of
+  /// `from` swings `to`.
   template <int R>
   [[gnu::always_inline]] static void carry(const double* from, const double* to,
                                            Eigen::Matrix<double, R, 3>& m) {
@@ -49,7 +50,8 @@ struct VertexSe2 {
   }
 };
 
-/// What all vertices of two plain numbers in the plane share: points, offsets of points.
+/// The common part of all vertices that are two plain numbers in the plane: points, and
+/// offsets of points.
 struct PlaneState {
   static constexpr int kValueSize = 2;
   static constexpr int kTangentSize = 2;

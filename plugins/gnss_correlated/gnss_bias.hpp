@@ -1,4 +1,4 @@
-/// Errors of a receiver that last: states that several fixes share, and the fix that they belong to.
+/// Correlated errors of a receiver: states that several fixes share, and the edges that use them.
 #pragma once
 
 #include <array>
@@ -9,21 +9,22 @@
 
 namespace waymark::plugins::gnss_correlated {
 
-/// By how much all fixes about a moment are off, for minutes: atmosphere, orbits. Metres, frame axes.
+/// The slow error of all fixes about a moment. It lasts for minutes (atmosphere, orbits).
+/// Metres, frame axes.
 struct VertexGnssBias : PlaneState {
   static constexpr std::string_view kTag = "VERTEX_GNSS_BIAS";
   static constexpr std::array<std::string_view, 2> value_names() { return {"gnss_bias_x", "gnss_bias_y"}; }
   static constexpr std::array<std::string_view, 2> value_units() { return {"m", "m"}; }
 };
 
-/// The part of the error that lasts for seconds: reflections, the receiver's own smoothing. In units of its
-/// standard deviation, which each fix states for itself; frame axes.
+/// The part of the error that lasts for seconds (reflections, the smoothing of the receiver). Its
+/// unit is its own standard deviation, which each fix states; frame axes.
 struct VertexGnssMultipath : PlaneState {
   static constexpr std::string_view kTag = "VERTEX_GNSS_MULTIPATH";
   static constexpr std::array<std::string_view, 2> value_names() { return {"x", "y"}; }
 };
 
-/// A step of a first-order Gauss-Markov process: e = x_to - decay x_from, decay = exp(-dt / tau).
+/// One step of a first-order Gauss-Markov process: e = x_to - decay x_from, decay = exp(-dt / tau).
 struct EdgeGnssBiasDecay {
   static constexpr std::string_view kTag = "EDGE_GNSS_BIAS_DECAY";
   static constexpr std::string_view kForm = "difference";
@@ -39,7 +40,7 @@ struct EdgeGnssBiasDecay {
   double decay = 1;
 };
 
-/// The same for the part that lasts for seconds.
+/// The same step for the part of the error that lasts for seconds.
 struct EdgeGnssMultipathDecay : EdgeGnssBiasDecay {
   static constexpr std::string_view kTag = "EDGE_GNSS_MULTIPATH_DECAY";
   using Vertices = VertexList<VertexGnssMultipath, VertexGnssMultipath>;
@@ -49,9 +50,9 @@ struct EdgeGnssMultipathDecay : EdgeGnssBiasDecay {
   }
 };
 
-/// EDGE_GNSS_POSITION_DELAYED with the lasting errors in the reading:
+/// EDGE_GNSS_POSITION_DELAYED with the correlated errors in the measurement:
 ///   e = R_from^T (p_then + R_then antenna - p_from) + bias + scale multipath - measured.
-/// `from` is the fixed origin, whose axes are the frame's. Metres.
+/// `from` is the fixed origin; its axes are those of the frame. Metres.
 struct EdgeGnssPositionBiased {
   static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_BIASED";
   static constexpr std::string_view kForm = "position";
@@ -83,7 +84,7 @@ struct EdgeGnssPositionBiased {
   Eigen::Vector2d antenna = Eigen::Vector2d::Zero();   ///< in the body frame: x forward, y left
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of `to` in the body frame, (grid) m/s
   double yaw_rate = 0;
-  /// Root of the covariance of the part that lasts for seconds, symmetric: xx, xy, yy. m
+  /// The symmetric root of the covariance of the part that lasts for seconds: xx, xy, yy, in m.
   Eigen::Vector3d scale = {1, 0, 1};
 };
 

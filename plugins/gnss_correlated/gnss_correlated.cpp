@@ -34,8 +34,8 @@ struct ErrorModel {
   [[nodiscard]] double bias_m() const { return std::hypot(bias_floor_m, bias_share * multipath_m); }
 };
 
-/// Claimed accuracies relative to their median, per fix: receivers know better which fix is worse than how
-/// bad it is.
+/// The claimed accuracies are used relative to their median. Receivers know which fix is worse
+/// better than they know how bad it is.
 double median_accuracy(std::span<const Fix> fixes) {
   std::vector<double> ordered;
   for (const Fix& fix : fixes) ordered.push_back(std::sqrt(0.5 * fix.covariance.trace()));
@@ -61,7 +61,7 @@ class ProcessAlongFixes {
   ProcessAlongFixes(double sigma, double time_s, Graph& graph)
       : variance_(sigma * sigma), time_s_(time_s), graph_(graph) {}
 
-  /// The vertex of a fix; stamps must not decrease.
+  /// Returns the vertex of a fix. Stamps must not decrease.
   [[nodiscard]] VertexIndex at(Stamp stamp) {
     if (vertex_ >= 0 && since_ == stamp) return vertex_;
     const VertexIndex next = graph_.add_vertex<V>(graph_.free_id(), {0, 0});
@@ -88,13 +88,13 @@ class ProcessAlongFixes {
   Stamp since_;
 };
 
-/// The lasting errors of one receiver.
+/// The correlated errors of one receiver.
 struct Receiver {
   ProcessAlongFixes<VertexGnssBias, EdgeGnssBiasDecay> bias;
   ProcessAlongFixes<VertexGnssMultipath, EdgeGnssMultipathDecay> multipath;
 };
 
-/// z = antenna + bias + multipath + white: see README.md.
+/// measured = antenna + bias + multipath + white noise: see README.md.
 class GnssCorrelated final : public GnssModeling {
  public:
   GnssCorrelated(const ErrorModel& model, double time_offset_sigma_s)

@@ -7,7 +7,7 @@
 namespace waymark::plugins::gnss_g1 {
 namespace {
 
-/// The paper's G1: a fix is a measurement, an edge from the fixed origin to the pose.
+/// The paper's G1: a fix is a measurement, so it is an edge from the fixed origin to the pose.
 class GnssG1 final : public GnssModeling {
  public:
   GnssG1(bool literal, double time_offset_sigma_s)

@@ -7,14 +7,14 @@
 namespace waymark::plugins::gnss_g2 {
 namespace {
 
-/// The paper's G2: a fix is a free node, measured from the origin as in G1 and tied to the pose by a stiff
-/// identity. The node is the antenna with the vehicle's heading, so the identity becomes the lever arm where
-/// there is one.
+/// The paper's G2: a fix is a free node. It is measured from the origin as in G1, and a stiff
+/// identity edge ties it to the pose. The node is the antenna with the heading of the vehicle. If
+/// there is a lever arm, the edge carries it in place of the identity.
 class GnssG2 final : public GnssModeling {
  public:
   struct Configuration {
     bool literal = false;
-    bool begin_at_pose = false;  ///< else at the fix
+    bool begin_at_pose = false;  ///< false: begin at the fix
     double identity_information = 1e6;
     double time_offset_sigma_s = 0;
   };

@@ -7,8 +7,8 @@
 namespace waymark::plugins::gnss_g3 {
 namespace {
 
-/// The paper's G3: a fix is a fixed node, tied to the pose by an identity edge that carries the fix's
-/// information.
+/// The paper's G3: a fix is a fixed node. An identity edge ties it to the pose and carries the
+/// information of the fix.
 class GnssG3 final : public GnssModeling {
  public:
   GnssG3(bool literal, double time_offset_sigma_s)
@@ -20,7 +20,7 @@ class GnssG3 final : public GnssModeling {
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const VertexIndex pose = pose_vertex(fix, graph);
-      // Heading 0: the error of the identity edge is then p - z in frame axes.
+      // With heading 0 the error of the identity edge is p - z in frame axes.
       const VertexIndex node =
           graph.add_vertex<VertexSe2>(graph.free_id(), {fix.position[0], fix.position[1], 0});
       graph.set_fixed(node, true);

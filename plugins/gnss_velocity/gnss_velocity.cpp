@@ -12,7 +12,8 @@ namespace waymark::plugins::gnss_velocity {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-/// A speed is that of one moment: over a longer way between poses (a gap) it says too little.
+/// A measured speed is that of one moment. Over a longer interval between poses (a gap) it
+/// says too little.
 constexpr double kLongestWay_s = 0.5;
 
 std::vector<OptionInfo> options() {
@@ -73,7 +74,8 @@ class GnssVelocity final : public SensorModel {
     graph.add_edge(edge, {place.pose}, Eigen::Matrix<double, 1, 1>(1 / (sigma * sigma)));
   }
 
-  /// From the node before the fix to the one after it: the mean speed between them is that in the middle.
+  /// The edge joins the node before the fix and the one after it. The mean speed between them is
+  /// close to the speed at the fix, in the middle.
   void add_speed(const SensorInput& input, const Fix& fix, std::size_t node, Graph& graph) const {
     const DriveNodes& nodes = input.nodes;
     const std::size_t from = node > 0 ? node - 1 : 0;

@@ -1,4 +1,4 @@
-/// What a GNSS receiver says of its antenna's velocity: course and Doppler speed.
+/// Edges for the velocity of an antenna as a GNSS receiver measures it: course and Doppler speed.
 #pragma once
 
 #include <array>
@@ -9,11 +9,12 @@
 
 namespace waymark::plugins::gnss_velocity {
 
-/// Course of the antenna against the heading of the body. With the odometry's speed v and yaw rate w the
-/// antenna at a (body frame) moves at (v - w a_y, w a_x) in the body frame, so
+/// Compares the course of the antenna with the heading of the body. If the odometry has speed v and
+/// yaw rate w, an antenna at a moves at (v - w a_y, w a_x), all in the body frame. So
 ///   e = wrap(heading + atan2(w a_x, v - w a_y) - course).
-/// Radians; the course as a heading, counter-clockwise from grid east. The body point does not slip sideways.
-/// Reversing is right by itself: v < 0 turns the velocity by half a turn.
+/// Radians. The course is given as a heading, counter-clockwise from grid east. The model assumes
+/// that the body point does not slip sideways. Reversing needs no special case: v < 0 turns the
+/// velocity by half a turn.
 struct EdgeGnssCourse {
   static constexpr std::string_view kTag = "EDGE_GNSS_COURSE";
   static constexpr std::string_view kForm = "angle";
@@ -25,7 +26,7 @@ struct EdgeGnssCourse {
                       field<&EdgeGnssCourse::antenna>("antenna")};
   }
 
-  /// Direction of the antenna's velocity in the body frame; 0 where it stands.
+  /// Returns the direction of the antenna's velocity in the body frame; 0 if the antenna stands.
   [[nodiscard]] double slip() const {
     return std::atan2(yaw_rate * antenna[0], speed - yaw_rate * antenna[1]);
   }
@@ -45,9 +46,10 @@ struct EdgeGnssCourse {
   Eigen::Vector2d antenna = Eigen::Vector2d::Zero();  ///< in the body frame: x forward, y left
 };
 
-/// Doppler speed as the way of the antenna from one pose to another dt later:
+/// Compares the Doppler speed with the distance of the antenna between two poses, dt apart:
 ///   e = |A_to - A_from| - speed dt,  A = p + R antenna.
-/// Metres. A chord instead of the arc: (w dt)^2 / 24 shorter, 1e-4 of it for 0.5 rad/s and 0.1 s.
+/// Metres. The chord replaces the arc. It is shorter by the fraction (w dt)^2 / 24: 1e-4 for 0.5
+/// rad/s and 0.1 s.
 struct EdgeGnssSpeed {
   static constexpr std::string_view kTag = "EDGE_GNSS_SPEED";
   static constexpr std::string_view kForm = "way";

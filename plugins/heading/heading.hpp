@@ -1,5 +1,5 @@
-/// Absolute headings: what a dual antenna or a compass reads, plain or with a constant deviation that is
-/// estimated.
+/// Absolute headings from a dual antenna or a compass. The reading is used as it is, or with a
+/// constant deviation that is estimated.
 #pragma once
 
 #include <array>
@@ -10,8 +10,9 @@
 
 namespace waymark::plugins::heading {
 
-/// How much more than the heading a sensor reads, rad, counter-clockwise: reading = heading + offset. The
-/// deviation of a magnetometer (declination and the vehicle's iron), or how a baseline was mounted.
+/// The constant deviation of a heading sensor in rad, counter-clockwise: reading = heading +
+/// offset. For a magnetometer it contains the declination and the vehicle's iron; for a dual
+/// antenna, the mounting angle of the baseline.
 struct VertexHeadingOffset : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_HEADING_OFFSET";
   static constexpr std::array<std::string_view, 1> value_names() { return {"heading_offset"}; }
@@ -43,7 +44,7 @@ struct EdgeHeading {
   double measured = 0;
 };
 
-/// e = wrap(heading + offset - measured).
+/// e = wrap(heading + offset - measured). Radians.
 struct EdgeHeadingOffset {
   static constexpr std::string_view kTag = "EDGE_HEADING_OFFSET";
   static constexpr std::string_view kForm = "angle";

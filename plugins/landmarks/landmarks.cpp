@@ -36,12 +36,13 @@ std::vector<OptionInfo> options() {
   return all;
 }
 
-/// The landmarks of a drive by their ids.
+/// Maps the ids of the landmarks of a drive to their vertices.
 class Landmarks {
  public:
   Landmarks(const SensorTable& readings, Graph& graph) : graph_(graph) { read_map(readings); }
 
-  /// The vertex of a landmark, made at its first sight: where the map says, and fixed, or where it is seen.
+  /// Returns the vertex of a landmark. Its first sight creates the vertex: fixed at the place in
+  /// the map, or else free at the place where it was seen.
   VertexIndex vertex(std::int64_t id, const Eigen::Vector2d& seen_at) {
     const auto [entry, is_new] = vertices_.try_emplace(id, -1);
     if (!is_new) return entry->second;
@@ -53,7 +54,7 @@ class Landmarks {
   }
 
   static std::int64_t id_of(const SensorTable& readings, std::size_t row) {
-    constexpr double kLargest = 9e15;  // whole numbers are exact in a double up to here
+    constexpr double kLargest = 9e15;  // a double holds whole numbers exactly up to here
     const double id = readings.at(row, kId);
     if (id != std::floor(id) || std::abs(id) > kLargest)
       fail_reading(readings, row, "id", "expected a whole number, got " + shortest(id));
@@ -109,7 +110,7 @@ class LandmarkSensor final : public SensorModel {
   }
 
  private:
-  /// Whether a row gives range and bearing, not x and y.
+  /// Tells whether a row gives range and bearing, and not x and y.
   static bool is_polar(const SensorTable& readings, std::size_t row) {
     const auto has = [&](Column column) { return !std::isnan(readings.at(row, column)); };
     if (!has(kRange) && !has(kBearing)) {

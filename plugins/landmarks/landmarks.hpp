@@ -1,4 +1,5 @@
-/// Landmarks by range and bearing. Landmarks by x and y are EDGE_SE2_XY of types_se2.
+/// Landmarks measured by range and bearing. EDGE_SE2_XY of types_se2 is for landmarks
+/// measured by x and y.
 #pragma once
 
 #include <array>
@@ -9,11 +10,12 @@
 
 namespace waymark::plugins::landmarks {
 
-/// A landmark seen at a distance and in a direction from a sensor at a fixed place in the body frame:
+/// A landmark at a distance and in a direction, seen from a sensor at a fixed place in
+/// the body frame:
 ///   d = R^T (p_landmark - p) - sensor,  e = (|d| - range, wrap(atan2(d.y, d.x) - bearing)).
-/// Metres and radians; the bearing counts counter-clockwise from straight ahead of the body. At the sensor
-/// itself a landmark has no direction: both parts are then errors of a landmark straight ahead at distance 0,
-/// with no derivative.
+/// Metres and radians. The bearing counts counter-clockwise from the x axis of the body. If the
+/// landmark is at the sensor, it has no direction. Both errors are then those of a landmark
+/// straight ahead at distance 0, and their derivative is zero.
 struct EdgeSe2XyRangeBearing {
   static constexpr std::string_view kTag = "EDGE_SE2_XY_RANGE_BEARING";
   static constexpr std::string_view kForm = "range, bearing";

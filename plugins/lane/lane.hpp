@@ -1,4 +1,4 @@
-/// Lateral offset to a line of a map: a lane marking, a kerb, a tram rail.
+/// Lateral offset to a line of a map, for example a lane marking, a kerb or a tram rail.
 #pragma once
 
 #include <array>
@@ -8,10 +8,10 @@
 
 namespace waymark::plugins::lane {
 
-/// How far a point of the body lies to the left of a straight line through `point` in the direction
-/// `heading`, both in the frame: with n = (-sin heading, cos heading),
+/// The distance of a body point to the left of a straight line. The line passes through `point` in
+/// the direction `heading`; both are in the frame. With n = (-sin heading, cos heading),
 ///   e = n^T (p + R lever - point) - offset.
-/// Metres and radians. Says nothing of the place along the line.
+/// Metres and radians. The edge does not measure the position along the line.
 struct EdgeLateralOffset {
   static constexpr std::string_view kTag = "EDGE_LATERAL_OFFSET";
   static constexpr std::string_view kForm = "lateral";
@@ -31,10 +31,10 @@ struct EdgeLateralOffset {
     return Eigen::Matrix<T, 1, 1>(T(left[0]) * from_point[0] + T(left[1]) * from_point[1] - T(offset));
   }
 
-  double offset = 0;  ///< positive: the body's point is to the left of the line
+  double offset = 0;  ///< positive: the body point is to the left of the line
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   double heading = 0;
-  Eigen::Vector2d lever = Eigen::Vector2d::Zero();  ///< the body's point in the body frame
+  Eigen::Vector2d lever = Eigen::Vector2d::Zero();  ///< the body point, in the body frame
 };
 
 }  // namespace waymark::plugins::lane

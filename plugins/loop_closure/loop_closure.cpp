@@ -66,8 +66,9 @@ class LoopClosure final : public SensorModel {
     return Stamp{readings.stamps[row].nanoseconds + std::llround(dt * 1e9)};
   }
 
-  /// The sensor at the two moments stood at A = ahead_from mount and B = ahead_to mount in the frames of the
-  /// nodes, so the nodes' relative pose is A Z B^-1, and its error is Ad(B) times that of Z.
+  /// At the two moments the sensor stood at A = ahead_from mount and B = ahead_to mount, in the
+  /// frames of the nodes. So the relative pose of the nodes is A Z B^-1, and its error is Ad(B)
+  /// times the error of Z.
   void add_edge(const ReadingPlace& from, const ReadingPlace& to, const Pose2<double>& seen,
                 const Eigen::Vector3d& sigmas, Graph& graph) const {
     const Pose2<double> sensor_from = compose(from.ahead, mount_);

@@ -1,5 +1,5 @@
-/// Calibration of the odometry: gyro bias and speed scale as states of the graph, constant over a drive or
-/// slowly wandering.
+/// Calibration of the odometry: gyro bias and speed scale as states of the graph. They are constant
+/// over a drive or wander slowly.
 #pragma once
 
 #include <array>
@@ -10,22 +10,22 @@
 
 namespace waymark::plugins::odometry {
 
-/// What the gyro reads while nothing turns: true yaw rate = reading - bias. rad/s, counter-clockwise.
+/// The reading of the gyro at rest: true yaw rate = reading - bias. rad/s, counter-clockwise.
 struct VertexGyroBias : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_GYRO_BIAS";
   static constexpr std::array<std::string_view, 1> value_names() { return {"gyro_bias"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"rad/s"}; }
 };
 
-/// How much more than the odometry says the vehicle really drives: true speed = (1 + scale) reading.
+/// The relative error of the odometry's speed: true speed = (1 + scale) reading.
 struct VertexSpeedScale : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_SPEED_SCALE";
   static constexpr std::array<std::string_view, 1> value_names() { return {"speed_scale"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"1"}; }
 };
 
-/// EDGE_SE2_ODOMETRY with calibrated readings: Z = exp([(1 + s) speed dt, 0, (yaw_rate - b) dt]), e =
-/// log(Z^-1 (X_from^-1 X_to)).
+/// EDGE_SE2_ODOMETRY with calibrated readings: Z = exp([(1 + s) speed dt, 0, (yaw_rate - b) dt]),
+/// e = log(Z^-1 (X_from^-1 X_to)).
 struct EdgeSe2OdometryCalibrated {
   static constexpr std::string_view kTag = "EDGE_SE2_ODOMETRY_CALIBRATED";
   static constexpr std::string_view kForm = "log";
@@ -44,7 +44,8 @@ struct EdgeSe2OdometryCalibrated {
     return se2_log(between(se2_exp(xi), between(from, to)));
   }
 
-  /// With E = exp(e): a change d of the twist xi changes e by -Jl(e)^-1 Jr(xi) d, and Jl(e) = Jr(-e).
+  /// With E = exp(e), a change d of the twist xi changes e by -Jl(e)^-1 Jr(xi) d, where
+  /// Jl(e) = Jr(-e).
   void linearize(const Pose2<double>& from, const Pose2<double>& to, double scale, double bias,
                  ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from, JacobianMatrix<3, 3>& by_to,
                  JacobianMatrix<3, 1>& by_scale, JacobianMatrix<3, 1>& by_bias) const {
@@ -60,7 +61,7 @@ struct EdgeSe2OdometryCalibrated {
   double dt = 0;
 };
 
-/// The gyro's reading while the vehicle stands is its bias: e = yaw_rate - b. rad/s.
+/// The gyro reads its bias while the vehicle stands: e = yaw_rate - b. rad/s.
 struct EdgeGyroAtRest {
   static constexpr std::string_view kTag = "EDGE_GYRO_AT_REST";
   static constexpr std::string_view kForm = "difference";
@@ -76,7 +77,7 @@ struct EdgeGyroAtRest {
   double yaw_rate = 0;
 };
 
-/// A step of a random walk: e = b_to - b_from - change.
+/// One step of a random walk: e = b_to - b_from - change.
 struct EdgeGyroBiasWalk {
   static constexpr std::string_view kTag = "EDGE_GYRO_BIAS_WALK";
   static constexpr std::string_view kForm = "difference";
@@ -89,10 +90,10 @@ struct EdgeGyroBiasWalk {
     return Eigen::Matrix<T, 1, 1>(to - from - T(change));
   }
 
-  double change = 0;  ///< expected, mostly 0
+  double change = 0;  ///< the expected change, usually 0
 };
 
-/// The same for the speed scale.
+/// The same step for the speed scale.
 struct EdgeSpeedScaleWalk : EdgeGyroBiasWalk {
   static constexpr std::string_view kTag = "EDGE_SPEED_SCALE_WALK";
   using Vertices = VertexList<VertexSpeedScale, VertexSpeedScale>;

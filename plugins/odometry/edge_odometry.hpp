@@ -1,5 +1,5 @@
-/// Odometry edges: they keep what the sensors said (speed, yaw rate, time), so that calibration states can be
-/// tied in.
+/// Odometry edges. They keep the sensor readings (speed, yaw rate, time), so that calibration
+/// states can be connected.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace waymark::plugins::odometry {
 
-/// Constant twist over dt: Z = exp([speed dt, 0, yaw_rate dt]), e = log(Z^-1 (X_from^-1 X_to)).
+/// A constant twist over dt: Z = exp([speed dt, 0, yaw_rate dt]), e = log(Z^-1 (X_from^-1 X_to)).
 /// Units: m/s (grid metres), rad/s, s.
 struct EdgeSe2Odometry {
   static constexpr std::string_view kTag = "EDGE_SE2_ODOMETRY";
@@ -42,8 +42,8 @@ struct EdgeSe2Odometry {
   RelativeMeasurement relative{};  ///< of exp([speed dt, 0, yaw_rate dt]), by prepare()
 };
 
-/// The vehicle stood: whatever the sensors read, Z is the identity; e = log(X_from^-1 X_to). The readings are
-/// kept, for they are the moment at which a gyro shows its bias.
+/// The vehicle stands. Z is the identity, whatever the sensors read: e = log(X_from^-1 X_to). The
+/// readings are kept, because a gyro shows its bias at rest.
 struct EdgeSe2Standstill {
   static constexpr std::string_view kTag = "EDGE_SE2_STANDSTILL";
   static constexpr std::string_view kForm = "log";

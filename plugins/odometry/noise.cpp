@@ -12,8 +12,8 @@ Eigen::Matrix3d process_covariance(const Interval& interval, const ProcessNoise&
   const Eigen::Vector3d rate(noise.longitudinal_per_m * speed + noise.position_per_s,
                              noise.lateral_per_m * speed + noise.position_per_s,
                              noise.heading_per_m * speed + noise.heading_per_s);
-  // Gauss-Legendre with three points: exact for straight motion (the integrand is quadratic in tau) and to
-  // 1e-9 relative for turns up to 0.2 rad per interval.
+  // Gauss-Legendre quadrature with three points. It is exact for straight motion, because the
+  // integrand is quadratic in tau. For turns up to 0.2 rad per interval its relative error is 1e-9.
   const double root = std::sqrt(0.6);
   const std::array<std::pair<double, double>, 3> points = {
       {{0.5 * (1 - root), 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 * (1 + root), 5.0 / 18}}};

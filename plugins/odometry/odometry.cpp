@@ -14,15 +14,17 @@
 namespace waymark::plugins::odometry {
 namespace {
 
-/// One edge per interval: EDGE_SE2_ODOMETRY while driving, EDGE_SE2_STANDSTILL while standing. Where a state
-/// is calibrated, EDGE_SE2_ODOMETRY_CALIBRATED, and EDGE_GYRO_AT_REST beside the standstill.
+/// Adds one edge per interval: EDGE_SE2_ODOMETRY while driving, EDGE_SE2_STANDSTILL while standing.
+/// If a state is calibrated, the driving edge is EDGE_SE2_ODOMETRY_CALIBRATED, and an
+/// EDGE_GYRO_AT_REST is added beside the standstill.
 class ConstantTwist final : public OdometryModel {
  public:
   struct Configuration {
     ProcessNoise noise;
     StandstillNoise standstill;
     double standstill_speed = 0;
-    double gyro_at_rest_per_s = 0;  ///< rad^2 per s: apart from heading_per_s, for driving shakes a gyro
+    /// rad^2 per s; not heading_per_s, because driving shakes a gyro
+    double gyro_at_rest_per_s = 0;
     bool paper = false;
     StateOptions gyro_bias;
     StateOptions speed_scale;
@@ -77,7 +79,7 @@ class ConstantTwist final : public OdometryModel {
     return standstill_covariance(interval.dt_s, given_.standstill).diagonal().cwiseInverse().asDiagonal();
   }
 
-  /// The mean of a white yaw rate of density q over dt has the variance q / dt.
+  /// The mean of a white yaw rate with density q over dt has the variance q / dt.
   void add_gyro_at_rest(const Interval& interval, VertexIndex bias, Graph& graph) const {
     graph.add_edge(EdgeGyroAtRest{interval.yaw_rate_radps}, {bias},
                    Eigen::Matrix<double, 1, 1>(interval.dt_s / given_.gyro_at_rest_per_s));

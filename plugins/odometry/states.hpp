@@ -1,4 +1,5 @@
-/// The calibration states of a drive: which vertex an interval uses, and what ties the vertices together.
+/// The calibration states of a drive: the vertex that an interval uses, and the edges between
+/// these vertices.
 #pragma once
 
 #include <string>
@@ -12,23 +13,23 @@ namespace waymark::plugins::odometry {
 enum class StateModel {
   off,         ///< held at 0
   constant,    ///< one value for the drive
-  random_walk  ///< one value per period, each near the one before
+  random_walk  ///< one value per period; consecutive values differ little
 };
 
 struct StateOptions {
   StateModel model = StateModel::off;
-  double prior_sigma = 0;  ///< of the (first) value about 0, in the state's unit
-  double walk_sigma = 0;   ///< of the change after one second, unit / sqrt(s)
-  double period_s = 10;    ///< of a random walk's values
+  double prior_sigma = 0;  ///< prior on the (first) value about 0, in the unit of the state
+  double walk_sigma = 0;   ///< change after one second, unit / sqrt(s)
+  double period_s = 10;    ///< duration of one value of a random walk
 };
 
-/// One state along a drive, made as the intervals are walked through in order.
+/// One state along a drive. Its vertices are created while the intervals are visited in order.
 template <Vertex V, Edge Walk>
 class StateAlongDrive {
  public:
   StateAlongDrive(const StateOptions& options, Graph& graph) : options_(options), graph_(graph) {}
 
-  /// The vertex of the interval that begins at `stamp`; stamps must not decrease.
+  /// Returns the vertex of the interval that begins at `stamp`. Stamps must not decrease.
   [[nodiscard]] VertexIndex at(Stamp stamp) {
     if (vertex_ < 0) {
       begin(stamp);
@@ -66,7 +67,7 @@ class StateAlongDrive {
   Stamp since_;
 };
 
-/// The options of a state NAME: NAME (off, constant, random_walk), NAME_sigma, NAME_walk.
+/// Returns the options of a state NAME: NAME (off, constant, random_walk), NAME_sigma, NAME_walk.
 [[nodiscard]] std::vector<OptionInfo> state_options(const std::string& name, const std::string& unit,
                                                     const std::string& prior_sigma,
                                                     const std::string& walk_sigma, const std::string& what);

@@ -9,15 +9,18 @@
 namespace waymark::solvers {
 namespace {
 
-/// What its options say; the defaults are ours, the other values those of g2o's dogleg.
+/// The values of the options. The defaults are ours; the other values are those of g2o's dogleg.
 struct DoglegSettings {
-  bool scaled = true;         ///< norm |D d| with D = diag(H)^(1/2); else |d|
-  bool absolute = false;      ///< the radius has a unit of its own and does not look at the steps' lengths
-  double initial_radius = 1;  ///< of the first Newton step's length, or as it is where absolute
+  bool scaled = true;  ///< the norm is |D d| with D = diag(H)^(1/2); else it is |d|
+  /// the radius has its own unit and does not follow the length of the steps
+  bool absolute = false;
+  /// in units of the length of the first Newton step; as it is if `absolute`
+  double initial_radius = 1;
 };
 
-/// Powell's dogleg in the norm |D d| with D = diag(H)^(1/2), so that metres and radians, stiff and soft edges
-/// count alike. The radius starts from the first Gauss-Newton step: no absolute number can fit every problem.
+/// Powell's dogleg in the norm |D d| with D = diag(H)^(1/2), so that metres and radians, and stiff
+/// and soft edges, count alike. The first Gauss-Newton step sets the initial radius, because no
+/// absolute number fits every problem.
 class Dogleg final : public Algorithm {
  public:
   explicit Dogleg(const DoglegSettings& settings) : settings_(settings) {}
@@ -48,8 +51,8 @@ class Dogleg final : public Algorithm {
 
   [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 1e-4; }
 
-  // A good step triples the radius it reached, a poor one halves it. An absolute radius may be far above the
-  // step's length and is halved all the same.
+  // A good step sets the radius to three times its length, a poor one to half of it. An absolute
+  // radius may be far longer than the step; a poor step halves it nevertheless.
   void accepted(const Step&, double gain_ratio) override {
     if (gain_ratio < 0.25) {
       radius_ = 0.5 * (settings_.absolute ? radius_ : std::min(radius_, length_));
@@ -67,15 +70,15 @@ class Dogleg final : public Algorithm {
   static constexpr double kMinRadius = 1e-18;
   static constexpr double kMaxDamping = 1;
 
-  /// The diagonal of H, but never nothing.
+  /// The diagonal of H, with a positive floor.
   [[nodiscard]] auto safe_diagonal() const { return diagonal_->array().max(floor_); }
-  /// D^2, without a copy: the diagonal or ones.
+  /// D^2 without a copy: the diagonal or ones.
   [[nodiscard]] auto scale() const {
     return safe_diagonal() * (settings_.scaled ? 1.0 : 0.0) + (settings_.scaled ? 0.0 : 1.0);
   }
 
-  // The end of the path. Where H is singular to working precision it comes from the least damped matrix that
-  // is not.
+  // Computes the end of the path. If H is singular to working precision, the end comes from the
+  // least damped matrix that is not.
   bool compute_newton(const NormalEquations& equations, LinearSolver& solver) {
     floor_ = 1e-15 * diagonal_->maxCoeff();
     damping_ = 0;
@@ -90,7 +93,8 @@ class Dogleg final : public Algorithm {
     return true;
   }
 
-  // Its bend, the minimum along the scaled gradient: only a truncated step needs it.
+  // Computes the bend of the path: the minimum along the scaled gradient. Only a truncated
+  // step needs it.
   void compute_cauchy(const NormalEquations& equations) {
     cauchy_ = -(equations.gradient().array() / scale()).matrix();
     equations.multiply(cauchy_, product_);
@@ -118,7 +122,8 @@ class Dogleg final : public Algorithm {
     step.newton_decrement = damping_ == 0 ? -slope_ : std::nan("");
   }
 
-  /// Where the second leg leaves the trust region: |D (c + t (n - c))| = radius.
+  /// Returns the parameter t at which the second leg leaves the trust region: |D (c + t (n -
+  /// c))| = radius.
   [[nodiscard]] double crossing() const {
     const auto leg = (newton_ - cauchy_).array();
     const double a = (scale() * leg.square()).sum();
@@ -128,7 +133,7 @@ class Dogleg final : public Algorithm {
     return b > 0 ? c / (b + root) : (root - b) / a;  // the form without cancellation
   }
 
-  /// |D v|.
+  /// Returns |D v|.
   [[nodiscard]] double scaled_norm(const Eigen::VectorXd& v) const {
     return std::sqrt((scale() * v.array().square()).sum());
   }

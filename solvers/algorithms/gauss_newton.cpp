@@ -4,7 +4,8 @@
 namespace waymark::solvers {
 namespace {
 
-/// The plain method: full steps, taken even uphill (it often comes back), never damped.
+/// The plain method. It takes full steps without damping. It takes them even if chi2 rises, because
+/// chi2 often falls again.
 class GaussNewton final : public Algorithm {
  public:
   void reset() override { failed_ = false; }
@@ -22,7 +23,8 @@ class GaussNewton final : public Algorithm {
 
   [[nodiscard]] bool acceptable(double) const override { return true; }
   void accepted(const Step&, double) override {}
-  void rejected(const Step&, double) override { failed_ = true; }  // only where chi2 was not finite
+  // called only if chi2 was not finite
+  void rejected(const Step&, double) override { failed_ = true; }
 
  private:
   std::vector<double> scratch_;

@@ -14,9 +14,9 @@ struct LevenbergMarquardtOptions {
   bool scale_by_diagonal;
 };
 
-/// (H + mu D) d = -g with D = diag(H) (Marquardt) or the identity, mu by the rule of Nielsen, "Damping
-/// parameter in Marquardt's method" (1999). Near the minimum the damped step says nothing about convergence,
-/// so the undamped one is computed and proposed there.
+/// Solves (H + mu D) d = -g with D = diag(H) (Marquardt) or the identity. mu follows the rule of
+/// Nielsen, "Damping parameter in Marquardt's method" (1999). Near the minimum a damped step does
+/// not show convergence, so the undamped one is computed and proposed there.
 class LevenbergMarquardt final : public Algorithm {
  public:
   explicit LevenbergMarquardt(const LevenbergMarquardtOptions& options) : options_(options) { reset(); }
@@ -44,8 +44,8 @@ class LevenbergMarquardt final : public Algorithm {
       step.full_newton = false;
       step.kind = "damped";
       step.control = damping_;
-      // The damped step promises little: because of the damping, or because this is the minimum? The full one
-      // tells.
+      // The damped step promises little, either because of the damping or because this is the
+      // minimum. The full step shows which.
       if (step.predicted_decrease <= std::min(kLookAhead * tolerance, look_below_)) {
         promised_ = step.predicted_decrease;
         if (solve_step(equations, solver, {}, scratch_, newton_, slope) == FactorStatus::ok) {
@@ -69,8 +69,8 @@ class LevenbergMarquardt final : public Algorithm {
 
   void rejected(const Step& step, double) override {
     if (step.full_newton) {
-      // It promised more than the model holds for; not before damped steps promise much less is it worth a
-      // look.
+      // The full step promised more than the model can predict. It is tried again only after damped
+      // steps promise much less.
       look_below_ = 0.01 * promised_;
     } else {
       grow();
@@ -80,14 +80,15 @@ class LevenbergMarquardt final : public Algorithm {
  private:
   static constexpr double kMaxDamping = 1e20;
   static constexpr double kMinDamping = 1e-30;
-  static constexpr double kLookAhead = 1e3;  // how far above the tolerance the full step is looked at
+  static constexpr double kLookAhead = 1e3;  // how far above the tolerance the full step is tried
 
   void set_scale(const NormalEquations& equations) {
     const Eigen::VectorXd& diagonal = equations.diagonal();
     const double largest = diagonal.maxCoeff();
     if (options_.scale_by_diagonal) {
       scale_of_identity_ = 1;
-      scale_ = diagonal.cwiseMax(1e-15 * largest);  // an unknown without information must be damped too
+      // an unknown without information must be damped too
+      scale_ = diagonal.cwiseMax(1e-15 * largest);
     } else {
       scale_of_identity_ = largest;
       scale_.setOnes(diagonal.size());
@@ -107,8 +108,9 @@ class LevenbergMarquardt final : public Algorithm {
   double damping_ = -1;
   double growth_ = 2;
   double scale_of_identity_ = 1;
-  double look_below_ = 0;  // promise of a damped step below which the full one is looked at
-  double promised_ = 0;    // by the damped step in whose place the full one was proposed
+  // a damped step that promises less than this is compared with the full one
+  double look_below_ = 0;
+  double promised_ = 0;  // by the damped step that the full one replaced
 };
 
 }  // namespace

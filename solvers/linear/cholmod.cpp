@@ -9,12 +9,13 @@
 namespace waymark::solvers {
 namespace {
 
-/// Flops per number of the factor above which the automatic choice is supernodal. CHOLMOD's own 40 presumes a
-/// tuned BLAS; with Debian's reference BLAS the two are equal near 100 (solvers/README.md).
+/// Above this many flops per number of the factor the automatic choice is supernodal. CHOLMOD's own
+/// 40 assumes a tuned BLAS. With Debian's reference BLAS the two are equal near 100
+/// (solvers/README.md).
 constexpr double kSupernodalSwitch = 100;
 
-/// CHOLMOD's LL^T, simplicial or supernodal. Its workspaces live as long as this object, so that no iteration
-/// allocates them anew.
+/// CHOLMOD's LL^T, simplicial or supernodal. Its workspaces live as long as this object, so an
+/// iteration allocates nothing.
 class Cholmod final : public LinearSolver {
  public:
   explicit Cholmod(int supernodal) {
@@ -81,7 +82,7 @@ class Cholmod final : public LinearSolver {
   }
 
  private:
-  /// Solve workspaces, kept between calls.
+  /// Workspaces of solve(), kept between calls.
   struct Workspace {
     cholmod_dense* x = nullptr;
     cholmod_dense* y = nullptr;

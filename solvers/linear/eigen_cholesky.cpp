@@ -7,7 +7,8 @@
 namespace waymark::solvers {
 namespace {
 
-/// Eigen's simplicial LL^T. EIGEN_MPL2_ONLY compatible, so a build without SuiteSparse is permissive.
+/// Eigen's simplicial LL^T. It compiles with EIGEN_MPL2_ONLY, so a build without SuiteSparse
+/// is permissive.
 class EigenCholesky final : public LinearSolver {
  public:
   void analyze(const BlockPattern& pattern) override {
@@ -36,7 +37,7 @@ class EigenCholesky final : public LinearSolver {
  private:
   using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
-  // Analysis reads the pattern only, yet Eigen wants a matrix with numbers.
+  // The analysis reads only the pattern, but Eigen's interface wants numbers too.
   Matrix view(const double* values) {
     const auto n = static_cast<Eigen::Index>(scalar_.column.size()) - 1;
     if (values == nullptr) {

@@ -1,5 +1,5 @@
-/// Small steps that every GNSS modeling takes: the information of a fix, the paper's literal edge, the origin
-/// node.
+/// Small steps that every GNSS modeling takes: the information matrix of a fix, the position edge
+/// of the paper, and the origin node.
 #pragma once
 
 #include <array>
@@ -15,20 +15,20 @@
 
 namespace waymark {
 
-/// Inverse of the fix's covariance: 1/m^2, frame axes.
+/// Returns the information matrix of a fix: the inverse of its covariance, in 1/m^2 and frame axes.
 [[nodiscard]] inline Eigen::Matrix2d position_information(const Fix& fix) {
   const Eigen::Matrix2d inverse = fix.covariance.inverse();
   return 0.5 * (inverse + inverse.transpose());
 }
 
-/// The same with a heading axis that carries no information.
+/// Returns the same matrix with a third axis, the heading, that carries no information.
 [[nodiscard]] inline Eigen::Matrix3d pose_information(const Fix& fix) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   information.topLeftCorner<2, 2>() = position_information(fix);
   return information;
 }
 
-/// The vertex of a fix's pose. @throws UsageError where the fix names none.
+/// Returns the vertex of the pose that a fix belongs to. @throws UsageError if the fix names none.
 [[nodiscard]] inline VertexIndex pose_vertex(const Fix& fix, const Graph& graph) {
   const auto found = graph.find(fix.vertex);
   if (!found)
@@ -36,14 +36,15 @@ namespace waymark {
   return *found;
 }
 
-/// The fixed node at the frame's origin, "UTM origin" of the paper.
+/// Adds the fixed node at the origin of the frame, the "UTM origin" of the paper.
 inline VertexIndex add_origin(Graph& graph) {
   const VertexIndex origin = graph.add_vertex<VertexSe2>(graph.free_id(), {0, 0, 0});
   graph.set_fixed(origin, true);
   return origin;
 }
 
-/// The options that all modelings share: which error a fix has, whether its time offset is estimated.
+/// Returns the options that all modelings share: the form of the error of a fix, and whether its
+/// time offset is estimated.
 [[nodiscard]] inline std::vector<OptionInfo> gnss_options() {
   return {{"error", "decoupled", "", OptionWords{"decoupled", "literal"},
            "'decoupled': p - z in frame axes; 'literal': the paper's log with heading 0"},
@@ -55,16 +56,17 @@ inline VertexIndex add_origin(Graph& graph) {
   return options.word("error") == "literal";
 }
 
-/// Gives the last edge of a batch the loss of the fixes, where they have one.
+/// Gives the last edge of a batch the loss of the fixes, if they have one.
 inline void attach_loss(EdgeBatchBase& batch, const GnssInput& input) {
   if (input.loss) batch.set_loss(batch.size() - 1, *input.loss);
 }
 
-/// Adds position edges of fixes, with one time offset for all of them where it is to be estimated.
+/// Adds the position edges of fixes. If the time offset is to be estimated, one offset serves
+/// all of them.
 class PositionEdges {
  public:
-  /// @param prior_sigma_s  of the time offset; 0: it is not estimated
-  /// @throws UsageError where it is, and the motion at the fixes is not given
+  /// @param prior_sigma_s sigma of the prior on the time offset; 0: the offset is not estimated
+  /// @throws UsageError if the offset is estimated and the motion at the fixes is not given
   PositionEdges(const GnssInput& input, double prior_sigma_s, Graph& graph) : input_(input), graph_(graph) {
     if (prior_sigma_s == 0) return;
     if (input.motion.size() != input.fixes.size())
@@ -73,8 +75,10 @@ class PositionEdges {
     add_prior_about_zero(graph, offset_, prior_sigma_s);
   }
 
-  /// The edge of fix i. @param vertices  the reference pose and the pose that carries the antenna
-  /// @param place  of the latter in the body frame: 0, or the antenna where the node is that
+  /// Adds the edge of fix i.
+  /// @param vertices the reference pose and the pose that carries the antenna
+  /// @param place where the antenna is in the body frame of the second pose: 0 if the node
+  /// is the antenna
   void add(std::size_t i, const Eigen::Vector2d& measured, const Eigen::Vector2d& antenna,
            const std::array<VertexIndex, 2>& vertices, const Eigen::Vector2d& place = {0, 0}) {
     const Eigen::Matrix2d information = position_information(input_.fixes[i]);
@@ -104,7 +108,7 @@ class PositionEdges {
   return options.number("time_offset_sigma");
 }
 
-/// The literal error knows nothing of lever arms. @throws UsageError
+/// Refuses a lever arm, because the literal error of the paper has none. @throws UsageError
 inline void require_no_lever_arm(const GnssInput& input, const char* modeling) {
   if (input.antenna.isZero(0)) return;
   throw UsageError(std::string(modeling) +

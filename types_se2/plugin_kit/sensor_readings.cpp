@@ -13,12 +13,13 @@ namespace {
 
 constexpr double kFarthestNode_s = 0.5;
 
-/// The interval that a moment near a node lies in; beyond the ends of the drive that at the end.
+/// Returns the interval that contains a moment near a node. Beyond the ends of the drive it is the
+/// last interval on that side.
 const Interval& interval_beside(const DriveNodes& nodes, const NodeInTime& place) {
   return motion_at(nodes, place.ahead_s < 0 && place.node > 0 ? place.node - 1 : place.node);
 }
 
-/// All digits, unlike Stamp::seconds(), and no zeros behind them.
+/// Prints all digits, unlike Stamp::seconds(), without trailing zeros.
 std::string seconds_text(Stamp stamp) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t size = std::abs(stamp.nanoseconds);

@@ -39,12 +39,14 @@ class Parts {
   std::vector<VertexIndex> parent_;
 };
 
-/// One aspect of the graph (headings or positions): which free vertices its relations join, and to what.
+/// One aspect of the graph, headings or positions: the free vertices that its relations join, and
+/// the anchors they are joined to.
 struct Aspect {
   explicit Aspect(std::size_t vertices) : parts(vertices), related(vertices, 0), anchored(vertices, 0) {}
   Parts parts;
-  std::vector<char> related;   ///< per vertex: some relation speaks of it
-  std::vector<char> anchored;  ///< per part's first vertex: a relation ties it to what is known
+  std::vector<char> related;  ///< per vertex: some relation contains it
+  /// per first vertex of a part: a relation ties the part to a known value
+  std::vector<char> anchored;
 };
 
 class LinearStart {
@@ -99,7 +101,7 @@ class LinearStart {
       if (relation.heading_weight > 0) anchor(headings_, relation);
       if (relation.position_weight > 0) anchor(positions_, relation);
     }
-    // A place without a heading: the headings of its part must come from the positions.
+    // A place without a heading: the positions must give the headings of its part.
     for (const Relation& relation : relations_) {
       if (relation.heading_weight > 0 || !(relation.position_weight > 0)) continue;
       if (known(relation.from) == known(relation.to)) continue;
@@ -132,7 +134,8 @@ class LinearStart {
     return !known(v) && fixed_by_places_[at(positions_.parts.of(v))] != 0;
   }
 
-  /// Some known place: numbers relative to it keep their digits where the frame's origin is far away.
+  /// Returns some known place. Numbers relative to it keep their digits if the origin of the frame
+  /// is far away.
   [[nodiscard]] Complex find_centre() const {
     for (const Relation& relation : relations_) {
       if (!(relation.position_weight > 0) || !known(relation.from)) continue;
@@ -161,7 +164,7 @@ class LinearStart {
 
   bool solve_headings() {
     LeastSquares system;
-    // Whose headings the positions see at least in part.
+    // Parts whose headings are visible in the positions, at least partly.
     std::vector<char> seen(c_.size(), 0);
     for (VertexIndex v = 0; v < static_cast<VertexIndex>(c_.size()); ++v) {
       if (headings_.related[at(v)] && in_places(v)) seen[at(headings_.parts.of(v))] = 1;
@@ -228,7 +231,7 @@ class LinearStart {
     return values;
   }
 
-  /// A relaxed heading shorter than this points nowhere.
+  /// A relaxed heading shorter than this has no direction.
   static constexpr double kVanished = 1e-6;
 
   const Graph& graph_;

@@ -20,7 +20,7 @@ struct Branch {
   double heading_variance = 0;
 };
 
-/// Grows poses over a graph: each is placed once, from one that is placed already.
+/// Grows poses over a graph. Each pose is placed once, from one that already has its place.
 class Tree {
  public:
   explicit Tree(const Graph& graph)
@@ -45,7 +45,7 @@ class Tree {
   [[nodiscard]] bool placed(VertexIndex v) const { return placed_[at(v)] != 0; }
   [[nodiscard]] VertexIndex vertex_count() const { return static_cast<VertexIndex>(placed_.size()); }
 
-  /// The vertices that parts may begin at: fixed ones first, then by insertion order.
+  /// Returns the vertices at which a part may begin: fixed ones first, then in order of insertion.
   [[nodiscard]] std::vector<VertexIndex> roots() const {
     std::vector<VertexIndex> roots;
     for (const bool fixed : {true, false}) {
@@ -56,7 +56,7 @@ class Tree {
     return roots;
   }
 
-  /// Begins a part of the graph: the vertex stays where it is.
+  /// Begins a part of the graph. The vertex keeps its value.
   void begin_at(VertexIndex root) { placed_[at(root)] = 1; }
 
   void grow(VertexIndex from, const Branch& branch) {
@@ -70,7 +70,7 @@ class Tree {
     moved[2] = wrap_angle(pose.heading);
   }
 
-  /// Puts the points where the first placed pose saw them.
+  /// Places each point where the first placed pose saw it.
   void place_points() {
     for (const Relation& sighting : sightings_) {
       if (placed(sighting.to) || !placed(sighting.from)) continue;
@@ -83,7 +83,7 @@ class Tree {
     }
   }
 
-  /// Free poses that could be placed and are not yet.
+  /// Counts the free poses that can be placed and are not placed yet.
   [[nodiscard]] std::size_t waiting() const {
     std::size_t count = 0;
     for (VertexIndex v = 0; v < vertex_count(); ++v) {
@@ -104,7 +104,8 @@ class Tree {
   std::vector<Relation> sightings_;
 };
 
-/// Along the vertices next in number, both ways from the root, then by the fewest edges.
+/// Places poses along consecutive vertices, both ways from the root, and then along the
+/// fewest edges.
 void spread_along_chain(Tree& tree, VertexIndex root) {
   std::vector<VertexIndex> queue{root};
   for (const VertexIndex direction : {1, -1}) {
@@ -130,11 +131,11 @@ void spread_along_chain(Tree& tree, VertexIndex root) {
   }
 }
 
-/// Dijkstra's tree of the least heading variance from the root.
+/// Places poses along Dijkstra's tree of the least heading variance from the root.
 void spread_by_heading(Tree& tree, VertexIndex root) {
   struct Reach {
     double variance;
-    std::size_t number;  // in order of discovery: equal variances are settled by it
+    std::size_t number;  // order of discovery: decides between equal variances
     VertexIndex from;
     const Branch* branch;
   };

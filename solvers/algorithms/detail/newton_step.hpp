@@ -1,4 +1,5 @@
-/// What all algorithms share: the factorisation of H (damped or not) and the step it gives.
+/// The common part of all algorithms: the factorisation of H (damped or not) and the step
+/// that follows.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +12,12 @@
 
 namespace waymark::solvers {
 
-/// Solves (H + diag(damping)) d = -g. @param damping empty: none. @param scratch reused between calls.
+/// Solves (H + diag(damping)) d = -g.
+/// @param damping empty for none
+/// @param scratch reused between calls
 /// @param slope g^T d
-/// Returns ok, or not_positive_definite also where the step is not finite; `delta` is then arbitrary.
+/// @return ok or not_positive_definite; the latter also if the step is not finite. `delta` is
+/// then arbitrary.
 [[nodiscard]] inline FactorStatus solve_step(const NormalEquations& equations, LinearSolver& solver,
                                              const Eigen::VectorXd& damping, std::vector<double>& scratch,
                                              Eigen::VectorXd& delta, double& slope) {
@@ -29,7 +33,7 @@ namespace waymark::solvers {
   const auto size = static_cast<std::size_t>(gradient.size());
   delta.resize(gradient.size());
   solver.solve({gradient.data(), size}, {delta.data(), size});
-  // One pass, in pieces that stay in the cache: what is wanted is not H^-1 g but its negative.
+  // One pass in pieces that stay in the cache negates the solution: the step is -H^-1 g.
   constexpr Eigen::Index kPiece = 1024;
   slope = 0;
   for (Eigen::Index first = 0; first < delta.size(); first += kPiece) {
@@ -37,12 +41,13 @@ namespace waymark::solvers {
     piece = -piece;
     slope += piece.dot(gradient.segment(first, piece.size()));
   }
-  // Any number that is not finite makes the sum so, even times zero.
+  // A number that is not finite makes the sum not finite, even times zero.
   return std::isfinite(slope) ? FactorStatus::ok : FactorStatus::not_positive_definite;
 }
 
-/// Says of a step whose delta is the full Newton step what it is; its decrement g^T H^-1 g = -g^T d is what
-/// the model promises. @param slope g^T d
+/// Marks a step whose delta is the full Newton step. The model promises the decrement g^T
+/// H^-1 g = -g^T d.
+/// @param slope g^T d
 inline void describe_newton_step(double slope, Step& step) {
   step.newton_decrement = -slope;
   step.predicted_decrease = step.newton_decrement;

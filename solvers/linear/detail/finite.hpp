@@ -1,12 +1,12 @@
-/// The check that no library does reliably: comparisons with NaN are false, so a NaN pivot passes as
-/// positive.
+/// A check that no library does reliably: comparisons with NaN are false, so a NaN pivot passes
+/// as positive.
 #pragma once
 
 #include <span>
 
 namespace waymark::solvers {
 
-/// Whether every number is finite. 0 x is 0 for finite x and NaN for all others.
+/// Tells whether every number is finite. 0 x is 0 if x is finite, and NaN otherwise.
 [[nodiscard]] inline bool all_finite(std::span<const double> values) {
   double sum[4] = {};
   const std::size_t whole = values.size() / 4 * 4;

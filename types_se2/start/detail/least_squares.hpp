@@ -1,4 +1,5 @@
-/// Sparse linear least squares over complex unknowns: points and directions of the plane read as one number.
+/// Sparse linear least squares over complex unknowns. A complex number stands for a point or a
+/// direction of the plane.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +17,15 @@ namespace waymark::linear_start_detail {
 
 using Complex = std::complex<double>;
 
-/// A quantity in an equation: unknown number `index`, or, where that is negative, a known value.
+/// A quantity in an equation: the unknown with number `index`, or a known value if `index`
+/// is negative.
 struct Quantity {
   int index = -1;
   Complex value = 0;
 };
 
-/// Sum of w |sum_k a_k q_k - b|^2 over complex unknowns q. The order in which unknowns are added is that of
-/// their elimination.
+/// Minimises the sum of w |sum_k a_k q_k - b|^2 over complex unknowns q. Unknowns are eliminated in
+/// the order in which they were added.
 class LeastSquares {
  public:
   int add_unknown() { return unknowns_++; }
@@ -46,7 +48,7 @@ class LeastSquares {
     }
   }
 
-  /// The unknowns; nothing where the equations do not determine them.
+  /// Returns the unknowns, or nothing if the equations do not determine them.
   [[nodiscard]] std::optional<std::vector<Complex>> solve() {
     std::vector<Complex> solution = right_;
     if (unknowns_ == 0) return solution;
@@ -63,15 +65,15 @@ class LeastSquares {
   }
 
  private:
-  /// An addend of the normal matrix, at or below its diagonal.
+  /// An addend of the normal matrix, at its diagonal or below.
   struct Addend {
     int row = 0;
     int column = 0;
     Complex value = 0;
   };
 
-  /// The normal matrix over real and imaginary parts, a complex number z as the block [re -im; im re]: the
-  /// upper triangle, in which stands the conjugate of what was added.
+  /// Assembles the normal matrix over real and imaginary parts: a complex number z is the block [re
+  /// -im; im re]. The result is the upper triangle, so it holds the conjugates of the addends.
   std::vector<double> assemble() {
     std::sort(normal_.begin(), normal_.end(), [](const Addend& a, const Addend& b) {
       return std::pair(a.row, a.column) < std::pair(b.row, b.column);

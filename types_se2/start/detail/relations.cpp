@@ -56,7 +56,7 @@ Relation position_prior(std::span<const VertexIndex> v, const std::vector<double
   return {.to = v[0], .translation = {fields[0], fields[1]}, .position_weight = position_weight(information)};
 }
 
-/// measured, offset: the point as the body would have seen it.
+/// With the fields measured and offset: returns the point as the body would have seen it.
 Relation point_seen_by_sensor(std::span<const VertexIndex> v, const std::vector<double>& fields,
                               const Eigen::MatrixXd& information) {
   Relation relation = point_seen(v, fields, information);
@@ -67,10 +67,10 @@ Relation point_seen_by_sensor(std::span<const VertexIndex> v, const std::vector<
 using ReadFields = Relation (*)(std::span<const VertexIndex>, const std::vector<double>&,
                                 const Eigen::MatrixXd&);
 
-/// How the fields of a known type read; null for all others.
+/// Returns the function that reads the fields of a known type; null for other types.
 ReadFields known_type(const std::string& tag) {
   if (tag == EdgeSe2::kTag || tag == EdgeSe2Log::kTag) return relative_pose;
-  // What extends it (a delay, biases) keeps its first vertices and fields.
+  // Types that extend this one (by a delay, by biases) keep its first vertices and fields.
   if (tag.starts_with(EdgeGnssPosition::kTag)) return gnss_position;
   if (tag == EdgePriorSe2::kTag) return pose_prior;
   if (tag == EdgeSe2Xy::kTag) return point_seen;
