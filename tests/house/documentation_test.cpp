@@ -158,6 +158,32 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("documentation: the README of a folder names its chapters") {
+  for (const fs::path& file : markdown_files()) {
+    if (file.filename() != "README.md" || file.parent_path() == kRoot) continue;
+    const std::string readme = file_text(file);
+    for (const auto& entry : fs::directory_iterator(file.parent_path())) {
+      const std::string chapter = entry.path().filename().string();
+      if (!entry.is_directory() || chapter == "detail" || chapter == "__pycache__") continue;
+      INFO(file << " does not name " << chapter);
+      CHECK(std::regex_search(readme, std::regex("[`/(\\[]" + chapter + "[`/)\\]]")));
+    }
+  }
+}
+
+TEST_CASE("documentation: lines of prose end at 100 characters, the README of the root at 110 lines") {
+  for (const fs::path& file : markdown_files()) {
+    const Lines lines = waymark_test::parse_markdown(file_text(file)).lines;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const bool listing = lines[i].starts_with("    ");
+      const bool drawn = lines[i].starts_with('|') || lines[i].starts_with('<') || lines[i].starts_with("![");
+      INFO(file << ":" << i + 1);
+      CHECK((listing || drawn || lines[i].size() <= 100));
+    }
+  }
+  CHECK(waymark_test::parse_markdown(file_text(kRoot / "README.md")).lines.size() <= 110);
+}
+
 TEST_CASE("documentation: the citation has what CFF 1.2.0 requires and the version that is built") {
   const std::string citation = file_text(kRoot / "CITATION.cff");
   for (const char* required : {"cff-version: 1.2.0", "message:", "title:", "authors:"}) {
