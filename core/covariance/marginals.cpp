@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/system/normal_equations.hpp>
@@ -7,9 +8,7 @@
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstring>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/detail/thread_pool.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/linear/detail/chain_kernels.hpp>
@@ -10,9 +11,7 @@
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 using Column = Eigen::Map<Eigen::VectorXd>;
 using ConstColumn = Eigen::Map<const Eigen::VectorXd>;

@@ -2,15 +2,14 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/linear/detail/chain_kernels.hpp>
 
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 using Matrix = Eigen::Map<Eigen::MatrixXd>;
 using ConstMatrix = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;

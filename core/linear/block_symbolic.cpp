@@ -3,15 +3,14 @@
 #include <numeric>
 #include <stdexcept>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/linear/block_symbolic.hpp>
 #include <waymark/core/linear/detail/elimination_tree.hpp>
 
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 /// Blocks of the matrix by the earlier of their two columns.
 struct LowerBlocks {

@@ -3,14 +3,13 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/system/structure.hpp>
 
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 }  // namespace
 

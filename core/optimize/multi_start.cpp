@@ -4,17 +4,15 @@
 #include <cstdio>
 #include <exception>
 
+#include <waymark/core/base/detail/elapsed.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/multi_start.hpp>
 
 namespace waymark {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using detail::Clock;
+using detail::seconds_since;
 
 constexpr int kPatience = 30;          // steps of one start before the next is tried
 constexpr double kSameMinimum = 1e-6;  // relative difference of chi2

@@ -4,6 +4,7 @@
 #include <optional>
 #include <sstream>
 
+#include <waymark/core/base/detail/elapsed.hpp>
 #include <waymark/core/base/detail/thread_pool.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
@@ -13,11 +14,8 @@
 namespace waymark {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using detail::Clock;
+using detail::seconds_since;
 
 /// Adds the time until it leaves its scope to a counter.
 class Timer {

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/gauge.hpp>
@@ -12,9 +13,7 @@
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 /// Components of free vertices by union-find with path halving; the root is the first vertex of each.
 std::vector<std::int32_t> find_components(const Graph& graph) {

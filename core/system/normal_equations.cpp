@@ -1,13 +1,12 @@
 #include <algorithm>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 }  // namespace
 

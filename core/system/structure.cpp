@@ -4,15 +4,14 @@
 #include <numeric>
 #include <stdexcept>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/structure.hpp>
 
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 /// Pairs of block columns (row < column) that share an edge, by column; rows sorted, each once.
 struct Columns {

@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <utility>
 
+#include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/system/structure.hpp>
 
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 /// A block above the diagonal; sorted by column, then row.
 struct Block {
@@ -40,7 +39,7 @@ std::vector<Block> blocks_of_new_edges(const Graph& graph, const std::vector<int
 }
 
 /// The blocks above the diagonal, by column.
-struct Columns {
+struct FollowedColumns {
   std::vector<std::int64_t> begin{0};
   std::vector<int> rows;     // ascending in a column
   std::vector<char> intact;  // per column: it has the rows that it had
@@ -48,9 +47,9 @@ struct Columns {
 
 /// What stays of a pattern, and the added blocks. @param old_column of each new one, new_column of each old
 /// one; -1: there is none
-Columns follow_columns(const BlockPattern& pattern, std::span<const int> new_column,
-                       std::span<const int> old_column, std::span<const Block> added) {
-  Columns result;
+FollowedColumns follow_columns(const BlockPattern& pattern, std::span<const int> new_column,
+                               std::span<const int> old_column, std::span<const Block> added) {
+  FollowedColumns result;
   std::vector<int>& rows = result.rows;
   rows.reserve(pattern.row.size() + added.size());
   auto next = added.begin();
@@ -97,7 +96,7 @@ void Structure::remove(const Graph& graph, const Removal& removal, std::span<con
     old_column[at(new_column[j])] = static_cast<int>(j);
   }
   const std::vector<Block> added = blocks_of_new_edges(graph, column_of_, removal.kept_edges);
-  const Columns upper = follow_columns(pattern_, new_column, old_column, added);
+  const FollowedColumns upper = follow_columns(pattern_, new_column, old_column, added);
   const std::vector<std::int64_t> old_value = pattern_.value;
   make_pattern(graph, 0, upper.begin, upper.rows);
   size_slots(graph);

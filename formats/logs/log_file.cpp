@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include <zlib.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/detail/read_failure.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -24,10 +24,6 @@ constexpr std::size_t kPiece = 1U << 20U;
 constexpr std::size_t kHead = 64U << 10U;
 /// zlib is asked for so much at a time: where a compressed file is damaged, it keeps what it holds of that.
 constexpr unsigned kStep = 8U << 10U;
-
-[[noreturn]] void fail_read(const std::string& path, int error) {
-  throw InputError(fmt::format("{}: cannot read: {}", path, std::generic_category().message(error)));
-}
 
 /// A file that zlib reads, compressed or not.
 class LogFile {

@@ -6,19 +6,17 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/text/detail/characters.hpp>
+
 namespace waymark::formats {
 namespace {
 
 /// A decimal number taken apart: value = digits * 10^exponent, digits without leading zeros.
-struct Decimal {
+struct DigitsAndExponent {
   bool negative = false;
   std::string digits;
   int exponent = 0;
 };
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 /// The exponent after 'e'; empty where it is none or beyond any use.
 std::optional<int> read_exponent(std::string_view text) {
@@ -31,8 +29,8 @@ std::optional<int> read_exponent(std::string_view text) {
   return exponent;
 }
 
-std::optional<Decimal> read_decimal(std::string_view text) {
-  Decimal number;
+std::optional<DigitsAndExponent> read_decimal(std::string_view text) {
+  DigitsAndExponent number;
   if (!text.empty() && (text.front() == '+' || text.front() == '-')) {
     number.negative = text.front() == '-';
     text.remove_prefix(1);
@@ -123,7 +121,7 @@ std::string decimal_seconds(Stamp stamp) {
 
 std::optional<Stamp> stamp_from_decimal_seconds(std::string_view text) {
   if (const std::optional<Stamp> plain = read_plain(text)) return plain;
-  const std::optional<Decimal> number = read_decimal(text);
+  const std::optional<DigitsAndExponent> number = read_decimal(text);
   if (!number) return std::nullopt;
   const std::optional<std::uint64_t> magnitude = to_integer(number->digits, number->exponent + 9);
   if (!magnitude || *magnitude > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/detail/read_failure.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -25,10 +26,6 @@ using Producer = std::function<void(const TextSink&)>;
 
 std::string reason(int error) {
   return std::generic_category().message(error);
-}
-
-[[noreturn]] void fail_read(const std::string& path, int error) {
-  throw InputError(fmt::format("{}: cannot read: {}", path, reason(error)));
 }
 
 [[noreturn]] void fail_write(const std::string& path, int error) {

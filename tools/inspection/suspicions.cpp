@@ -112,12 +112,12 @@ struct SpeedUnit {
 };
 
 void judge_speed(const FixSummary& fixes, std::vector<std::string>& sentences) {
-  static constexpr std::array kUnits{
+  static constexpr std::array kMistakenUnits{
       SpeedUnit{3.6, "km/h were read as m/s"},       SpeedUnit{1 / 3.6, "m/s were read as km/h"},
       SpeedUnit{1.943844, "knots were read as m/s"}, SpeedUnit{0.514444, "m/s were read as knots"},
       SpeedUnit{2.236936, "mph were read as m/s"},   SpeedUnit{0.44704, "m/s were read as mph"}};
   if (fixes.speed_comparisons < kFewComparisons) return;
-  for (const SpeedUnit& unit : kUnits) {
+  for (const SpeedUnit& unit : kMistakenUnits) {
     if (std::abs(fixes.speed_factor / unit.factor - 1) > 0.06) continue;
     sentences.push_back(
         fmt::format("the receiver's speed is {:.3g} times what its positions show (median of {}): {}",

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/tools/simulation/random.hpp>
 #include <waymark/tools/simulation/streams.hpp>
 
 namespace waymark::simulation {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kTick = 1.0 / kTicksPerSecond;
 constexpr double kParkedAtStart = 8;    // s
 constexpr double kCornerSpread = 8;     // deg, of corners about 90

@@ -1,17 +1,15 @@
 #include <chrono>
-#include <numbers>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 
 namespace waymark::simulation {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// gpsd's form: 2021-03-15T09:00:01.000Z. Fixes are at whole seconds.
 std::string iso8601(Stamp gps) {

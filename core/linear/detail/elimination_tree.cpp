@@ -1,11 +1,11 @@
 #include <waymark/core/linear/detail/elimination_tree.hpp>
 
+#include <waymark/core/base/detail/index.hpp>
+
 namespace waymark {
 namespace {
 
-std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
+using detail::at;
 
 }  // namespace
 

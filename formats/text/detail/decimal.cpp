@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::ptrdiff_t kMostDigits = 19;  // 10^19 < 2^64
 
-__extension__ using Wide = unsigned __int128;
+__extension__ using Wide128 = unsigned __int128;
 
 constexpr auto kPowersOfTen = [] {
   std::array<std::uint64_t, kMostDigits + 1> powers{1};
@@ -28,10 +28,10 @@ double divide(std::uint64_t numerator, std::uint64_t denominator) {
   if (numerator == 0) return 0;
   const int up = std::countl_zero(numerator);
   const int down = std::countl_zero(denominator);
-  const Wide dividend = static_cast<Wide>(numerator << up) << 63U;
+  const Wide128 dividend = static_cast<Wide128>(numerator << up) << 63U;
   const std::uint64_t divisor = denominator << down;
   auto quotient = static_cast<std::uint64_t>(dividend / divisor);
-  if (static_cast<Wide>(quotient) * divisor != dividend) quotient |= 1U;
+  if (static_cast<Wide128>(quotient) * divisor != dividend) quotient |= 1U;
   return static_cast<double>(quotient) * power_of_two(down - up - 63);
 }
 

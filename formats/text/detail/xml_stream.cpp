@@ -11,7 +11,7 @@
 namespace waymark::formats {
 namespace {
 
-constexpr std::size_t kPiece = 64U << 10U;
+constexpr std::size_t kXmlPiece = 64U << 10U;
 /// Expat holds a token until it is whole, and scans it anew with every piece.
 constexpr std::size_t kLongestToken = 1U << 20U;
 constexpr std::size_t kDeepest = 64;
@@ -77,14 +77,14 @@ XmlStream::XmlStream() : parser_(XML_ParserCreate(nullptr)) {
 XmlStream::~XmlStream() = default;
 
 void XmlStream::take(std::string_view piece) {
-  if (held_.size() + piece.size() < kPiece) {
+  if (held_.size() + piece.size() < kXmlPiece) {
     if (trouble_.empty()) held_ += piece;
     return;
   }
   parse(held_, false);
   held_.clear();
-  for (; !piece.empty(); piece.remove_prefix(std::min(kPiece, piece.size())))
-    parse(piece.substr(0, kPiece), false);
+  for (; !piece.empty(); piece.remove_prefix(std::min(kXmlPiece, piece.size())))
+    parse(piece.substr(0, kXmlPiece), false);
 }
 
 void XmlStream::finish() {

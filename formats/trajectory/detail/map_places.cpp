@@ -12,9 +12,8 @@
 namespace waymark::formats {
 namespace {
 
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-constexpr std::int64_t kEarliestDate = 316'569'600 * kNanosecondsPerSecond;  // 1980-01-13: GPS' second week
-constexpr std::int64_t kLatestDate = 8'835'955'200 * kNanosecondsPerSecond;  // 2250-01-01
+constexpr std::int64_t kEarliestDate = 316'569'600'000'000'000;  // 1980-01-13: GPS' second week
+constexpr std::int64_t kLatestDate = 8'835'955'200'000'000'000;  // 2250-01-01
 
 MapPlace checked(std::string_view format, std::string_view what, std::size_t index, Stamp stamp,
                  const std::optional<double>& latitude_deg, const std::optional<double>& longitude_deg) {

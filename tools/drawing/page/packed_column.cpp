@@ -11,7 +11,7 @@ namespace waymark::drawing {
 namespace {
 
 constexpr double kFineness = 1e-7;
-constexpr double kLargest = 4e15;  // whole numbers up to here are exact, in the page's script as well
+constexpr double kLargestExact = 4e15;  // whole numbers up to here are exact, in the page's script as well
 
 std::string base64(const std::vector<std::uint8_t>& bytes) {
   static constexpr std::string_view kDigits =
@@ -51,10 +51,10 @@ double packing_step(const std::vector<double>& values) {
     high = std::max(high, value);
     whole = whole && value == std::round(value);
   }
-  if (!(low <= high) || (whole && std::max(-low, high) < kLargest)) return 1;
+  if (!(low <= high) || (whole && std::max(-low, high) < kLargestExact)) return 1;
   const double largest = std::max(std::abs(low), std::abs(high));
   const double extent = high > low ? high - low : largest;
-  return std::pow(10.0, std::floor(std::log10(std::max(kFineness * extent, largest / kLargest))));
+  return std::pow(10.0, std::floor(std::log10(std::max(kFineness * extent, largest / kLargestExact))));
 }
 
 std::string pack(const std::vector<double>& values) {

@@ -4,10 +4,10 @@
 #include <array>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/text/text_file.hpp>
@@ -17,8 +17,6 @@
 namespace waymark::drive {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::array<std::string_view, 3> kScales{"gps", "utc", "unix"};
 constexpr std::array<std::string_view, 2> kGapPolicies{"bridge", "error"};
 constexpr std::array<std::string_view, 2> kStarts{"anchored", "dead_reckoning"};
 constexpr std::array<std::string_view, 2> kNoises{"estimate", "stated"};
@@ -43,8 +41,8 @@ struct Receiver {
 void read_time(const YamlSection& top, DriveConfig& config) {
   const auto time = top.section("time", {"scale", "from", "to"});
   if (!time) return;
-  if (const auto scale = time->read_word("scale", kScales)) {
-    config.time_scale = *time_scale_from_string(kScales[*scale]);
+  if (const auto scale = time->read_word("scale", kTimeScaleWords)) {
+    config.time_scale = *time_scale_from_string(kTimeScaleWords[*scale]);
     config.time_scale_stated = true;
   }
   time->read("from", config.from_s, kNotNegative);

@@ -14,7 +14,6 @@
 namespace waymark::drive {
 namespace {
 
-constexpr std::array<std::string_view, 3> kScales{"gps", "utc", "unix"};
 constexpr std::array<std::string_view, 5> kMeanings{"auto", "95", "1sigma", "drms", "cep50"};
 constexpr std::array kMeaningValues{AccuracyMeaning::automatic, AccuracyMeaning::percent95,
                                     AccuracyMeaning::one_sigma, AccuracyMeaning::drms,
@@ -71,8 +70,8 @@ void read_date(const YamlSection& time, LogRequest& request) {
 void read_time(const YamlSection& section, LogRequest& request) {
   const auto time = section.section("time", {"scale", "week", "date", "offset"});
   if (!time) return;
-  if (const auto scale = time->read_word("scale", kScales))
-    request.time_scale = *time_scale_from_string(kScales[*scale]);
+  if (const auto scale = time->read_word("scale", kTimeScaleWords))
+    request.time_scale = *time_scale_from_string(kTimeScaleWords[*scale]);
   time->read("week", request.gps_week, kWeek);
   read_date(*time, request);
   time->read("offset", request.time_offset_s, kOffset);

@@ -1,6 +1,7 @@
 /// The part of a drive.yaml that says how one log is read (see config.hpp).
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -10,6 +11,9 @@
 #include <waymark/tools/drive/description/yaml_section.hpp>
 
 namespace waymark::drive {
+
+/// The words for a time scale, in a drive and in a log.
+inline constexpr std::array<std::string_view, 3> kTimeScaleWords{"gps", "utc", "unix"};
 
 /// The keys that say how a log is read, and a section's own.
 [[nodiscard]] std::vector<std::string_view> log_keys(std::initializer_list<std::string_view> own = {});

@@ -7,6 +7,7 @@
 #include <GeographicLib/TransverseMercator.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -17,7 +18,6 @@ using GeographicLib::TransverseMercator;
 using GeographicLib::UTMUPS;
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
 constexpr double kFalseEasting = 500'000;      // m
 constexpr double kFalseNorthing = 10'000'000;  // of the southern hemisphere, m
 constexpr double kWidestOffset = 30;           // degrees of longitude from the zone's central meridian

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include <waymark/core/base/angle.hpp>
 
 namespace waymark::inspection {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kEarthRadius = 6371008.8;
 constexpr double kDegreeLength = kEarthRadius * kDegree;
 constexpr double kFar = 1e6;

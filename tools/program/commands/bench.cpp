@@ -45,7 +45,7 @@ Names all_names(const RegistryTable<Type>& table) {
 }
 
 /// @throws UsageError for an unknown name.
-void check_start(const std::string& name, const TypeRegistry& registry) {
+void check_bench_start(const std::string& name, const TypeRegistry& registry) {
   std::vector<std::string_view> known{"file"};
   for (const auto& [start, origin] : registry.starts()) known.push_back(start.name);
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
@@ -169,7 +169,7 @@ ExitCode bench(const BenchOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
   const std::vector<benchmark::Contestant> contestants = make_contestants(options, registry);
-  for (const std::string& start : options.starts) check_start(start, registry);
+  for (const std::string& start : options.starts) check_bench_start(start, registry);
   benchmark::KnownOptima known;
   if (!options.optima.empty())
     known = benchmark::read_known_optima(formats::read_text_file(options.optima), options.optima);

@@ -11,7 +11,7 @@ const CLI::Option* find_option(const CLI::App& command, const std::string& name)
   return command.get_option_no_throw(name);
 }
 
-const CLI::App* find_command(const CLI::App& app, const std::string& name) {
+const CLI::App* command_or_null(const CLI::App& app, const std::string& name) {
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     if (command->get_name() == name) return command;
   }
@@ -66,7 +66,7 @@ std::string explain(const CLI::App& app, const CLI::App& command, const std::str
 }  // namespace
 
 std::string unknown_option(const CLI::App& app, const std::vector<std::string>& words) {
-  const CLI::App* command = words.empty() ? nullptr : find_command(app, words.front());
+  const CLI::App* command = words.empty() ? nullptr : command_or_null(app, words.front());
   if (command == nullptr) return "";
   for (std::size_t i = 1; i < words.size() && words[i] != "--"; ++i) {
     if (!looks_like_option(words[i])) continue;

@@ -11,7 +11,7 @@
 namespace waymark::report {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 drawing::Series ellipse(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance, drawing::Look look) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
@@ -19,7 +19,7 @@ drawing::Series ellipse(const Eigen::Vector2d& mean, const Eigen::Matrix2d& cova
       axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal().toDenseMatrix();
   drawing::Series series{.name = "1-sigma ellipse", .mark = drawing::Mark::line, .look = look};
   for (int degrees = 0; degrees <= 360; degrees += 5) {
-    const double angle = degrees / kDegrees;
+    const double angle = degrees / kDegreesPerRadian;
     const Eigen::Vector2d point = mean + root * Eigen::Vector2d(std::cos(angle), std::sin(angle));
     series.x.push_back(point.x());
     series.y.push_back(point.y());

@@ -17,7 +17,7 @@ void add_triple(const std::optional<PaperMetrics>& metrics, int digits, Row& row
   for (const double value : {m.max_m, m.accuracy_m, m.precision_m}) row.push_back(cell(value, digits));
 }
 
-ReportTable overview_table(const Drives& drives) {
+ReportTable paper_overview_table(const Drives& drives) {
   ReportTable table;
   table.file = "table_1_dataset_overview";
   table.title = "Table 1: dataset overview, the paper's drives and the simulated ones";
@@ -191,7 +191,7 @@ std::vector<ReportTable> paper_tables(const Drives& drives) {
     if (drive.dataset > 0) of_paper.push_back(drive);
   }
   if (of_paper.empty()) return {};
-  return {overview_table(of_paper),
+  return {paper_overview_table(of_paper),
           gnss_table(of_paper),
           result_table(of_paper, 3, "g1", "G1 with rejection"),
           result_table(of_paper, 4, "g2", "G2 with rejection"),

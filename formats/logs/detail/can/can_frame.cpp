@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <waymark/formats/text/detail/characters.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 
 namespace waymark::formats {
@@ -25,10 +26,6 @@ constexpr auto kHex = [] {
 
 int hex(char c) {
   return kHex[static_cast<unsigned char>(c)];
-}
-
-bool is_blank(char c) {
-  return c == ' ' || c == '\t';
 }
 
 /// Walks through a line.

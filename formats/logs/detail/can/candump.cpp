@@ -26,8 +26,6 @@ namespace {
 /// 2106, when 32 bits of seconds end: beyond that a number is no date.
 constexpr std::int64_t kLastDate = 4'294'967'295'000'000'000;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 /// What is wanted of one message, and what came.
 struct MessageUse {
   std::size_t frames = 0;
@@ -152,7 +150,7 @@ void CandumpDecoder::take_values(Stamp stamp, std::size_t number) {
   SensorTable& table = data_.readings;
   const std::size_t row = table.values.size();
   table.stamps.push_back(stamp);
-  table.values.resize(row + table.columns, kNone);
+  table.values.resize(row + table.columns, kNoNumber);
   for (const SignalValue& signal : values_) table.values[row + signal.quantity] = signal.value;
 }
 
@@ -164,7 +162,7 @@ double CandumpDecoder::value_of(const DbcSignal& signal, std::size_t index) {
   if (std::isfinite(value) && value >= quantity.smallest && value <= quantity.largest)
     return value + bound.offset;
   ++outside_[index];
-  return kNone;
+  return kNoNumber;
 }
 
 void CandumpDecoder::take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp) {

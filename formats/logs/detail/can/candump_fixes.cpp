@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
+
 namespace waymark::formats {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Time between two stamps, whichever is earlier, without overflow.
 std::uint64_t distance(Stamp a, Stamp b) {
@@ -149,7 +149,7 @@ void FixAssembler::add_position() {
 }
 
 double FixAssembler::value(std::size_t place) const {
-  return place == kNowhere || !nearest_[place].there ? kNone : nearest_[place].value;
+  return place == kNowhere || !nearest_[place].there ? kNoNumber : nearest_[place].value;
 }
 
 std::optional<double> FixAssembler::optional_value(std::size_t place) const {

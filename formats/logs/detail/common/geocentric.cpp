@@ -1,12 +1,12 @@
 #include <waymark/formats/logs/detail/common/geocentric.hpp>
 
 #include <cmath>
-#include <numbers>
+
+#include <waymark/core/base/angle.hpp>
 
 namespace waymark::formats {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSemiMajor = 6378137;
 constexpr double kFlattening = 1 / 298.257223563;
 constexpr double kEccentricity2 = kFlattening * (2 - kFlattening);

@@ -9,11 +9,10 @@ namespace waymark::formats {
 
 std::optional<Stamp> stamp_from_gps_week(std::string_view week, std::string_view seconds) {
   const std::optional<int> weeks = field_count(week);
-  constexpr std::int64_t kSecond = 1'000'000'000;
   // A longer text allocates, and is no time.
   if (!weeks || *weeks > 9999 || seconds.size() > 20) return std::nullopt;
   const std::optional<Stamp> of_week = stamp_from_decimal_seconds(seconds);
-  if (!of_week || of_week->nanoseconds < 0 || of_week->nanoseconds > kGpsWeekNanoseconds + kSecond)
+  if (!of_week || of_week->nanoseconds < 0 || of_week->nanoseconds > kGpsWeekNanoseconds + kSecondNanoseconds)
     return std::nullopt;
   return Stamp{*weeks * kGpsWeekNanoseconds + of_week->nanoseconds};
 }

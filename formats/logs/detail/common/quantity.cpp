@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 
 namespace waymark::formats {
@@ -11,7 +12,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegree = pi / 180;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::array kTimes{Unit{"s", 0}, Unit{"ms", -3}, Unit{"us", -6}, Unit{"ns", -9}, Unit{kIso8601, 0}};

@@ -3,11 +3,15 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace waymark::formats {
+
+/// The value of a field that is empty.
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// The fields of one line, as views into it.
 class RecordFields {

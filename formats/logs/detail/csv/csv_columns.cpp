@@ -51,12 +51,11 @@ bool holds_values(const std::vector<std::string_view>& fields, const LogRequest&
 }  // namespace
 
 std::optional<double> number_from_field(std::string_view field) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (field.empty()) return kNone;
+  if (field.empty()) return kNoNumber;
   if (const std::optional<double> value = field_number(field)) return value;
   const std::string word = lower_case(field);
   for (const std::string_view none : {"nan", "na", "n/a", "null", "none"}) {
-    if (word == none) return kNone;
+    if (word == none) return kNoNumber;
   }
   return std::nullopt;
 }

@@ -13,12 +13,6 @@
 #include <waymark/formats/text/stamp_text.hpp>
 
 namespace waymark::formats {
-namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data)
     : bound_(columns),
       field_count_(columns.field_count()),
@@ -140,18 +134,18 @@ std::optional<Stamp> CsvRecords::stamp() {
 }
 
 double CsvRecords::number(const BoundColumn* column, bool required) {
-  if (column == nullptr) return kNone;
+  if (column == nullptr) return kNoNumber;
   const std::string_view field = fields_[column->field];
   const std::optional<double> given = number_from_field(field);
   if (!given) {
     const bool comma = field.find(',') != std::string_view::npos;
     complain(*column, fmt::format("expected a number{}, got {}", comma ? " with a decimal point" : "",
                                   quote_field(field)));
-    return kNone;
+    return kNoNumber;
   }
   if (std::isnan(*given)) {
     if (required) complain(*column, "no value");
-    return kNone;
+    return kNoNumber;
   }
   const Quantity& quantity = *column->quantity;
   const double scaled =
@@ -160,7 +154,7 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
     complain(*column, fmt::format("{} {} is outside {:.6g} .. {:.6g}", quote_field(field), column->unit,
                                   quantity.smallest / std::abs(column->factor),
                                   quantity.largest / std::abs(column->factor)));
-    return kNone;
+    return kNoNumber;
   }
   return scaled + column->offset;
 }

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 
+#include <waymark/formats/text/detail/characters.hpp>
+
 namespace waymark::formats {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-bool is_blank(char c) {
-  return c == ' ' || c == '\t';
-}
-
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
@@ -24,7 +22,7 @@ bool take_separator(std::string_view& rest, char separator) {
     rest.remove_prefix(1);
     return true;
   }
-  rest = trimmed(rest);
+  rest = without_blanks(rest);
   return !rest.empty();
 }
 
@@ -46,7 +44,7 @@ bool take_quoted(std::string_view& rest, char separator, std::string_view& field
   field = rest.substr(1, end - 1);
   rest.remove_prefix(end + 1);
   const std::size_t next = find_separator(rest, separator);
-  const bool clean = trimmed(rest.substr(0, next)).empty();
+  const bool clean = without_blanks(rest.substr(0, next)).empty();
   rest.remove_prefix(next);
   return clean;
 }
@@ -65,7 +63,7 @@ bool CsvLines::next() {
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
     ++number_;
     if (!line_.empty() && line_.back() == '\r') line_.remove_suffix(1);
-    const std::string_view content = trimmed(line_);
+    const std::string_view content = without_blanks(line_);
     if (content.empty()) continue;
     if (content.front() != '#') return true;
     comment_ = content.substr(1);
@@ -75,7 +73,7 @@ bool CsvLines::next() {
 
 std::string_view table_content(std::string_view line, std::size_t number) {
   if (number == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
-  return trimmed(line);
+  return without_blanks(line);
 }
 
 char separator_of(std::string_view header) {
@@ -93,7 +91,7 @@ char separator_of(std::string_view header) {
 
 bool split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
-  std::string_view rest = separator == ' ' ? trimmed(line) : line;
+  std::string_view rest = separator == ' ' ? without_blanks(line) : line;
   do {
     std::string_view after_blanks = rest;
     while (!after_blanks.empty() && is_blank(after_blanks.front()) && after_blanks.front() != separator)
@@ -102,10 +100,10 @@ bool split_fields(std::string_view line, char separator, std::vector<std::string
       rest = after_blanks;
       std::string_view field;
       if (!take_quoted(rest, separator, field)) return false;
-      fields.push_back(trimmed(field));
+      fields.push_back(without_blanks(field));
     } else {
       const std::size_t end = find_separator(rest, separator);
-      fields.push_back(trimmed(rest.substr(0, end)));
+      fields.push_back(without_blanks(rest.substr(0, end)));
       rest.remove_prefix(end);
     }
   } while (take_separator(rest, separator));

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/common/kind_tally.hpp>
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
@@ -23,8 +23,6 @@
 
 namespace waymark::formats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 double required(const GpsdReport& report, GpsdNumber key, const char* name, double limit) {
   const std::optional<double> value = report.number(key);

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, static_cast<std::size_t>(GpsdNumber::count)> kNames{
+constexpr std::array<std::string_view, static_cast<std::size_t>(GpsdNumber::count)> kNumberNames{
     "mode", "status", "lat", "lon",   "altHAE", "alt",   "epx",   "epy",
     "eph",  "track",  "epd", "speed", "eps",    "major", "minor", "orient"};
 
@@ -56,9 +56,10 @@ class Collector {
             : name == "device"  ? &report_.device
             : name == "release" ? &report_.release
                                 : nullptr;
-    const auto* known = std::find(kNames.begin(), kNames.end(), name);
-    member_ =
-        known == kNames.end() ? nullptr : &report_.numbers[static_cast<std::size_t>(known - kNames.begin())];
+    const auto* known = std::find(kNumberNames.begin(), kNumberNames.end(), name);
+    member_ = known == kNumberNames.end()
+                  ? nullptr
+                  : &report_.numbers[static_cast<std::size_t>(known - kNumberNames.begin())];
     return true;
   }
   bool parse_error(std::size_t position, const std::string&, const json::exception& error) {
@@ -98,7 +99,7 @@ std::optional<double> GpsdReport::number(GpsdNumber key) const {
   if (!member.given) return std::nullopt;
   if (!member.not_a_number.empty())
     throw BadGpsdMember{fmt::format("{}: expected a number for '{}', got {}", kind,
-                                    kNames[static_cast<std::size_t>(key)], member.not_a_number)};
+                                    kNumberNames[static_cast<std::size_t>(key)], member.not_a_number)};
   return member.value;
 }
 

@@ -19,25 +19,34 @@
 namespace waymark::formats {
 namespace {
 
-constexpr const char* kFormat = "a GPX track";
+constexpr const char* kGpxFormat = "a GPX track";
 constexpr std::size_t kLongestText = 64;         // longer than any number or date
 constexpr std::size_t kKept = kLongestText + 1;  // of a text; one that is too long shows
 
 /// What is read of a point.
-enum Item : std::size_t { kTime, kElevation, kGeoidHeight, kHdop, kFix, kSpeed, kCourse, kItems };
+enum Item : std::size_t {
+  kTimeItem,
+  kElevationItem,
+  kGeoidHeightItem,
+  kHdopItem,
+  kFixItem,
+  kSpeedItem,
+  kCourseItem,
+  kItems
+};
 struct ItemName {
   std::string_view name;
   bool in_extensions;  ///< also read there
 };
-constexpr std::array<ItemName, kItems> kNames{{{"time", false},
-                                               {"ele", false},
-                                               {"geoidheight", false},
-                                               {"hdop", false},
-                                               {"fix", false},
-                                               {"speed", true},
-                                               {"course", true}}};
+constexpr std::array<ItemName, kItems> kItemNames{{{"time", false},
+                                                   {"ele", false},
+                                                   {"geoidheight", false},
+                                                   {"hdop", false},
+                                                   {"fix", false},
+                                                   {"speed", true},
+                                                   {"course", true}}};
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_space(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n";
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
@@ -79,7 +88,7 @@ class GpxDecoder final : public LogDecoder, private XmlStream {
   [[nodiscard]] std::optional<double> number(std::string_view text, std::string_view name, double smallest,
                                              double largest);
   [[nodiscard]] std::optional<double> number(Item item, double smallest, double largest) {
-    return number(point_.items[item], kNames[item].name, smallest, largest);
+    return number(point_.items[item], kItemNames[item].name, smallest, largest);
   }
   void complain(const std::string& what);
 
@@ -133,9 +142,10 @@ void GpxDecoder::begin_point(const char** attributes) {
 
 void GpxDecoder::begin_item(std::string_view name) {
   for (std::size_t item = 0; item < kItems; ++item) {
-    if (name != kNames[item].name) continue;
+    if (name != kItemNames[item].name) continue;
     const bool is_child = depth() == point_.depth + 1;
-    if ((is_child || kNames[item].in_extensions) && point_.items[item].empty()) text_ = &point_.items[item];
+    if ((is_child || kItemNames[item].in_extensions) && point_.items[item].empty())
+      text_ = &point_.items[item];
     return;
   }
   count_unknown(name);
@@ -157,19 +167,19 @@ void GpxDecoder::end(std::string_view) {
 }
 
 void GpxDecoder::add_point() {
-  if (trimmed(point_.items[kFix]) == "none") {
+  if (without_space(point_.items[kFixItem]) == "none") {
     ++data_.without_fix;
     return;
   }
   constexpr double kAny = 1e6;
   const std::optional<double> latitude = number(point_.latitude, "lat", -90, 90);
   const std::optional<double> longitude = number(point_.longitude, "lon", -180, 360);
-  const std::optional<double> elevation = number(kElevation, -kAny, kAny);
-  const std::optional<double> geoid_height = number(kGeoidHeight, -kAny, kAny);
-  const std::optional<double> hdop = number(kHdop, 0, kAny);
-  const std::optional<double> speed = number(kSpeed, 0, 1000);
-  const std::optional<double> course = number(kCourse, 0, 360);
-  const std::string_view time = trimmed(point_.items[kTime]);
+  const std::optional<double> elevation = number(kElevationItem, -kAny, kAny);
+  const std::optional<double> geoid_height = number(kGeoidHeightItem, -kAny, kAny);
+  const std::optional<double> hdop = number(kHdopItem, 0, kAny);
+  const std::optional<double> speed = number(kSpeedItem, 0, 1000);
+  const std::optional<double> course = number(kCourseItem, 0, 360);
+  const std::string_view time = without_space(point_.items[kTimeItem]);
   if (!latitude || !longitude) complain("without lat and lon");
   if (time.empty()) complain("without a time");
   std::optional<Stamp> stamp = stamp_from_iso8601(time);
@@ -195,7 +205,7 @@ void GpxDecoder::add_point() {
 /// cannot be: telephones write -1 for "unknown".
 std::optional<double> GpxDecoder::number(std::string_view text, std::string_view name, double smallest,
                                          double largest) {
-  const std::string_view word = trimmed(text);
+  const std::string_view word = without_space(text);
   if (word.empty()) return std::nullopt;
   const bool whole = text.size() <= kLongestText;
   const std::optional<double> value = whole ? field_number(word) : std::nullopt;
@@ -233,7 +243,7 @@ void GpxDecoder::finish() {
 }  // namespace
 
 std::unique_ptr<LogDecoder> GpxReader::open(const std::string& path, const LogRequest& request) const {
-  require_positions(path, request, kFormat);
+  require_positions(path, request, kGpxFormat);
   return std::make_unique<GpxDecoder>(path, request);
 }
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -27,8 +26,8 @@ struct Column {
 };
 constexpr std::size_t kColumns = 30;
 constexpr double kAny = std::numeric_limits<double>::max();
-constexpr Column kLatitude{0, "lat", -90, 90};
-constexpr Column kLongitude{1, "lon", -180, 180};
+constexpr Column kLatitudeColumn{0, "lat", -90, 90};
+constexpr Column kLongitudeColumn{1, "lon", -180, 180};
 constexpr Column kAltitude{2, "alt", -kAny, kAny};
 constexpr Column kYaw{5, "yaw", -7, 7};
 constexpr Column kNorthVelocity{6, "vn", -150, 150};
@@ -61,10 +60,10 @@ std::vector<Stamp> read_stamps(const CompanionFile& file) {
 }
 
 const CompanionFile& stamps_file(const std::string& path, const LogRequest& request) {
-  constexpr const char* kFormat = "a KITTI oxts log";
-  require_streams(path, request, kFormat, {StreamKind::odometry, StreamKind::gnss, StreamKind::truth});
-  require_no_columns(path, request, kFormat);
-  require_companions(path, request, kFormat, "timestamps");
+  constexpr const char* kOxtsFormat = "a KITTI oxts log";
+  require_streams(path, request, kOxtsFormat, {StreamKind::odometry, StreamKind::gnss, StreamKind::truth});
+  require_no_columns(path, request, kOxtsFormat);
+  require_companions(path, request, kOxtsFormat, "timestamps");
   const auto file = request.companions.find("timestamps");
   if (file == request.companions.end())
     throw InputError(fmt::format(
@@ -131,8 +130,8 @@ void OxtsDecoder::take_record(Stamp at, std::size_t line_number) {
   }
   GeodeticFix fix;
   fix.stamp = at;
-  fix.latitude_deg = number(kLatitude);
-  fix.longitude_deg = number(kLongitude);
+  fix.latitude_deg = number(kLatitudeColumn);
+  fix.longitude_deg = number(kLongitudeColumn);
   fix.height_m = number(kAltitude);
   fix.line = line_number;
   take_position(fix);

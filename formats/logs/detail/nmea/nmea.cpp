@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/common/kind_tally.hpp>
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
@@ -21,7 +21,6 @@
 namespace waymark::formats {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::int64_t kDayNanoseconds = 86'400'000'000'000;
 constexpr std::size_t kMostUndated = 4096;  ///< fixes that wait for the first date
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/text/detail/characters.hpp>
 #include <waymark/formats/text/detail/decimal.hpp>
 
 namespace waymark::formats {
@@ -32,10 +33,6 @@ unsigned checksum_of(std::string_view text) {
   auto folded = static_cast<unsigned>(sum & 0xFFU);
   for (const char c : text) folded ^= static_cast<unsigned char>(c);
   return folded;
-}
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
 }
 
 /// Length of the address that a sentence begins with; 0: it is none.

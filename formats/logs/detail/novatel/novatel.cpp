@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
@@ -20,8 +21,7 @@
 namespace waymark::formats {
 namespace {
 
-constexpr const char* kFormat = "a NovAtel log";
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr const char* kNovatelFormat = "a NovAtel log";
 constexpr double kFar = 1e6;  // m: beyond any height
 
 /// A velocity without sigma, waiting for the position of its time.
@@ -269,7 +269,7 @@ void NovatelDecoder::end() {
 }  // namespace
 
 std::unique_ptr<LogDecoder> NovatelReader::open(const std::string& path, const LogRequest& request) const {
-  require_positions(path, request, kFormat);
+  require_positions(path, request, kNovatelFormat);
   return std::make_unique<NovatelDecoder>(path, request);
 }
 

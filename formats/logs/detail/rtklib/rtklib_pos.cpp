@@ -21,7 +21,7 @@
 namespace waymark::formats {
 namespace {
 
-constexpr const char* kFormat = "an RTKLIB solution";
+constexpr const char* kPosFormat = "an RTKLIB solution";
 constexpr std::array<const char*, 8> kQualities{"none", "fix",    "float", "sbas",
                                                 "dgps", "single", "ppp",   "dead reckoning"};
 constexpr std::int64_t kHour = 3'600'000'000'000;
@@ -282,7 +282,7 @@ void RtklibDecoder::end() {
 }  // namespace
 
 std::unique_ptr<LogDecoder> RtklibPosReader::open(const std::string& path, const LogRequest& request) const {
-  require_positions(path, request, kFormat);
+  require_positions(path, request, kPosFormat);
   return std::make_unique<RtklibDecoder>(path, request);
 }
 

@@ -5,14 +5,13 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/log_request.hpp>
 #include <waymark/formats/logs/detail/ubx/ubx_fixes.hpp>
 #include <waymark/formats/logs/detail/ubx/ubx_sensors.hpp>
 
 namespace waymark::formats {
 namespace {
-
-constexpr int kLastWeek = 10'000;
 
 /// Whether HNR-PVT is asked for.
 bool wants_high_rate(const std::string& path, const LogRequest& request) {
@@ -67,8 +66,9 @@ bool holds_position(std::uint16_t key) {
 
 std::unique_ptr<LogDecoder> UbxReader::open(const std::string& path, const LogRequest& request) const {
   require_companions(path, request, "a UBX log");
-  if (request.gps_week < 0 || request.gps_week > kLastWeek)
-    throw InputError(fmt::format("{}: 'gps_week' {} is outside 0 .. {}", path, request.gps_week, kLastWeek));
+  if (request.gps_week < 0 || request.gps_week > kLastGpsWeek)
+    throw InputError(
+        fmt::format("{}: 'gps_week' {} is outside 0 .. {}", path, request.gps_week, kLastGpsWeek));
   if (request.stream == StreamKind::gnss || request.stream == StreamKind::truth)
     return std::make_unique<UbxFixDecoder>(path, request, wants_high_rate(path, request));
   check_readings(path, request);

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/angle.hpp>
+
 namespace waymark::formats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Clockwise from north, degrees -> counter-clockwise from east, radians in (-pi, pi].
 double heading_from_course(double course_deg) {

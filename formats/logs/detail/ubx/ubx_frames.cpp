@@ -22,7 +22,7 @@ struct Name {
   std::uint16_t key;
   const char* name;
 };
-constexpr std::array<Name, 49> kNames{{
+constexpr std::array<Name, 49> kMessageNames{{
     {0x0101, "NAV-POSECEF"},   {0x0102, "NAV-POSLLH"},  {0x0103, "NAV-STATUS"},    {0x0104, "NAV-DOP"},
     {0x0105, "NAV-ATT"},       {0x0106, "NAV-SOL"},     {0x0107, "NAV-PVT"},       {0x0109, "NAV-ODO"},
     {0x0111, "NAV-VELECEF"},   {0x0112, "NAV-VELNED"},  {0x0113, "NAV-HPPOSECEF"}, {0x0114, "NAV-HPPOSLLH"},
@@ -113,7 +113,7 @@ UbxFound find_ubx_frame(UbxStretch& stretch, std::size_t from) {
 }
 
 std::string ubx_name(std::uint16_t key) {
-  for (const Name& entry : kNames) {
+  for (const Name& entry : kMessageNames) {
     if (entry.key == key) return entry.name;
   }
   return fmt::format("UBX-0x{:02X}-0x{:02X}", key >> 8U, key & 0xFFU);

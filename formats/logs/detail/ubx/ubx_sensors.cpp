@@ -8,12 +8,14 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
+
 namespace waymark::formats {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kOtherLog = 10 * kSecond;  // so far back goes GNSS time only where logs were joined
+// GNSS time only goes so far back if logs were joined.
+constexpr std::int64_t kOtherLog = 10 * kSecondNanoseconds;
 constexpr std::uint32_t kTickRange = 1U << 23U;
 /// Rows wait so long for messages that come out of order, and for the first navigation messages.
 constexpr std::int64_t kHeldMs = 2000;
@@ -81,7 +83,7 @@ std::int64_t UbxSensorClock::gps_ns(std::int64_t tag_ms) {
   const std::int64_t wanted = median_;
   if (!offset_) {
     offset_ = first_offset_ = wanted;
-  } else if (std::abs(wanted - *offset_) > kSecond) {
+  } else if (std::abs(wanted - *offset_) > kSecondNanoseconds) {
     offset_ = wanted;
     ++jumps_;
   } else {

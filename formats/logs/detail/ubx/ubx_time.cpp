@@ -7,9 +7,7 @@
 namespace waymark::formats {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kWeek = kGpsWeekNanoseconds;
-constexpr std::int64_t kLastWeek = 10'000;
 
 std::int64_t of_week(std::uint32_t itow_ms) {
   return std::int64_t{itow_ms} * 1'000'000;
@@ -29,11 +27,11 @@ std::int64_t UbxTime::nearest(std::int64_t to, std::uint32_t itow_ms) const {
 
 std::int64_t UbxTime::from_date(const UbxDate& date, std::uint32_t itow_ms) {
   std::int64_t gps = convert(date.utc, TimeScale::utc, TimeScale::gps).nanoseconds;
-  if (date.leap_second) gps += kSecond;
-  const std::int64_t seconds = rounded_quotient(gps - nearest(gps, itow_ms), kSecond);
+  if (date.leap_second) gps += kSecondNanoseconds;
+  const std::int64_t seconds = rounded_quotient(gps - nearest(gps, itow_ms), kSecondNanoseconds);
   if (seconds != 0 && !date.resolved && std::abs(seconds) <= 60) {
     ++seconds_from_itow_;
-    gps -= seconds * kSecond;
+    gps -= seconds * kSecondNanoseconds;
   } else if (seconds != 0) {
     ++disagreements_;
   }
@@ -49,7 +47,7 @@ std::int64_t UbxTime::from_week(const UbxWeek& week, std::uint32_t itow_ms) {
 std::optional<std::int64_t> UbxTime::from_itow(std::uint32_t itow_ms) {
   if (!last_ && stated_week_ == 0) return std::nullopt;
   const std::int64_t gps = last_ ? nearest(*last_, itow_ms) : kWeek * stated_week_ + of_week(itow_ms);
-  if (gps < 0 || gps > kWeek * kLastWeek) return std::nullopt;  // rubbish has led it there, week by week
+  if (gps < 0 || gps > kWeek * kLastGpsWeek) return std::nullopt;  // rubbish has led it there, week by week
   used_stated_week_ = used_stated_week_ || !last_;
   ++continued_;
   last_ = gps;

@@ -1,0 +1,10 @@
+/// One degree in radians: degrees * kDegree is an angle in radians, radians / kDegree one in degrees.
+#pragma once
+
+#include <numbers>
+
+namespace waymark {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
+
+}  // namespace waymark

@@ -1,0 +1,14 @@
+/// Time that has passed on the clock that is never set.
+#pragma once
+
+#include <chrono>
+
+namespace waymark::detail {
+
+using Clock = std::chrono::steady_clock;
+
+[[nodiscard]] inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace waymark::detail

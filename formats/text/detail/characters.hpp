@@ -1,0 +1,15 @@
+/// Classes of characters; unlike those of <cctype> they know no locale.
+#pragma once
+
+namespace waymark::formats {
+
+[[nodiscard]] constexpr bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// A space or a tab.
+[[nodiscard]] constexpr bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+}  // namespace waymark::formats
