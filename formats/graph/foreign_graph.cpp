@@ -84,7 +84,7 @@ void ForeignGraph::check_vertices() const {
   }
 }
 
-// Ids in range stay; the others get the lowest that no vertex has.
+// Ids in range are kept. The others become the lowest free ids.
 void ForeignGraph::choose_ids() {
   ids_.resize(graph_.vertex_count());
   VertexId next = std::max<VertexId>(recipient_.least_id, 0);
@@ -132,7 +132,7 @@ void ForeignGraph::check_edges() {
   }
 }
 
-/// Whether edges of this type are said otherwise, or may be refused one by one.
+/// Tells whether edges of this type are rewritten, or must be checked one by one.
 bool ForeignGraph::needs_look(const std::string& tag) const {
   return tag == kGnssPosition || has_offsets(tag) || format_ == GraphFormat::covariance ||
          !recipient_.zero_information || recipient_.evaluates_as_example;

@@ -1,4 +1,4 @@
-/// A graph as another program's file says it: the same minimum in other words, or not at all.
+/// A graph in the form that another program reads. It has the same minimum there, or it is refused.
 #pragma once
 
 #include <string>
@@ -11,28 +11,32 @@
 
 namespace waymark::formats {
 
-/// Equal re-expressions, each with the same chi2 at all values of the vertices:
-/// - EDGE_GNSS_POSITION becomes EDGE_SE2 without heading information, with a lever arm EDGE_SE2_OFFSET;
-/// - EDGE_SE2_POINTXY_OFFSET becomes EDGE_SE2_XY for g2o itself, which leaves the offset out of the error;
-/// - the information of EDGE_SE2 is turned for Ceres' example, whose error is in the first pose's axes;
-/// - ids out of the recipient's range become free ones.
-/// FIX is left out for a recipient without it where it says no more than where the graph lies: every edge is
-/// relative, and no two fixed vertices are joined. All else that would move the minimum is refused; what is
-/// only a record is left out and counted.
+/// Expresses a graph for a recipient. Each rewriting keeps chi2 at all values of the vertices:
+/// - EDGE_GNSS_POSITION becomes EDGE_SE2 without heading information, or EDGE_SE2_OFFSET if there
+///   is a lever arm;
+/// - EDGE_SE2_POINTXY_OFFSET becomes EDGE_SE2_XY for g2o itself, because g2o leaves the offset out
+///   of the error;
+/// - the information of EDGE_SE2 is turned for the example of Ceres, because its error is in the
+///   axes of the first pose;
+/// - ids outside the range of the recipient become free ones.
+///
+/// If the recipient has no FIX, it is left out as long as it only chooses the frame. This is so if
+/// every edge is relative and no edge joins two fixed vertices. Everything else that would move the
+/// minimum is refused. Pure records are left out and counted.
 class ForeignGraph {
  public:
-  /// @param document must live as long as this
-  /// @param name     of the graph, for messages
-  /// @throws InputError "a.graph: EDGE_SE2_LOG 3 7 (number 12): TORO has no such edge; ..." for what the
-  /// recipient cannot hold; UsageError where it does not read that format
+  /// @param document must outlive this object
+  /// @param name name of the graph, for messages
+  /// @throws InputError "a.graph: EDGE_SE2_LOG 3 7 (number 12): TORO has no such edge; ..." for
+  /// content that the recipient cannot hold; UsageError if it does not read that format
   ForeignGraph(const GraphDocument& document, const std::string& name, const Recipient& recipient,
                GraphFormat format);
 
   void write(const TextSink& sink) const;
 
-  /// What is said otherwise than in the document, in sentences.
+  /// Returns one sentence for each rewriting.
   [[nodiscard]] const std::vector<std::string>& changes() const { return changes_; }
-  /// The records left out, counted: "frame, stamps (989)"; empty where there are none.
+  /// Counts the records that were left out: "frame, stamps (989)". Empty if there are none.
   [[nodiscard]] std::string left_out() const;
 
  private:

@@ -1,4 +1,4 @@
-/// The graph file formats by name. What each holds: formats/README.md.
+/// The names of the graph file formats. formats/README.md describes their content.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace waymark::formats {
 enum class GraphFormat {
   graph,      ///< our own
   g2o,        ///< g2o's plane files
-  toro,       ///< TORO's: VERTEX2, EDGE2 with information matrices
-  covariance  ///< GTSAM's `.graph`: TORO's tags and order with covariance matrices
+  toro,       ///< TORO's files: VERTEX2, and EDGE2 with information matrices
+  covariance  ///< GTSAM's `.graph` files: TORO's tags and order, with covariance matrices
 };
 
 inline constexpr std::array<std::string_view, 4> kGraphFormats = {"graph", "g2o", "toro", "covariance"};
@@ -21,7 +21,7 @@ inline constexpr std::array<std::string_view, 4> kGraphFormats = {"graph", "g2o"
 [[nodiscard]] inline std::string_view to_string(GraphFormat format) {
   return kGraphFormats[static_cast<std::size_t>(format)];
 }
-/// Nothing for a word that names no format.
+/// Returns nothing if the word names no format.
 [[nodiscard]] inline std::optional<GraphFormat> graph_format_from_string(std::string_view word) {
   for (std::size_t i = 0; i < kGraphFormats.size(); ++i) {
     if (word == kGraphFormats[i]) return static_cast<GraphFormat>(i);
@@ -29,10 +29,11 @@ inline constexpr std::array<std::string_view, 4> kGraphFormats = {"graph", "g2o"
   return std::nullopt;
 }
 
-/// Reads a graph of a format that is said, not guessed: nothing in a file tells `toro` from `covariance`.
-/// `graph` and `g2o` are one, told apart by the first line, as read_graph does. Files without vertices get
-/// them along the registered start "odometry" in every format but our own.
-/// @param name, lenient, report  as for read_graph
+/// Reads a graph of a given format. The format is not guessed, because nothing in a file
+/// distinguishes `toro` from `covariance`. `graph` and `g2o` mean the same here: the first line
+/// distinguishes them, as in read_graph. In every format but our own the registered start
+/// "odometry" makes vertices if the file has none.
+/// @param name, lenient, report as for read_graph
 /// @throws InputError with line and column
 [[nodiscard]] GraphDocument read_graph_as(GraphFormat format, std::string_view text, const std::string& name,
                                           const TypeRegistry& registry, bool lenient = false,

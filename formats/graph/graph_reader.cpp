@@ -14,7 +14,8 @@ namespace waymark::formats {
 namespace {
 
 constexpr std::size_t kExamples = 10;
-constexpr std::size_t kMostTags = 64;     // remembered; further ones are looked up each time
+// so many are remembered; further ones are looked up each time
+constexpr std::size_t kMostTags = 64;
 constexpr std::int64_t kMaxArity = 1000;  // of a run-time-arity edge: 72 MB of information matrix
 
 constexpr std::string_view kOwnTags[] = {"GRAPH", "FRAME", "TIME", "PROVENANCE", "LEVER",
@@ -38,7 +39,7 @@ class GraphReader {
 
   GraphDocument read() {
     read_first_line();
-    // Vertices first, so that edges, FIX and STAMP may stand anywhere.
+    // Vertices are read first, so that edges, FIX and STAMP may be anywhere.
     std::optional<Place> first_statement;
     for_each_line({}, [&](LineScanner& line, std::string_view word) {
       Tag& tag = known_tag(word);
@@ -60,12 +61,12 @@ class GraphReader {
   }
 
  private:
-  /// Where a line begins.
+  /// The place where a line begins.
   struct Place {
     std::size_t offset = 0;
     std::size_t line_number = 1;
   };
-  /// A line's first word and what the registry knows by it.
+  /// The first word of a line, and its entry in the registry.
   struct Tag {
     std::string_view word;
     const VertexType* vertex = nullptr;
@@ -85,7 +86,8 @@ class GraphReader {
   }
 
   void read_first_line() {
-    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // the byte order mark of some editors
+    // the byte order mark of some editors
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
     const std::string_view first = text_.substr(0, text_.find('\n'));
     LineScanner line(first, name_, 1);
     if (line.word() != "GRAPH" || is_toro()) return;
@@ -117,7 +119,8 @@ class GraphReader {
     }
   }
 
-  // Neighbouring lines mostly have the same tag, and a file has few: the last one found is tried first.
+  // Adjacent lines usually have the same tag, and a file has few tags. So the last one found is
+  // tried first.
   Tag& known_tag(std::string_view word) {
     if (last_tag_ < tags_.size() && tags_[last_tag_].word == word) return tags_[last_tag_];
     for (last_tag_ = 0; last_tag_ < tags_.size(); ++last_tag_) {
@@ -148,7 +151,8 @@ class GraphReader {
   }
 
   void read_edge(LineScanner& line, const Tag& tag, const EdgeType& type) {
-    last_batch_ = nullptr;  // a LOSS must not go to an earlier edge where this one is skipped
+    // this edge is skipped, and a LOSS below it must not go to an earlier one
+    last_batch_ = nullptr;
     const bool runtime = type.arity == EdgeType::kRuntimeArity;
     const std::int64_t arity = runtime ? line.integer({tag.word, "arity"}) : type.arity;
     if (runtime && (arity < 1 || arity > kMaxArity)) {
@@ -200,7 +204,7 @@ class GraphReader {
     }
   }
 
-  /// What was read must be an information matrix; a covariance becomes one.
+  /// The matrix must be an information matrix; a covariance is inverted first.
   void check_matrix(const LineScanner& line, std::string_view tag) {
     if (format_ == GraphFormat::covariance) {
       const Eigen::LLT<Eigen::MatrixXd> factor(information_);
@@ -214,7 +218,7 @@ class GraphReader {
     }
   }
 
-  /// How many edges of a type the text has room for, whatever its tags promise.
+  /// Returns how many edges of a type the text has room for, whatever its tags promise.
   [[nodiscard]] std::size_t most_lines(const EdgeType& type) const {
     const int numbers =
         type.arity + type.field_size() + type.error_dimension * (type.error_dimension + 1) / 2;
@@ -236,7 +240,8 @@ class GraphReader {
   }
 
   [[noreturn]] void fail_unknown(const LineScanner& line, std::string_view tag) {
-    last_batch_ = nullptr;  // it may have been an edge: a LOSS below it belongs to none that is known
+    // the line may have been an edge: a LOSS below it belongs to no known edge
+    last_batch_ = nullptr;
     if (is_toro()) {
       line.fail("unknown tag " + quote_word(tag) + "; a file of --input-format " +
                 std::string(to_string(format_)) + " has VERTEX2 and EDGE2");
@@ -255,7 +260,8 @@ class GraphReader {
     line.fail("unknown tag " + quote_word(tag) + "; if a plugin defines it, load it with --plugin");
   }
 
-  // A file with edges only (SE-Sync's way): its vertices are those the edges name, in ascending order.
+  // Makes the vertices of a file that has only edges (as SE-Sync writes them): all vertices that
+  // edges name, in ascending order.
   void make_vertices_of_edges() {
     const ReadReport before = report_;
     std::vector<std::pair<VertexId, const VertexType*>> named;
@@ -273,7 +279,7 @@ class GraphReader {
       document_.graph.add_vertex(*type, id, values_);
     }
     report_.edges_only = document_.graph.vertex_count() > 0;
-    // Wrong lines are reported once, by the pass that reads the edges.
+    // Wrong lines are reported once, in the pass that reads the edges.
     report_.skipped = before.skipped;
     report_.examples = before.examples;
   }

@@ -7,7 +7,7 @@
 namespace waymark::formats {
 namespace {
 
-/// A line break in a text from outside (a drive's name) would begin a new statement.
+/// A line break in an outside text (the name of a drive) would begin a new statement.
 std::string one_line(std::string text) {
   for (char& c : text) {
     if (c == '\n' || c == '\r') c = ' ';

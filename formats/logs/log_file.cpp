@@ -22,10 +22,11 @@ namespace {
 
 constexpr std::size_t kPiece = 1U << 20U;
 constexpr std::size_t kHead = 64U << 10U;
-/// zlib is asked for so much at a time: where a compressed file is damaged, it keeps what it holds of that.
+/// How much is requested from zlib at a time. If a compressed file is damaged, zlib does not
+/// deliver what it decoded for the last request.
 constexpr unsigned kStep = 8U << 10U;
 
-/// A file that zlib reads, compressed or not.
+/// A file that zlib reads; it may be compressed or not.
 class LogFile {
  public:
   explicit LogFile(const std::string& path) : path_(path) {
@@ -45,7 +46,8 @@ class LogFile {
   LogFile& operator=(const LogFile&) = delete;
   ~LogFile() { ::gzclose_r(file_); }
 
-  /// The next bytes; empty at the end, and where a compressed file breaks off (see trouble()).
+  /// Returns the next bytes. Empty at the end, and if a compressed file is cut or damaged
+  /// (see trouble()).
   [[nodiscard]] std::string_view next(std::vector<char>& buffer) {
     const auto size = static_cast<unsigned>(buffer.size());
     const unsigned step = ::gzdirect(file_) != 0 ? size : std::min(kStep, size);
@@ -66,7 +68,7 @@ class LogFile {
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
  private:
-  /// What ended the reading, where it was not the file's end.
+  /// Finds the error that stopped the reading, if it was not the end of the file.
   void find_trouble() {
     int code = Z_OK;
     std::string_view message = ::gzerror(file_, &code);
@@ -86,7 +88,8 @@ class LogFile {
   std::string trouble_;
 };
 
-/// Formats that are not read here: how they begin, what they are, and what makes a readable log of them.
+/// Formats that are not read here: their first bytes, their names, and the programs that
+/// convert them.
 struct ForeignFormat {
   std::string_view begins;
   std::string_view name;
@@ -111,7 +114,7 @@ std::string what_it_may_be(std::string_view head) {
   return "state its 'format'; `waymark info` lists those there are";
 }
 
-/// The file itself, or of a folder the files in it, in order of name.
+/// Returns the file itself. For a folder it returns the files inside, in order of name.
 std::vector<std::string> files_of(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(path, ignored)) return {path};
@@ -160,7 +163,7 @@ std::string read_in_pieces(const std::string& path, const std::function<void(std
       if (progress && files.size() == 1) progress(file.done(), file.size());
     }
     if (trouble.empty()) trouble = file.trouble();
-    if (files.size() > 1 && last != '\n') take("\n");  // a line does not go on in the next file
+    if (files.size() > 1 && last != '\n') take("\n");  // no line continues in the next file
   }
   return trouble;
 }

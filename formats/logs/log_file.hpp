@@ -1,4 +1,5 @@
-/// Logs as files: read piece by piece, compressed ones too, and known by their content.
+/// Logs as files. They are read piece by piece, may be compressed, and are recognised by
+/// their content.
 #pragma once
 
 #include <cstdint>
@@ -11,34 +12,34 @@
 
 namespace waymark::formats {
 
-/// Called while a file is read. @param done, size  bytes of the file as it lies on the disk; size 0: not
-/// known
+/// Called while a file is read. @param done, size bytes of the file on the disk; size 0: not known
 using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t size)>;
 
-/// Gives a file's content in pieces of at most 1 MiB; that of a .gz file (known by its first bytes, not by
-/// its name) uncompressed. Memory does not grow with the file.
-/// @return what broke off the reading of a compressed file that is cut or damaged; empty where all of it was
-/// read
+/// Gives the content of a file in pieces of at most 1 MiB. The content of a .gz file (recognised by
+/// its first bytes, not by its name) is uncompressed. Memory does not grow with the file.
+/// @return the error that stopped the reading of a compressed file that is cut or damaged; empty if
+/// all of it was read
 /// @throws InputError "gnss.log: cannot read: No such file or directory" and the like
 [[nodiscard]] std::string read_in_pieces(const std::string& path,
                                          const std::function<void(std::string_view)>& take,
                                          const ReadProgress& progress = {});
 
-/// A log file through a reader.
-/// A compressed file that is cut or damaged gives what came before, with a corrupt record that says so.
-/// @throws InputError what the reader throws, and where nothing in the log was usable
+/// Reads a log file with a reader. If a compressed file is cut or damaged, the content before the
+/// error is used, and a corrupt record states the error.
+/// @throws InputError from the reader, and if nothing in the log was usable
 [[nodiscard]] LogData read_log_file(const LogReader& reader, const std::string& path,
                                     const LogRequest& request, const ReadProgress& progress = {});
 
-/// A reader that knows a log for its own.
+/// A reader that recognises a log.
 struct Recognised {
   LogReaderType reader;
   Recognition why;
 };
 
-/// The reader that is surest of a log, from its first 64 KiB.
-/// @throws InputError for a file that cannot be read or is empty, for one that no reader knows (a known
-/// foreign format is named with the program that converts it), and where two readers are equally sure
+/// Returns the reader with the highest confidence for the first 64 KiB of a log.
+/// @throws InputError if the file cannot be read or is empty, if no reader recognises it (for a
+/// known foreign format the message names the program that converts it), and if two readers have
+/// the same confidence
 [[nodiscard]] Recognised recognise_log(const std::string& path, std::span<const LogReaderType> readers);
 
 }  // namespace waymark::formats

@@ -1,4 +1,4 @@
-/// The log readers that come with Waymark, by name.
+/// The log readers of Waymark, by name.
 #pragma once
 
 #include <span>
@@ -9,10 +9,11 @@
 
 namespace waymark::formats {
 
-/// All built-in readers, in the order to list them. They live as long as the program and are stateless.
+/// Returns all built-in readers in the order of their listing. They live as long as the program and
+/// have no state.
 [[nodiscard]] std::span<const LogReaderType> builtin_log_readers();
 void register_log_readers(TypeRegistry& registry);
-/// Null for an unknown name.
+/// Returns null for an unknown name.
 [[nodiscard]] const LogReader* builtin_log_reader(std::string_view name);
 
 }  // namespace waymark::formats

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
-/// Takes fields of fixed width off a text; after the first mismatch nothing more is taken.
+/// Takes fields of fixed width off a text. After the first mismatch it takes nothing more.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : text_(text) {}
@@ -36,7 +36,7 @@ class Scanner {
       text_.remove_prefix(1);
     }
   }
-  /// The fraction after a decimal point, in nanoseconds; 0 where there is none.
+  /// Returns the fraction after a decimal point in nanoseconds; 0 if there is none.
   [[nodiscard]] std::int64_t fraction() {
     if (text_.empty() || (text_.front() != '.' && text_.front() != ',')) return 0;
     std::size_t end = 1;

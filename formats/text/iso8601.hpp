@@ -1,4 +1,4 @@
-/// Dates with time of day, as gpsd and many loggers write them.
+/// Dates with time of day in the form that gpsd and many loggers write.
 #pragma once
 
 #include <optional>
@@ -9,15 +9,16 @@
 
 namespace waymark::formats {
 
-/// "2023-06-28T14:52:12.250Z": ISO 8601 extended form, seconds with any number of decimals (rounded to the
-/// nanosecond), 'T' or one blank between date and time, zone "Z", "+hh:mm", "-hhmm", "+hh" or none (read as
-/// UTC). A leap second 23:59:60 counts as the second after it, as POSIX time does.
-/// @return POSIX nanoseconds (TimeScale::utc); empty where the text is no such date or does not exist (June
-/// 31).
+/// Reads "2023-06-28T14:52:12.250Z": the extended form of ISO 8601. The seconds may have any number
+/// of decimals and are rounded to the nanosecond. 'T' or one blank separates date and time. The
+/// zone is "Z", "+hh:mm", "-hhmm", "+hh" or none (read as UTC). A leap second 23:59:60 counts as
+/// the second after it, as in POSIX time.
+/// @return POSIX nanoseconds (TimeScale::utc); empty if the text is no such date or the date does
+/// not exist (June 31)
 [[nodiscard]] std::optional<Stamp> stamp_from_iso8601(std::string_view text);
 
-/// Inverse of stamp_from_iso8601: "2023-06-28T14:52:12.25Z", with as many decimals as it needs, none for
-/// whole seconds. @param utc  POSIX nanoseconds
+/// The inverse of stamp_from_iso8601: "2023-06-28T14:52:12.25Z" with as many decimals as needed,
+/// and none for whole seconds. @param utc POSIX nanoseconds
 [[nodiscard]] std::string iso8601_from_stamp(Stamp utc);
 
 }  // namespace waymark::formats

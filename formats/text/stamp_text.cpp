@@ -11,16 +11,16 @@
 namespace waymark::formats {
 namespace {
 
-/// A decimal number taken apart: value = digits * 10^exponent, digits without leading zeros.
+/// The parts of a decimal number: value = digits * 10^exponent, digits without leading zeros.
 struct DigitsAndExponent {
   bool negative = false;
   std::string digits;
   int exponent = 0;
 };
 
-/// The exponent after 'e'; empty where it is none or beyond any use.
+/// Reads the exponent after 'e'. Empty if it is none or far too large.
 std::optional<int> read_exponent(std::string_view text) {
-  // from_chars takes a minus but no plus.
+  // from_chars accepts a minus, but no plus.
   if (text.size() > 1 && text.front() == '+' && is_digit(text[1])) text.remove_prefix(1);
   int exponent = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
@@ -56,7 +56,7 @@ std::optional<DigitsAndExponent> read_decimal(std::string_view text) {
   return number;
 }
 
-/// An integer of decimal digits, none of them meaning 0; empty on overflow of 64 bits.
+/// Reads an integer from digits; no digits mean 0. Empty if it overflows 64 bits.
 std::optional<std::uint64_t> read_integer(std::string_view digits) {
   std::uint64_t value = 0;
   if (digits.empty()) return value;
@@ -65,7 +65,7 @@ std::optional<std::uint64_t> read_integer(std::string_view digits) {
   return value;
 }
 
-/// digits * 10^exponent as an integer, rounded half up; empty on overflow of 64 bits.
+/// Returns digits * 10^exponent as an integer, rounded half up. Empty if it overflows 64 bits.
 std::optional<std::uint64_t> to_integer(std::string_view digits, int exponent) {
   if (digits.empty()) return 0;
   if (exponent >= 0) {
@@ -77,13 +77,14 @@ std::optional<std::uint64_t> to_integer(std::string_view digits, int exponent) {
   if (dropped > digits.size()) return 0;
   const std::size_t kept = digits.size() - dropped;
   const std::optional<std::uint64_t> value = read_integer(digits.substr(0, kept));
-  // Far out of a stamp's range, and the one value that rounding up would wrap.
+  // The value is far outside the range of a stamp, or the one value that rounding up would wrap.
   if (!value || *value == std::numeric_limits<std::uint64_t>::max()) return std::nullopt;
   return digits[kept] >= '5' ? *value + 1 : *value;
 }
 
-/// What logs hold as a rule: digits, a point, at most nine decimals, and no rounding or overflow to think of.
-/// @return empty for everything else, which the general way above reads
+/// Reads the usual form in logs: digits, a point, and at most nine decimals. It needs no rounding
+/// and cannot overflow.
+/// @return empty for everything else; the general function above reads that
 std::optional<Stamp> read_plain(std::string_view text) {
   constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max() / 1'000'000'000 - 1;
   const bool negative = !text.empty() && text.front() == '-';

@@ -43,7 +43,7 @@ class Descriptor {
     if (number_ >= 0) ::close(number_);
   }
   [[nodiscard]] int number() const { return number_; }
-  /// @return 0, or the error: a full network disk may say so only here.
+  /// @return 0, or the error. A full network disk may report it only here.
   [[nodiscard]] int close() {
     const int result = ::close(number_);
     number_ = -1;
@@ -65,7 +65,7 @@ int write_all(int descriptor, std::string_view content) {
   return 0;
 }
 
-/// Where the pieces of a text go. @throws OutputError naming `path`.
+/// Returns the sink that writes to a descriptor. @throws OutputError with the name `path`
 TextSink sink_to(int descriptor, const std::string& path) {
   return [descriptor, path](std::string_view piece) {
     if (const int error = write_all(descriptor, piece); error != 0) fail_write(path, error);
@@ -79,13 +79,14 @@ void write_directly(const std::string& path, const Producer& produce) {
   if (const int error = file.close(); error != 0) fail_write(path, error);
 }
 
-/// The file that a chain of symbolic links ends at; the path itself where there is none.
+/// Returns the file at the end of a chain of symbolic links, or the path itself if it is no link.
 std::string link_target(const std::string& path) {
   const std::unique_ptr<char, decltype(&std::free)> resolved(::realpath(path.c_str(), nullptr), &std::free);
   return resolved ? std::string(resolved.get()) : path;
 }
 
-/// A file under another name beside its place, which goes away with this object unless it was put there.
+/// A file under another name beside its final place. The destructor removes it, unless it was
+/// moved there.
 class PartialFile {
  public:
   PartialFile(const std::string& path, const std::string& target) : path_(path) {
@@ -137,7 +138,8 @@ std::string read_text_file(const std::string& path) {
   if (S_ISDIR(status.st_mode)) fail_read(path, EISDIR);
 
   const std::size_t expected = S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : kChunk;
-  std::string content(expected + 1, '\0');  // the byte more sees the end without growing
+  // one more byte shows the end of the file without growing
+  std::string content(expected + 1, '\0');
   std::size_t used = 0;
   while (true) {
     if (used == content.size()) content.resize(used + kChunk);
@@ -166,8 +168,8 @@ void write_file_atomically(const std::string& path, const Producer& produce) {
   }
   if (S_ISDIR(status.st_mode)) fail_write(path, EISDIR);
   if (!S_ISREG(status.st_mode)) return write_directly(path, produce);
-  // Through /dev/fd/N and the like a regular file is open already; putting another in its place would miss
-  // it.
+  // A path like /dev/fd/N may mean an open regular file. A new file in its place would not
+  // be that one.
   if (path.starts_with("/dev/") || path.starts_with("/proc/")) return write_directly(path, produce);
   write_aside(path, produce, status.st_mode & 07777);
 }

@@ -1,4 +1,4 @@
-/// What takes a text piece by piece, so that a large one need not be in memory as a whole.
+/// Receives a text piece by piece, so that a large text need not be in memory as a whole.
 #pragma once
 
 #include <functional>
@@ -7,10 +7,10 @@
 
 namespace waymark::formats {
 
-/// Called with one piece after the other, in order; a piece is valid during the call only. May throw.
+/// Called with the pieces in order. A piece is valid only during the call. The sink may throw.
 using TextSink = std::function<void(std::string_view)>;
 
-/// The whole text that `produce` gives to the sink that it is called with.
+/// Collects the whole text that `produce` gives to its sink.
 template <typename Produce>
 [[nodiscard]] std::string collect_text(Produce produce) {
   std::string text;

@@ -8,8 +8,8 @@
 namespace waymark::formats {
 namespace {
 
-/// A JSON string with its quotes; bytes that are no UTF-8 are replaced, a reason must not make the file
-/// unreadable.
+/// Returns a JSON string with its quotes. Bytes that are no UTF-8 are replaced, so that no text
+/// makes the file unreadable.
 std::string json_text(std::string_view text) {
   return nlohmann::json(std::string(text)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -9,17 +9,17 @@
 #include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/formats/trajectory/detail/map_places.hpp>
 
-// OGC 07-147r2 fixes the order of the elements: name, visibility, description, time, styleUrl, geometry.
-// Colours are aabbggrr.
+// OGC 07-147r2 fixes the order of the elements: name, visibility, description, time, styleUrl,
+// geometry. Colours are aabbggrr.
 
 namespace waymark::formats {
 namespace {
 
-/// How the fixes of a status look.
+/// The appearance of the fixes of a status.
 struct FixStyle {
   FixStatus status;
   std::string_view color;
-  std::string_view icon;  ///< shapes that Google Earth has on board
+  std::string_view icon;  ///< shapes that Google Earth includes
 };
 constexpr std::array<FixStyle, 3> kFixStyles = {{{FixStatus::accepted, "ff4db34d", "placemark_circle"},
                                                  {FixStatus::rejected, "ff2827d6", "forbidden"},
@@ -80,7 +80,7 @@ class KmlWriter {
     out_ += "</coordinates></LineString></Placemark>\n";
   }
 
-  /// The fixes of one receiver after the other, whatever became of them.
+  /// Adds the fixes of each receiver in turn, whatever their status.
   void append_raw_lines() {
     std::set<int> sources;
     for (const FixPoint& fix : fixes_) sources.insert(fix.source);
@@ -103,7 +103,8 @@ class KmlWriter {
     }
   }
 
-  /// Hidden at first: it would lie on the line, and a time slider hides what is not of its moment.
+  /// The track is hidden at first: it would cover the line, and a time slider hides all
+  /// other moments.
   void append_track() {
     std::vector<std::size_t> kept = {0};
     for (std::size_t i = 1; i < points_.size(); ++i) {

@@ -20,7 +20,7 @@ bool holds_pose(std::string_view line) {
   return first != std::string_view::npos && line[first] != '#';
 }
 
-/// Yaw of a unit quaternion (x, y, z, w), rotation order z-y-x, in (-pi, pi].
+/// Returns the yaw of a unit quaternion (x, y, z, w) in (-pi, pi], for the rotation order z-y-x.
 double yaw(const std::array<double, 4>& q, const LineScanner& line) {
   const auto [x, y, z, w] = q;
   const double norm = std::hypot(std::hypot(x, y), std::hypot(z, w));

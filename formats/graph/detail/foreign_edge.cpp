@@ -9,7 +9,7 @@ Eigen::Matrix2d rotation(double angle) {
   return Eigen::Rotation2Dd(angle).toRotationMatrix();
 }
 
-/// How far two numbers may be apart by rounding.
+/// The difference of two numbers that rounding may cause.
 constexpr double kRounding = 1e-12;
 
 }  // namespace
@@ -48,7 +48,7 @@ std::optional<Refusal> say_for_example(ForeignEdge& edge) {
     return Refusal{"cannot factorise the information of an edge that has none on x or y",
                    "write --format g2o"};
   }
-  // Where turning changed no more than the last digits, they stay as they were.
+  // If turning changed only the last digits, the numbers stay as they were.
   const bool same = (diagonal - edge.information).cwiseAbs().maxCoeff() <= rounding;
   const Eigen::Vector3d said =
       same ? Eigen::Vector3d(edge.information.diagonal()) : Eigen::Vector3d(diagonal.diagonal());

@@ -1,4 +1,5 @@
-/// Edges in other words with the same chi2 at all values of their vertices.
+/// Rewrites edges for other programs. The rewritten edge has the same chi2 at all values of
+/// its vertices.
 #pragma once
 
 #include <optional>
@@ -11,33 +12,35 @@
 
 namespace waymark::formats {
 
-/// One edge as a file for another program has it.
+/// One edge in the form that a file for another program needs.
 struct ForeignEdge {
-  std::string_view tag;  ///< in our words
+  std::string_view tag;  ///< as our own formats call it
   std::vector<VertexIndex> vertices;
   std::vector<double> fields;
   Eigen::MatrixXd information;
 };
 
-/// EDGE_GNSS_POSITION as EDGE_SE2 with heading 0 and no information on it; with a lever arm as
-/// EDGE_SE2_OFFSET, the antenna a sensor at the second pose: D = Z^-1 X_i^-1 (X_j O) has the translation
-/// R_i^T (p_j + R_j a - p_i) - z.
+/// Turns EDGE_GNSS_POSITION into EDGE_SE2 with heading 0 and no information on the heading. With a
+/// lever arm it becomes EDGE_SE2_OFFSET, and the antenna is a sensor at the second pose: the
+/// translation of D = Z^-1 X_i^-1 (X_j O) is R_i^T (p_j + R_j a - p_i) - z.
 void say_position_as_pose(ForeignEdge& edge);
 
-/// EDGE_SE2_POINTXY_OFFSET as EDGE_SE2_XY: the body itself would have measured t + R z, with R Omega R^T.
+/// Turns EDGE_SE2_POINTXY_OFFSET into EDGE_SE2_XY. The body itself would have measured t + R z,
+/// with R Omega R^T.
 void say_sensor_as_body(ForeignEdge& edge);
 
-/// Why an edge cannot be said, and what to do instead.
+/// Why an edge cannot be expressed, and the remedy.
 struct Refusal {
   const char* why;
   const char* remedy;
 };
 
-/// EDGE_SE2 for Ceres' example (pose_graph_2d.cc, pose_graph_2d_error_term.h). Its error is e = (R_i^T (p_j -
-/// p_i) - t_Z, wrapped heading), EDGE_SE2's turned by the measured heading, so its information is T Omega T^T
-/// with T = (R_Z, 1). It minimises |L e|^2 with the lower Cholesky factor L of the file's matrix: that is e^T
-/// Omega e for a diagonal matrix with no zero but the last entry (the factorisation ends at a zero), and else
-/// refused.
+/// Rewrites EDGE_SE2 for the example of Ceres (pose_graph_2d.cc, pose_graph_2d_error_term.h).
+/// Its error is e = (R_i^T (p_j - p_i) - t_Z, wrapped heading): that of EDGE_SE2, turned by the
+/// measured heading. So its information is T Omega T^T with T = (R_Z, 1). The example minimises |L
+/// e|^2, where L is the lower Cholesky factor of the matrix in the file. This equals e^T Omega e
+/// only if the matrix is diagonal and no entry but the last is zero (the factorisation ends at a
+/// zero). All other matrices are refused.
 [[nodiscard]] std::optional<Refusal> say_for_example(ForeignEdge& edge);
 
 }  // namespace waymark::formats

@@ -17,7 +17,8 @@ int read_int(LineScanner& line, const Expected& expected) {
   return static_cast<int>(value);
 }
 
-/// No diagonal number below the sum of the others' magnitudes in its column: the usual case.
+/// Tells whether every diagonal number is at least the sum of the other magnitudes in its column.
+/// This is the usual case.
 bool is_diagonally_dominant(const Eigen::MatrixXd& matrix) {
   for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
     double rest = matrix(column, column);

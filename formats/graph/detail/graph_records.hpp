@@ -1,4 +1,4 @@
-/// Statements of the .graph format that stand for themselves: no other line is needed to read them.
+/// Statements of the .graph format that can be read without any other line.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,16 +10,17 @@
 
 namespace waymark::formats {
 
-/// Smallest eigenvalue not below -1e-9 of the largest; zeros are legal (no information on an axis).
+/// Tells whether the smallest eigenvalue is at least -1e-9 times the largest. Zeros are legal: they
+/// mean no information on an axis.
 [[nodiscard]] bool is_positive_semidefinite(const Eigen::MatrixXd& matrix);
 
-/// The next word as the id of a vertex of the graph. @throws InputError where it is none
+/// Reads the next word as the id of a vertex of the graph. @throws InputError if it is none
 [[nodiscard]] VertexIndex read_vertex_id(LineScanner& line, const Graph& graph, std::string_view tag);
 
-/// The rest of a FRAME line. @throws InputError
+/// Reads the rest of a FRAME line. @throws InputError
 [[nodiscard]] Frame read_frame(LineScanner& line);
 
-/// The rest of a GNSS line; whether its vertex exists is not known here. @throws InputError
+/// Reads the rest of a GNSS line. It does not check that the vertex exists. @throws InputError
 [[nodiscard]] Fix read_fix(LineScanner& line);
 
 }  // namespace waymark::formats

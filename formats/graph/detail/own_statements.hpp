@@ -1,4 +1,4 @@
-/// The statements that only a .graph file has: its header, stamps, losses, records, covariances.
+/// The statements that only .graph files have: header, stamps, losses, records, covariances.
 #pragma once
 
 #include <string>
@@ -12,12 +12,13 @@ namespace waymark::formats {
 
 class OwnStatements {
  public:
-  /// Both must live as long as this.
+  /// Both arguments must outlive this object.
   OwnStatements(GraphDocument& document, const TypeRegistry& registry)
       : document_(document), registry_(registry) {}
 
-  /// The rest of a line that begins with `tag`, into the document. The vertices must be there already.
-  /// @param edge_above  the batch whose last edge stands above the line; null: none does
+  /// Reads the rest of a line that begins with `tag` into the document. The vertices must be in the
+  /// document already.
+  /// @param edge_above the batch whose last edge is directly above the line; null if there is none
   /// @return whether the tag is one of these statements
   /// @throws InputError
   [[nodiscard]] bool read(LineScanner& line, std::string_view tag, EdgeBatchBase* edge_above);
@@ -31,7 +32,7 @@ class OwnStatements {
   void read_time(LineScanner& line);
   void read_lever(LineScanner& line);
   void check_type(LineScanner& line) const;
-  /// For statements that hold for the whole file.
+  /// Refuses a second line of a statement that holds for the whole file.
   void only_once(LineScanner& line, const std::string& statement);
 
   GraphDocument& document_;

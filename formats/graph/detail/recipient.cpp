@@ -25,7 +25,7 @@ constexpr std::array kGtsam = {GraphFormat::g2o, GraphFormat::covariance, GraphF
 
 constexpr VertexId kMostInt = std::numeric_limits<std::int32_t>::max();
 constexpr VertexId kLeastInt = std::numeric_limits<std::int32_t>::min();
-// A key's highest byte is the letter of a GTSAM symbol.
+// The highest byte of a key is the letter of a GTSAM symbol.
 constexpr VertexId kMostKey = (VertexId{1} << 56) - 1;
 
 constexpr Recipient kAnyG2o = {
@@ -36,8 +36,9 @@ constexpr Recipient kAnyCovariance = {
     .name = "covariance", .reader = "GTSAM's covariance format", .formats = kCovariance, .tags = kPoseTags};
 
 constexpr std::array<Recipient, 4> kProfiles = {{
-    // OptimizableGraph::load: ids are int, below zero means "no vertex". EdgeSE2PointXYOffset::computeError
-    // takes the point into the body's frame, not the sensor's.
+    // OptimizableGraph::load: ids are int, and a negative id means "no vertex".
+    // EdgeSE2PointXYOffset::computeError takes the point into the frame of the body, not
+    // of the sensor.
     {.name = "g2o",
      .reader = "g2o",
      .formats = kG2o,
@@ -46,9 +47,8 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .least_id = 0,
      .most_id = kMostInt,
      .applies_point_offset = false},
-    // load2D of its dataset: keys are unsigned; unknown tags are passed over, FIX and all edges to VERTEX_XY
-    // among
-    // them; a zero on the diagonal is taken for a sign of another order and thrown out.
+    // load2D of its dataset: keys are unsigned. It skips unknown tags, which include FIX and all
+    // edges to VERTEX_XY. It takes a zero on the diagonal as a sign of another order and throws.
     {.name = "gtsam",
      .reader = "GTSAM's load2D",
      .formats = kGtsam,
@@ -56,7 +56,8 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .least_id = 0,
      .most_id = kMostKey,
      .zero_information = false},
-    // Its pose_graph_2d: two tags, any other ends the reading; the lowest id is held.
+    // Its pose_graph_2d knows two tags and stops at any other. It holds the vertex with
+    // the lowest id.
     {.name = "ceres",
      .reader = "Ceres' pose_graph_2d",
      .formats = kG2o,
@@ -65,8 +66,8 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .least_id = kLeastInt,
      .most_id = kMostInt,
      .evaluates_as_example = true},
-    // Its posegraph2 and posegraph: a second edge from one vertex to another is dropped; the tree of all
-    // poses has one root, the vertex of the lowest id, which stays.
+    // Its posegraph2 and posegraph drop a second edge from one vertex to another. The tree of all
+    // poses has one root, the vertex with the lowest id, which is held.
     {.name = "toro",
      .reader = "TORO",
      .formats = kToro,

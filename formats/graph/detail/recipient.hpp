@@ -1,5 +1,6 @@
-/// Who reads a graph file that is not our own, and what that reader understands: facts about other programs,
-/// one table row each. What a graph means there, and what would be lost, is foreign_graph.hpp's to say.
+/// Recipients: programs that read graph files, and what they support. These are facts about other
+/// programs, one table row each. foreign_graph.hpp decides how a graph is expressed for them and
+/// what would be lost.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +13,37 @@
 
 namespace waymark::formats {
 
-/// What becomes of FIX.
+/// How the recipient treats FIX.
 enum class Fixing {
   stated,     ///< the file says which vertices are fixed
-  none,       ///< nothing is fixed; where the graph lies is the reader's affair
-  lowest_id,  ///< the reader always fixes the vertex of the lowest id, and no other
+  none,       ///< nothing is fixed; the reader chooses the frame
+  lowest_id,  ///< the reader always fixes the vertex with the lowest id, and no other
 };
 
 struct Recipient {
-  std::string_view name;                   ///< of the profile; of the format where any reader is meant
-  std::string_view reader;                 ///< in sentences
-  std::span<const GraphFormat> formats;    ///< that it reads; the first is what is written by default
-  std::span<const std::string_view> tags;  ///< of vertices and edges, in our words
+  std::string_view name;    ///< name of the profile, or of the format if any reader of it is meant
+  std::string_view reader;  ///< name of the reader in messages
+  /// formats that it reads; the first is the default for writing
+  std::span<const GraphFormat> formats;
+  /// vertices and edges that it reads, as our own formats call them
+  std::span<const std::string_view> tags;
   Fixing fixing = Fixing::none;
   VertexId least_id = std::numeric_limits<VertexId>::min();
   VertexId most_id = std::numeric_limits<VertexId>::max();
-  bool zero_information = true;       ///< an axis without information is read as that
-  bool parallel_edges = true;         ///< a second edge between two vertices counts
-  bool separate_parts = true;         ///< vertices that no edges join may be in one file
-  bool applies_point_offset = true;   ///< the offset of EDGE_SE2_POINTXY_OFFSET enters its error
-  bool evaluates_as_example = false;  ///< EDGE_SE2 means what Ceres' example makes of it: say_for_example()
+  bool zero_information = true;      ///< it understands an axis without information
+  bool parallel_edges = true;        ///< it counts a second edge between the same two vertices
+  bool separate_parts = true;        ///< one file may hold parts that no edge joins
+  bool applies_point_offset = true;  ///< its error of EDGE_SE2_POINTXY_OFFSET uses the offset
+  /// it evaluates EDGE_SE2 like the example of Ceres: say_for_example()
+  bool evaluates_as_example = false;
 };
 
-/// The reader of any file of this format. @param format not our own
+/// Returns a recipient that stands for every reader of this format. @param format not our own
 [[nodiscard]] const Recipient& any_reader(GraphFormat format);
 
-/// The programs that there are profiles for: g2o, gtsam, ceres, toro.
+/// Returns the programs with a profile: g2o, gtsam, ceres, toro.
 [[nodiscard]] std::span<const Recipient> profiles();
-/// Null where the name is none of them.
+/// Returns null if no profile has this name.
 [[nodiscard]] const Recipient* find_profile(std::string_view name);
 
 }  // namespace waymark::formats

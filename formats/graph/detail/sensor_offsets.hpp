@@ -1,6 +1,6 @@
-/// The poses of sensors in the body, which g2o files keep in lines of their own (`PARAMS_SE2OFFSET id x y
-/// heading`) that edges name by id. Here they are fields of the edges; so a reader resolves ids into numbers,
-/// and a writer makes a line of each set of numbers.
+/// The poses of sensors in the body frame. g2o files keep them in separate lines (`PARAMS_SE2OFFSET
+/// id x y heading`), and edges name them by id. Here they are fields of the edges. So a reader
+/// turns ids into numbers, and a writer makes one line for each set of numbers.
 #pragma once
 
 #include <array>
@@ -16,7 +16,8 @@ namespace waymark::formats {
 
 inline constexpr std::string_view kOffsetTag = "PARAMS_SE2OFFSET";
 
-/// Whether edges of this type have fields that g2o keeps in parameter lines: those behind the first field.
+/// Tells whether edges of this type have fields that g2o keeps in parameter lines. These are all
+/// fields after the first.
 [[nodiscard]] bool has_offsets(std::string_view tag);
 
 class SensorOffsets {
@@ -25,24 +26,25 @@ class SensorOffsets {
 
   // ---- Reading
 
-  /// The rest of a parameter line. @throws InputError, also for an id that is defined already
+  /// Reads the rest of a parameter line. @throws InputError, also if the id is defined already
   void read(LineScanner& line);
-  /// The ids and the measurement of an edge with offsets as its fields, appended to `values`.
-  /// @throws InputError, also for an id that is not defined
+  /// Reads the ids and the measurement of an edge with offsets, and appends them to `values` as the
+  /// fields of the edge.
+  /// @throws InputError, also if an id is not defined
   void read_fields(LineScanner& line, const EdgeType& type, std::vector<double>& values) const;
 
   // ---- Writing
 
-  /// Gives every new offset among an edge's fields the next id.
+  /// Gives every new offset in the fields of an edge the next id.
   void collect(std::string_view tag, const std::vector<double>& fields);
-  /// All parameter lines, in the order of their ids.
+  /// Writes all parameter lines, in the order of their ids.
   void write(TextBuilder& out) const;
-  /// The ids, then the measurement, of an edge that collect() has seen.
+  /// Writes the ids and then the measurement of an edge that was given to collect().
   void write_fields(std::string_view tag, const std::vector<double>& fields, TextBuilder& out) const;
 
  private:
   std::map<std::int64_t, Offset> by_id_;
-  std::map<Offset, std::int64_t> ids_;  // of those written
+  std::map<Offset, std::int64_t> ids_;  // ids of the offsets that are written
 };
 
 }  // namespace waymark::formats

@@ -7,11 +7,11 @@
 
 namespace waymark::formats {
 
-/// A text, quoted where it holds a separator, a quote or a line end.
+/// Appends a text. It is quoted if it contains a separator, a quote or a line end.
 void append_csv_text(std::string& out, std::string_view text);
 
-/// A separator and the shortest digits that read back to the same double; an empty field where there is no
-/// value or it is not finite.
+/// Appends a separator and the shortest digits that read back to the same double. The field is
+/// empty if there is no value or it is not finite.
 void append_csv_number(std::string& out, const std::optional<double>& value);
 
 }  // namespace waymark::formats

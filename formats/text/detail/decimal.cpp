@@ -21,9 +21,9 @@ double power_of_two(int exponent) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent) << 52U);
 }
 
-/// numerator / denominator, rounded once. Both are shifted until their top bit is set; the quotient of the
-/// integers, times 2^63, then has 63 or 64 bits, of which a double takes 53, and its last bit only has to say
-/// whether there is a remainder.
+/// Returns numerator / denominator, rounded once. Both are shifted until their top bit is set. The
+/// quotient of the integers, times 2^63, then has 63 or 64 bits. A double takes 53 of them, and the
+/// last bit only has to tell whether there is a remainder.
 double divide(std::uint64_t numerator, std::uint64_t denominator) {
   if (numerator == 0) return 0;
   const int up = std::countl_zero(numerator);
@@ -40,7 +40,7 @@ const char* skip_zeros(const char* place, const char* end) {
   return place;
 }
 
-/// Appends the digits from `place` to `number`; returns the first character that is none.
+/// Appends the digits from `place` to `number`. Returns the first character that is no digit.
 const char* append_digits(const char* place, const char* end, std::uint64_t& number) {
   for (; place != end; ++place) {
     const auto digit = static_cast<unsigned char>(*place - '0');
@@ -69,7 +69,7 @@ Decimal read_plain_decimal(const char* begin, const char* end) {
     decimals = place - fraction;
     any_digit = any_digit || decimals > 0;
   }
-  // Beyond, `number` has overflowed, or the power of ten does.
+  // With more digits `number` has overflowed, or the power of ten does.
   if (!any_digit || significant > kMostDigits || decimals > kMostDigits) return {};
   const double value = decimals == 0 ? static_cast<double>(number)
                                      : divide(number, kPowersOfTen[static_cast<std::size_t>(decimals)]);

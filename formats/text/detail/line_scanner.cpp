@@ -8,7 +8,7 @@
 namespace waymark::formats {
 namespace {
 
-/// from_chars knows no '+'; one sign at most.
+/// Skips one '+', which from_chars does not accept.
 const char* skip_plus(const char* begin, const char* end) {
   const bool plus = end - begin > 1 && *begin == '+' && begin[1] != '-';
   return plus ? begin + 1 : begin;

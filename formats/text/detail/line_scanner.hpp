@@ -1,5 +1,5 @@
-/// Reads one line token by token; errors name file, line and column. For files in which every character
-/// counts.
+/// Reads one line token by token. Errors name file, line and column. It is for files in which every
+/// character counts.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,18 @@
 
 namespace waymark::formats {
 
-/// A word of a file as a message shows it: in quotes, cut after 40 characters, bytes that a terminal could
-/// take for a command (and all beyond ASCII) as `\xNN`; an empty one is "the end of the line".
+/// Returns a word of a file for a message: in quotes and cut after 40 characters. Bytes beyond
+/// ASCII, and those that a terminal could take for a command, become `\xNN`. An empty word becomes
+/// "the end of the line".
 [[nodiscard]] std::string quote_word(std::string_view word);
 
-/// A name out of a file as a message shows it: without quotes, cut after 40 bytes, control characters as
-/// `\xNN`, what is beyond ASCII as it stands.
+/// Returns a name from a file for a message: without quotes and cut after 40 bytes. Control
+/// characters become `\xNN`; characters beyond ASCII are kept.
 [[nodiscard]] std::string shown_name(std::string_view name);
 
-/// What the scanner expected, made into text only when it fails.
+/// The expected token. It becomes text only if the scanner fails.
 struct Expected {
-  std::string_view tag;    ///< word at the line's start
+  std::string_view tag;    ///< word at the beginning of the line
   std::string_view field;  ///< name of the number group
   int index = -1;          ///< number within the group, -1: a single one
 };
@@ -34,28 +35,28 @@ class LineScanner {
         file_(file),
         line_number_(line_number) {}
 
-  /// The next word, empty at the end of the line.
+  /// Returns the next word, empty at the end of the line.
   std::string_view word() {
     skip_blanks();
     while (cursor_ != end_ && !is_blank(*cursor_)) ++cursor_;
     return {word_, static_cast<std::size_t>(cursor_ - word_)};
   }
-  /// The rest of the line without surrounding blanks.
+  /// Returns the rest of the line without surrounding blanks.
   std::string_view rest();
-  /// Whether nothing but blanks and a comment is left.
+  /// Tells whether only blanks and a comment are left.
   [[nodiscard]] bool at_end() const { return LineScanner(*this).next_is_comment(); }
 
-  /// A finite number. @throws InputError
+  /// Reads a finite number. @throws InputError
   double number(const Expected& expected);
-  /// A finite number, or nothing for the word "-".
+  /// Reads a finite number, or nothing for the word "-".
   std::optional<double> optional_number(const Expected& expected);
   std::int64_t integer(const Expected& expected);
-  /// @throws InputError where anything but a comment is left.
+  /// @throws InputError if anything but a comment is left
   void end(std::string_view tag) {
     if (!next_is_comment()) fail_end(tag);
   }
 
-  /// @throws InputError at the column of the last word read.
+  /// @throws InputError at the column of the last word
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
@@ -76,7 +77,7 @@ class LineScanner {
   const char* begin_;
   const char* end_;
   const char* cursor_;
-  const char* word_;  // where the last word begins
+  const char* word_;  // beginning of the last word
   const std::string& file_;
   std::size_t line_number_;
 };

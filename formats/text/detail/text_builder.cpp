@@ -8,7 +8,8 @@
 namespace waymark::formats {
 namespace {
 
-/// A whole number that to_chars writes without exponent: it has at most four zeros at its end.
+/// Tells whether to_chars writes a whole number without exponent. It does so if there are at most
+/// four trailing zeros.
 bool is_plain_integer(double value) {
   constexpr double kAllExact = 9007199254740992;  // 2^53
   constexpr std::int64_t kZeros = 100'000;
@@ -17,10 +18,10 @@ bool is_plain_integer(double value) {
   return static_cast<double>(whole) == value && whole % kZeros != 0;
 }
 
-/// The shorter of plain and scientific notation with the fewest digits that read back exactly, as to_chars
-/// writes it. to_chars alone would do; fmt finds the same digits in a third of the time, and chooses the
-/// notation alike for numbers that are not whole and below 1e15, but for one digit at the fourth decimal
-/// (0.0002, 2e-04).
+/// Writes the shorter of plain and scientific notation with the fewest digits that read back
+/// exactly, as to_chars does. fmt finds the same digits in a third of the time. For numbers below
+/// 1e15 that are not whole it also chooses the same notation, except for one digit at the fourth
+/// decimal (0.0002, 2e-04).
 char* write_shortest(char* begin, char* end, double value) {
   if (is_plain_integer(value)) return std::to_chars(begin, end, static_cast<std::int64_t>(value)).ptr;
   const double magnitude = std::abs(value);
@@ -51,17 +52,19 @@ TextBuilder& TextBuilder::long_word(std::string_view text) {
   return *this;
 }
 
-// Numbers come again and again: the information of one edge is that of the next.
+// Numbers repeat: consecutive edges often have the same information matrix.
 void TextBuilder::write_number(double value) {
   const auto bits = std::bit_cast<std::uint64_t>(value);
-  constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // 2^64 divided by the golden ratio: mixes all bits
+  // 2^64 divided by the golden ratio: mixes all bits
+  constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;
   Recent& recent = recent_[(bits * kSpread) >> (64U - kRecentBits)];
   if (recent.bits != bits) {
     char* const begin = recent.text.data();
     recent.length = write_shortest(begin, begin + recent.text.size(), value) - begin;
     recent.bits = bits;
   }
-  std::copy(recent.text.begin(), recent.text.end(), cursor_);  // the whole is faster than a part
+  // copying the whole is faster than copying a part
+  std::copy(recent.text.begin(), recent.text.end(), cursor_);
   cursor_ += recent.length;
 }
 

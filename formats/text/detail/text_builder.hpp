@@ -1,5 +1,5 @@
-/// Builds a text of words and numbers separated by blanks; numbers in the shortest form that reads back
-/// exactly (what std::to_chars writes).
+/// Builds a text of words and numbers, separated by blanks. A number has the shortest form that
+/// reads back exactly (std::to_chars).
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace waymark::formats {
 
 class TextBuilder {
  public:
-  /// @param sink takes the text in pieces that end anywhere. The last one comes with finish().
+  /// @param sink receives the text in pieces, which may end anywhere; finish() sends the last one
   explicit TextBuilder(TextSink sink);
 
   TextBuilder& word(std::string_view text) {
@@ -40,17 +40,17 @@ class TextBuilder {
     line_begins_ = true;
     return *this;
   }
-  /// A line of a word and an integer.
+  /// Adds a line with a word and an integer.
   TextBuilder& line(std::string_view text, std::int64_t value) {
     return word(text).integer(value).end_line();
   }
 
-  /// Hands over what is left.
+  /// Sends the rest of the text.
   void finish() { flush(); }
 
  private:
   static constexpr std::size_t kPiece = 1U << 18U;
-  static constexpr std::size_t kLongestNumber = 32;  // of 24 characters, and a blank
+  static constexpr std::size_t kLongestNumber = 32;  // 24 characters and a blank fit
 
   [[nodiscard]] char* end() { return buffer_.get() + kPiece; }
   [[nodiscard]] std::size_t room() { return static_cast<std::size_t>(end() - cursor_); }
@@ -66,10 +66,10 @@ class TextBuilder {
   TextBuilder& long_word(std::string_view text);
   void write_number(double value);
 
-  /// A number as it was written before.
+  /// A number and its text.
   struct Recent {
     std::uint64_t bits = 0;
-    std::array<char, 24> text{'0'};  // as long as any
+    std::array<char, 24> text{'0'};  // as long as the longest number
     std::ptrdiff_t length = 1;
   };
   static constexpr unsigned kRecentBits = 6;
@@ -77,7 +77,7 @@ class TextBuilder {
   TextSink sink_;
   std::unique_ptr<char[]> buffer_;
   char* cursor_;
-  std::array<Recent, 1U << kRecentBits> recent_;  // by hash; at first all hold the number 0
+  std::array<Recent, 1U << kRecentBits> recent_;  // by hash; at first every entry is the number 0
   bool line_begins_ = true;
 };
 

@@ -12,7 +12,7 @@ namespace waymark::formats {
 namespace {
 
 constexpr std::size_t kXmlPiece = 64U << 10U;
-/// Expat holds a token until it is whole, and scans it anew with every piece.
+/// Expat holds a token until it is complete, and scans it again with every piece.
 constexpr std::size_t kLongestToken = 1U << 20U;
 constexpr std::size_t kDeepest = 64;
 constexpr std::size_t kMostUnknown = 1000;
@@ -28,7 +28,7 @@ void XmlStream::FreeParser::operator()(XML_ParserStruct* parser) const {
   XML_ParserFree(parser);
 }
 
-/// What expat calls. Exceptions end here, and leave by parse().
+/// The callbacks of expat. Exceptions stop here and are thrown again by parse().
 struct XmlStream::Handlers {
   template <class Call>
   static void guarded(void* stream, Call call) {

@@ -6,8 +6,8 @@
 namespace waymark::formats {
 namespace {
 
-/// Length of the UTF-8 character at the beginning of a text that is not empty; 0: there is none that XML 1.0
-/// allows (section 2.2).
+/// Returns the length of the UTF-8 character at the beginning of a text that is not empty. 0: XML
+/// 1.0 allows no character here (section 2.2).
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -20,7 +20,9 @@ std::size_t character_length(std::string_view text) {
     code = code << 6U | (byte(i) & 0x3FU);
   }
   constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800,
-                                         0x10000};  // by length: none is longer than need be
+                                         // smallest code point of each length: longer forms
+                                         // are not allowed
+                                         0x10000};
   const bool surrogate = code >= 0xD800 && code < 0xE000;
   if (code < kSmallest[length] || code > 0x10FFFF || surrogate || code == 0xFFFE || code == 0xFFFF) return 0;
   return length;

@@ -1,4 +1,4 @@
-/// Text as XML 1.0, and HTML, may hold it.
+/// Makes text safe for XML 1.0 and HTML.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace waymark::formats {
 
-/// Escapes & < > " ' for elements and quoted attributes alike. Bytes that are no UTF-8, characters that
-/// XML 1.0 does not allow even when escaped, and the other control characters but tab and line feed become
-/// U+FFFD.
+/// Escapes & < > " ' for elements and for quoted attributes. These become U+FFFD: bytes that are no
+/// UTF-8, characters that XML 1.0 forbids even when escaped, and control characters other than tab
+/// and line feed.
 [[nodiscard]] std::string xml_text(std::string_view text);
 
 }  // namespace waymark::formats

@@ -12,7 +12,8 @@
 namespace waymark::formats {
 namespace {
 
-constexpr std::int64_t kEarliestDate = 316'569'600'000'000'000;  // 1980-01-13: GPS' second week
+// 1980-01-13: the second week of GPS
+constexpr std::int64_t kEarliestDate = 316'569'600'000'000'000;
 constexpr std::int64_t kLatestDate = 8'835'955'200'000'000'000;  // 2250-01-01
 
 MapPlace checked(std::string_view format, std::string_view what, std::size_t index, Stamp stamp,

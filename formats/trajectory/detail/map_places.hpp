@@ -1,4 +1,4 @@
-/// What the writers of map formats share: checked places, dates.
+/// Checked places and dates, for all writers of map formats.
 #pragma once
 
 #include <optional>
@@ -16,24 +16,24 @@ struct MapPlace {
   double longitude_deg = 0;
 };
 
-/// The place of a pose or fix. @param format  for the message
+/// Returns the place of a pose or fix. @param format for the message
 /// @throws OutputError "KML: pose 3 at 12.000000000 s: no latitude and longitude"
 [[nodiscard]] MapPlace place_of(std::string_view format, std::span<const TrajectoryPoint> points,
                                 std::size_t index);
 [[nodiscard]] MapPlace place_of(std::string_view format, std::span<const FixPoint> fixes, std::size_t index);
 
-/// "rejected: displacement"; the status alone where the reason adds nothing.
+/// Returns "rejected: displacement", or only the status if the reason adds nothing.
 [[nodiscard]] std::string verdict(const FixPoint& fix);
 
-/// The stamp as a date: POSIX nanoseconds; empty where it is none (see map_formats.hpp).
+/// Returns the stamp as a date in POSIX nanoseconds. Empty if it is no date (see map_formats.hpp).
 [[nodiscard]] std::optional<Stamp> date_of(Stamp stamp, TimeScale scale);
 
-/// Dates of the stamps of a file: all or none.
+/// The dates of the stamps of a file. Either all stamps are dates or none is.
 class MapDates {
  public:
   MapDates(std::span<const TrajectoryPoint> points, std::span<const FixPoint> fixes, TimeScale scale);
   [[nodiscard]] bool known() const { return known_; }
-  /// "2006-06-01T08:16:07.04Z"; only where dates are known.
+  /// Returns "2006-06-01T08:16:07.04Z". Call it only if dates are known.
   [[nodiscard]] std::string text(Stamp stamp) const;
 
  private:

@@ -12,7 +12,7 @@ constexpr std::uint32_t kMostStandardId = 0x7FF;
 constexpr std::uint32_t kMostExtendedId = 0x1FFF'FFFF;
 constexpr std::uint32_t kErrorFrame = 0x2000'0000;
 
-/// Value of a hex digit by character; negative for any other.
+/// The value of each hex digit; negative for other characters.
 constexpr auto kHex = [] {
   std::array<std::int8_t, 256> values{};
   values.fill(-1);
@@ -53,7 +53,7 @@ CanLine trouble(const Cursor& cursor, std::string_view what) {
   return result;
 }
 
-/// With `candump -x` direction and flags stand before the id: "RX - -" or "TX B E".
+/// With `candump -x`, direction and flags are before the id: "RX - -" or "TX B E".
 void skip_direction(Cursor& cursor) {
   const std::string_view rest = cursor.rest();
   if (!rest.starts_with("RX ") && !rest.starts_with("TX ")) return;
@@ -63,7 +63,7 @@ void skip_direction(Cursor& cursor) {
   }
 }
 
-/// The id; sets kind and id. @return how many digits it has, 0 where it is none.
+/// Reads the id and sets kind and id. @return the number of its digits, 0 if it is no id
 std::size_t read_id(std::string_view text, CanLine& result) {
   std::uint32_t id = 0;
   std::size_t digits = 0;
@@ -82,7 +82,8 @@ std::size_t read_id(std::string_view text, CanLine& result) {
   return id <= kMostExtendedId ? digits : 0;
 }
 
-/// What follows the id in the console layout: "   [8]  03 41", "  [08]  ..." of CAN FD.
+/// Reads the rest of a line after the id in the console layout: "   [8]  03 41", or "  [08]
+/// ..." for CAN FD.
 CanLine read_console(CanLine result, Cursor cursor) {
   cursor.skip_blanks();
   if (cursor.peek() != '[') return trouble(cursor, "expected '#' or '[' after the id");
@@ -148,8 +149,8 @@ std::string_view read_can_data(const CanLine& line, CanData& data) {
   while (at < text.size() && data.size < most) {
     const int high = hex(text[at]);
     if (high < 0) {
-      // Log lines may part bytes by points; behind the last byte come the direction ("R", "T") or a raw
-      // length.
+      // In a log, points may separate the bytes. The direction ("R", "T") or a raw length may
+      // follow the last byte.
       if (console ? !is_blank(text[at]) : text[at] != '.') break;
       ++at;
       continue;
@@ -165,7 +166,7 @@ std::string_view read_can_data(const CanLine& line, CanData& data) {
 }
 
 std::optional<Stamp> can_stamp(std::string_view text) {
-  // "1627274455.012500" is all that is usual; the rest is left to the general reader.
+  // "1627274455.012500" is the usual form. The general reader takes the others.
   constexpr std::size_t kDecimals = 6;
   const std::size_t point = text.size() > kDecimals ? text.size() - kDecimals - 1 : 0;
   if (point == 0 || point > 10 || text[point] != '.') return stamp_from_decimal_seconds(text);
@@ -175,7 +176,7 @@ std::optional<Stamp> can_stamp(std::string_view text) {
     if (text[i] < '0' || text[i] > '9') return stamp_from_decimal_seconds(text);
     microseconds = 10 * microseconds + (text[i] - '0');
   }
-  // Ten digits of seconds are at most 9999999999 s, beyond what a stamp holds.
+  // Ten digits of seconds may reach 9999999999 s, which is more than a stamp holds.
   std::int64_t nanoseconds = 0;
   if (__builtin_mul_overflow(microseconds, std::int64_t{1000}, &nanoseconds)) return std::nullopt;
   return Stamp{nanoseconds};

@@ -23,14 +23,15 @@
 namespace waymark::formats {
 namespace {
 
-/// 2106, when 32 bits of seconds end: beyond that a number is no date.
+/// The year 2106, when 32 bits of seconds end. A number beyond it is no date.
 constexpr std::int64_t kLastDate = 4'294'967'295'000'000'000;
 
-/// What is wanted of one message, and what came.
+/// The wanted signals of one message, and its counts.
 struct MessageUse {
   std::size_t frames = 0;
-  std::vector<std::size_t> bound;                               ///< indices of its BoundSignals
-  std::array<std::size_t, kMostInterfaces + 1> by_interface{};  ///< counted for wanted messages only
+  std::vector<std::size_t> bound;  ///< indices of its BoundSignals
+  /// counted only for wanted messages
+  std::array<std::size_t, kMostInterfaces + 1> by_interface{};
 };
 
 class CandumpDecoder final : public LineDecoder {
@@ -72,15 +73,15 @@ class CandumpDecoder final : public LineDecoder {
   MessageTable table_;
   std::vector<Quantity> quantities_;
   std::vector<BoundSignal> bound_;
-  std::vector<std::size_t> outside_;  ///< by BoundSignal: values that were none
-  std::vector<MessageUse> uses_;      ///< by message
+  std::vector<std::size_t> outside_;  ///< by BoundSignal: values outside the range
+  std::vector<MessageUse> uses_;      ///< one entry per message
   std::optional<FixAssembler> fixes_;
   std::int64_t offset_ = 0;
   Interfaces interfaces_;
   std::size_t unknown_ = 0, remote_ = 0, errors_ = 0;
   bool any_frame_ = false;
   CanData frame_;
-  std::vector<SignalValue> values_;  ///< of the frame at hand
+  std::vector<SignalValue> values_;  ///< of the current frame
 };
 
 void CandumpDecoder::take_line(std::string_view line, std::size_t number) {
@@ -146,7 +147,7 @@ void CandumpDecoder::take_message(const MessageUse& use, const CanLine& line, st
 void CandumpDecoder::take_values(Stamp stamp, std::size_t number) {
   if (fixes_) return fixes_->take(stamp, number, values_);
   ++data_.records;
-  // The quantities of these streams are the readings, but for `time`, which the log gives.
+  // The readings have the quantities of these streams except `time`, which comes from the log.
   SensorTable& table = data_.readings;
   const std::size_t row = table.values.size();
   table.stamps.push_back(stamp);
@@ -154,7 +155,8 @@ void CandumpDecoder::take_values(Stamp stamp, std::size_t number) {
   for (const SignalValue& signal : values_) table.values[row + signal.quantity] = signal.value;
 }
 
-/// The quantity as the frame has it; NaN, and counted, where it is outside its range.
+/// Returns the quantity in a frame. If it is outside its range, it is counted, and the
+/// result is NaN.
 double CandumpDecoder::value_of(const DbcSignal& signal, std::size_t index) {
   const BoundSignal& bound = bound_[index];
   const Quantity& quantity = quantities_[bound.quantity];
@@ -182,7 +184,7 @@ std::optional<Stamp> CandumpDecoder::stamp_of(std::string_view text) const {
   return stamp;
 }
 
-/// Vector's text logs begin with "date Mon Jul 26 ..." and "base hex  timestamps absolute".
+/// The text logs of Vector begin with "date Mon Jul 26 ..." and "base hex  timestamps absolute".
 void CandumpDecoder::refuse_asc(std::string_view line) const {
   if (!line.starts_with("date ") && !line.starts_with("base hex") && !line.starts_with("base dec")) return;
   throw InputError(
@@ -240,7 +242,7 @@ void CandumpDecoder::note_interfaces() {
   }
 }
 
-/// Where not one frame with a wanted signal came: what was looked for, and where.
+/// No frame had a wanted signal: the message lists the signals, and the frames that the log has.
 void CandumpDecoder::refuse_silence() const {
   std::string wanted;
   for (const BoundSignal& bound : bound_) {

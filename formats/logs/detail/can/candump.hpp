@@ -1,33 +1,38 @@
-/// CAN logs of candump (can-utils) with a DBC file: odometry, fixes and sensor readings by signal name.
+/// CAN logs of candump (can-utils) with a DBC file: odometry, fixes and sensor readings by
+/// signal name.
 #pragma once
 
 #include <waymark/core/drive/log_reader.hpp>
 
 namespace waymark::formats {
 
-/// Reader "candump". formats/logs/README.md has layouts, units and traps.
+/// Reader "candump". formats/logs/README.md describes layouts, units and pitfalls.
 ///
-/// `request.companions["dbc"]` is the DBC; `request.columns` names the signal of every quantity: "SIGNAL",
-/// "MESSAGE.SIGNAL", or either behind an interface, "can0:SIGNAL" (without one, frames of all interfaces are
-/// read). A unit that is not stated is taken from the DBC and noted.
+/// `request.companions["dbc"]` is the DBC file. `request.columns` names the signal of every
+/// quantity: "SIGNAL", "MESSAGE.SIGNAL", or either of them after an interface, "can0:SIGNAL".
+/// Without an interface, frames of all interfaces are read. If the request states no unit, the unit
+/// of the DBC is used, and a note says so.
 ///
-/// **Odometry and sensors**: every frame that carries a wanted signal is a row of `readings`, NaN in the
-/// columns whose signals it does not carry.
+/// **Odometry and sensors**: every frame with a wanted signal is a row of `readings`. Columns whose
+/// signals the frame does not carry are NaN.
 ///
-/// **Fixes and truth**: see FixAssembler: a frame with the position makes a fix, other quantities come from
-/// the frame nearest in time within 0.1 s. Accuracy as in CSV. Where `gnss_time` is mapped (seconds since
-/// 1970, UTC), every frame of it is a ClockPair.
+/// **Fixes and truth** (see FixAssembler): a frame with the position makes a fix. The other
+/// quantities come from the frame nearest in time, within 0.1 s. The rules for accuracy are those
+/// of the CSV reader. If `gnss_time` is mapped (seconds since 1970, UTC), every frame with it is
+/// a ClockPair.
 ///
-/// **Stamps** are the logger's, digit by digit, taken to be on `request.time_scale`; `time_offset_s` is
-/// added.
+/// **Stamps** are those of the logger, digit by digit, read as `request.time_scale`;
+/// `time_offset_s` is added.
 ///
-/// **Corrupt**: lines that are no frames, and wanted frames with a garbled stamp, garbled data, or fewer
-/// bytes than the signal needs. A value outside its quantity's range (often the bus's "not available") is
-/// none, and counted in the notes; a position outside is corrupt. Frames of other ids are not looked at
-/// beyond the id. Error and remote frames are passed over and counted.
+/// **Corrupt**: lines that are no frames, and wanted frames with a garbled stamp, garbled data
+/// or too few bytes for the signal. A value outside the range of its quantity (often the "not
+/// available" of the bus) is ignored and counted in the notes; a position outside its range is
+/// corrupt. Of frames with other ids only the id is read. Error and remote frames are skipped
+/// and counted.
 ///
-/// @throws InputError from open for a missing or malformed DBC, a column that does not fit it, other
-/// companions, fixes without any accuracy; from take for a Vector ASC log (the remedy is named)
+/// @throws InputError from open for a missing or malformed DBC, a column that does not fit it,
+/// other companions, or fixes without any accuracy; from take for a Vector ASC log (the message
+/// names the remedy)
 class CandumpReader final : public LogReader {
  public:
   [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,

@@ -9,7 +9,7 @@
 namespace waymark::formats {
 namespace {
 
-/// Time between two stamps, whichever is earlier, without overflow.
+/// Returns the time between two stamps in any order, without overflow.
 std::uint64_t distance(Stamp a, Stamp b) {
   const auto x = static_cast<std::uint64_t>(a.nanoseconds);
   const auto y = static_cast<std::uint64_t>(b.nanoseconds);
@@ -88,7 +88,7 @@ void FixAssembler::complain(std::size_t line, const std::string& what) {
   add_corrupt(data_, path_, line, 1, what);
 }
 
-/// Begins a fix from the two parts, unless these are of different bursts.
+/// Opens a fix from the two parts, unless they belong to different bursts.
 void FixAssembler::open() {
   const bool latitude_later = latitude_part_.line >= longitude_part_.line;
   const Given& later = latitude_later ? latitude_part_ : longitude_part_;

@@ -1,4 +1,4 @@
-/// Fixes out of signals that come in several frames; private to the candump reader.
+/// Assembles fixes from signals in several frames; private to the candump reader.
 #pragma once
 
 #include <cstddef>
@@ -17,19 +17,20 @@
 
 namespace waymark::formats {
 
-/// Frames of one fix come within this time. Receivers send them in one burst (2 ms in the drive at hand).
+/// The frames of one fix arrive within this time. Receivers send them in one burst (2 ms in the
+/// drive at hand).
 inline constexpr std::int64_t kBurstNanoseconds = 100'000'000;
 
-/// A quantity from a frame; NaN where the signal was outside the quantity's range.
+/// The value of a quantity in a frame; NaN if it was outside the range of the quantity.
 struct SignalValue {
   std::size_t quantity = 0;
   double value = 0;
 };
 
-/// Makes fixes or truth. Whatever the order in which a receiver sends its frames: latitude and longitude give
-/// a fix and its stamp (that of the later frame, where they come in two), every other quantity is taken from
-/// the frame nearest in time, at most kBurstNanoseconds away, earlier or later. So a fix is held back until
-/// the next position or the end of that time.
+/// Assembles fixes or truth, in whatever order a receiver sends its frames. Latitude and longitude
+/// make a fix and give its stamp. If they are in two frames, the later one gives the stamp. Every
+/// other quantity comes from the frame nearest in time, earlier or later, at most kBurstNanoseconds
+/// away. So a fix is held back until the next position, or until that time has passed.
 class FixAssembler {
  public:
   /// The references must outlive the assembler.
@@ -37,13 +38,13 @@ class FixAssembler {
   FixAssembler(const std::vector<Quantity>& quantities, const std::vector<BoundSignal>& bound,
                const LogRequest& request, const std::string& path, LogData& data);
 
-  /// What one frame holds.
+  /// Takes the values of one frame.
   void take(Stamp stamp, std::size_t line, std::span<const SignalValue> values);
-  /// Gives the last fix, and the notes.
+  /// Delivers the last fix and the notes.
   void finish();
 
  private:
-  /// Place of a quantity among the stream's; kNowhere where no signal gives it.
+  /// Place of a quantity in the stream; kNowhere if no signal gives it.
   static constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
   struct Given {
     double value = 0;
@@ -72,12 +73,12 @@ class FixAssembler {
   AccuracyQuantities accuracy_;
   std::size_t east_ = kNowhere, north_ = kNowhere, covariance_root_ = kNowhere;
 
-  Given latitude_part_, longitude_part_;  ///< that wait for the other
-  std::vector<Given> newest_;             ///< by quantity
+  Given latitude_part_, longitude_part_;  ///< each waits for the other
+  std::vector<Given> newest_;             ///< the newest value of each quantity
   bool open_ = false;
-  Given position_;               ///< of the open fix: stamp and line
+  Given position_;               ///< stamp and line of the open fix
   double position_deg_[2] = {};  ///< latitude, longitude
-  std::vector<Given> nearest_;   ///< by quantity, to the open fix
+  std::vector<Given> nearest_;   ///< for each quantity, the value nearest to the open fix
 };
 
 }  // namespace waymark::formats

@@ -12,10 +12,10 @@
 namespace waymark::formats {
 namespace {
 
-/// So many signals are listed in a message.
+/// A message lists at most this many signals.
 constexpr std::size_t kMostListed = 12;
 
-/// Names in a message, the first few of them.
+/// Lists the first few names in a message.
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size() && i < kMostListed; ++i) text += (i == 0 ? "" : ", ") + names[i];
@@ -23,7 +23,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Signals whose names sound like what the stream needs.
+/// Returns signals with names that resemble the quantities of the stream.
 std::vector<std::string> likely_signals(const Dbc& dbc, StreamKind stream) {
   constexpr std::array<std::string_view, 7> kPosition{"latitude", "longitude", "lat_",    "lon_",
                                                       "heading",  "course",    "altitude"};

@@ -1,4 +1,4 @@
-/// Which signal of a DBC gives which quantity of a stream; private to the candump reader.
+/// Maps signals of a DBC to the quantities of a stream; private to the candump reader.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,29 @@
 
 namespace waymark::formats {
 
-/// A quantity tied to a signal.
+/// A quantity and its signal.
 struct BoundSignal {
   std::size_t quantity = 0;  ///< index in the stream's quantities
   std::size_t message = 0;   ///< index in the DBC
   std::size_t signal = 0;    ///< index in the message
-  std::string interface;     ///< only frames of this one; empty: of any
-  double factor = 1;         ///< quantity = factor * value + offset, sense included
+  std::string interface;     ///< only frames of this interface; empty: of any interface
+  double factor = 1;         ///< quantity = factor * value + offset; the factor includes the sense
   double offset = 0;
-  int time_power = 0;  ///< of `gnss_time`, instead of the factor: its unit is 10^time_power s
+  int time_power = 0;  ///< for `gnss_time`, in place of the factor: the unit is 10^time_power s
 };
 
-/// Quantities that signals can give: those of the stream but for `time`, which the log stamps. Readings are
-/// in the order of the request.
+/// Returns the quantities that signals can give: those of the stream except `time`, which comes
+/// from the log. Readings are in the order of the request.
 /// @throws UsageError for an odometry request without channels, and as quantities()
 [[nodiscard]] std::vector<Quantity> signal_quantities(const LogRequest& request);
 
-/// Ties every quantity in `request.columns` to its signal: "SIGNAL", "MESSAGE.SIGNAL", or either behind an
-/// interface, "can0:SIGNAL". Units: as stated, else by the DBC, which is noted.
-/// @param place  begins every message: "drive.log: "
-/// @throws InputError for an unknown quantity, unit, convention or signal, a signal name that several
-/// messages have, a required quantity without a signal, a unit that neither request nor DBC tell
+/// Binds every quantity in `request.columns` to its signal: "SIGNAL", "MESSAGE.SIGNAL", or either
+/// of them after an interface, "can0:SIGNAL". If the request states no unit, the unit of the DBC is
+/// used, and a note says so.
+/// @param place first words of every message: "drive.log: "
+/// @throws InputError for an unknown quantity, unit, convention or signal, a signal name that
+/// several messages have, a required quantity without a signal, and a unit that neither request
+/// nor DBC state
 [[nodiscard]] std::vector<BoundSignal> bind_signals(const Dbc& dbc, const std::vector<Quantity>& quantities,
                                                     const LogRequest& request, const std::string& place,
                                                     std::vector<std::string>& notes);

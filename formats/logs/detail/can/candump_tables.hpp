@@ -1,4 +1,4 @@
-/// Look-ups that the candump reader does for every line.
+/// Look-up tables that the candump reader uses for every line.
 #pragma once
 
 #include <algorithm>
@@ -18,11 +18,12 @@
 
 namespace waymark::formats {
 
-/// So many interfaces are told apart, by names of so many characters (Linux has at most 15).
+/// At most this many interfaces are distinguished, by names of at most this many characters
+/// (Linux allows 15).
 inline constexpr std::size_t kMostInterfaces = 16;
 inline constexpr std::size_t kLongestInterface = 31;
 
-/// From id to index in the DBC.
+/// Maps the id of a frame to the index of its message in the DBC.
 class MessageTable {
  public:
   static constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
@@ -51,10 +52,11 @@ class MessageTable {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> extended_;
 };
 
-/// The interfaces of a log and how many frames each brought.
+/// The interfaces of a log and the number of frames from each.
 class Interfaces {
  public:
-  /// Index of an interface; kMostInterfaces for those beyond the table.
+  /// Counts a frame and returns the index of its interface; kMostInterfaces for those
+  /// beyond the table.
   std::size_t count(std::string_view name) {
     if (last_ >= used_ || names_[last_] != name) last_ = find(name);
     ++counts_[last_];

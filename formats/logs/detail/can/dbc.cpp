@@ -15,14 +15,15 @@
 namespace waymark::formats {
 namespace {
 
-/// VECTOR__INDEPENDENT_SIG_MSG: editors put signals without a message there.
+/// VECTOR__INDEPENDENT_SIG_MSG: here editors put signals that belong to no message.
 constexpr std::uint32_t kNoMessage = 0xC000'0000;
-/// Integers up to here are doubles.
+/// A double holds all integers up to this one.
 constexpr double kMostExact = 9007199254740992.0;
 /// The longest message of the transport protocols that DBC files describe (J1939).
 constexpr unsigned kMostBytes = 1785;
 
-/// Text of an old code page to UTF-8, as far as units need it: degree sign and superscript two.
+/// Converts text of an old code page to UTF-8, as far as units need it: degree sign and
+/// superscript two.
 std::string utf8_unit(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -33,7 +34,7 @@ std::string utf8_unit(std::string_view text) {
   return result;
 }
 
-/// Finds the fraction that a decimal factor and offset stand for, where all its integers are doubles.
+/// Finds the fraction behind a decimal factor and offset, if doubles hold all its integers.
 void find_fraction(DbcSignal& signal) {
   if (signal.number == SignalNumber::float32 || signal.number == SignalNumber::float64) return;
   double denominator = 1;
@@ -96,9 +97,9 @@ class DbcParser {
   Dbc dbc_;
   std::unordered_map<std::uint32_t, std::size_t> by_id_;
   std::map<const std::string, std::size_t> by_name_;
-  bool in_text_ = false;  ///< within a quoted text that runs over lines
+  bool in_text_ = false;  ///< within a quoted text that spans lines
   bool in_message_ = false;
-  bool passing_over_ = false;  ///< the signals of kNoMessage
+  bool passing_over_ = false;  ///< the lines are signals of kNoMessage
 };
 
 void DbcParser::read_line(std::string_view line, std::size_t number) {
@@ -125,7 +126,7 @@ void DbcParser::read_line(std::string_view line, std::size_t number) {
     }
     if (body.starts_with("//")) return;
   }
-  // A comment (CM_) may run over lines, and these may look like signals.
+  // A comment (CM_) may span lines that look like signals.
   bool escaped = false;
   for (const char c : line) {
     if (c == '"' && !escaped) in_text_ = !in_text_;
@@ -237,15 +238,15 @@ void DbcParser::check_fit(const DbcTokens& tokens, DbcSignal& signal) const {
     signal.trouble =
         tokens.complaint(fmt::format("a length of {} bits: there may be 1 to 64", signal.length));
   } else if (signal.start >= 8 * message.size || signal.bytes_needed() > message.size) {
-    // The start is tested first: bytes_needed() must not overflow.
+    // The start is checked first, because bytes_needed() must not overflow.
     signal.trouble = tokens.complaint(
         fmt::format("start {} and length {} do not fit into the {} bytes of {}; correct one of them",
                     signal.start, signal.length, message.size, message.name));
   }
-  if (!signal.trouble.empty()) signal.start = signal.length = 1;  // harmless where it is a multiplexer
+  if (!signal.trouble.empty()) signal.start = signal.length = 1;  // harmless if it is a multiplexer
 }
 
-/// The signal that a line speaks of; nulls where the file has none such.
+/// Returns the signal that a line names; nulls if the file does not have it.
 DbcParser::Place DbcParser::find_signal(DbcTokens& tokens) {
   const auto message = by_id_.find(tokens.number<std::uint32_t>("the message's id"));
   const std::string name = tokens.name("the signal's name");
@@ -272,7 +273,7 @@ void DbcParser::read_value_type(DbcTokens& tokens) {
   signal->number = type == 1 ? SignalNumber::float32 : SignalNumber::float64;
 }
 
-/// "SG_MUL_VAL_ 2024 SPEED PID 13-13, 20-22;": SPEED is there where PID has one of these values.
+/// "SG_MUL_VAL_ 2024 SPEED PID 13-13, 20-22;": a frame holds SPEED if PID has one of these values.
 void DbcParser::read_ranges(DbcTokens& tokens) {
   tokens.set_object("SG_MUL_VAL_");
   const auto [message, signal] = find_signal(tokens);

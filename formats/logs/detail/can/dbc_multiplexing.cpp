@@ -7,7 +7,7 @@
 namespace waymark::formats {
 namespace {
 
-/// A signal whose multiplexer cannot be read cannot be read either; nor one that depends on itself.
+/// A signal is unreadable if its multiplexer is, or if it depends on itself.
 void check_multiplexers(const DbcMessage& message, const std::string& path, DbcSignal& signal) {
   const DbcSignal* outer = &signal;
   for (std::size_t steps = 0; signal.trouble.empty() && outer->multiplexer; ++steps) {
@@ -32,7 +32,8 @@ void resolve_multiplexing(DbcMessage& message, const std::string& path) {
   for (DbcSignal& signal : message.signals) {
     if (signal.when.empty() || signal.multiplexer || !signal.trouble.empty()) continue;
     const std::string place = fmt::format("{}:{}:1: SG_ {}: ", path, signal.line, signal.name);
-    // In extended multiplexing "m3M" usually lies under the one "M"; where a plain "m3" lies must be told.
+    // In extended multiplexing, "m3M" usually depends on the only "M". The file must state the
+    // multiplexer of a plain "m3".
     if (roots.empty()) {
       signal.trouble = fmt::format("{}it is multiplexed, but {} has no multiplexer (M)", place, message.name);
     } else if (roots.size() > 1 || (multiplexers > 1 && !signal.multiplexes)) {

@@ -1,4 +1,4 @@
-/// Which signal of a DBC message tells where the others are there; private to the parser.
+/// Finds the multiplexer of each signal of a DBC message; private to the parser.
 #pragma once
 
 #include <string>
@@ -7,9 +7,10 @@
 
 namespace waymark::formats {
 
-/// Ties the signals "m3" of a message that has been read to its multiplexer, where no SG_MUL_VAL_ has done so
-/// (there may be only one then). A signal without a clear multiplexer, or whose multiplexer cannot be read,
-/// gets a `trouble`. @param path  of the DBC, for messages
+/// Binds the signals "m3" of a message to its multiplexer after the message has been read. Signals
+/// that SG_MUL_VAL_ has bound are left alone. For all others the message may have only one
+/// multiplexer. A signal gets a `trouble` if its multiplexer is ambiguous or unreadable. @param
+/// path of the DBC, for messages
 void resolve_multiplexing(DbcMessage& message, const std::string& path);
 
 }  // namespace waymark::formats

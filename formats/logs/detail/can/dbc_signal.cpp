@@ -10,7 +10,8 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// Eight bytes from `first` on as a number; the first is the least (most) significant.
+/// Loads eight bytes from `first` as a number. The first byte is the least (big_endian: the most)
+/// significant one.
 std::uint64_t load(const CanData& data, std::size_t first, bool big_endian) {
   std::uint64_t word = 0;
   std::memcpy(&word, data.bytes.data() + first, sizeof word);
@@ -18,7 +19,8 @@ std::uint64_t load(const CanData& data, std::size_t first, bool big_endian) {
   return big_endian == native_big ? word : __builtin_bswap64(word);
 }
 
-/// Place of the first bit in the order in which a Motorola signal runs: most significant bit of byte 0 first.
+/// Returns the place of the first bit in the order of a Motorola signal: the most significant bit
+/// of byte 0 comes first.
 unsigned motorola_place(unsigned start) {
   return start / 8 * 8 + 7 - start % 8;
 }
@@ -36,8 +38,8 @@ std::size_t DbcSignal::bytes_needed() const {
 }
 
 std::uint64_t DbcSignal::bits(const CanData& data) const {
-  // A signal of up to 64 bits may touch nine bytes: eight come in one load, the ninth only where it is
-  // needed.
+  // A signal of up to 64 bits may touch nine bytes. Eight come in one load; the ninth is loaded
+  // only if needed.
   const unsigned place = big_endian ? motorola_place(start) : start;
   const std::size_t first = place / 8;
   const unsigned skipped = place % 8;
@@ -69,7 +71,7 @@ double DbcSignal::value(const CanData& data) const {
       return std::bit_cast<double>(raw) * factor + offset;
   }
   if (denominator == 0) return number_of_bits * factor + offset;
-  // Two exact integers (Dbc::parse sees to that) and one rounding.
+  // Two exact integers (Dbc::parse ensures this) and one rounding.
   return (number_of_bits * static_cast<double>(numerator) + static_cast<double>(shift)) /
          static_cast<double>(denominator);
 }
@@ -98,7 +100,7 @@ const DbcSignal* DbcMessage::find(std::string_view signal) const {
 
 bool DbcMessage::holds(const DbcSignal& signal, const CanData& data) const {
   const DbcSignal* inner = &signal;
-  while (inner->multiplexer) {  // Dbc::parse refuses circles
+  while (inner->multiplexer) {  // Dbc::parse refuses cycles
     const DbcSignal& outer = signals[*inner->multiplexer];
     if (data.size < outer.bytes_needed()) return false;
     const std::uint64_t now = outer.bits(data);

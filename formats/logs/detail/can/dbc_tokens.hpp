@@ -16,25 +16,25 @@
 
 namespace waymark::formats {
 
-/// What names of messages and signals consist of.
+/// Tells whether a character may be part of the name of a message or signal.
 [[nodiscard]] inline bool is_name_character(char c) {
   return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-/// Reads tokens of one line; a complaint names place and object.
+/// Reads tokens of one line. An error names the place and the object.
 class DbcTokens {
  public:
   DbcTokens(std::string_view line, std::size_t number, const std::string& path)
       : line_(line), number_(number), path_(path) {}
 
   void set_object(std::string object) { object_ = std::move(object); }
-  /// Remembers the next token as the place of complaints by fail().
+  /// Marks the next token as the place of errors from fail().
   void mark() {
     skip_blanks();
     mark_ = at_;
   }
   [[noreturn]] void fail(const std::string& what) const { fail_at(mark_, what); }
-  /// What fail() would throw.
+  /// Returns the text that fail() would throw.
   [[nodiscard]] std::string complaint(const std::string& what) const { return placed(mark_, what); }
   [[noreturn]] void fail_expected(std::string_view what) const {
     fail_at(at_, fmt::format("expected {}, got {}", what, quote_word(line_.substr(at_, 20))));

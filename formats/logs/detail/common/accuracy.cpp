@@ -53,9 +53,9 @@ std::optional<double> ellipse_correlation(double sigma_east, double sigma_north,
   const double correlation =
       (major - minor) * (major + minor) * std::sin(angle) * std::cos(angle) / (north * east);
   const double shape = sigma_east * north / (sigma_north * east);
-  constexpr double kSameShape = 1.5;  // figures come rounded to as little as one digit
+  constexpr double kSameShape = 1.5;  // figures may be rounded to one digit
   constexpr double kMostCorrelated = 0.99999;
-  // The comparisons are such that NaN fails.
+  // The comparisons fail for NaN.
   if (!(shape < kSameShape && shape > 1 / kSameShape && std::abs(correlation) < 1.001)) return std::nullopt;
   return std::clamp(correlation, -kMostCorrelated, kMostCorrelated);
 }

@@ -9,7 +9,7 @@ namespace waymark::formats {
 
 std::optional<Stamp> stamp_from_gps_week(std::string_view week, std::string_view seconds) {
   const std::optional<int> weeks = field_count(week);
-  // A longer text allocates, and is no time.
+  // A longer text would allocate, and is no time.
   if (!weeks || *weeks > 9999 || seconds.size() > 20) return std::nullopt;
   const std::optional<Stamp> of_week = stamp_from_decimal_seconds(seconds);
   if (!of_week || of_week->nanoseconds < 0 || of_week->nanoseconds > kGpsWeekNanoseconds + kSecondNanoseconds)

@@ -8,10 +8,10 @@
 namespace waymark::formats {
 
 void KindTally::add(std::string_view name) {
-  constexpr std::size_t kMostKinds = 128;  // half of the table: a search ends soon
+  constexpr std::size_t kMostKinds = 128;  // half of the table, so that a search ends soon
   Key key{};
   name.copy(reinterpret_cast<char*>(key.data()), sizeof key);
-  // The top byte of a multiplicative hash; an odd factor for each word keeps their order.
+  // The top byte of a multiplicative hash. Each word has its own odd factor, so their order counts.
   std::size_t place =
       (key[0] * 0x9E3779B97F4A7C15U + key[1] * 0xC2B2AE3D27D4EB4FU + key[2] * 0x165667B19E3779F9U) >> 56U;
   while (entries_[place].count > 0 && entries_[place].key != key) place = (place + 1) % entries_.size();

@@ -1,4 +1,4 @@
-/// How many messages of each kind a log holds, counted where they come by the million.
+/// Counts the messages of each kind in a log. There may be millions of them.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 
 namespace waymark::formats {
 
-/// Counts names in a small table: neither a map nor an allocation in the hot path. Names are told apart by
-/// their first 24 characters, which are more than NMEA, gpsd and NovAtel need. A log of garbage has endless
-/// names: beyond the first 128 they count as "others".
+/// Counts names in a small table, without a map or an allocation in the hot path. Names are
+/// distinguished by their first 24 characters; NMEA, gpsd and NovAtel need fewer. A log of garbage
+/// has endless names, so all names after the first 128 count as "others".
 class KindTally {
  public:
   void add(std::string_view name);
-  /// As LogData::kinds has them.
+  /// Returns the counts in the form of LogData::kinds.
   [[nodiscard]] std::map<std::string, std::size_t> counts() const;
 
  private:
   static constexpr std::size_t kWords = 3;
-  using Key = std::array<std::uint64_t, kWords>;  ///< the name's characters, then zeros
+  using Key = std::array<std::uint64_t, kWords>;  ///< the characters of the name, then zeros
   struct Entry {
     Key key{};
     std::size_t count = 0;

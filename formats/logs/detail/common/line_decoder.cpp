@@ -27,7 +27,7 @@ void LineDecoder::finish() {
   end();
 }
 
-/// Holds back a part of a line; of a line that has grown too long nothing.
+/// Holds back a part of a line, or nothing if the line has become too long.
 void LineDecoder::keep(std::string_view part) {
   if (!too_long_ && begun_.size() + part.size() <= kLongestLine) {
     begun_ += part;

@@ -1,4 +1,5 @@
-/// What a reader refuses of a request because its kind of log cannot give it, in the same words for all.
+/// Checks of a request: they refuse what a kind of log cannot give, with the same words in
+/// all readers.
 #pragma once
 
 #include <initializer_list>
@@ -9,17 +10,18 @@
 
 namespace waymark::formats {
 
-/// `format` names the kind of log in the complaint: "an RTKLIB solution".
-/// @throws InputError for a stream that is not among the given ones
+/// @param format the kind of log in the message: "an RTKLIB solution"
+/// @throws InputError if the stream is not among the given ones
 void require_streams(const std::string& path, const LogRequest& request, std::string_view format,
                      std::initializer_list<StreamKind> given);
-/// @throws InputError for a column map
+/// @throws InputError if the request has a column map
 void require_no_columns(const std::string& path, const LogRequest& request, std::string_view format);
-/// @param known  the one companion file that this kind of log takes; empty: none
-/// @throws InputError for any other
+/// @param known the one companion file that this kind of log takes; empty: none
+/// @throws InputError for any other companion
 void require_companions(const std::string& path, const LogRequest& request, std::string_view format,
                         std::string_view known = {});
-/// The streams gnss and truth, no columns, no companions: what logs of receivers are read with.
+/// Allows the streams gnss and truth, no columns and no companions, as the logs of
+/// receivers need it.
 void require_positions(const std::string& path, const LogRequest& request, std::string_view format);
 
 }  // namespace waymark::formats

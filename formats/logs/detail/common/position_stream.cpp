@@ -11,7 +11,8 @@
 namespace waymark::formats {
 namespace {
 
-constexpr double kLargestSigma = 1e7;  // m: the way to the pole; larger figures are garbled
+// m: the distance from equator to pole; larger figures are garbled
+constexpr double kLargestSigma = 1e7;
 constexpr const char* kTooLarge = "an accuracy of more than 10,000 km";
 
 }  // namespace
@@ -37,7 +38,7 @@ const char* PositionStream::set_covariance(GeodeticFix& fix, const StatedAccurac
   if (truth_) return nullptr;
   if (!accuracy.squares_en) return stand_in(fix, accuracy.hdop);
   const Eigen::Matrix2d& squares = *accuracy.squares_en;
-  // The comparisons are such that NaN fails.
+  // The comparisons fail for NaN.
   if (!(squares(0, 0) > 0 && squares(0, 0) * squares(1, 1) > squares(0, 1) * squares(0, 1)))
     return "the covariance is not positive definite";
   if (!(std::max(squares(0, 0), squares(1, 1)) <= kLargestSigma * kLargestSigma)) return kTooLarge;
@@ -52,7 +53,7 @@ const char* PositionStream::set_covariance(GeodeticFix& fix, const StatedAccurac
   return nullptr;
 }
 
-/// The covariance of a fix without figures.
+/// Sets the covariance of a fix without figures.
 const char* PositionStream::stand_in(GeodeticFix& fix, double hdop) {
   double sigma = default_sigma_m_;
   if (hdop > 0 && range_error_m_ > 0) {
@@ -88,7 +89,7 @@ const char* PositionStream::add(LogData& data, GeodeticFix fix, const StatedAccu
 
 void PositionStream::finish(LogData& data) const {
   const auto note = [&](const std::string& text) { data.notes.push_back(path_ + ": " + text); };
-  // That a standard deviation is one needs no telling.
+  // There is no note if the figures are plain standard deviations.
   const bool plain = usual_ && meaning_ == AccuracyMeaning::one_sigma;
   if (figures_ != nullptr && with_figures_ > 0 && !plain)
     note(fmt::format("{} fixes with {} read as {}{}", with_figures_, figures_, to_string(meaning_),

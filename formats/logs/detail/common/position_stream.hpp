@@ -1,4 +1,5 @@
-/// Where the positions of a log go: fixes or truth, on the clock and with the accuracy that were asked for.
+/// Collects the positions of a log as fixes or truth, on the requested clock and with the
+/// requested accuracy.
 #pragma once
 
 #include <cstddef>
@@ -12,36 +13,40 @@
 
 namespace waymark::formats {
 
-/// What a log says about a position's accuracy.
+/// The accuracy of a position as the log states it.
 struct StatedAccuracy {
-  /// Squares of the figures east and north, and their covariance if they have one, m^2. Empty: no figures.
+  /// Squares of the figures for east and north, and their covariance if there is one, in m^2.
+  /// Empty: there are no figures.
   std::optional<Eigen::Matrix2d> squares_en = std::nullopt;
-  /// What the figures mean where the request does not say; empty: 1 sigma, whatever the request says.
+  /// The meaning of the figures if the request does not state one. Empty: 1 sigma, even if the
+  /// request states another one.
   std::optional<AccuracyMeaning> usual_meaning = AccuracyMeaning::one_sigma;
-  double hdop = 0;  ///< used where there are no figures; 0: none
+  double hdop = 0;  ///< used if there are no figures; 0: none
 };
 
-/// Positions of a gnss or truth stream. What it counts goes into the notes once, at the end.
+/// Positions of a gnss or truth stream. Its counts go into the notes once, at the end.
 class PositionStream {
  public:
-  /// @param figures  name of the accuracy figures, for the note on what they are read as; null: the reader
-  /// writes that note itself
+  /// @param figures name of the accuracy figures, for the note about their meaning; null: the
+  /// reader writes that note itself
   PositionStream(const std::string& path, const LogRequest& request, const char* figures);
 
-  /// The stamp on the request's scale with the request's offset; empty where it does not fit.
+  /// Returns the stamp on the requested scale, with the requested offset. Empty if it does not fit.
   [[nodiscard]] std::optional<Stamp> stamp(Stamp given, TimeScale scale) const;
   [[nodiscard]] bool wants_truth() const { return truth_; }
 
-  /// Sets the covariance: from the figures; else HDOP times the stated range error; else the stated default.
-  /// Truth needs none. @return null, or why the position is not usable
+  /// Sets the covariance: from the figures, else from HDOP times the stated range error, else from
+  /// the stated default. Truth needs none. @return null, or the reason why the position is unusable
   [[nodiscard]] const char* set_covariance(GeodeticFix& fix, const StatedAccuracy& accuracy);
-  /// Takes a position into data.fixes or data.truth. @param fix  with its covariance
-  /// @param heading_rad  of the truth, counter-clockwise from east
+  /// Adds a position to data.fixes or data.truth.
+  /// @param fix with its covariance
+  /// @param heading_rad heading of the truth, counter-clockwise from east
   void give(LogData& data, const GeodeticFix& fix, std::optional<double> heading_rad = std::nullopt) const;
-  /// Both. @return null, or why the position is not usable (then nothing was taken)
+  /// Calls set_covariance and give. @return null, or the reason why the position is unusable (then
+  /// nothing was added)
   [[nodiscard]] const char* add(LogData& data, GeodeticFix fix, const StatedAccuracy& accuracy,
                                 std::optional<double> heading_rad = std::nullopt);
-  /// The closing notes.
+  /// Adds the final notes.
   void finish(LogData& data) const;
 
  private:
@@ -56,15 +61,16 @@ class PositionStream {
   double range_error_m_;
   int source_;
   bool truth_;
-  std::size_t with_figures_ = 0;                          ///< whose meaning may be stated
-  AccuracyMeaning meaning_ = AccuracyMeaning::automatic;  ///< of them
-  bool usual_ = false;                                    ///< that meaning is the usual one
+  std::size_t with_figures_ = 0;                          ///< those whose meaning a request may state
+  AccuracyMeaning meaning_ = AccuracyMeaning::automatic;  ///< their meaning
+  bool usual_ = false;                                    ///< the meaning is the usual one
   std::size_t from_hdop_ = 0;
   std::size_t defaulted_ = 0;
 };
 
-/// Speed and course with their sigmas from a velocity (east, north) and its covariance in (m/s)^2. A course
-/// whose sigma exceeds a radian says nothing and is left out. @param covariance  null: not known
+/// Computes speed and course with their sigmas from a velocity (east, north) and its covariance in
+/// (m/s)^2. A course with a sigma above one radian is useless and left out. @param covariance
+/// null: not known
 void set_velocity(GeodeticFix& fix, const Eigen::Vector2d& velocity_en, const Eigen::Matrix2d* covariance);
 
 }  // namespace waymark::formats

@@ -26,14 +26,15 @@ constexpr std::array kAccelerations{Unit{"m/s^2", 1}, Unit{"g", 9.80665}};
 constexpr std::array kFlags{Unit{"1", 1}};
 
 constexpr std::array kTurns{Convention{"ccw", 1, 0}, Convention{"cw", -1, 0}};
-// A course is kept clockwise from north, a heading counter-clockwise from east: each is pi/2 minus the other.
+// A course counts clockwise from north, a heading counter-clockwise from east. Each is pi/2
+// minus the other.
 constexpr std::array kCourseSenses{Convention{"cw_from_north", 1, 0},
                                    Convention{"ccw_from_east", -1, pi / 2}};
 constexpr std::array kHeadingSenses{Convention{"ccw_from_east", 1, 0},
                                     Convention{"cw_from_north", -1, pi / 2}};
 
-// Times and flags are not parsed as bounded numbers. The limits of speed and yaw rate are generous for a road
-// vehicle: beyond them a number is garbage or in another unit.
+// Times and flags are not parsed as bounded numbers. The limits of speed and yaw rate are generous
+// for a road vehicle. A number beyond them is garbage or has another unit.
 constexpr Quantity kTime{"time", "time_s", true, kTimes, {}, -kInfinity, kInfinity};
 constexpr Quantity kSpeed{"speed", "speed_mps", true, kSpeeds, {}, -150, 150};
 constexpr Quantity kOptionalSpeed{"speed", "speed_mps", false, kSpeeds, {}, -150, 150};
@@ -60,12 +61,12 @@ constexpr std::array kGnss{
     Quantity{"speed_accuracy", "speed_accuracy_mps", false, kSpeeds, {}, -kInfinity, kInfinity},
     Quantity{"gnss_time", "gnss_time_s", false, kTimes, {}, -kInfinity, kInfinity},
     Quantity{"valid", "valid_flag", false, kFlags, {}, -kInfinity, kInfinity}};
-// References often count headings on through the turns of a drive.
+// References often let the heading run on over full turns.
 constexpr std::array kTruth{
     kTime, kLatitude, kLongitude, kHeight,
     Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -200 * pi, 200 * pi}};
 
-// What a sensor may ask for: its SI unit and, of an angle or a rate, its sense (SensorColumn).
+// What a sensor may request: an SI unit, and the sense of an angle or rate (SensorColumn).
 struct SensorKind {
   std::string_view unit;
   std::string_view sense;
@@ -101,7 +102,8 @@ Quantity sensor_quantity(const SensorColumn& column) {
                    column.sense + "'; SensorColumn in core/drive/sample.hpp lists those there are");
 }
 
-/// The channels of a stream: none is required; those that the stream has itself are the stream's.
+/// Returns the channels of a stream; none is required. A channel that the stream has as its own
+/// quantity is taken from the stream.
 std::vector<Quantity> channel_quantities(std::span<const Quantity> stream,
                                          std::span<const SensorColumn> channels) {
   std::vector<Quantity> own{kTime};

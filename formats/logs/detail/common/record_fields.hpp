@@ -1,4 +1,4 @@
-/// The fields of a record in text: cut without copies, read as numbers.
+/// The fields of a text record. They are cut without copies and read as numbers.
 #pragma once
 
 #include <array>
@@ -16,18 +16,19 @@ inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 /// The fields of one line, as views into it.
 class RecordFields {
  public:
-  /// Words between any runs of blanks, tabs, ',' and ';'.
+  /// Splits into words at runs of blanks, tabs, ',' and ';'.
   void split_words(std::string_view line);
-  /// Fields between single separators, empty ones too. Separators within double quotes count as text.
+  /// Splits at single separators; fields may be empty. Separators within double quotes are text.
   void split_at(std::string_view line, char separator);
 
-  /// How many fields the line has; those beyond the first 48 are counted, not kept.
+  /// Returns how many fields the line has. Fields after the first 48 are counted, but not kept.
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// Empty for a field that the line does not have.
+  /// Returns an empty field if the line does not have it.
   [[nodiscard]] std::string_view operator[](std::size_t index) const {
     return index < count_ && index < kKept ? kept_[index] : std::string_view();
   }
-  /// 1-based place of a field in its line; that of the line's end for one that it does not have.
+  /// Returns the 1-based column of a field in its line, or of the end of the line if the field
+  /// does not exist.
   [[nodiscard]] std::size_t column(std::size_t index) const;
 
  private:
@@ -39,12 +40,12 @@ class RecordFields {
   std::size_t count_ = 0;
 };
 
-/// A field as messages show it: in quotes, cut after 40 characters, without bytes that a terminal could take
-/// for a command.
+/// Returns a field for messages: in quotes, cut after 40 characters, without bytes that a terminal
+/// could take for a command.
 [[nodiscard]] std::string quote_field(std::string_view field);
-/// A finite decimal number that fills the field, with an optional sign and exponent.
+/// Reads a finite decimal number that fills the field. Sign and exponent are optional.
 [[nodiscard]] std::optional<double> field_number(std::string_view field);
-/// A whole number 0 .. 999,999,999 of digits alone.
+/// Reads a whole number 0 .. 999,999,999 that consists of digits only.
 [[nodiscard]] std::optional<int> field_count(std::string_view field);
 
 }  // namespace waymark::formats

@@ -1,11 +1,11 @@
-/// The columns of a table by what the samples need; private to the CSV reader.
+/// The columns of a table, sorted by their use; private to the CSV reader.
 #pragma once
 
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 
 namespace waymark::formats {
 
-/// The columns of the stream, looked up once; null where the table has none.
+/// The columns of the stream, looked up once; null if the table has no such column.
 struct Bindings {
   explicit Bindings(const CsvColumns& columns)
       : time(columns.find("time")),

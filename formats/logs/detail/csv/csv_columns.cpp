@@ -16,7 +16,7 @@
 namespace waymark::formats {
 namespace {
 
-/// A column given by number; empty for a name.
+/// Returns the number of a column that is given by number; empty for a name.
 std::optional<std::size_t> column_number(std::string_view column) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(column.data(), column.data() + column.size(), number);
@@ -35,8 +35,9 @@ std::vector<std::string_view> views_of(const std::vector<std::string>& names) {
   return {names.begin(), names.end()};
 }
 
-/// Whether the first line of a table holds values already: all of them numbers, or a time in the column that
-/// is given by number for it (a headerless table may hold dates and words beside).
+/// Tells whether the first line of a table already holds values. It does if all fields are numbers,
+/// or if the time column is given by number and its field is a time. The second rule is for
+/// headerless tables with dates and words.
 bool holds_values(const std::vector<std::string_view>& fields, const LogRequest& request) {
   const auto is_number = [](std::string_view field) { return number_from_field(field).has_value(); };
   if (std::all_of(fields.begin(), fields.end(), is_number)) return true;
@@ -183,7 +184,7 @@ std::string CsvColumns::columns_present() const {
                      more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-/// Of the header, as messages show them.
+/// Returns the names in the header as messages show them.
 std::vector<std::string> CsvColumns::shown_names() const {
   std::vector<std::string> shown;
   for (const std::string& name : names_) shown.push_back(shown_name(name));

@@ -1,4 +1,4 @@
-/// Which field of a table holds which quantity.
+/// Maps the fields of a table to quantities.
 #pragma once
 
 #include <array>
@@ -14,22 +14,22 @@
 
 namespace waymark::formats {
 
-/// A quantity tied to a field.
+/// A quantity and its field.
 struct BoundColumn {
   const Quantity* quantity = nullptr;
   std::size_t field = 0;
   double factor = 1;  ///< value = sign * factor * number + offset
   double offset = 0;
   std::string_view unit;
-  int time_power = 0;  ///< of ten, for times
+  int time_power = 0;  ///< power of ten, for times
 };
 
 /// The columns of one stream in one table.
 class CsvColumns {
  public:
-  /// Finds the header and ties the quantities.
-  /// @param first    line of the table
-  /// @param request  with the separator
+  /// Finds the header and binds the quantities.
+  /// @param first first line of the table
+  /// @param request with the separator
   /// @throws InputError see CsvLogReader
   CsvColumns(const TableLine& first, const std::string& path, const LogRequest& request);
   CsvColumns(const CsvColumns&) = delete;  // columns point to the quantities
@@ -37,7 +37,7 @@ class CsvColumns {
 
   [[nodiscard]] bool first_line_is_header() const { return first_line_is_header_; }
   [[nodiscard]] std::size_t field_count() const { return field_count_; }
-  /// Null where the table has no such quantity.
+  /// Returns null if the table has no such quantity.
   [[nodiscard]] const BoundColumn* find(std::string_view quantity) const;
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
@@ -50,20 +50,20 @@ class CsvColumns {
   [[nodiscard]] std::vector<std::string> shown_names() const;
 
   std::vector<Quantity> quantities_;
-  std::vector<std::string> names_;  ///< of the header; empty where there is none
+  std::vector<std::string> names_;  ///< names in the header; empty if there is no header
   std::size_t field_count_ = 0;
   bool first_line_is_header_ = false;
   std::vector<BoundColumn> columns_;
   std::vector<std::string> notes_;
 };
 
-/// Why a column request cannot be met by any table ("unknown unit 'kmh' for speed; did you mean 'km/h'?");
-/// empty where it is well formed.
+/// Returns the reason why no table can satisfy a column request ("unknown unit 'kmh' for speed; did
+/// you mean 'km/h'?"). Empty if the request is well formed.
 [[nodiscard]] std::string column_request_error(const Quantity& quantity, const ColumnRequest& request);
 
-/// A number, also with a leading '+'. NaN where the field says that there is none (empty, "nan", "na",
-/// "null", "none").
-/// @return empty for anything else, infinities included.
+/// Reads a number, also with a leading '+'. NaN if the field is empty, "nan", "na", "n/a",
+/// "null" or "none".
+/// @return empty for anything else, also for infinities
 [[nodiscard]] std::optional<double> number_from_field(std::string_view field);
 
 }  // namespace waymark::formats

@@ -25,7 +25,7 @@ std::string separator_name(char separator) {
   return separator == '\t' ? "tabs" : fmt::format("'{}'", separator);
 }
 
-/// Finds the table in the lines.
+/// Finds the table in the lines of the log.
 class CsvDecoder final : public LineDecoder {
  public:
   using LineDecoder::LineDecoder;

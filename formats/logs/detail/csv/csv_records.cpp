@@ -98,7 +98,7 @@ void CsvRecords::read_readings(Stamp at) {
   data_.readings.values.insert(data_.readings.values.end(), row_.begin(), row_.end());
 }
 
-/// The instant in a column of times, as it stands there.
+/// Returns the instant in a column of times, as the field states it.
 std::optional<Stamp> CsvRecords::instant(const BoundColumn& column) {
   const std::string_view field = fields_[column.field];
   std::optional<Stamp> stamp;
@@ -148,8 +148,7 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
     return kNoNumber;
   }
   const Quantity& quantity = *column->quantity;
-  const double scaled =
-      column->factor * *given;  // the range is that of the angle as given, before any offset
+  const double scaled = column->factor * *given;  // the range is for the given angle, before any offset
   if (scaled < quantity.smallest || scaled > quantity.largest) {
     complain(*column, fmt::format("{} {} is outside {:.6g} .. {:.6g}", quote_field(field), column->unit,
                                   quantity.smallest / std::abs(column->factor),
@@ -169,7 +168,7 @@ std::optional<double> CsvRecords::optional_sigma(const BoundColumn* column) {
   return value > 0 ? std::optional(value) : std::nullopt;
 }
 
-/// Whether the receiver marks the line as a fix.
+/// Tells whether the receiver marks the line as a fix.
 bool CsvRecords::has_fix() {
   if (bound_.valid == nullptr) return true;
   const std::string_view field = fields_[bound_.valid->field];

@@ -1,4 +1,4 @@
-/// Samples out of the lines of a table; private to the CSV reader.
+/// Reads samples from the lines of a table; private to the CSV reader.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,19 @@
 
 namespace waymark::formats {
 
-/// Reads the lines below the header, one record each.
+/// Reads the lines below the header; each is one record.
 class CsvRecords {
  public:
   /// The columns, the path and the data must outlive the reader.
   /// @throws InputError for fixes without any accuracy
   CsvRecords(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data);
 
-  /// @param line  must live during the call only
+  /// @param line valid only during the call
   void read_line(std::string_view line, std::size_t number);
   void finish() { positions_.finish(data_); }
 
  private:
-  /// The first complaint about the line at hand.
+  /// The first error of the current line.
   struct Complaint {
     std::size_t column = 0;  ///< 0: none
     std::string what;
@@ -47,7 +47,8 @@ class CsvRecords {
   void complain(const BoundColumn& column, std::string what);
 
   Bindings bound_;
-  std::vector<const BoundColumn*> readings_;  ///< of a sensor, as LogRequest::readings; null: no such column
+  /// of a sensor, in the order of LogRequest::readings; null: there is no such column
+  std::vector<const BoundColumn*> readings_;
   std::size_t field_count_;
   const std::string& path_;
   const LogRequest request_;

@@ -31,8 +31,8 @@ std::size_t find_separator(std::string_view text, char separator) {
   return at == std::string_view::npos ? text.size() : at;
 }
 
-/// Takes a field that starts with a quote; its doubled quotes do not end it. @return false where it is not
-/// closed or text follows the closing quote.
+/// Takes a field that starts with a quote; doubled quotes do not end it. @return false if the quote
+/// is not closed or text follows the closing quote
 bool take_quoted(std::string_view& rest, char separator, std::string_view& field) {
   std::size_t end = 1;
   while (true) {

@@ -8,27 +8,29 @@
 
 namespace waymark::formats {
 
-/// A line that carries something.
+/// A line with content.
 struct TableLine {
   std::string_view text;
-  std::size_t number = 0;          ///< 1-based
-  std::string_view comment_above;  ///< the last comment between the line before and this one, without its '#'
+  std::size_t number = 0;  ///< 1-based
+  /// the last comment between the previous line and this one, without its '#'
+  std::string_view comment_above;
 };
 
-/// What a line holds beside blanks; of a first line without its byte order mark.
+/// Returns the content of a line without blanks, and of a first line without its byte order mark.
 [[nodiscard]] std::string_view table_content(std::string_view line, std::size_t number);
 
-/// Walks through the lines that carry something: skips a byte order mark, blank lines and comments (first
-/// character that is no blank: '#'); line ends are "\n" or "\r\n".
+/// Visits the lines with content. It skips a byte order mark, blank lines and comments (lines whose
+/// first visible character is '#'). Line ends are "\n" or "\r\n".
 class CsvLines {
  public:
   explicit CsvLines(std::string_view text);
 
-  /// Goes to the next line. @return false at the end of the text.
+  /// Goes to the next line. @return false at the end of the text
   [[nodiscard]] bool next();
   [[nodiscard]] std::string_view line() const { return line_; }
   [[nodiscard]] std::size_t number() const { return number_; }  ///< 1-based
-  /// The last comment between the line before and this one, without its '#'; empty where there is none.
+  /// Returns the last comment between the previous line and this one, without its '#'. Empty if
+  /// there is none.
   [[nodiscard]] std::string_view comment_above() const { return comment_; }
 
  private:
@@ -38,17 +40,17 @@ class CsvLines {
   std::size_t number_ = 0;
 };
 
-/// The separator that a header shows: of ',' ';' tab the one it has most of (the first of equals), a blank
-/// where it has none of them.
+/// Returns the separator of a header: the most frequent of ',' ';' and tab (the first of equals),
+/// or a blank if it contains none of them.
 [[nodiscard]] char separator_of(std::string_view header);
 
-/// Splits a line into fields, as views into it: blanks around a field and quotes around its text are left out
-/// (a doubled quote inside stays doubled). Separator ' ' stands for any run of blanks and tabs. One empty
-/// field after a trailing separator is kept.
-/// @return false where a quote is not closed on the line or text follows a closing quote.
+/// Splits a line into fields, as views into it. Blanks around a field and quotes around its text
+/// are left out; a doubled quote inside stays doubled. Separator ' ' stands for any run of blanks
+/// and tabs. An empty field after a trailing separator is kept.
+/// @return false if a quote is not closed on the line or text follows a closing quote
 [[nodiscard]] bool split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
 
-/// 1-based place of a field in its line, in bytes.
+/// Returns the 1-based column of a field in its line, in bytes.
 [[nodiscard]] inline std::size_t column_of(std::string_view line, std::string_view field) {
   return static_cast<std::size_t>(field.data() - line.data()) + 1;
 }

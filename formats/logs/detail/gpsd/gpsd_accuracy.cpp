@@ -16,7 +16,8 @@ struct Release {
   friend constexpr auto operator<=>(const Release&, const Release&) = default;
 };
 
-/// "3.22", "3.20.1~dev": what stands before and after the first point; empty for anything else.
+/// Reads the numbers before and after the first point of "3.22" or "3.20.1~dev". Empty for
+/// anything else.
 std::optional<Release> release_from(const std::string& text) {
   Release release;
   const char* const end = text.data() + text.size();
@@ -99,8 +100,8 @@ std::vector<std::string> GpsdAccuracy::notes(const std::string& release, Accurac
   return notes;
 }
 
-/// What version and values say that epx and epy are, and which meaning would fit; empty where they say
-/// nothing.
+/// Returns a sentence: the meaning of epx and epy that version and values indicate, and the setting
+/// that would fit. Empty if they indicate nothing.
 std::string GpsdAccuracy::dialect(const std::string& release) const {
   const std::optional<Release> version = release_from(release);
   const double figure = per_axis_sum_m_ / static_cast<double>(per_axis_);

@@ -1,4 +1,4 @@
-/// What the accuracy figures of a gpsd log mean.
+/// The meaning of the accuracy figures of a gpsd log.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@
 
 namespace waymark::formats {
 
-/// Chooses between epx and epy, eph, and the GST object, and tells in the end what it took them for.
+/// Chooses between epx and epy, eph, and the GST object. At the end it reports how it read them.
 class GpsdAccuracy {
  public:
-  /// @param gst     the GST object of the same time and device, or null
-  /// @param stated  what the request says the figures mean
+  /// @param gst the GST object of the same time and device, or null
+  /// @param stated the meaning of the figures that the request states
   [[nodiscard]] StatedAccuracy of(const GpsdReport& report, const GpsdReport* gst, AccuracyMeaning stated);
-  /// @param release  of gpsd, from its VERSION object; empty: the log has none
-  /// @param meaning  as stated
+  /// @param release version of gpsd from its VERSION object; empty: the log has none
+  /// @param meaning as in the request
   [[nodiscard]] std::vector<std::string> notes(const std::string& release, AccuracyMeaning meaning) const;
 
  private:
@@ -34,8 +34,8 @@ class GpsdAccuracy {
   std::size_t per_axis_equal_ = 0;
   std::size_t per_axis_with_radial_ = 0;
   std::size_t radial_ = 0;
-  double per_axis_sum_m_ = 0;  ///< of (epx + epy) / 2
-  double radial_sum_m_ = 0;    ///< of eph beside them
+  double per_axis_sum_m_ = 0;  ///< sum of (epx + epy) / 2
+  double radial_sum_m_ = 0;    ///< sum of eph in the same reports
 };
 
 }  // namespace waymark::formats

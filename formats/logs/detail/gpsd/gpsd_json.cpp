@@ -41,14 +41,14 @@ std::optional<double> scaled_if_positive(std::optional<double> value, double fac
   return value && *value > 0 ? scaled(value, factor) : std::nullopt;
 }
 
-/// What may be a release, "3.25" or "3.20.1~dev"; empty for what is none.
+/// Returns a text that may be a release, "3.25" or "3.20.1~dev"; empty for others.
 std::string release_text(const std::string& text) {
   constexpr std::size_t kLongest = 40;
   const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~'; });
   return plain && text.size() <= kLongest ? text : std::string();
 }
 
-/// Counts of what is noted.
+/// Counts for the notes.
 struct Counts {
   std::size_t not_json = 0;
   std::size_t without_time = 0;
@@ -81,10 +81,10 @@ class GpsdDecoder final : public LineDecoder {
   std::string release_;  ///< of gpsd, from VERSION
   std::string device_;   ///< the one that is read
 
-  std::optional<GpsdReport> epoch_;  ///< the merged TPV of the epoch at hand
+  std::optional<GpsdReport> epoch_;  ///< the merged TPV of the current epoch
   std::size_t epoch_line_ = 0;
-  /// The last two GST objects: that of an epoch comes before its TPV or after it, when the next may have come
-  /// too.
+  /// The last two GST objects. The GST of an epoch comes before or after its TPV. If it comes
+  /// after, the next GST may have come too.
   std::array<GpsdReport, 2> gst_;
 };
 
@@ -96,7 +96,8 @@ void GpsdDecoder::take_line(std::string_view line, std::size_t number) {
     ++counts_.not_json;
     return;
   }
-  // Most of a log are objects that are not read; as gpsd writes them they need not be parsed to know that.
+  // Most objects of a log are not read. In the form that gpsd writes, their class shows this
+  // without parsing.
   const std::string_view named = gpsd_class(line);
   if (!named.empty() && named != "TPV" && named != "GST" && named != "VERSION") return tally_.add(named);
   try {
@@ -216,6 +217,8 @@ void GpsdDecoder::add_notes() {
   positions_.finish(data_);
 }
 
+// gpspipe -r and the regression outputs of gpsd contain the receiver's sentences between
+// the objects.
 }  // namespace
 
 std::unique_ptr<LogDecoder> GpsdJsonReader::open(const std::string& path, const LogRequest& request) const {
@@ -239,7 +242,8 @@ Recognition GpsdJsonReader::recognise(std::string_view head) const {
     }
   }
   if (!positions || sentences == 0) return lines.share(objects, "are gpsd's JSON objects");
-  // gpspipe -r and gpsd's regression outputs have the receiver's sentences between the objects made of them.
+  // gpspipe -r and gpsd's regression outputs have the receiver's sentences between the objects
+  // made of them.
   return lines.share(objects + sentences,
                      fmt::format("are gpsd's JSON objects, or NMEA sentences between them ({})", sentences));
 }

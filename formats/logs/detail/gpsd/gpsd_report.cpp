@@ -17,8 +17,8 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(GpsdNumber::coun
     "mode", "status", "lat", "lon",   "altHAE", "alt",   "epx",   "epy",
     "eph",  "track",  "epd", "speed", "eps",    "major", "minor", "orient"};
 
-/// Takes the events of the parser. A tree of objects, as json::parse makes it, costs an allocation for every
-/// member, and its copy recurses as deep as the text is nested.
+/// Takes the events of the parser. A tree of objects (json::parse) would allocate for every member,
+/// and copying it would recurse as deep as the text is nested.
 class Collector {
  public:
   explicit Collector(GpsdReport& report) : report_(report) {}
@@ -84,7 +84,7 @@ class Collector {
 
   GpsdReport& report_;
   std::size_t depth_ = 0;
-  std::string* text_ = nullptr;  ///< of the member at hand; null: none that is read
+  std::string* text_ = nullptr;  ///< of the current member; null: the member is not read
   GpsdReport::Member* member_ = nullptr;
 };
 

@@ -1,4 +1,4 @@
-/// One JSON object of a gpsd log, of which only the members that are read are kept.
+/// One JSON object of a gpsd log. Only the members that the reader uses are kept.
 #pragma once
 
 #include <array>
@@ -36,32 +36,34 @@ struct BadGpsdLine {
   std::string what;
 };
 
-/// A member that does not hold what the protocol says.
+/// A member that violates the protocol.
 struct BadGpsdMember {
   std::string what;
 };
 
-/// One object. Nested members (satellites, devices) are read over.
+/// One object. Nested members (satellites, devices) are skipped.
 struct GpsdReport {
   struct Member {
     double value = 0;
     bool given = false;
-    std::string not_a_number;  ///< what stands there instead
+    std::string not_a_number;  ///< the text in its place
   };
-  std::string kind;  ///< "class"
+  std::string kind;  ///< the member "class"
   std::string time;
   std::string device;
   std::string release;  ///< of VERSION
   std::array<Member, static_cast<std::size_t>(GpsdNumber::count)> numbers;
 
   [[nodiscard]] Member& at(GpsdNumber key) { return numbers[static_cast<std::size_t>(key)]; }
-  /// Empty where it is not there, or null. @throws BadGpsdMember for anything but a number
+  /// Returns nothing if the member is missing or null. @throws BadGpsdMember if it is anything
+  /// but a number
   [[nodiscard]] std::optional<double> number(GpsdNumber key) const;
-  /// Members that the later report of the same epoch has replace those that are here.
+  /// Replaces the members that the later report of the same epoch has.
   void update(const GpsdReport& later);
 };
 
-/// The class that a line names first, as gpsd writes it: `{"class":"SKY",...`; empty where it does not.
+/// Returns the class at the beginning of a line, as gpsd writes it: `{"class":"SKY",...`. Empty if
+/// the line begins otherwise.
 [[nodiscard]] std::string_view gpsd_class(std::string_view line);
 
 /// Reads one line. @throws BadGpsdLine

@@ -20,10 +20,11 @@ namespace waymark::formats {
 namespace {
 
 constexpr const char* kGpxFormat = "a GPX track";
-constexpr std::size_t kLongestText = 64;         // longer than any number or date
-constexpr std::size_t kKept = kLongestText + 1;  // of a text; one that is too long shows
+constexpr std::size_t kLongestText = 64;  // longer than any number or date
+// characters kept of a text: one more, so that a text that is too long is noticed
+constexpr std::size_t kKept = kLongestText + 1;
 
-/// What is read of a point.
+/// The members of a point that are read.
 enum Item : std::size_t {
   kTimeItem,
   kElevationItem,
@@ -36,7 +37,7 @@ enum Item : std::size_t {
 };
 struct ItemName {
   std::string_view name;
-  bool in_extensions;  ///< also read there
+  bool in_extensions;  ///< also read in extensions
 };
 constexpr std::array<ItemName, kItems> kItemNames{{{"time", false},
                                                    {"ele", false},
@@ -53,7 +54,7 @@ std::string_view without_space(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-/// A point of a track as its texts.
+/// A point of a track, as texts.
 struct Point {
   bool open = false;
   std::size_t depth = 0;
@@ -95,8 +96,8 @@ class GpxDecoder final : public LogDecoder, private XmlStream {
   std::string path_;
   PositionStream positions_;
   Point point_;
-  std::string* text_ = nullptr;  ///< where the text at hand goes; null: nowhere
-  std::string what_;             ///< the first complaint about the point; empty: none
+  std::string* text_ = nullptr;  ///< destination of the current text; null: none
+  std::string what_;             ///< the first error of the point; empty: none
   std::size_t track_points_ = 0;
   std::size_t route_points_ = 0;
   std::size_t waypoints_ = 0;
@@ -201,8 +202,8 @@ void GpxDecoder::add_point() {
   any_height_ = any_height_ || (elevation && !geoid_height);
 }
 
-/// Empty where there is no text, where it is wrong, which is complained of, and where it is negative and
-/// cannot be: telephones write -1 for "unknown".
+/// Reads a number. It is empty if there is no text. A wrong text is an error. A negative number is
+/// ignored if it cannot be negative: telephones write -1 for "unknown".
 std::optional<double> GpxDecoder::number(std::string_view text, std::string_view name, double smallest,
                                          double largest) {
   const std::string_view word = without_space(text);

@@ -17,7 +17,7 @@
 namespace waymark::formats {
 namespace {
 
-/// A number of a record that is read: its place, and what it may be.
+/// A number of a record that is read: its place and its range.
 struct Column {
   std::size_t place;
   const char* name;
@@ -94,7 +94,7 @@ class OxtsDecoder final : public LineDecoder {
   PositionStream positions_;
   RecordFields fields_;
   std::array<std::size_t, 256> statuses_{};
-  std::size_t column_ = 0;  ///< of the first complaint about the record at hand
+  std::size_t column_ = 0;  ///< of the first error of the current record
   std::string what_;        ///< empty: none
 };
 
@@ -102,7 +102,7 @@ void OxtsDecoder::take_line(std::string_view line, std::size_t line_number) {
   fields_.split_words(line);
   if (fields_.count() == 0) return;
   const std::size_t record = data_.records++;
-  if (record >= stamps_.size()) return;  // end() complains, with both counts
+  if (record >= stamps_.size()) return;  // end() reports the error with both counts
   what_.clear();
   const std::optional<Stamp> at = positions_.stamp(stamps_[record], TimeScale::unix_time);
   if (fields_.count() != kColumns) {

@@ -51,11 +51,11 @@ class NmeaDecoder final : public LineDecoder {
   PositionStream positions_;
   KindTally tally_;
   NmeaCounts counts_;
-  bool checksums_ = false;        ///< a sentence had a right one
+  bool checksums_ = false;        ///< a sentence had a right checksum
   bool satellites_told_ = false;  ///< a fix had satellites
   NmeaEpoch epoch_;
 
-  /// Day of the last fix: since 1970-01-01 once dated_, before that since the first fix.
+  /// The day of the last fix. It counts from 1970-01-01 if dated_, or else from the first fix.
   std::int64_t day_ = 0;
   bool dated_ = false;
   std::optional<std::int64_t> last_time_of_day_;
@@ -66,7 +66,8 @@ void NmeaDecoder::take_line(std::string_view line, std::size_t number) {
   std::string_view rest = line;
   std::size_t sentences = 0;
   while (const std::optional<NmeaSentence> sentence = next_nmea_sentence(rest)) {
-    // Without a checksum only what begins the line is believed to be one: comments name sentences too.
+    // Without a checksum a sentence counts only at the beginning of a line, because comments name
+    // sentences too.
     const bool begins = sentence->address.data() == line.data() + 1;
     if (sentence->checksum == NmeaChecksum::none && !begins) continue;
     ++sentences;
@@ -97,7 +98,7 @@ void NmeaDecoder::take_sentence(const NmeaSentence& sentence, std::string_view l
   }
 }
 
-/// Looks at the checksum. A sentence that is damaged is corrupt where it is of a kind that is read.
+/// Checks the checksum. A damaged sentence is corrupt if it is of a kind that is read.
 bool NmeaDecoder::is_whole(const NmeaSentence& sentence, NmeaKind kind, std::size_t column,
                            std::size_t number) {
   if (sentence.checksum == NmeaChecksum::right) {
@@ -123,7 +124,8 @@ bool NmeaDecoder::is_whole(const NmeaSentence& sentence, NmeaKind kind, std::siz
 
 bool NmeaDecoder::begins_epoch(NmeaKind kind, std::optional<std::int64_t> time) const {
   if (time) return time != epoch_.time_of_day;
-  // Receivers that do not know the time yet leave it empty: then a kind that comes again begins anew.
+  // Receivers leave the time empty until they know it. Then a kind that comes again begins
+  // a new epoch.
   const bool leads = kind == NmeaKind::rmc || kind == NmeaKind::gga || kind == NmeaKind::gns;
   if (epoch_.time_of_day) return leads;
   return (leads || kind == NmeaKind::gll) && epoch_.has(kind);
@@ -148,9 +150,9 @@ void NmeaDecoder::end_epoch() {
   }
 }
 
-/// Some receivers go on stating a fix when they have lost all satellites, and repeat the last position: the
-/// one that drove through Munich's Petuelring tunnel did so for 19 s before it said "no fix". Converters that
-/// do not know the number write 0 always; there it means nothing.
+/// Some receivers keep stating a fix after they have lost all satellites, and repeat the last
+/// position. The receiver in Munich's Petuelring tunnel did so for 19 s before it stated "no fix".
+/// Converters that do not know the number always write 0; for them it means nothing.
 bool NmeaDecoder::rests_on_no_satellite(const NmeaEpoch& epoch) {
   if (!epoch.satellites || epoch.dead_reckoning || epoch.simulated) return false;
   satellites_told_ = satellites_told_ || *epoch.satellites > 0;
@@ -161,7 +163,7 @@ bool NmeaDecoder::rests_on_no_satellite(const NmeaEpoch& epoch) {
 void NmeaDecoder::count_days(const NmeaEpoch& epoch) {
   const std::int64_t time = *epoch.time_of_day;
   if (last_time_of_day_ && *last_time_of_day_ - time > kDayNanoseconds / 2) {
-    day_ = std::min(day_ + 1, kLastNmeaDay + 1);  // beyond, add_fix refuses
+    day_ = std::min(day_ + 1, kLastNmeaDay + 1);  // beyond it, add_fix refuses
     ++counts_.midnights;
   }
   last_time_of_day_ = time;
@@ -216,7 +218,7 @@ StatedAccuracy NmeaDecoder::accuracy(const NmeaEpoch& epoch) {
   return {.squares_en = squares};
 }
 
-/// Hands out a fix whose stamp is UTC.
+/// Delivers a fix whose stamp is UTC.
 void NmeaDecoder::give(GeodeticFix fix) {
   const std::optional<Stamp> stamp = positions_.stamp(fix.stamp, TimeScale::utc);
   if (!stamp) return corrupt(fix.line, 1, "its time is too large for a stamp");

@@ -1,41 +1,45 @@
-/// Logs of NMEA 0183 sentences, as nearly every receiver writes them.
+/// Logs of NMEA 0183 sentences. Nearly every receiver writes them.
 #pragma once
 
 #include <waymark/core/drive/log_reader.hpp>
 
 namespace waymark::formats {
 
-/// Reader "nmea": fixes (stream gnss) or reference positions (stream truth) from RMC, GGA, GNS, GST, VTG, ZDA
-/// and GLL sentences of any talker.
+/// Reader "nmea": reads fixes (stream gnss) or reference positions (stream truth) from RMC, GGA,
+/// GNS, GST, VTG, ZDA and GLL sentences of any talker.
 ///
-/// **Epochs.** Sentences of one time of day in a row are one epoch, whatever their order; VTG, which has no
-/// time, belongs to the epoch at hand. A position comes from GGA, else GNS, RMC, GLL; speed and course from
-/// RMC, else VTG. Sentences of a fix that lack the time of day are counted and not used.
+/// **Epochs.** Consecutive sentences with the same time of day are one epoch, in any order. VTG
+/// has no time and belongs to the current epoch. The position comes from GGA, else GNS, RMC, GLL;
+/// speed and course come from RMC, else VTG. Sentences of a fix without a time of day are counted
+/// and not used.
 ///
-/// **No fix**: RMC or GLL status V, GGA quality 0, a mode indicator N (GNS: of all systems), each in any
-/// sentence of the epoch; also 0 satellites in GGA or GNS where an earlier fix had some (a frozen position).
-/// **Corrupt**: a sentence of these kinds with a wrong checksum or a field that does not hold what it should,
-/// or without a checksum where an earlier one had one (it broke off); a fix without an accuracy. Each is a
-/// record, as is each epoch. Sentences without a checksum are believed where none before them had one. Lines
-/// without a sentence are counted in the notes.
+/// **No fix**: RMC or GLL status V, GGA quality 0, or a mode indicator N (GNS: of all systems) in
+/// any sentence of the epoch. 0 satellites in GGA or GNS also mean no fix if an earlier fix had
+/// some (a frozen position).
 ///
-/// **Date** from RMC of a fix and from ZDA (which wins); between dates it advances where the time of day
-/// jumps back by more than 12 hours. Fixes before the first date wait for it, at most 4096 of them. A log
-/// without any needs `request.date`. **Time** is UTC and comes out on `request.time_scale`; second 60 counts
-/// as the one after it.
+/// **Corrupt**: a sentence of these kinds with a wrong checksum or a bad field, and a fix without
+/// an accuracy. A sentence without a checksum is corrupt if an earlier one had a checksum, because
+/// it was cut off; otherwise it is accepted. Each corrupt sentence is a record, and each epoch is
+/// one. The notes count lines without a sentence.
 ///
-/// **Height** above the ellipsoid where altitude and geoid separation are given, else above mean sea level.
+/// **Date** comes from RMC with a fix and from ZDA, which takes precedence. Between dates it
+/// advances if the time of day jumps back by more than 12 hours. Fixes before the first date wait
+/// for it, at most 4096 of them. A log without any date needs `request.date`. **Time** is UTC; it
+/// is converted to `request.time_scale`. Second 60 counts as the second after it.
 ///
-/// **Accuracy.** GST fields 6 and 7 are 1 sigma north and east (`request.accuracy` overrides that); the
-/// correlation is that of the error ellipse. Else HDOP times `request.range_error_m` where stated, else the
-/// default sigma, else the record is corrupt.
+/// **Height** is above the ellipsoid if altitude and geoid separation are given, or else above
+/// mean sea level.
+///
+/// **Accuracy.** GST fields 6 and 7 are 1 sigma north and east, and `request.accuracy` overrides
+/// this; the error ellipse gives the correlation. Without GST, HDOP times `request.range_error_m`
+/// is used if stated, or else the default sigma. Without that the record is corrupt.
 class NmeaReader final : public LogReader {
  public:
-  /// @throws InputError for the odometry and sensor streams, a column map, a companion file. Its decoder
-  /// throws one for a log without a date where the request has none.
+  /// @throws InputError for the odometry and sensor streams, a column map, or a companion file. The
+  /// decoder throws one if neither the log nor the request has a date.
   [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,
                                                  const LogRequest& request) const override;
-  /// The share of lines that hold a sentence with a right checksum.
+  /// The confidence is the share of lines that hold a sentence with a right checksum.
   [[nodiscard]] Recognition recognise(std::string_view head) const override;
 };
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kKnot = 1852.0 / 3600;
 constexpr double kKilometrePerHour = 1000.0 / 3600;
-constexpr double kNoHdop = 1000;   // 99.99 is usual for "not known"; beyond, the field is damaged
-constexpr double kFastest = 1000;  // m/s; beyond, the field is damaged
+constexpr double kNoHdop = 1000;   // 99.99 is the usual "not known"; a larger number is damage
+constexpr double kFastest = 1000;  // m/s; a larger number is damage
 
 int rank(NmeaKind kind) {
   switch (kind) {
@@ -34,7 +34,7 @@ std::size_t decimals(std::string_view field) {
   return point == std::string_view::npos ? 0 : field.size() - point - 1;
 }
 
-/// Latitude and longitude from four fields. @param required  the sentence says that there is a fix
+/// Reads latitude and longitude from four fields. @param required the sentence states a fix
 NmeaEpoch::Position read_position(NmeaKind kind, const NmeaFields& fields, std::size_t first,
                                   std::size_t line, bool required) {
   const std::optional<double> latitude = fields.latitude(first);
@@ -48,7 +48,7 @@ NmeaEpoch::Position read_position(NmeaKind kind, const NmeaFields& fields, std::
   return {};
 }
 
-/// What the mode indicator of RMC, GLL and GNS says; GNS has one for each satellite system.
+/// The mode indicator of RMC, GLL and GNS. GNS has one for each satellite system.
 struct Mode {
   bool none = false;
   bool dead_reckoning = false;
@@ -93,7 +93,7 @@ void add_rmc(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   const NmeaEpoch::Position position = read_position(NmeaKind::rmc, fields, 3, line, fixed);
   const std::optional<double> speed = speed_from(fields, 7, kKnot);
   const std::optional<double> course = course_from(fields, 8);
-  // The clock of a receiver that has not found itself yet tells no date.
+  // The clock of a receiver without a fix does not give the date.
   if (fixed && !epoch.has(NmeaKind::zda)) {
     if (const std::optional<std::int64_t> day = fields.short_date(9)) epoch.day = day;
   }
@@ -102,7 +102,7 @@ void add_rmc(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   add_quality(position, mode, fixed, epoch);
 }
 
-/// Satellites, dilution of precision and height, which GGA and GNS both have.
+/// The fields that GGA and GNS share: satellites, dilution of precision and height.
 struct Circumstances {
   std::optional<double> satellites;
   std::optional<double> hdop;
@@ -149,7 +149,7 @@ void add_gll(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
 }
 
 void add_vtg(const NmeaFields& fields, NmeaEpoch& epoch) {
-  // Before version 2 of the standard the fields had no letters behind them; such sentences are not read.
+  // Before version 2 of the standard no letters followed the fields. Such sentences are not read.
   if (fields[2] != "T" || Mode(fields[9]).none) return;
   const std::optional<double> course = course_from(fields, 1);
   std::optional<double> speed = speed_from(fields, 5, kKnot);

@@ -1,4 +1,4 @@
-/// What the NMEA reader tells of a log: assumptions and what was passed over.
+/// The notes of the NMEA reader: its assumptions, and the sentences it skipped.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace waymark::formats {
 
-/// What was met in a log.
+/// Counts of one log.
 struct NmeaCounts {
   std::size_t not_sentences = 0;
   std::size_t without_checksum = 0;
@@ -25,12 +25,12 @@ struct NmeaCounts {
   std::size_t leap_seconds = 0;
   std::size_t midnights = 0;
   std::size_t dated_backwards = 0;
-  std::size_t decimals = 0;  ///< the most that any position had
+  std::size_t decimals = 0;  ///< the largest number in any position
   std::size_t fixes = 0;
   bool log_has_date = false;
 };
 
-/// One sentence for each thing worth telling, beside those that logs of positions have in common
+/// Returns one sentence for each fact worth a note, except those that all logs of positions share
 /// (PositionStream).
 [[nodiscard]] std::vector<std::string> nmea_notes(const NmeaCounts& counts, const LogRequest& request);
 

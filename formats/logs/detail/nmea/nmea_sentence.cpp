@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kShortestAddress = 3;
 constexpr std::size_t kLongestAddress = 8;
 
-/// Exclusive or of all characters, eight at a time.
+/// Returns the exclusive or of all characters, eight at a time.
 unsigned checksum_of(std::string_view text) {
   std::uint64_t sum = 0;
   while (text.size() >= sizeof sum) {
@@ -35,7 +35,7 @@ unsigned checksum_of(std::string_view text) {
   return folded;
 }
 
-/// Length of the address that a sentence begins with; 0: it is none.
+/// Returns the length of the address at the beginning of a sentence; 0: there is none.
 std::size_t address_length(std::string_view sentence) {
   const std::size_t longest = std::min(sentence.size(), kLongestAddress + 1);
   std::size_t length = 0;
@@ -46,7 +46,7 @@ std::size_t address_length(std::string_view sentence) {
   return ends && length >= kShortestAddress && length <= kLongestAddress ? length : 0;
 }
 
-/// A sentence that begins after its `$` and ends before the next one or with the line.
+/// Reads a sentence from the text after its `$` up to the next `$` or the end of the line.
 std::optional<NmeaSentence> sentence_of(std::string_view text) {
   const std::size_t address = address_length(text);
   if (address == 0) return std::nullopt;
@@ -120,7 +120,7 @@ std::optional<double> NmeaFields::number(std::size_t index, const char* name) co
   const char* const end = field.data() + field.size();
   const Decimal plain = read_plain_decimal(field.data(), end);
   if (plain.end == end) return plain.value;
-  double value = 0;  // more digits than the quick way knows
+  double value = 0;  // it has more digits than the fast function supports
   const auto [place, error] = std::from_chars(field.data(), end, value, std::chars_format::fixed);
   if (error != std::errc() || place != end || !std::isfinite(value))
     fail(field, std::string("a number for the ") + name);
@@ -176,7 +176,7 @@ std::optional<double> NmeaFields::angle(std::size_t index, bool is_latitude) con
   const double minutes = *value - 100 * degrees;
   const double angle = degrees + minutes / 60;
   const double limit = is_latitude ? 90 : 180;
-  // The comparisons are such that NaN fails.
+  // The comparisons fail for NaN.
   if (!(*value >= 0 && minutes < 60 && angle <= limit))
     fail((*this)[index],
          fmt::format("a {} from 0 to {} degrees as {}mm.mmm", name, limit, is_latitude ? "dd" : "ddd"));

@@ -24,14 +24,14 @@ namespace {
 constexpr const char* kNovatelFormat = "a NovAtel log";
 constexpr double kFar = 1e6;  // m: beyond any height
 
-/// A velocity without sigma, waiting for the position of its time.
+/// A velocity without sigma that waits for the position of the same time.
 struct Velocity {
   Stamp at;
   double speed_mps = 0;
   double course_rad = 0;
 };
 
-/// A position that waits for the velocity of its time.
+/// A position that waits for the velocity of the same time.
 struct HeldFix {
   GeodeticFix fix;
   StatedAccuracy accuracy;
@@ -62,18 +62,18 @@ class NovatelDecoder final : public LineDecoder {
 
   PositionStream positions_;
   NovatelMessage message_;
-  const NovatelLayout* layout_ = nullptr;  ///< of the message at hand
+  const NovatelLayout* layout_ = nullptr;  ///< of the current message
   int best_rank_ = 1;
   std::optional<HeldFix> held_;
   std::optional<Velocity> velocity_;
   KindTally kinds_;
   KindTally types_;
-  std::string datum_;  ///< the first that is not WGS84
+  std::string datum_;  ///< the first datum that is not WGS84
   double largest_latency_s_ = 0;
   std::size_t without_time_ = 0;
   std::size_t abbreviated_ = 0;
   std::size_t other_lines_ = 0;
-  std::size_t column_ = 0;  ///< of the first complaint about the message at hand
+  std::size_t column_ = 0;  ///< of the first error of the current message
   std::string what_;        ///< empty: none
 };
 
@@ -125,7 +125,7 @@ void NovatelDecoder::take_message(std::size_t line_number) {
 }
 
 std::optional<Stamp> NovatelDecoder::stamp() {
-  // INSPVA has its own time, finer than its header's.
+  // INSPVA has its own time, which is finer than the time in its header.
   const bool in_body = layout_->status == 11;
   const std::string_view week = in_body ? message_.body[0] : message_.week;
   const std::string_view seconds = in_body ? message_.body[1] : message_.seconds;
@@ -199,7 +199,7 @@ void NovatelDecoder::set_inertial_velocity(GeodeticFix& fix) {
     set_velocity(fix, {east, north}, covariance.diagonal().minCoeff() > 0 ? &covariance : nullptr);
 }
 
-/// Keeps a fix until the velocity of its time can no longer come.
+/// Holds a fix until the velocity of its time can no longer come.
 void NovatelDecoder::hold(const GeodeticFix& fix, const StatedAccuracy& accuracy) {
   release();
   const std::size_t field = layout_->sigma == kNoField ? 0 : layout_->sigma;

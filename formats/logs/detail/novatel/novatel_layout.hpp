@@ -1,4 +1,4 @@
-/// Which messages of NovAtel are read, and where they have what (OEM7 Commands and Logs).
+/// The messages of NovAtel that are read, and the places of their fields (OEM7 Commands and Logs).
 #pragma once
 
 #include <array>
@@ -7,15 +7,15 @@
 
 namespace waymark::formats {
 
-/// Of a field that a message does not have.
+/// The place of a field that a message does not have.
 inline constexpr std::size_t kNoField = 99;
 
-/// Where a message has what is read of it: 0-based fields of its body.
+/// The places of the fields of a message: 0-based fields of its body.
 struct NovatelLayout {
   std::string_view name;
-  int gnss_rank;       ///< of positions for fixes: the best kind that has occurred is read; 0: no position
-  int truth_rank;      ///< of positions for truth
-  std::size_t fields;  ///< at least
+  int gnss_rank;       ///< rank of its positions as fixes: the best kind so far is read; 0: no position
+  int truth_rank;      ///< rank of its positions as truth
+  std::size_t fields;  ///< the body has at least so many
   std::size_t status;
   std::size_t type = kNoField;
   std::size_t latitude = 2;  ///< then longitude, height
@@ -67,7 +67,7 @@ inline constexpr std::array<NovatelLayout, 7> kNovatelLayouts{{
     {.name = "BESTVELA", .gnss_rank = 0, .truth_rank = 0, .fields = 7, .status = 0, .type = 1},
 }};
 
-/// Null for a message that is not read.
+/// Returns null for a message that is not read.
 [[nodiscard]] inline const NovatelLayout* novatel_layout(std::string_view name) {
   for (const NovatelLayout& layout : kNovatelLayouts) {
     if (layout.name == name) return &layout;
@@ -75,7 +75,7 @@ inline constexpr std::array<NovatelLayout, 7> kNovatelLayouts{{
   return nullptr;
 }
 
-/// Whether a solution status, GNSS or inertial, says that there is a position.
+/// Tells whether a solution status, GNSS or inertial, means that there is a position.
 [[nodiscard]] inline bool novatel_has_solution(std::string_view status) {
   for (const std::string_view yes : {"SOL_COMPUTED", "INS_SOLUTION_GOOD", "INS_SOLUTION_FREE",
                                      "INS_ALIGNMENT_COMPLETE", "INS_HIGH_VARIANCE"}) {

@@ -21,7 +21,7 @@ std::string_view novatel_name(std::string_view line) {
   line.remove_prefix(1);
   std::size_t length = 0;
   while (length < line.size() && length <= kLongestName && is_of_name(line[length])) ++length;
-  // 'A' of ASCII ends every name.
+  // Every name ends with 'A' for ASCII.
   if (length < 4 || length == line.size() || line[length] != ',' || line[length - 1] != 'A') return {};
   return line.substr(0, length);
 }

@@ -10,9 +10,9 @@ namespace {
 
 struct LayoutNames {
   RtklibLayout layout;
-  std::string_view first;     ///< name of the first column of the position
-  std::string_view sigma;     ///< of the standard deviations
-  std::string_view velocity;  ///< of the velocities
+  std::string_view first;     ///< name of the first position column
+  std::string_view sigma;     ///< name of the first column of standard deviations
+  std::string_view velocity;  ///< name of the first velocity column
 };
 constexpr std::array<LayoutNames, 4> kLayouts{{
     {RtklibLayout::degrees, "latitude(deg)", "sdn(m)", "vn(m/s)"},
@@ -21,7 +21,7 @@ constexpr std::array<LayoutNames, 4> kLayouts{{
     {RtklibLayout::baseline, "e-baseline(m)", "sde(m)", "ve(m/s)"},
 }};
 
-/// latitude longitude height, degrees plain or in three fields.
+/// Reads latitude, longitude and height; degrees are one field or three.
 std::optional<GeodeticPlace> read_reference(std::string_view text) {
   RecordFields words;
   words.split_words(text);
@@ -39,7 +39,7 @@ std::optional<GeodeticPlace> read_reference(std::string_view text) {
     };
     place = {degrees(0), degrees(3), number[6]};
   }
-  // Of x/y/z solutions the reference is in metres.
+  // In x/y/z solutions the reference is in metres.
   if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 360) return std::nullopt;
   return place;
 }
@@ -67,7 +67,8 @@ bool RtklibHeader::take(std::string_view line) {
     if (words[1] != names.first || !set_scale(*this, words[0])) continue;
     layout = names.layout;
     const std::size_t shift =
-        layout == RtklibLayout::sexagesimal ? 5 : 1;  // fields before a name's, less names
+        // fields of time and position up to a name, minus the names
+        layout == RtklibLayout::sexagesimal ? 5 : 1;
     const auto place_of = [&](std::string_view name) -> std::size_t {
       for (std::size_t i = 4; i < words.count(); ++i) {
         if (words[i] == name) return i + shift;

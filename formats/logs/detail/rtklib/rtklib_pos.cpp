@@ -30,7 +30,8 @@ double signed_square(double root) {
   return root * std::abs(root);
 }
 
-/// The symmetric matrix of three deviations and the signed roots of the covariances 01, 12, 20.
+/// Returns the symmetric matrix of three deviations and the signed roots of the
+/// covariances 01, 12, 20.
 Eigen::Matrix3d covariance_xyz(const std::array<double, 6>& deviation) {
   Eigen::Matrix3d result;
   const double xy = signed_square(deviation[3]);
@@ -71,9 +72,9 @@ class RtklibDecoder final : public LineDecoder {
   bool any_without_names_ = false;
   bool any_above_geoid_ = false;
 
-  Eigen::Matrix3d enu_from_axes_ = Eigen::Matrix3d::Identity();  ///< of the record at hand
-  std::size_t column_ = 0;                                       ///< of the first complaint
-  std::string what_;                                             ///< empty: no complaint yet
+  Eigen::Matrix3d enu_from_axes_ = Eigen::Matrix3d::Identity();  ///< of the current record
+  std::size_t column_ = 0;                                       ///< of the first error
+  std::string what_;                                             ///< empty: no error yet
 };
 
 void RtklibDecoder::take_line(std::string_view line, std::size_t number) {
@@ -143,7 +144,7 @@ std::optional<Stamp> RtklibDecoder::stamp() {
   std::optional<Stamp> given;
   if (day.find('/') == std::string_view::npos) {
     given = stamp_from_gps_week(day, time);
-    // Of UTC and JST RTKLIB counts calendar weeks.
+    // For UTC and JST, RTKLIB counts calendar weeks.
     if (given && header_.scale != TimeScale::gps) given->nanoseconds += kGpsEpochPosix;
   } else if (day.size() == 10 && time.size() >= 8 && time.size() <= 20) {
     std::array<char, 31> text{};
@@ -195,7 +196,7 @@ GeodeticPlace RtklibDecoder::place() {
   return geodetic_from_ecef(ecef);
 }
 
-/// Degrees, from one field or three.
+/// Reads degrees from one field or three.
 double RtklibDecoder::angle(std::size_t first, const char* name, double limit) {
   double degrees = number(first, name);
   if (header_.layout == RtklibLayout::sexagesimal) {
@@ -210,7 +211,7 @@ double RtklibDecoder::angle(std::size_t first, const char* name, double limit) {
   return degrees;
 }
 
-/// The rotation from the axes that deviations and velocities are given in to east, north, up at the fix.
+/// Sets the rotation from the axes of deviations and velocities to east, north, up at the fix.
 void RtklibDecoder::choose_axes(const GeodeticPlace& where) {
   if (header_.layout == RtklibLayout::ecef || header_.layout == RtklibLayout::baseline)
     enu_from_axes_ = enu_from_ecef(where.latitude_deg, where.longitude_deg);
@@ -219,7 +220,7 @@ void RtklibDecoder::choose_axes(const GeodeticPlace& where) {
         enu_from_ecef(header_.reference->latitude_deg, header_.reference->longitude_deg).transpose();
 }
 
-/// The covariance in east and north of six deviations; empty where they are zero.
+/// Returns the covariance in east and north from six deviations; empty if they are zero.
 std::optional<Eigen::Matrix2d> RtklibDecoder::horizontal(std::size_t first) {
   std::array<double, 6> deviation{};
   for (std::size_t i = 0; i < deviation.size(); ++i) deviation[i] = number(first + i, "standard deviation");

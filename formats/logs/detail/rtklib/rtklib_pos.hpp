@@ -1,33 +1,36 @@
-/// Solutions of RTKLIB: `.pos` files of rnx2rtkp, RTKPOST and rtkrcv.
+/// Solutions of RTKLIB: the `.pos` files of rnx2rtkp, RTKPOST and rtkrcv.
 #pragma once
 
 #include <waymark/core/drive/log_reader.hpp>
 
 namespace waymark::formats {
 
-/// Reader "rtklib_pos": streams gnss and truth.
+/// Reader "rtklib_pos": reads the streams gnss and truth.
 ///
-/// **Layout** is read from the header's line of column names: latitude, longitude and height (degrees, or
-/// degrees, minutes and seconds), x/y/z-ecef, or e/n/u-baseline, which needs the reference position of the
-/// `% ref pos` line. Fields are separated by blanks, tabs, `,` or `;`; the time is a date and a time of day,
-/// or a GPS week and seconds of it. Without such a line RTKLIB's default is assumed: degrees, GPST; the notes
-/// say so.
+/// **Layout** comes from the header line with the column names. Positions are latitude, longitude
+/// and height (degrees, or degrees, minutes and seconds), x/y/z-ecef, or e/n/u-baseline; the last
+/// needs the reference position of the `% ref pos` line. Blanks, tabs, `,` or `;` separate fields.
+/// The time is a date and a time of day, or a GPS week and its seconds. Without such a header line
+/// RTKLIB's default is assumed (degrees, GPST), and the notes say so.
 ///
-/// **Time**: GPST, UTC or JST, as the header says; converted to `request.time_scale`.
+/// **Time** is GPST, UTC or JST, as the header states; it is converted to `request.time_scale`.
 ///
-/// **Accuracy**: standard deviations (1 sigma, which `request.accuracy` overrides) and signed roots of
-/// covariances, cov = r |r|; axes north, east, up for latitude and longitude, x, y, z for ECEF, east, north,
-/// up for baselines. They come out as the covariance in east and north at the fix.
+/// **Accuracy** is standard deviations (1 sigma, which `request.accuracy` overrides) and signed
+/// roots of covariances, cov = r |r|. Their axes are north, east, up for latitude and longitude, x,
+/// y, z for ECEF, and east, north, up for baselines. They are converted to the covariance in east
+/// and north at the fix.
 ///
-/// **Velocities**, where the solution has them, become speed and course with their sigmas.
+/// **Velocities**, if the solution has them, become speed and course with their sigmas.
 ///
-/// **Height** is above the ellipsoid, or above the geoid where the header says "geodetic" (noted).
+/// **Height** is above the ellipsoid, or above the geoid if the header says "geodetic" (a
+/// note says so).
 ///
-/// **Not corrupt**: comments, and records with Q = 0 (without a fix). **Corrupt**: another number of fields
-/// than the header has, a garbled number or time, a position that is none, a covariance that is not positive
-/// definite, no accuracy without a default sigma.
+/// **Not corrupt**: comments, and records with Q = 0 (no fix). **Corrupt**: another number of
+/// fields than the header has, a garbled number or time, an impossible position, a covariance that
+/// is not positive definite, no accuracy without a default sigma.
 ///
-/// @throws InputError for the odometry stream, a column map, companions; for baselines without a reference.
+/// @throws InputError for the odometry stream, a column map, companions, and baselines without
+/// a reference.
 class RtklibPosReader final : public LogReader {
  public:
   [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,

@@ -13,7 +13,7 @@
 namespace waymark::formats {
 namespace {
 
-/// Whether HNR-PVT is asked for.
+/// Tells whether the request asks for HNR-PVT.
 bool wants_high_rate(const std::string& path, const LogRequest& request) {
   for (const auto& [quantity, column] : request.columns) {
     if (quantity != "position")

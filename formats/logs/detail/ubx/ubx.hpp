@@ -5,37 +5,43 @@
 
 namespace waymark::formats {
 
-/// Reader "ubx": fixes (gnss), positions (truth), and readings of ESF-MEAS (odometry, sensor).
+/// Reader "ubx": reads fixes (gnss), positions (truth), and readings of ESF-MEAS
+/// (odometry, sensor).
 ///
-/// **Epochs.** Navigation messages of one iTOW belong together; NAV-EOE, another iTOW or a second position of
-/// the same message closes an epoch. Position: NAV-HPPOSLLH before NAV-PVT before NAV-POSLLH. Speed and
-/// course: NAV-PVT, else NAV-VELNED. Fix: NAV-PVT, else NAV-SOL, else NAV-STATUS; without gnssFixOK, with
-/// type 0 (none) or 5 (time only), or with an invalid position it is none. Dead reckoning (1) and its
-/// combination with GNSS (4) are used and counted in the notes. HNR-PVT, positions dead-reckoned between the
-/// epochs, are passed over unless the column `position` names them: `position: HNR-PVT`; then they alone are
-/// read.
+/// **Epochs.** Navigation messages with one iTOW belong together. NAV-EOE, another iTOW, or a
+/// second position from the same message closes an epoch. The position comes from NAV-HPPOSLLH,
+/// else NAV-PVT, else NAV-POSLLH; speed and course come from NAV-PVT, else NAV-VELNED. The state of
+/// the fix comes from NAV-PVT, else NAV-SOL, else NAV-STATUS. It is no fix without gnssFixOK, with
+/// type 0 (none) or 5 (time only), or with an invalid position. Dead reckoning (1) and its
+/// combination with GNSS (4) are used and counted in the notes. HNR-PVT has positions that are
+/// dead-reckoned between the epochs. They are skipped unless the column `position` names them,
+/// `position: HNR-PVT`; then nothing else is read.
 ///
-/// **Time**, in order: the date of NAV-PVT if fully resolved, that of NAV-TIMEUTC if valid, iTOW with the
-/// week of NAV-SOL or NAV-TIMEGPS, a valid date that is not fully resolved (with the seconds of iTOW), iTOW
-/// in the week of the epochs before or in `request.gps_week`.
+/// **Time** comes from the first of these: the date of NAV-PVT if fully resolved, the date of
+/// NAV-TIMEUTC if valid, iTOW with the week of NAV-SOL or NAV-TIMEGPS, a valid date that is not
+/// fully resolved (with the seconds of iTOW), iTOW in the week of the previous epochs or in
+/// `request.gps_week`.
 ///
-/// **Accuracy**: NAV-COV's covariance where valid; else hAcc, as drms unless stated. Speed and course
-/// accuracies are taken as one sigma. Heights are above the ellipsoid. Heading of truth: headVeh where valid.
+/// **Accuracy** is the covariance of NAV-COV if valid, or else hAcc, as drms unless stated. Speed
+/// and course accuracies are read as one sigma. Heights are above the ellipsoid. The heading of
+/// truth is headVeh if valid.
 ///
-/// **Readings**: one row per ESF-MEAS message, columns by name (channels.hpp), NaN for what it does
-/// not hold. Tick counters become running counts that fall while the direction bit says backwards. The
-/// sensors' clock is placed on GNSS time by the order of the messages: see UbxSensorClock for its error.
+/// **Readings**: each ESF-MEAS message is one row, with columns by name (channels.hpp). A value
+/// that the message does not hold is NaN. Tick counters become running counts; they fall while the
+/// direction bit says backwards. The order of the messages places the clock of the sensors on GNSS
+/// time; UbxSensorClock states its error.
 ///
-/// **Corrupt**: frames with a wrong checksum or length, messages too short, positions outside the globe,
-/// without a known week or without accuracy.
+/// **Corrupt**: frames with a wrong checksum or length, messages that are too short, positions
+/// outside the globe, and positions without a known week or without accuracy.
 class UbxReader final : public LogReader {
  public:
-  /// @throws InputError for columns other than `position`, companion files, readings that ESF-MEAS has not
+  /// @throws InputError for columns other than `position`, companion files, and readings that
+  /// ESF-MEAS does not have
   [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,
                                                  const LogRequest& request) const override;
-  /// 1 for at least three frames with right checksums and a message with a position among them: a log mixed
-  /// with NMEA is this reader's, too (that of NMEA never claims more than 0.95). Else the share of the bytes
-  /// in frames, times 0.9.
+  /// The confidence is 1 for at least three frames with right checksums that include a message with
+  /// a position. So a log mixed with NMEA belongs to this reader, because the NMEA reader claims at
+  /// most 0.95. Otherwise it is the share of bytes in frames, times 0.9.
   [[nodiscard]] Recognition recognise(std::string_view head) const override;
 };
 

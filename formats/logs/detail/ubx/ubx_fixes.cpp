@@ -10,7 +10,7 @@
 namespace waymark::formats {
 namespace {
 
-/// Clockwise from north, degrees -> counter-clockwise from east, radians in (-pi, pi].
+/// Converts degrees clockwise from north to radians counter-clockwise from east, in (-pi, pi].
 double heading_from_course(double course_deg) {
   const double heading = std::remainder((90 - course_deg) * kDegree, 2 * std::numbers::pi);
   return heading <= -std::numbers::pi ? std::numbers::pi : heading;
@@ -25,7 +25,7 @@ bool positive_definite(const Eigen::Matrix2d& matrix) {
          matrix(0, 0) * matrix(1, 1) - matrix(0, 1) * matrix(1, 0) > 0;
 }
 
-/// A message that the open epoch already has belongs to the next, even with the same iTOW.
+/// A message that the open epoch already has belongs to the next epoch, even with the same iTOW.
 bool has(const UbxEpoch& epoch, std::uint16_t key) {
   switch (key) {
     case ubx::kNavPvt:
@@ -123,7 +123,8 @@ void UbxFixDecoder::end_epoch() {
   if (!epoch_) return;
   const UbxEpoch epoch = *epoch_;
   epoch_.reset();
-  // Time is learnt from every epoch: one without a position may be the only one that tells the week.
+  // Time is taken from every epoch, because one without a position may be the only one
+  // with the week.
   const std::optional<std::int64_t> gps = epoch.itow_ms < kItowWeekMs ? time_of(epoch) : std::nullopt;
   if (!epoch.has_position()) return;
   ++data_.records;
@@ -195,7 +196,7 @@ StatedAccuracy UbxFixDecoder::accuracy(const UbxEpoch& epoch, const UbxPlace& pl
   return {place.accuracy_m * place.accuracy_m * Eigen::Matrix2d::Identity(), AccuracyMeaning::drms};
 }
 
-/// Counts what the notes tell of an epoch that is used.
+/// Updates the counts for the notes about an epoch that is used.
 void UbxFixDecoder::count(const UbxEpoch& epoch) {
   ++(epoch.precise ? counts_.precise : epoch.solution ? counts_.solution : counts_.plain);
   const std::optional<UbxFixState> state = epoch.solution ? epoch.solution->state : epoch.state;

@@ -1,4 +1,4 @@
-/// Positions of UBX logs: messages of one epoch brought together.
+/// Positions of UBX logs: combines the messages of one epoch.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace waymark::formats {
 
-/// What the messages of one navigation epoch said.
+/// The messages of one navigation epoch.
 struct UbxEpoch {
   std::uint32_t itow_ms = 0;
   std::optional<UbxSolution> solution;  ///< NAV-PVT (or HNR-PVT)
@@ -25,8 +25,8 @@ struct UbxEpoch {
   std::optional<UbxFixState> state;  ///< NAV-SOL, NAV-STATUS
   std::optional<UbxDate> utc;        ///< NAV-TIMEUTC
   std::optional<UbxWeek> week;       ///< NAV-SOL, NAV-TIMEGPS
-  std::size_t number = 0;            ///< of the frame that brought the position
-  std::uint64_t byte = 0;            ///< of the first frame
+  std::size_t number = 0;            ///< number of the frame with the position
+  std::uint64_t byte = 0;            ///< place of the first frame
 
   [[nodiscard]] bool has_position() const { return solution || precise || plain; }
 };
@@ -46,10 +46,10 @@ struct UbxFixCounts {
   std::size_t repeated = 0;
 };
 
-/// Decoder of the streams gnss and truth. See ubx.hpp for the rules.
+/// Decodes the streams gnss and truth. ubx.hpp has the rules.
 class UbxFixDecoder final : public UbxFrameDecoder {
  public:
-  /// @param high_rate  reads HNR-PVT instead of the navigation epochs
+  /// @param high_rate read HNR-PVT in place of the navigation epochs
   UbxFixDecoder(std::string path, LogRequest request, bool high_rate);
 
  protected:
@@ -71,8 +71,8 @@ class UbxFixDecoder final : public UbxFrameDecoder {
   PositionStream positions_;
   UbxTime time_;
   UbxFixCounts counts_;
-  std::optional<UbxEpoch> epoch_;       ///< the one at hand
-  std::optional<std::uint32_t> ended_;  ///< iTOW of the one before
+  std::optional<UbxEpoch> epoch_;       ///< the current one
+  std::optional<std::uint32_t> ended_;  ///< iTOW of the previous one
 };
 
 }  // namespace waymark::formats

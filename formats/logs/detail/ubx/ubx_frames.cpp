@@ -10,7 +10,7 @@ namespace waymark::formats {
 namespace {
 
 constexpr std::size_t kHeader = 6;
-constexpr std::size_t kFrame = kHeader + 2;  // with the checksum, without a payload
+constexpr std::size_t kFrame = kHeader + 2;  // with the checksum and without a payload
 constexpr char kSync1 = '\xB5';
 constexpr char kSync2 = '\x62';
 
@@ -42,7 +42,8 @@ unsigned byte_at(std::string_view bytes, std::size_t place) {
   return static_cast<unsigned char>(bytes[place]);
 }
 
-/// Fletcher's checksum: b is the sum of all intermediate sums a. Sums of 32 bits wrap at a multiple of 256.
+/// Fletcher's checksum: b is the sum of all intermediate sums a. Sums of 32 bits wrap at a multiple
+/// of 256, so the low byte is right.
 bool checksum_is_right(std::string_view frame) {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -70,8 +71,8 @@ bool UbxStretch::checksum_is_right(std::size_t begin, std::size_t size) {
     if (summed_ <= 4 * bytes_.size()) return formats::checksum_is_right(bytes_.substr(begin, size));
     make_sums();
   }
-  // The sums over a part: with a(i) and b(i) from the first byte of the stretch to byte i, that part's
-  // a = a(last) - a(first), b = b(last) - b(first) - (last - first) a(first).
+  // The sums over a part come from the sums a(i) and b(i) over the bytes from the start of the
+  // stretch to byte i: a = a(last) - a(first), b = b(last) - b(first) - (last - first) a(first).
   const std::size_t first = begin + 2;
   const std::size_t last = begin + size - 2;
   const Sums& before = sums_[first];
@@ -130,7 +131,7 @@ void UbxFrameDecoder::take(std::string_view piece) {
       return;
     }
     begun_.erase(0, scan(begun_, false));
-    // What is left lies in this piece as a rule, and is looked at there: without copies, in one go.
+    // The rest of this piece is usually complete, so it is searched in place, without copies.
     const std::size_t taken = piece.size() - rest.size();
     if (begun_.size() > taken) continue;
     rest = piece.substr(taken - begun_.size());
@@ -145,7 +146,7 @@ void UbxFrameDecoder::finish() {
   end();
   if (strange_ > 0) note(fmt::format("{} bytes that belong to no UBX frame were passed over", strange_));
   for (unsigned key = 0; key < 1U << 16U; ++key) {
-    if (!counts_[key >> 8U]) {  // none of the class came
+    if (!counts_[key >> 8U]) {  // the class has not occurred yet
       key |= 0xFFU;
       continue;
     }
@@ -168,7 +169,7 @@ void UbxFrameDecoder::give(const UbxFrame& frame, std::uint64_t place) {
   take_frame(frame);
 }
 
-/// Gives what is complete. @return so many bytes are done with; the rest may begin a frame
+/// Delivers the complete frames. @return how many bytes are done; the rest may begin a frame
 std::size_t UbxFrameDecoder::scan(std::string_view bytes, bool at_end) {
   std::size_t done = 0;
   UbxStretch stretch(bytes);
@@ -202,7 +203,7 @@ void UbxFrameDecoder::give_broken(const UbxFound& found, std::string_view bytes)
   const std::uint64_t place = base_ + found.begin;
   const std::string_view rest = bytes.substr(found.begin);
   if (found.kind == UbxFound::Kind::incomplete) {
-    if (rest.size() < kHeader) return;  // too little to say what it is
+    if (rest.size() < kHeader) return;  // too few bytes to recognise a frame
     const auto key = static_cast<std::uint16_t>(byte_at(rest, 2) << 8U | byte_at(rest, 3));
     if (!is_known_class(key)) return;
     ++data_.records;

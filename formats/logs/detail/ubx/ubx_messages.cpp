@@ -13,7 +13,8 @@ double accuracy(std::uint32_t figure, double units_per_whole) {
   return figure == kNoFigure ? 0 : figure / units_per_whole;
 }
 
-/// Year to second at `at`. Empty for a date that does not exist, or beyond what a Stamp holds.
+/// Reads year to second at `at`. Empty if the date does not exist or is beyond the
+/// range of a Stamp.
 std::optional<UbxDate> read_date(const UbxPayload& payload, std::size_t at, std::int32_t nanoseconds) {
   const int year = payload.u16(at);
   const std::chrono::year_month_day day{std::chrono::year{year}, std::chrono::month{payload.u8(at + 2)},
@@ -29,7 +30,7 @@ std::optional<UbxDate> read_date(const UbxPayload& payload, std::size_t at, std:
   return UbxDate{Stamp{seconds * 1'000'000'000 + nanoseconds}, leap, true};
 }
 
-/// NAV-PVT and HNR-PVT begin alike: date at 4, its flags at 11.
+/// NAV-PVT and HNR-PVT begin alike: the date is at 4, its flags are at 11.
 std::optional<UbxDate> read_solution_date(const UbxPayload& payload, std::size_t nano_at) {
   const unsigned valid = payload.u8(11);
   if ((valid & 3U) != 3U) return std::nullopt;  // validDate, validTime
@@ -38,7 +39,7 @@ std::optional<UbxDate> read_solution_date(const UbxPayload& payload, std::size_t
   return date;
 }
 
-/// Longitude, latitude (1e-7 degree) and height (mm) stand side by side.
+/// Longitude, latitude (1e-7 degree) and height (mm) are adjacent.
 UbxPlace read_place(const UbxPayload& payload, std::size_t at, std::size_t accuracy_at) {
   UbxPlace place;
   place.longitude_deg = payload.i32(at) / 1e7;
@@ -155,7 +156,7 @@ std::optional<UbxDate> read_nav_timeutc(const UbxPayload& payload) {
 std::optional<UbxWeek> read_ubx_week(std::uint16_t key, const UbxPayload& payload) {
   const unsigned both = key == ubx::kNavSol ? 0x0CU : 0x03U;  // WKNSET, TOWSET; towValid, weekValid
   const UbxWeek week{payload.i16(8), payload.i32(4)};
-  // NAV-SOL's fraction is at most half a millisecond, NAV-TIMEGPS' too.
+  // The fraction of NAV-SOL is at most half a millisecond, and so is that of NAV-TIMEGPS.
   const bool sensible =
       week.week > 0 && week.week <= 10'000 && week.fraction_ns >= -500'000 && week.fraction_ns <= 500'000;
   if ((payload.u8(11) & both) != both || !sensible) return std::nullopt;

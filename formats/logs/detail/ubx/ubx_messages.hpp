@@ -1,5 +1,5 @@
-/// Contents of the UBX messages that are read: layouts, units and flags as in u-blox' interface descriptions
-/// (M8: UBX-13003221, F9: UBX-18010854).
+/// The UBX messages that are read: layouts, units and flags as in the interface descriptions of
+/// u-blox (M8: UBX-13003221, F9: UBX-18010854).
 #pragma once
 
 #include <cstddef>
@@ -29,10 +29,10 @@ inline constexpr std::uint16_t kEsfMeas = 0x1002;
 inline constexpr std::uint16_t kHnrPvt = 0x2800;
 }  // namespace ubx
 
-/// The shortest payload a message that is read can have; 0 for those that are not read.
+/// Returns the shortest legal payload of a message that is read, and 0 for all others.
 [[nodiscard]] std::size_t least_ubx_length(std::uint16_t key);
 
-/// Little-endian numbers of a payload, byte by byte (a payload has no alignment).
+/// Reads little-endian numbers of a payload, byte by byte, because a payload is not aligned.
 /// Offsets lie within the payload: least_ubx_length is checked before.
 class UbxPayload {
  public:
@@ -54,11 +54,11 @@ class UbxPayload {
   std::string_view bytes_;
 };
 
-/// A date that the receiver calls valid.
+/// A date that the receiver marks as valid.
 struct UbxDate {
-  Stamp utc;                 ///< POSIX; a second 60 is given as 59 with `leap_second`
+  Stamp utc;                 ///< POSIX; second 60 is given as 59 with `leap_second`
   bool leap_second = false;  ///< one second later than `utc`
-  bool resolved = true;      ///< false: its seconds may still be off by leap seconds
+  bool resolved = true;      ///< false: its seconds may still be wrong by leap seconds
 };
 
 /// A position.
@@ -69,7 +69,7 @@ struct UbxPlace {
   double accuracy_m = 0;  ///< hAcc; 0: none
 };
 
-/// Motion over ground. Accuracies are taken as one sigma; 0: none.
+/// Motion over ground. Accuracies are read as one sigma; 0: none.
 struct UbxMotion {
   double speed_mps = 0;
   double speed_accuracy_mps = 0;
@@ -77,7 +77,7 @@ struct UbxMotion {
   double course_accuracy_deg = 0;
 };
 
-/// What a receiver says of its fix.
+/// The state of a fix.
 struct UbxFixState {
   int type = 0;     ///< 0 none, 1 dead reckoning, 2 2D, 3 3D, 4 GNSS and dead reckoning, 5 time only
   bool ok = false;  ///< within the receiver's limits (gnssFixOK)
@@ -92,10 +92,10 @@ struct UbxSolution {
   int carrier = 0;  ///< 1 float, 2 fixed
   UbxPlace place;
   UbxMotion motion;
-  std::optional<double> vehicle_heading_deg;  ///< clockwise from true north, where its flag says valid
+  std::optional<double> vehicle_heading_deg;  ///< clockwise from true north, if its flag says valid
 };
 
-/// GPS week, and the rest of iTOW's milliseconds.
+/// A GPS week, and the sub-millisecond rest of iTOW.
 struct UbxWeek {
   int week = 0;
   std::int32_t fraction_ns = 0;
@@ -105,16 +105,16 @@ struct UbxWeek {
 [[nodiscard]] UbxSolution read_nav_pvt(const UbxPayload& payload);
 [[nodiscard]] UbxSolution read_hnr_pvt(const UbxPayload& payload);
 [[nodiscard]] UbxPlace read_nav_posllh(const UbxPayload& payload);
-/// Empty where the message calls itself invalid.
+/// Returns nothing if the message is marked invalid.
 [[nodiscard]] std::optional<UbxPlace> read_nav_hpposllh(const UbxPayload& payload);
 [[nodiscard]] UbxMotion read_nav_velned(const UbxPayload& payload);
 [[nodiscard]] std::optional<UbxDate> read_nav_timeutc(const UbxPayload& payload);
-/// Of NAV-SOL or NAV-TIMEGPS; empty where week or time of week are not valid.
+/// Reads NAV-SOL or NAV-TIMEGPS. Empty if week or time of week is not valid.
 [[nodiscard]] std::optional<UbxWeek> read_ubx_week(std::uint16_t key, const UbxPayload& payload);
-/// Of NAV-SOL or NAV-STATUS.
+/// Reads NAV-SOL or NAV-STATUS.
 [[nodiscard]] UbxFixState read_ubx_state(std::uint16_t key, const UbxPayload& payload);
-/// Horizontal covariance, axes east, north, m^2; empty where its flag says invalid. Not tested for being
-/// positive definite.
+/// Reads the horizontal covariance, axes east, north, in m^2. Empty if its flag says invalid. It is
+/// not checked for being positive definite.
 [[nodiscard]] std::optional<Eigen::Matrix2d> read_nav_cov(const UbxPayload& payload);
 
 }  // namespace waymark::formats

@@ -17,10 +17,10 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 // GNSS time only goes so far back if logs were joined.
 constexpr std::int64_t kOtherLog = 10 * kSecondNanoseconds;
 constexpr std::uint32_t kTickRange = 1U << 23U;
-/// Rows wait so long for messages that come out of order, and for the first navigation messages.
+/// How long rows wait for messages out of order, and for the first navigation messages.
 constexpr std::int64_t kHeldMs = 2000;
 constexpr std::size_t kHeldRows = 4096;
-/// A tag that lies further from the newest one is of a clock that began anew.
+/// A tag further than this from the newest one comes from a clock that restarted.
 constexpr std::int64_t kJumpMs = 60'000;
 
 std::int64_t signed_field(std::uint32_t field) {
@@ -151,7 +151,8 @@ void UbxSensorDecoder::take_measurements(const UbxPayload& payload) {
   const bool calibrated = (flags & 8U) != 0;
   const std::size_t tail = calibrated ? 4 : 0;
   std::size_t fields = flags >> 11U;
-  if (fields == 0 && payload.size() >= 8 + tail) fields = (payload.size() - 8 - tail) / 4;  // older firmware
+  // older firmware
+  if (fields == 0 && payload.size() >= 8 + tail) fields = (payload.size() - 8 - tail) / 4;
   if (8 + 4 * fields + tail > payload.size())
     return corrupt(byte(), fmt::format("ESF-MEAS: {} bytes cannot hold {} measurements{}", payload.size(),
                                        fields, calibrated ? " and a calibrated time tag" : ""));
@@ -183,7 +184,7 @@ void UbxSensorDecoder::take_measurements(const UbxPayload& payload) {
   if (any) hold(tag_ms);
 }
 
-/// Puts the row at hand among those that wait, and releases what has waited long enough.
+/// Adds the current row to the waiting ones, and releases those that have waited long enough.
 void UbxSensorDecoder::hold(std::int64_t tag_ms) {
   Row row{tag_ms, {}};
   if (!pool_.empty()) {

@@ -14,7 +14,7 @@
 
 namespace waymark::formats {
 
-/// The quantities that ESF-MEAS holds, and under which type number; names as channels.hpp has them.
+/// A quantity of ESF-MEAS and its type number. The names are those of channels.hpp.
 struct UbxChannel {
   const char* name;
   unsigned type;
@@ -35,13 +35,16 @@ inline constexpr std::array<UbxChannel, 12> kUbxChannels{{
     {"acceleration_z", 18, 1.0 / 1024},
 }};
 
-/// A running count out of a counter of 23 bits that counts up in both directions, and its direction bit.
+/// Turns a counter of 23 bits, which counts up in both directions, and its direction bit into a
+/// running count.
 class UbxTicks {
  public:
-  /// @param field  bits 0-22: counter, bit 23: backwards
-  /// @return the count: begins with the counter's first value, falls while driving backwards, does not wrap
+  /// @param field bits 0-22: counter, bit 23: backwards
+  /// @return the count. It begins with the first value of the counter, falls while driving
+  /// backwards, and does not wrap.
   [[nodiscard]] double count(std::uint32_t field);
-  /// How often the counter went back: it is taken to have begun anew, without a motion.
+  /// Returns how often the counter jumped back. It is then assumed to have restarted
+  /// without a motion.
   [[nodiscard]] std::size_t restarts() const { return restarts_; }
 
  private:
@@ -50,25 +53,26 @@ class UbxTicks {
   std::size_t restarts_ = 0;
 };
 
-/// Places the sensors' clock (milliseconds) on GNSS time.
+/// Places the clock of the sensors (milliseconds) on GNSS time.
 ///
-/// The two meet only in the order of the messages: when one with a new iTOW comes, the newest sensor tag is
-/// about as old. The difference is the median of the last 33 such meetings, followed at 100 ppm at most, so
-/// that intervals between tags stay right to 1e-4. It errs by what navigation messages lag behind sensor
-/// messages: hundredths of a second where HNR-PVT comes, up to half a second with NAV messages alone; sensor
-/// stamps then come out too early by that.
+/// Only the order of the messages relates the two clocks. If a message with a new iTOW arrives, the
+/// newest sensor tag is about as old. The difference is the median of the last 33 such pairs. It
+/// changes by 100 ppm at most, so that intervals between tags stay right to 1e-4. Its error is the
+/// delay of navigation messages behind sensor messages: hundredths of a second with HNR-PVT, up to
+/// half a second with NAV messages only. Sensor stamps are too early by this delay.
 class UbxSensorClock {
  public:
   void sensor(std::int64_t tag_ms);
   void navigation(std::int64_t gps_ns);
   [[nodiscard]] bool ready() const { return meetings_ > 0; }
-  /// GPS time of a tag; not before one given earlier. Call in the order of tags, once ready.
+  /// Returns the GPS time of a tag, never before an earlier result. Call it in the order of
+  /// tags, once ready.
   [[nodiscard]] std::int64_t gps_ns(std::int64_t tag_ms);
-  /// First difference used to the last one, ns.
+  /// Change from the first difference used to the last one, in ns.
   [[nodiscard]] std::int64_t drift_ns() const { return offset_ ? *offset_ - first_offset_ : 0; }
   [[nodiscard]] std::size_t jumps() const { return jumps_; }
   [[nodiscard]] std::size_t meetings() const { return meetings_; }
-  /// Forgets the meetings (the sensors' clock began anew); the next difference is taken as it is.
+  /// Forgets all pairs after a restart of the sensor clock. The next difference is used as it is.
   void restart();
 
  private:
@@ -79,7 +83,7 @@ class UbxSensorClock {
   std::optional<std::int64_t> newest_gps_;
   std::array<std::int64_t, kMeetings> differences_{};
   std::size_t kept_ = 0;
-  std::int64_t median_ = 0;  ///< of those kept
+  std::int64_t median_ = 0;  ///< median of the kept differences
   std::size_t meetings_ = 0;
   std::optional<std::int64_t> offset_;
   std::int64_t first_offset_ = 0;
@@ -88,7 +92,7 @@ class UbxSensorClock {
   std::size_t jumps_ = 0;
 };
 
-/// Decoder of the streams odometry and sensor. See ubx.hpp for the rules.
+/// Decodes the streams odometry and sensor. ubx.hpp has the rules.
 class UbxSensorDecoder final : public UbxFrameDecoder {
  public:
   UbxSensorDecoder(std::string path, LogRequest request);
@@ -112,10 +116,10 @@ class UbxSensorDecoder final : public UbxFrameDecoder {
   UbxSensorClock clock_;
   std::array<int, 64> column_of_type_;  ///< -1: not asked for
   std::array<UbxTicks, 64> ticks_;
-  std::vector<double> values_;             ///< of the message at hand
+  std::vector<double> values_;             ///< values of the current message
   std::deque<Row> held_;                   ///< sorted by tag
-  std::vector<std::vector<double>> pool_;  ///< row buffers to use again
-  std::optional<bool> calibrated_;         ///< which of a message's tags is read
+  std::vector<std::vector<double>> pool_;  ///< row buffers for reuse
+  std::optional<bool> calibrated_;         ///< which of the two tags of a message is read
   std::size_t other_clock_ = 0;
   std::size_t undated_ = 0;
 };

@@ -13,7 +13,7 @@ std::int64_t of_week(std::uint32_t itow_ms) {
   return std::int64_t{itow_ms} * 1'000'000;
 }
 
-/// Quotient rounded to the nearest integer; `by` is positive.
+/// Returns the quotient rounded to the nearest integer. `by` is positive.
 std::int64_t rounded_quotient(std::int64_t value, std::int64_t by) {
   const std::int64_t half = value >= 0 ? by / 2 : -by / 2;
   return (value + half) / by;
@@ -47,7 +47,8 @@ std::int64_t UbxTime::from_week(const UbxWeek& week, std::uint32_t itow_ms) {
 std::optional<std::int64_t> UbxTime::from_itow(std::uint32_t itow_ms) {
   if (!last_ && stated_week_ == 0) return std::nullopt;
   const std::int64_t gps = last_ ? nearest(*last_, itow_ms) : kWeek * stated_week_ + of_week(itow_ms);
-  if (gps < 0 || gps > kWeek * kLastGpsWeek) return std::nullopt;  // rubbish has led it there, week by week
+  // damaged data has led here, week by week
+  if (gps < 0 || gps > kWeek * kLastGpsWeek) return std::nullopt;
   used_stated_week_ = used_stated_week_ || !last_;
   ++continued_;
   last_ = gps;

@@ -1,4 +1,4 @@
-/// Time of UBX epochs: time of week (iTOW) and dates onto the GPS scale.
+/// Time of UBX epochs: converts time of week (iTOW) and dates to the GPS scale.
 #pragma once
 
 #include <cstddef>
@@ -9,23 +9,24 @@
 
 namespace waymark::formats {
 
-/// iTOW counts milliseconds up to here.
+/// iTOW counts milliseconds up to this value.
 inline constexpr std::uint32_t kItowWeekMs = 604'800'000;
 
 /// Keeps the GPS week. All times are nanoseconds on the GPS scale.
 class UbxTime {
  public:
-  /// @param stated_week  the week of the log's first epoch for logs that do not tell; 0: none
+  /// @param stated_week the week of the first epoch, for logs that do not state it; 0: none
   explicit UbxTime(int stated_week) : stated_week_(stated_week) {}
 
-  /// Of an epoch with a date. What a date tells is a nanosecond of UTC; where its seconds are not resolved
-  /// (the receiver does not know the leap seconds yet) those of iTOW are taken, if they differ by at most a
-  /// minute.
+  /// Time of an epoch with a date. A date gives UTC to the nanosecond. If its seconds are not
+  /// resolved (the receiver does not know the leap seconds yet), the seconds of iTOW are used,
+  /// provided they differ by at most a minute.
   [[nodiscard]] std::int64_t from_date(const UbxDate& date, std::uint32_t itow_ms);
-  /// Of an epoch whose week is given.
+  /// Time of an epoch with a given week.
   [[nodiscard]] std::int64_t from_week(const UbxWeek& week, std::uint32_t itow_ms);
-  /// Of any other epoch: iTOW in the week that brings it nearest to the last epoch placed (so it runs on over
-  /// the end of a week), else in the stated week. Empty while neither is known.
+  /// Time of any other epoch. iTOW is placed in the week that brings it nearest to the last epoch,
+  /// so it continues over the end of a week. Before the first epoch it is placed in the stated
+  /// week. Empty while neither is known.
   [[nodiscard]] std::optional<std::int64_t> from_itow(std::uint32_t itow_ms);
 
   [[nodiscard]] std::size_t seconds_from_itow() const { return seconds_from_itow_; }
@@ -38,8 +39,8 @@ class UbxTime {
 
   int stated_week_ = 0;
   std::optional<std::int64_t> last_;
-  std::size_t seconds_from_itow_ = 0;  ///< epochs whose date was not resolved and differed
-  std::size_t disagreements_ = 0;      ///< epochs whose date and iTOW are not of one instant
+  std::size_t seconds_from_itow_ = 0;  ///< epochs with an unresolved date that differed from iTOW
+  std::size_t disagreements_ = 0;      ///< epochs whose date and iTOW are different instants
   std::size_t continued_ = 0;          ///< epochs without a date or week of their own
   bool used_stated_week_ = false;
 };
