@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Shortest text that reads back to the same number; empty where there is none.
+/// Returns the shortest text that reads back to the same number; empty if it is undefined.
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
@@ -18,7 +18,7 @@ std::string number(const std::optional<double>& value) {
   return value ? number(*value) : "";
 }
 
-/// A field as RFC 4180 quotes it.
+/// Quotes a field as RFC 4180 requires.
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string out = "\"";

@@ -1,4 +1,5 @@
-/// What a benchmark found, file by file: statistics, and the table, CSV and JSON made of them.
+/// The results of a benchmark, file by file: statistics, and the table, CSV and JSON
+/// made from them.
 #pragma once
 
 #include <optional>
@@ -13,7 +14,8 @@
 
 namespace waymark::benchmark {
 
-/// The statistics of one cell. Phases are those of its median run, so that they sum to that run's time.
+/// The statistics of one cell. Its phases are those of the median run, so they sum to the time
+/// of that run.
 struct CellSummary {
   std::string start;
   std::string name;  ///< of the algorithm or the peer
@@ -22,7 +24,7 @@ struct CellSummary {
   bool peer = false;
   std::vector<double> run_seconds;  ///< every repetition, in order
   Spread seconds;
-  Spread setup_seconds;  ///< a peer's
+  Spread setup_seconds;  ///< only for a peer
   double structure_seconds = 0;
   double linearize_seconds = 0;
   double solve_seconds = 0;
@@ -36,44 +38,46 @@ struct CellSummary {
   std::optional<double> memory_before_mb;
   std::optional<double> memory_peak_mb;
   Optimality optimality = Optimality::above;
-  /// Peer's name -> median over the repetitions of (peer's seconds / this cell's seconds in that repetition).
+  /// For each peer: the median over the repetitions of (seconds of the peer / seconds of this cell
+  /// in that repetition).
   std::vector<std::pair<std::string, double>> peer_ratios;
 };
 
 /// All cells of one file.
 struct FileSummary {
   std::string file;         ///< without folder
-  std::string fingerprint;  ///< of its bytes
+  std::string fingerprint;  ///< fingerprint of its bytes
   std::size_t vertices = 0;
   std::size_t edges = 0;
   double optimum = 0;
-  bool optimum_listed = false;  ///< false: the lowest chi2 of this run
+  bool optimum_listed = false;  ///< false: the optimum is the lowest chi2 of this run
   std::vector<CellSummary> cells{};
 };
 
-/// What was asked for, and on what it ran: key, text.
+/// The request and the machine: key, text.
 using BenchmarkHeader = std::vector<std::pair<std::string, std::string>>;
 
-/// The cells that were measured together, in turn. @param cells from measure(), not empty
+/// Summarises cells that were measured together, in turn. @param cells from measure(), not empty
 [[nodiscard]] std::vector<CellSummary> summarize_cells(const std::string& start,
                                                        const std::vector<Cell>& cells);
 
-/// Sets the optimum (from the list, else the lowest chi2 of the cells) and judges every cell by it.
+/// Sets the optimum (from the list, or else the lowest chi2 of the cells) and compares every
+/// cell with it.
 void judge_cells(FileSummary& file, const KnownOptima& known);
 
-/// What a file's cells gave, for readers.
+/// The cells of a file as text.
 struct FileTable {
   std::string title;  ///< the file, its size, its optimum
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  ///< one per cell
-  std::vector<std::string> notes;              ///< what must be known of single cells, each sentence once
+  std::vector<std::string> notes;              ///< remarks about single cells, each sentence once
 };
 [[nodiscard]] FileTable file_table(const FileSummary& file);
 
-/// For the terminal, a table per file; what a reader must know of single cells follows it.
+/// Returns the tables for the terminal, one per file. Remarks about single cells follow each table.
 [[nodiscard]] std::string benchmark_table(const std::vector<FileSummary>& files,
                                           const text::TextLook& look = {});
-/// One line per cell; empty fields where something is not known.
+/// Returns one line per cell. Unknown values are empty fields.
 [[nodiscard]] std::string benchmark_csv(const std::vector<FileSummary>& files);
 [[nodiscard]] std::string benchmark_json(const std::vector<FileSummary>& files,
                                          const BenchmarkHeader& header);

@@ -17,7 +17,7 @@ std::string megabytes(const std::optional<double>& value) {
   return value ? fmt::format("{:.1f}", *value) : "-";
 }
 
-/// "reached", or how far off: "above by 3.1e-05" of the optimum.
+/// Returns "reached", or the distance relative to the optimum: "above by 3.1e-05".
 std::string describe_optimality(const CellSummary& cell, double optimum) {
   std::string text(to_string(cell.optimality));
   if (cell.optimality != Optimality::reached && optimum > 0)
@@ -25,7 +25,7 @@ std::string describe_optimality(const CellSummary& cell, double optimum) {
   return text;
 }
 
-/// The peers measured with the file, each once.
+/// Returns the peers that were measured with the file, each once.
 std::vector<std::string> peers_of(const FileSummary& file) {
   std::vector<std::string> names;
   for (const CellSummary& cell : file.cells) {
@@ -41,7 +41,7 @@ std::string ratio_to(const CellSummary& cell, const std::string& peer) {
   return "-";
 }
 
-/// Each sentence once, however many cells it holds for.
+/// Returns each sentence once, however many cells it holds for.
 std::vector<std::string> remarks_of(const FileSummary& file) {
   std::vector<std::string> remarks;
   const auto add = [&](std::string text) {

@@ -30,11 +30,11 @@ RunOutcome describe(const Summary& summary, std::chrono::steady_clock::time_poin
           .notes = summary.notes};
 }
 
-/// @param minimize (graph, algorithm, solver) -> Summary; making the latter two is timed with it
+/// @param minimize (graph, algorithm, solver) -> Summary; creating the last two is timed too
 template <typename Minimize>
 Contestant make_contestant(std::string name, const std::string& algorithm, const std::string& solver,
                            const TypeRegistry& registry, Minimize minimize) {
-  (void)registry.make_algorithm(algorithm);  // an unknown name is said before anything is measured
+  (void)registry.make_algorithm(algorithm);  // refuses an unknown name before anything is measured
   (void)registry.make_linear_solver(solver);
   return {std::move(name), solver, false, [=, &registry](Graph& graph) {
             const auto begin = std::chrono::steady_clock::now();

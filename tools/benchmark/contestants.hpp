@@ -1,4 +1,5 @@
-/// Who can be measured: Waymark's algorithms with its solvers, and the peers that were built in.
+/// The contestants of a benchmark: algorithms of Waymark with their solvers, and the peers that
+/// were built in.
 #pragma once
 
 #include <string>
@@ -18,17 +19,18 @@ namespace waymark::benchmark {
 /// The name of the default configuration.
 inline constexpr std::string_view kDefaultContestant = "default";
 
-/// The default configuration, as `optimize` runs it: the values at hand or a better start, and further ones
-/// where the minimum is implausible; making starts is timed with the rest.
+/// Returns the default configuration as `optimize` runs it. It takes the present values or a
+/// better initial guess. If the minimum is implausible, it tries further ones. The time includes
+/// computing them.
 [[nodiscard]] Contestant default_contestant(const std::string& algorithm, const std::string& solver,
                                             const OptimizerOptions& options, const TypeRegistry& registry);
 
-/// "ceres": Levenberg-Marquardt; "ceres_dogleg". Both stop by Ceres's own rule (see ceres_peer.hpp); of the
-/// options they take max_iterations and cancel.
-/// @throws UsageError for an unknown name, or where the peer was not built in.
+/// Returns "ceres" (Levenberg-Marquardt) or "ceres_dogleg". Both stop by Ceres's own rule (see
+/// ceres_peer.hpp). Of the options they use max_iterations and cancel.
+/// @throws UsageError for an unknown name, and if the peer was not built in
 [[nodiscard]] Contestant peer_contestant(std::string_view name, const OptimizerOptions& options);
 
-/// Name and version of each peer that was built in: "Ceres 2.1.0".
+/// Returns name and version of each peer that was built in: "Ceres 2.1.0".
 [[nodiscard]] std::vector<std::string> built_in_peers();
 
 }  // namespace waymark::benchmark

@@ -1,4 +1,4 @@
-/// The best chi2 known of benchmark graphs, and whether a result reaches it.
+/// The best known chi2 of benchmark graphs, and a test whether a result reaches it.
 #pragma once
 
 #include <map>
@@ -10,14 +10,15 @@ namespace waymark::benchmark {
 /// chi2 by file name without folder.
 using KnownOptima = std::map<std::string, double, std::less<>>;
 
-/// Reads "file,chi2" lines; '#' begins a comment line, the heading `file,chi2` comes first.
-/// @throws InputError "optima.csv:3:10: ..." for anything else, a chi2 below 0 or a file named twice.
+/// Reads "file,chi2" lines. A line with '#' is a comment; the heading `file,chi2` comes first.
+/// @throws InputError "optima.csv:3:10: ..." for anything else, a chi2 below 0 or a file
+/// named twice.
 [[nodiscard]] KnownOptima read_known_optima(std::string_view text, const std::string& name);
 
 enum class Optimality {
-  reached,  ///< |chi2 - optimum| <= 1e-6 optimum, or <= 1e-9 where the optimum is next to nothing
-  lower,    ///< below that: the optimum is not what it was taken for
-  above     ///< or not finite
+  reached,  ///< |chi2 - optimum| <= 1e-6 optimum, or <= 1e-9 if the optimum is almost zero
+  lower,    ///< below that: the listed optimum is not the optimum
+  above     ///< above that, or not finite
 };
 
 [[nodiscard]] Optimality compare_with_optimum(double chi2, double optimum);

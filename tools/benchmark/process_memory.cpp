@@ -8,7 +8,7 @@
 namespace waymark::benchmark {
 namespace {
 
-/// A line "NAME:   1234 kB" of /proc/self/status.
+/// Reads a line "NAME:   1234 kB" of /proc/self/status.
 std::optional<double> status_megabytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {

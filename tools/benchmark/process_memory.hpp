@@ -1,18 +1,19 @@
-/// Memory of this process as Linux counts it (/proc/self). Elsewhere, or where /proc forbids it, nothing.
+/// The memory of this process as Linux counts it (/proc/self). On other systems, or if /proc is not
+/// readable, there is no result.
 #pragma once
 
 #include <optional>
 
 namespace waymark::benchmark {
 
-/// Resident set now, in 1e6 bytes.
+/// Returns the resident set now, in 1e6 bytes.
 [[nodiscard]] std::optional<double> resident_megabytes();
 
-/// Gives memory that nobody uses back to the system and lets the peak begin anew.
-/// @return the resident set then; nothing where the peak cannot be begun anew.
+/// Returns unused memory to the system and restarts the peak.
+/// @return the resident set after that; nothing if the peak cannot be restarted
 [[nodiscard]] std::optional<double> restart_peak_memory();
 
-/// Largest resident set since restart_peak_memory, in 1e6 bytes.
+/// Returns the largest resident set since restart_peak_memory, in 1e6 bytes.
 [[nodiscard]] std::optional<double> peak_megabytes();
 
 }  // namespace waymark::benchmark

@@ -19,10 +19,10 @@
 namespace waymark::inspection {
 namespace {
 
-/// Of logs that tell no date, to read them all the same.
+/// Any date: logs without a date can then be read all the same.
 constexpr Stamp kAnyDate{946'684'800'000'000'000};
 
-/// A stream asked of the log, and where its samples go.
+/// A stream that is read from the log, and the destination of its samples.
 struct Pass {
   std::unique_ptr<LogDecoder> decoder;
   std::function<void(LogData&)> drain;
@@ -30,7 +30,7 @@ struct Pass {
   bool over = false;
 };
 
-/// What the decoder throws ends its pass, not the inspection.
+/// Runs a step. An error of the decoder ends its pass, not the inspection.
 template <typename Step>
 void guarded(Pass& pass, Step step) {
   if (pass.over || !pass.decoder) return;
@@ -85,7 +85,7 @@ LogReaderType reader_for(const std::string& path, std::span<const LogReaderType>
   throw UsageError("unknown log format '" + options.format + "'" + suggestion(options.format, names));
 }
 
-/// The files that belong to the log: a DBC where one was given, the stamps of a KITTI folder beside it.
+/// Finds the files that belong to the log: the given DBC, or the stamps beside a KITTI folder.
 void find_companions(LogInspection& log, const InspectionOptions& options) {
   if (log.format == "candump" && !options.dbc.empty()) log.companions["dbc"] = options.dbc;
   const std::filesystem::path beside = std::filesystem::path(log.path).parent_path() / "timestamps.txt";
@@ -109,7 +109,7 @@ LogRequest basic_request(const LogInspection& log, StreamKind stream) {
   return request;
 }
 
-/// Whether a log of columns holds the stream; its request gets them.
+/// Tells whether a log of columns holds the stream, and adds its columns to the request.
 bool map_columns(const LogInspection& log, LogRequest& request) {
   const auto columns = proposed_columns(log, request.stream);
   for (const auto& [quantity, column] : columns)
@@ -127,7 +127,7 @@ std::optional<formats::Dbc> dbc_of(const LogInspection& log) {
   return formats::Dbc::parse(text, path->second);
 }
 
-/// The first pass over logs of columns: what columns there are.
+/// The first pass over a log of columns: it finds the columns.
 void survey(LogInspection& log, const InspectionOptions& options) {
   Pass pass;
   if (log.format == "csv")
@@ -160,7 +160,7 @@ void survey(LogInspection& log, const InspectionOptions& options) {
   }
 }
 
-/// Notes of a pass, but for those about the sigma that only the inspection asked for.
+/// Adds the notes of a pass, except those about the sigma that only the inspection requested.
 void add_notes(LogInspection& log, const LogData& data) {
   for (const std::string& note : data.notes) {
     if (note.find("999999") != std::string::npos || note.find("by default") != std::string::npos) continue;
@@ -175,7 +175,8 @@ void add_counts(LogInspection& log, const LogData& data) {
   log.corrupt_examples = data.corrupt_examples;
 }
 
-/// Counts say that the log holds no odometry at all rather than that something is wrong with it.
+/// Opens a pass and keeps an error as its trouble. The counts tell later whether the log only lacks
+/// odometry, or something is wrong.
 void open(Pass& pass, const LogReader& reader, const std::string& path, const LogRequest& request) {
   try {
     pass.decoder = reader.open(path, request);
@@ -239,7 +240,7 @@ class StreamReading {
     const bool positions_first = gnss.decoder && (fix_count_ > 0 || motion_count_ == 0);
     if (gnss.decoder) counts_of(gnss, positions_first);
     if (odometry.decoder && motion_count_ > 0) counts_of(odometry, !positions_first);
-    // A receiver's log that has no odometry says so by throwing; that is nothing wrong.
+    // The log of a receiver without odometry reports this by an error, and nothing is wrong.
     if (!gnss.trouble.empty() && (fix_count_ == 0 || gnss.over)) log_.troubles.push_back(gnss.trouble);
     if (!odometry.trouble.empty() && (motion_count_ > 0 || log_.table || log_.can))
       log_.troubles.push_back(odometry.trouble);
@@ -261,7 +262,7 @@ void read_streams(LogInspection& log, const LogReader& reader, const InspectionO
   StreamReading(log, reader, options).read(std::nullopt);
   const bool nothing = (!log.fixes || log.fixes->fixes == 0) && !log.odometry;
   if (!nothing || log.format != "nmea" || log.records == log.without_fix) return;
-  // Perhaps it only lacks a date.
+  // The log may only lack a date.
   LogInspection again = log;
   again.troubles.clear();
   again.notes.clear();
@@ -282,8 +283,8 @@ bool is_stream_quantity(std::string_view quantity, StreamKind stream) {
   return formats::find_quantity(known, quantity) != nullptr;
 }
 
-/// A receiver's heading is its course, clockwise from north and within a turn; what counts on through turns,
-/// or from east, is that of a reference system.
+/// The heading of a receiver is its course: clockwise from north and within one turn. A heading
+/// that runs on over full turns, or counts from east, comes from a reference system.
 bool heading_is_course(const ColumnSummary& column) {
   const double turn = column.proposal.unit == "rad" ? 6.2832 : 360;
   return column.proposal.convention != "ccw_from_east" && column.range.smallest >= -turn &&
@@ -296,7 +297,7 @@ bool is_of_receiver(const std::string& signal) {
                      [](const std::string& word) { return word == "gnss" || word == "gps"; });
 }
 
-/// A table without dates whose numbers are those of the other's seconds of week.
+/// Reads an undated table as seconds of the week of another log, if the numbers fit.
 void adopt_week(LogInspection& log, const LogInspection& other) {
   if (log.clock.dated || log.clock.of_week || log.span() == nullptr || other.span() == nullptr) return;
   if (!other.clock.dated && !other.clock.of_week) return;
@@ -306,7 +307,8 @@ void adopt_week(LogInspection& log, const LogInspection& other) {
   const double begin = second(other.span()->earliest());
   const double end = begin + other.span()->span_s();
   if (log.span()->latest().seconds() < begin || log.span()->earliest().seconds() > end) return;
-  if (log.span()->earliest().seconds() < 600) return;  // what counts from its start fits by chance
+  // seconds that count from the start of the log fit by chance
+  if (log.span()->earliest().seconds() < 600) return;
   log.clock.of_week = true;
   log.clock.scale = TimeScale::gps;
   log.clock.known = false;
@@ -332,14 +334,14 @@ std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection
     if (stream == StreamKind::gnss && quantity == "heading")
       quantity = heading_is_course(column) ? "course" : "";
     if (quantity.empty() || !is_stream_quantity(quantity, stream)) continue;
-    // The speed of a receiver on the bus is no odometry.
+    // The speed of a receiver on the bus is not odometry.
     if (log.can && stream == StreamKind::odometry && quantity == "speed" && is_of_receiver(column.name))
       continue;
     if (log.can && stream == StreamKind::gnss && quantity == "speed" && !is_of_receiver(column.name))
       continue;
     columns.emplace(quantity, &column);
   }
-  // Beside positions a speed alone is the receiver's.
+  // A single speed beside positions is that of the receiver.
   const bool speed_alone = columns.contains("speed") && columns.size() == 1U + columns.count("time");
   const auto is_latitude = [](const ColumnSummary& column) { return column.proposal.quantity == "latitude"; };
   if (log.table && stream == StreamKind::odometry && speed_alone &&

@@ -1,4 +1,5 @@
-/// What is in a log, found in at most two passes over the file; memory does not grow with it.
+/// Finds out what a log contains, in at most two passes over the file. Memory does not grow
+/// with the file.
 #pragma once
 
 #include <cstdint>
@@ -20,24 +21,24 @@
 
 namespace waymark::inspection {
 
-/// How the stamps of a log are to be read, and why.
+/// How the stamps of a log are read, and why.
 struct LogClock {
   TimeScale scale = TimeScale::utc;
-  bool names_its_own = false;  ///< dates are in the log: nothing has to be stated
-  bool dated = true;           ///< stamps are dates; else seconds of a week or since the start of something
+  bool names_its_own = false;  ///< the log contains dates, so the user need not state the clock
+  bool dated = true;           ///< stamps are dates; else they are seconds of a week or since some start
   bool of_week = false;        ///< seconds of a GPS week
-  bool known = true;           ///< by the log's format or the column's name; else assumed
+  bool known = true;           ///< known from the format of the log or the name of the column; else assumed
   std::string reason;          ///< "column 't_unix_s' counts Unix seconds"
 };
 
-/// One log, looked at.
+/// The result for one log.
 struct LogInspection {
   std::string path;
-  std::uint64_t size = 0;  ///< bytes on the disk; of a folder all of them
+  std::uint64_t size = 0;  ///< bytes on the disk; for a folder, of all its files
   std::string format;
-  std::string evidence;  ///< of the format; empty: it was stated
+  std::string evidence;  ///< why this format; empty: the user stated it
   std::map<std::string, std::string> companions;
-  std::map<std::string, std::size_t> kinds;  ///< messages
+  std::map<std::string, std::size_t> kinds;  ///< messages of each kind
   std::size_t records = 0, without_fix = 0, corrupt = 0;
   std::vector<std::string> corrupt_examples;
   std::vector<std::string> notes;     ///< of the readers
@@ -45,41 +46,41 @@ struct LogInspection {
   LogClock clock;
   std::optional<TableSummary> table;
   std::optional<CanSummary> can;
-  std::optional<FixSummary> fixes;  ///< also of a truth
+  std::optional<FixSummary> fixes;  ///< also for a truth
   std::optional<OdometrySummary> odometry;
-  std::optional<double> logger_ahead_s;  ///< its stamps against the GNSS time told in it, median
+  std::optional<double> logger_ahead_s;  ///< its stamps minus the GNSS time in it, median
   std::vector<std::string> suspicions;   ///< one sentence each
 
-  /// Span of all stamps found; empty without any.
+  /// Returns the span of all stamps; null without stamps.
   [[nodiscard]] const StampSeries* span() const;
 };
 
 struct InspectionOptions {
   std::string format = "auto";
   std::string dbc;  ///< file; empty: none
-  /// Told of each piece read: file, bytes done, bytes in all.
+  /// Called for each piece that is read: file, bytes done, bytes in all.
   std::function<void(const std::string&, std::uint64_t, std::uint64_t)> watch{};
-  Stamp now{};  ///< UTC: later dates are suspicious
+  Stamp now{};  ///< UTC; later dates are suspicious
 };
 
-/// @throws InputError for a file that cannot be read, is empty or of no known format. What only one stream
-/// of it does not survive is in LogInspection::troubles.
+/// @throws InputError for a file that cannot be read, is empty or has no known format. If only one
+/// stream fails, LogInspection::troubles says so.
 [[nodiscard]] LogInspection inspect_log(const std::string& path, std::span<const LogReaderType> readers,
                                         const InspectionOptions& options);
 
-/// Several: what only shows side by side (clocks apart) goes into the suspicions of the later one. Undated
-/// tables whose seconds fit into the week of a dated log are taken for seconds of that week.
+/// Inspects several logs. A suspicion that needs two logs (clocks apart) is reported with the later
+/// one. An undated table is read as seconds of the week of a dated log if its seconds fit into it.
 [[nodiscard]] std::vector<LogInspection> inspect_logs(const std::vector<std::string>& paths,
                                                       std::span<const LogReaderType> readers,
                                                       const InspectionOptions& options);
 
-/// The columns proposed for a stream of a table or a bus, by quantity.
+/// Returns the columns that are proposed for a stream of a table or a bus, by quantity.
 [[nodiscard]] std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection& log,
                                                                            StreamKind stream);
-/// "2021-07-26T04:40:55.124Z", or seconds where the clock has no date.
+/// Returns "2021-07-26T04:40:55.124Z", or seconds if the clock has no date.
 [[nodiscard]] std::string date_text(Stamp stamp, const LogClock& clock);
 
-/// For people.
+/// Returns the result as text for people.
 [[nodiscard]] std::string inspection_text(const LogInspection& log, const text::TextLook& look = {});
 [[nodiscard]] nlohmann::ordered_json inspection_json(const LogInspection& log);
 

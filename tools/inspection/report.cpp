@@ -10,7 +10,7 @@
 namespace waymark::inspection {
 namespace {
 
-constexpr std::size_t kMostRows = 40;  // of ids and message kinds; the rest is summed up
+constexpr std::size_t kMostRows = 40;  // of ids and message kinds; further ones are summed up
 
 std::string size_text(std::uint64_t bytes) {
   if (bytes < 10'000) return fmt::format("{} bytes", bytes);
@@ -18,7 +18,7 @@ std::string size_text(std::uint64_t bytes) {
   return size < 1e6 ? fmt::format("{:.1f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
 }
 
-/// Hz where it is one, else seconds.
+/// Prints Hz from 1 Hz on, and else the interval in seconds.
 std::string rate_text(double hz) {
   if (!(hz > 0) || !std::isfinite(hz)) return "-";
   return hz >= 0.995 ? fmt::format("{:.4g} Hz", hz) : fmt::format("every {:.3g} s", 1 / hz);
@@ -28,7 +28,7 @@ double rate_of(const StampSeries& stamps) {
   return 1 / stamps.median_interval_s();
 }
 
-/// Names and comments are the log's: nothing in them may steer a terminal.
+/// Names and comments come from the log, so characters that control a terminal are replaced.
 std::string harmless(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; },
@@ -54,7 +54,7 @@ class Text {
       begin = end + 1;
     }
   }
-  /// One sentence a line.
+  /// Prints one sentence per line.
   void list(const std::string& label, const std::vector<std::string>& sentences) {
     for (std::size_t i = 0; i < sentences.size(); ++i) line(i == 0 ? label : "", sentences[i]);
   }
@@ -63,7 +63,7 @@ class Text {
  private:
   static constexpr std::size_t kTableIndent = 4;
   std::string text_;
-  text::TextLook look_;  ///< of tables
+  text::TextLook look_;  ///< look of the tables
 };
 
 std::string percent(std::size_t part, std::size_t all) {
@@ -142,7 +142,7 @@ void add_odometry(Text& text, const LogInspection& log) {
   text.table(table);
 }
 
-/// "speed, km/h", "yaw_rate (CHECK: ...)".
+/// Returns "speed, km/h", "yaw_rate (CHECK: ...)".
 std::string proposal_text(const ColumnProposal& proposal) {
   if (proposal.quantity.empty()) return proposal.remark.empty() ? "-" : "- (" + proposal.remark + ")";
   std::string text = proposal.quantity;

@@ -11,14 +11,14 @@ namespace waymark::inspection {
 namespace {
 
 constexpr double kRollover = 1024 * 604800.0;
-constexpr double kGpsEpoch = 315964800;  // of the Unix epoch
+constexpr double kGpsEpoch = 315964800;  // in seconds since the Unix epoch
 constexpr double kLeapSeconds = 18;
 constexpr double kYear = 365.25 * 86400;
 constexpr double kYear2000 = 946684800;
 constexpr std::size_t kFewComparisons = 20;
-constexpr double kHighest = 6000, kLowest = -500;  // m, of roads
+constexpr double kHighest = 6000, kLowest = -500;  // m, limits for roads
 
-/// "line 12, 2021-07-26T04:40:55.124Z".
+/// Returns "line 12, 2021-07-26T04:40:55.124Z".
 std::string place(const Sighting& seen, const LogClock& clock) {
   const std::string when = date_text(seen.stamp, clock);
   return seen.line == 0 ? "at " + when : fmt::format("in record {}, {}", seen.line, when);

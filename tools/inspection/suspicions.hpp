@@ -1,4 +1,4 @@
-/// What looks wrong in a log, as sentences.
+/// Lists suspicious facts about a log, as sentences.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace waymark::inspection {
 
-/// Of one log.
+/// Returns the suspicions about one log.
 [[nodiscard]] std::vector<std::string> suspicions_of(const LogInspection& log, Stamp now);
-/// Of a log beside another one: spans that do not overlap, with what the distance would be for leap seconds
-/// or another epoch. Empty where nothing is wrong.
+/// Returns a suspicion about a log beside another one, or an empty text. It reports spans that do
+/// not overlap, and whether leap seconds or another epoch explain the distance.
 [[nodiscard]] std::string suspicion_between(const LogInspection& log, const LogInspection& other);
 
 }  // namespace waymark::inspection

@@ -1,4 +1,5 @@
-/// Stated against actual error as figures: mean NEES and coverage, with what an honest covariance may show.
+/// Compares stated with actual errors in figures: mean NEES and coverage, each with the range for
+/// consistent covariances.
 #pragma once
 
 #include <string>
@@ -10,17 +11,18 @@
 namespace waymark::report {
 
 struct StatedErrors {
-  std::string label;  ///< of its row
+  std::string label;  ///< name of its row
   evaluation::ConsistencyStatistics statistics;
 };
 
-/// Two figures of bars, a row for each estimate that has a NEES: ids PREFIX-nees and PREFIX-coverage. The
-/// bracket of each row is where an honest covariance leaves the number on 95 of 100 drives. Empty where no
-/// estimate has one.
+/// Returns two bar figures with a row for each estimate that has a NEES: ids PREFIX-nees and
+/// PREFIX-coverage. The bracket of each row is the range in which a consistent covariance puts the
+/// number on 95 of 100 drives. Empty if no estimate has a NEES.
 [[nodiscard]] std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
                                                            const std::vector<StatedErrors>& rows);
 
-/// "honest", "too small" or "too large": what the mean NEES says of the stated errors; "-" without one.
+/// Returns "honest", "too small" or "too large": the judgement of the mean NEES on the stated
+/// errors. "-" if there is none.
 [[nodiscard]] std::string honesty(const evaluation::ConsistencyStatistics& statistics);
 
 }  // namespace waymark::report

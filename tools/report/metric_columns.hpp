@@ -1,4 +1,4 @@
-/// The metrics of positions as columns: their names in tables and figures, in one order everywhere.
+/// The metrics of positions as columns. Names and order are the same in all tables and figures.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct PositionColumn {
 };
 [[nodiscard]] const std::vector<PositionColumn>& position_columns();
 
-/// "-" where it is not defined.
+/// Returns "-" if the value is undefined.
 [[nodiscard]] std::string decimals(double value, int digits);
 
 }  // namespace waymark::report

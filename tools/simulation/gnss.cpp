@@ -9,13 +9,13 @@
 namespace waymark::simulation {
 namespace {
 
-constexpr double kNorthOverEast = 1.15;  // stated errors: satellites stand in the south
+constexpr double kNorthOverEast = 1.15;  // stated errors: satellites are in the south
 constexpr double kUpOverEast = 2.2;
 constexpr double kStatedTau = 120;         // s
 constexpr double kVelocityNoise = 0.05;    // m/s per axis, Doppler
-constexpr double kLeastCourseSpeed = 0.5;  // m/s; below that the receiver gives no track
+constexpr double kLeastCourseSpeed = 0.5;  // m/s; at lower speeds the receiver gives no track
 constexpr double kHeight = 75;             // m
-constexpr double kHeightNoise = 1.5;       // m, correlated as the fast part
+constexpr double kHeightNoise = 1.5;       // m, correlated like the fast part
 
 Eigen::Vector2d normal_pair(RandomStream& random) {
   const double east = random.normal();
@@ -32,7 +32,7 @@ double rounded_up(double value, double step) {
   return step > 0 ? std::max(step, step * std::round(value / step)) : value;
 }
 
-/// Course and speed over ground from a velocity on true axes.
+/// Sets course and speed over ground from a velocity on true axes.
 void set_velocity(const Eigen::Vector2d& velocity_en, GeodeticFix& fix) {
   fix.speed_mps = velocity_en.norm();
   if (*fix.speed_mps < kLeastCourseSpeed) return;
@@ -69,7 +69,8 @@ std::vector<Eigen::Vector2d> draw_bursts(const std::vector<bool>& canyon, const 
     if (!canyon[epoch]) continue;
     until_next_s -= 1;
     while (until_next_s < 0) {
-      const double begin_s = std::clamp(1 + until_next_s, 0.0, 1.0);  // into the second before this epoch
+      // into the second before this epoch
+      const double begin_s = std::clamp(1 + until_next_s, 0.0, 1.0);
       const double size = recipe.burst_size_m * random.exponential();
       const double direction = 2 * std::numbers::pi * random.uniform();
       const double duration = recipe.burst_duration_s * random.exponential();
@@ -109,7 +110,7 @@ void sense_gnss(std::span<const PlacedState> epochs, const drive::Projection& pr
       draw_outages(epochs.size(), recipe.missing_epochs, recipe.outage_s, drive.seed);
 
   for (std::size_t i = 0; i < epochs.size(); ++i) {
-    // Drawn for missing epochs too: errors go on while nobody listens.
+    // Errors are drawn for missing epochs too, because they go on without fixes.
     SimulatedFix simulated;
     const double east = fast_east.next(fast_random);
     simulated.parts.fast = recipe.fast_sigma_m * Eigen::Vector2d(east, fast_north.next(fast_random));

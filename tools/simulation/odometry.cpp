@@ -31,7 +31,7 @@ void sense_odometry(const std::vector<DrivenState>& states, Stamp start, Simulat
     sample.stamp = {start.nanoseconds + static_cast<std::int64_t>(t) * (1'000'000'000 / kTicksPerSecond)};
     const double speed =
         (1 + drive.speed_scale) * state.speed_mps + recipe.speed_noise_mps * speed_noise.normal();
-    // Wheel pulses have no sign, and a wheel at rest gives none.
+    // Wheel pulses have no sign, and a standing wheel gives none.
     if (state.speed_mps > 0) sample.speed_mps = std::max(0.0, quantised(speed, recipe.speed_step_mps));
     sample.yaw_rate_radps =
         quantised(state.yaw_rate_radps + bias + recipe.yaw_rate_noise_radps * yaw_rate_noise.normal(),

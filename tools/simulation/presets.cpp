@@ -49,7 +49,7 @@ RoadRecipe urban() {
           .canyon_probability = 0.5};
 }
 
-/// A motorway with too many on it.
+/// A motorway with too much traffic.
 RoadRecipe congested() {
   RoadRecipe road = highway();
   road.kind = "congested highway";
@@ -74,7 +74,7 @@ RoadRecipe with_share(RoadRecipe road, double share) {
   return road;
 }
 
-/// The stops of a road: how likely at the end of a leg, and how long.
+/// Sets the stops of a road: their probability at the end of a leg, and their duration.
 RoadRecipe with_stops(RoadRecipe road, double probability, double min_s, double max_s) {
   road.stop_probability = probability;
   road.stop_min_s = min_s;
@@ -82,7 +82,8 @@ RoadRecipe with_stops(RoadRecipe road, double probability, double min_s, double 
   return road;
 }
 
-/// Ten minutes. The bias over the drive is drawn so that the default model's prior for it is the truth.
+/// Returns a drive of ten minutes. Its bias is drawn from the prior of the default model, so the
+/// prior is true.
 SimulationRecipe consistency(std::string name, std::vector<RoadRecipe> roads, double fast_sigma_m) {
   SimulationRecipe recipe{.name = std::move(name), .duration_s = 600, .roads = std::move(roads)};
   recipe.odometry.speed_scale_sigma = 0.006;
@@ -95,7 +96,8 @@ SimulationRecipe consistency(std::string name, std::vector<RoadRecipe> roads, do
   return recipe;
 }
 
-/// What differs between the paper's drives beside their roads; fitted (README.md).
+/// The differences between the drives of the paper besides their roads. The values are fitted
+/// (README.md).
 struct PaperDrive {
   int number = 0;
   double distance_m = 0;
@@ -114,7 +116,7 @@ SimulationRecipe paper_recipe(const PaperDrive& drive, std::vector<RoadRecipe> r
   SimulationRecipe recipe{.name = "paper-" + std::to_string(drive.number), .roads = std::move(roads)};
   recipe.duration_s = drive.odometry_points / recipe.odometry.rate_hz;
   recipe.distance_m = drive.distance_m;
-  // The last sample lies 3 / 100 s before the end of the duration, the first PPS epoch at 1 s.
+  // The last sample is 3 / 100 s before the end of the duration; the first PPS epoch is at 1 s.
   const int epochs = static_cast<int>(recipe.duration_s - 0.03);
   recipe.odometry.speed_scale = drive.number % 2 == 0 ? 0.004 : -0.004;
   recipe.odometry.gyro_bias_radps = drive.gyro_bias_radps;

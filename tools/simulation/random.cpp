@@ -20,7 +20,8 @@ std::uint64_t split_mix(std::uint64_t& state) {
 }  // namespace
 
 RandomStream::RandomStream(std::uint64_t seed, std::uint64_t stream) {
-  // Mixed one after the other: seeds and streams are small neighbouring numbers.
+  // Seed and stream are mixed one after the other, because both are small numbers close
+  // to each other.
   std::uint64_t mixed = seed;
   mixed = split_mix(mixed) ^ (stream * 0xd1342543de82ef95U);
   for (std::uint64_t& word : state_) word = split_mix(mixed);
@@ -76,7 +77,8 @@ SmoothedGaussMarkov::SmoothedGaussMarkov(double tau_s, double smoothing_s, doubl
 double SmoothedGaussMarkov::next(RandomStream& random) {
   const double input = input_.next(dt_s_, random);
   const double own =
-      random.normal();  // of the stationary start; drawn always, so that numbers keep their places
+      // of the stationary start; always drawn, so that later numbers stay the same
+      random.normal();
   if (started_) {
     output_ = kept_ * output_ + (1 - kept_) * input;
   } else {

@@ -33,7 +33,7 @@ void require_range(const char* parameter, double low, double high) {
           "a range whose end is not below its beginning");
 }
 
-/// Sampled at ticks of the simulation.
+/// Sensors are sampled at ticks of the simulation.
 void require_rate(const char* parameter, double rate_hz) {
   require_positive(parameter, rate_hz);
   const double ticks = kTicksPerSecond / rate_hz;

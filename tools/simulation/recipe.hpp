@@ -1,5 +1,4 @@
-/// What a simulated drive is made of: plain parameters with a unit in each name. README.md explains the
-/// models.
+/// The parameters of a simulated drive, with a unit in each name. README.md explains the models.
 #pragma once
 
 #include <string>
@@ -7,72 +6,75 @@
 
 namespace waymark::simulation {
 
-/// How one kind of road is built and driven. A road is a row of legs, each with its own cruise speed, filled
-/// with straights and smooth bends, and ended by a street corner, a stop, both or nothing.
+/// The layout of one kind of road, and how it is driven. A road is a row of legs, each with its own
+/// cruise speed. A leg consists of straights and smooth bends. It ends with a street corner, a
+/// stop, both or nothing.
 struct RoadRecipe {
   std::string kind = "rural";  ///< a word for reports: highway, urban, rural
-  double share = 1;  ///< of the drive's duration; shares of all roads are added up and divided by the sum
+  double share = 1;            ///< share of the duration of the drive, relative to the sum of all shares
 
-  double cruise_min_mps = 14;  ///< a leg's cruise speed is uniform in [min, max]
+  double cruise_min_mps = 14;  ///< the cruise speed of a leg is uniform in [min, max]
   double cruise_max_mps = 25;
   double speed_wander = 0.04;  ///< relative deviation of the cruise speed, correlated over 20 s
   double acceleration_mps2 = 1.2;
   double deceleration_mps2 = 1.6;
-  double lateral_acceleration_mps2 = 2.0;  ///< bends and corners are taken at no more than that
+  double lateral_acceleration_mps2 = 2.0;  ///< upper limit in bends and corners
 
-  double leg_min_m = 500;  ///< a leg's length is uniform in [min, max]
+  double leg_min_m = 500;  ///< the length of a leg is uniform in [min, max]
   double leg_max_m = 3000;
   double straight_m = 250;         ///< mean length of the straight between two bends (exponential)
-  double bend_sigma_deg = 25;      ///< deviation of a bend's angle (normal, both senses)
-  double bend_radius_min_m = 120;  ///< a bend's smallest radius is uniform in [min, max]
+  double bend_sigma_deg = 25;      ///< deviation of the angle of a bend (normal, both senses)
+  double bend_radius_min_m = 120;  ///< the smallest radius of a bend is uniform in [min, max]
   double bend_radius_max_m = 500;
 
   double corner_probability = 0.3;  ///< that a leg ends in a street corner of 90 degrees
   double corner_radius_m = 12;      ///< its smallest radius
   double stop_probability = 0.3;    ///< that the vehicle stops at the end of a leg
-  double stop_min_s = 5;            ///< a stop's duration is uniform in [min, max]
+  double stop_min_s = 5;            ///< the duration of a stop is uniform in [min, max]
   double stop_max_s = 40;
   double canyon_probability = 0.25;  ///< that a leg runs through a canyon: houses, trees, a bridge
 };
 
-/// 25 Hz odometry: reading = quantised((1 + scale) speed + noise), quantised(yaw rate + bias + noise). A
-/// vehicle at rest reads speed 0 and a yaw rate of bias and noise.
+/// Odometry: reading = quantised((1 + scale) speed + noise), quantised(yaw rate + bias + noise). A
+/// vehicle at rest reads speed 0, and a yaw rate of bias and noise.
 struct OdometryRecipe {
   double rate_hz = 25;                 ///< must divide 100 Hz, the clock of the simulation
   double speed_scale = 0;              ///< 0.01: reads 1 % too much
-  double speed_scale_sigma = 0;        ///< deviation of what each seed adds to it
+  double speed_scale_sigma = 0;        ///< deviation of a further part that each seed draws
   double speed_noise_mps = 0.02;       ///< of each reading, independent
   double speed_step_mps = 0.02 / 3.6;  ///< quantisation; 0: none
   double gyro_bias_radps = 0;
-  double gyro_bias_sigma_radps = 0;          ///< deviation of what each seed adds to it
+  double gyro_bias_sigma_radps = 0;          ///< deviation of the part that each seed draws
   double gyro_bias_walk_radps_sqrts = 2e-6;  ///< its random walk, rad/s per sqrt(s)
   double yaw_rate_noise_radps = 2.6e-3;      ///< of each reading, independent
   double yaw_rate_step_radps = 7e-4;         ///< quantisation; 0: none
 };
 
-/// Errors of the fixes, on true east and north: bias + fast part + jitter + bursts; and what the receiver
-/// states.
+/// The errors of the fixes, true east and north: bias + fast part + jitter + bursts. Also the
+/// accuracy that the receiver states.
 struct GnssRecipe {
   double bias_east_m = 0;  ///< constant over the drive
   double bias_north_m = 0;
-  double bias_sigma_m = 0;  ///< per axis, deviation of what each seed adds to it
+  double bias_sigma_m = 0;  ///< per axis, deviation of a further part that each seed draws
 
   double fast_sigma_m = 1;  ///< per axis, first-order Gauss-Markov
   double fast_tau_s = 30;
-  double smoothing_s = 0;  ///< the receiver's filter on the fast part: a first-order lag that keeps its sigma
-  double jitter_m = 0.1;   ///< per axis, independent from fix to fix
+  /// filter of the receiver on the fast part: a first-order lag that keeps its sigma
+  double smoothing_s = 0;
+  double jitter_m = 0.1;  ///< per axis, independent from fix to fix
 
   double bursts_per_minute = 1;  ///< multipath bursts, Poisson, in canyons only
   double burst_size_m = 10;      ///< mean of their size (exponential); direction uniform
   double burst_duration_s = 6;   ///< mean duration (exponential) before it decays
   double burst_rise_s = 1;       ///< rises as 1 - exp(-t / rise) ...
   double burst_decay_s = 2;      ///< ... and decays as exp(-t / decay)
-  double burst_admitted = 0.05;  ///< share of a burst's size that goes into epx and epy: over-confident
+  /// share of a burst in epx and epy: below 1 the receiver is over-confident
+  double burst_admitted = 0.05;
 
-  int missing_epochs = 0;  ///< how many whole seconds have no fix, in all; exact
-  double outage_s = 5;     ///< mean length of the outages that they form (exponential)
+  int missing_epochs = 0;  ///< total number of seconds without a fix; exact
+  double outage_s = 5;     ///< mean length of the outages that contain them (exponential)
 
-  double stated_95_m = 2;          ///< epx at 95 % in the mean; epy and epv are larger by fixed factors
+  double stated_95_m = 2;          ///< mean of epx at 95 %; epy and epv are larger by fixed factors
   double stated_variation = 0.15;  ///< relative deviation, correlated over 120 s
   double stated_step_m = 0.01;     ///< rounding of epx, epy, epv
 };
@@ -88,20 +90,19 @@ struct TruthRecipe {
 struct SimulationRecipe {
   std::string name = "drive";
   double duration_s = 600;  ///< number of odometry samples / rate, exactly
-  double distance_m =
-      0;  ///< where not 0: cruise speeds are multiplied by the factor that gives this distance
+  double distance_m = 0;    ///< if not 0: the factor on all cruise speeds is chosen to give this distance
   std::vector<RoadRecipe> roads{};  ///< driven one after the other
   OdometryRecipe odometry{};
   GnssRecipe gnss{};
   TruthRecipe truth{};
-  double start_latitude_deg = 52.27;  ///< a real place; everything is projected to its UTM zone
+  double start_latitude_deg = 52.27;  ///< a real place; its UTM zone is the frame
   double start_longitude_deg = 10.53;
 };
 
-/// The same drive, shorter or longer: distance and missing epochs grow with the duration.
+/// Returns the same drive with another duration. Distance and missing epochs are scaled with it.
 [[nodiscard]] SimulationRecipe with_duration(SimulationRecipe recipe, double duration_s);
 
-/// @throws UsageError naming the parameter, its value and the rule.
+/// @throws UsageError that names the parameter, its value and the rule
 void check(const SimulationRecipe& recipe);
 
 }  // namespace waymark::simulation

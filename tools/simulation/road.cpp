@@ -13,19 +13,19 @@ namespace {
 
 constexpr double kTick = 1.0 / kTicksPerSecond;
 constexpr double kParkedAtStart = 8;    // s
-constexpr double kCornerSpread = 8;     // deg, of corners about 90
-constexpr double kSpeedResponse = 0.6;  // s, of the driver to a wanted speed
+constexpr double kCornerSpread = 8;     // deg, deviation of corners from 90
+constexpr double kSpeedResponse = 0.6;  // s, of the driver to the wanted speed
 constexpr double kPedalResponse = 0.3;  // s, of the vehicle to the driver
 constexpr double kWanderTau = 20;       // s
-constexpr double kHalting = 0.3;        // m/s: below that a stop is brought to its end evenly
+constexpr double kHalting = 0.3;        // m/s; below it the vehicle comes to rest evenly
 
 /// A piece of the way with one law of curvature.
 struct Piece {
   double start_m = 0;
   double length_m = 0;
   double peak_curvature = 0;  // 1/m, signed; 0: straight
-  double speed_mps = 0;       // no faster than that on it
-  double stop_s = 0;          // stands so long at its end
+  double speed_mps = 0;       // upper limit of the speed on it
+  double stop_s = 0;          // the vehicle stops at its end for this time
   bool canyon = false;
 
   [[nodiscard]] double end_m() const { return start_m + length_m; }
@@ -36,12 +36,12 @@ struct Piece {
   }
 };
 
-/// Builds the way leg by leg, as far as the driver needs to see.
+/// Builds the way leg by leg, as far as the driver must see.
 class Way {
  public:
   Way(std::uint64_t seed, double cruise_factor) : random_(seed, kRoadStream), cruise_factor_(cruise_factor) {}
 
-  /// @param road  that legs which begin from now on belong to
+  /// @param road the road of legs that begin from now on
   void extend_to(double way_m, const RoadRecipe& road) {
     while (end_m_ < way_m) add_leg(road);
   }
@@ -49,8 +49,8 @@ class Way {
 
  private:
   void add_leg(const RoadRecipe& road) {
-    // Everything a leg may need is drawn, needed or not: probabilities and lengths can be tuned without
-    // drawing another road.
+    // Everything that a leg may need is drawn, used or not. So probabilities and lengths can be
+    // tuned without a different road.
     const double length = random_.uniform(road.leg_min_m, road.leg_max_m);
     const double cruise = cruise_factor_ * random_.uniform(road.cruise_min_mps, road.cruise_max_mps);
     const bool canyon = random_.uniform() < road.canyon_probability;
@@ -116,7 +116,7 @@ class Driver {
     return way_.pieces()[piece].stop_s > 0 && stopped_at_ != piece;
   }
 
-  /// The least of what the pieces up to the horizon allow here.
+  /// Returns the smallest of the speeds that the pieces up to the horizon allow here.
   [[nodiscard]] double wanted_speed(const RoadRecipe& road, double wander) const {
     const std::vector<Piece>& pieces = way_.pieces();
     const double brake = road.deceleration_mps2;
@@ -168,7 +168,7 @@ class Driver {
   double heading_;
 };
 
-/// Which road a tick belongs to.
+/// Returns the road that a tick belongs to.
 const RoadRecipe& road_at(const SimulationRecipe& recipe, double share_of_duration) {
   double total = 0;
   for (const RoadRecipe& road : recipe.roads) total += road.share;
@@ -202,7 +202,8 @@ std::vector<DrivenState> drive_distance(const SimulationRecipe& recipe, std::uin
   const auto off = [&](const std::vector<DrivenState>& states) {
     return states.back().way_m / recipe.distance_m - 1;
   };
-  // Faster is not always further (a red light more or less), so the best of a bisection is kept.
+  // A higher speed does not always give a longer distance (one red light more or less), so the best
+  // result of the bisection is kept.
   double low = 0.2;
   double high = 5;
   double factor = 1;

@@ -1,4 +1,4 @@
-/// What the sensors of a simulated vehicle read along its way.
+/// Simulates the readings of the sensors along the way.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace waymark::simulation {
 
-/// Fills odometry and the calibration drawn for it. The k-th sample lies one tick after k / rate: streams of
-/// 25 Hz and 1 Hz do not coincide.
-/// @param start  stamp of tick 0
+/// Fills the odometry and its drawn calibration. The k-th sample is one tick after k / rate, so
+/// streams of 25 Hz and 1 Hz do not coincide.
+/// @param start stamp of tick 0
 void sense_odometry(const std::vector<DrivenState>& states, Stamp start, SimulatedDrive& drive);
 
-/// The vehicle in the frame, where a receiver or the reference looks at it.
+/// The vehicle in the frame, at an instant of a receiver or of the reference.
 struct PlacedState {
   Stamp stamp;
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< frame
@@ -25,7 +25,7 @@ struct PlacedState {
   bool canyon = false;
 };
 
-/// Fills the fixes and the bias drawn for them. @param epochs  the vehicle at every whole second, in order
+/// Fills the fixes and their drawn bias. @param epochs the vehicle at every whole second, in order
 void sense_gnss(std::span<const PlacedState> epochs, const drive::Projection& projection,
                 SimulatedDrive& drive);
 
@@ -33,13 +33,13 @@ void sense_gnss(std::span<const PlacedState> epochs, const drive::Projection& pr
 void sense_truth(std::span<const PlacedState> states, const drive::Projection& projection,
                  SimulatedDrive& drive);
 
-/// True where the epoch has no fix: exactly `missing` of them, in outages of `mean_length` epochs in the
-/// mean.
+/// Returns true for every epoch without a fix. There are exactly `missing` of them, in outages with
+/// a mean length of `mean_length` epochs.
 [[nodiscard]] std::vector<bool> draw_outages(std::size_t epochs, int missing, double mean_length,
                                              std::uint64_t seed);
 
-/// The bursts' sum at every epoch, true east and north. @param canyon where they may begin, epoch by epoch, 1
-/// Hz
+/// Returns the sum of the bursts at every epoch, true east and north. @param canyon whether a burst
+/// may begin, epoch by epoch, 1 Hz
 [[nodiscard]] std::vector<Eigen::Vector2d> draw_bursts(const std::vector<bool>& canyon,
                                                        const GnssRecipe& recipe, std::uint64_t seed);
 

@@ -9,16 +9,17 @@
 namespace waymark::simulation {
 namespace {
 
-/// 2021-03-15 09:00:00 UTC on the GPS scale, a whole second: where the simulated world's time begins.
+/// 2021-03-15 09:00:00 UTC on the GPS scale, a whole second: the start of simulated time.
 constexpr Stamp kStart{1'299'834'018'000'000'000};
 
-/// Lays the way driven on the ground into the frame: ground lengths times the point scale of the place.
+/// Maps the way on the ground into the frame: lengths are multiplied by the point scale
+/// of the place.
 class Placement {
  public:
   Placement(const std::vector<DrivenState>& states, const drive::Projection& projection)
       : states_(states), projection_(projection) {}
 
-  /// The vehicle at a tick; ticks must not decrease.
+  /// Returns the vehicle at a tick. Ticks must not decrease.
   PlacedState at(std::size_t tick) {
     for (; tick_ < tick; ++tick_) advance();
     const DrivenState& state = states_[tick];
@@ -70,7 +71,7 @@ SimulatedDrive simulate(const SimulationRecipe& recipe, std::uint64_t seed) {
   drive.distance_m = states.back().way_m;
   sense_odometry(states, kStart, drive);
 
-  // The fix of second 0 comes before the first odometry sample and would be dropped.
+  // The fix of second 0 would be before the first odometry sample and be dropped.
   std::vector<PlacedState> epochs = place_every(kTicksPerSecond, states, projection);
   epochs.erase(epochs.begin());
   sense_gnss(epochs, projection, drive);

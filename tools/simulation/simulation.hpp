@@ -1,5 +1,5 @@
-/// Simulated drives: raw logs of a vehicle that never drove, with the truth about it. README.md has the
-/// models.
+/// Simulated drives: raw logs of a vehicle that never drove, and its truth. README.md
+/// describes the models.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +23,14 @@ struct SimulationPreset {
   std::uint64_t default_seed = 1;
 };
 
-/// `highway`, `urban`, `rural`, `mixed`: ten minutes each, every seed draws new biases; `paper-1` ...
-/// `paper-8`: as the paper's eight drives, at their default seed.
+/// Returns the presets. `highway`, `urban`, `rural`, `mixed`: ten minutes each, with new biases for
+/// every seed. `paper-1` ... `paper-8`: like the eight drives of the paper, at their default seed.
 [[nodiscard]] const std::vector<SimulationPreset>& simulation_presets();
-/// @throws UsageError for an unknown name, with the nearest one.
+/// @throws UsageError for an unknown name; it proposes the nearest one
 [[nodiscard]] const SimulationPreset& simulation_preset(std::string_view name);
 
-/// What the error of a fix is made of, metres on true east and north. Their sum with the bias is the error.
+/// The parts of the error of a fix, in metres on true east and north. Their sum with the bias
+/// is the error.
 struct FixErrorParts {
   Eigen::Vector2d fast = Eigen::Vector2d::Zero();
   Eigen::Vector2d jitter = Eigen::Vector2d::Zero();
@@ -38,14 +39,16 @@ struct FixErrorParts {
 
 /// A fix as it is written into the log.
 struct SimulatedFix {
-  GeodeticFix fix;   ///< course and speed included; covariance from epx and epy by the paper's rule
+  /// with course and speed; the covariance follows from epx and epy by the rule of the paper
+  GeodeticFix fix;
   double epx_m = 0;  ///< stated error at 95 %: east ...
   double epy_m = 0;  ///< ... north ...
   double epv_m = 0;  ///< ... and height
   FixErrorParts parts;
 };
 
-/// All stamps are GPS time. Positions of truth and fixes are those of the body point: no lever arms.
+/// All stamps are GPS time. Positions of truth and fixes are those of the body point: there are
+/// no lever arms.
 struct SimulatedDrive {
   std::string name;  ///< begins with "Simulated"
   std::uint64_t seed = 0;
@@ -61,13 +64,13 @@ struct SimulatedDrive {
   std::vector<GeodeticTruth> truth;
 };
 
-/// Simulates a drive. The same recipe and seed give the same drive; road, odometry and GNSS draw from streams
-/// of their own, so that changing one leaves the others as they were.
-/// @throws UsageError for a recipe that makes no sense.
+/// Simulates a drive. The same recipe and seed give the same drive. Road, odometry and GNSS have
+/// their own random streams, so a change of one leaves the others as they were.
+/// @throws UsageError for an impossible recipe
 [[nodiscard]] SimulatedDrive simulate(const SimulationRecipe& recipe, std::uint64_t seed);
 
-/// Writes `odometry.csv`, `gnss.json` (gpsd), `truth.csv` and `drive.yaml` into a folder that exists; each is
-/// labelled as simulated.
+/// Writes `odometry.csv`, `gnss.json` (gpsd), `truth.csv` and `drive.yaml` into an existing folder.
+/// Each is labelled as simulated.
 /// @throws OutputError
 void write_simulated_drive(const SimulatedDrive& drive, const std::string& folder);
 

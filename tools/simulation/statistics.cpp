@@ -12,9 +12,10 @@
 namespace waymark::simulation {
 namespace {
 
-constexpr double kStandstill = 0.05;      // m/s, as the odometry models have it
-constexpr double kLeastTruthStep = 0.05;  // m: a truth of 1 cm must not drive while it stands
-constexpr double kYawWindow = 60;         // s
+constexpr double kStandstill = 0.05;  // m/s, as in the odometry models
+// m: the noise of 1 cm must not look like driving while the vehicle stands
+constexpr double kLeastTruthStep = 0.05;
+constexpr double kYawWindow = 60;  // s
 
 double median_of(std::vector<double> values) {
   if (values.empty()) return evaluation::kUndefined;
@@ -48,7 +49,8 @@ std::vector<Stamp> fix_stamps(const drive::PreparedDrive& drive) {
   return stamps;
 }
 
-/// Antenna and truth reference are taken for one point where the truth has no heading.
+/// Returns the antenna position of a truth. Without a heading, antenna and reference point are
+/// taken as the same point.
 Eigen::Vector2d truth_antenna(const TruthPose& truth, const drive::PreparedDrive& drive) {
   if (!truth.heading_rad) return truth.position;
   return truth.position +
@@ -70,7 +72,8 @@ void judge_gnss(const drive::PreparedDrive& drive, DriveStatistics& statistics) 
       evaluation::error_autocorrelation(matched, offsets, evaluation::kAutocorrelationLags);
 }
 
-/// Median size of the change of (odometry - truth) heading over windows of a minute that follow each other.
+/// Returns the median of |heading change of odometry - of truth| over consecutive windows
+/// of a minute.
 double yaw_drift(std::span<const Stamp> stamps, std::span<const Eigen::Vector3d> odometry,
                  std::span<const Eigen::Vector3d> truth) {
   std::vector<double> changes;
@@ -86,7 +89,7 @@ double yaw_drift(std::span<const Stamp> stamps, std::span<const Eigen::Vector3d>
   return median_of(std::move(changes)) * 180 / std::numbers::pi;
 }
 
-/// Dead reckoning against truth, at the truth's stamps within the odometry.
+/// Compares dead reckoning with the truth, at the stamps of the truth within the odometry.
 void judge_odometry(const drive::PreparedDrive& drive, const drive::Timeline& timeline,
                     std::span<const Eigen::Vector3d> reckoned, DriveStatistics& statistics) {
   const evaluation::TruthMatch match = evaluation::interpolate_truth(drive.truth, timeline.stamps);

@@ -1,5 +1,5 @@
-/// The random streams of one seed. New ones go to the end: a number that changes its meaning changes every
-/// drive.
+/// The random streams of one seed. Add new ones at the end: a number with a new meaning would
+/// change every drive.
 #pragma once
 
 #include <cstdint>

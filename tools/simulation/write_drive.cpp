@@ -11,14 +11,14 @@
 namespace waymark::simulation {
 namespace {
 
-/// gpsd's form: 2021-03-15T09:00:01.000Z. Fixes are at whole seconds.
+/// Returns the form of gpsd: 2021-03-15T09:00:01.000Z. Fixes are at whole seconds.
 std::string iso8601(Stamp gps) {
   const Stamp utc = convert(gps, TimeScale::gps, TimeScale::utc);
   const std::chrono::sys_seconds seconds{std::chrono::seconds(utc.nanoseconds / 1'000'000'000)};
   return fmt::format("{:%Y-%m-%dT%H:%M:%S}.000Z", fmt::gmtime(std::chrono::system_clock::to_time_t(seconds)));
 }
 
-/// Stamps lie on the simulation's clock of 100 Hz: "1299834018.01".
+/// Returns "1299834018.01". Stamps are on the 100 Hz clock of the simulation.
 std::string centiseconds(Stamp stamp) {
   std::string text = formats::decimal_seconds(stamp);
   text.resize(text.size() - 7);

@@ -7,7 +7,7 @@
 
 namespace waymark::text {
 
-/// JSON knows no NaN and no infinity: null stands where a number is not defined.
+/// Returns null for a number that is not finite, because JSON has no NaN and no infinity.
 [[nodiscard]] inline nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }

@@ -1,4 +1,4 @@
-/// Reading JSON files by key, with errors that say where: "metrics.json: evaluations[0].truth.gnss: ...".
+/// Reads JSON files by key. Errors name the place: "metrics.json: evaluations[0].truth.gnss: ...".
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 
 namespace waymark::text {
 
-/// @throws InputError "metrics.json:3:7: is no JSON: ..." @param name of the file, for errors
+/// @throws InputError "metrics.json:3:7: is no JSON: ..." @param name name of the file, for errors
 [[nodiscard]] nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
 
-/// A value of a document and where it stands. The document must outlive it. Everything throws InputError
-/// where the value is not what is asked for.
+/// A value of a document and its place. The document must outlive it. Every function throws
+/// InputError if the value is not of the requested kind.
 class JsonPlace {
  public:
   JsonPlace(const nlohmann::ordered_json& document, std::string file)
       : value_(&document), file_(std::move(file)) {}
 
   [[nodiscard]] JsonPlace at(const std::string& key) const;
-  /// Whether the object has the key, and not as null.
+  /// Tells whether the object has the key with a value other than null.
   [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] std::vector<std::string> keys() const;  ///< of an object
   [[nodiscard]] std::vector<JsonPlace> items() const;   ///< of a list

@@ -23,7 +23,7 @@ std::string_view code_of(Tone tone) {
   return "0";
 }
 
-/// Bytes of the character that begins here; 1 for what is no UTF-8.
+/// Returns the bytes of the character that begins here; 1 if it is no UTF-8.
 std::size_t character_size(std::string_view text) {
   const auto byte = static_cast<unsigned char>(text.front());
   const std::size_t size = byte >= 0xf0 ? 4 : byte >= 0xe0 ? 3 : byte >= 0xc0 ? 2 : 1;

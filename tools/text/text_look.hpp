@@ -1,4 +1,4 @@
-/// How text for people looks where it goes: in colours and in what width. A pipe or a file has neither.
+/// How text for people is shown: colours and width. A pipe or a file has neither.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +9,22 @@ namespace waymark::text {
 
 struct TextLook {
   bool colours = false;
-  std::size_t columns = 0;  ///< of the terminal; 0: as wide as the text is
+  std::size_t columns = 0;  ///< width of the terminal; 0: unlimited
 };
 
 enum class Tone { heading, dim, better, worse, warning, error };
 
-/// The text in the tone's colour (ECMA-48 "select graphic rendition"), or unchanged without colours.
+/// Returns the text in the colour of the tone (ECMA-48 "select graphic rendition"), or unchanged
+/// without colours.
 [[nodiscard]] std::string painted(std::string_view text, Tone tone, const TextLook& look);
 
-/// Columns that UTF-8 text takes on a terminal: one for each code point, two from U+1100 on, where wide
-/// characters begin. Never too few, so that a line which fits by this measure does fit.
+/// Returns how many columns UTF-8 text takes on a terminal. It counts one for each code point, and
+/// two from U+1100 on, where wide characters begin. The result is never too small, so a line that
+/// fits by this measure does fit.
 [[nodiscard]] std::size_t display_width(std::string_view text);
 
-/// The text within so many columns, cut with "..." where it has to be; what steers terminals becomes '?'.
+/// Returns the text within this many columns, cut with "..." if necessary. Characters that control
+/// terminals become '?'.
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t columns);
 
 }  // namespace waymark::text

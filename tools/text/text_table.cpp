@@ -11,14 +11,14 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// "-" stands for a number that is not there.
+/// "-" stands for an undefined number.
 bool looks_like_number(const std::string& cell) {
   if (cell == "-" || is_digit(cell.front())) return true;
   const bool signed_or_point = cell.front() == '-' || cell.front() == '+' || cell.front() == '.';
   return signed_or_point && is_digit(cell[1]);
 }
 
-/// "10 minutes of motorway"; no interval "0.24 - 5.57", no "10 Hz".
+/// "10 minutes of motorway" is a sentence; an interval "0.24 - 5.57" and "10 Hz" are not.
 bool is_sentence(const std::string& cell) {
   return std::count(cell.begin(), cell.end(), ' ') > 2;
 }
@@ -68,7 +68,7 @@ std::string TextTable::part(std::size_t first, std::size_t last, const std::vect
   std::string out;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     std::string line;
-    std::string spaces;  // written only before something
+    std::string spaces;  // written only before other text
     for (const std::size_t c : columns) {
       const std::string cell = c < rows_[r].size() ? rows_[r][c] : "";
       const std::string padding(widths[c] - display_width(cell), ' ');

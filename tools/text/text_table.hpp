@@ -10,19 +10,19 @@
 
 namespace waymark::text {
 
-/// Rows under a heading, columns as wide as their widest cell. The first column and columns of words are
-/// flush left, columns with numbers flush right. On a terminal too narrow for it a table goes on below
-/// itself, each part with the first column.
+/// Rows under a heading. Each column is as wide as its widest cell. The first column and columns of
+/// words are flush left, columns of numbers flush right. If the terminal is too narrow, the table
+/// continues below itself; each part repeats the first column.
 class TextTable {
  public:
   using Row = std::vector<std::string>;
 
   explicit TextTable(Row heading) { rows_.push_back(std::move(heading)); }
 
-  /// A row whose numbers stand there already under another label is not added again.
+  /// Adds a row, unless another label already has the same numbers.
   void add_unless_known(Row row);
   void add(Row row) { rows_.push_back(std::move(row)); }
-  /// Paints a cell of the row added last.
+  /// Paints a cell of the last row.
   void paint(std::size_t column, Tone tone) { tones_[{rows_.size() - 1, column}] = tone; }
 
   [[nodiscard]] bool empty() const { return rows_.size() < 2; }

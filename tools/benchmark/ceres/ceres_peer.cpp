@@ -1,4 +1,4 @@
-// The one file that sees Ceres's headers: they are slow to compile.
+// Only this file includes the headers of Ceres, because they are slow to compile.
 #include <waymark/tools/benchmark/ceres/ceres_peer.hpp>
 
 #include <array>
@@ -15,8 +15,8 @@
 #include <waymark/plugins/odometry/edge_odometry.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
-// Ceres's dual number keeps its value in another member than ours; found by argument-dependent lookup from
-// the errors of types_se2.
+// The dual number of Ceres keeps its value in another member than ours. The errors of types_se2
+// find this overload by argument-dependent lookup.
 namespace ceres {
 
 template <int N>
@@ -37,10 +37,10 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// R with R^T R = Omega, also for semidefinite Omega: its rows without information are zero.
+/// Returns R with R^T R = Omega, also for semidefinite Omega. Rows without information are zero.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& omega) {
   const Eigen::LDLT<Eigen::MatrixXd> factor(omega);  // P^T L D L^T P
-  // P as a matrix: Eigen 3.4 applies its swaps in the wrong order from the right.
+  // P as a matrix: from the right, Eigen 3.4 applies its swaps in the wrong order.
   const Eigen::MatrixXd p = factor.transpositionsP() * Eigen::MatrixXd::Identity(omega.rows(), omega.cols());
   const Eigen::MatrixXd upper = factor.matrixU();
   return factor.vectorD().cwiseMax(0).cwiseSqrt().asDiagonal() * (upper * p);
@@ -51,7 +51,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& omega) {
 template <Edge E, int K>
 using VertexOf = typename E::Vertices::template Type<K>;
 
-/// A vertex as an error sees it, at Ceres's parameters.
+/// Returns a vertex in the form that errors take, at the parameters of Ceres.
 template <Edge E, int K, typename T>
 auto vertex_at(const T* parameters) {
   constexpr std::array<double, VertexOf<E, K>::kValueSize> kZero{};
@@ -84,7 +84,7 @@ struct WeightedEdge {
   }
 };
 
-/// With the Jacobians that the type gives by hand.
+/// A cost with the Jacobians that the edge type gives.
 template <Edge E, typename Sequence>
 class AnalyticCost;
 
@@ -112,7 +112,7 @@ class AnalyticCost<E, std::index_sequence<K...>> final
 
   template <int N>
   void weigh(const JacobianMatrix<kDimension, N>& jacobian, double* out) const {
-    if (out == nullptr) return;  // the vertex is held
+    if (out == nullptr) return;  // the vertex is fixed
     Eigen::Map<Eigen::Matrix<double, kDimension, N, N == 1 ? Eigen::ColMajor : Eigen::RowMajor>>{out} =
         weighted_.root * jacobian;
   }
@@ -124,7 +124,8 @@ template <typename E>
 concept HasLinearize = requires {
   &E::linearize;
 };
-// Ceres at its best: by hand its linearisation of this edge is faster than automatically (MEASUREMENTS.md).
+// The Jacobians of this edge type are faster than the automatic ones (MEASUREMENTS.md), and Ceres
+// is measured at its best.
 static_assert(HasLinearize<EdgeSe2>);
 
 template <Edge E, std::size_t... K>
@@ -154,10 +155,11 @@ std::unique_ptr<ceres::CostFunction> make_typed_cost(const EdgeBatchBase& batch,
 
 // ---- Everything else
 
-/// Any edge through the batch's own interface: one virtual call and some allocations per evaluation.
+/// Any other edge, through the interface of its batch: one virtual call and some allocations
+/// per evaluation.
 class GenericCost final : public ceres::CostFunction {
  public:
-  /// @param scratch values of the whole graph; only one cost at a time may work there (one thread)
+  /// @param scratch values of the whole graph; only one cost at a time may use it (one thread)
   GenericCost(const Graph& graph, const EdgeBatchBase& batch, std::size_t edge, std::vector<double>& scratch)
       : graph_(graph),
         batch_(batch),
@@ -196,7 +198,7 @@ class GenericCost final : public ceres::CostFunction {
   Eigen::MatrixXd root_;
 };
 
-/// Our loss as Ceres asks for it: rho, rho', rho''.
+/// Our loss in the form that Ceres needs: rho, rho', rho''.
 class LossAdapter final : public ceres::LossFunction {
  public:
   explicit LossAdapter(Loss loss) : loss_(std::move(loss)) {}
@@ -213,7 +215,7 @@ class LossAdapter final : public ceres::LossFunction {
 
 // ---- The problem
 
-/// A tag has one meaning, so the tag alone chooses the cost.
+/// A tag has only one meaning, so the tag chooses the cost.
 using CostMaker = std::unique_ptr<ceres::CostFunction> (*)(const EdgeBatchBase&, std::size_t);
 CostMaker typed_cost(std::string_view tag) {
   static const std::map<std::string_view, CostMaker> makers = {
@@ -260,7 +262,7 @@ class CeresProblem {
     }
   }
 
-  /// @throws UsageError where the vertex moves otherwise than by addition.
+  /// @throws UsageError if the retraction of the vertex is not plain addition
   double* addition_block(VertexIndex v) {
     const VertexType& type = graph_.vertex_type(v);
     if (type.linear_chart && type.value_size == type.tangent_size) return block(v);
@@ -283,7 +285,7 @@ class CeresProblem {
   ceres::Problem problem_;
 };
 
-/// Ends Ceres at Ctrl-C.
+/// Stops Ceres at Ctrl-C.
 class CancelCallback final : public ceres::IterationCallback {
  public:
   explicit CancelCallback(const std::atomic<bool>* cancel) : cancel_(cancel) {}
@@ -310,7 +312,8 @@ ceres::Solver::Options solver_options(const CeresOptions& options) {
 }  // namespace
 
 RunOutcome optimize_with_ceres(Graph& graph, const CeresOptions& options) {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres says of a failed factorisation is in its summary
+  // Ceres's message about a failed factorisation is in its summary
+  FLAGS_minloglevel = google::GLOG_FATAL;
   RunOutcome outcome;
   const auto setup_begin = Clock::now();
   CeresProblem problem(graph);
@@ -324,12 +327,13 @@ RunOutcome optimize_with_ceres(Graph& graph, const CeresOptions& options) {
   ceres::Solve(solver, &problem.problem(), &summary);
   outcome.total_seconds = seconds_since(begin);
 
-  outcome.initial_chi2 = 2 * summary.initial_cost;  // Ceres halves
+  outcome.initial_chi2 = 2 * summary.initial_cost;  // Ceres's cost is half of chi2
   outcome.structure_seconds = summary.preprocessor_time_in_seconds;
   outcome.linearize_seconds =
       summary.residual_evaluation_time_in_seconds + summary.jacobian_evaluation_time_in_seconds;
   outcome.solve_seconds = summary.linear_solver_time_in_seconds;
-  outcome.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // first: the start
+  // the first entry is the initial guess
+  outcome.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   outcome.converged = summary.termination_type == ceres::CONVERGENCE;
   outcome.message = summary.message;
   outcome.solver_description =

@@ -1,10 +1,11 @@
-/// Ceres on the very problem that a graph states, at its best: the same errors, whitened by a root of the
-/// information; exact Jacobians by hand where the edge type has them, else Ceres's automatic ones; parameter
-/// blocks per vertex. No header of Ceres is seen from here.
+/// Runs Ceres on exactly the problem that a graph states, as fast as Ceres can. The errors are the
+/// same, whitened by a root of the information matrix. Jacobians are those of the edge type if it
+/// has them, or else Ceres's automatic ones. Each vertex is a parameter block. This header includes
+/// no header of Ceres.
 ///
-/// Stops when an accepted step lowers chi2 by less than 1e-6 of it (Ceres's function_tolerance), or by
-/// Ceres's own gradient and parameter tolerances; all other options are Ceres's defaults with
-/// SPARSE_NORMAL_CHOLESKY and one thread.
+/// Ceres stops if an accepted step lowers chi2 by less than 1e-6 of its value (function_tolerance),
+/// or by its own gradient and parameter tolerances. All other options are the defaults of Ceres
+/// with SPARSE_NORMAL_CHOLESKY and one thread.
 #pragma once
 
 #include <atomic>
@@ -24,11 +25,13 @@ struct CeresOptions {
   double function_tolerance = 1e-6;  ///< relative decrease of chi2
 };
 
-/// Minimises chi2; the graph then holds Ceres's result. What holds the gauge is held as Waymark holds it.
-/// @throws UsageError for a vertex type whose retraction is not plain addition; InputError as find_gauge.
+/// Minimises chi2. The graph then holds the result of Ceres. The gauge is fixed in the same way
+/// as in Waymark.
+/// @throws UsageError for a vertex type whose retraction is not plain addition; InputError
+/// as find_gauge.
 [[nodiscard]] RunOutcome optimize_with_ceres(Graph& graph, const CeresOptions& options);
 
-/// "Ceres 2.1.0".
+/// Returns "Ceres 2.1.0".
 [[nodiscard]] std::string ceres_version();
 
 }  // namespace waymark::benchmark

@@ -16,9 +16,10 @@ namespace {
 
 using Files = std::vector<FileSummary>;
 
-constexpr std::size_t kLooks = 7;  // of systems: more contestants than that need rows of their own
+// looks of systems; with more contestants each one needs its own row
+constexpr std::size_t kLooks = 7;
 
-/// What of a cell is drawn as a bar.
+/// The number of a cell that a bar shows.
 struct Bar {
   double value = 0;
   std::optional<Spread> spread{};
@@ -55,7 +56,7 @@ void add_missed(const std::vector<MissedMark>& missed, drawing::Figure& figure) 
   figure.series.push_back(std::move(crosses));
 }
 
-/// A row for each file, in it a bar for each contestant.
+/// Returns a figure with a row for each file and a bar for each contestant in it.
 drawing::Figure grouped(const Files& files, const ContestantNames& names, drawing::Figure figure,
                         const Measure& measure) {
   std::vector<MissedMark> missed;
@@ -73,7 +74,7 @@ drawing::Figure grouped(const Files& files, const ContestantNames& names, drawin
       if (!cell.converged) missed.push_back({series, bar->value, static_cast<double>(f)});
     }
   }
-  std::vector<MissedMark> kept;  // a contestant without any bar has no entry in the legend either
+  std::vector<MissedMark> kept;  // a contestant without any bar gets no legend entry
   std::vector<drawing::Series> drawn;
   for (std::size_t s = 0; s < figure.series.size(); ++s) {
     if (figure.series[s].x.empty()) continue;
@@ -88,7 +89,7 @@ drawing::Figure grouped(const Files& files, const ContestantNames& names, drawin
   return figure;
 }
 
-/// A figure of one file, a row for each contestant.
+/// Returns a figure of one file with a row for each contestant.
 drawing::Figure of_file(const FileSummary& file, const ContestantNames& names, drawing::Figure figure,
                         const Measure& measure) {
   drawing::Series bars{.name = "converged", .mark = drawing::Mark::bars, .look = drawing::Look::fused};
@@ -107,7 +108,7 @@ drawing::Figure of_file(const FileSummary& file, const ContestantNames& names, d
   return figure;
 }
 
-/// One figure where the looks suffice, else one for each file.
+/// Returns one figure if there are enough looks, or else one for each file.
 std::vector<drawing::Figure> bar_figures(const Files& files, const ContestantNames& names,
                                          const drawing::Figure& about, const Measure& measure) {
   std::vector<drawing::Figure> figures;
@@ -140,7 +141,7 @@ std::vector<std::string> peers_of(const Files& files) {
   return peers;
 }
 
-/// A contestant's medians over the sizes of the files it was measured on: points with their spread, joined.
+/// Adds the medians of a contestant over the sizes of its files: points with their spread, joined.
 void add_size_series(const Files& files, const ContestantNames& names, std::size_t contestant,
                      drawing::Look look, drawing::Figure& figure) {
   std::vector<std::pair<double, Spread>> points;

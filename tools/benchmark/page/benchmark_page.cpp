@@ -13,12 +13,12 @@ namespace {
 
 using Files = std::vector<FileSummary>;
 
-/// A result counts where it is one: converged, and no higher than the best known.
+/// Tells whether a result counts: it converged, and it is no higher than the best known chi2.
 bool counts(const CellSummary& cell) {
   return cell.converged && cell.optimality != Optimality::above;
 }
 
-/// The fastest cells that count, the faster first.
+/// Returns the cells that count, fastest first.
 std::vector<const CellSummary*> ranking(const FileSummary& file) {
   std::vector<const CellSummary*> cells;
   for (const CellSummary& cell : file.cells)
@@ -51,7 +51,7 @@ drawing::PageTable winners_table(const Files& files, const ContestantNames& name
   return table;
 }
 
-/// "default in 3 of 4 files"
+/// Returns "default in 3 of 4 files".
 std::string winners_sentence(const Files& files, const ContestantNames& names) {
   std::map<std::string, int> wins;
   for (const FileSummary& file : files) {
@@ -85,7 +85,7 @@ std::string convergence_sentence(const Files& files) {
                      cells, missed, above);
 }
 
-/// What does not count, and why.
+/// Lists the results that do not count, and why.
 drawing::PageTable missed_table(const Files& files, const ContestantNames& names) {
   drawing::PageTable table{.title = "Not converged, or above the optimum",
                            .columns = {"file", "contestant", "ended", "chi2 / optimum - 1", "message"},

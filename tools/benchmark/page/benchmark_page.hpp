@@ -9,10 +9,10 @@
 
 namespace waymark::benchmark {
 
-/// Who was fastest where, times with their spread, time against size, ratios to peers, memory, iterations,
-/// optima, and the tables of the terminal.
-/// @param header  what was asked for, and on what it ran
-/// @throws UsageError for no files
+/// Returns the page: the fastest contestant per file, times with their spread, time against size,
+/// ratios to peers, memory, iterations, optima, and the tables of the terminal.
+/// @param header the request and the machine
+/// @throws UsageError if there are no files
 [[nodiscard]] drawing::Page benchmark_page(const std::vector<FileSummary>& files,
                                            const BenchmarkHeader& header);
 

@@ -1,4 +1,4 @@
-/// Figures of a benchmark's page.
+/// Figures for the page of a benchmark.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace waymark::benchmark {
 
-/// Names every cell of a benchmark: the algorithm, and the solver and the start where they are not the same
-/// in all cells. Cells of one name in different files are one contestant.
+/// Names every cell of a benchmark: the algorithm, and solver and start if they are not the same in
+/// all cells. Cells with the same name in different files are one contestant.
 class ContestantNames {
  public:
   explicit ContestantNames(const std::vector<FileSummary>& files);
 
   [[nodiscard]] std::string name_of(const CellSummary& cell) const;
-  /// All of them, in order of their first cells.
+  /// Returns all names, in the order of their first cells.
   [[nodiscard]] const std::vector<std::string>& all() const { return all_; }
 
  private:
@@ -32,13 +32,15 @@ class ContestantNames {
                                                           const ContestantNames& names);
 [[nodiscard]] std::vector<drawing::Figure> iteration_figures(const std::vector<FileSummary>& files,
                                                              const ContestantNames& names);
-/// How far above the optimum the cells ended that did not reach it; empty where all did.
+/// Shows how far above the optimum cells ended that did not reach it. Empty if all
+/// cells reached it.
 [[nodiscard]] std::vector<drawing::Figure> excess_figures(const std::vector<FileSummary>& files,
                                                           const ContestantNames& names);
-/// Peer's time over each contestant's, a figure for each peer.
+/// Shows the time of a peer over the time of each contestant, one figure per peer.
 [[nodiscard]] std::vector<drawing::Figure> ratio_figures(const std::vector<FileSummary>& files,
                                                          const ContestantNames& names);
-/// Time against the number of edges, seven contestants a figure; empty for files of one size.
+/// Shows time against the number of edges, with seven contestants per figure. Empty if all files
+/// have one size.
 [[nodiscard]] std::vector<drawing::Figure> size_figures(const std::vector<FileSummary>& files,
                                                         const ContestantNames& names);
 

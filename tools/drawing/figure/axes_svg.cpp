@@ -8,7 +8,7 @@
 namespace waymark::drawing {
 namespace {
 
-/// The end of a long name tells it from others as often as its beginning: the middle is left out.
+/// Cuts the middle out of a long name, because names often differ at the end.
 std::string fitted(const std::string& name, double width) {
   std::string text = name;
   for (std::size_t half = name.size() / 2; half > 4 && text_width(text) > width; --half)
@@ -16,7 +16,7 @@ std::string fitted(const std::string& name, double width) {
   return text;
 }
 
-/// @param width  px that a name may take
+/// @param width px available for a name
 std::vector<Tick> category_ticks(const Axis& axis, double width) {
   std::vector<Tick> result;
   for (std::size_t i = 0; i < axis.categories.size(); ++i)

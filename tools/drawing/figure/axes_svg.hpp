@@ -1,4 +1,5 @@
-/// Axes of a figure: grid, ticks, labels, and what a map needs instead.
+/// Draws the axes of a figure: grid, ticks and labels. A map has a scale bar and a north arrow in
+/// their place.
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@ namespace waymark::drawing {
 
 [[nodiscard]] std::string axes_svg(const Figure& figure, const View& view);
 
-/// A scale bar in the lower left corner and a north arrow in the upper right one.
+/// Draws a scale bar in the lower left corner and a north arrow in the upper right one.
 [[nodiscard]] std::string map_ornaments_svg(const View& view);
 
 }  // namespace waymark::drawing

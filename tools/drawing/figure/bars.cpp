@@ -9,10 +9,10 @@
 namespace waymark::drawing {
 namespace {
 
-constexpr double kShareOfRow = 0.8;  // the rest is between the rows
-constexpr double kBarHeight = 15;    // px, with its share of what is between
+constexpr double kShareOfRow = 0.8;  // the rest is the gap between rows
+constexpr double kBarHeight = 15;    // px, with its share of the gap
 constexpr double kLeastRow = 22;     // px
-constexpr double kNumber = 52;       // px of a number behind a bar
+constexpr double kNumber = 52;       // px for a number behind a bar
 
 bool has_bar(const Series& series, double row) {
   for (std::size_t i = 0; i < series.x.size(); ++i)
@@ -20,7 +20,7 @@ bool has_bar(const Series& series, double row) {
   return false;
 }
 
-/// The largest share of its row that any row is divided into.
+/// Returns the largest number of bars in any row.
 std::size_t most_bars(const Figure& figure) {
   std::size_t most = 1;
   for (std::size_t row = 0; row < figure.y.categories.size(); ++row) {

@@ -1,4 +1,4 @@
-/// Figures of bars: rows of categories, one or several bars in each.
+/// Bar figures: rows of categories with one or several bars in each.
 #pragma once
 
 #include <cstddef>
@@ -8,21 +8,21 @@
 
 namespace waymark::drawing {
 
-/// Where a bar stands in its row, in units of the rows' distance.
+/// The place of a bar in its row, in units of the row distance.
 struct BarPlace {
-  double offset = 0;  ///< of its middle from the row's, downwards
+  double offset = 0;  ///< from the middle of the row to the middle of the bar, downwards
   double height = 0;
 };
 
-/// Bars of a row stand one below the other, in the order of the series. A row is shared by the series that
-/// have something in it. @param row index of its category
+/// Returns the place of a bar. The bars of a row are stacked downwards in the order of the series.
+/// Only series with a value in the row share it. @param row index of its category
 [[nodiscard]] BarPlace bar_place(const Figure& figure, std::size_t series, double row);
 
-/// Gives a figure of bars the height that its rows need, and its axis of values room for the numbers that
-/// stand behind the bars. To be called when all series are there.
+/// Sets the height of a bar figure to what its rows need. It also makes room on the value axis for
+/// the numbers behind the bars. Call it after all series have been added.
 void fit_bars(Figure& figure);
 
-/// A dashed line across all rows at a value: what is honest, equal, the reference.
+/// Returns a dashed line across all rows at a value, for example at a reference.
 [[nodiscard]] Series line_across(const std::string& name, double value, std::size_t rows);
 
 }  // namespace waymark::drawing

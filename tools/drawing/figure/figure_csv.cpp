@@ -32,7 +32,8 @@ std::size_t length(const Series& series) {
   return std::max({series.x.size(), series.y.size(), series.low.size()});
 }
 
-/// The category where the column is of the rows of bars, else the number; empty where it is none.
+/// Appends the category if the axis has categories, or else the number. The field is empty if the
+/// number is undefined.
 void append_field(const Figure& figure, const Column& column, double value, std::string& csv) {
   const std::vector<std::string>& rows = figure.y.categories;
   const bool is_row = column.values == &Series::y && value >= 0 && value == std::floor(value) &&

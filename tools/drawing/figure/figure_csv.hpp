@@ -7,9 +7,10 @@
 
 namespace waymark::drawing {
 
-/// RFC 4180 with "\n" line ends, one row a point: series, x and y under the headings of their axes, and,
-/// where a series has them, low, high, weight, time [s], note. Numbers in the shortest form that reads back
-/// exactly; what is not defined is an empty field.
+/// Returns CSV (RFC 4180 with "\n" line ends) with one row per point: the series, and x and y
+/// under the titles of their axes. The columns low, high, weight, time [s] and note follow if some
+/// series has them. Numbers have the shortest form that reads back exactly. Undefined values are
+/// empty fields.
 [[nodiscard]] std::string figure_csv(const Figure& figure);
 
 }  // namespace waymark::drawing

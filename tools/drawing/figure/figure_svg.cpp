@@ -26,7 +26,7 @@ std::string opening(const Figure& figure, std::string_view attributes) {
       attributes, figure.width, figure.height, figure.id);
 }
 
-/// Tiles of strokes that lie over bars, for the looks that the figure has bars of.
+/// Returns tiles of strokes over bars, for the looks whose bars the figure has.
 std::string hatching(const Figure& figure) {
   std::string svg;
   for (const LookStyle& look : all_looks()) {
@@ -68,7 +68,7 @@ View drawn_view(const Figure& figure) {
 
 std::string figure_style() {
   std::string style(kFigureStyle);
-  // Without CSS variables, which editors of SVG do not know.
+  // No CSS variables are used, because SVG editors do not support them.
   for (const LookStyle& look : all_looks()) {
     style += fmt::format(
         ".line.look-{0},.points.look-{0}{{stroke:{1}}}\n"
@@ -88,7 +88,7 @@ std::string figure_svg(const Figure& figure) {
 }
 
 std::string inline_svg(const Figure& figure) {
-  // Beyond its own size a drawing would only be coarse.
+  // Above its own size a drawing would only look coarse.
   const std::string attributes = fmt::format("style=\"max-width:{}px\" ", figure.width * 11 / 10);
   return opening(figure, attributes) + title_and_description(figure) + drawing(figure) + "</svg>\n";
 }

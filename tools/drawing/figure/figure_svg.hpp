@@ -1,4 +1,4 @@
-/// A figure drawn as SVG.
+/// Draws a figure as SVG.
 #pragma once
 
 #include <string>
@@ -8,16 +8,17 @@
 
 namespace waymark::drawing {
 
-/// An SVG 1.1 document with its style inside: for a paper, an editor, a browser.
+/// Returns an SVG 1.1 document that includes its style, for a paper, an editor or a browser.
 [[nodiscard]] std::string figure_svg(const Figure& figure);
 
-/// The same drawing as an element of an HTML page, which has the style (figure_style) itself.
+/// Returns the same drawing as an element of an HTML page. The page must have the style
+/// (figure_style).
 [[nodiscard]] std::string inline_svg(const Figure& figure);
 
-/// Style sheet of the drawings.
+/// Returns the style sheet of the drawings.
 [[nodiscard]] std::string figure_style();
 
-/// What `inline_svg` shows, for who moves it.
+/// Returns the view that `inline_svg` draws, for the script that moves it.
 [[nodiscard]] View drawn_view(const Figure& figure);
 
 }  // namespace waymark::drawing

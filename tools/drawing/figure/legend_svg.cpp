@@ -68,7 +68,7 @@ int legend_rows(const Figure& figure) {
 
 std::string legend_svg(const Figure& figure, const View& view) {
   std::string svg = "<g class=\"legend\">";
-  // Begins above the plot where there is room, else at the edge.
+  // The legend begins above the plot if there is room, or else at the edge.
   const std::vector<Entry> all = entries(figure);
   const double left = all.empty() || all.back().row == 0 ? std::min(view.box.left, 20.0) : 10;
   for (const Entry& entry : all) {

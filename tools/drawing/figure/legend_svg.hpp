@@ -1,4 +1,4 @@
-/// The legend of a figure: samples of the marks with their names, in rows above the plot.
+/// Draws the legend of a figure: samples of the marks with their names, in rows above the plot.
 #pragma once
 
 #include <string>
@@ -8,10 +8,12 @@
 
 namespace waymark::drawing {
 
-/// 0 where one series or none has a name: its axis says then what it is.
+/// Returns the number of rows. It is 0 if at most one series has a name, because the axis already
+/// says what it is.
 [[nodiscard]] int legend_rows(const Figure& figure);
 
-/// Each entry is a group of class "entry" with the series' index in data-series.
+/// Returns the legend. Each entry is a group of class "entry" with the index of the series in
+/// data-series.
 [[nodiscard]] std::string legend_svg(const Figure& figure, const View& view);
 
 }  // namespace waymark::drawing

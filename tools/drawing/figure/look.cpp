@@ -16,7 +16,8 @@ constexpr std::string_view kHourglass = "m-2.8-2.8h5.6l-5.6 5.6h5.6z";
 constexpr std::string_view kRight = "m3.4 0l-5.8 3.2v-6.4z";
 constexpr std::string_view kLeft = "m-3.4 0l5.8 3.2v-6.4z";
 
-// Okabe and Ito, Color Universal Design, 2008; yellow is left out, which is not seen on white.
+// Okabe and Ito, Color Universal Design, 2008. Their yellow is left out, because it is
+// invisible on white.
 constexpr std::array kLooks = {
     LookStyle{Look::raw, "raw", "#d55e00", "2 3", kCircle, ""},
     LookStyle{Look::fused, "fused", "#0072b2", "", kSquare, "M0 6l6-6"},

@@ -1,4 +1,5 @@
-/// Colour, dash pattern, marker and hatching of each look: told apart by each of them alone.
+/// Colour, dash pattern, marker and hatching of each look. Each of these alone
+/// distinguishes the looks.
 #pragma once
 
 #include <span>
@@ -10,8 +11,9 @@ namespace waymark::drawing {
 
 struct LookStyle {
   Look look;
-  std::string_view name;    ///< of its class in the style sheet
-  std::string_view colour;  ///< of Okabe and Ito's palette, which colour-blind readers tell apart
+  std::string_view name;  ///< name of its class in the style sheet
+  /// from the palette of Okabe and Ito, which colour-blind readers can distinguish
+  std::string_view colour;
   std::string_view dash;    ///< SVG stroke-dasharray of a line; empty: solid
   std::string_view marker;  ///< relative SVG path about a point, px
   std::string_view hatch;   ///< SVG path of strokes in a tile of 6 x 6 px, over bars; empty: none
@@ -20,7 +22,8 @@ struct LookStyle {
 [[nodiscard]] std::span<const LookStyle> all_looks();
 [[nodiscard]] const LookStyle& style_of(Look look);
 
-/// Looks for the systems of a comparison, in turn. @param index from 0; after the last, the first again
+/// Returns looks for the systems of a comparison, in turn. @param index from 0; after the last look
+/// the first one follows
 [[nodiscard]] Look look_of_system(std::size_t index);
 
 }  // namespace waymark::drawing

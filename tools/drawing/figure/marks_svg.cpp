@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kShades = 4;
 constexpr double kMarkerRadius = 3;  // px
-constexpr double kNumberWidth = 44;  // px, of one behind a bar
+constexpr double kNumberWidth = 44;  // px, for a number behind a bar
 
 std::string path(const Series& series, std::size_t index, const std::string& d, std::string_view kind) {
   return fmt::format("<path class=\"{} look-{}\" data-series=\"{}\" d=\"{}\"/>\n", kind,
@@ -78,7 +78,7 @@ std::string spans_path(const Series& series, const View& view) {
   return d;
 }
 
-/// Where the number of a bar begins, px: behind the bar and behind points that stand at it.
+/// Returns where the number of a bar begins, in px: behind the bar and behind points on it.
 double behind_points(const Figure& figure, const View& view, double row, double height, double end) {
   for (const Series& series : figure.series) {
     if (series.mark != Mark::points) continue;
@@ -126,7 +126,7 @@ std::string bars(const Figure& figure, std::size_t index, const View& view) {
   return svg + values;
 }
 
-/// In a few shades, each a path.
+/// Draws cells in a few shades, with one path for each.
 std::string cells(const Series& series, std::size_t index, const View& view) {
   std::array<std::string, kShades> of_shade;
   const double side_x = view.px_x(view.x.low + 1) - view.box.left;

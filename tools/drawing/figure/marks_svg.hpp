@@ -1,4 +1,5 @@
-/// The marks of one series as SVG paths: one path a series, however many points it has.
+/// Draws the marks of a series as SVG paths. There is one path per series, however many
+/// points it has.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +10,10 @@
 
 namespace waymark::drawing {
 
-/// Paths of class MARK and look-LOOK with the series' index in data-series.
+/// Returns paths of class MARK and look-LOOK with the index of the series in data-series.
 [[nodiscard]] std::string marks_svg(const Figure& figure, std::size_t series, const View& view);
 
-/// Name of a mark in style sheet and page data: "line", "points", ...
+/// Returns the name of a mark in style sheet and page data: "line", "points", ...
 [[nodiscard]] std::string_view name_of(Mark mark);
 
 }  // namespace waymark::drawing

@@ -1,4 +1,4 @@
-/// Pieces of HTML and SVG text.
+/// Helpers for HTML and SVG text.
 #pragma once
 
 #include <string>
@@ -6,14 +6,16 @@
 
 namespace waymark::drawing {
 
-/// Text as it may stand in an element or a quoted attribute: & < > " ' become references; control characters,
-/// which neither format may hold, and bytes that are not UTF-8 become the replacement character.
+/// Escapes text for an element or a quoted attribute: & < > " ' become references. Control
+/// characters, which both formats forbid, and bytes that are not UTF-8 become the
+/// replacement character.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-/// A coordinate in px with one decimal at most: "12", "12.5". What is not finite is 0.
+/// Returns a coordinate in px with at most one decimal: "12", "12.5". A number that is not
+/// finite becomes 0.
 [[nodiscard]] std::string px(double value);
 
-/// A number for reading: four significant digits, "-" where it is not finite.
+/// Returns a number for readers: four significant digits, or "-" if it is not finite.
 [[nodiscard]] std::string readable(double value);
 
 }  // namespace waymark::drawing

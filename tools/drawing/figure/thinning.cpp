@@ -11,7 +11,7 @@ namespace {
 constexpr double kNearPx = 0.4;
 constexpr double kMarkerPx = 1.5;
 
-/// Keeps of each column of pixels what is needed.
+/// Keeps the needed points of each pixel column.
 class Columns {
  public:
   void add(const DrawnPoint& point) {
@@ -90,7 +90,7 @@ std::vector<DrawnPoint> thin_points(const std::vector<double>& x, const std::vec
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!view.shows(x[i], y[i])) continue;
     const DrawnPoint point{view.px_x(x[i]), view.px_y(y[i]), i};
-    // A figure is a few thousand px wide and high at most: 2^20 rows keep the two numbers apart.
+    // A figure is at most a few thousand px wide and high, so 2^20 rows keep the two numbers apart.
     const auto square = (static_cast<std::int64_t>(std::floor(point.x / kMarkerPx)) << 20) +
                         static_cast<std::int64_t>(std::floor(point.y / kMarkerPx));
     if (taken.insert(square).second) kept.push_back(point);

@@ -9,7 +9,7 @@
 namespace waymark::drawing {
 namespace {
 
-constexpr double kLargest = 1e150;    // of which a difference is finite too
+constexpr double kLargest = 1e150;    // differences of such numbers are finite too
 constexpr double kSmallest = 1e-150;  // on a logarithmic axis
 constexpr double kMarginTop = 10;
 constexpr double kMarginRight = 18;
@@ -18,7 +18,7 @@ constexpr double kLeastMarginLeft = 56;
 constexpr double kMostMarginLeft = 300;
 constexpr double kLegendRow = 20;
 
-/// The extent of what is put in.
+/// The extent of the added values.
 class Extent {
  public:
   explicit Extent(bool logarithmic) : logarithmic_(logarithmic) {}
@@ -83,7 +83,7 @@ Range range_y(const Figure& figure) {
   return extent.padded(figure.y);
 }
 
-/// Widens the smaller range so that both axes have one scale.
+/// Widens the smaller range, so that both axes have the same scale.
 void make_scales_equal(View& view) {
   const double scale_x = (view.x.high - view.x.low) / view.box.width;
   const double scale_y = (view.y.high - view.y.low) / view.box.height;
@@ -101,7 +101,7 @@ double position(Range range, bool logarithmic, double value) {
   return std::log(value / range.low) / std::log(range.high / range.low);
 }
 
-/// Room for the names of rows, or for the axis' title and the labels of its ticks.
+/// Returns room for the names of rows, or for the axis title and the tick labels.
 double left_margin(const Figure& figure, Range y, double height) {
   double longest = 0;
   for (const std::string& name : figure.y.categories) longest = std::max(longest, text_width(name));
@@ -111,7 +111,7 @@ double left_margin(const Figure& figure, Range y, double height) {
   return std::clamp(34 + longest, kLeastMarginLeft, kMostMarginLeft);
 }
 
-/// "0.25" has as many digits as the step between ticks needs.
+/// Returns "0.25" with as many digits as the step between ticks needs.
 std::string tick_label(double value, double step) {
   const double size = std::max(std::abs(value), step);
   const double rounded = std::abs(value) < step * 1e-6 ? 0.0 : value;
@@ -196,7 +196,8 @@ double round_down_125(double value) {
 std::vector<Tick> ticks(Range range, bool logarithmic, int count) {
   if (logarithmic) {
     std::vector<Tick> powers = logarithmic_ticks(range);
-    if (powers.size() > 1) return powers;  // else the range is so narrow that even steps serve it
+    // otherwise the range is so narrow that even steps suffice
+    if (powers.size() > 1) return powers;
   }
   const double least = (range.high - range.low) / std::max(count, 1);
   const double power = std::pow(10.0, std::floor(std::log10(least)));

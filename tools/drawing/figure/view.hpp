@@ -1,4 +1,4 @@
-/// Which part of the data a figure shows, where on the drawing, and the ticks on its axes.
+/// The part of the data that a figure shows, its place on the drawing, and the ticks on its axes.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct Range {
   double high = 1;
 };
 
-/// The rectangle of the plot inside the drawing, px; y downwards.
+/// The rectangle of the plot inside the drawing, in px; y grows downwards.
 struct PlotBox {
   double left = 0;
   double top = 0;
@@ -22,7 +22,7 @@ struct PlotBox {
   double height = 1;
 };
 
-/// From data to px.
+/// Maps data to px.
 struct View {
   Range x;
   Range y;
@@ -33,11 +33,13 @@ struct View {
 
   [[nodiscard]] double px_x(double value) const;
   [[nodiscard]] double px_y(double value) const;
-  /// Whether a point has a place: at most 1e150, and at least 1e-150 on a logarithmic axis.
+  /// Tells whether a point can be drawn: its numbers are at most 1e150, and on a logarithmic axis
+  /// at least 1e-150.
   [[nodiscard]] bool shows(double x_value, double y_value) const;
 };
 
-/// The whole of the data in the whole figure. @param rows_of_legend height that is left for it at the top
+/// Returns the view of all data. @param rows_of_legend height that is reserved for the
+/// legend at the top
 [[nodiscard]] View full_view(const Figure& figure, int rows_of_legend);
 
 struct Tick {
@@ -45,18 +47,18 @@ struct Tick {
   std::string label;
 };
 
-/// How many ticks an axis of so many px has room for.
+/// Returns how many ticks fit on an axis with this width in px.
 [[nodiscard]] int ticks_in_width(double width);
 [[nodiscard]] int ticks_in_height(double height);
 
-/// About what a text takes at the size of labels, px: fonts differ.
+/// Estimates the width of a label in px. Fonts differ, so it is not exact.
 [[nodiscard]] double text_width(std::string_view text);
 
-/// Round numbers (1, 2 or 5 times a power of ten), about `count` of them; on a logarithmic axis the powers of
-/// ten, with 2 and 5 between where those are few.
+/// Returns about `count` round numbers (1, 2 or 5 times a power of ten). On a logarithmic axis they
+/// are powers of ten, and also 2 and 5 between them if the powers are few.
 [[nodiscard]] std::vector<Tick> ticks(Range range, bool logarithmic, int count);
 
-/// The largest of 1, 2, 5 times a power of ten that is at most `value`. @param value > 0
+/// Returns the largest of 1, 2, 5 times a power of ten that is at most `value`. @param value > 0
 [[nodiscard]] double round_down_125(double value);
 
 }  // namespace waymark::drawing

@@ -11,7 +11,8 @@ namespace waymark::drawing {
 namespace {
 
 constexpr double kFineness = 1e-7;
-constexpr double kLargestExact = 4e15;  // whole numbers up to here are exact, in the page's script as well
+// whole numbers are exact up to here, also in the script of the page
+constexpr double kLargestExact = 4e15;
 
 std::string base64(const std::vector<std::uint8_t>& bytes) {
   static constexpr std::string_view kDigits =

@@ -1,4 +1,4 @@
-/// Numbers as short text, for pages that carry a hundred thousand of them.
+/// Packs numbers into short text, because a page may hold a hundred thousand of them.
 #pragma once
 
 #include <string>
@@ -6,13 +6,14 @@
 
 namespace waymark::drawing {
 
-/// The step to which `pack` rounds a column: a power of ten, at most 1e-7 of the column's extent (a
-/// millimetre in ten kilometres), and 1 for whole numbers.
+/// Returns the step to which `pack` rounds a column. It is a power of ten and at most 1e-7 of the
+/// extent of the column (a millimetre in ten kilometres). For whole numbers it is 1.
 [[nodiscard]] double packing_step(const std::vector<double>& values);
 
-/// "STEP:BASE64": differences of neighbours in steps, zigzag (0, -1, 1, -2 ... become 0, 1, 2, 3 ...), plus
-/// 1, in bytes of seven bits, the lowest first, the eighth saying that more follow (Protocol Buffers'
-/// varint); a single 0 is a number that is not finite. Two bytes a number for a drive's coordinates.
+/// Returns "STEP:BASE64". The bytes are the differences of neighbours in steps, zigzag-encoded (0,
+/// -1, 1, -2 ... become 0, 1, 2, 3 ...) plus 1, as varints of Protocol Buffers: seven bits per
+/// byte, the lowest first, and the eighth bit says that more follow. A single 0 is a number that is
+/// not finite. Coordinates of a drive take two bytes per number.
 [[nodiscard]] std::string pack(const std::vector<double>& values);
 
 }  // namespace waymark::drawing

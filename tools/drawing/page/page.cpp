@@ -24,7 +24,7 @@ bool is_number(const std::string& cell) {
   return !cell.empty() && cell.find_first_not_of("0123456789.+-e% ") == std::string::npos;
 }
 
-/// A column is one of numbers where every cell with something in it is one.
+/// A column is one of numbers if every cell that is not empty is a number.
 std::vector<bool> number_columns(const PageTable& table) {
   std::vector<bool> numbers(table.columns.size(), !table.rows.empty());
   for (const auto& row : table.rows) {

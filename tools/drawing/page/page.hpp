@@ -1,4 +1,4 @@
-/// A page of a report: text, tables and figures, as one HTML file that needs nothing else.
+/// A page of a report: text, tables and figures in one self-contained HTML file.
 #pragma once
 
 #include <string>
@@ -17,10 +17,10 @@ struct PageTable {
   std::string title;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
-  std::vector<std::string> notes{};            ///< sentences below it
+  std::vector<std::string> notes{};            ///< sentences below the table
 };
 
-/// Figures beside each other where there is room.
+/// Figures that are side by side if there is room.
 struct FigureRow {
   std::vector<Figure> figures;
 };
@@ -44,17 +44,17 @@ enum class Verdict { none, better, worse };
 struct Page {
   std::string title;
   std::string subtitle;
-  std::string summary;  ///< a sentence or two: what came out
+  std::string summary;  ///< a sentence or two with the main result
   Verdict verdict = Verdict::none;
   std::vector<Section> sections;
-  std::string footer;  ///< who made it
+  std::string footer;  ///< the program that made the page
 };
 
-/// HTML 5 in UTF-8 with style, script, drawings and their data inside; nothing is loaded from anywhere. The
-/// drawings are complete without the script, which lets them be moved and read.
+/// Returns HTML 5 in UTF-8. It includes style, script, drawings and their data, and loads nothing.
+/// The drawings are complete without the script; the script moves them and shows values.
 [[nodiscard]] std::string page_html(const Page& page);
 
-/// Every figure of a page, in order.
+/// Returns every figure of a page, in order.
 [[nodiscard]] std::vector<const Figure*> figures_of(const Page& page);
 
 /// Writes FOLDER/NAME.html, and every figure as FOLDER/figures/NAME-ID.svg and .csv. Returns the files.

@@ -1,4 +1,4 @@
-/// Style sheets and script of the pages: the files of page/, which CMake puts into the library.
+/// Style sheets and script of the pages: the files of page/. CMake puts them into the library.
 #pragma once
 
 #include <string_view>

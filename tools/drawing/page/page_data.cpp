@@ -20,7 +20,7 @@ constexpr std::size_t kLongColumn = 64;
 /// The columns of all figures, each once.
 class ColumnStore {
  public:
-  /// @param packed  whether the column may be rounded to a step: not on a logarithmic axis
+  /// @param packed whether the column may be rounded to a step; not on a logarithmic axis
   std::size_t add(const std::vector<double>& values, bool packed) {
     Json column;
     if (packed && values.size() >= kLongColumn) {
@@ -102,7 +102,7 @@ std::string page_data(const std::vector<const Figure*>& figures) {
   }
   const Json json = {{"columns", store.take()}, {"figures", std::move(of_figures)}};
   const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe;  // "</script>" and "<!--" must not stand in a script element
+  std::string safe;  // "</script>" and "<!--" are not allowed in a script element
   safe.reserve(text.size());
   for (const char c : text) {
     if (c == '<') {

@@ -1,4 +1,4 @@
-/// The data that a page's script needs to move its figures.
+/// The data with which the script of a page moves its figures.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace waymark::drawing {
 
-/// A JSON document that may stand in a script element: {"columns": [...], "figures": {ID: ...}}. Equal
-/// columns of numbers are there once, long ones packed (packed_column.hpp). Figures of cells are left out:
-/// they do not move.
+/// Returns a JSON document that is safe inside a script element: {"columns": [...], "figures": {ID:
+/// ...}}. Equal columns of numbers are stored once, and long ones are packed (packed_column.hpp).
+/// Figures of cells are left out, because they do not move.
 [[nodiscard]] std::string page_data(const std::vector<const Figure*>& figures);
 
 }  // namespace waymark::drawing

@@ -35,7 +35,7 @@ std::set<std::string> channels_of(const LogInspection& log) {
   return channels;
 }
 
-/// Why positions are those of a reference; empty: they are a receiver's.
+/// Returns why positions are those of a reference; empty: they are those of a receiver.
 std::string sign_of_truth(const LogInspection& log) {
   for (const std::string& word : words_of(file_name(log))) {
     if (word == "truth" || word == "reference" || word == "groundtruth" || word == "ref")
@@ -50,7 +50,7 @@ std::string sign_of_truth(const LogInspection& log) {
   return {};
 }
 
-/// A receiver's velocity in a log of its own.
+/// Tells whether the log holds only the velocity of a receiver.
 bool is_velocity(const LogInspection& log) {
   if (!log.table || has_positions(log)) return false;
   const auto columns = proposed_columns(log, StreamKind::gnss);
@@ -64,7 +64,8 @@ bool has_all(const std::set<std::string>& channels, const Names& wanted) {
                      [&](const std::string& name) { return channels.contains(name); });
 }
 
-/// The channels that speed is made of, the best way first; empty: it cannot be.
+/// Returns the channels from which speed can be computed, the best way first; empty: it cannot
+/// be computed.
 Names speed_channels(const std::set<std::string>& channels) {
   for (const Names& way : {Names{"speed"}, Names{"wheel_speed_rear_left", "wheel_speed_rear_right"},
                            Names{"wheel_speed_front_left", "wheel_speed_front_right"},
@@ -96,7 +97,7 @@ Names yaw_rate_channels(const std::set<std::string>& channels) {
   return {};
 }
 
-/// Two logs of one receiver, one perhaps extracted from the other.
+/// Tells whether two logs have the same fixes: one may be extracted from the other.
 bool same_fixes(const LogInspection& a, const LogInspection& b) {
   const auto near = [](double x, double y) { return std::abs(x - y) < 2e-6; };
   const BoundingBox& p = a.fixes->box;

@@ -1,4 +1,4 @@
-/// From logs that were looked at to a drive.yaml to edit.
+/// Proposes a drive.yaml for inspected logs. The user then edits it.
 #pragma once
 
 #include <cstddef>
@@ -9,33 +9,36 @@
 
 namespace waymark::inspection {
 
-/// What the logs of a drive are for; indices of the inspected logs.
+/// The role of each log of a drive. Numbers are indices of the inspected logs.
 struct DriveProposal {
-  std::vector<std::size_t> odometry;               ///< one whole, or parts
-  std::vector<std::vector<std::string>> channels;  ///< of each of them: quantities without `time`
+  std::vector<std::size_t> odometry;  ///< one complete log, or parts
+  /// for each of them its quantities without `time`
+  std::vector<std::vector<std::string>> channels;
   bool in_parts = false;
-  bool has_speed = false, has_yaw_rate = false;  ///< whether the odometry has something they are made of
+  /// the odometry has channels from which the quantity can be computed
+  bool has_speed = false, has_yaw_rate = false;
   std::vector<std::size_t> gnss;
   std::vector<std::size_t>
-      velocity;  ///< speed and course of a receiver without positions; belongs to the first gnss
+      velocity;  ///< speed and course of a receiver without positions; it belongs to the first gnss
   std::vector<std::size_t> truth;
   std::vector<std::size_t> unused;
-  std::vector<std::string> decisions;  ///< what was decided and why, one sentence each
+  std::vector<std::string> decisions;  ///< the decisions and their reasons, one sentence each
 };
 
-/// Roles: a table with positions and a heading counter-clockwise or a name such as "truth" is the truth
-/// (never the only positions); other positions are a receiver's; speed and yaw rate in one log are odometry,
-/// each alone a part. A channel that an earlier log gives is not taken again; a log that is a receiver's
-/// gives odometry only where no other does.
+/// Chooses the role of each log. A table with positions is the truth if it has a counter-clockwise
+/// heading or a name such as "truth", but never if it has the only positions. Other positions
+/// belong to a receiver. Speed and yaw rate in one log are odometry; each alone is a part of
+/// odometry. A channel that an earlier log gives is not used again. The log of a receiver gives
+/// odometry only if no other log does.
 [[nodiscard]] DriveProposal propose_drive(const std::vector<LogInspection>& logs);
 
-/// The drive.yaml: parses as it stands. `# CHECK` stands where something was proposed rather than known.
-/// @param path  where it will lie: logs are named relative to its folder where they lie in or below it or
-/// beside it, else absolutely
+/// Returns a drive.yaml that can be parsed as it is. `# CHECK` marks values that were guessed.
+/// @param path where it will be written. Logs in its folder, below it or beside it are named
+/// relative to it, others absolutely
 [[nodiscard]] std::string drive_yaml(const DriveProposal& proposal, const std::vector<LogInspection>& logs,
                                      const std::string& path);
 
-/// All keys, commented, where no log was given.
+/// Returns all keys as comments, if there are no logs.
 [[nodiscard]] std::string drive_template();
 
 }  // namespace waymark::inspection

@@ -2,7 +2,8 @@
 
 namespace waymark::inspection {
 
-// Lines of "# key" are keys to uncomment: without that "# " the whole parses, which a test sees to.
+// A line "# key" is a key that the user can uncomment. Without these "# " the whole text can be
+// parsed; a test checks this.
 std::string drive_template() {
   return R"(## A drive: what tools/drive/README.md explains, all of it. Uncomment what is needed.
 ## Times are seconds and lengths metres unless a key names another unit.

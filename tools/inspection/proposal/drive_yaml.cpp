@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kCommentColumn = 44;
 
-/// A scalar as YAML reads it back: plain where that is safe.
+/// Returns a scalar that YAML reads back unchanged; plain if that is safe.
 std::string scalar(const std::string& text) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const bool plain =
@@ -38,14 +38,14 @@ std::string scalar(const std::string& text) {
   return quoted + '"';
 }
 
-/// What goes into a comment stays on its line.
+/// Keeps a comment on one line.
 std::string one_line(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
   return text;
 }
 
-/// A quantity views the text of its request, which is kept.
+/// A quantity refers to the text of its request, so the request is kept.
 std::vector<formats::Quantity> quantities_of(StreamKind stream) {
   static const LogRequest kOdometry = [] {
     LogRequest request;
@@ -99,7 +99,7 @@ class Writer {
     text_ += '\n';
   }
 
-  /// Below the folder that both share; where that is the root alone, absolute.
+  /// Names a file relative to the common folder, or absolutely if that is only the root.
   [[nodiscard]] std::string relative(const std::string& file) const {
     const fs::path path = fs::absolute(file).lexically_normal();
     const auto first = [](const fs::path& whole) {
@@ -131,7 +131,7 @@ class Writer {
     }
   }
 
-  /// The log's own clock where it differs from the drive's.
+  /// Writes the clock of the log if it differs from that of the drive.
   void time_of(const LogInspection& log, const std::string& indent) {
     const LogClock& clock = log.clock;
     const std::string check = clock.known ? "" : "CHECK: ";
@@ -155,7 +155,8 @@ class Writer {
            "takes the logger's clock to GNSS time (median); then for every log of this logger");
   }
 
-  /// "speed: v_mps", "yaw_rate: {column: w, unit: deg/s}" with what there is to check.
+  /// Writes "speed: v_mps" or "yaw_rate: {column: w, unit: deg/s}" with a remark if there is
+  /// something to check.
   void column(const std::string& quantity, const ColumnSummary& from, const LogInspection& log,
               StreamKind stream, const std::string& indent) {
     const std::vector<formats::Quantity> all = quantities_of(stream);
@@ -193,8 +194,8 @@ class Writer {
     return text;
   }
 
-  /// file, format, companions, columns, time.
-  /// @param only  the quantities to take beside time; empty: all
+  /// Writes file, format, companions, columns and time.
+  /// @param only quantities to write besides time; empty: all
   void log_lines(const LogInspection& log, StreamKind stream, const std::string& indent, bool first_of_list,
                  const std::vector<std::string>& only = {}) {
     const std::string begin = first_of_list ? indent.substr(2) + "- " : indent;
@@ -209,7 +210,7 @@ class Writer {
     if (log.table || log.can) {
       line(indent + "columns:");
       const auto columns = proposed_columns(log, stream);
-      for (const std::string& quantity : quantity_names(stream)) {  // in their order
+      for (const std::string& quantity : quantity_names(stream)) {  // in their own order
         const auto from = columns.find(quantity);
         const bool wanted =
             only.empty() || quantity == "time" || std::find(only.begin(), only.end(), quantity) != only.end();
@@ -238,7 +239,7 @@ class Writer {
     line("  # speed_delay: 0", "`waymark sync` estimates it, and yaw_rate_delay");
   }
 
-  /// What odometry from pieces needs to know beside its logs.
+  /// Writes the vehicle parameters that odometry from parts needs.
   void vehicle() {
     const auto taken = [&](std::string_view begin) {
       for (const auto& names : proposal_.channels)
@@ -305,7 +306,7 @@ class Writer {
     }
   }
 
-  /// The reader tells what it took a figure for.
+  /// Returns the note of the reader about the assumed meaning of the accuracy.
   static std::string assumed_meaning(const LogInspection& log) {
     for (const std::string& note : log.notes) {
       const std::size_t end = note.find(" (not stated)");

@@ -16,20 +16,21 @@ double rate_of(std::size_t count, Stamp first, Stamp last) {
   return seconds > 0 && count > 1 ? static_cast<double>(count - 1) / seconds : 0;
 }
 
-/// A signal in the words of tables, where message and unit say more than its name does.
+/// Proposes the quantity of a signal in the form of a table column. Message and unit may say more
+/// than its name.
 ColumnProposal propose_signal(const formats::DbcMessage& message, const formats::DbcSignal& signal) {
   ColumnProposal proposal = propose_quantity(signal.name);
   const std::vector<std::string> words = words_of(message.name);
   const auto says = [&](std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
   };
-  if (proposal.quantity == "time")  // frames are stamped by the logger; this is another clock
+  if (proposal.quantity == "time")  // the logger stamps frames, so this is another clock
     proposal.quantity = (says("gnss") || says("gps")) && !signal.unit.empty() ? "gnss_time" : "";
   if (proposal.quantity == "heading" && (says("gnss") || says("gps"))) proposal.quantity = "course";
   if (proposal.quantity.empty()) return {};
   const std::string_view unit = formats::known_unit(signal.unit);
   proposal.unit_known = !unit.empty() || proposal.unit_known;
-  // Stated by the DBC: the reader takes and notes it.
+  // The DBC states the unit; the reader uses it and notes it.
   proposal.unit = unit.empty() ? proposal.unit : std::string();
   const bool without = proposal.quantity == "valid" || proposal.quantity == "reverse" ||
                        proposal.quantity.starts_with("wheel_ticks");

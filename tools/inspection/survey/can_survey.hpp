@@ -1,4 +1,4 @@
-/// What a candump log holds: ids and, with a DBC, signals.
+/// Finds out what a candump log contains: ids and, with a DBC, signals.
 #pragma once
 
 #include <optional>
@@ -17,15 +17,18 @@ namespace waymark::inspection {
 struct CanSummary {
   std::size_t frames = 0;
   StampSeries stamps;
-  std::string interfaces;              ///< "can0 (1200 frames)"
-  std::vector<ColumnSummary> ids;      ///< by number of frames; named by the DBC where it has them
-  std::vector<ColumnSummary> signals;  ///< "MESSAGE.SIGNAL", in the order of the DBC, of messages that came
+  std::string interfaces;          ///< "can0 (1200 frames)"
+  std::vector<ColumnSummary> ids;  ///< by number of frames; with names if the DBC has them
+  /// "MESSAGE.SIGNAL" of messages that occurred, in the order of the DBC
+  std::vector<ColumnSummary> signals;
 };
 
-/// So many ids are told apart; a bus has hundreds at most, a damaged log may have any.
+/// At most this many ids are counted. A bus has hundreds at most, but a damaged log may
+/// have any number.
 inline constexpr std::size_t kMostIds = 4096;
 
-/// Takes a candump log line by line. A signal is proposed for every quantity that its name says.
+/// Takes a candump log line by line. It proposes a signal for every quantity that the name of a
+/// signal indicates.
 class CanSurvey final : public formats::LineDecoder {
  public:
   CanSurvey(const std::string& path, std::optional<formats::Dbc> dbc);
@@ -53,7 +56,7 @@ class CanSurvey final : public formats::LineDecoder {
   std::optional<formats::MessageTable> table_;
   std::vector<std::vector<Signal>> signals_;  ///< by message
   std::vector<Id> ids_;
-  std::vector<std::int32_t> standard_;  ///< index in ids_ by id below 2048; -1: none
+  std::vector<std::int32_t> standard_;  ///< index in ids_ for each id below 2048; -1: none
   std::unordered_map<std::uint32_t, std::size_t> extended_;
   formats::Interfaces interfaces_;
   StampSeries stamps_;

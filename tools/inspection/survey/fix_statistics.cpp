@@ -16,8 +16,8 @@ constexpr std::size_t kColumns = 72;
 constexpr std::size_t kRows = 36;
 constexpr std::size_t kRunLength = 5;
 constexpr double kMoving = 1;  // m/s
-/// Steps of positions in degrees that tables and receivers write: decimals of degrees and of minutes. Coarser
-/// first.
+/// Steps of positions in degrees that tables and receivers use: decimals of degrees and of minutes,
+/// coarser first.
 constexpr std::array<double, 6> kSteps{1e-2, 1e-3, 1e-2 / 60, 1e-4, 1e-3 / 60, 1e-5};
 
 bool multiple_of(double degrees, double step) {
@@ -148,7 +148,7 @@ void FixStatistics::add_accuracy(const GeodeticFix& fix) {
   summary_.north.range.add(north);
 }
 
-/// Over ways of at least one second: at higher rates the noise of positions would show.
+/// Compares over at least one second, because at higher rates the noise of positions would show.
 void FixStatistics::compare_speed(const GeodeticFix& fix) {
   const double seconds = anchor_ ? fix.stamp.seconds() - anchor_->stamp.seconds() : 0;
   if (anchor_ && seconds >= 0 && seconds < 0.99) return;

@@ -1,4 +1,4 @@
-/// What the fixes of one receiver are like.
+/// Statistics of the fixes of one receiver.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace waymark::inspection {
 
-/// Asked for as the default sigma: a fix that has it came without an accuracy.
+/// The inspection requests this as the default sigma. A fix with this sigma had no accuracy.
 inline constexpr double kNoAccuracy = 999'999;  // m
 
 /// A rectangle of latitudes and longitudes, degrees.
@@ -28,31 +28,33 @@ struct SigmaSummary {
   Range range;
 };
 
-/// Numbers only; what is suspicious about them: suspicions.hpp.
+/// Numbers only; suspicions.hpp judges them.
 struct FixSummary {
   std::size_t fixes = 0;
   StampSeries stamps;
-  BoundingBox box;        ///< of the fixes within 1000 km of the median position and not at 0/0
+  BoundingBox box;        ///< of the fixes at most 1000 km from the median position and not at 0/0
   Range height;           ///< m
-  double distance_m = 0;  ///< sum of the ways between neighbouring fixes, noise included
+  double distance_m = 0;  ///< sum of the distances between consecutive fixes, noise included
   std::size_t with_accuracy = 0;
   SigmaSummary east, north;
-  bool accuracy_constant = false;  ///< all fixes have the same
-  bool axes_equal = false;         ///< of every fix, and uncorrelated
+  bool accuracy_constant = false;  ///< all fixes have the same accuracy
+  bool axes_equal = false;         ///< both axes of every fix have the same sigma, and are uncorrelated
   std::size_t with_speed = 0, with_course = 0;
-  Range speed;               ///< m/s, the receiver's own
+  Range speed;               ///< m/s, measured by the receiver
   Sighting zero;             ///< positions at latitude and longitude 0
-  Sighting far;              ///< more than 1000 km from the median position; amount: m
-  Sighting frozen;           ///< stretches of at least five equal positions; amount: the first one's length
-  Sighting frozen_moving;    ///< such, while the receiver's own speed was above 1 m/s
-  std::size_t repeated = 0;  ///< fixes at their predecessor's position
-  std::size_t repeated_in_frozen = 0;  ///< of them in such stretches
+  Sighting far;              ///< more than 1000 km from the median position; amount: distance in m
+  Sighting frozen;           ///< stretches of at least five equal positions; amount: length of the first one
+  Sighting frozen_moving;    ///< such stretches while the receiver's own speed was above 1 m/s
+  std::size_t repeated = 0;  ///< fixes at the position of their predecessor
+  std::size_t repeated_in_frozen = 0;  ///< those of them in such stretches
   std::size_t speed_comparisons = 0;
-  double speed_factor = 0;  ///< median of receiver's speed over way per time between fixes; NaN: not compared
-  double resolution_m = 0;  ///< the step of the positions where it is a decimal one of at least 1 m; else 0
+  /// median of (speed of the receiver) / (distance / time between fixes); NaN: not compared
+  double speed_factor = 0;
+  /// step of the positions if it is a decimal one of at least 1 m; else 0
+  double resolution_m = 0;
 };
 
-/// Takes fixes in the order of the log; memory does not grow.
+/// Takes fixes in the order of the log. Memory does not grow.
 class FixStatistics {
  public:
   FixStatistics();
@@ -60,7 +62,8 @@ class FixStatistics {
   [[nodiscard]] FixSummary summary() const;
 
  private:
-  /// A square of five degrees: where fixes are, coarsely, so that at the end it is known which were far off.
+  /// A square of five degrees. The squares record roughly where fixes are, so that the end can tell
+  /// which were far away.
   struct Cell {
     std::size_t count = 0;
     BoundingBox box;
@@ -77,16 +80,18 @@ class FixStatistics {
   std::vector<Cell> cells_;
   EvenSample latitudes_, longitudes_;
   Quantiles sigma_east_, sigma_north_, speed_factors_;
-  std::optional<GeodeticFix> last_, anchor_;  ///< anchor: begin of the way that speeds are compared over
+  /// anchor: begin of the distance over which speeds are compared
+  std::optional<GeodeticFix> last_, anchor_;
   double first_variance_ = 0;
   std::size_t run_ = 1;         ///< fixes at the last position
-  std::size_t run_moving_ = 0;  ///< of them above 1 m/s
+  std::size_t run_moving_ = 0;  ///< those of them above 1 m/s
   std::size_t run_line_ = 0;
   Stamp run_stamp_;
-  std::array<bool, 6> decimal_step_{};  ///< whether all positions so far are multiples of kSteps
+  /// all positions so far are multiples of the step in kSteps
+  std::array<bool, 6> decimal_step_{};
 };
 
-/// Metres between two places: on the sphere of the same area, within 0.6 %.
+/// Returns the metres between two places, on the sphere of the same area: exact to 0.6 %.
 [[nodiscard]] double distance_m(double latitude_a, double longitude_a, double latitude_b, double longitude_b);
 
 }  // namespace waymark::inspection

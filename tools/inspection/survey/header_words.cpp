@@ -8,7 +8,7 @@
 namespace waymark::inspection {
 namespace {
 
-/// Names of a quantity; words separated by blanks.
+/// Names of a quantity. Words are separated by blanks.
 struct Known {
   std::string_view quantity;
   std::string_view names;  ///< separated by '|'
@@ -60,7 +60,7 @@ constexpr std::array kKnown{
         "g speed|sog|speed over ground|wheel speed|obd speed|can speed|gps speed|odo speed|vx|v x|veh speed|"
         "vehspd|vehiclespeed|s1 pid 0 d vehicle speed"}};
 
-/// Which wheel, by the words that say so.
+/// Words that name a wheel.
 constexpr std::array kWheels{Known{"front_left", "fl|lf|front left|left front|vl"},
                              Known{"front_right", "fr|rf|front right|right front|vr"},
                              Known{"rear_left", "rl|lr|rear left|left rear|hl"},
@@ -115,7 +115,7 @@ std::string_view unit_of(std::string_view word) {
   return {};
 }
 
-/// What a unit may be of.
+/// Returns the dimension of a unit.
 std::string_view dimension(std::string_view unit) {
   if (unit == "m/s" || unit == "km/h" || unit == "mph" || unit == "kn" || unit == "mm/s") return "speed";
   if (unit == "rad/s" || unit == "deg/s") return "rate";
@@ -138,7 +138,8 @@ std::string_view dimension_of(std::string_view quantity) {
   return "length";
 }
 
-/// The wheel or axis in a name such as {wheel, speed, fl} or {gyro, x}: empty where it has none.
+/// Returns the wheel or axis in a name such as {wheel, speed, fl} or {gyro, x}; empty if
+/// there is none.
 std::string part_of(std::span<const std::string> words) {
   const auto any_of = [&](std::initializer_list<std::string_view> some) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
@@ -175,7 +176,8 @@ std::string part_of(std::span<const std::string> words) {
   return {};
 }
 
-/// The longest beginning of the name that is known. @param used  how many words it is
+/// Returns the quantity of the longest known beginning of the name. @param used how many
+/// words it has
 std::string beginning_of(std::span<const std::string> words, std::size_t& used) {
   for (used = words.size(); used > 0; --used) {
     const std::string name = joined_words(words.first(used));
@@ -220,7 +222,7 @@ std::vector<std::string> words_of(std::string_view name) {
     if (!word.empty()) words.push_back(std::move(word));
     word.clear();
   };
-  // Units in brackets stay whole: "speed [km/h]", "a (m/s^2)".
+  // Units in brackets are kept whole: "speed [km/h]", "a (m/s^2)".
   bool in_unit = false;
   for (std::size_t i = 0; i < name.size(); ++i) {
     const char c = name[i];
@@ -257,7 +259,8 @@ ColumnProposal propose_quantity(std::string_view name) {
   if (proposal.quantity.empty()) proposal.quantity = beginning_of(words, used);
   if (proposal.quantity.empty()) return proposal;
   const std::span<const std::string> rest = words.subspan(used);
-  // "speed valid" is no speed: what follows the name must be a unit, a sense or a word that changes nothing.
+  // "speed valid" is no speed. The words after the name must be a unit, a sense or a word that
+  // changes nothing.
   const auto understood = [](const std::string& word) {
     static constexpr std::array<std::string_view, 12> kHarmless{
         "cw", "ccw", "from", "east", "north", "flag", "raw", "value", "filtered", "clock", "gps", "gnss"};

@@ -1,4 +1,4 @@
-/// What the name of a column or signal says about what it holds.
+/// Derives the quantity of a column or signal from its name.
 #pragma once
 
 #include <string>
@@ -7,20 +7,20 @@
 
 namespace waymark::inspection {
 
-/// What is proposed for a column.
+/// The proposal for a column.
 struct ColumnProposal {
-  std::string quantity;     ///< of formats/logs/README.md; empty: none
-  std::string unit;         ///< empty: the quantity's own
-  std::string convention;   ///< empty: the quantity's own
-  bool unit_known = false;  ///< by the name; else it is assumed
-  std::string remark;       ///< why it needs a look; empty where the name says all
+  std::string quantity;     ///< as in formats/logs/README.md; empty: none
+  std::string unit;         ///< empty: the default of the quantity
+  std::string convention;   ///< empty: the default of the quantity
+  bool unit_known = false;  ///< known from the name; else assumed
+  std::string remark;       ///< why the user should check it; empty: the name is clear
 };
 
-/// The words of a name, small letters: "gyro_x_degps", "WheelSpeedFL", "speed [km/h]" are
-/// {gyro,x,degps}, {wheel,speed,fl}, {speed,km/h}.
+/// Returns the words of a name in small letters: "gyro_x_degps", "WheelSpeedFL", "speed [km/h]"
+/// become {gyro,x,degps}, {wheel,speed,fl}, {speed,km/h}.
 [[nodiscard]] std::vector<std::string> words_of(std::string_view name);
 
-/// Reads the name by a table of known words: first what the name begins with, then its unit and sense.
+/// Reads a name with a table of known words: first its beginning, then its unit and sense.
 [[nodiscard]] ColumnProposal propose_quantity(std::string_view name);
 
 }  // namespace waymark::inspection

@@ -10,7 +10,8 @@ constexpr double kDriving = 5;  // m/s
 }  // namespace
 
 OdometryStatistics::OdometryStatistics(const std::vector<SensorColumn>& channels) {
-  channels_.resize(channels.size() + 2);  // speed and yaw rate of whole odometry, if it is that
+  // plus speed and yaw rate, for a log with complete odometry
+  channels_.resize(channels.size() + 2);
   for (std::size_t i = 0; i < channels.size(); ++i) {
     channels_[i].name = channels[i].name;
     channels_[i].unit = channels[i].unit;

@@ -1,4 +1,4 @@
-/// What the channels of an odometry log are like.
+/// Statistics of the channels of an odometry log.
 #pragma once
 
 #include <string>
@@ -9,28 +9,28 @@
 
 namespace waymark::inspection {
 
-/// One channel: speed, yaw rate, a wheel, an axis of a gyro.
+/// One channel: speed, yaw rate, a wheel, or an axis of a gyro.
 struct ChannelSummary {
   std::string name;
   std::string unit;
   StampSeries stamps;
   Range range;
-  double percent95 = 0;  ///< of |value|
+  double percent95 = 0;  ///< 95 % quantile of |value|
 };
 
 struct OdometrySummary {
   std::vector<ChannelSummary> channels;  ///< those that have values
   StampSeries stamps;                    ///< of all rows
-  /// 95 % of |yaw rate| while the speed is above 5 m/s, rad/s; over all readings where the log has no speed;
-  /// NaN: no yaw rate
+  /// 95 % quantile of |yaw rate| while the speed is above 5 m/s, in rad/s. Without a speed in the
+  /// log it is over all readings. NaN: there is no yaw rate.
   double yaw_rate_driving = 0;
-  std::string yaw_channel;  ///< it was looked at in
+  std::string yaw_channel;  ///< the channel it was computed from
 };
 
-/// Takes the odometry or the readings of a log; memory does not grow.
+/// Takes the odometry or the readings of a log. Memory does not grow.
 class OdometryStatistics {
  public:
-  /// @param channels  of the readings, as LogRequest::readings
+  /// @param channels of the readings, as in LogRequest::readings
   explicit OdometryStatistics(const std::vector<SensorColumn>& channels);
   void add(const OdometrySample& sample);
   void add(const SensorTable& readings);

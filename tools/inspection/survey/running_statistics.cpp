@@ -7,14 +7,15 @@
 namespace waymark::inspection {
 namespace {
 
-constexpr unsigned kBinBits = 5;  // of the mantissa: 32 bins per octave
+constexpr unsigned kBinBits = 5;  // bits of the mantissa: 32 bins per octave
 constexpr int kLowestExponent = -30;
 constexpr int kOctaves = 70;
 constexpr std::size_t kBins = (static_cast<std::size_t>(kOctaves) << kBinBits) + 1;
 constexpr std::size_t kKept = 1024;
 constexpr std::size_t kLongest = 5;
 
-/// To the nanosecond where that fits: stamps of a damaged log may be as far apart as int64 goes.
+/// Returns seconds, exact to the nanosecond if possible. Stamps of a damaged log may be as far
+/// apart as int64 allows.
 double seconds_from(Stamp earlier, Stamp later) {
   const double rough = later.seconds() - earlier.seconds();
   return std::abs(rough) < 1e9 ? seconds_between(earlier, later) : rough;
@@ -22,8 +23,8 @@ double seconds_from(Stamp earlier, Stamp later) {
 
 }  // namespace
 
-/// Bin 0 is that of sizes next to zero. A double's exponent and first bits of mantissa are the bin: no
-/// logarithm is taken.
+/// Bin 0 holds sizes near zero. The exponent and the first bits of the mantissa are the bin, so no
+/// logarithm is needed.
 std::size_t Quantiles::bin_of(double size) {
   constexpr std::uint64_t kBias = 1023 + kLowestExponent;
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(size) >> (52 - kBinBits);

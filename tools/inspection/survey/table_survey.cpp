@@ -14,13 +14,13 @@
 namespace waymark::inspection {
 namespace {
 
-/// Angles and times beyond these are in another unit than the default.
+/// Larger angles and times have another unit than the default.
 void check_range(ColumnSummary& column) {
   ColumnProposal& proposal = column.proposal;
   const double largest =
       column.range.count == 0 ? 0 : std::max(std::abs(column.range.smallest), std::abs(column.range.largest));
   if (proposal.quantity == "time") {
-    // Seconds since 1970 have ten digits today.
+    // Seconds since 1970 have ten digits now.
     if (largest > 1e17)
       proposal.unit = "ns";
     else if (largest > 1e14)
@@ -54,7 +54,7 @@ void check_range(ColumnSummary& column) {
   }
 }
 
-/// The name says the same as another one's.
+/// Removes a proposal if another column has the same one.
 void give_way(ColumnSummary& column, const ColumnSummary& to) {
   const std::string remark = fmt::format("{} as well; '{}' is taken", to.proposal.quantity, to.name);
   column.proposal = {};
@@ -170,7 +170,7 @@ TableSummary TableSurvey::summary() const {
       if (seen.proposal.quantity.empty()) seen.proposal = {"time", "", "", false, "the column holds dates"};
       if (seen.proposal.quantity == "time") seen.proposal.unit = "iso8601";
     } else if (seen.range.count == 0) {
-      seen.proposal = {};  // words or nothing: no quantity
+      seen.proposal = {};  // words or nothing: there is no quantity
     }
     check_range(seen);
     if (seen.proposal.quantity == "time" && column.steps.count() > 0) {

@@ -1,4 +1,5 @@
-/// What a table of separated values holds, column by column, before anything is known of its columns.
+/// Describes a table of separated values column by column, before the meaning of its
+/// columns is known.
 #pragma once
 
 #include <memory>
@@ -13,15 +14,15 @@
 
 namespace waymark::inspection {
 
-/// One column of a table, one id or signal of a bus.
+/// One column of a table, or one id or signal of a bus.
 struct ColumnSummary {
   std::string name;
-  std::size_t values = 0;  ///< fields that hold one; of a bus: frames
-  std::size_t empty = 0;   ///< fields that hold none
-  std::size_t words = 0;   ///< fields that are neither
+  std::size_t values = 0;  ///< fields with a value; of a bus: frames
+  std::size_t empty = 0;   ///< fields without a value
+  std::size_t words = 0;   ///< fields with other text
   Range range;
-  double rate_hz = 0;  ///< of the time-like column, of ids and signals
-  std::string unit;    ///< as a DBC names it
+  double rate_hz = 0;  ///< of a time-like column, an id or a signal
+  std::string unit;    ///< as the DBC names it
   std::string detail;  ///< of an id: "8 bytes", "2 interfaces"
   ColumnProposal proposal;
 };
@@ -34,14 +35,14 @@ struct TableSummary {
   std::string first_line;  ///< the comment above the header, if there is one
 };
 
-/// So many columns are looked at; a header of a damaged log may have any number.
+/// At most this many columns are examined. The header of a damaged log may have any number.
 inline constexpr std::size_t kMostColumns = 1024;
 
-/// Takes a table line by line; finds no samples.
+/// Takes a table line by line. It makes no samples.
 class TableSurvey final : public formats::LineDecoder {
  public:
   explicit TableSurvey(const std::string& path) : formats::LineDecoder(path, {}) {}
-  /// With proposals for every column, each quantity once.
+  /// Returns the columns with proposals. Each quantity is proposed once.
   [[nodiscard]] TableSummary summary() const;
 
  private:
@@ -49,7 +50,7 @@ class TableSurvey final : public formats::LineDecoder {
     ColumnSummary seen;
     bool dates = true;  ///< all words so far are ISO 8601 dates
     double last = 0;
-    bool is_time = false;  ///< by its name: steps are kept
+    bool is_time = false;  ///< by its name; the steps between its values are recorded
     Quantiles steps;
   };
   void take_line(std::string_view line, std::size_t number) override;
@@ -64,7 +65,8 @@ class TableSurvey final : public formats::LineDecoder {
   bool begun_ = false;
 };
 
-/// Gives every quantity to one column: the first whose name says it, those with a known unit before others.
+/// Leaves every quantity to one column: the first whose name indicates it. Columns with a known
+/// unit come before others.
 void keep_one_each(std::vector<ColumnSummary>& columns);
 
 }  // namespace waymark::inspection

@@ -6,22 +6,23 @@
 namespace waymark::report {
 namespace {
 
-/// "input" of "input.2"; empty for what is no key of this label ("b.input" of a label "a.b").
+/// Returns "input" for "input.2"; empty if it is no key of this label ("b.input" of a label "a.b").
 std::string key_without_number(const std::string& key) {
   const std::size_t dot = key.find('.');
   if (dot == std::string::npos) return key;
   return key.find_first_not_of("0123456789", dot + 1) == std::string::npos ? key.substr(0, dot) : "";
 }
 
-/// Entries under one key that say something of different things become keys of their own: "start=file" under
-/// "option" is "option start", a log's fingerprint is that of its name.
+/// Splits entries under one key into several keys if they are about different things. "start=file"
+/// under "option" becomes "option start"; the fingerprint of a log is stored under its name.
 std::pair<std::string, std::string> parted(const std::string& key, const std::string& text) {
   const std::size_t place = key == "input" ? text.find_last_of(' ') : text.find('=');
   if (place == std::string::npos || key == "assumed") return {key, text};
   return {key + " " + text.substr(0, place), text.substr(place + 1)};
 }
 
-/// The word behind another one in "waymark 0.1.0 algorithm dogleg start file solver block_cholesky, ...".
+/// Returns the word behind another one in "waymark 0.1.0 algorithm dogleg start file solver
+/// block_cholesky, ...".
 std::string word_behind(const std::string& text, const std::string& word) {
   const std::size_t at = text.find(" " + word + " ");
   if (at == std::string::npos) return "";
@@ -36,7 +37,7 @@ std::vector<std::pair<std::string, std::string>> provenance_of(const std::string
     if (!name.starts_with(label + ".")) continue;
     const std::string key = key_without_number(name.substr(label.size() + 1));
     if (key.empty()) continue;
-    if (key == "optimized") {  // how it ended is told elsewhere
+    if (key == "optimized") {  // ComparedEnding holds this
       entries["algorithm"] = word_behind(text, "algorithm");
       entries["linear solver"] = word_behind(text, "solver");
       entries["start of the optimisation"] = word_behind(text, "start");

@@ -1,4 +1,5 @@
-/// A run as a comparison sees it: from memory, or from the folder that `waymark run -o` wrote.
+/// The data of a run that a comparison needs, from memory or from the folder that `waymark
+/// run -o` wrote.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace waymark::report {
 
-/// How the minimisation of a run ended.
+/// How the optimisation of a run ended.
 struct ComparedEnding {
   bool converged = false;
   std::string message;
@@ -19,31 +20,33 @@ struct ComparedEnding {
   double seconds = evaluation::kUndefined;
   double initial_chi2 = evaluation::kUndefined;
   double final_chi2 = evaluation::kUndefined;
-  std::vector<double> chi2;  ///< at the start and after every accepted step; empty: not known
+  /// at the initial guess and after every accepted step; empty: not known
+  std::vector<double> chi2;
 };
 
 struct ComparedRun {
-  std::string label;  ///< names the run in tables and figures
-  std::string drive;  ///< its name; errors of one drive are comparable
+  std::string label;  ///< name of the run in tables and figures
+  std::string drive;  ///< name of the drive; errors of one drive are comparable
   evaluation::Evaluation evaluation;
   std::optional<ComparedEnding> ending;
-  /// What was done, and with what: key and text, each key once, in order of the keys ("input gnss.csv",
+  /// Settings and inputs: key and text, each key once, ordered by key ("input gnss.csv",
   /// "modeling_option tails", "start").
   std::vector<std::pair<std::string, std::string>> provenance;
 };
 
-/// @param header  of the report that the evaluation stands in; gives the drive, and the provenance under
-///                "LABEL.KEY"
-/// @param result  of its optimisation; null: not known
+/// @param header header of the report that contains the evaluation; it gives the drive and the
+/// provenance under "LABEL.KEY"
+/// @param result result of its optimisation; null: not known
 [[nodiscard]] ComparedRun compared_run(const evaluation::LabelledEvaluation& evaluation,
                                        const evaluation::ReportHeader& header,
                                        const MultiStartSummary* result = nullptr);
 
-/// The runs of folders that `waymark run` or `waymark evaluate -o` wrote: metrics.json, and where they are
-/// there summary.json and LABEL.epochs.csv. A label is the folder's name and the evaluation's own, without
-/// what all of them share, and made different where two are equal.
-/// @throws UsageError for a folder that is named twice;
-///         InputError for a folder without metrics.json, and files that cannot be read
+/// Reads the runs of folders that `waymark run` or `waymark evaluate -o` wrote: metrics.json, and
+/// if present summary.json and LABEL.epochs.csv. The label of a run is made from the name of the
+/// folder and the label of the evaluation, without the parts that all runs share. Equal labels are
+/// made different.
+/// @throws UsageError for a folder that is named twice; InputError for a folder without
+/// metrics.json, and for files that cannot be read
 [[nodiscard]] std::vector<ComparedRun> read_compared_runs(const std::vector<std::string>& folders);
 
 }  // namespace waymark::report

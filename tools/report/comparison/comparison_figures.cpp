@@ -13,16 +13,16 @@ namespace {
 
 using Groups = std::vector<DriveGroup>;
 
-constexpr std::size_t kRunsInFigure = 7;  // as many as there are looks of systems
+constexpr std::size_t kRunsInFigure = 7;  // the number of looks for systems
 constexpr int kHalfWidth = 460;
-constexpr std::size_t kLongName = 22;  // characters: its bars need the whole width
+constexpr std::size_t kLongName = 22;  // characters; bars with longer names need the whole width
 
-/// Metrics that have a figure of their own; the others are in the table.
+/// Tells whether a metric has its own figure. The others are only in the table.
 bool is_drawn(const PositionColumn& column) {
-  return column.name != "CEP50";  // next to the median
+  return column.name != "CEP50";  // it would be next to the median
 }
 
-/// The width for figures of bars under these names.
+/// Returns the width for bar figures with these names.
 int width_for(const std::vector<std::string>& names) {
   const bool has_long =
       std::any_of(names.begin(), names.end(), [](const auto& name) { return name.size() > kLongName; });
@@ -33,7 +33,7 @@ int width_for(const std::vector<std::string>& names) {
 struct Part {
   const DriveGroup* group = nullptr;
   std::vector<const ComparedRun*> runs;
-  std::size_t first = 0;  ///< index of the first of them in the group
+  std::size_t first = 0;  ///< index in the group of the first of them
   std::size_t number = 0;
 };
 
@@ -100,7 +100,8 @@ std::string titled(const Groups& groups, const Part& part, const std::string& ti
   return text;
 }
 
-/// Where the distributions end that are to be compared: the raw one's tail would leave them no room.
+/// Returns the common end of the distributions. The tail of the raw one would leave no room
+/// for the others.
 double common_end(const drawing::Figure& figure) {
   double end = 0;
   for (const drawing::Series& series : figure.series) {
@@ -112,8 +113,8 @@ double common_end(const drawing::Figure& figure) {
   return end;
 }
 
-/// A figure for a metric. Predictions other than the fused poses are in the table only: dead reckoning would
-/// leave no room for the others.
+/// Returns a figure for a metric. Predictions other than the fused poses are only in the table,
+/// because dead reckoning would leave no room for the others.
 drawing::Figure bars_of(const Groups& groups, const PositionColumn& column, const std::string& prefix,
                         std::vector<SystemRow> (*rows_of)(const DriveGroup&)) {
   drawing::Figure figure{.id = prefix + column.id,

@@ -18,7 +18,7 @@ void add_table(drawing::PageTable table, drawing::Section& section) {
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
 }
 
-/// Narrow figures in pairs, wide ones below each other.
+/// Adds narrow figures in pairs, and wide ones below each other.
 void add_figures(std::vector<drawing::Figure> figures, drawing::Section& section) {
   if (figures.empty()) return;
   if (figures.front().width >= drawing::Figure().width) {
@@ -33,7 +33,7 @@ void add_figures(std::vector<drawing::Figure> figures, drawing::Section& section
   }
 }
 
-/// The run with the smallest RMSE of these rows; null where there is none.
+/// Returns the run with the smallest RMSE of these rows; null if there is none.
 const SystemRow* best_row(const std::vector<SystemRow>& rows) {
   const SystemRow* best = nullptr;
   for (const SystemRow& row : rows) {
@@ -57,7 +57,7 @@ std::string name_of_drive(const DriveGroup& group) {
   return group.drive.empty() ? "The drive" : group.drive;
 }
 
-/// Counts of what went wrong in words; empty where nothing did.
+/// Returns the counts of failures in words; empty if there are none.
 std::string failures_sentence(const Runs& runs) {
   std::string names;
   for (const ComparedRun& run : runs) {

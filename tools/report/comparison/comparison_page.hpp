@@ -1,4 +1,4 @@
-/// The page that compares runs: modelings, algorithms, settings, drives.
+/// The page that compares runs with different modelings, algorithms, settings or drives.
 #pragma once
 
 #include <string>
@@ -9,15 +9,16 @@
 
 namespace waymark::report {
 
-/// Errors beside each other and beside raw GNSS, their distribution and course, stated against actual errors,
-/// how the minimisations ended, and what was done differently. Runs of several drives stand in groups: only
-/// within one are errors comparable. What no run has is left out.
-/// @param runs     labels differ
-/// @param version  of the program, for the footer
-/// @throws UsageError for no runs
+/// Returns the page. It shows errors beside each other and beside raw GNSS, their distribution and
+/// course, stated against actual errors, how the optimisations ended, and the differences in
+/// settings. Runs of several drives are grouped, because errors are comparable only within one
+/// drive. Parts for which no run has data are left out.
+/// @param runs with different labels
+/// @param version version of the program, for the footer
+/// @throws UsageError if there are no runs
 [[nodiscard]] drawing::Page comparison_page(const std::vector<ComparedRun>& runs, const std::string& version);
 
-/// Provenance that is not the same in all runs, a row for each key, a column for each run.
+/// Returns the provenance that differs between runs: a row for each key, a column for each run.
 [[nodiscard]] drawing::PageTable provenance_differences(const std::vector<ComparedRun>& runs);
 
 }  // namespace waymark::report

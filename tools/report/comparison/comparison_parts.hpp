@@ -15,18 +15,20 @@ struct DriveGroup {
   std::string drive;
   std::vector<const ComparedRun*> runs;
 };
-/// In order of their first runs.
+/// Returns the groups in the order of their first runs.
 [[nodiscard]] std::vector<DriveGroup> groups_by_drive(const std::vector<ComparedRun>& runs);
 
-/// What one system achieved on a drive against truth: the raw fixes, or a run.
+/// The errors of one system (the raw fixes, or a run) on a drive.
 struct SystemRow {
   std::string label;
   const ComparedRun* run = nullptr;  ///< null: raw fixes
   evaluation::SystemMetrics metrics;
 };
-/// Raw fixes, again where they differ between the runs (other epochs), and the runs. Empty without truth.
+/// Returns a row for the raw fixes and one for each run. If the raw fixes differ between runs
+/// (other epochs), there is a row for each version. Empty without truth.
 [[nodiscard]] std::vector<SystemRow> rows_against_truth(const DriveGroup& group);
-/// The runs at their withheld fixes, by what was predicted there ("fused", "dead reckoning").
+/// Returns the runs at their withheld fixes, one row for each prediction ("fused", "dead
+/// reckoning").
 [[nodiscard]] std::vector<SystemRow> rows_at_withheld(const DriveGroup& group);
 
 [[nodiscard]] drawing::PageTable error_table(const std::vector<DriveGroup>& groups);
@@ -37,20 +39,20 @@ struct SystemRow {
 [[nodiscard]] drawing::PageTable fixes_table(const std::vector<DriveGroup>& groups);
 [[nodiscard]] drawing::PageTable ending_table(const std::vector<ComparedRun>& runs);
 
-/// A figure of bars for each metric, a row for each system.
+/// Returns a bar figure for each metric, with a row for each system.
 [[nodiscard]] std::vector<drawing::Figure> error_bars(const std::vector<DriveGroup>& groups);
-/// The same at withheld fixes.
+/// Returns the same figures at withheld fixes.
 [[nodiscard]] std::vector<drawing::Figure> withheld_bars(const std::vector<DriveGroup>& groups);
-/// Distribution of the errors, a figure for each drive and seven runs.
+/// Returns the distribution of the errors, one figure per drive and seven runs.
 [[nodiscard]] std::vector<drawing::Figure> distribution_figures(const std::vector<DriveGroup>& groups);
-/// Errors over time, likewise.
+/// Returns the errors over time, one figure per drive and seven runs.
 [[nodiscard]] std::vector<drawing::Figure> course_figures(const std::vector<DriveGroup>& groups);
-/// chi2 over the accepted steps, seven runs a figure.
+/// Returns chi2 over the accepted steps, seven runs per figure.
 [[nodiscard]] std::vector<drawing::Figure> chi2_figures(const std::vector<ComparedRun>& runs);
-/// Iterations and seconds.
+/// Returns iterations and seconds.
 [[nodiscard]] std::vector<drawing::Figure> ending_figures(const std::vector<ComparedRun>& runs);
 
-/// With the drive before it where there are several.
+/// Returns the name of a row. The drive precedes it if there are several drives.
 [[nodiscard]] std::string row_name(const std::vector<DriveGroup>& groups, const DriveGroup& group,
                                    const std::string& label);
 

@@ -19,7 +19,8 @@ bool same(const evaluation::PositionMetrics& a, const evaluation::PositionMetric
   return a.count == b.count && a.rmse_m == b.rmse_m && a.max_m == b.max_m && a.accuracy_m == b.accuracy_m;
 }
 
-/// A table whose first columns are the drive, where there are several, and the row's name.
+/// Returns a table whose first columns are the drive (if there are several) and the
+/// name of the row.
 drawing::PageTable table_with(const Groups& groups, const std::string& title, Row columns) {
   drawing::PageTable table{.title = title, .columns = {}, .rows = {}};
   if (groups.size() > 1) table.columns.emplace_back("drive");
@@ -41,10 +42,10 @@ std::string counted(std::size_t value) {
   return std::to_string(value);
 }
 
-/// Half of the last digit that tables show, m: what looks equal there is.
+/// Half of the last digit in tables, m: smaller differences look equal.
 constexpr double kShown = 0.0005;
 
-/// The metrics in which no other row is smaller: "Max, RMSE".
+/// Returns the metrics in which no other row is smaller: "Max, RMSE".
 std::string best_in(const SystemRow& row, const std::vector<SystemRow>& rows) {
   std::string names;
   for (const PositionColumn& column : position_columns()) {

@@ -11,7 +11,7 @@
 namespace waymark::report {
 namespace {
 
-/// The lines below the heading, one at a time.
+/// Reads the lines below the heading, one at a time.
 class Table {
  public:
   Table(std::string_view text, const std::string& name) : rest_(text), name_(name) {

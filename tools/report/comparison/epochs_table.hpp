@@ -1,4 +1,4 @@
-/// LABEL.epochs.csv read back: what was found at each fix.
+/// Reads LABEL.epochs.csv: the results at each fix.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace waymark::report {
 
-/// The columns that a comparison needs, by their names: stamp_ns, the offsets of raw fix and fused pose,
-/// nees. Empty fields are not defined; other members of the results are left empty.
-/// @param name  of the file, for errors
-/// @throws InputError "g1.epochs.csv:3: ..." for a column that is missing and a field that is no number
+/// Reads the columns that a comparison needs, by their names: stamp_ns, the offsets of raw fix and
+/// fused pose, nees. Empty fields are undefined values. Other members of the results stay empty.
+/// @param name name of the file, for errors
+/// @throws InputError "g1.epochs.csv:3: ..." for a missing column and a field that is no number
 [[nodiscard]] std::vector<evaluation::EpochResult> read_epochs_table(std::string_view text,
                                                                      const std::string& name);
 

@@ -1,4 +1,4 @@
-// Runs read from the folders that `waymark run` and `waymark evaluate` wrote.
+// Reads runs from the folders that `waymark run` and `waymark evaluate` wrote.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -72,14 +72,14 @@ std::vector<ComparedRun> read_folder(const std::string& folder) {
   return runs;
 }
 
-/// Absolute, without "." and a slash at its end.
+/// Returns the absolute path, without "." and without a slash at its end.
 fs::path plain_path(const std::string& folder) {
   std::error_code unknown;
   const fs::path path = fs::absolute(folder, unknown).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
 }
 
-/// The last `parts` names of a path: "results/a" of "/home/me/results/a/" with two.
+/// Returns the last `parts` names of a path: "results/a" of "/home/me/results/a/" with two.
 std::string tail_of(const std::string& folder, std::size_t parts) {
   fs::path path = plain_path(folder);
   fs::path tail;
@@ -93,7 +93,7 @@ bool all_differ(std::vector<std::string> names) {
   return std::adjacent_find(names.begin(), names.end()) == names.end();
 }
 
-/// As few names of each path as tell the folders apart.
+/// Returns as few names of each path as distinguish the folders.
 std::vector<std::string> short_names(const std::vector<std::string>& folders) {
   constexpr std::size_t kMostParts = 4;
   std::vector<std::string> names;
@@ -139,7 +139,7 @@ std::vector<ComparedRun> read_compared_runs(const std::vector<std::string>& fold
       all.push_back(std::move(run));
     }
   }
-  // One modeling throughout: the folders alone tell the runs apart.
+  // If there is only one modeling, the folders alone distinguish the runs.
   const bool one_label = one_each && std::all_of(all.begin(), all.end(), [&](const ComparedRun& run) {
                            return run.label.ends_with(" " + first_label);
                          });

@@ -9,11 +9,13 @@
 namespace waymark::report {
 namespace {
 
-/// Stated and actual error of the epochs that have both.
+/// The stated and the actual errors of the epochs that have both.
 struct StatedAndActual {
-  drawing::Series points{
-      .name = "epoch", .mark = drawing::Mark::points, .look = drawing::Look::fused};  ///< (sigma, error), m
-  std::vector<double> nees;                                                           ///< ascending
+  drawing::Series points{/// (sigma, error), m
+                         .name = "epoch",
+                         .mark = drawing::Mark::points,
+                         .look = drawing::Look::fused};
+  std::vector<double> nees;  ///< ascending
 };
 
 StatedAndActual stated_errors(const ReportedDrive& drive) {
@@ -42,7 +44,8 @@ drawing::Figure sigma_figure(const drawing::Series& points) {
   figure.height = 340;
   figure.series = {points};
   const double widest = 1.05 * *std::max_element(points.x.begin(), points.x.end());
-  // Radius of the circle that holds 95 % of a Gaussian of sigma 1 in the plane: the root of chi2's quantile.
+  // The radius of the circle that holds 95 % of a plane Gaussian with sigma 1: the root of the
+  // chi2 quantile.
   for (const double factor : {1.0, std::sqrt(evaluation::InnovationStatistics::kBound95)}) {
     figure.series.push_back({.name = fmt::format("{:.3g} sigma", factor),
                              .mark = drawing::Mark::line,

@@ -1,4 +1,5 @@
-/// The figures of a drive report. Each says in its caption how it is formed; all over time are linked.
+/// The figures of a drive report. Each caption says how the figure is computed. All figures over
+/// time are linked.
 #pragma once
 
 #include <optional>
@@ -10,32 +11,38 @@
 
 namespace waymark::report {
 
-/// From the first fix to the last, seconds since the start: what all figures over time show.
+/// Returns the extent of all figures over time: from the first fix to the last, in seconds
+/// since the start.
 [[nodiscard]] drawing::Range epochs_extent(const ReportedDrive& drive);
 
-/// Accepted fixes that a loss leaves less than a third of their weight; 0 where the residuals are not known.
+/// Counts accepted fixes to which a loss leaves less than a third of their weight; 0 if the
+/// residuals are not known.
 [[nodiscard]] std::size_t nearly_left_out(const ReportedDrive& drive);
 
-/// Poses, raw fixes with what became of them, truth; east and north on the grid.
+/// Shows poses, raw fixes with their status, and truth, east and north on the grid.
 [[nodiscard]] drawing::Figure trajectory_figure(const ReportedDrive& drive);
 
-/// The paper's tile: errors on a plane of 2 x 2 m about the truth with their mean and one-sigma ellipse;
-/// wider where most errors lie outside. Raw and fused at one scale.
+/// The tile of the paper: errors on a plane of 2 x 2 m about the truth, with their mean and
+/// one-sigma ellipse. The plane is wider if most errors are outside. Raw and fused errors have
+/// the same scale.
 [[nodiscard]] drawing::FigureRow error_tiles(const ReportedDrive& drive);
 
-/// Position error, along and across the direction of travel, heading error, speed; rejected spans.
+/// Shows the position error along and across the direction of travel, the heading error and the
+/// speed, with rejected spans.
 [[nodiscard]] std::vector<drawing::Figure> errors_over_time(const ReportedDrive& drive);
 
-/// Share of epochs with an error below x; CEP50 and CEP95.
+/// Shows the share of epochs with an error below x, with CEP50 and CEP95.
 [[nodiscard]] drawing::Figure error_distribution(const ReportedDrive& drive);
 
-/// Autocorrelation of the errors, raw and fused, up to 2 min or a quarter of the drive.
+/// Shows the autocorrelation of raw and fused errors, up to 2 min or a quarter of the drive.
 [[nodiscard]] drawing::Figure autocorrelation_figure(const ReportedDrive& drive);
 
-/// What was stated against what was: by sigma, over time, and as shares. Empty without covariances.
+/// Compares stated with actual errors: by sigma, over time, and as shares. Empty without
+/// covariances.
 [[nodiscard]] std::vector<drawing::Figure> consistency_figures(const ReportedDrive& drive);
 
-/// Fix minus fused antenna over time, east and north: all that a drive without truth can show of errors.
+/// Shows fix minus fused antenna over time, east and north. Without truth this is the only
+/// view of errors.
 [[nodiscard]] drawing::Figure fix_residuals_over_time(const ReportedDrive& drive);
 
 }  // namespace waymark::report

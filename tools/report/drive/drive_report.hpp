@@ -16,31 +16,31 @@
 
 namespace waymark::report {
 
-/// The first stamp of a document: of a vertex or a fix.
+/// Returns the first stamp of a vertex or fix in a document.
 [[nodiscard]] Stamp start_of(const formats::GraphDocument& document);
 
-/// What a drive report is made of. All that is referred to must outlive it.
+/// The input of a drive report. All references must outlive it.
 struct ReportedDrive {
   std::string name;                        ///< of the drive
-  std::string label;                       ///< of the fusion: its modeling, or the file's name
+  std::string label;                       ///< of the fusion: its modeling, or the name of the file
   const formats::GraphDocument& document;  ///< at its minimum
   const evaluation::Evaluation& evaluation;
   const std::vector<TruthPose>& truth;                           ///< empty: none
   const MultiStartSummary* optimization = nullptr;               ///< null: the graph was optimised elsewhere
-  const std::vector<evaluation::StateReport>* states = nullptr;  ///< null: not looked at
-  const evaluation::GraphResiduals* residuals = nullptr;         ///< null: not looked at
-  const evaluation::Sparsity* sparsity = nullptr;                ///< null: not looked at
-  std::vector<std::pair<std::string, std::string>> went_in{};    ///< heading, text
-  std::vector<std::string> files{};  ///< written beside the report, relative to it
+  const std::vector<evaluation::StateReport>* states = nullptr;  ///< null: not computed
+  const evaluation::GraphResiduals* residuals = nullptr;         ///< null: not computed
+  const evaluation::Sparsity* sparsity = nullptr;                ///< null: not computed
+  std::vector<std::pair<std::string, std::string>> went_in{};    ///< the inputs: heading, text
+  std::vector<std::string> files{};                              ///< files beside the report, relative to it
 
   Stamp start = start_of(document);
 
-  /// Seconds since the start.
+  /// Returns seconds since the start.
   [[nodiscard]] double seconds(Stamp stamp) const { return seconds_between(start, stamp); }
 };
 
-/// Summary first, then trajectory, errors, stated against actual errors, residuals, optimisation and the
-/// calibration; what there is no material for is left out.
+/// Returns the page: first the summary, then trajectory, errors, stated against actual errors,
+/// residuals, optimisation and calibration. Parts without data are left out.
 [[nodiscard]] drawing::Page drive_page(const ReportedDrive& drive);
 
 }  // namespace waymark::report

@@ -13,7 +13,7 @@
 namespace waymark::report {
 namespace {
 
-/// Heading of a table of metrics, and its rows.
+/// Returns the heading of a table of metrics.
 std::vector<std::string> metrics_heading() {
   std::vector<std::string> heading = {"", "epochs"};
   for (const PositionColumn& column : position_columns()) heading.push_back(column.name + " [m]");
@@ -78,7 +78,7 @@ std::string count_of_rejections(const ReportedDrive& drive) {
   return text;
 }
 
-/// Length in time and space, and the size of the graph.
+/// Describes the length in time and space, and the size of the graph.
 std::string describe_input(const ReportedDrive& drive) {
   const Graph& graph = drive.document.graph;
   double distance_m = 0;
@@ -99,7 +99,7 @@ std::string describe_input(const ReportedDrive& drive) {
                      graph.vertex_count(), graph.edge_count());
 }
 
-/// The texts of a key of the provenance, in order.
+/// Returns the texts of a key of the provenance, in order.
 std::vector<std::string> stated(const ReportedDrive& drive, std::string_view key) {
   std::vector<std::string> texts;
   for (const auto& [name, text] : drive.document.provenance) {
@@ -108,7 +108,7 @@ std::vector<std::string> stated(const ReportedDrive& drive, std::string_view key
   return texts;
 }
 
-/// Modeling, noise, calibration and gate; empty where the graph does not tell.
+/// Describes modeling, noise, calibration and gate; empty if the graph does not contain them.
 std::string describe_error_model(const ReportedDrive& drive) {
   std::string text = fmt::format("{}", fmt::join(stated(drive, "modeling"), ", "));
   if (text.empty()) return text;
@@ -129,7 +129,7 @@ std::string outcome(const ReportedDrive& drive) {
                      s.total_seconds, s.initial_chi2, s.final_chi2);
 }
 
-/// What went in, what was assumed, what was rejected, what came out.
+/// Lists inputs, assumptions, rejected fixes and results.
 drawing::PageTable account(const ReportedDrive& drive) {
   drawing::PageTable table{"", {"", ""}, {}};
   for (const std::string& warning : stated(drive, "warning")) table.rows.push_back({"WARNING", warning});
@@ -145,7 +145,7 @@ drawing::PageTable account(const ReportedDrive& drive) {
   return table;
 }
 
-/// What got worse, for a summary must not only praise.
+/// Describes what became worse, because a summary must not only praise.
 std::string describe_losses(const evaluation::Improvement& i) {
   constexpr double kWorthTelling = -2;  // percent
   std::string text;

@@ -6,7 +6,7 @@
 namespace waymark::report {
 namespace {
 
-/// Runs of rejected or withheld fixes, from the first to the last of each.
+/// Returns the runs of rejected or withheld fixes, each from its first to its last fix.
 drawing::Series spans(const ReportedDrive& drive, FixStatus status, const std::string& name,
                       drawing::Look look) {
   drawing::Series series{.name = name, .mark = drawing::Mark::spans, .look = look};

@@ -1,4 +1,4 @@
-/// Series and figures over the epochs of a drive: what the figures of its errors are made of.
+/// Series and figures over the epochs of a drive. The figures of its errors are built from them.
 #pragma once
 
 #include <functional>
@@ -13,19 +13,19 @@
 
 namespace waymark::report {
 
-/// Which of an epoch's two offsets from the truth: raw or fused.
+/// One of the two offsets of an epoch from the truth: raw or fused.
 using Offset = std::optional<Eigen::Vector2d> evaluation::EpochResult::*;
 
-/// The offsets of all epochs that have one.
+/// Returns the offsets of all epochs that have one.
 [[nodiscard]] std::vector<Eigen::Vector2d> offsets(const ReportedDrive& drive, Offset which);
 
-/// A line over time through every epoch that has a value.
+/// Returns a line over time through every epoch that has a value.
 [[nodiscard]] drawing::Series over_time(
     const ReportedDrive& drive, const std::string& name, drawing::Look look,
     const std::function<std::optional<double>(const evaluation::EpochResult&)>& value);
 
-/// An empty figure over time from the first fix to the last, linked with all of its kind. Spans of rejected
-/// and of withheld fixes are marked.
+/// Returns an empty figure over time, from the first fix to the last, linked with all others of its
+/// kind. It marks spans of rejected and of withheld fixes.
 [[nodiscard]] drawing::Figure time_figure(const ReportedDrive& drive, const std::string& id,
                                           const std::string& title, const std::string& description,
                                           const drawing::Axis& y);

@@ -17,7 +17,7 @@ std::optional<double> length(const std::optional<Eigen::Vector2d>& offset) {
   return offset ? std::optional(offset->norm()) : std::nullopt;
 }
 
-/// Keeps the figure only where there is something to be seen.
+/// Keeps the figure only if it shows something.
 void add_if_seen(drawing::Figure figure, std::vector<drawing::Figure>& figures) {
   const bool seen =
       std::any_of(figure.series.begin(), figure.series.end(), [](const drawing::Series& series) {
@@ -62,10 +62,10 @@ drawing::Series distribution(const ReportedDrive& drive, Offset which, const std
   return series;
 }
 
-/// Beyond this ratio of the largest raw to the largest fused error the latter is a flat line; an axis in
-/// powers of ten shows both.
+/// If the largest raw error exceeds the largest fused error by this factor, the fused line looks
+/// flat. An axis in powers of ten then shows both.
 constexpr double kTooFarApart = 8;
-constexpr double kLeastError = 0.01;  // m, where such an axis begins at the earliest
+constexpr double kLeastError = 0.01;  // m, the smallest begin of such an axis
 
 void fit_error_axis(drawing::Figure& figure, const evaluation::TruthEvaluation& truth) {
   const double fused = truth.fused.position.max_m;

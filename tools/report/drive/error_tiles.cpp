@@ -97,8 +97,9 @@ drawing::Figure tile(const ReportedDrive& drive, Offset which, const std::string
   return figure;
 }
 
-/// The paper's metre to each side where it holds half of the fused errors, their ellipse and the mean of both
-/// systems, else the next round number that does.
+/// Returns half the width of the tile. It is the paper's metre if that contains half of the
+/// fused errors, their ellipse and the mean of both systems. Otherwise it is the next round
+/// number that does.
 double half_width(const ReportedDrive& drive) {
   std::vector<double> largest;
   for (const Eigen::Vector2d& offset : offsets(drive, &evaluation::EpochResult::fused_offset_m))

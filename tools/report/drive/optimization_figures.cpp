@@ -12,7 +12,8 @@
 namespace waymark::report {
 namespace {
 
-/// Quantile of the normal distribution, by halving: a figure needs a few hundred of them to three digits.
+/// Returns a quantile of the normal distribution by bisection. A figure needs a few hundred of them
+/// with three digits.
 double normal_quantile(double probability) {
   double low = -10;
   double high = 10;
@@ -24,7 +25,7 @@ double normal_quantile(double probability) {
   return 0.5 * (low + high);
 }
 
-/// At most so many points of a type's quantiles, the outermost all.
+/// At most this many points of the quantiles of a type are drawn. The outermost are always drawn.
 constexpr std::size_t kMostQuantiles = 400;
 constexpr std::size_t kOutermost = 50;
 constexpr std::size_t kMostListed = 5;  // edges of a type
@@ -51,7 +52,7 @@ std::string joined_numbers(const std::vector<double>& numbers) {
   return text;
 }
 
-/// Cells of a raster that hold something, dark by their density.
+/// Returns the cells of a raster that are not empty. Their darkness is the density.
 drawing::Series cells(const evaluation::DensityRaster& raster, const std::string& name) {
   drawing::Series series{.name = name, .mark = drawing::Mark::cells, .look = drawing::Look::fused};
   for (std::size_t row = 0; row < raster.cells; ++row) {
@@ -59,7 +60,8 @@ drawing::Series cells(const evaluation::DensityRaster& raster, const std::string
       if (raster.at(row, column) == 0) continue;
       series.x.push_back(static_cast<double>(column));
       series.y.push_back(static_cast<double>(row));
-      // The root: a cell on the diagonal of a long chain is nearly empty, and must be seen.
+      // The root makes cells visible that are nearly empty, like those on the diagonal of
+      // a long chain.
       series.weight.push_back(std::sqrt(static_cast<double>(raster.at(row, column)) /
                                         static_cast<double>(raster.possible(row, column))));
     }
@@ -103,7 +105,7 @@ drawing::Figure convergence_figure(const Summary& summary) {
   for (const IterationRecord& record : summary.records) {
     if (std::isfinite(record.chi2)) lowest = std::min(lowest, record.chi2);
   }
-  // The last decreases are below what chi2 can resolve.
+  // The last decreases are below the resolution of chi2.
   const double floor = std::max(std::abs(lowest) * 1e-13, 1e-300);
   const auto above = [&](double chi2) { return std::max(chi2 - lowest, floor); };
   drawing::Series way{.name = "accepted",

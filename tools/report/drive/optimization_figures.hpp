@@ -1,4 +1,4 @@
-/// What a report shows of the graph and its optimisation.
+/// The figures of a report about the graph and its optimisation.
 #pragma once
 
 #include <functional>
@@ -14,26 +14,27 @@
 
 namespace waymark::report {
 
-/// chi2 at every proposed step, by the kind of step; rejected ones marked.
+/// Shows chi2 at every proposed step, by the kind of step. Rejected steps are marked.
 [[nodiscard]] drawing::Figure convergence_figure(const Summary& summary);
 
-/// Whitened residuals of each edge type against a normal distribution: on the line, the noise is as stated.
+/// Compares the whitened residuals of each edge type with a normal distribution. Points on the line
+/// mean that the noise is as stated.
 [[nodiscard]] drawing::Figure residual_figure(const evaluation::GraphResiduals& residuals);
-/// Their numbers by component.
+/// Returns their numbers for each component.
 [[nodiscard]] drawing::PageTable residual_table(const evaluation::GraphResiduals& residuals);
-/// The largest edges of each type. @param seconds since the drive's start
+/// Returns the largest edges of each type. @param seconds since the start of the drive
 [[nodiscard]] drawing::PageTable largest_residuals(const evaluation::GraphResiduals& residuals,
                                                    const std::function<double(Stamp)>& seconds);
 
 [[nodiscard]] drawing::PageTable state_table(const std::vector<evaluation::StateReport>& states);
-/// States that wander, each over time; `time` is the extent of the drive, in seconds.
+/// Shows each state that wanders over time. `time` is the extent of the drive in seconds.
 [[nodiscard]] std::vector<drawing::Figure> state_figures(const std::vector<evaluation::StateReport>& states,
                                                          const std::function<double(Stamp)>& seconds,
                                                          drawing::Range time);
 
-/// H in the order of the graph, H and its factor in the order of elimination.
+/// Shows H in the order of the graph, and H and its factor in the order of elimination.
 [[nodiscard]] drawing::FigureRow sparsity_figures(const evaluation::Sparsity& sparsity);
-/// How much they hold, in words.
+/// Describes in words how many entries they hold.
 [[nodiscard]] std::string describe_sparsity(const evaluation::Sparsity& sparsity);
 
 }  // namespace waymark::report

@@ -26,7 +26,7 @@ drawing::Series poses(const ReportedDrive& drive) {
   return series;
 }
 
-/// Truth inside the drive's time: a reference log may go on for hours.
+/// Returns the truth during the drive. A reference log may be hours longer.
 drawing::Series truth(const ReportedDrive& drive, double end_s) {
   drawing::Series series{.name = "truth", .mark = drawing::Mark::line, .look = drawing::Look::truth};
   for (const TruthPose& pose : drive.truth) {
@@ -36,10 +36,10 @@ drawing::Series truth(const ReportedDrive& drive, double end_s) {
   return series;
 }
 
-/// A fix that counts for less is as good as rejected.
+/// A fix with less weight is as good as rejected.
 constexpr double kSmallWeight = 1.0 / 3;
 
-/// Weights that the losses of GNSS edges leave, by vertex; 1 for all others.
+/// Returns the weights that the losses leave to GNSS edges, by vertex; 1 for all others.
 std::vector<double> weights_of_fixes(const ReportedDrive& drive) {
   const Graph& graph = drive.document.graph;
   std::vector<double> weights(graph.vertex_count(), 1);
@@ -60,13 +60,14 @@ std::vector<double> weights_of_fixes(const ReportedDrive& drive) {
   return weights;
 }
 
-/// That of a fix; one that is not in the graph has its whole.
+/// Returns the weight of a fix; 1 if it is not in the graph.
 double weight_of(const Fix& fix, const std::vector<double>& weights, const Graph& graph) {
   const auto v = graph.find(fix.vertex);
   return v && fix.status == FixStatus::accepted ? weights[static_cast<std::size_t>(*v)] : 1;
 }
 
-/// What the gate and the loss made of a fix; a number that was not formed is not told.
+/// Describes what the gate and the loss did with a fix. Numbers that were not computed
+/// are left out.
 std::string describe(const Fix& fix, double seconds, double weight) {
   std::string text = fmt::format("fix {} at {:.1f} s: {}", fix.epoch, seconds, to_string(fix.status));
   if (fix.status == FixStatus::rejected) {
@@ -79,7 +80,7 @@ std::string describe(const Fix& fix, double seconds, double weight) {
   return text + fmt::format(", stated sigma {:.3g} m", std::sqrt(fix.covariance.trace() / 2));
 }
 
-/// Raw fixes by what became of them.
+/// The raw fixes by status.
 struct FixSeries {
   drawing::Series accepted{.name = "raw GNSS", .mark = drawing::Mark::points, .look = drawing::Look::raw};
   drawing::Series light{
