@@ -1,11 +1,12 @@
-/// Counts the process's requests for memory (counting_allocator.cpp takes the place of malloc and its kin).
+/// Counts the memory requests of the process. counting_allocator.cpp replaces malloc and
+/// its relatives.
 #pragma once
 
 #include <atomic>
 
 namespace waymark_test {
 
-/// Requests so far: malloc, calloc, realloc and the aligned ones, from whatever library.
+/// Returns the requests so far, from any library: malloc, calloc, realloc and the aligned ones.
 [[nodiscard]] long memory_requests();
 
 }  // namespace waymark_test

@@ -1,4 +1,4 @@
-/// What the allocation tests optimise.
+/// The problems that the allocation tests optimise.
 #pragma once
 
 #include <waymark/core/graph/graph.hpp>
@@ -6,8 +6,8 @@
 
 namespace waymark_test {
 
-/// A drive with a dense calibration state; in a file of its own, where g++ 12 does not mistake its edges of
-/// three vertices for those of two (a false -Warray-bounds).
+/// Returns a drive with a dense calibration state. It has its own file, because otherwise g++ 12
+/// mistakes its edges of three vertices for edges of two (a false -Warray-bounds).
 [[nodiscard]] waymark::Graph calibrated_problem(const waymark::TypeRegistry& registry);
 
 }  // namespace waymark_test

@@ -3,7 +3,7 @@
 
 namespace waymark_bench {
 
-/// Registers `logs/READER/KIB` for every reader whose sample is at hand, and
+/// Registers `logs/READER/KIB` for every reader with an available sample, and
 /// `logs/read_in_pieces/plain|gz/KIB`.
 void register_log_benchmarks();
 

@@ -1,4 +1,4 @@
-/// What the format tests share.
+/// Helpers that the format tests share.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 #include <waymark/formats/graph/foreign_graph.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 
-/// Core, SE(2) and the built-in plugins: the types that the program knows.
+/// Returns the types that the program knows: core, SE(2) and the built-in plugins.
 [[nodiscard]] const waymark::TypeRegistry& test_registry();
 
 [[nodiscard]] inline waymark::formats::GraphDocument read(const std::string& text) {
@@ -18,7 +18,7 @@
   return waymark::formats::write_graph(document, test_registry());
 }
 
-/// The text of a format that is not our own, for any reader of it.
+/// Returns the text of a format that is not our own, for any reader of it.
 [[nodiscard]] inline std::string write_as(waymark::formats::GraphFormat format,
                                           const waymark::formats::GraphDocument& document) {
   return waymark::formats::collect_text([&](const waymark::formats::TextSink& sink) {

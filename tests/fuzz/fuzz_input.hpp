@@ -1,4 +1,4 @@
-/// What a fuzzer's bytes mean: four of them say how a log is read, the rest is the log.
+/// Interprets the bytes of a fuzzer: the first four say how a log is read, the rest is the log.
 #pragma once
 
 #include <cstddef>
@@ -32,13 +32,13 @@ struct FuzzInput {
   std::string log;
 };
 
-/// @param reader  by its name; the stream and the columns are those it can give
+/// @param reader name of the reader; it decides which streams and columns are possible
 [[nodiscard]] FuzzInput fuzz_input(std::string_view reader, const std::uint8_t* bytes, std::size_t size);
 
-/// The DBC by which the candump fuzzer reads its frames.
+/// Returns the DBC that the candump fuzzer uses.
 [[nodiscard]] const std::string& fuzz_dbc();
 
-/// The columns of a CAN log by the signals of fuzz_dbc().
+/// Sets the columns of a CAN log to signals of fuzz_dbc().
 void set_can_columns(waymark::LogRequest& request, unsigned variant);
 
 }  // namespace waymark_fuzz

@@ -1,4 +1,5 @@
-/// One log of each reader, to be damaged: real ones where the data are at hand, else made by hand.
+/// One log of each reader, to be damaged: a real one if the data are available, or else one
+/// made by hand.
 #pragma once
 
 #include <string>
@@ -12,14 +13,16 @@ struct HostileSample {
   std::string reader;
   std::string text;
   waymark::LogRequest request;
-  /// Records that hold one sample each begin lines with this (frames: in bytes, with their headers).
+  /// The first characters of lines that hold one sample each (for frames: the first bytes, with
+  /// their headers).
   std::string record;
-  /// The first of these characters after the record's beginning, changed to an 'x', makes it corrupt.
+  /// The first of these characters after the beginning of a record. The record is corrupt if it
+  /// becomes an 'x'.
   std::string fragile;
   bool lines = true;
 
   [[nodiscard]] const waymark::LogReader& log_reader() const;
-  /// What the reader makes of a text; nothing where it refuses it. @param piece  0: at once
+  /// Reads a text. The result is empty if the reader refuses it. @param piece 0: at once
   [[nodiscard]] waymark::LogData read(std::string_view text, std::size_t piece = 0) const;
 };
 

@@ -1,4 +1,4 @@
-/// A log given to its reader in pieces gives what it gives at once.
+/// Checks that a log in pieces gives the same result as the whole log.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@
 
 namespace waymark_test {
 
-/// The fixes are taken out after every piece, as a caller of bounded memory does, and put back in the end.
+/// Takes the fixes out after every piece, as a caller with bounded memory does, and puts them
+/// back at the end.
 inline waymark::LogData read_in_pieces_of(std::size_t length, const waymark::LogReader& reader,
                                           std::string_view text, const std::string& path,
                                           const waymark::LogRequest& request) {
@@ -36,7 +37,7 @@ inline waymark::LogData read_in_pieces_of(std::size_t length, const waymark::Log
   return decoder->data();
 }
 
-/// Bit by bit, so that NaN equals itself.
+/// Compares bit by bit, so that NaN equals itself.
 inline bool same_number(double a, double b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
@@ -62,7 +63,8 @@ inline bool same_clocks(const waymark::ClockPair& a, const waymark::ClockPair& b
   return a.logged == b.logged && a.told == b.told;
 }
 
-/// The first index at which two rows of samples differ; the common length where they do not.
+/// Returns the first index at which two rows of samples differ, or the common length if
+/// they do not.
 template <typename Rows, typename Same>
 std::size_t same_until(const Rows& a, const Rows& b, Same same) {
   const auto [end, other] = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), same);
@@ -89,7 +91,7 @@ inline void check_same(const waymark::LogData& a, const waymark::LogData& b) {
   CHECK(same_until(a.readings.values, b.readings.values, same_number) == b.readings.values.size());
 }
 
-/// Byte by byte, and in pieces of 7. @return the log read at once
+/// Reads byte by byte, and in pieces of 7. @return the log read at once
 inline waymark::LogData check_pieces(const waymark::LogReader& reader, std::string_view text,
                                      const std::string& path, const waymark::LogRequest& request) {
   waymark::LogData whole = read_in_pieces_of(text.size() + 1, reader, text, path, request);

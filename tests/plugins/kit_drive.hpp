@@ -1,5 +1,5 @@
-/// A simulated drive with known truth for the sensor kit: its odometry errs exactly as the odometry edges
-/// say, so that covariances can be held against true errors.
+/// A simulated drive with known truth for the sensor kit. Its odometry has exactly the noise of the
+/// odometry edges, so tests can compare covariances with true errors.
 #pragma once
 
 #include <cmath>
@@ -28,14 +28,14 @@ inline const waymark::TypeRegistry& kit_registry() {
   return value;
 }
 
-/// Nodes at 10 Hz; fixes at every full second.
+/// Nodes are at 10 Hz, fixes at every full second.
 struct KitRecipe {
   int seconds = 60;
   std::function<Eigen::Vector2d(double)> motion = [](double) {
     return Eigen::Vector2d(10, 0);
   };  ///< true speed and yaw rate at a time
   waymark::plugins::odometry::ProcessNoise noise{1e-6, 1e-6, 1e-8, 0, 1e-10, 1};
-  double speed_scale = 0;  ///< true speed = (1 + scale) reading; else than 0: a state estimates it
+  double speed_scale = 0;  ///< true speed = (1 + scale) reading; if not 0, a state estimates it
   double fix_sigma_m = 2;
   double fix_period_s = 1;
   double last_fix_s = std::numeric_limits<double>::infinity();
@@ -68,7 +68,7 @@ inline waymark::Stamp kit_stamp(double seconds) {
   return waymark::Stamp::from_seconds(1000 + seconds);
 }
 
-/// A log by the names of its columns; what a row does not give is NaN.
+/// A log with named columns. Values that a row does not give are NaN.
 class Readings {
  public:
   explicit Readings(const std::string& sensor) : columns_(kit_registry().sensor_model(sensor).columns) {
@@ -119,8 +119,9 @@ inline waymark::Options odometry_options(const KitRecipe& recipe) {
   return options;
 }
 
-/// The drive with its odometry and its fixes, started by dead reckoning from the true first pose. A node's
-/// truth is the pose before, moved as the odometry says, times exp(e) with e of the edge's covariance.
+/// Returns the drive with its odometry and its fixes. The initial guess is dead reckoning from the
+/// true first pose. The truth of a node is the previous pose, moved as the odometry says, times
+/// exp(e) with e drawn from the covariance of the edge.
 [[nodiscard]] inline KitDrive make_kit_drive(const KitRecipe& recipe, std::uint64_t seed) {
   using namespace waymark;
   Noise noise(seed);
@@ -162,9 +163,9 @@ inline waymark::Options odometry_options(const KitRecipe& recipe) {
   return drive;
 }
 
-/// Errors of the optimum against the truth, with the covariances it states.
+/// Errors of the optimum against the truth, with the stated covariances.
 struct Solution {
-  std::vector<Eigen::Vector3d> errors;  ///< x, y in the frame's axes, heading
+  std::vector<Eigen::Vector3d> errors;  ///< x, y in the axes of the frame, heading
   std::vector<Eigen::Matrix3d> covariances;
 
   [[nodiscard]] double rms_position() const {
@@ -180,7 +181,7 @@ struct Solution {
   [[nodiscard]] double sigma(int node, int part) const {
     return std::sqrt(covariances[static_cast<std::size_t>(node)](part, part));
   }
-  /// e^T C^-1 e of a node: 3 on average where the covariance is right.
+  /// Returns e^T C^-1 e of a node: 3 on average if the covariance is right.
   [[nodiscard]] double normalised(int node) const {
     const auto& e = errors[static_cast<std::size_t>(node)];
     return e.dot(covariances[static_cast<std::size_t>(node)].llt().solve(e));
@@ -207,7 +208,7 @@ struct Solution {
   return solution;
 }
 
-/// The one vertex of a type, or -1.
+/// Returns the only vertex of a type, or -1.
 [[nodiscard]] inline waymark::VertexIndex find_state(const waymark::Graph& graph, std::string_view tag) {
   for (waymark::VertexIndex v = 0; v < static_cast<waymark::VertexIndex>(graph.vertex_count()); ++v) {
     if (graph.vertex_type(v).tag == tag) return v;
@@ -215,7 +216,7 @@ struct Solution {
   return -1;
 }
 
-/// Number of edges of a type.
+/// Returns the number of edges of a type.
 [[nodiscard]] inline std::size_t edges_of(const waymark::Graph& graph, std::string_view tag) {
   std::size_t count = 0;
   for (std::size_t b = 0; b < graph.batch_count(); ++b)
@@ -223,7 +224,8 @@ struct Solution {
   return count;
 }
 
-/// The mean of a chi-square of `freedom` degrees over n draws lies within four of its sigmas of `freedom`.
+/// Checks that the mean of a chi-square with `freedom` degrees over n draws is within four of its
+/// sigmas of `freedom`.
 inline void check_mean_chi_square(double sum, int freedom, int n) {
   CHECK(sum / n == Approx(freedom).margin(4 * std::sqrt(2.0 * freedom / n)));
 }

@@ -17,7 +17,7 @@ namespace waymark_test {
 /// Off-diagonal blocks, each as (row, column) with row < column.
 using Pairs = std::set<std::pair<int, int>>;
 
-/// The pattern of blocks of these sizes, with the off-diagonal blocks named.
+/// Returns the pattern of blocks with these sizes and off-diagonal blocks.
 [[nodiscard]] inline waymark::BlockPattern make_pattern(const std::vector<int>& sizes, const Pairs& pairs,
                                                         std::uint64_t version = 1) {
   std::vector<std::vector<int>> rows(sizes.size());
@@ -41,7 +41,7 @@ using Pairs = std::set<std::pair<int, int>>;
   return pattern;
 }
 
-/// The numbers of a symmetric matrix on the pattern.
+/// Returns the numbers of a symmetric matrix on the pattern.
 [[nodiscard]] inline std::vector<double> gather(const waymark::BlockPattern& pattern,
                                                 const Eigen::MatrixXd& matrix) {
   const waymark::ScalarPattern<int> scalar = waymark::to_scalar<int>(pattern);
@@ -53,8 +53,8 @@ using Pairs = std::set<std::pair<int, int>>;
   return values;
 }
 
-/// A symmetric positive definite matrix on the pattern: the sum of small ones over its blocks, plus
-/// `diagonal` times the identity.
+/// Returns a symmetric positive definite matrix on the pattern: the sum of small ones over its
+/// blocks, plus `diagonal` times the identity.
 [[nodiscard]] inline Eigen::MatrixXd random_spd(const waymark::BlockPattern& pattern, std::uint64_t seed,
                                                 double diagonal = 0.1) {
   std::mt19937_64 random(seed);
@@ -75,7 +75,7 @@ using Pairs = std::set<std::pair<int, int>>;
   return 0.5 * (matrix + matrix.transpose());
 }
 
-/// A chain of blocks with some more pairs drawn at random.
+/// Returns a chain of blocks and some random pairs.
 [[nodiscard]] inline Pairs random_pairs(int blocks, int count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   Pairs pairs;

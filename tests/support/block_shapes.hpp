@@ -1,5 +1,5 @@
-/// Patterns of every kind that the analysis of the block Cholesky tells apart: chains short and long, with
-/// leaves, in pieces, trees, grids, dense columns, mixed sizes.
+/// Patterns of every kind that the analysis of the block Cholesky distinguishes: short and long
+/// chains, chains with leaves, separate parts, trees, grids, dense columns, mixed sizes.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 
 namespace waymark_test {
 
-/// A pattern under construction: nodes with sizes, joined in any order; then eliminated in any order.
+/// A pattern under construction: nodes with sizes, joined in any order and then eliminated
+/// in any order.
 struct Shape {
   std::string name;
   std::vector<int> sizes;
@@ -38,7 +39,8 @@ struct Shape {
     for (const auto& [a, b] : joined) pairs.insert({std::min(a, b), std::max(a, b)});
     return make_pattern(sizes, pairs);
   }
-  /// The same matrix eliminated in another, random order: stored blocks are then transposed ones, too.
+  /// Returns the same matrix with a random order of elimination. Some stored blocks are
+  /// then transposed.
   [[nodiscard]] Shape shuffled(std::uint64_t seed) const {
     std::mt19937_64 random(seed);
     std::vector<int> place(sizes.size());
@@ -59,7 +61,7 @@ struct Shape {
   return shape;
 }
 
-/// Leaves come just before the node they hang on, as GNSS nodes of a drive do.
+/// Each leaf comes just before the node it is joined to, like the GNSS nodes of a drive.
 [[nodiscard]] inline Shape chain_with_leaves(int length, int every, int leaf_size) {
   Shape shape{"chain of " + std::to_string(length) + " with leaves of " + std::to_string(leaf_size), {}, {}};
   int last = -1;
@@ -180,7 +182,7 @@ struct Shape {
   return shapes;
 }
 
-/// Problems with enough work for several subtrees.
+/// Returns problems with enough work for several subtrees.
 [[nodiscard]] inline std::vector<Shape> large_shapes() {
   std::vector<Shape> shapes;
   shapes.push_back(chain(6000));

@@ -1,4 +1,5 @@
-/// A drive under G1 whose every tenth step is scaled by one state: a dense column that all chunks add to.
+/// A drive with G1. One state scales every tenth step, so its column is dense and all
+/// chunks add to it.
 #pragma once
 
 #include "support/problems.hpp"

@@ -1,5 +1,6 @@
-/// The normal equations of a graph as dense matrices, assembled edge by edge from errors and Jacobians: the
-/// plain way, against which block patterns, scatter offsets and selected inverses are compared.
+/// The normal equations of a graph as dense matrices, assembled edge by edge from errors and
+/// Jacobians. Tests compare block patterns, scatter offsets and selected inverses with this
+/// plain method.
 #pragma once
 
 #include <span>
@@ -12,7 +13,8 @@
 
 namespace waymark_test {
 
-/// H and g with the unknowns in the order of the vertices; start[v] is -1 where vertex v is no unknown.
+/// H and g with the unknowns in the order of the vertices. start[v] is -1 if vertex v
+/// is no unknown.
 struct DenseSystem {
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
@@ -64,7 +66,7 @@ struct DenseSystem {
   return system;
 }
 
-/// The block-sparse normal equations, spread out and brought into the order of the vertices.
+/// Expands the block-sparse normal equations and puts them in the order of the vertices.
 [[nodiscard]] inline DenseSystem spread_out(const waymark::Graph& graph, const waymark::Structure& structure,
                                             const waymark::NormalEquations& equations) {
   using namespace waymark;
@@ -95,7 +97,7 @@ struct DenseSystem {
   return system;
 }
 
-/// Largest difference of entries, relative to the largest entry of the reference.
+/// Returns the largest difference of entries, relative to the largest entry of the reference.
 template <typename A, typename B>
 [[nodiscard]] double relative_difference(const A& value, const B& reference) {
   if (value.rows() != reference.rows() || value.cols() != reference.cols()) return 1e300;

@@ -1,5 +1,6 @@
-/// The key workload of the convergence tables: a simulated drive of 105,000 poses as g2o files. Its generator
-/// is not part of this repository; the environment variable WAYMARK_KEY_WORKLOAD names the folder.
+/// The key workload of the convergence tables: a simulated drive of 105,000 poses as g2o files.
+/// Its generator is not part of this repository; the environment variable WAYMARK_KEY_WORKLOAD
+/// names the folder.
 #pragma once
 
 #include <cstdlib>
@@ -13,10 +14,11 @@
 
 namespace waymark_test {
 
-inline constexpr waymark::VertexId kFirstGnssNode = 1000000;  ///< G2's and G3's nodes take ids from here
+/// the nodes of G2 and G3 have ids from here
+inline constexpr waymark::VertexId kFirstGnssNode = 1000000;
 
-/// Under "G1", "G2" or "G3", dead-reckoned, in UTM coordinates. Nothing where it is absent, which is then
-/// said.
+/// Returns the workload under "G1", "G2" or "G3", dead-reckoned, in UTM coordinates. If it is
+/// missing, prints a line and returns nothing.
 [[nodiscard]] inline std::optional<waymark::Graph> key_workload(const std::string& modeling,
                                                                 const waymark::TypeRegistry& registry) {
   const char* folder = std::getenv("WAYMARK_KEY_WORKLOAD");

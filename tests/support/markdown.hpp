@@ -1,5 +1,5 @@
-/// What tests read of the documentation: fenced blocks, so that commands, listings and files shown there are
-/// those that run, and the text outside of them.
+/// Reads documentation for tests. Fenced blocks are compared with the commands, listings and files
+/// that run; the text outside of them is read too.
 #pragma once
 
 #include <sstream>
@@ -11,16 +11,17 @@ namespace waymark_test {
 
 /// "```LANGUAGE WORDS" ... "```"
 struct FencedBlock {
-  std::string language{};            ///< first word behind the fence; may be empty
-  std::vector<std::string> words{};  ///< the others, such as a file's name
-  std::string text{};                ///< lines in between, each with "\n"
-  int line = 0;                      ///< of the opening fence, from 1
+  std::string language{};            ///< first word after the fence; may be empty
+  std::vector<std::string> words{};  ///< the other words, for example the name of a file
+  std::string text{};                ///< the lines between the fences, each with "\n"
+  int line = 0;                      ///< line of the opening fence, from 1
 };
 
 struct Markdown {
   std::vector<FencedBlock> blocks{};
   std::vector<std::string>
-      lines{};  ///< those outside of blocks; inside they are empty: numbers stay those of the file
+      /// lines outside of blocks; lines inside are empty, so numbers are those of the file
+      lines{};
 };
 
 [[nodiscard]] inline Markdown parse_markdown(std::string_view text) {

@@ -1,5 +1,5 @@
-/// Where tests find their data and may write. The folders come from the build (compile definitions), so that
-/// tests run from any working directory.
+/// Where tests find their data, and where they may write. The folders are compile definitions of
+/// the build, so tests run from any working directory.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,8 @@
 
 namespace waymark_test {
 
-/// Large drives and benchmark graphs; may be absent: such a test prints "SKIPPED: reason" and returns.
+/// Large drives and benchmark graphs. They may be missing; a test then prints "SKIPPED: reason"
+/// and returns.
 [[nodiscard]] inline std::filesystem::path shared_data_dir() {
   return WAYMARK_SHARED_DATA;
 }
@@ -19,7 +20,8 @@ namespace waymark_test {
   return WAYMARK_SOURCE_DIR "/examples";
 }
 
-/// A folder of this process for files that a test writes; made on first use, removed at the end.
+/// A folder of this process for files that a test writes. It is created at first use and
+/// removed at the end.
 [[nodiscard]] inline std::filesystem::path scratch_dir() {
   struct Folder {
     std::filesystem::path path =

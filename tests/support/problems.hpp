@@ -1,4 +1,5 @@
-/// Small problems made in code, the same on every run: a noisy circle, a walk on a grid, a drive with fixes.
+/// Small problems made in code, the same in every run: a noisy circle, a walk on a grid, a
+/// drive with fixes.
 #pragma once
 
 #include <cmath>
@@ -13,12 +14,12 @@
 
 namespace waymark_test {
 
-/// Information of a relative pose with these standard deviations.
+/// Returns the information matrix of a relative pose with these standard deviations.
 [[nodiscard]] inline Eigen::Matrix3d pose_information(double sigma_m, double sigma_rad) {
   return Eigen::Vector3d(std::pow(sigma_m, -2), std::pow(sigma_m, -2), std::pow(sigma_rad, -2)).asDiagonal();
 }
 
-/// z seen with Gaussian noise.
+/// Returns z with Gaussian noise.
 inline Eigen::Vector3d noisy(const Eigen::Vector3d& z, double sigma_m, double sigma_rad,
                              std::mt19937_64& random) {
   std::normal_distribution<double> unit(0, 1);
@@ -27,8 +28,9 @@ inline Eigen::Vector3d noisy(const Eigen::Vector3d& z, double sigma_m, double si
   return {x, y, waymark::wrap_angle(z[2] + sigma_rad * unit(random))};
 }
 
-/// Poses on a circle of 1 m spacing, odometry with noise, a closure from every fifth pose to its opposite;
-/// starts from the odometry, nothing fixed. Information in units of the noise, with a correlation.
+/// Poses on a circle with a spacing of 1 m. There is noisy odometry, and a loop closure from every
+/// fifth pose to its opposite. The initial guess is the odometry; nothing is fixed. The information
+/// is in units of the noise, with a correlation.
 [[nodiscard]] inline waymark::Graph noisy_circle(int poses, std::uint64_t seed = 1) {
   using namespace waymark;
   std::mt19937_64 random(seed);
@@ -61,8 +63,9 @@ inline Eigen::Vector3d noisy(const Eigen::Vector3d& z, double sigma_m, double si
   return graph;
 }
 
-/// A random walk along the streets of a square grid, 1 m a step, with an edge to the last earlier pose
-/// wherever the walk meets its own way; starts at the truth plus noise, nothing fixed.
+/// A random walk along the streets of a square grid, 1 m per step. Wherever the walk meets its
+/// own way, an edge goes to the last earlier pose. The initial guess is the truth plus noise;
+/// nothing is fixed.
 [[nodiscard]] inline waymark::Graph grid_walk(int poses, int side, std::uint64_t seed = 1) {
   using namespace waymark;
   std::mt19937_64 random(seed);
@@ -100,15 +103,15 @@ inline Eigen::Vector3d noisy(const Eigen::Vector3d& z, double sigma_m, double si
   return graph;
 }
 
-/// A drive: poses of a chain at 25 Hz with odometry edges, started by dead reckoning, and 1 Hz fixes whose
-/// vertex is set; the modeling is left to the caller.
+/// A drive: a chain of poses at 25 Hz with odometry edges, and fixes at 1 Hz with their vertices.
+/// The initial guess is dead reckoning. The caller chooses the modeling.
 struct Drive {
   waymark::Graph graph;
   std::vector<waymark::Fix> fixes;
   std::vector<waymark::Interval> intervals;
   Eigen::Vector2d antenna_m{0, 0};
 
-  /// Adds the fixes by a modeling of the registry.
+  /// Adds the fixes with a modeling of the registry.
   void add_fixes(const waymark::TypeRegistry& registry, std::string_view modeling,
                  const waymark::Options& options = {}) {
     std::vector<waymark::Interval> motion;
@@ -120,7 +123,8 @@ struct Drive {
   }
 };
 
-/// A winding drive with stops; the gyro carries a bias of 3e-4 rad/s, fixes have correlated axes.
+/// A winding drive with stops. The gyro has a bias of 3e-4 rad/s, and the axes of the fixes
+/// are correlated.
 [[nodiscard]] inline Drive make_drive(const waymark::TypeRegistry& registry, int poses,
                                       Eigen::Vector2d antenna_m = {0, 0}, std::uint64_t seed = 1) {
   using namespace waymark;

@@ -13,8 +13,9 @@
 
 namespace waymark_test {
 
-/// Core, SE(2), all solvers and algorithms, all built-in plugins; and the modules whose files the environment
-/// variable WAYMARK_TEST_PLUGINS names, separated by colons: so the tests of every type judge theirs, too.
+/// Returns core, SE(2), all solvers and algorithms, and all built-in plugins. It also loads the
+/// modules in the environment variable WAYMARK_TEST_PLUGINS (separated by colons), so that tests of
+/// every type also test theirs.
 [[nodiscard]] inline waymark::TypeRegistry full_registry() {
   waymark::TypeRegistry registry;
   waymark::register_core_types(registry);

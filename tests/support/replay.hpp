@@ -1,4 +1,5 @@
-/// A graph as a running system meets it: vertex by vertex, each with the edges that then are complete.
+/// Replays a graph as a running system builds it: vertex by vertex, each with the edges that
+/// it completes.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace waymark_test {
 
 class Replay {
  public:
-  /// @param order all vertices of the source, as they come
+  /// @param order all vertices of the source, in the order of their arrival
   Replay(const waymark::Graph& source, std::vector<waymark::VertexIndex> order)
       : source_(source), order_(std::move(order)), due_(order_.size()) {
     std::vector<std::size_t> place(order_.size());
@@ -28,8 +29,8 @@ class Replay {
 
   [[nodiscard]] bool done() const { return next_ == order_.size(); }
 
-  /// Appends the next vertex and its edges. A pose starts where the last pose of the target leads it by the
-  /// difference of their values in the source (dead reckoning).
+  /// Appends the next vertex and its edges. The initial guess of a pose is dead reckoning: the last
+  /// pose of the target, moved by the difference of their values in the source.
   /// @return its index in the target
   waymark::VertexIndex append_to(waymark::Graph& target) {
     using namespace waymark;

@@ -1,5 +1,5 @@
-/// Test-only types: a dense scalar calibration state, a ternary edge of mixed dimensions, a scalar problem on
-/// which full steps diverge.
+/// Types only for tests: a dense scalar calibration state, a ternary edge of mixed dimensions, and
+/// a scalar problem on which full steps diverge.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace waymark_test {
 
-/// A scale factor near 1 that touches very many edges.
+/// A scale factor near 1 with very many edges.
 struct VertexScale {
   static constexpr std::string_view kTag = "VERTEX_SCALE";
   static constexpr int kValueSize = 1;
@@ -27,8 +27,8 @@ struct VertexScale {
   static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
 };
 
-/// Odometry whose length is scaled by a state: e = (t, theta) error against (scale length, 0, turn). The
-/// scale stands in the middle, so that blocks of 3 x 1, 1 x 1 and 3 x 3 all occur.
+/// Odometry whose length is scaled by a state: the (t, theta) error against (scale length, 0,
+/// turn). The scale is the middle vertex, so blocks of 3 x 1, 1 x 1 and 3 x 3 all occur.
 struct EdgeScaledOdometry {
   static constexpr std::string_view kTag = "EDGE_SCALED_ODOMETRY";
   static constexpr std::string_view kForm = "(t, theta)";
@@ -51,7 +51,8 @@ struct EdgeScaledOdometry {
   double turn = 0;
 };
 
-/// e = x / sqrt(1 + x^2), sigmoid: the Newton step from |x| > 1 overshoots, and chi2 climbs towards 1.
+/// e = x / sqrt(1 + x^2), a sigmoid. The Newton step from |x| > 1 overshoots, and chi2
+/// climbs towards 1.
 struct EdgeSigmoid {
   static constexpr std::string_view kTag = "EDGE_SIGMOID";
   static constexpr std::string_view kForm = "sigmoid";
@@ -66,7 +67,7 @@ struct EdgeSigmoid {
   }
 };
 
-/// e = sqrt(x): not finite for negative x.
+/// e = sqrt(x): it is not finite for negative x.
 struct EdgeRoot {
   static constexpr std::string_view kTag = "EDGE_ROOT";
   static constexpr std::string_view kForm = "root";

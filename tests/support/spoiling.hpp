@@ -1,4 +1,4 @@
-/// Wrong starts of a drive: what the convergence table is about.
+/// Wrong initial guesses of a drive, for the convergence table.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace waymark_test {
 
-/// A way to spoil a dead-reckoned track; the fixes stay where they are.
+/// A way to spoil a dead-reckoned track. The fixes stay in place.
 struct Spoiling {
   const char* name;
   double turn_deg;      ///< about its first pose
@@ -21,8 +21,8 @@ inline constexpr Spoiling kSpoilings[] = {{"dead reckoning", 0, false},
                                           {"heading +180", 180, false},
                                           {"track at (0,0)", 0, true}};
 
-/// The graph with its free vertices spoilt.
-/// @param is_node  vertices that hold a GNSS reading: they keep their place and only turn
+/// Returns the graph with spoilt free vertices.
+/// @param is_node vertices with a GNSS reading: they keep their place and only turn
 template <typename IsNode>
 [[nodiscard]] waymark::Graph spoil(const waymark::Graph& graph, const Spoiling& how, IsNode is_node) {
   using namespace waymark;

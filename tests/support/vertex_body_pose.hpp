@@ -1,5 +1,5 @@
-/// A pose whose retraction is in its own body frame, X [+] d = X exp(d): a chart that is not linear, as a
-/// plugin may bring one.
+/// A pose with a retraction in its own body frame, X [+] d = X exp(d). This chart is not linear,
+/// and a plugin may bring one.
 #pragma once
 
 #include <array>

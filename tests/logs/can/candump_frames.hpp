@@ -1,4 +1,4 @@
-/// CAN frames for tests with the DBC of their messages, and how they are read.
+/// CAN frames for tests, with the DBC of their messages and functions that read them.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -20,8 +20,8 @@ using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
 
-// By hand from the DBC specification: wheels of km/h on one id, turning on another, a receiver's burst of
-// three.
+// Written by hand from the DBC specification: wheel speeds in km/h on one id, the yaw rate on
+// another, and a receiver's burst of three.
 inline constexpr const char* kDbc =
     "BO_ 170 WHEELS: 4 ECU\n"
     " SG_ FL : 7|16@0+ (0.01,0) [0|0] \"kph\" X\n"
@@ -88,7 +88,7 @@ inline std::string hex_bytes(std::uint64_t word, int bytes) {
   return text;
 }
 
-/// A frame of gnss_pos at (latitude, longitude) in millionths of a degree.
+/// Returns a frame of gnss_pos at (latitude, longitude) in millionths of a degree.
 inline std::string position(const std::string& time, int latitude, int longitude, unsigned accuracy = 4,
                             bool valid = true) {
   const std::uint64_t word = static_cast<std::uint64_t>(latitude + 90'000'000) |
@@ -97,7 +97,7 @@ inline std::string position(const std::string& time, int latitude, int longitude
   return "(" + time + ") can0 003#" + hex_bytes(word, 8) + "\n";
 }
 
-/// A frame of gnss_motion: speed in cm/s, heading in tenths of a degree.
+/// Returns a frame of gnss_motion: speed in cm/s, heading in tenths of a degree.
 inline std::string motion(const std::string& time, unsigned speed, unsigned heading) {
   return "(" + time + ") can0 007#" + hex_bytes(speed | (heading << 16U), 4) + "\n";
 }

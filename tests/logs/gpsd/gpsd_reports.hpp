@@ -1,4 +1,4 @@
-/// Reports of gpsd for tests, and how they are read.
+/// Reports of gpsd for tests, and functions that read them.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -36,7 +36,7 @@ inline constexpr const char* kFix =
     R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45.280Z","lat":46.5,"lon":7.5,"altHAE":1391.3,)"
     R"("epx":4,"epy":6,"eph":10,"track":90,"epd":20,"speed":5,"eps":3})";
 
-/// The log in the shared data, or empty with a line that says so.
+/// Returns the log in the shared data. If it is missing, prints a line and returns an empty text.
 inline std::string shared_log(const std::string& name) {
   const auto path = waymark_test::shared_data_dir() / "logs" / "gpsd" / name;
   if (std::filesystem::exists(path)) return read_text_file(path.string());

@@ -1,4 +1,4 @@
-/// NMEA sentences for tests, and how they are read.
+/// NMEA sentences for tests, and functions that read them.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -25,7 +25,7 @@ using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
 
-/// A line with `$` and the checksum as the standard defines it.
+/// Returns a line with `$` and the checksum as the standard defines it.
 inline std::string line(const std::string& body) {
   unsigned sum = 0;
   for (const char c : body) sum ^= static_cast<unsigned char>(c);
@@ -60,7 +60,7 @@ inline bool noted(const LogData& data, const std::string& note) {
   return std::find(data.notes.begin(), data.notes.end(), "log.nmea: " + note) != data.notes.end();
 }
 
-/// The only complaint about a text.
+/// Returns the only error of a text.
 inline std::string complaint(const std::string& text, const LogRequest& request = utc()) {
   const LogData data = read(rmc("000000") + text + rmc("000009"), request);
   REQUIRE(data.corrupt_examples.size() == 1);

@@ -1,4 +1,4 @@
-/// UBX messages made by hand from the interface description, for tests.
+/// UBX messages for tests, made by hand from the interface description.
 #pragma once
 
 #include <bit>
@@ -8,7 +8,7 @@
 
 namespace waymark_test {
 
-/// A payload to fill in, little-endian.
+/// A payload that is filled in, little-endian.
 class UbxBytes {
  public:
   explicit UbxBytes(std::size_t size) : bytes_(size, '\0') {}
@@ -27,7 +27,7 @@ class UbxBytes {
   std::string bytes_;
 };
 
-/// A frame around a payload. @param key  class * 256 + id
+/// Returns a frame around a payload. @param key class * 256 + id
 inline std::string ubx_frame(unsigned key, std::string_view payload) {
   std::string frame = "\xB5\x62";
   frame += static_cast<char>(key >> 8U);
@@ -46,15 +46,16 @@ inline std::string ubx_frame(unsigned key, std::string_view payload) {
   return frame;
 }
 
-/// The GPS time of week of 2023-06-28T14:52:12 UTC (week 2268): 3 days 14:52:12 and 18 leap seconds.
+/// The GPS time of week of 2023-06-28T14:52:12 UTC (week 2268): 3 days 14:52:12 and 18
+/// leap seconds.
 inline constexpr std::int64_t kItowMs = ((3 * 24 + 14) * 3600 + 52 * 60 + 12 + 18) * 1000;
 /// The same instant in nanoseconds of the POSIX scale: date -u -d 2023-06-28T14:52:12 +%s
 inline constexpr std::int64_t kUtc = 1'687'963'932LL * 1'000'000'000;
 /// ... and of the GPS scale.
 inline constexpr std::int64_t kGps = (2268LL * 604'800'000 + kItowMs) * 1'000'000;
 
-/// NAV-PVT at that instant, later by whole seconds (below 48): a 3D fix at 55.5, 12.25, 30 m above the
-/// ellipsoid, hAcc 2 m, 10 m/s (0.5) to 90 degrees (2).
+/// Returns NAV-PVT at that instant, plus whole seconds (below 48): a 3D fix at 55.5, 12.25, 30 m
+/// above the ellipsoid, hAcc 2 m, 10 m/s (0.5) to 90 degrees (2).
 inline UbxBytes nav_pvt(int seconds = 0) {
   UbxBytes pvt(92);
   pvt.u32(0, kItowMs + 1000 * seconds)

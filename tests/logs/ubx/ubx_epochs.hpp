@@ -1,4 +1,4 @@
-/// Epochs of UBX messages for tests, and how they are read.
+/// Epochs of UBX messages for tests, and functions that read them.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -33,7 +33,7 @@ inline std::string pvt_frame(const UbxBytes& pvt) {
   return ubx_frame(0x0107, pvt.bytes());
 }
 
-/// What the log says where read() would throw for the want of samples.
+/// Returns the content of a log for which read() would throw because it has no samples.
 inline LogData decode(std::string_view bytes, const LogRequest& request = {}) {
   const auto decoder = UbxReader().open("log.ubx", request);
   decoder->take(bytes);

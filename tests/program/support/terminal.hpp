@@ -1,4 +1,4 @@
-/// Runs the built program on a pseudo terminal, and shows what a user would then see.
+/// Runs the built program on a pseudo terminal, and returns what a user would see.
 #pragma once
 
 #include <map>
@@ -10,17 +10,17 @@
 struct Terminal {
   unsigned columns = 80;
   std::map<std::string, std::string> environment = {
-      {"TERM", "xterm"}};    ///< beside what is there; NO_COLOR is not
-  bool out_in_pipe = false;  ///< standard error alone is on the terminal
+      {"TERM", "xterm"}};    ///< added to the environment; NO_COLOR is removed
+  bool out_in_pipe = false;  ///< only standard error is on the terminal
 };
 
-/// RunResult::err is what came on the terminal, with "\n" for its "\r\n"; RunResult::out what came through
-/// the pipe.
+/// In the result, RunResult::err is the text on the terminal, with "\n" for its "\r\n".
+/// RunResult::out is the text from the pipe.
 [[nodiscard]] RunResult run_on(const Terminal& terminal, std::vector<std::string> arguments);
 
-/// The lines that stay on a screen: what carriage returns and "erase to the end of the line" leave. Colours
-/// are taken away.
+/// Returns the lines that remain on a screen after carriage returns and "erase to the end of the
+/// line". Colours are removed.
 [[nodiscard]] std::vector<std::string> screen_of(const std::string& text);
 
-/// Every text that stood in a line, those that were overwritten too.
+/// Returns every text that was in a line, also those that were overwritten.
 [[nodiscard]] std::vector<std::string> shown_in(const std::string& text);

@@ -1,4 +1,4 @@
-// A public header of a library; the macros are what a next version might do to it.
+// A public header of a library. Each macro is a change that a next version might make.
 #pragma once
 
 struct Reading {
