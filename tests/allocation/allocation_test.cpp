@@ -1,14 +1,13 @@
 // After the first iteration nothing is allocated any more: requests for memory counted between iterations.
 #include <cstdlib>
-#include <iostream>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include <waymark/core/optimize/optimizer.hpp>
 
+#include "allocation/calibrated_problem.hpp"
 #include "allocation/counting_allocator.hpp"
-#include "allocation/problems.hpp"
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
@@ -86,17 +85,4 @@ TEST_CASE("block Cholesky: no allocation in an iteration after the first, for an
       }
     }
   }
-}
-
-TEST_CASE("other backends: their requests for memory per iteration, for information") {
-  const TypeRegistry registry = full_registry();
-  for (const Problem& problem : problems(registry)) {
-    for (const auto& [solver, origin] : registry.linear_solvers()) {
-      const auto counts = requests_per_iteration(registry, problem.graph, "gauss_newton", solver.name);
-      std::cout << problem.name << ", " << solver.name << ":";
-      for (const long count : counts) std::cout << ' ' << count;
-      std::cout << '\n';
-    }
-  }
-  SUCCEED();
 }

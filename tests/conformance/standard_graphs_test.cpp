@@ -1,6 +1,5 @@
 // The published pose graphs: every algorithm with every solver reaches the best optimum known (anchors: the
 // best of g2o, Ceres and GTSAM, (t, theta) form). They are not part of the project: skipped where absent.
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -49,12 +48,6 @@ Summary run(Graph& graph, const AlgorithmType& algorithm, const LinearSolverType
                   *solver.make(), options);
 }
 
-void print(const std::string& graph, const std::string& algorithm, const std::string& solver,
-           const Summary& s) {
-  std::printf("%-20s %-20s %-20s chi2 %.6f in %d, %.0f ms: %s\n", graph.c_str(), algorithm.c_str(),
-              solver.c_str(), s.final_chi2, s.iterations, 1e3 * s.total_seconds, s.message.c_str());
-}
-
 void check_optimum(const std::string& name, double optimum, bool odometry_start = false) {
   const TypeRegistry registry = full_registry();
   const auto start = load(name, registry, odometry_start);
@@ -63,7 +56,6 @@ void check_optimum(const std::string& name, double optimum, bool odometry_start 
     for (const auto& [solver, solver_origin] : registry.linear_solvers()) {
       Graph graph = *start;
       const Summary summary = run(graph, algorithm, solver);
-      print(name, algorithm.name, solver.name, summary);
       INFO(algorithm.name << " with " << solver.name << ": " << summary.message);
       CHECK(summary.converged());
       CHECK(summary.final_chi2 == Approx(optimum).epsilon(1e-6));
@@ -129,7 +121,6 @@ TEST_CASE("standard graphs: ring and manhattanOlson3500, one minimum for all") {
       for (const auto& [solver, solver_origin] : registry.linear_solvers()) {
         Graph graph = *start;
         const Summary summary = run(graph, algorithm, solver);
-        print(name, algorithm.name, solver.name, summary);
         INFO(algorithm.name << " with " << solver.name << ": " << summary.message);
         CHECK(summary.converged());
         if (common < 0) common = summary.final_chi2;
@@ -156,7 +147,6 @@ TEST_CASE("standard graphs: the default configuration reaches every optimum from
       const MultiStartSummary result = optimize_from_best_start(
           *graph, registry.starts(), *registry.make_algorithm("dogleg"),
           *registry.make_linear_solver(registry.linear_solvers().front().type.name), {});
-      print(name, "default from " + result.start, odometry ? "odometry" : "file", result.summary);
       INFO(name << ": " << result.summary.message);
       CHECK(result.summary.converged());
       CHECK(result.summary.final_chi2 == Approx(optimum).epsilon(1e-6));
@@ -174,7 +164,6 @@ TEST_CASE(
       Graph graph = *file;
       graph.set_values(registry.make_start(start, graph).values);
       const Summary summary = run(graph, algorithm, registry.linear_solvers().front().type);
-      print("MIT", algorithm.name, start, summary);
       CHECK(summary.converged());
       CHECK(summary.final_chi2 == Approx(41.163269).epsilon(1e-6));
       check_local_minimum(graph);
@@ -191,7 +180,6 @@ TEST_CASE("standard graphs: MIT, dogleg reaches the best known minimum or a bett
     OptimizerOptions options;
     options.max_iterations = 500;
     const Summary summary = optimize(graph, *registry.make_algorithm("dogleg"), *solver.make(), options);
-    print("MIT", "dogleg", solver.name, summary);
     INFO(solver.name << ": " << summary.message);
     CHECK(summary.converged());
     CHECK(summary.final_chi2 <= 526.34);
@@ -211,7 +199,6 @@ TEST_CASE("standard graphs: MIT, an algorithm that ends elsewhere is honest abou
       options.max_iterations = iterations;
       const Summary summary =
           optimize(graph, *registry.make_algorithm(name), *registry.make_linear_solver("eigen"), options);
-      print("MIT", name, "eigen", summary);
       INFO(name << ": " << summary.message);
       if (!summary.converged()) {
         CHECK(summary.termination == Termination::max_iterations);

@@ -13,7 +13,6 @@
 #include <waymark/core/system/gauge.hpp>
 
 #include "support/block_shapes.hpp"
-#include "support/key_workload.hpp"
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
@@ -290,8 +289,4 @@ TEST_CASE("block Cholesky: on ill-conditioned drives its backward error is that 
     drive.add_fixes(registry, modeling);
     check_accuracy(drive.graph);
   }
-}
-
-TEST_CASE("block Cholesky: on the key workload its backward error is that of Eigen") {
-  if (const auto graph = key_workload("G1", full_registry())) check_accuracy(*graph);
 }

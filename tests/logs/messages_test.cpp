@@ -1,4 +1,4 @@
-// Texts of errors and corrupt records that the readers' own tests do not come by.
+// What readers say about a log they refuse or a record they cannot use, one complaint a case.
 #include <catch2/catch.hpp>
 
 #include <string>
@@ -15,11 +15,10 @@ using namespace waymark::formats;
 
 namespace {
 
-LogRequest request_of(StreamKind stream, std::map<std::string, ColumnRequest> columns = {}) {
+LogRequest odometry(std::map<std::string, ColumnRequest> columns = {}) {
   LogRequest request;
-  request.stream = stream;
+  request.stream = StreamKind::odometry;
   request.columns = std::move(columns);
-  request.default_sigma_m = 5;
   return request;
 }
 
@@ -44,61 +43,94 @@ std::string dbc_complaint(const std::string& text) {
   return "no complaint";
 }
 
+/// What is said about a signal of a sound message.
+std::string signal_complaint(const std::string& signal) {
+  return dbc_complaint("BO_ 1 M: 8 X\n SG_ " + signal + "\n");
+}
+
 }  // namespace
 
-TEST_CASE("messages: tables") {
-  const LogRequest odometry = request_of(StreamKind::odometry);
-  CHECK(complaint("csv", "time,\"speed,yaw_rate\n", odometry) ==
+TEST_CASE("csv messages: a quoted field of the header is not closed") {
+  CHECK(complaint("csv", "time,\"speed,yaw_rate\n", odometry()) ==
         "run.log:1:1: a quoted field of the header is not closed");
-  CHECK(complaint("csv", "time,speed,yaw_rate\n1,\"2,3\n", odometry) ==
+}
+
+TEST_CASE("csv messages: a quoted field of a record is not closed") {
+  CHECK(complaint("csv", "time,speed,yaw_rate\n1,\"2,3\n", odometry()) ==
         "run.log:2:7: a quoted field is not closed or text follows its end");
-  CHECK(complaint("csv", "time;speed;yaw_rate\n1;2,5;3\n", odometry) ==
+}
+
+TEST_CASE("csv messages: a decimal comma") {
+  CHECK(complaint("csv", "time;speed;yaw_rate\n1;2,5;3\n", odometry()) ==
         "run.log:2:3: speed: expected a number with a decimal point, got '2,5'");
-  CHECK(complaint("csv", "time,speed,yaw_rate\n1h,2,3\n", odometry) ==
+}
+
+TEST_CASE("csv messages: a time that is no number") {
+  CHECK(complaint("csv", "time,speed,yaw_rate\n1h,2,3\n", odometry()) ==
         "run.log:2:1: time: expected a decimal number, got '1h'");
-  LogRequest late = odometry;
+}
+
+TEST_CASE("csv messages: a time beyond the range of a stamp") {
+  LogRequest late = odometry();
   late.time_offset_s = 9e9;
   CHECK(complaint("csv", "time,speed,yaw_rate\n9000000000,2,3\n", late) ==
         "run.log:2:1: time: '9000000000' is too large for a stamp");
-  CHECK(complaint("csv", "1,2,3\n", request_of(StreamKind::odometry, {{"speed", {"v", "", ""}}})) ==
+}
+
+TEST_CASE("csv messages: no column for the time in a table without a header") {
+  CHECK(complaint("csv", "1,2,3\n", odometry({{"speed", {"v", "", ""}}})) ==
         "run.log:1:1: no column for time (neither 'time' nor 'time_s'): name it under columns; the table has "
-        "no "
-        "header, only columns 1 to 3");
-  CHECK(complaint("csv", "time,v\n", request_of(StreamKind::odometry, {{"speed", {"v", "", "cw"}}})) ==
+        "no header, only columns 1 to 3");
+}
+
+TEST_CASE("csv messages: a convention for a quantity that has none") {
+  CHECK(complaint("csv", "time,v\n", odometry({{"speed", {"v", "", "cw"}}})) ==
         "run.log: speed has no convention to choose");
-  CHECK(complaint("csv", "time,v\n", request_of(StreamKind::odometry, {{"yaw_rate", {"v", "", "cww"}}})) ==
+}
+
+TEST_CASE("csv messages: an unknown convention") {
+  CHECK(complaint("csv", "time,v\n", odometry({{"yaw_rate", {"v", "", "cww"}}})) ==
         "run.log: unknown convention 'cww' for yaw_rate; did you mean 'ccw'?; known: ccw, cw");
-  LogRequest channels = odometry;
+}
+
+TEST_CASE("csv messages: no column for any channel") {
+  LogRequest channels = odometry();
   channels.readings = odometry_channels();
   CHECK(complaint("csv", "time,rpm\n1,2\n", channels) ==
         "run.log:1:1: no column for speed or another channel: name it under columns; columns present: time, "
         "rpm");
 }
 
-TEST_CASE("messages: DBC files") {
+TEST_CASE("dbc messages: a file without a message") {
   CHECK(dbc_complaint("VERSION \"\"\n") == "car.dbc: no message (a line 'BO_ ...'): this is no DBC file");
+}
+
+TEST_CASE("dbc messages: a message without a name or a length") {
   CHECK(dbc_complaint("BO_ 1 ?\n") == "car.dbc:1:7: BO_: expected the message's name, got '?'");
   CHECK(dbc_complaint("BO_ 1 M: x X\n") ==
         "car.dbc:1:10: BO_ M: expected the message's length in bytes, got 'x X'");
-  const std::string message = "BO_ 1 M: 8 X\n";
-  CHECK(dbc_complaint(message + " SG_ ?\n") == "car.dbc:2:6: SG_: expected the signal's name, got '?'");
-  CHECK(dbc_complaint(message + " SG_ V : 0|x\n") ==
-        "car.dbc:2:12: SG_ V: expected the length in bits, got 'x'");
-  CHECK(dbc_complaint(message + " SG_ V : 0|8@x\n") ==
+}
+
+TEST_CASE("dbc messages: a signal without a name, length, byte order or colon") {
+  CHECK(signal_complaint("?") == "car.dbc:2:6: SG_: expected the signal's name, got '?'");
+  CHECK(signal_complaint("V : 0|x") == "car.dbc:2:12: SG_ V: expected the length in bits, got 'x'");
+  CHECK(signal_complaint("V : 0|8@x") ==
         "car.dbc:2:14: SG_ V: expected the byte order 0 (Motorola) or 1 (Intel), got 'x'");
-  CHECK(dbc_complaint(message + " SG_ V ?\n") ==
+  CHECK(signal_complaint("V ?") ==
         "car.dbc:2:8: SG_ V: expected ':' or a multiplexing such as 'M' or 'm3', got '?'");
+}
+
+TEST_CASE("dbc messages: a name that no tool would write") {
   const std::string name(129, 'N');
   CHECK(dbc_complaint("BO_ 1 " + name + ": 8 X\n") ==
         "car.dbc:1:7: BO_: a name of 129 characters: none has more than 128");
 }
 
-TEST_CASE("messages: CAN logs") {
-  CHECK(complaint("candump", "", request_of(StreamKind::odometry)) ==
-        "run.log: a candump log needs its DBC: state 'dbc: FILE'");
+TEST_CASE("candump messages: no DBC is named") {
+  CHECK(complaint("candump", "", odometry()) == "run.log: a candump log needs its DBC: state 'dbc: FILE'");
 }
 
-TEST_CASE("messages: a stamp that does not fit, of every receiver's log") {
+TEST_CASE("log messages: a stamp that does not fit, for every receiver's log") {
   for (const waymark_test::HostileSample& sample : waymark_test::hostile_samples()) {
     if (sample.reader == "csv" || sample.reader == "candump") continue;
     INFO(sample.reader);

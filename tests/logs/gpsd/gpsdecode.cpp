@@ -124,17 +124,4 @@ Comparison compare_with_gpsd(const std::vector<waymark::GeodeticFix>& fixes,
   return result;
 }
 
-std::string table_head() {
-  return "log                                  ours theirs matched dates  pos/m   h/m     t/s     v/(m/s) "
-         "course/deg GSTs sigma/m";
-}
-
-std::string table_row(const std::string& name, const Comparison& c) {
-  std::array<char, 200> row{};
-  std::snprintf(row.data(), row.size(), "%-36s %5zu %5zu %6zu %6zu  %.5f %.5f %.5f %.5f %.5f    %4zu %.5f",
-                name.c_str(), c.ours, c.theirs, c.matched, c.other_dates, c.position_m, c.height_m, c.time_s,
-                c.speed_mps, c.course_deg, c.accuracies, c.accuracy_m);
-  return row.data();
-}
-
 }  // namespace waymark_test

@@ -44,8 +44,4 @@ struct Comparison {
 [[nodiscard]] Comparison compare_with_gpsd(const std::vector<waymark::GeodeticFix>& fixes,
                                            const std::vector<nlohmann::json>& objects);
 
-/// Returns one row of the table that the tests tagged [.table] print.
-[[nodiscard]] std::string table_row(const std::string& name, const Comparison& comparison);
-[[nodiscard]] std::string table_head();
-
 }  // namespace waymark_test

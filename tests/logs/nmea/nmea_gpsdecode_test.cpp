@@ -3,8 +3,7 @@
 //   that stands alone;
 // - it moves dates by 1024 weeks where it takes them for ones of before a rollover of the GPS week;
 // - it rounds: a time to 1 ms, a position to 1e-9 degrees (0.1 mm), a height to 1e-4 m, a speed to 1e-3 m/s,
-// a
-//   course to 1e-4 degrees, an error to 1e-3 m;
+//   a course to 1e-4 degrees, an error to 1e-3 m;
 // - a fix from fewer than three satellites is none.
 // Its epx and epy are those of GST where the log has them, else of the dilution of precision, which we do not
 // make an accuracy of unasked: the GST objects are compared.
@@ -93,13 +92,4 @@ TEST_CASE("gpsd's own regression output of a recording agrees with its NMEA fixe
   CHECK(comparison.theirs == 22);
   CHECK(comparison.other_dates == 22);  // 2034 for 2015
   check_rounding_only(comparison);
-}
-
-TEST_CASE("gpsdecode: table of differences, NMEA", "[.table]") {
-  std::cout << table_head() << '\n';
-  for (const NmeaLog& log : kNmeaLogs) {
-    const auto objects = run_gpsdecode(nmea_log(log.name));
-    if (!objects) return;
-    std::cout << table_row(log.name, compare_with_gpsd(nmea_fixes(nmea_log(log.name)), *objects)) << '\n';
-  }
 }

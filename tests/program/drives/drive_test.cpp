@@ -75,21 +75,25 @@ TEST_CASE("a run that does not converge: exit 4, files and message") {
 TEST_CASE("logs that cannot be used are bad input with a reason") {
   const std::string folder = fresh_folder();
   write_drive(folder, {.empty_odometry = true});
-  check_refused(folder, "odometry.csv");
+  check_refused(folder, "odometry.csv: the log holds no records");
   write_drive(folder, {.with_fixes = false});
-  check_refused(folder, "gnss.csv");
+  check_refused(folder, "gnss.csv: the log holds no records");
 
   write_drive(folder);
   write_text(folder + "gnss.csv", "");
-  check_refused(folder, "gnss.csv");
+  check_refused(folder, "gnss.csv: the log is empty");
 
   write_drive(folder);
   write_text(folder + "odometry.csv", "time,speed,yaw_rate\n1000,ten,0\n1001,nan,0\n1002,3\n");
-  check_refused(folder, "odometry.csv");
+  check_refused(folder, "odometry.csv: none of 3 records could be used; first: ");
+  check_refused(folder, "odometry.csv:2:6: speed: expected a number, got 'ten'");
 
   write_drive(folder);
   write_text(folder + "odometry.csv", "time,velocity,yaw_rate\n1000,10,0\n1001,10,0\n");
-  check_refused(folder, "velocity");
+  check_refused(
+      folder,
+      "odometry.csv:1:1: no column for speed (neither 'speed' nor 'speed_mps'): name it under columns; "
+      "columns present: time, velocity, yaw_rate");
 }
 
 TEST_CASE("a missing log is named") {
@@ -103,7 +107,7 @@ TEST_CASE("a drive whose fixes are all rejected is bad input") {
   const std::string folder = fresh_folder();
   write_drive(folder, {.fix_error_m = [](int t) { return t % 2 == 0 ? 200.0 : -200.0; },
                        .more_yaml = "modeling: g1\n"});
-  check_refused(folder, "rejected");
+  check_refused(folder, "all 41 fixes were rejected by the gate; check the sign and unit of the yaw rate");
   CHECK(run({"convert", folder + "drive.yaml", "-o", folder + "out.graph", "--no-gate", "-q"}).code == 0);
   // The default error model has no gate.
   CHECK(run({"convert", folder + "drive.yaml", "-m", "correlated", "-o", folder + "out.graph", "-q"}).code ==
@@ -121,7 +125,7 @@ TEST_CASE("truth that does not overlap the drive is bad input") {
   const RunResult result = run({"evaluate", folder + "a.graph", "--truth", folder + "truth.tum"});
   INFO(result.out << result.err);
   CHECK(result.code == 3);
-  CHECK(contains(result.err, "overlap"));
+  CHECK(contains(result.err, "truth does not overlap the drive in time: truth spans 5000.000000000 .. 5001"));
 }
 
 TEST_CASE("truth comes from a drive.yaml or a TUM file, with the same result") {
@@ -132,12 +136,15 @@ TEST_CASE("truth comes from a drive.yaml or a TUM file, with the same result") {
   const auto by_yaml = run({"evaluate", fused, "--truth", drive, "--json"});
   CHECK(by_yaml.code == 0);
   // Its own trajectory as truth: no error at all.
-  const auto by_tum = run({"evaluate", fused, "--truth", folder + "r/g1.tum"});
+  const auto by_tum = run({"evaluate", fused, "--truth", folder + "r/g1.tum", "--json"});
   INFO(by_tum.err);
   CHECK(by_tum.code == 0);
-  CHECK(contains(by_tum.out, "0.000"));
+  const Json position = Json::parse(by_tum.out)["evaluations"][0]["truth"]["fused"]["position"];
+  CHECK(position["n"] == 41);
+  CHECK(position["max_m"].get<double>() < 1e-9);
   const auto no_truth = run({"evaluate", fused, "--truth", folder + "none.tum"});
   CHECK(no_truth.code == 3);
+  CHECK(contains(no_truth.err, "none.tum: cannot read: No such file or directory"));
   write_text(folder + "no_truth.yaml", "odometry: {file: odometry.csv}\ngnss: {file: gnss.csv}\n");
   const auto without = run({"evaluate", fused, "--truth", folder + "no_truth.yaml"});
   CHECK(without.code == 3);

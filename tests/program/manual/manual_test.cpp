@@ -5,29 +5,12 @@
 
 #include <catch2/catch.hpp>
 
-#include "program/support/material.hpp"
+#include "program/support/help.hpp"
 #include "program/support/program.hpp"
 
 namespace {
 
 using Words = std::set<std::string>;
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
-
-/// The words of a line, cut at spaces and commas.
-std::vector<std::string> words_of(const std::string& line) {
-  std::string spaced = line;
-  std::replace(spaced.begin(), spaced.end(), ',', ' ');
-  std::istringstream in(spaced);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
 
 /// The options at the front of a line: "-o,--out DIR" has two.
 void add_options(const std::string& line, Words& options) {
@@ -35,23 +18,6 @@ void add_options(const std::string& line, Words& options) {
     if (!word.starts_with('-')) return;
     options.insert(word);
   }
-}
-
-/// Subcommands, as --help lists them.
-std::vector<std::string> subcommands() {
-  std::vector<std::string> names;
-  bool inside = false;
-  for (const std::string& line : lines_of(run({"--help"}).out)) {
-    if (line == "Subcommands:") {
-      inside = true;
-    } else if (line.empty()) {
-      inside = false;
-    } else if (inside) {
-      names.push_back(words_of(line).front());
-    }
-  }
-  REQUIRE(names.size() > 10);
-  return names;
 }
 
 Words help_options(const std::string& command) {

@@ -93,7 +93,6 @@ TEST_CASE("From the anchored start all modelings and algorithms reach one minimu
       CHECK(summary.final_chi2 == Approx(reference).epsilon(1e-6));
     }
   }
-  std::cout << drive.name << " chi2 " << reference << " (G1, G3), " << effective_reference << " (G2)\n";
 }
 
 TEST_CASE("From dead reckoning no failure passes for a success") {
@@ -110,10 +109,6 @@ TEST_CASE("From dead reckoning no failure passes for a success") {
       GraphDocument document = add_modeling(skeleton, modeling, {}, registry);
       const double start = document.graph.chi2();
       const Summary summary = solve(document, algorithm, registry);
-      std::cout << drive.name << " " << modeling << " " << algorithm << ": " << summary.iterations
-                << " iterations, chi2 " << summary.final_chi2
-                << (summary.final_chi2 < minimum * (1 + 1e-6) ? ", the minimum" : ", NOT the minimum") << ", "
-                << to_string(summary.termination) << "\n";
       INFO(modeling << " " << algorithm);
       // No start finds less than the anchored one; the best values are returned, never worse than the
       // start's.

@@ -121,12 +121,13 @@ TEST_CASE("noise: what a drive was made with is found, within what the drive can
       mean[option] += away / kSeeds;
     }
   }
-  // White noise is judged on one fix in 7.5 s, beside a part of 2.5 m that moves by as much meanwhile.
-  CHECK(std::abs(mean["white_sigma"]) < 0.5);
+  // Logarithms of a ratio. White noise is judged on one fix in 7.5 s, beside a part of 2.5 m that moves by as
+  // much meanwhile: single drives are off by up to e^1.3, their mean by a fifth at most.
+  CHECK(std::abs(mean["white_sigma"]) < 0.2);
   CHECK(std::abs(mean["multipath_sigma"]) < 0.2);
-  CHECK(std::abs(mean["multipath_time"]) < 0.4);
-  CHECK(std::abs(mean["heading_variance_per_s"]) < 0.6);
-  CHECK(std::abs(mean["accuracy_exponent"]) < 0.1);
+  CHECK(std::abs(mean["multipath_time"]) < 0.2);
+  CHECK(std::abs(mean["heading_variance_per_s"]) < 0.3);
+  CHECK(std::abs(mean["accuracy_exponent"]) < 0.1);  // a difference, not a ratio
 }
 
 TEST_CASE("noise: what is stated is not estimated, what the drive cannot show keeps its prior") {
@@ -182,7 +183,7 @@ TEST_CASE("coarse: fewer nodes and fixes, the same way and turn") {
   const PreparedDrive drive = make_drive({}, 5);
   const DriveConfig config = complete_config();
   const PlacedDrive placed = place_drive(drive, config, registry());
-  const CoarseDrive coarse = coarsen(placed, 5, 0.25);
+  const CoarseDrive coarse = coarsen(placed);
   const auto sum = [](const std::vector<Interval>& intervals, auto quantity) {
     double total = 0;
     for (const Interval& interval : intervals) total += quantity(interval);
@@ -196,7 +197,7 @@ TEST_CASE("coarse: fewer nodes and fixes, the same way and turn") {
   CHECK(coarse.stamps.back() == placed.timeline.stamps.back());
   CHECK(coarse.intervals.size() == coarse.stamps.size() - 1);
   CHECK(coarse.stamps.size() < placed.timeline.stamps.size() * 11 / 20);
-  CHECK(coarse.fixes.size() == 240);  // of 1200
+  CHECK(coarse.fixes.size() == 172);  // every seventh of 1200
   for (const Fix& fix : coarse.fixes)
     CHECK(coarse.stamps[static_cast<std::size_t>(fix.vertex) - 1] == fix.stamp);
 }

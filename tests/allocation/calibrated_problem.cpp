@@ -1,4 +1,4 @@
-#include "allocation/problems.hpp"
+#include "allocation/calibrated_problem.hpp"
 
 #include "support/calibrated_drive.hpp"
 

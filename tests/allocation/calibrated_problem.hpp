@@ -1,4 +1,4 @@
-/// The problems that the allocation tests optimise.
+/// The one problem of the allocation tests that no other test has.
 #pragma once
 
 #include <waymark/core/graph/graph.hpp>
