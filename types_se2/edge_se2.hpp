@@ -110,36 +110,6 @@ struct EdgeSe2Log {
   RelativeMeasurement relative{};  ///< of measured, by prepare()
 };
 
-/// The position of an antenna, seen from a reference pose: e = R_from^T (p_to + R_to antenna -
-/// p_from) - measured. Metres. For GNSS the reference is the fixed origin of the frame or a fixed
-/// GNSS node. If it is the origin, e is the difference in the axes of the frame, and no heading
-/// error enters it. This is the decoupled GNSS error.
-struct EdgeGnssPosition {
-  static constexpr std::string_view kTag = "EDGE_GNSS_POSITION";
-  static constexpr std::string_view kForm = "position";
-  static constexpr int kErrorDimension = 2;
-  using Vertices = VertexList<VertexSe2, VertexSe2>;
-  static constexpr bool kRelative = true;
-  static constexpr auto fields() {
-    return std::array{field<&EdgeGnssPosition::measured>("measured"),
-                      field<&EdgeGnssPosition::antenna>("antenna")};
-  }
-
-  template <typename T>
-  Vector2<T> error(const Pose2<T>& from, const Pose2<T>& to) const {
-    const Vector2<T> place = to.position + rotate(to.heading, constant_vector<T>(antenna));
-    const Vector2<T> seen = rotate_back(from.heading, Vector2<T>(place - from.position));
-    return seen - constant_vector<T>(measured);
-  }
-
-  void linearize(const Pose2<double>& from, const Pose2<double>& to, ErrorVector<2>& e,
-                 JacobianMatrix<2, 3>& by_from, JacobianMatrix<2, 3>& by_to) const;
-
-  Eigen::Vector2d measured = Eigen::Vector2d::Zero();
-  /// in the body frame of `to`: x forward, y left
-  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();
-};
-
 /// A prior on a pose in (t, theta) form. With D = Z^-1 X the error is e = (D.x, D.y,
 /// wrap(D.heading)).
 struct EdgePriorSe2 {
@@ -212,7 +182,6 @@ struct EdgeSe2Xy {
 // This is compiled once, in edge_se2.cpp, and not in every file that adds an edge.
 extern template class EdgeBatch<EdgeSe2>;
 extern template class EdgeBatch<EdgeSe2Log>;
-extern template class EdgeBatch<EdgeGnssPosition>;
 extern template class EdgeBatch<EdgePriorSe2>;
 extern template class EdgeBatch<EdgeSe2Xy>;
 

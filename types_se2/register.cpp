@@ -1,8 +1,8 @@
+#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/g2o_edges.hpp>
 #include <waymark/types_se2/register.hpp>
 #include <waymark/types_se2/start/detail/starts.hpp>
-#include <waymark/types_se2/time_offset.hpp>
 
 namespace waymark {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include <waymark/core/graph/edge_batch.hpp>
-#include <waymark/types_se2/time_offset.hpp>
+#include <waymark/types_se2/edge_gnss.hpp>
 
 namespace waymark::plugins::gnss_correlated {
 

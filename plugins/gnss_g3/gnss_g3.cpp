@@ -2,7 +2,7 @@
 
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
-#include <waymark/types_se2/plugin_kit/gnss_edges.hpp>
+#include <waymark/types_se2/plugin_kit/gnss_modeling.hpp>
 
 namespace waymark::plugins::gnss_g3 {
 namespace {

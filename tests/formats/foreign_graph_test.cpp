@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/g2o_edges.hpp>
 

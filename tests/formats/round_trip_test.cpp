@@ -10,7 +10,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 #include <waymark/formats/text/text_file.hpp>
-#include <waymark/types_se2/plugin_kit/gnss_edges.hpp>
+#include <waymark/types_se2/plugin_kit/gnss_modeling.hpp>
 
 #include "formats/read_helpers.hpp"
 #include "support/markdown.hpp"

@@ -10,6 +10,7 @@
 
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/registry/registry.hpp>
+#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace waymark_test {

@@ -13,6 +13,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/plugins/odometry/edge_odometry.hpp>
+#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 // The dual number of Ceres keeps its value in another member than ours. The errors of types_se2

@@ -7,8 +7,8 @@
 #include <waymark/tools/drive/model/assemble.hpp>
 #include <waymark/tools/drive/model/sensors.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
+#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/stamped_pose.hpp>
-#include <waymark/types_se2/time_offset.hpp>
 
 namespace waymark::drive {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/g2o_edges.hpp>
 

@@ -10,8 +10,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/drive/modeling.hpp>
 #include <waymark/core/registry/options.hpp>
+#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
-#include <waymark/types_se2/time_offset.hpp>
 
 namespace waymark {
 
