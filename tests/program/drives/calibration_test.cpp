@@ -31,8 +31,8 @@ TEST_CASE("calibration: the gyro's bias alone lowers Prec of the bundled drive b
 }
 
 TEST_CASE("calibration: under a robust loss all states together lower Prec of the bundled drive") {
-  const std::vector<std::string> loss = {"--loss", "cauchy:1"};
-  CHECK(prec_of({"--loss", "cauchy:1", "--calibrate", "on"}) < 0.8 * prec_of(loss));
+  const std::vector<std::string> loss = {"--gnss-loss", "cauchy:1"};
+  CHECK(prec_of({"--gnss-loss", "cauchy:1", "--calibrate", "on"}) < 0.8 * prec_of(loss));
 }
 
 TEST_CASE("calibration: run reports every state with unit and sigma, in its summary as on the terminal") {

@@ -64,7 +64,7 @@ TEST_CASE("modelings, withheld fixes and a window of time are taken from the com
 TEST_CASE("a run that does not converge: exit 4, files and message") {
   const std::string folder = fresh_folder();
   const RunResult result = run({"run", write_drive(folder), "--out", folder + "results", "--max-iterations",
-                                "1", "--start", "dead_reckoning", "-a", "levenberg_marquardt", "-m", "g1"});
+                                "1", "--initial-guess", "dead_reckoning", "-a", "levenberg_marquardt", "-m", "g1"});
   INFO(result.out << result.err);
   CHECK(result.code == 4);
   CHECK(contains(result.out, "NOT CONVERGED in 1 iterations"));

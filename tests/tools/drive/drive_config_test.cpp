@@ -77,16 +77,16 @@ odometry:
     speed: {column: v, unit: km/h}
     yaw_rate: {column: w, unit: deg/s, convention: cw}
   time: {scale: gps, week: 1900, offset: -0.4}
-  noise: {heading_variance_per_s: 1e-7}
+  options: {heading_variance_per_s: 1e-7}
 gnss:
-  - {file: a.json, format: gpsd_json, accuracy: {meaning: drms, default_sigma: 5}, antenna: [1, -0.5], rate: 4,
+  - {file: a.json, format: gpsd_json, accuracy: {meaning: drms, default_sigma: 5}, antenna: [1, -0.5], period: 0.25,
      delay: 0.1, withhold_every: 10}
   - {file: /logs/b.csv, antenna: [1, -0.5], period: 0.25, delay: 0.1, withhold_every: 10}
 truth: {file: t.csv, reference: [0.1, 0.2], time: {scale: unix}}
 gate: {enabled: false, max_angle_deg: 2, max_displacement_m: 20}
 gap: {longer_than: 1, policy: error, noise_factor: 10}
 snap: 0.002
-start: dead_reckoning
+initial_guess: dead_reckoning
 modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
 )");
   CHECK(config.name == "Somewhere");
@@ -105,7 +105,7 @@ modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
   CHECK(odometry.gps_week == 1900);
   CHECK(odometry.time_offset_s == -0.4);
   CHECK(config.odometry_options.at("heading_variance_per_s") == "1e-7");
-  CHECK(config.places.at("odometry.noise.heading_variance_per_s") == "tours/drive.yaml:14:35: ");
+  CHECK(config.places.at("odometry.options.heading_variance_per_s") == "tours/drive.yaml:14:37: ");
   REQUIRE(config.gnss.size() == 2);
   CHECK(config.gnss[0].format == "gpsd_json");
   CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::drms);
@@ -165,8 +165,8 @@ TEST_CASE("drive.yaml: wrong types and ranges") {
   CHECK(error_of("gate: {chord_s: 8}\n") ==
         "tours/drive.yaml:3:7: gate: max_chord_s (5) must not be below chord_s (8)");
   CHECK(error_of("gate: 3\n") == "tours/drive.yaml:3:7: gate: expected a mapping (key: value), got '3'");
-  CHECK(error_of("start: somewhere\n") ==
-        "tours/drive.yaml:3:8: start: expected one of anchored, dead_reckoning, got 'somewhere'");
+  CHECK(error_of("initial_guess: somewhere\n") ==
+        "tours/drive.yaml:3:16: initial_guess: expected one of anchored, dead_reckoning, got 'somewhere'");
   CHECK(error_of("time: {from: 5, to: 5}\n") == "tours/drive.yaml:3:21: time.to: must lie after 'from'");
   CHECK(error_of("frame: {utm_zone: 61N}\n") ==
         "tours/drive.yaml:3:19: frame.utm_zone: expected a zone such as 32N or 56S, got '61N'");
@@ -175,10 +175,8 @@ TEST_CASE("drive.yaml: wrong types and ranges") {
   CHECK(error_of("truth: {reference: [1, 2]}\n") == "tours/drive.yaml:3:8: truth: 'file' is missing");
   CHECK(error_of("truth: {file: t.csv, reference: [1, 2, 3]}\n") ==
         "tours/drive.yaml:3:33: truth.reference: expected two numbers [x, y], got a list of 3");
-  CHECK(error_of_gnss("  rate: 0\n") ==
-        "tours/drive.yaml:4:9: gnss.rate: expected a number above 0, got '0'");
-  CHECK(error_of_gnss("  rate: 1\n  period: 1\n") ==
-        "tours/drive.yaml:4:9: gnss.rate: give either period (s) or rate (Hz)");
+  CHECK(error_of_gnss("  period: -1\n") ==
+        "tours/drive.yaml:4:11: gnss.period: expected a number not below 0, got '-1'");
   CHECK(error_of_gnss("  withhold_every: 1\n") ==
         "tours/drive.yaml:4:19: gnss.withhold_every: expected 0 (none) or a whole number from 2, got '1'");
   CHECK(error_of_gnss("  accuracy: {meaning: 2sigma}\n") ==

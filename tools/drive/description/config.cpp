@@ -18,7 +18,7 @@ namespace waymark::drive {
 namespace {
 
 constexpr std::array<std::string_view, 2> kGapPolicies{"bridge", "error"};
-constexpr std::array<std::string_view, 2> kStarts{"anchored", "dead_reckoning"};
+constexpr std::array<std::string_view, 2> kInitialGuesses{"anchored", "dead_reckoning"};
 constexpr std::array<std::string_view, 2> kNoises{"estimate", "stated"};
 constexpr std::array<std::string_view, 4> kSwitch{"on", "off", "true", "false"};
 constexpr std::array kSwitchValues{true, false, true, false};
@@ -133,7 +133,7 @@ void read_odometry(const YamlSection& top, DriveConfig& config) {
   if (!top.has("odometry")) throw InputError(top.place() + "'odometry' is missing");
   const YamlSection section(top.node("odometry"), "odometry", top.file(),
                             log_keys({"parts", "rate", "speed_from", "yaw_rate_from", "gyro", "vehicle",
-                                      "speed_delay", "yaw_rate_delay", "model", "noise"}));
+                                      "speed_delay", "yaw_rate_delay", "model", "options"}));
   const auto read_log = [&](const YamlSection& from, bool in_channels) {
     LogRequest request;
     request.stream = StreamKind::odometry;
@@ -153,19 +153,13 @@ void read_odometry(const YamlSection& top, DriveConfig& config) {
   section.read("yaw_rate_delay", config.yaw_rate_delay_s, kAnyNumber);
   section.read("model", config.odometry_model);
   if (section.has("model")) config.places["odometry.model"] = section.place("model");
-  read_options(section, "noise", "odometry.noise.", config.odometry_options, config);
+  read_options(section, "options", "odometry.options.", config.odometry_options, config);
 }
 
 Receiver read_receiver(const YamlSection& section) {
   Receiver receiver;
   section.read("antenna", receiver.antenna_m);
   section.read("period", receiver.period_s, kNotNegative);
-  if (section.has("rate")) {
-    if (section.has("period")) section.fail("rate", "give either period (s) or rate (Hz)");
-    double rate_hz = 0;
-    section.read("rate", rate_hz, kPositive);
-    receiver.period_s = 1 / rate_hz;
-  }
   section.read("delay", receiver.delay_s, kAnyNumber);
   section.read("withhold_every", receiver.withhold_every, kWithhold);
   if (receiver.withhold_every == 1) section.fail_value("withhold_every", kWithhold.words);
@@ -188,7 +182,7 @@ void read_gnss(const YamlSection& top, DriveConfig& config) {
   for (const YAML::Node& entry : entries) {
     const YamlSection section(
         entry, "gnss", top.file(),
-        log_keys({"accuracy", "velocity", "antenna", "period", "rate", "delay", "withhold_every"}));
+        log_keys({"accuracy", "velocity", "antenna", "period", "delay", "withhold_every"}));
     LogRequest request;
     request.source = static_cast<int>(config.gnss.size());
     GnssConfig log{read_log_config(section, request, config.folder, config.time_scale),
@@ -311,7 +305,7 @@ DriveConfig parse_drive_config(const std::string& text, const std::string& path,
   }
   const YamlSection top(root, "", path,
                         {"name", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap",
-                         "snap", "start", "modeling", "calibration", "noise", "sensors", "plugins"});
+                         "snap", "initial_guess", "modeling", "calibration", "noise", "sensors", "plugins"});
   DriveConfig config;
   config.path = path;
   config.name = std::filesystem::path(path).stem().string();
@@ -324,7 +318,7 @@ DriveConfig parse_drive_config(const std::string& text, const std::string& path,
   read_truth(top, config);
   read_gate(top, config);
   read_timeline(top, config);
-  if (const auto start = top.read_word("start", kStarts))
+  if (const auto start = top.read_word("initial_guess", kInitialGuesses))
     config.start.method = *start == 0 ? StartMethod::anchored : StartMethod::dead_reckoning;
   read_modeling(top, config);
   read_calibration(top, config);

@@ -91,7 +91,7 @@ struct DriveConfig {
   bool gate_stated = false;             ///< whether the gate is to run
   std::optional<bool> estimates_noise;  ///< options with a prior, from the drive itself (noise.hpp)
   /// "drive.yaml:12:5: " of what only a plugin can check: "modeling", "modeling.options.NAME",
-  /// "modeling.loss", "odometry.model", "odometry.noise.NAME", "calibration.NAME".
+  /// "modeling.loss", "odometry.model", "odometry.options.NAME", "calibration.NAME".
   std::map<std::string, std::string> places;
 };
 

@@ -20,7 +20,7 @@ std::string place_of(const DriveConfig& config, const std::string& key) {
 
 /// Where an option of the odometry model stands.
 std::string place_of_option(const DriveConfig& config, const std::string& option) {
-  for (const char* section : {"odometry.noise.", "calibration."}) {
+  for (const char* section : {"odometry.options.", "calibration."}) {
     const auto place = config.places.find(section + option);
     if (place != config.places.end()) return place->second;
   }

@@ -32,7 +32,7 @@ odometry:                          # or in parts: `waymark init LOG...` shows ho
 #   gyro: {axis: gravity}          # x | -x | y | -y | z | -z | gravity
 #   vehicle: {track_width: 1.55, wheelbase: 2.7, steering_ratio: 15, metres_per_tick: 0.01}
 #   model: constant_twist
-#   noise: {heading_variance_per_s: 1.5e-6}
+#   options: {heading_variance_per_s: 1.5e-6}
 
 gnss:                              # or a list of these: several receivers
   file: FILL_IN_gnss.nmea
@@ -53,7 +53,7 @@ gnss:                              # or a list of these: several receivers
 # gate: {enabled: true, max_angle_deg: 1.5, max_displacement_m: 15, chord_s: 1, max_chord_s: 5, min_chord_m: 1}
 # gap: {longer_than: 0.5, policy: bridge, noise_factor: 100}
 # snap: 0.001
-# start: anchored                  # anchored | dead_reckoning
+# initial_guess: anchored          # anchored | dead_reckoning
 # modeling: correlated             # g1, g2, g3, or {name: g2, loss: "cauchy:1", options: {}}
 # calibration: on                  # gyro bias, speed scale and time offset
 # noise: estimate                  # estimate | stated

@@ -78,9 +78,9 @@ void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
           "--outage", overrides.outage,
           "Keep the last LENGTH of every EVERY seconds of fixes out of the graph, to evaluate against")
       ->type_name("LENGTH/EVERY");
-  command.add_option("--start", overrides.start, "Where the optimisation starts")
-      ->check(one_of("start", {"anchored", "dead_reckoning"}));
-  command.add_option("--loss", overrides.loss, "Robust loss of the fixes, or 'none'")
+  command.add_option("--initial-guess", overrides.start, "How the poses are guessed from the logs")
+      ->check(one_of("initial guess", {"anchored", "dead_reckoning"}));
+  command.add_option("--gnss-loss", overrides.loss, "Robust loss of the fixes, or 'none'")
       ->type_name("LOSS:SCALE|none");
   command
       .add_option("--calibrate", overrides.calibrate,

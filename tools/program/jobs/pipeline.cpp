@@ -79,7 +79,7 @@ std::optional<Loss> loss_of_fixes(const drive::DriveConfig& config, bool overrid
                                   const TypeRegistry& registry) {
   if (config.loss.empty() || config.loss == "none") return std::nullopt;
   const auto place = config.places.find("modeling.loss");
-  if (overridden || place == config.places.end()) return named_loss(config.loss, "--loss", registry);
+  if (overridden || place == config.places.end()) return named_loss(config.loss, "--gnss-loss", registry);
   try {
     return named_loss(config.loss, "modeling.loss", registry);
   } catch (const UsageError& error) {
@@ -247,7 +247,7 @@ drive::ModeledDrive model_loaded(const LoadedDrive& loaded, const std::string& m
   const bool calibrates_scale = scale != config.calibration.end() && scale->second != "off";
   if (calibrates_scale && !loaded.loss && !registry.gnss_modeling(modeling).complete) {
     console.note(
-        "squared errors let biased fixes bend speed_scale; a robust loss protects it: --loss cauchy:1");
+        "squared errors let biased fixes bend speed_scale; a robust loss protects it: --gnss-loss cauchy:1");
   }
   formats::GraphDocument& document = modeled.document;
   document.provenance = {{"program", "waymark " WAYMARK_VERSION}, {"drive", loaded.config.name}};
