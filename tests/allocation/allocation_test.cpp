@@ -63,7 +63,7 @@ std::vector<Problem> problems(const TypeRegistry& registry) {
 
 }  // namespace
 
-TEST_CASE("the counter sees new, malloc and aligned_alloc") {
+TEST_CASE("allocation: the counter sees new, malloc and aligned_alloc") {
   const long before = memory_requests();
   const std::vector<double> numbers(100);
   const LargeArray<double> large(1'000'000);

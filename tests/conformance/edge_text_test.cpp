@@ -143,7 +143,7 @@ TEST_CASE("every type: all values, fields and information matrices come back bit
   }
 }
 
-TEST_CASE("every edge type states its schema in the text, and a text with another schema is refused") {
+TEST_CASE("every edge type: its schema stands in the text, and a text with another schema is refused") {
   const TypeRegistry registry = waymark_test::full_registry();
   const std::string text = write_graph(document_of_everything(registry), registry);
   for (const auto& [type, origin] : registry.edges()) {

@@ -136,7 +136,7 @@ TEST_CASE("every edge type: the schema has a form, names and a dimension") {
   });
 }
 
-TEST_CASE("the Gaussian prior differentiates charts that are not linear, such as body-frame poses") {
+TEST_CASE("Gaussian prior: it differentiates charts that are not linear, such as body-frame poses") {
   // local(r, X exp(d)) = log(r^-1 X exp(d)): its derivative is the inverse right Jacobian.
   TypeRegistry registry = waymark_test::full_registry();
   registry.add_vertex<waymark_test::VertexBodyPose>();

@@ -39,7 +39,7 @@ LossType find(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("the losses that the house names are registered") {
+TEST_CASE("losses: the losses that the house names are registered") {
   for (const char* name : {"huber", "cauchy", "tukey", "geman_mcclure", "welsch", "dcs"}) {
     CHECK(registry().find_loss(name) != nullptr);
   }
@@ -86,7 +86,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("every loss is continuous with a continuous weight at scale and scale squared") {
+TEST_CASE("every loss: it is continuous with a continuous weight at scale and scale squared") {
   for (const auto& [loss, origin] : registry().losses()) {
     for (const double scale : kScales) {
       for (const double threshold : {scale, scale * scale}) {
@@ -100,23 +100,23 @@ TEST_CASE("every loss is continuous with a continuous weight at scale and scale 
   }
 }
 
-TEST_CASE("Huber: quadratic up to k, then linear in |e| with slope 2k") {
+TEST_CASE("losses: Huber is quadratic up to k, then linear in |e| with slope 2k") {
   const LossType huber = find("huber");
   CHECK(huber.evaluate(3.9, 2).rho == 3.9);
   CHECK(huber.evaluate(100, 2).rho == Approx(2 * 2 * 10 - 4));
   CHECK(huber.evaluate(100, 2).weight == Approx(0.2));
 }
 
-TEST_CASE("Tukey keeps its digits for tiny errors: rho = s (1 - s/c^2 + ...)") {
+TEST_CASE("losses: Tukey keeps its digits for tiny errors: rho = s (1 - s/c^2 + ...)") {
   CHECK(find("tukey").evaluate(1e-18, 10).rho == Approx(1e-18).epsilon(1e-15));
 }
 
-TEST_CASE("Tukey is constant beyond c: a third of c squared") {
+TEST_CASE("losses: Tukey is constant beyond c: a third of c squared") {
   CHECK(find("tukey").evaluate(26, 5).rho == Approx(25.0 / 3));
   CHECK(find("tukey").evaluate(26, 5).weight == 0);
 }
 
-TEST_CASE("DCS is as its paper has it, continued without a jump") {
+TEST_CASE("losses: DCS is as its paper has it, continued without a jump") {
   const LossType dcs = find("dcs");
   for (const double phi : kScales) {
     for (const double s : squares(phi)) {
@@ -152,7 +152,7 @@ TEST_CASE("every loss: g of the normal equations is half the derivative of the r
   }
 }
 
-TEST_CASE("a loss on one edge leaves the others as they are") {
+TEST_CASE("losses: a loss on one edge leaves the others as they are") {
   Graph graph = waymark_test::noisy_circle(12);
   const double plain = graph.chi2();
   Eigen::VectorXd e;

@@ -116,7 +116,7 @@ TEST_CASE("every vertex type: as many names as numbers, and a tag without blanks
   }
 }
 
-TEST_CASE("VERTEX_SE2 keeps its heading within half a turn") {
+TEST_CASE("VERTEX_SE2: its heading stays within half a turn") {
   const VertexType& type = *registry().find_vertex("VERTEX_SE2");
   constexpr double kPi = std::numbers::pi;
   for (double heading = -30; heading < 30; heading += 0.37) {

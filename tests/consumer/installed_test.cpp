@@ -66,7 +66,8 @@ TEST_CASE("installed: only headers of rooms that are libraries") {
         std::vector<std::string>{"core", "formats", "plugins", "solvers", "types_se2"});
 }
 
-TEST_CASE("waymark_add_plugin refuses flags with which the plugin would be refused, with the reason") {
+TEST_CASE(
+    "installed: waymark_add_plugin refuses flags with which the plugin would be refused, with the reason") {
   struct Case {
     const char* flag;
     const char* reason;
@@ -91,7 +92,7 @@ TEST_CASE("waymark_add_plugin refuses flags with which the plugin would be refus
   }
 }
 
-TEST_CASE("waymark_add_plugin lets other flags pass, and those that waymark was built with") {
+TEST_CASE("installed: waymark_add_plugin lets other flags pass, and those that waymark was built with") {
   for (const char* flags : {"", "-O3 -g -Wall", "-march=x86-64 -mno-avx", "-D_GLIBCXX_ASSERTIONS",
                             "-fno-fast-math", "-fsanitize=address"}) {
     const RunResult result = check_flags("CMAKE_CXX_FLAGS", flags);

@@ -179,7 +179,7 @@ TEST_CASE("gauge: a prior of run-time arity anchors like any other") {
   CHECK(held_count(find_gauge(graph)) == 0);
 }
 
-TEST_CASE("optimize says in its notes what was held and leaves it in place") {
+TEST_CASE("gauge: optimize says in its notes what was held and leaves it in place") {
   const TypeRegistry registry = waymark_test::full_registry();
   Graph graph = waymark_test::noisy_circle(20);
   const std::vector<double> first(graph.value(0).begin(), graph.value(0).end());

@@ -238,7 +238,8 @@ TEST_CASE("innovation: the minimum rises by it with the edge, falls by it withou
         Approx(with - kept.chi2()).epsilon(0.02));
 }
 
-TEST_CASE("a graph without some edges keeps values, ids, stamps, fixed vertices and losses of the others") {
+TEST_CASE(
+    "graduation: a graph without some edges keeps values, ids, stamps, fixed vertices and losses of the others") {
   Graph graph = noisy_circle(12);
   graph.set_fixed(3, true);
   graph.set_stamp(4, Stamp{17});
@@ -255,7 +256,7 @@ TEST_CASE("a graph without some edges keeps values, ids, stamps, fixed vertices 
   CHECK(result.batch(0).loss(4)->scale == 2);
 }
 
-TEST_CASE("chi-square quantiles are those of the tables") {
+TEST_CASE("graduation: chi-square quantiles are those of the tables") {
   CHECK(chi_square_quantile(0.95, 1) == Approx(3.841458820694124));
   CHECK(chi_square_quantile(0.95, 2) == Approx(5.991464547107979));
   CHECK(chi_square_quantile(0.99, 3) == Approx(11.344866730144373));

@@ -141,7 +141,7 @@ TEST_CASE("g2o itself: no edge is left whose error it forms without the offset")
   CHECK(read(text).graph.chi2() == Approx(document.graph.chi2()).epsilon(1e-13));
 }
 
-TEST_CASE("Ceres' example has the same chi2 by its own formula") {
+TEST_CASE("foreign graph: Ceres' example has the same chi2 by its own formula") {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> unit(-1, 1);
   GraphDocument document;
@@ -161,7 +161,7 @@ TEST_CASE("Ceres' example has the same chi2 by its own formula") {
   CHECK(chi2_of_example(write_as(GraphFormat::g2o, document)) != Approx(graph.chi2()).epsilon(1e-3));
 }
 
-TEST_CASE("a profile takes the formats that its reader knows, no other") {
+TEST_CASE("foreign graph: a profile takes the formats that its reader knows, no other") {
   GraphDocument document;
   document.graph.add_vertex<VertexSe2>(0, {0, 0, 0});
   const auto make = [&](const char* profile, GraphFormat format) {
@@ -172,7 +172,7 @@ TEST_CASE("a profile takes the formats that its reader knows, no other") {
   CHECK(find_profile("isam") == nullptr);
 }
 
-TEST_CASE("every format's name is read back") {
+TEST_CASE("foreign graph: every format's name is read back") {
   for (const std::string_view name : kGraphFormats) {
     CHECK(to_string(graph_format_from_string(name).value()) == name);
   }

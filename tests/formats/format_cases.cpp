@@ -88,7 +88,7 @@ std::vector<fs::path> chosen_cases() {
 
 }  // namespace
 
-TEST_CASE("every pair of files gives what is expected", "[.pairs]") {
+TEST_CASE("format cases: every pair of files gives what is expected", "[.pairs]") {
   for (const fs::path& input : chosen_cases()) {
     DYNAMIC_SECTION(input.filename().string()) {
       const std::string found = outcome(input);
@@ -100,7 +100,7 @@ TEST_CASE("every pair of files gives what is expected", "[.pairs]") {
   }
 }
 
-TEST_CASE("every file with an expectation is a case") {
+TEST_CASE("format cases: every file with an expectation is a case") {
   // Guards against a mistyped name, whose expectation would never be looked at.
   std::vector<fs::path> expectations;
   for (const fs::path& input : chosen_cases()) expectations.push_back(expected_file(input));

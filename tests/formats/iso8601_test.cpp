@@ -7,7 +7,7 @@
 using namespace waymark;
 using namespace waymark::formats;
 
-TEST_CASE("ISO 8601") {
+TEST_CASE("iso8601: dates in every usual spelling are read, others are refused") {
   const auto nanoseconds = [](std::string_view text) { return stamp_from_iso8601(text).value().nanoseconds; };
   CHECK(nanoseconds("1970-01-01T00:00:00Z") == 0);
   CHECK(nanoseconds("2000-02-29T12:00:00.123456789Z") == 951'825'600'123'456'789);

@@ -94,7 +94,7 @@ LogData read_back(const std::string& gpx) {
 
 }  // namespace
 
-TEST_CASE("GeoJSON: a line of longitude, latitude and marked fixes", "[map]") {
+TEST_CASE("GeoJSON: a line of longitude, latitude and marked fixes") {
   const std::vector<TrajectoryPoint> points{on_map(1, 52.5, 13.25), on_map(2, 52.6, 13.35)};
   const std::vector<FixPoint> fixes{
       {.stamp = Stamp{1}, .latitude_deg = 52.5, .longitude_deg = 13.3, .status = "accepted", .reason = "ok"},
@@ -119,13 +119,13 @@ TEST_CASE("GeoJSON: a line of longitude, latitude and marked fixes", "[map]") {
   CHECK(rejected["properties"].contains("marker-color"));
 }
 
-TEST_CASE("GeoJSON of nothing and of one pose is valid", "[map]") {
+TEST_CASE("maps: GeoJSON of nothing and of one pose is valid") {
   CHECK(nlohmann::json::parse(trajectory_geojson({}, {}, ""))["features"].empty());
   const std::vector<TrajectoryPoint> one{on_map(1, 1, 2)};
   CHECK(nlohmann::json::parse(trajectory_geojson(one, {}, ""))["features"].empty());
 }
 
-TEST_CASE("GPX: our own reader finds every pose where and when it was", "[map]") {
+TEST_CASE("GPX: our own reader finds every pose where and when it was") {
   const Drive d = drive(kGpsInstant + 250'000'001);
   const LogData read = read_back(trajectory_gpx(d.points, d.fixes, "g1", TimeScale::gps));
   CHECK(read.corrupt == 0);
@@ -138,7 +138,7 @@ TEST_CASE("GPX: our own reader finds every pose where and when it was", "[map]")
   CHECK(read.fixes[0].stamp == stamp_from_iso8601("2023-06-28T14:52:12.250000001Z"));
 }
 
-TEST_CASE("GPX: fixes are waypoints that say what became of them", "[map]") {
+TEST_CASE("GPX: fixes are waypoints that say what became of them") {
   const Drive d = drive(kGpsInstant);
   const Content content(trajectory_gpx(d.points, d.fixes, "g1", TimeScale::gps));
   CHECK(content.trouble().empty());
@@ -150,7 +150,7 @@ TEST_CASE("GPX: fixes are waypoints that say what became of them", "[map]") {
         std::vector<std::string>{"accepted: ok", "rejected: displacement", "withheld"});
 }
 
-TEST_CASE("KML: a line, a track in time, folders by status", "[map]") {
+TEST_CASE("KML: a line, a track in time, folders by status") {
   Drive d = drive(kGpsInstant);
   d.fixes.push_back(fix_at(kGpsInstant + 3 * kSecond, FixStatus::rejected, "angle"));
   const Content content(trajectory_kml(d.points, d.fixes, "g1", TimeScale::gps));
@@ -173,7 +173,7 @@ TEST_CASE("KML: a line, a track in time, folders by status", "[map]") {
   }
 }
 
-TEST_CASE("KML: each receiver has a line of its own", "[map]") {
+TEST_CASE("KML: each receiver has a line of its own") {
   Drive d = drive(kGpsInstant);
   for (int i = 3; i < 6; ++i)
     d.fixes.push_back(fix_at(kGpsInstant + i * kSecond, FixStatus::accepted, "ok", 1));
@@ -183,7 +183,7 @@ TEST_CASE("KML: each receiver has a line of its own", "[map]") {
   CHECK(std::count(names.begin(), names.end(), "raw GNSS, receiver 2") == 1);
 }
 
-TEST_CASE("maps: seconds of a week are no dates, and one of them leaves the file without times", "[map]") {
+TEST_CASE("maps: seconds of a week are no dates, and one of them leaves the file without times") {
   Drive d = drive(GENERATE(100'000 * kSecond, kGpsInstant));
   d.fixes.front().stamp = Stamp{100'000 * kSecond};
   const Content gpx(trajectory_gpx(d.points, d.fixes, "g1", TimeScale::gps));
@@ -197,14 +197,14 @@ TEST_CASE("maps: seconds of a week are no dates, and one of them leaves the file
   CHECK(kml.texts.at("description")[0] == "accepted: ok, 100000.000000000 s");
 }
 
-TEST_CASE("maps: stamps at the ends of 64 bits are no dates", "[map]") {
+TEST_CASE("maps: stamps at the ends of 64 bits are no dates") {
   const std::vector<TrajectoryPoint> points{on_map(std::numeric_limits<std::int64_t>::min(), 1, 2),
                                             on_map(std::numeric_limits<std::int64_t>::max(), 1, 2)};
   for (const TimeScale scale : {TimeScale::gps, TimeScale::utc, TimeScale::unix_time})
     CHECK(Content(trajectory_gpx(points, {}, "", scale)).count("time") == 0);
 }
 
-TEST_CASE("maps: any text leaves the XML well-formed", "[map]") {
+TEST_CASE("maps: any text leaves the XML well-formed") {
   Drive d = drive(kGpsInstant);
   const std::string rude = "a<b>&\"c\" ]]> \x01\xFF\xED\xA0\x80 \xC3\xA9";
   d.fixes[1].reason = rude;
@@ -217,7 +217,7 @@ TEST_CASE("maps: any text leaves the XML well-formed", "[map]") {
   }
 }
 
-TEST_CASE("maps of nothing and of one pose are well-formed", "[map]") {
+TEST_CASE("maps: maps of nothing and of one pose are well-formed") {
   const std::vector<TrajectoryPoint> one{on_map(kGpsInstant, 1, 2)};
   for (const auto& points : {std::vector<TrajectoryPoint>(), one}) {
     CHECK(Content(trajectory_kml(points, {}, "", TimeScale::gps)).trouble().empty());
@@ -225,7 +225,7 @@ TEST_CASE("maps of nothing and of one pose are well-formed", "[map]") {
   }
 }
 
-TEST_CASE("maps: a place that is none is an error that names the point", "[map]") {
+TEST_CASE("maps: a place that is none is an error that names the point") {
   const std::vector<TrajectoryPoint> no_place{on_map(1, 1, 2), TrajectoryPoint()};
   const std::vector<FixPoint> bad_fix{
       {.stamp = {}, .latitude_deg = std::nan(""), .longitude_deg = 0, .status = "", .reason = ""}};
@@ -237,7 +237,7 @@ TEST_CASE("maps: a place that is none is an error that names the point", "[map]"
                     "GPX: fix 1 at 0.000000000 s: latitude or longitude not finite");
 }
 
-TEST_CASE("dates are written as they are read", "[map]") {
+TEST_CASE("maps: dates are written as they are read") {
   CHECK(iso8601_from_stamp(Stamp{0}) == "1970-01-01T00:00:00Z");
   CHECK(iso8601_from_stamp(Stamp{-1}) == "1969-12-31T23:59:59.999999999Z");
   CHECK(iso8601_from_stamp(Stamp{1'214'075'756'250'000'000}) == "2008-06-21T19:15:56.25Z");
@@ -245,7 +245,7 @@ TEST_CASE("dates are written as they are read", "[map]") {
     CHECK(stamp_from_iso8601(iso8601_from_stamp(Stamp{ns})) == Stamp{ns});
 }
 
-TEST_CASE("XML text: what the format takes stays as it is", "[map]") {
+TEST_CASE("XML text: what the format takes stays as it is") {
   CHECK(xml_text("tab\t line\n caf\xC3\xA9 \xF0\x9F\x98\x80") == "tab\t line\n caf\xC3\xA9 \xF0\x9F\x98\x80");
   CHECK(xml_text("<a href='x'>&amp;") == "&lt;a href=&#39;x&#39;&gt;&amp;amp;");
   CHECK(xml_text(std::string_view("\0", 1)) == "\xEF\xBF\xBD");

@@ -45,7 +45,7 @@ bool reads_alike(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("plain decimals are rounded like from_chars") {
+TEST_CASE("numbers: plain decimals are rounded like from_chars") {
   for (const char* text : {"",
                            "-",
                            ".",
@@ -89,7 +89,7 @@ TEST_CASE("plain decimals are rounded like from_chars") {
   }
 }
 
-TEST_CASE("plain decimals end where the number does") {
+TEST_CASE("numbers: plain decimals end where the number does") {
   // What follows is the caller's to judge: "12abc" and "1.5.2" are no numbers, whatever their beginning.
   const std::string text = "-12.25abc";
   const Decimal decimal = read_plain_decimal(text.data(), text.data() + text.size());
@@ -97,7 +97,7 @@ TEST_CASE("plain decimals end where the number does") {
   CHECK(decimal.end == text.data() + 6);
 }
 
-TEST_CASE("numbers are written as to_chars writes them") {
+TEST_CASE("numbers: numbers are written as to_chars writes them") {
   std::vector<double> values = {0.0,
                                 -0.0,
                                 1,
@@ -137,7 +137,7 @@ TEST_CASE("numbers are written as to_chars writes them") {
   CHECK((built_text(values) == expected));
 }
 
-TEST_CASE("a text is the same in pieces of any length") {
+TEST_CASE("numbers: a text is the same in pieces of any length") {
   // Words longer than a piece, and pieces that end within a line.
   const std::string word(700'000, 'x');
   std::string pieces;

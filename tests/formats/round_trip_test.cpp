@@ -38,7 +38,7 @@ std::string specification_example() {
 
 }  // namespace
 
-TEST_CASE("numbers come back bit by bit") {
+TEST_CASE("round trip: numbers come back bit by bit") {
   // Guards against digits lost in text: g2o's six turn the northing 5701234.567 into 5701230.
   const double limit = std::numeric_limits<double>::max();
   for (const double x : {5701234.567, 0.1, 1.0 / 3, -0.0, 5e-324, 2.2250738585072009e-308, 1e300, -limit,
@@ -53,7 +53,7 @@ TEST_CASE("numbers come back bit by bit") {
   }
 }
 
-TEST_CASE("stamps and ids at the ends of their range come back") {
+TEST_CASE("round trip: stamps and ids at the ends of their range come back") {
   GraphDocument document;
   const auto least = std::numeric_limits<std::int64_t>::min();
   const auto most = std::numeric_limits<std::int64_t>::max();
@@ -68,7 +68,7 @@ TEST_CASE("stamps and ids at the ends of their range come back") {
   CHECK(back.stamp(1)->nanoseconds == least + 1);
 }
 
-TEST_CASE("writing is a fixed point after the first reading") {
+TEST_CASE("round trip: writing is a fixed point after the first reading") {
   for (const auto& entry : std::filesystem::directory_iterator(WAYMARK_SOURCE_DIR "/tests/formats/cases")) {
     if (entry.path().extension() != ".graph" && entry.path().extension() != ".g2o") continue;
     std::string once;
@@ -82,7 +82,7 @@ TEST_CASE("writing is a fixed point after the first reading") {
   }
 }
 
-TEST_CASE("the example of the specification is read and holds every statement") {
+TEST_CASE("round trip: the example of the specification is read and holds every statement") {
   const std::string example = specification_example();
   const GraphDocument document = read(example);
   CHECK(read(write(document)).graph.chi2() == document.graph.chi2());
@@ -100,7 +100,7 @@ TEST_CASE("the example of the specification is read and holds every statement") 
   }
 }
 
-TEST_CASE("text from outside cannot begin a new statement") {
+TEST_CASE("round trip: text from outside cannot begin a new statement") {
   // Guards against a drive's name of two lines: the second was read as a tag.
   GraphDocument document;
   document.graph.add_vertex<VertexSe2>(0, {0, 0, 0});
@@ -111,7 +111,7 @@ TEST_CASE("text from outside cannot begin a new statement") {
   CHECK(back[1].second.empty());
 }
 
-TEST_CASE("a position edge written as EDGE_SE2 has the same chi2") {
+TEST_CASE("round trip: a position edge written as EDGE_SE2 has the same chi2") {
   GraphDocument document;
   const auto origin = document.graph.add_vertex<VertexSe2>(0, {3, -2, 0.7});
   const auto pose = document.graph.add_vertex<VertexSe2>(1, {10, 20, -2.5});
@@ -124,7 +124,7 @@ TEST_CASE("a position edge written as EDGE_SE2 has the same chi2") {
   CHECK(g2o.graph.chi2() == Approx(document.graph.chi2()).epsilon(1e-14));
 }
 
-TEST_CASE("the standard g2o files come back exactly") {
+TEST_CASE("round trip: the standard g2o files come back exactly") {
   const auto folder = waymark_test::shared_data_dir() / "graphs";
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
@@ -141,7 +141,7 @@ TEST_CASE("the standard g2o files come back exactly") {
   }
 }
 
-TEST_CASE("a word in a message is short and harmless") {
+TEST_CASE("round trip: a word in a message is short and harmless") {
   // Guards against binary files that reprogram the terminal, and against invalid UTF-8 in JSON output.
   CHECK(quote_word("abc") == "'abc'");
   CHECK(quote_word("") == "the end of the line");
@@ -149,7 +149,7 @@ TEST_CASE("a word in a message is short and harmless") {
   CHECK(quote_word(std::string(100, 'x')) == "'" + std::string(40, 'x') + "...'");
 }
 
-TEST_CASE("a wide prior is refused before its matrix takes all memory") {
+TEST_CASE("round trip: a wide prior is refused before its matrix takes all memory") {
   // Guards against an arity of 100000: std::bad_alloc, reported as an internal error.
   std::string text = "GRAPH 1\nVERTEX_SE2 0 0 0 0\nEDGE_GAUSSIAN_PRIOR 1001 0\n";
   CHECK_THROWS_WITH(read(text), "test.graph:3:21: EDGE_GAUSSIAN_PRIOR: the arity must be 1 to 1000");

@@ -36,7 +36,7 @@ std::size_t entries(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("a file comes back as it was written, whatever bytes it holds") {
+TEST_CASE("text file: a file comes back as it was written, whatever bytes it holds") {
   const fs::path folder = fresh_folder("round_trip");
   const std::string path = (folder / "a.bin").string();
   std::string content(3'000'000, 'x');
@@ -49,7 +49,7 @@ TEST_CASE("a file comes back as it was written, whatever bytes it holds") {
   CHECK(entries(folder) == 1);
 }
 
-TEST_CASE("what cannot be read says why") {
+TEST_CASE("text file: what cannot be read says why") {
   const fs::path folder = fresh_folder("unreadable");
   const std::string missing = (folder / "none.csv").string();
   CHECK_THROWS_MATCHES(read_text_file(missing), InputError,
@@ -58,7 +58,7 @@ TEST_CASE("what cannot be read says why") {
                        Message(folder.string() + ": cannot read: Is a directory"));
 }
 
-TEST_CASE("what cannot be written says why and leaves nothing") {
+TEST_CASE("text file: what cannot be written says why and leaves nothing") {
   const fs::path folder = fresh_folder("unwritable");
   const std::string nowhere = (folder / "none" / "a.graph").string();
   CHECK_THROWS_MATCHES(write_file_atomically(nowhere, "x"), OutputError,
@@ -70,7 +70,7 @@ TEST_CASE("what cannot be written says why and leaves nothing") {
   CHECK(entries(folder) == 0);
 }
 
-TEST_CASE("a file size limit leaves the old file as it was") {
+TEST_CASE("text file: a file size limit leaves the old file as it was") {
   const fs::path folder = fresh_folder("limit");
   const std::string path = (folder / "a.graph").string();
   write_file_atomically(path, "old");
@@ -93,7 +93,7 @@ TEST_CASE("a file size limit leaves the old file as it was") {
   CHECK(entries(folder) == 1);
 }
 
-TEST_CASE("a text that cannot be finished leaves the old file as it was") {
+TEST_CASE("text file: a text that cannot be finished leaves the old file as it was") {
   // Guards against half a graph where its writing fails or is interrupted between two pieces.
   const fs::path folder = fresh_folder("unfinished");
   const std::string path = (folder / "a.graph").string();
@@ -113,7 +113,7 @@ TEST_CASE("a text that cannot be finished leaves the old file as it was") {
   CHECK(read_text_file(path) == "new");
 }
 
-TEST_CASE("a symbolic link and the permissions of a file are kept") {
+TEST_CASE("text file: a symbolic link and the permissions of a file are kept") {
   const fs::path folder = fresh_folder("link");
   const fs::path file = folder / "real.graph";
   const fs::path link = folder / "link.graph";
@@ -126,7 +126,7 @@ TEST_CASE("a symbolic link and the permissions of a file are kept") {
   CHECK(fs::status(file).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
 }
 
-TEST_CASE("a pipe is written and read directly, in as many parts as it takes") {
+TEST_CASE("text file: a pipe is written and read directly, in as many parts as it takes") {
   const fs::path pipe = fresh_folder("pipe") / "pipe";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
   const std::string content(500'000, 'y');  // more than a pipe holds
@@ -138,7 +138,7 @@ TEST_CASE("a pipe is written and read directly, in as many parts as it takes") {
   CHECK(fs::is_fifo(pipe));
 }
 
-TEST_CASE("the standard output is written where it stands, also into a file") {
+TEST_CASE("text file: the standard output is written where it stands, also into a file") {
   const fs::path file = fresh_folder("stdout") / "out.txt";
   const std::string name = GENERATE(as<std::string>(), "-", "/dev/stdout");
   ::fflush(stdout);

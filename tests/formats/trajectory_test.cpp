@@ -35,7 +35,7 @@ std::string tum_error(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("stamps as decimal seconds are exact", "[stamp_text]") {
+TEST_CASE("trajectory: stamps as decimal seconds are exact") {
   CHECK(decimal_seconds(Stamp{1149206567040000001}) == "1149206567.040000001");
   CHECK(decimal_seconds(Stamp{0}) == "0.000000000");
   CHECK(decimal_seconds(Stamp{-1}) == "-0.000000001");
@@ -45,7 +45,7 @@ TEST_CASE("stamps as decimal seconds are exact", "[stamp_text]") {
     CHECK(stamp_from_decimal_seconds(decimal_seconds(Stamp{ns})) == Stamp{ns});
 }
 
-TEST_CASE("decimal seconds are read in every usual spelling", "[stamp_text]") {
+TEST_CASE("trajectory: decimal seconds are read in every usual spelling") {
   CHECK(stamp_from_decimal_seconds("12") == Stamp{12'000'000'000});
   CHECK(stamp_from_decimal_seconds("+.5") == Stamp{500'000'000});
   CHECK(stamp_from_decimal_seconds("5.") == Stamp{5'000'000'000});
@@ -66,7 +66,7 @@ TEST_CASE("decimal seconds are read in every usual spelling", "[stamp_text]") {
     CHECK_FALSE(stamp_from_decimal_seconds(bad));
 }
 
-TEST_CASE("CSV: shortest exact numbers, empty fields where nothing is known", "[trajectory]") {
+TEST_CASE("CSV: shortest exact numbers, empty fields where nothing is known") {
   TrajectoryPoint full = point(1149206567040000000, 0.1, 5701234.567, -1.0 / 3.0);
   full.latitude_deg = 52.5;
   full.longitude_deg = 13.25;
@@ -81,13 +81,13 @@ TEST_CASE("CSV: shortest exact numbers, empty fields where nothing is known", "[
         "-5,1,2,0,,,,,,,\n");
 }
 
-TEST_CASE("CSV: text with separators is quoted", "[trajectory]") {
+TEST_CASE("CSV: text with separators is quoted") {
   TrajectoryPoint p = point(0, 0, 0, 0);
   p.reason = "15 m, \"far\"";
   CHECK_THAT(trajectory_csv(std::vector{p}), Contains(",\"15 m, \"\"far\"\"\"\n"));
 }
 
-TEST_CASE("TUM: stamps exact, heading as a quaternion", "[trajectory]") {
+TEST_CASE("TUM: stamps exact, heading as a quaternion") {
   const std::vector<TrajectoryPoint> points{point(1149206567040000001, 1.5, -2, 0),
                                             point(2'000'000'000, 0, 0, std::numbers::pi)};
   const std::string text = trajectory_tum(points);
@@ -95,7 +95,7 @@ TEST_CASE("TUM: stamps exact, heading as a quaternion", "[trajectory]") {
                                      "2.000000000 0 0 0 0 0 1 "));
 }
 
-TEST_CASE("TUM: single blanks, none at the end, as evo's reader demands", "[trajectory]") {
+TEST_CASE("TUM: single blanks, none at the end, as evo's reader demands") {
   const std::string text = trajectory_tum(std::vector{point(1, -0.5, 1e-7, 3), point(2, 1e6, 0, -3)});
   CHECK_THAT(text, !Contains("  ") && !Contains(" \n") && !Contains("\t") && !Contains("\r"));
   const std::string data = text.substr(text.find('\n') + 1);
@@ -103,7 +103,7 @@ TEST_CASE("TUM: single blanks, none at the end, as evo's reader demands", "[traj
   CHECK(std::count(data.begin(), data.end(), ' ') == 2 * 7);
 }
 
-TEST_CASE("TUM round trip", "[trajectory]") {
+TEST_CASE("TUM: a written file reads back") {
   std::vector<TrajectoryPoint> points;
   for (int i = -20; i <= 20; ++i)
     points.push_back(point(1'700'000'000'123'456'789 + i, 1e5 + i / 7.0, -i / 3.0, 0.157 * i));
@@ -116,7 +116,7 @@ TEST_CASE("TUM round trip", "[trajectory]") {
   }
 }
 
-TEST_CASE("TUM: comments, blank lines, CRLF, BOM, tabs, no final line end", "[trajectory]") {
+TEST_CASE("TUM: comments, blank lines, CRLF, BOM, tabs, no final line end") {
   const auto poses =
       read_tum("\xEF\xBB\xBF# made by hand\r\n\r\n  \n1 2 3 0 0 0 0 1\r\n\t2\t4 +5 9  0 0 1 0", "t");
   REQUIRE(poses.size() == 2);
@@ -125,7 +125,7 @@ TEST_CASE("TUM: comments, blank lines, CRLF, BOM, tabs, no final line end", "[tr
   CHECK(poses[1].pose[2] == Approx(std::numbers::pi));
 }
 
-TEST_CASE("TUM: heading is the yaw of a full rotation", "[trajectory]") {
+TEST_CASE("TUM: heading is the yaw of a full rotation") {
   // yaw 0.5 after pitch 0.1: q = q_z(0.5) q_y(0.1)
   const double cy = std::cos(0.25), sy = std::sin(0.25), cp = std::cos(0.05), sp = std::sin(0.05);
   const std::string line = "0 0 0 0 " + std::to_string(-sy * sp) + " " + std::to_string(cy * sp) + " " +
@@ -134,7 +134,7 @@ TEST_CASE("TUM: heading is the yaw of a full rotation", "[trajectory]") {
   CHECK(read_tum("0 0 0 0 0 0 -1 0", "t")[0].pose[2] == std::numbers::pi);  // (-pi, pi]
 }
 
-TEST_CASE("TUM: errors name file, line, column, found and expected", "[trajectory]") {
+TEST_CASE("TUM: errors name file, line, column, found and expected") {
   CHECK(tum_error("# c\n1 2 abc 0 0 0 0 1\n") == "truth.tum:2:5: TUM: expected a number for 'y', got 'abc'");
   CHECK(tum_error("x 2 3 0 0 0 0 1") == "truth.tum:1:1: TUM: expected a number for 't', got 'x'");
   CHECK(tum_error("1 2 nan 0 0 0 0 1") == "truth.tum:1:5: TUM: expected a finite number for 'y', got 'nan'");
@@ -146,7 +146,7 @@ TEST_CASE("TUM: errors name file, line, column, found and expected", "[trajector
   CHECK(tum_error("# only a comment") == "truth.tum: TUM: no pose in it");
 }
 
-TEST_CASE("what cannot be written is an error that names the point", "[trajectory]") {
+TEST_CASE("trajectory: what cannot be written is an error that names the point") {
   const std::vector<TrajectoryPoint> nan{point(0, 0, 0, 0), point(1'000'000'000, std::nan(""), 0, 0)};
   CHECK_THROWS_AS(trajectory_csv(nan), OutputError);
   CHECK_THROWS_WITH(trajectory_tum(nan), Contains("pose 2 at 1.000000000 s: not finite"));

@@ -7,7 +7,7 @@
 using namespace waymark;
 using namespace waymark::formats;
 
-TEST_CASE("ECEF to geodetic as in EPSG guidance note 7-2, method 9602") {
+TEST_CASE("geocentric: ECEF to geodetic as in EPSG guidance note 7-2, method 9602") {
   const Eigen::Vector3d ecef(3771793.968, 140253.342, 5124304.349);
   const GeodeticPlace place = geodetic_from_ecef(ecef);
   CHECK(place.latitude_deg == Approx(53 + 48 / 60.0 + 33.820 / 3600).margin(1e-8));

@@ -10,14 +10,14 @@ using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
 
-TEST_CASE("the built-in readers are found by name") {
+TEST_CASE("log readers: the built-in readers are found by name") {
   REQUIRE(builtin_log_readers().size() >= 2);
   for (const LogReaderType& entry : builtin_log_readers())
     CHECK(builtin_log_reader(entry.name) == entry.reader);
   CHECK(builtin_log_reader("cvs") == nullptr);
 }
 
-TEST_CASE("suggestions") {
+TEST_CASE("suggestions: the nearest known word is suggested") {
   CHECK(edit_distance("", "abc") == 3);
   CHECK(edit_distance("kitten", "sitting") == 3);
   CHECK(edit_distance("yaw_rate", "ywa_rate") == 1);  // a swap is one edit

@@ -45,7 +45,7 @@ BuiltFix fix_of(const Graph& graph) {
 
 }  // namespace
 
-TEST_CASE("correlated: tails are Student's t, or normal", "[gnss]") {
+TEST_CASE("correlated: tails are Student's t, or normal") {
   const Options sigma = {{"white_sigma", "2"}};
   Options normal = sigma;
   normal["tails"] = "normal";
@@ -67,7 +67,7 @@ TEST_CASE("correlated: tails are Student's t, or normal", "[gnss]") {
                     Contains("tails") && Contains("student") && Contains("normal"));
 }
 
-TEST_CASE("correlated: a loss that is asked for replaces that of the tails", "[gnss]") {
+TEST_CASE("correlated: a loss that is asked for replaces that of the tails") {
   const LossType huber = builtin_losses().front();
   for (const char* tails : {"student", "normal"}) {
     const Graph graph = graph_with({{"tails", tails}}, Loss{huber.name, huber.evaluate, 1.5});

@@ -66,14 +66,14 @@ Eigen::Matrix3d numeric(const std::function<Eigen::Vector3d(const Eigen::Vector3
 
 }  // namespace
 
-TEST_CASE("exp is the matrix exponential") {
+TEST_CASE("se2: exp is the matrix exponential") {
   for (const Eigen::Vector3d& xi : twists()) {
     INFO(xi.transpose());
     CHECK((matrix_of(se2_exp<double>(xi)) - matrix_exp(hat(xi))).norm() < 1e-11);
   }
 }
 
-TEST_CASE("exp of a vehicle's twist is the arc of its radius") {
+TEST_CASE("se2: exp of a vehicle's twist is the arc of its radius") {
   // v = 10 m/s, w = 0.5 rad/s for 1 s: radius 20 m, turned by 0.5 rad.
   const Pose2<double> arc = se2_exp<double>(Eigen::Vector3d(10, 0, 0.5));
   CHECK(arc.position[0] == Approx(20 * std::sin(0.5)).epsilon(1e-15));
@@ -81,14 +81,14 @@ TEST_CASE("exp of a vehicle's twist is the arc of its radius") {
   CHECK(arc.heading == 0.5);
 }
 
-TEST_CASE("log inverts exp for all |theta| up to pi") {
+TEST_CASE("se2: log inverts exp for all |theta| up to pi") {
   for (const Eigen::Vector3d& xi : twists()) {
     INFO(xi.transpose());
     CHECK((se2_log(se2_exp<double>(xi)) - xi).norm() < 1e-14 * (1 + xi.norm()) * 4);
   }
 }
 
-TEST_CASE("log at plus and minus pi: heading pi, both translations those of half a turn") {
+TEST_CASE("se2: log at plus and minus pi: heading pi, both translations those of half a turn") {
   // V(pi)^-1 = [0, pi/2; -pi/2, 0]: from the definition of V, not from code.
   for (const double heading : {kPi, -kPi, 3 * kPi}) {
     const Eigen::Vector3d xi = se2_log(Pose2<double>(2, 3, heading));
@@ -101,7 +101,7 @@ TEST_CASE("log at plus and minus pi: heading pi, both translations those of half
   CHECK(below[0] == Approx(-3 * kPi / 2).epsilon(1e-11));
 }
 
-TEST_CASE("the series meet the closed forms where they take over") {
+TEST_CASE("se2: the series meet the closed forms where they take over") {
   constexpr double kSwitch = detail::kSeriesBelow;
   const double below = std::nextafter(kSwitch, 0.0);
   const Eigen::Vector2d rho(3, -4);
@@ -113,7 +113,7 @@ TEST_CASE("the series meet the closed forms where they take over") {
   CHECK((se2_right_jacobian_inverse(at(below)) - se2_right_jacobian_inverse(at(kSwitch))).norm() < 1e-11);
 }
 
-TEST_CASE("the right Jacobian is the derivative of exp") {
+TEST_CASE("se2: the right Jacobian is the derivative of exp") {
   for (const Eigen::Vector3d& xi : twists()) {
     INFO(xi.transpose());
     const Pose2<double> middle = se2_exp<double>(xi);
@@ -124,7 +124,7 @@ TEST_CASE("the right Jacobian is the derivative of exp") {
   }
 }
 
-TEST_CASE("the inverse of the right Jacobian is its inverse, also at pi and beyond") {
+TEST_CASE("se2: the inverse of the right Jacobian is its inverse, also at pi and beyond") {
   for (Eigen::Vector3d xi : twists()) {
     for (const double factor : {1.0, 1.5}) {
       xi[2] *= factor;
@@ -145,14 +145,14 @@ TEST_CASE("adjoint: X exp(xi) X^-1 = exp(Ad(X) xi)") {
   }
 }
 
-TEST_CASE("adjoint of a product is the product of adjoints, of an inverse the inverse") {
+TEST_CASE("se2: adjoint of a product is the product of adjoints, of an inverse the inverse") {
   const Pose2<double> a(1, 2, 0.3);
   const Pose2<double> b(-4, 1, -2.9);
   CHECK((se2_adjoint(compose(a, b)) - se2_adjoint(a) * se2_adjoint(b)).norm() < 1e-14);
   CHECK((se2_adjoint(inverse(a)) - se2_adjoint(a).inverse()).norm() < 1e-14);
 }
 
-TEST_CASE("compose, between and inverse are those of the matrices") {
+TEST_CASE("se2: compose, between and inverse are those of the matrices") {
   const Pose2<double> a(1, 2, 2.3);
   const Pose2<double> b(-4, 1, 1.9);
   CHECK((matrix_of(compose(a, b)) - matrix_of(a) * matrix_of(b)).norm() < 1e-14);

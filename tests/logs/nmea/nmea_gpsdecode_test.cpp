@@ -80,7 +80,7 @@ TEST_CASE("gpsdecode: NMEA fixes agree to its rounding") {
   }
 }
 
-TEST_CASE("gpsd's own regression output of a recording agrees with its NMEA fixes") {
+TEST_CASE("gpsdecode: gpsd's own regression output of a recording agrees with its NMEA fixes") {
   const auto output = shared_data_dir() / "logs" / "gpsd" / "gpsd_neo-m8n.log.chk";
   if (!std::filesystem::exists(output)) {
     std::cout << "SKIPPED: " << output.string() << " is absent\n";

@@ -106,7 +106,7 @@ TEST_CASE("outages: the fixes of every period's end are kept out, and the patter
   }
 }
 
-TEST_CASE("states that nothing determines: the result is written, and what lacks is said") {
+TEST_CASE("calibration: states that nothing determines: the result is written, and what lacks is said") {
   const std::string folder = fresh_folder();
   const std::string graph = write_text(
       folder + "a.graph",
@@ -119,7 +119,7 @@ TEST_CASE("states that nothing determines: the result is written, and what lacks
   CHECK(contains(result.err, "warning: the estimated states have no sigmas"));
 }
 
-TEST_CASE("a time offset without two stamped poses cannot be evaluated, and that is said") {
+TEST_CASE("calibration: a time offset without two stamped poses cannot be evaluated, and that is said") {
   const std::string folder = fresh_folder();
   const std::string graph =
       write_text(folder + "a.graph",

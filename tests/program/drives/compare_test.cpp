@@ -78,7 +78,7 @@ TEST_CASE("compare: the page has the metrics of every run, and raw GNSS once") {
   CHECK(table_row(html, caption, "raw GNSS (gateless g1)").empty());
 }
 
-TEST_CASE("compare names what is best and what differs") {
+TEST_CASE("compare: names what is best and what differs") {
   const std::string folder = fresh_folder();
   const std::string plain = run_of(folder, "plain");
   const std::string gateless = run_of(folder, "gateless", {"--no-gate"});
@@ -94,7 +94,7 @@ TEST_CASE("compare names what is best and what differs") {
         std::string::npos);
 }
 
-TEST_CASE("compare --json has the schema of run, and its own output can be compared again") {
+TEST_CASE("compare: --json has the schema of run, and its own output can be compared again") {
   const std::string folder = fresh_folder();
   const std::string one = run_of(folder, "one");
   const RunResult result = run({"compare", one, "-o", folder + "out", "--json"});
@@ -110,7 +110,7 @@ TEST_CASE("compare --json has the schema of run, and its own output can be compa
   CHECK(Json::parse(again.out).at("evaluations") == json.at("evaluations"));
 }
 
-TEST_CASE("compare writes figures with their numbers, which are those of the metrics") {
+TEST_CASE("compare: writes figures with their numbers, which are those of the metrics") {
   const std::string folder = fresh_folder();
   const std::string one = run_of(folder, "one");
   REQUIRE(run({"compare", one, "-o", folder + "out", "-q"}).code == 0);
@@ -127,7 +127,7 @@ TEST_CASE("compare writes figures with their numbers, which are those of the met
   CHECK(std::stod(line.substr(6)) == position(metrics, 0, "fused", "rmse_m"));
 }
 
-TEST_CASE("compare shows errors epoch by epoch where a run has them") {
+TEST_CASE("compare: shows errors epoch by epoch where a run has them") {
   const std::string folder = fresh_folder();
   const std::string one = run_of(folder, "one");
   std::filesystem::remove(one + "/g1.epochs.csv");
@@ -148,7 +148,7 @@ TEST_CASE("compare shows errors epoch by epoch where a run has them") {
   CHECK(contains(read_text(folder + "with/figures/comparison-distribution-1.csv"), "g1,0.5,50\ng1,1,100\n"));
 }
 
-TEST_CASE("compare says that drives are mixed, and takes runs without truth") {
+TEST_CASE("compare: says that drives are mixed, and takes runs without truth") {
   const std::string folder = fresh_folder();
   const std::string one = run_of(folder, "one");
   DriveRecipe recipe;
@@ -171,7 +171,7 @@ TEST_CASE("compare says that drives are mixed, and takes runs without truth") {
   CHECK(page_flaws(read_text(folder + "blind/comparison.html")) == std::vector<std::string>{});
 }
 
-TEST_CASE("compare refuses what is no run, with place and remedy") {
+TEST_CASE("compare: refuses what is no run, with place and remedy") {
   const std::string folder = fresh_folder();
   const std::string metrics = R"({"schema": "waymark-metrics", "version": 1, "drive": "", "provenance": {},
  "evaluations": [{"label": "g1", "frame": {"utm_zone": -1)";
@@ -220,7 +220,7 @@ TEST_CASE("compare refuses what is no run, with place and remedy") {
   }
 }
 
-TEST_CASE("compare refuses a table of epochs that is broken, by line") {
+TEST_CASE("compare: refuses a table of epochs that is broken, by line") {
   const std::string folder = fresh_folder();
   const std::string one = run_of(folder, "one");
   const std::string heading = "stamp_ns,gnss_east_m,gnss_north_m,fused_east_m,fused_north_m,nees\n";

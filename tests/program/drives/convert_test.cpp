@@ -160,7 +160,7 @@ TEST_CASE("convert: our own format says where it comes from, lenient reading say
   CHECK(contains(read_text(folder + "a.graph"), " from a.g2o fnv1a64:"));
 }
 
-TEST_CASE("optimize, check and bench read what they are told to, optimize writes every format") {
+TEST_CASE("convert: optimize, check and bench read what they are told to, optimize writes every format") {
   const std::string folder = fresh_folder();
   const std::string toro = write_text(folder + "toro.graph", kToro);
   CHECK(contains(run({"check", toro, "--input-format", "toro"}).out, "no problems found"));

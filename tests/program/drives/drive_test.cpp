@@ -25,7 +25,7 @@ void check_refused(const std::string& folder, const std::string& message) {
 
 }  // namespace
 
-TEST_CASE("the bundled drive: three steps give what run gives") {
+TEST_CASE("drive: the bundled drive: three steps give what run gives") {
   const std::string folder = fresh_folder();
   const RunResult converted = run({"convert", bundled_drive(), "-m", "g1", "-o", folder + "drive.graph"});
   CHECK(converted.code == 0);
@@ -47,7 +47,7 @@ TEST_CASE("the bundled drive: three steps give what run gives") {
   CHECK(read_text(folder + "e/fused.csv") == read_text(folder + "results/g1.csv"));
 }
 
-TEST_CASE("modelings, withheld fixes and a window of time are taken from the command line") {
+TEST_CASE("drive: modelings, withheld fixes and a window of time are taken from the command line") {
   const std::string folder = fresh_folder();
   const RunResult result = run({"run", bundled_drive(), "--out", folder + "results", "-m", "all",
                                 "--withhold", "5", "--from", "20", "--to", "80"});
@@ -61,10 +61,11 @@ TEST_CASE("modelings, withheld fixes and a window of time are taken from the com
   }
 }
 
-TEST_CASE("a run that does not converge: exit 4, files and message") {
+TEST_CASE("drive: a run that does not converge: exit 4, files and message") {
   const std::string folder = fresh_folder();
-  const RunResult result = run({"run", write_drive(folder), "--out", folder + "results", "--max-iterations",
-                                "1", "--initial-guess", "dead_reckoning", "-a", "levenberg_marquardt", "-m", "g1"});
+  const RunResult result =
+      run({"run", write_drive(folder), "--out", folder + "results", "--max-iterations", "1",
+           "--initial-guess", "dead_reckoning", "-a", "levenberg_marquardt", "-m", "g1"});
   INFO(result.out << result.err);
   CHECK(result.code == 4);
   CHECK(contains(result.out, "NOT CONVERGED in 1 iterations"));
@@ -72,7 +73,7 @@ TEST_CASE("a run that does not converge: exit 4, files and message") {
   CHECK(exists(folder + "results/g1.fused.graph"));
 }
 
-TEST_CASE("logs that cannot be used are bad input with a reason") {
+TEST_CASE("drive: logs that cannot be used are bad input with a reason") {
   const std::string folder = fresh_folder();
   write_drive(folder, {.empty_odometry = true});
   check_refused(folder, "odometry.csv: the log holds no records");
@@ -96,13 +97,13 @@ TEST_CASE("logs that cannot be used are bad input with a reason") {
       "columns present: time, velocity, yaw_rate");
 }
 
-TEST_CASE("a missing log is named") {
+TEST_CASE("drive: a missing log is named") {
   const std::string folder = fresh_folder();
   write_drive(folder, {.more_yaml = "folder: elsewhere\n"});
   check_refused(folder, "elsewhere/odometry.csv: cannot read: No such file or directory");
 }
 
-TEST_CASE("a drive whose fixes are all rejected is bad input") {
+TEST_CASE("drive: a drive whose fixes are all rejected is bad input") {
   // Every second fix 200 m beside the way: the odometry contradicts each of them.
   const std::string folder = fresh_folder();
   write_drive(folder, {.fix_error_m = [](int t) { return t % 2 == 0 ? 200.0 : -200.0; },
@@ -114,7 +115,7 @@ TEST_CASE("a drive whose fixes are all rejected is bad input") {
         0);
 }
 
-TEST_CASE("truth that does not overlap the drive is bad input") {
+TEST_CASE("drive: truth that does not overlap the drive is bad input") {
   const std::string folder = fresh_folder();
   write_drive(folder, {.truth_shift_s = 86'400});
   check_refused(folder, "truth does not overlap the odometry");
@@ -128,7 +129,7 @@ TEST_CASE("truth that does not overlap the drive is bad input") {
   CHECK(contains(result.err, "truth does not overlap the drive in time: truth spans 5000.000000000 .. 5001"));
 }
 
-TEST_CASE("truth comes from a drive.yaml or a TUM file, with the same result") {
+TEST_CASE("drive: truth comes from a drive.yaml or a TUM file, with the same result") {
   const std::string folder = fresh_folder();
   const std::string drive = write_drive(folder);
   REQUIRE(run({"run", drive, "-m", "g1", "--out", folder + "r", "-q"}).code == 0);
@@ -151,7 +152,7 @@ TEST_CASE("truth comes from a drive.yaml or a TUM file, with the same result") {
   CHECK(contains(without.err, "no_truth.yaml: has no 'truth' section"));
 }
 
-TEST_CASE("evaluate names a graph without fixes, and keeps graphs of one name apart") {
+TEST_CASE("drive: evaluate names a graph without fixes, and keeps graphs of one name apart") {
   const std::string folder = fresh_folder();
   write_text(folder + "plain.graph", square_graph());
   const RunResult plain = run({"evaluate", folder + "plain.graph"});
@@ -167,7 +168,7 @@ TEST_CASE("evaluate names a graph without fixes, and keeps graphs of one name ap
   CHECK(exists(folder + "e/g1_2.csv"));
 }
 
-TEST_CASE("a wrong key of a drive.yaml is bad input that suggests the right one") {
+TEST_CASE("drive: a wrong key of a drive.yaml is bad input that suggests the right one") {
   const std::string folder = fresh_folder();
   write_drive(folder, {.more_yaml = "gaet: {enabled: false}\n"});
   check_refused(folder, "unknown key 'gaet'; did you mean 'gate'?");

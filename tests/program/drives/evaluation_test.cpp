@@ -40,7 +40,7 @@ void check_cell(const std::string& cell, const Json& value) {
 
 }  // namespace
 
-TEST_CASE("run states how honest its covariances are, in the table and in metrics.json") {
+TEST_CASE("evaluation: run states how honest its covariances are, in the table and in metrics.json") {
   const std::string folder = fresh_folder();
   const RunResult result = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r"});
   REQUIRE(result.code == 0);
@@ -115,7 +115,7 @@ TEST_CASE("outages: fused, dead reckoned and causal errors at the withheld fixes
   CHECK(predictions["dead reckoning"]["innovation"]["fraction_inside"].is_null());
 }
 
-TEST_CASE("the last outage of a drive is predicted causally as the whole drive is fused") {
+TEST_CASE("evaluation: the last outage of a drive is predicted causally as the whole drive is fused") {
   // Nothing comes after it: the causal estimate there is the fused one.
   const std::string folder = fresh_folder();
   const RunResult result = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r", "--outage",
@@ -126,7 +126,7 @@ TEST_CASE("the last outage of a drive is predicted causally as the whole drive i
         Approx(predictions["fused"]["at_fixes"]["rmse_m"].get<double>()).epsilon(1e-6));
 }
 
-TEST_CASE("causal predictions without outages are refused") {
+TEST_CASE("evaluation: causal predictions without outages are refused") {
   const std::string folder = fresh_folder();
   const RunResult refused = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r", "--causal"});
   CHECK(refused.code == 2);
@@ -177,7 +177,7 @@ struct EpochsTable {
 
 }  // namespace
 
-TEST_CASE("epochs.csv holds what metrics.json is made of") {
+TEST_CASE("evaluation: epochs.csv holds what metrics.json is made of") {
   const std::string folder = fresh_folder();
   REQUIRE(run({"run", bundled_drive(), "-m", "g1", "--out", folder, "-q"}).code == 0);
   const EpochsTable epochs(read_text(folder + "g1.epochs.csv"));

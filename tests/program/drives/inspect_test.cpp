@@ -50,7 +50,7 @@ void check_runs(const std::vector<std::string>& logs, double smallest_m, double 
 
 }  // namespace
 
-TEST_CASE("inspect says what is in a log, as text and as JSON") {
+TEST_CASE("inspect: says what is in a log, as text and as JSON") {
   const std::string folder = drive_folder();
   const RunResult text = run({"inspect", folder + "gnss.csv", folder + "odometry.csv"});
   INFO(text.out);
@@ -71,7 +71,8 @@ TEST_CASE("inspect says what is in a log, as text and as JSON") {
   CHECK(json.at(1).at("odometry").at("channels").at(0).at("range").at("largest") == Approx(10));
 }
 
-TEST_CASE("inspect and init write the same drive.yaml, tell what was decided, and replace none unasked") {
+TEST_CASE(
+    "inspect: inspect and init write the same drive.yaml, tell what was decided, and replace none unasked") {
   const std::string folder = drive_folder();
   const std::vector<std::string> logs{folder + "gnss.csv", folder + "odometry.csv", folder + "truth.csv"};
   std::vector<std::string> arguments{"init"};
@@ -101,7 +102,7 @@ TEST_CASE("inspect and init write the same drive.yaml, tell what was decided, an
   CHECK(fused.code == 0);
 }
 
-TEST_CASE("init without logs writes a template, and -o - goes to the standard output") {
+TEST_CASE("inspect: init without logs writes a template, and -o - goes to the standard output") {
   const RunResult result = run({"init", "-o", "-"});
   CHECK(result.code == 0);
   CHECK(contains(result.out, "FILL_IN_odometry.csv"));
@@ -114,7 +115,7 @@ TEST_CASE("init without logs writes a template, and -o - goes to the standard ou
   CHECK(contains(both.err, "no log with odometry was found: fill in odometry"));
 }
 
-TEST_CASE("inspect and init refuse what they cannot read, with exit code and remedy") {
+TEST_CASE("inspect: inspect and init refuse what they cannot read, with exit code and remedy") {
   const std::string folder = drive_folder();
   const auto check = [](const std::vector<std::string>& arguments, int code, const std::string& message) {
     const RunResult result = run(arguments);
@@ -134,7 +135,7 @@ TEST_CASE("inspect and init refuse what they cannot read, with exit code and rem
   check({"init", folder + "gnss.csv", "-o", folder + "no/drive.yaml"}, 5, "no/drive.yaml");
 }
 
-TEST_CASE("inspect of Aarhus's CAN log names the logger's clock and proposes its signals") {
+TEST_CASE("inspect: of Aarhus's CAN log names the logger's clock and proposes its signals") {
   const std::string log = shared_file("drives/aarhus_horsens/candump.log.gz");
   if (log.empty()) return;
   const RunResult result =
@@ -148,7 +149,7 @@ TEST_CASE("inspect of Aarhus's CAN log names the logger's clock and proposes its
   CHECK(json.at("logger_ahead_s").get<double>() == Approx(4.40).margin(0.01));  // by the data's own README
 }
 
-TEST_CASE("inspect finds Munich's frozen receiver and gpsd's date of another age") {
+TEST_CASE("inspect: finds Munich's frozen receiver and gpsd's date of another age") {
   const std::string munich = shared_file("logs/nmea/genivi_munich_Petuelring_2009.nmea");
   if (munich.empty()) return;
   const RunResult nmea = run({"inspect", munich});
@@ -161,7 +162,7 @@ TEST_CASE("inspect finds Munich's frozen receiver and gpsd's date of another age
   CHECK(contains(nofix.out, "the receiver has no fix in 7 of 7 records"));
 }
 
-TEST_CASE("init makes drives that run of raw logs: Potsdamer Platz, Nagoya, Aarhus") {
+TEST_CASE("inspect: init makes drives that run of raw logs: Potsdamer Platz, Nagoya, Aarhus") {
   const std::string bundled = bundled_drive();
   const std::string folder = bundled.substr(0, bundled.rfind('/') + 1);
   check_runs({folder + "odometry_50hz.csv", folder + "gnss_5hz.csv", folder + "truth_5hz.csv"}, 800, 900);

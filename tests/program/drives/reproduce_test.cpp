@@ -11,7 +11,7 @@
 
 using Json = nlohmann::json;
 
-TEST_CASE("reproduce on the bundled drive: one minimum for all, every file, nothing on stderr in a pipe") {
+TEST_CASE("reproduce: on the bundled drive: one minimum for all, every file, nothing on stderr in a pipe") {
   const std::string folder = fresh_folder();
   const RunResult result = run({"reproduce", bundled_drive(), "-o", folder + "out", "--json"});
   INFO(result.err);
@@ -54,7 +54,7 @@ TEST_CASE("reproduce on the bundled drive: one minimum for all, every file, noth
   CHECK(contains(read_text(folder + "out/figures/reproduction-error-max.csv"), raw.str()));
 }
 
-TEST_CASE("reproduce keeps fixes out of a drive without truth, and runs the same twice") {
+TEST_CASE("reproduce: keeps fixes out of a drive without truth, and runs the same twice") {
   const std::string folder = fresh_folder();
   DriveRecipe recipe;
   recipe.seconds = 300;
@@ -70,7 +70,7 @@ TEST_CASE("reproduce keeps fixes out of a drive without truth, and runs the same
   CHECK(read_text(folder + "a/reproduction.json") == read_text(folder + "b/reproduction.json"));
 }
 
-TEST_CASE("the default model of reproduce is what run does") {
+TEST_CASE("reproduce: the default model of reproduce is what run does") {
   const std::string folder = fresh_folder();
   const RunResult study = run({"reproduce", bundled_drive(), "-o", folder + "a", "--ablation", "--json"});
   INFO(study.err);
@@ -91,7 +91,7 @@ TEST_CASE("the default model of reproduce is what run does") {
   CHECK(contains(read_text(folder + "a/figures/ablation-ablation-error.csv"), ",default,1,1\n"));
 }
 
-TEST_CASE("the ablation's remedies for outliers find wild fixes, and squared errors do not") {
+TEST_CASE("reproduce: the ablation's remedies for outliers find wild fixes, and squared errors do not") {
   const std::string folder = fresh_folder();
   DriveRecipe recipe;
   recipe.seconds = 300;
@@ -124,7 +124,7 @@ TEST_CASE("the ablation's remedies for outliers find wild fixes, and squared err
   CHECK(rmse("white/gnc") < 0.5);
 }
 
-TEST_CASE("reproduce --consistency: white noise is many times too sure, drives and seeds are stated") {
+TEST_CASE("reproduce: --consistency: white noise is many times too sure, drives and seeds are stated") {
   const std::string folder = fresh_folder();
   const RunResult result = run({"reproduce", "--consistency", "4", "-o", folder + "out", "--json"});
   INFO(result.err);
@@ -149,7 +149,7 @@ TEST_CASE("reproduce --consistency: white noise is many times too sure, drives a
                  "drives,1," + first.dump() + ","));
 }
 
-TEST_CASE("reproduce refuses what it cannot do before any work") {
+TEST_CASE("reproduce: refuses what it cannot do before any work") {
   const std::string folder = fresh_folder();
   const std::string out = folder + "out";
   const RunResult number = run({"reproduce", "-o", out, "--drives", "1,9"});

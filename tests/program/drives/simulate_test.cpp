@@ -7,7 +7,7 @@
 
 using Json = nlohmann::json;
 
-TEST_CASE("simulate lists its presets") {
+TEST_CASE("simulate: lists its presets") {
   const RunResult result = run({"simulate", "--list"});
   CHECK(result.code == 0);
   for (const char* name : {"highway", "urban", "rural", "mixed", "paper-1", "paper-8"})
@@ -17,7 +17,7 @@ TEST_CASE("simulate lists its presets") {
   CHECK(json.at(4).at("name") == "paper-1");
 }
 
-TEST_CASE("simulate writes a drive that runs, and its logs say that they are simulated") {
+TEST_CASE("simulate: writes a drive that runs, and its logs say that they are simulated") {
   const std::string folder = fresh_folder();
   const RunResult result =
       run({"simulate", "--preset", "urban", "--duration", "120", "-o", folder + "drive"});
@@ -55,7 +55,7 @@ TEST_CASE("simulate writes a drive that runs, and its logs say that they are sim
         Approx(raw.at("precision_m").get<double>()).epsilon(1e-9));
 }
 
-TEST_CASE("simulate writes the same bytes for the same seed, others for another") {
+TEST_CASE("simulate: writes the same bytes for the same seed, others for another") {
   const std::string folder = fresh_folder();
   for (const auto& [name, seed] : {std::pair{"a", "5"}, {"b", "5"}, {"c", "6"}})
     CHECK(run({"simulate", "--preset", "mixed", "--duration", "60", "--seed", seed, "-o", folder + name})
@@ -67,7 +67,7 @@ TEST_CASE("simulate writes the same bytes for the same seed, others for another"
   }
 }
 
-TEST_CASE("simulate prints the table as JSON, and describes real drives alike") {
+TEST_CASE("simulate: prints the table as JSON, and describes real drives alike") {
   const std::string folder = fresh_folder();
   const RunResult result =
       run({"simulate", "--preset", "rural", "--duration", "60", "-o", folder + "d", "--json"});
@@ -89,7 +89,7 @@ TEST_CASE("simulate: drives without truth have no errors to tell of") {
   CHECK(contains(result.out, "- / - / - m"));
 }
 
-TEST_CASE("simulate refuses what it does not know, with the remedy") {
+TEST_CASE("simulate: refuses what it does not know, with the remedy") {
   const std::string folder = fresh_folder();
   const RunResult unknown = run({"simulate", "--preset", "highwy", "-o", folder + "x"});
   CHECK(unknown.code == 2);
@@ -109,7 +109,7 @@ TEST_CASE("simulate refuses what it does not know, with the remedy") {
   CHECK_FALSE(exists(folder + "x"));
 }
 
-TEST_CASE("simulate cannot write where there is no folder to be made") {
+TEST_CASE("simulate: cannot write where there is no folder to be made") {
   const std::string folder = fresh_folder();
   const std::string file = write_text(folder + "file", "taken");
   const RunResult result = run({"simulate", "--preset", "urban", "--duration", "20", "-o", file + "/below"});

@@ -46,7 +46,7 @@ void check_cell(const Json& cell, int repetitions) {
 
 }  // namespace
 
-TEST_CASE("bench measures algorithm x solver x start, in the order asked for") {
+TEST_CASE("bench: measures algorithm x solver x start, in the order asked for") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph());
   const RunResult result = run({"bench", input, "-a", "dogleg,gauss_newton", "-s", "eigen", "--start",
@@ -78,7 +78,7 @@ TEST_CASE("bench measures algorithm x solver x start, in the order asked for") {
   }
 }
 
-TEST_CASE("bench starts a file without vertices along its odometry, once") {
+TEST_CASE("bench: starts a file without vertices along its odometry, once") {
   const std::string folder = fresh_folder();
   write_text(folder + "edges.g2o", "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n");
   const RunResult result =
@@ -89,7 +89,7 @@ TEST_CASE("bench starts a file without vertices along its odometry, once") {
   CHECK(cells.at(0).at("start") == "odometry");
 }
 
-TEST_CASE("bench and optimize say the same of a graph") {
+TEST_CASE("bench: bench and optimize say the same of a graph") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph());
   const Json one = Json::parse(run({"optimize", input, "-o", folder + "b.graph", "--json"}).out);
@@ -102,7 +102,7 @@ TEST_CASE("bench and optimize say the same of a graph") {
   CHECK(cell.at("solver_description") == one.at("solver"));
 }
 
-TEST_CASE("bench writes a CSV line per cell and a table per file") {
+TEST_CASE("bench: writes a CSV line per cell and a table per file") {
   const std::string folder = fresh_folder();
   write_text(folder + "a.graph", square_graph());
   write_text(folder + "b.graph", slow_graph(50));
@@ -121,7 +121,7 @@ TEST_CASE("bench writes a CSV line per cell and a table per file") {
   CHECK(lines[2].rfind("b.graph,50,", 0) == 0);
 }
 
-TEST_CASE("bench writes a page with the numbers of its JSON, and what did not converge") {
+TEST_CASE("bench: writes a page with the numbers of its JSON, and what did not converge") {
   const std::string folder = fresh_folder();
   write_text(folder + "a.graph", square_graph());
   write_text(folder + "b.graph", slow_graph(50));
@@ -155,7 +155,7 @@ TEST_CASE("bench writes a page with the numbers of its JSON, and what did not co
   CHECK(contains(html, "not converged (!)"));  // the crosses' entry in a legend
 }
 
-TEST_CASE("a page of many contestants has a figure for each file") {
+TEST_CASE("bench: a page of many contestants has a figure for each file") {
   const std::string folder = fresh_folder();
   write_text(folder + "a.graph", square_graph());
   REQUIRE(run({"bench", "a.graph", "-a", "all", "-s", "all", "--repeat", "1", "-o", "out", "-q"},
@@ -167,7 +167,7 @@ TEST_CASE("a page of many contestants has a figure for each file") {
   CHECK(contains(read_text(folder + "out/figures/bench-time-1.csv"), ",dogleg block_cholesky,"));
 }
 
-TEST_CASE("bench judges by listed optima: reached, above, lower") {
+TEST_CASE("bench: judges by listed optima: reached, above, lower") {
   const std::string folder = fresh_folder();
   write_text(folder + "a.graph", square_graph());
   const Json found = Json::parse(run({"bench", folder + "a.graph", "--repeat", "1", "--json"}).out);
@@ -197,7 +197,7 @@ TEST_CASE("bench judges by listed optima: reached, above, lower") {
   }
 }
 
-TEST_CASE("bench marks a cell that does not converge and still ends with 0") {
+TEST_CASE("bench: marks a cell that does not converge and still ends with 0") {
   const std::string input = write_text(fresh_folder() + "a.graph", square_graph());
   const RunResult result = run({"bench", input, "--repeat", "1", "--max-iterations", "1"});
   CHECK(result.code == 0);
@@ -206,7 +206,7 @@ TEST_CASE("bench marks a cell that does not converge and still ends with 0") {
   CHECK(contains(result.out, ": not converged after 1 iterations"));
 }
 
-TEST_CASE("bench measures peers in turn and gives paired ratios") {
+TEST_CASE("bench: measures peers in turn and gives paired ratios") {
   if (!has_ceres()) return;
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph());
@@ -233,7 +233,7 @@ TEST_CASE("bench measures peers in turn and gives paired ratios") {
   }
 }
 
-TEST_CASE("bench refuses wrong words and files before it measures") {
+TEST_CASE("bench: refuses wrong words and files before it measures") {
   const std::string folder = fresh_folder();
   write_text(folder + "a.graph", square_graph());
   write_text(folder + "bad.graph", "GRAPH 1\nVERTEX_SE2 0 0 0\n");
@@ -282,7 +282,7 @@ TEST_CASE("bench refuses wrong words and files before it measures") {
   }
 }
 
-TEST_CASE("bench without Ceres names the package that is missing") {
+TEST_CASE("bench: a peer that is not built in is named with the remedy") {
   if (contains(run({"doctor"}).out, "Ceres")) {
     WARN("SKIPPED: this program was built with Ceres");
     return;
@@ -293,7 +293,7 @@ TEST_CASE("bench without Ceres names the package that is missing") {
   CHECK(contains(result.err, "install the Debian package libceres-dev and build again"));
 }
 
-TEST_CASE("bench ends at Ctrl-C") {
+TEST_CASE("bench: Ctrl-C ends it") {
   const std::string folder = fresh_folder();
   write_text(folder + "slow.graph", slow_graph(19'000));
   const RunResult result =
@@ -303,7 +303,7 @@ TEST_CASE("bench ends at Ctrl-C") {
   CHECK(contains(result.err, "interrupted before there was a result"));
 }
 
-TEST_CASE("the shipped list of optima is read") {
+TEST_CASE("bench: the shipped list of optima is read") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "ring.g2o",
                                        "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\n"

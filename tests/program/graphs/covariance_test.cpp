@@ -52,7 +52,7 @@ std::string folder_with(const std::string& graph) {
 
 }  // namespace
 
-TEST_CASE("covariances as CSV: columns named by the vertices' numbers") {
+TEST_CASE("covariance: covariances as CSV: columns named by the vertices' numbers") {
   const std::string folder = folder_with(kMixedGraph);
   const RunResult result =
       run({"optimize", "a.graph", "-o", "b.graph", "--covariance", "all", "--covariance-file", "b.csv"},
@@ -70,7 +70,7 @@ TEST_CASE("covariances as CSV: columns named by the vertices' numbers") {
   check_row(rows[3], "9,VERTEX_XY,,0.375,0,,0.1875,,");
 }
 
-TEST_CASE("covariances as JSON: the numbers, and what they are of") {
+TEST_CASE("covariance: covariances as JSON: the numbers, and what they are of") {
   const std::string folder = folder_with(std::string(kMixedGraph) +
                                          "VERTEX_SE2 20 0 0 0\nVERTEX_SE2 21 1 0 0\n"
                                          "EDGE_SE2 20 21 1 0 0 1 0 0 1 0 1\nLOSS huber 1.5\n");
@@ -102,7 +102,7 @@ TEST_CASE("covariances as JSON: the numbers, and what they are of") {
   CHECK(covariances[3].at("id") == 21);
 }
 
-TEST_CASE("tables hold the numbers of the graph, digit by digit") {
+TEST_CASE("covariance: tables hold the numbers of the graph, digit by digit") {
   const std::string folder = folder_with(square_graph());
   for (const char* name : {"b.csv", "b.json"}) {
     CHECK(run({"optimize", "a.graph", "-o", "b.graph", "--covariance", "all", "--covariance-file", name},
@@ -130,7 +130,7 @@ TEST_CASE("tables hold the numbers of the graph, digit by digit") {
   CHECK(row == 4);  // one of the four corners is held
 }
 
-TEST_CASE("no minimum, no covariances: the tables are empty and that is said") {
+TEST_CASE("covariance: no minimum, no covariances: the tables are empty and that is said") {
   const std::string folder = folder_with(square_graph());
   for (const std::string name : {"b.csv", "b.json"}) {
     const RunResult result = run({"optimize", "a.graph", "-o", "b.graph", "--start", "file",
@@ -145,7 +145,7 @@ TEST_CASE("no minimum, no covariances: the tables are empty and that is said") {
   CHECK(json.at("covariances").empty());
 }
 
-TEST_CASE("a table that cannot be written is refused before the work") {
+TEST_CASE("covariance: a table that cannot be written is refused before the work") {
   const std::string folder = folder_with(square_graph());
   const auto refuse = [&](const std::string& which, const std::string& name) {
     return run({"optimize", "a.graph", "-o", "b.graph", "--covariance", which, "--covariance-file", name},

@@ -8,7 +8,7 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
-TEST_CASE("a graph is optimised, and the optimum is read again") {
+TEST_CASE("optimize: a graph is optimised, and the optimum is read again") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph());
   const RunResult first = run({"optimize", input, "-o", folder + "b.graph"});
@@ -24,7 +24,7 @@ TEST_CASE("a graph is optimised, and the optimum is read again") {
   CHECK_FALSE(contains(read_text(folder + "b.graph"), "solver  "));  // guards against an empty name there
 }
 
-TEST_CASE("no convergence: exit 4, the result is written and said to be no minimum") {
+TEST_CASE("optimize: no convergence: exit 4, the result is written and said to be no minimum") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph());
   const RunResult result = run({"optimize", input, "-o", folder + "b.graph", "--max-iterations", "1"});
@@ -36,7 +36,7 @@ TEST_CASE("no convergence: exit 4, the result is written and said to be no minim
   CHECK(run({"optimize", input, "-o", folder + "q.graph", "--max-iterations", "1", "--quiet"}).code == 4);
 }
 
-TEST_CASE("bad graphs: exit 3, place and reason, and nothing is written") {
+TEST_CASE("optimize: bad graphs: exit 3, place and reason, and nothing is written") {
   struct Case {
     const char* text;
     const char* message;
@@ -75,7 +75,7 @@ TEST_CASE("bad graphs: exit 3, place and reason, and nothing is written") {
   }
 }
 
-TEST_CASE("files that cannot be read say why") {
+TEST_CASE("optimize: files that cannot be read say why") {
   const std::string folder = fresh_folder();
   const RunResult missing = run({"optimize", "none.graph", "-o", "out.graph"}, {.folder = folder});
   CHECK(missing.code == 3);
@@ -85,7 +85,7 @@ TEST_CASE("files that cannot be read say why") {
   CHECK(contains(is_folder.err, "cannot read: Is a directory"));
 }
 
-TEST_CASE("a file without permission to read says so") {
+TEST_CASE("optimize: a file without permission to read says so") {
   if (::geteuid() == 0) {
     WARN("SKIPPED: root may read everything");
     return;
@@ -97,7 +97,7 @@ TEST_CASE("a file without permission to read says so") {
   CHECK(contains(result.err, "cannot read: Permission denied"));
 }
 
-TEST_CASE("lenient reading skips, counts and shows") {
+TEST_CASE("optimize: lenient reading skips, counts and shows") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph() + "NOISE 1\nVERTEX_SE2 0 0 0 0\n");
   CHECK(run({"optimize", input, "-o", folder + "b.graph"}).code == 3);
@@ -107,7 +107,7 @@ TEST_CASE("lenient reading skips, counts and shows") {
   CHECK(contains(result.err, "a.graph:11:1: unknown tag 'NOISE'"));
 }
 
-TEST_CASE("g2o is written as asked, and refused before the work where it cannot hold the graph") {
+TEST_CASE("optimize: g2o is written as asked, and refused before the work where it cannot hold the graph") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph());
   const RunResult result = run({"optimize", input, "-o", folder + "b.g2o", "--format", "g2o"});
@@ -123,7 +123,7 @@ TEST_CASE("g2o is written as asked, and refused before the work where it cannot 
   CHECK_FALSE(exists(folder + "r.g2o"));
 }
 
-TEST_CASE("a file of edges only is started along its chain, and that is said") {
+TEST_CASE("optimize: a file of edges only is started along its chain, and that is said") {
   const std::string folder = fresh_folder();
   const std::string edges = "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n";
   const std::string input = write_text(folder + "a.g2o", edges);
@@ -136,7 +136,7 @@ TEST_CASE("a file of edges only is started along its chain, and that is said") {
                  "note: 2 vertices are not joined to the first"));
 }
 
-TEST_CASE("a TORO file is read where asked for, and never guessed") {
+TEST_CASE("optimize: a TORO file is read if asked for, and never guessed") {
   const std::string folder = fresh_folder();
   const std::string input =
       write_text(folder + "a.graph", "VERTEX2 0 0 0 0\nVERTEX2 1 9 9 0\nEDGE2 0 1 1 0 0 4 1 2 3 0 0\n");
@@ -147,7 +147,7 @@ TEST_CASE("a TORO file is read where asked for, and never guessed") {
   CHECK(contains(read_text(folder + "b.graph"), "EDGE_SE2 0 1 1 0 0 4 1 0 2 0 3\n"));
 }
 
-TEST_CASE("the start is chosen, and what was chosen is said") {
+TEST_CASE("optimize: the start is chosen, and what was chosen is said") {
   // The square's corners lie on one heap in the file: any start that reads the edges is exact.
   const std::string folder = fresh_folder();
   const std::string edges =
@@ -182,7 +182,7 @@ TEST_CASE("the start is chosen, and what was chosen is said") {
   CHECK_FALSE(exists(folder + "c.graph"));
 }
 
-TEST_CASE("check names what is wrong with a graph, up to ten lines of it") {
+TEST_CASE("optimize: check names what is wrong with a graph, up to ten lines of it") {
   const std::string folder = fresh_folder();
   const RunResult good = run({"check", write_text(folder + "a.graph", square_graph())});
   CHECK(good.code == 0);
@@ -196,7 +196,7 @@ TEST_CASE("check names what is wrong with a graph, up to ten lines of it") {
   CHECK(contains(bad.out, "problem: 3 more wrong lines\n"));
 }
 
-TEST_CASE("bytes that are no UTF-8 do not break json") {
+TEST_CASE("optimize: bytes that are no UTF-8 do not break json") {
   // Guards against the JSON library's exception, which was an internal error.
   const std::string folder = fresh_folder();
   write_text(folder + "\xff.graph", square_graph());

@@ -26,7 +26,7 @@ constexpr const char* kFalseLine = "EDGE_SE2 2 27 0.5 0 0 100 0 0 100 0 1000\n";
 
 }  // namespace
 
-TEST_CASE("gnc finds a false closure, writes it and leaves it out of the result") {
+TEST_CASE("robust: gnc finds a false closure, writes it and leaves it out of the result") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", chain_with_a_false_closure());
   const RunResult result = run(
@@ -43,7 +43,7 @@ TEST_CASE("gnc finds a false closure, writes it and leaves it out of the result"
   CHECK(nlohmann::json::parse(again.out).at("initial_chi2") < 1e-12);
 }
 
-TEST_CASE("gnc says the same in JSON, and to the standard output where asked") {
+TEST_CASE("robust: gnc says the same in JSON, and to the standard output where asked") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", chain_with_a_false_closure());
   const RunResult result = run({"optimize", input, "-o", folder + "b.graph", "--robust", "gnc", "--json"});
@@ -57,7 +57,7 @@ TEST_CASE("gnc says the same in JSON, and to the standard output where asked") {
   CHECK(lines.out == kFalseLine);
 }
 
-TEST_CASE("who is trusted is the user's choice") {
+TEST_CASE("robust: who is trusted is the user's choice") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", chain_with_a_false_closure());
   const RunResult none =
@@ -68,7 +68,7 @@ TEST_CASE("who is trusted is the user's choice") {
   CHECK(contains(all.out, "outliers    0 of 0 edges"));
 }
 
-TEST_CASE("losses are given to the edges that are not trusted, and written") {
+TEST_CASE("robust: losses are given to the edges that are not trusted, and written") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", chain_with_a_false_closure());
   const RunResult result =
@@ -79,7 +79,7 @@ TEST_CASE("losses are given to the edges that are not trusted, and written") {
   CHECK_FALSE(contains(written, "EDGE_SE2 2 3 1 0 0 100 0 0 100 0 1000\nLOSS"));
 }
 
-TEST_CASE("wrong losses, tags and combinations are refused before anything is read") {
+TEST_CASE("robust: wrong losses, tags and combinations are refused before anything is read") {
   struct Case {
     std::vector<std::string> options;
     const char* message;

@@ -28,7 +28,7 @@ const std::string kKept = "; the best state so far is kept\n";
 
 }  // namespace
 
-TEST_CASE("an interrupted optimisation keeps the best state and says so") {
+TEST_CASE("interrupt: an interrupted optimisation keeps the best state and says so") {
   const std::string folder = fresh_folder();
   write_text(folder + "a.graph", slow_graph(4000));
   const RunResult result =
@@ -48,7 +48,7 @@ TEST_CASE("an interrupted optimisation keeps the best state and says so") {
   CHECK(chi2("b.graph") < chi2("a.graph"));
 }
 
-TEST_CASE("an interrupted run keeps what it has and starts no further modeling") {
+TEST_CASE("interrupt: an interrupted run keeps what it has and starts no further modeling") {
   const std::string folder = fresh_folder();
   const RunResult result = run(slowly({"run", bundled_drive(), "--out", folder + "results", "-m", "g1,g2"}),
                                {.interrupt_at = "\n   3  "});
@@ -63,7 +63,7 @@ TEST_CASE("an interrupted run keeps what it has and starts no further modeling")
   for (const std::string& name : names_in(folder + "results")) CHECK_FALSE(contains(name, "partial"));
 }
 
-TEST_CASE("interrupted while reading: nothing is written, and that is said") {
+TEST_CASE("interrupt: interrupted while reading: nothing is written, and that is said") {
   // The program waits for its input from a pipe; Ctrl-C comes before the last line does.
   const std::string folder = fresh_folder();
   const std::string pipe = folder + "a.graph";

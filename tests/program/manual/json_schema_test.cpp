@@ -120,7 +120,7 @@ class Schema {
 
 }  // namespace
 
-TEST_CASE("json of every subcommand is as tools/program/JSON.md documents it") {
+TEST_CASE("json: json of every subcommand is as tools/program/JSON.md documents it") {
   const std::string folder = fresh_folder();
   const std::string drive = write_drive(folder);
   const std::string graph = folder + "a.graph";
@@ -177,7 +177,7 @@ TEST_CASE("json of every subcommand is as tools/program/JSON.md documents it") {
   }
 }
 
-TEST_CASE("a failure leaves stdout empty and keeps its text on stderr, with --json too") {
+TEST_CASE("json: a failure leaves stdout empty and keeps its text on stderr, with --json too") {
   const RunResult result = run({"check", "missing.graph", "--json"});
   CHECK(result.code == 3);
   CHECK(result.out.empty());

@@ -16,7 +16,7 @@ std::string folder_with_graph() {
 
 }  // namespace
 
-TEST_CASE("a graph on standard output is a graph, and the report goes elsewhere") {
+TEST_CASE("output: a graph on standard output is a graph, and the report goes elsewhere") {
   for (const char* name : {"-", "/dev/stdout"}) {
     const std::string folder = folder_with_graph();
     const RunResult result = run({"optimize", "a.graph", "-o", name}, {.folder = folder});
@@ -37,7 +37,7 @@ TEST_CASE("a graph on standard output is a graph, and the report goes elsewhere"
   CHECK(run({"check", folder + "b.graph"}).code == 0);
 }
 
-TEST_CASE("standard output in a file: the graph stands in it whole") {
+TEST_CASE("output: standard output in a file: the graph stands in it whole") {
   const std::string folder = folder_with_graph();
   const RunResult result =
       run({"optimize", "a.graph", "-o", "/dev/stdout"}, {.out_file = folder + "out.graph", .folder = folder});
@@ -45,7 +45,7 @@ TEST_CASE("standard output in a file: the graph stands in it whole") {
   CHECK(run({"check", folder + "out.graph"}).code == 0);
 }
 
-TEST_CASE("a full disk: exit 5, the old file is kept and nothing partial is left") {
+TEST_CASE("output: a full disk: exit 5, the old file is kept and nothing partial is left") {
   const std::string folder = folder_with_graph();
   write_text(folder + "b.graph", "old");
   const RunResult limited =
@@ -60,7 +60,7 @@ TEST_CASE("a full disk: exit 5, the old file is kept and nothing partial is left
   CHECK(device.err == "waymark: error: /dev/full: cannot write: No space left on device\n");
 }
 
-TEST_CASE("a full disk under the shell's limit ends a run the same way") {
+TEST_CASE("output: a full disk under the shell's limit ends a run the same way") {
   const std::string folder = fresh_folder();
   write_drive(folder);
   const RunResult result =
@@ -71,7 +71,7 @@ TEST_CASE("a full disk under the shell's limit ends a run the same way") {
   CHECK(names_in(folder + "results").empty());
 }
 
-TEST_CASE("a report that cannot be written is an error too") {
+TEST_CASE("output: a report that cannot be written is an error too") {
   // Guards against a full disk that looks like success to a script.
   const std::string folder = folder_with_graph();
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"check", "a.graph"},
@@ -89,13 +89,13 @@ TEST_CASE("a report that cannot be written is an error too") {
   }
 }
 
-TEST_CASE("a reader that has gone is an error, not a death by signal") {
+TEST_CASE("output: a reader that has gone is an error, not a death by signal") {
   const RunResult result = run({"info"}, {.close_output = true});
   CHECK(result.code == 5);
   CHECK(contains(result.err, "standard output: cannot write: Broken pipe"));
 }
 
-TEST_CASE("outputs that cannot be are refused before the work") {
+TEST_CASE("output: outputs that cannot be are refused before the work") {
   const std::string folder = folder_with_graph();
   const RunResult is_folder = run({"optimize", "a.graph", "-o", ".", "-v"}, {.folder = folder});
   CHECK(is_folder.code == 5);
@@ -108,7 +108,7 @@ TEST_CASE("outputs that cannot be are refused before the work") {
   CHECK(names_in(folder) == kOnlyInput);
 }
 
-TEST_CASE("an output folder that is a file is an output error, not an internal one") {
+TEST_CASE("output: an output folder that is a file is an output error, not an internal one") {
   const std::string folder = fresh_folder();
   const std::string drive = write_drive(folder);
   write_text(folder + "results", "a file");
@@ -125,7 +125,7 @@ TEST_CASE("an output folder that is a file is an output error, not an internal o
   CHECK(read_text(folder + "results") == "a file");
 }
 
-TEST_CASE("output folders are made, also in depth") {
+TEST_CASE("output: output folders are made, also in depth") {
   const std::string folder = fresh_folder();
   CHECK(run({"run", write_drive(folder), "--out", folder + "a/b/c", "-q"}).code == 0);
   CHECK(exists(folder + "a/b/c/metrics.json"));

@@ -35,7 +35,7 @@ std::size_t widest(const std::vector<std::string>& lines) {
 
 }  // namespace
 
-TEST_CASE("rate and remaining time are of the mean rate so far") {
+TEST_CASE("terminal: rate and remaining time are of the mean rate so far") {
   double now_s = 100;
   waymark::program::ProgressMeter meter([&] { return now_s; });
   meter.update(0, 900e6);
@@ -67,7 +67,7 @@ TEST_CASE("rate and remaining time are of the mean rate so far") {
   }
 }
 
-TEST_CASE("nothing is foretold from the first moments") {
+TEST_CASE("terminal: nothing is foretold from the first moments") {
   double now_s = 0;
   waymark::program::ProgressMeter meter([&] { return now_s; });
   now_s = 0.1;
@@ -79,7 +79,7 @@ TEST_CASE("nothing is foretold from the first moments") {
   CHECK_FALSE(meter.remaining_s());
 }
 
-TEST_CASE("a line is due at once and then ten times a second") {
+TEST_CASE("terminal: a line is due at once and then ten times a second") {
   double now_s = 0;
   waymark::program::ProgressMeter meter([&] { return now_s; });
   int lines = 0;
@@ -91,7 +91,7 @@ TEST_CASE("a line is due at once and then ten times a second") {
   CHECK(lines == 10);
 }
 
-TEST_CASE("durations are read at a glance and never too short") {
+TEST_CASE("terminal: durations are read at a glance and never too short") {
   CHECK(waymark::program::duration_text(0.2) == "1 s");
   CHECK(waymark::program::duration_text(59) == "59 s");
   CHECK(waymark::program::duration_text(129.1) == "2:10");
@@ -99,7 +99,7 @@ TEST_CASE("durations are read at a glance and never too short") {
   CHECK(waymark::program::duration_text(3729.5) == "1:02:10");
 }
 
-TEST_CASE("progress stands in one line of the terminal and leaves nothing behind") {
+TEST_CASE("terminal: progress stands in one line of the terminal and leaves nothing behind") {
   for (const unsigned columns : {30U, 80U, 120U}) {
     const std::string folder = fresh_folder();
     const RunResult result = run_on({.columns = columns, .out_in_pipe = true}, run_drive(folder));
@@ -117,7 +117,7 @@ TEST_CASE("progress stands in one line of the terminal and leaves nothing behind
   }
 }
 
-TEST_CASE("an error stands alone, where progress was") {
+TEST_CASE("terminal: an error stands alone, where progress was") {
   const std::string folder = fresh_folder();
   write_drive(folder);
   write_text(folder + "gnss.csv", "time,latitude\n1,2\n");
@@ -140,7 +140,7 @@ TEST_CASE("colours: on a terminal, headings bold, what is better green and what 
   CHECK(contains(result.err, "\033[2mnote:\033[0m "));
 }
 
-TEST_CASE("colours are off with NO_COLOR, and a dumb terminal gets no escape at all") {
+TEST_CASE("terminal: colours are off with NO_COLOR, and a dumb terminal gets no escape at all") {
   const std::string folder = fresh_folder();
   // https://no-color.org: "when present and not an empty string (regardless of its value)"
   for (const char* value : {"1", "0", "no"}) {
@@ -159,7 +159,7 @@ TEST_CASE("colours are off with NO_COLOR, and a dumb terminal gets no escape at 
   CHECK_FALSE(contains(dumb.err, "\r"));
 }
 
-TEST_CASE("stdout and stderr are judged separately") {
+TEST_CASE("terminal: stdout and stderr are judged separately") {
   const std::string folder = fresh_folder();
   const RunResult result = run_on({.columns = 60, .out_in_pipe = true}, run_drive(folder));
   CHECK(contains(result.err, "\033[2mnote:\033[0m"));
@@ -169,7 +169,7 @@ TEST_CASE("stdout and stderr are judged separately") {
                  "against truth         n  Max [m]  Acc [m]  Prec [m]  RMSE [m]  median [m]  CEP50 [m]"));
 }
 
-TEST_CASE("quiet is quiet on a terminal too") {
+TEST_CASE("terminal: quiet is quiet on a terminal too") {
   const std::string folder = fresh_folder();
   std::vector<std::string> arguments = run_drive(folder);
   arguments.emplace_back("--quiet");
@@ -178,7 +178,7 @@ TEST_CASE("quiet is quiet on a terminal too") {
   CHECK(result.err.empty());
 }
 
-TEST_CASE("tables fit the terminal, each part with its first column") {
+TEST_CASE("terminal: tables fit the terminal, each part with its first column") {
   const std::string folder = fresh_folder();
   REQUIRE(run(run_drive(folder)).code == 0);
   for (const unsigned columns : {80U, 120U}) {
@@ -189,7 +189,7 @@ TEST_CASE("tables fit the terminal, each part with its first column") {
   }
 }
 
-TEST_CASE("steps of the optimizer stand in columns under one heading for each optimisation") {
+TEST_CASE("terminal: steps of the optimizer stand in columns under one heading for each optimisation") {
   const std::string folder = fresh_folder();
   const std::string graph = write_text(folder + "a.graph", square_graph());
   const RunResult result = run({"optimize", graph, "-o", folder + "b.graph", "--start", "file", "-v"});

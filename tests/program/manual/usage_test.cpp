@@ -6,7 +6,7 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
-TEST_CASE("help of every subcommand has an example, and the program's the exit codes") {
+TEST_CASE("usage: help of every subcommand has an example, and the program's the exit codes") {
   for (const std::string& command : subcommands()) {
     const RunResult result = run({command, "--help"});
     INFO(command);
@@ -22,14 +22,14 @@ TEST_CASE("help of every subcommand has an example, and the program's the exit c
                  "Exit codes: 0 success, 1 internal error, 2 wrong usage, 3 bad input, 4 no convergence"));
 }
 
-TEST_CASE("the version is one line that names the program first") {
+TEST_CASE("usage: the version is one line that names the program first") {
   const RunResult result = run({"--version"});
   CHECK(result.code == 0);
   CHECK(result.out.starts_with("waymark "));
   CHECK(result.out.find('\n') == result.out.size() - 1);
 }
 
-TEST_CASE("wrong words on the command line are usage errors that name them") {
+TEST_CASE("usage: wrong words on the command line are usage errors that name them") {
   const std::string folder = fresh_folder();
   const std::string graph = write_text(folder + "a.graph", square_graph());
   const std::string out = folder + "out.graph";
@@ -85,7 +85,7 @@ TEST_CASE("wrong words on the command line are usage errors that name them") {
   }
 }
 
-TEST_CASE("what is mistyped is answered by what was meant, before anything is read") {
+TEST_CASE("usage: what is mistyped is answered by what was meant, before anything is read") {
   const std::string drive = bundled_drive();
   struct Case {
     std::vector<std::string> arguments;
@@ -139,7 +139,7 @@ TEST_CASE("what is mistyped is answered by what was meant, before anything is re
   }
 }
 
-TEST_CASE("a mistyped key is answered by the right one in every section of a drive.yaml") {
+TEST_CASE("usage: a mistyped key is answered by the right one in every section of a drive.yaml") {
   const std::string folder = fresh_folder();
   const std::string good = read_text(write_drive(folder));
   const std::pair<const char*, const char*> cases[] = {
@@ -160,7 +160,7 @@ TEST_CASE("a mistyped key is answered by the right one in every section of a dri
   }
 }
 
-TEST_CASE("a plugin that cannot be loaded is a usage error that names the file") {
+TEST_CASE("usage: a plugin that cannot be loaded is a usage error that names the file") {
   const std::string folder = fresh_folder();
   const RunResult missing = run({"info", "--plugin", "missing.so"}, {.folder = folder});
   CHECK(missing.code == 2);
@@ -180,7 +180,7 @@ TEST_CASE("a plugin that cannot be loaded is a usage error that names the file")
   CHECK(contains(other.err, "libm.so.6: is no waymark plugin (no symbol 'waymark_plugin')"));
 }
 
-TEST_CASE("quiet prints nothing and json only json, for every subcommand") {
+TEST_CASE("usage: quiet prints nothing and json only json, for every subcommand") {
   const std::string folder = fresh_folder();
   const std::string drive = write_drive(folder);
   const std::vector<std::vector<std::string>> commands = {
@@ -210,7 +210,7 @@ TEST_CASE("quiet prints nothing and json only json, for every subcommand") {
   }
 }
 
-TEST_CASE("progress and colours are for terminals only") {
+TEST_CASE("usage: progress and colours are for terminals only") {
   // Guards against log files full of escape codes and carriage returns.
   const std::string folder = fresh_folder();
   const RunResult result = run({"run", write_drive(folder), "--out", folder + "results", "-v"});
@@ -222,7 +222,7 @@ TEST_CASE("progress and colours are for terminals only") {
   }
 }
 
-TEST_CASE("info lists what is registered, with options") {
+TEST_CASE("usage: info lists what is registered, with options") {
   const auto json = nlohmann::json::parse(run({"info", "--json"}).out);
   for (const char* section : {"vertices", "edges", "modelings", "odometry_models", "algorithms", "solvers",
                               "losses", "log_formats", "graph_formats", "trajectory_formats"}) {
@@ -231,7 +231,7 @@ TEST_CASE("info lists what is registered, with options") {
   }
 }
 
-TEST_CASE("a list of modelings does not swallow the drive that follows it") {
+TEST_CASE("usage: a list of modelings does not swallow the drive that follows it") {
   const std::string folder = fresh_folder();
   for (const std::vector<std::string>& modelings :
        std::vector<std::vector<std::string>>{{"-m", "all"}, {"-m", "g1,g3"}, {"-m", "g1", "-m", "g2"}}) {
@@ -244,7 +244,7 @@ TEST_CASE("a list of modelings does not swallow the drive that follows it") {
   }
 }
 
-TEST_CASE("an option of one modeling goes to that one where all run, an unknown one is refused") {
+TEST_CASE("usage: an option of one modeling goes to that one where all run, an unknown one is refused") {
   const std::string folder = fresh_folder();
   const RunResult known = run({"run", bundled_drive(), "--out", folder + "a", "--modeling", "all",
                                "--modeling-option", "identity_information=1e5"});
@@ -255,7 +255,7 @@ TEST_CASE("an option of one modeling goes to that one where all run, an unknown 
   CHECK(contains(unknown.err, "unknown option 'identity'"));
 }
 
-TEST_CASE("check names a graph whose edges leave a vertex undetermined") {
+TEST_CASE("usage: check names a graph whose edges leave a vertex undetermined") {
   const std::string graph =
       write_text(fresh_folder() + "loose.graph",
                  "GRAPH 1\nVERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_XY 2 1 1\nFIX 0\n"

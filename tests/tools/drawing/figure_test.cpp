@@ -45,7 +45,7 @@ constexpr Mark kMarks[] = {Mark::line, Mark::points, Mark::band, Mark::spans, Ma
 
 }  // namespace
 
-TEST_CASE("every mark is drawn, and the document is well-formed") {
+TEST_CASE("figure: every mark is drawn, and the document is well-formed") {
   for (const Mark mark : kMarks) {
     const std::string svg = figure_svg(with(of(mark)));
     CAPTURE(svg);
@@ -54,7 +54,7 @@ TEST_CASE("every mark is drawn, and the document is well-formed") {
   }
 }
 
-TEST_CASE("a drawing names itself: title and description that its role refers to") {
+TEST_CASE("figure: a drawing names itself: title and description that its role refers to") {
   const std::string svg = figure_svg(with(of(Mark::line)));
   CHECK(svg.find("<title id=\"f-title\">A title</title>") != std::string::npos);
   CHECK(svg.find("<desc id=\"f-desc\">A description</desc>") != std::string::npos);
@@ -63,7 +63,7 @@ TEST_CASE("a drawing names itself: title and description that its role refers to
   CHECK(svg.find("error [m]") != std::string::npos);
 }
 
-TEST_CASE("hostile names and numbers leave a drawing well-formed and without NaN") {
+TEST_CASE("figure: hostile names and numbers leave a drawing well-formed and without NaN") {
   const std::vector<double> wild = {kNan, kInfinity, -kInfinity, 1e308, -1e308, 5e-324, 0};
   for (const Mark mark : kMarks) {
     for (const bool logarithmic : {false, true}) {
@@ -84,13 +84,13 @@ TEST_CASE("hostile names and numbers leave a drawing well-formed and without NaN
   }
 }
 
-TEST_CASE("a figure without points is drawn with its axes") {
+TEST_CASE("figure: a figure without points is drawn with its axes") {
   const std::string svg = figure_svg(with({.name = "nothing"}));
   CHECK(xml_error(svg).empty());
   CHECK(svg.find("class=\"tick-x\"") != std::string::npos);
 }
 
-TEST_CASE("looks are told apart by each of colour, dash, marker and hatching alone") {
+TEST_CASE("figure: looks are told apart by each of colour, dash, marker and hatching alone") {
   std::set<std::string_view> colours, dashes, markers, hatches;
   for (const LookStyle& look : all_looks()) {
     CHECK(&style_of(look.look) == &look);
@@ -106,7 +106,7 @@ TEST_CASE("looks are told apart by each of colour, dash, marker and hatching alo
 }
 
 TEST_CASE(
-    "text becomes references where markup would begin, and the replacement character where nothing is "
+    "figure: text becomes references where markup would begin, and the replacement character where nothing is "
     "meant") {
   CHECK(escaped("a<b>&\"'") == "a&lt;b&gt;&amp;&quot;&#39;");
   CHECK(escaped("\xc3\xa9\xe2\x82\xac\xf0\x9f\x9a\x97") == "\xc3\xa9\xe2\x82\xac\xf0\x9f\x9a\x97");
@@ -117,7 +117,7 @@ TEST_CASE(
   CHECK(escaped(std::string_view("\0\x1b", 2)) == "\xef\xbf\xbd\xef\xbf\xbd");
 }
 
-TEST_CASE("the numbers of a figure read back exactly from its CSV") {
+TEST_CASE("figure: the numbers of a figure read back exactly from its CSV") {
   Series series{.name = "a, \"b\"", .x = {0.1, 1.0 / 3, kNan}, .y = {1e-300, -0.0, 2}};
   series.note = {-1, 0, -1};
   series.notes = {"one\ntwo"};
@@ -129,7 +129,7 @@ TEST_CASE("the numbers of a figure read back exactly from its CSV") {
         "\"a, \"\"b\"\"\",,2,\n");
 }
 
-TEST_CASE("columns that only some series have are empty for the others") {
+TEST_CASE("figure: columns that only some series have are empty for the others") {
   Figure figure = with({.name = "line", .x = {1}, .y = {2}});
   figure.series.push_back({.name = "span", .mark = Mark::spans, .low = {3}, .high = {4}});
   CHECK(figure_csv(figure) ==

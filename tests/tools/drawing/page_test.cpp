@@ -38,7 +38,7 @@ const std::string kHostile = "</script><!-- <img src=x onerror=alert(1)> \"'&";
 
 }  // namespace
 
-TEST_CASE("what is put into a page cannot leave its place") {
+TEST_CASE("page: what is put into a page cannot leave its place") {
   Page page{.title = kHostile, .subtitle = kHostile, .summary = kHostile, .sections = {}, .footer = kHostile};
   Figure figure = line_figure("figure");
   figure.title = figure.description = kHostile;
@@ -55,7 +55,7 @@ TEST_CASE("what is put into a page cannot leave its place") {
   CHECK(count(html, "<!--") == 0);
 }
 
-TEST_CASE("a page refers to nothing outside itself but the files it links") {
+TEST_CASE("page: a page refers to nothing outside itself but the files it links") {
   Page page{.title = "t",
             .subtitle = "",
             .summary = "",
@@ -68,7 +68,7 @@ TEST_CASE("a page refers to nothing outside itself but the files it links") {
   CHECK(count(html, " src=") == 0);
 }
 
-TEST_CASE("equal columns of numbers are in a page once") {
+TEST_CASE("page: equal columns of numbers are in a page once") {
   const Figure a = line_figure("a");
   const Figure b = line_figure("b");
   const auto data = nlohmann::json::parse(page_data({&a, &b}));
@@ -76,7 +76,7 @@ TEST_CASE("equal columns of numbers are in a page once") {
   CHECK(data["figures"]["a"]["series"][0]["x"] == data["figures"]["b"]["series"][0]["time"]);
 }
 
-TEST_CASE("columns of numbers stand to the right in tables, words to the left") {
+TEST_CASE("page: columns of numbers stand to the right in tables, words to the left") {
   const PageTable table{"", {"name", "value [m]"}, {{"a", "1.5"}, {"b", "-"}, {"c", "+3.2"}}};
   const std::string html = page_html(
       {.title = "t", .subtitle = "", .summary = "", .sections = {{"s", "S", {table}}}, .footer = ""});

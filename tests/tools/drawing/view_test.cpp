@@ -65,7 +65,7 @@ std::vector<double> unpacked(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("ticks are round numbers with as many digits as tell them apart") {
+TEST_CASE("view: ticks are round numbers with as many digits as tell them apart") {
   CHECK(labels({0, 10}, false, 5) == Labels{"0", "2", "4", "6", "8", "10"});
   CHECK(labels({-0.06, 0.11}, false, 4) == Labels{"-0.05", "0.00", "0.05", "0.10"});
   CHECK(labels({0, 1}, false, 2) == Labels{"0.0", "0.5", "1.0"});
@@ -74,25 +74,25 @@ TEST_CASE("ticks are round numbers with as many digits as tell them apart") {
         Labels{"0.00083234", "0.00083235", "0.00083236", "0.00083237"});
 }
 
-TEST_CASE("logarithmic ticks are powers of ten, with 2 and 5 between where those are few") {
+TEST_CASE("view: logarithmic ticks are powers of ten, with 2 and 5 between where those are few") {
   CHECK(labels({0.5, 2000}, true, 5) == Labels{"1", "10", "100", "1000"});
   CHECK(labels({0.9, 11}, true, 5) == Labels{"1", "2", "5", "10"});
   CHECK(labels({110, 150}, true, 4) == Labels{"110", "120", "130", "140", "150"});
 }
 
-TEST_CASE("ticks end, however odd the range") {
+TEST_CASE("view: ticks end, however odd the range") {
   for (const Range range : {Range{0, 1e308}, Range{1e15, 1e15 + 1}, Range{-5e-324, 5e-324}, Range{0, 5e-324}})
     CHECK(ticks(range, false, 8).size() <= 101);
 }
 
-TEST_CASE("round lengths of scale bars") {
+TEST_CASE("view: round lengths of scale bars") {
   CHECK(round_down_125(9.99) == Approx(5));
   CHECK(round_down_125(5) == Approx(5));
   CHECK(round_down_125(0.02) == Approx(0.02));
   CHECK(round_down_125(1999) == Approx(1000));
 }
 
-TEST_CASE("a map has one scale for both axes and holds all its points") {
+TEST_CASE("view: a map has one scale for both axes and holds all its points") {
   Figure figure;
   figure.motion = Motion::map;
   figure.series = {{.name = "track", .x = {0, 1000}, .y = {0, 10}}};
@@ -102,7 +102,7 @@ TEST_CASE("a map has one scale for both axes and holds all its points") {
   CHECK(view.px_x(1000) <= view.box.left + view.box.width);
 }
 
-TEST_CASE("a thinned series keeps the extremes of every column of pixels") {
+TEST_CASE("view: a thinned series keeps the extremes of every column of pixels") {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   std::vector<double> x, y;
@@ -135,7 +135,7 @@ TEST_CASE("a thinned series keeps the extremes of every column of pixels") {
   }
 }
 
-TEST_CASE("no point of a thinned track is farther than 0.4 px from a kept one") {
+TEST_CASE("view: no point of a thinned track is farther than 0.4 px from a kept one") {
   std::vector<double> x, y;
   for (int i = 0; i <= 20000; ++i) {
     x.push_back(std::cos(i * 0.001) * 40);
@@ -153,14 +153,14 @@ TEST_CASE("no point of a thinned track is farther than 0.4 px from a kept one") 
   }
 }
 
-TEST_CASE("a line breaks where a number is missing") {
+TEST_CASE("view: a line breaks where a number is missing") {
   const auto parts = thin_line({0, 1, 2, 3}, {0, std::nan(""), 1, 1}, view_of({0, 3}, {0, 1}));
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].size() == 1);
   CHECK(parts[1].size() == 2);
 }
 
-TEST_CASE("a packed column is within half a step of what went in, gaps included") {
+TEST_CASE("view: a packed column is within half a step of what went in, gaps included") {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(-1e4, 1e4);
   std::vector<double> values;
@@ -175,7 +175,7 @@ TEST_CASE("a packed column is within half a step of what went in, gaps included"
   }
 }
 
-TEST_CASE("whole numbers are packed exactly, and those of a drive in two bytes each") {
+TEST_CASE("view: whole numbers are packed exactly, and those of a drive in two bytes each") {
   const std::vector<double> whole = {-3, 0, 7, 4e12, -4e12, 5};
   CHECK(unpacked(pack(whole)) == whole);
   std::vector<double> drive;
@@ -183,7 +183,7 @@ TEST_CASE("whole numbers are packed exactly, and those of a drive in two bytes e
   CHECK(pack(drive).size() < 100000 * 2 * 4 / 3 + 100);
 }
 
-TEST_CASE("columns of one value, none, and of nothing finite are packed") {
+TEST_CASE("view: columns of one value, none, and of nothing finite are packed") {
   CHECK(unpacked(pack({})).empty());
   CHECK(unpacked(pack({1.5}))[0] == Approx(1.5));
   CHECK(std::isnan(unpacked(pack({std::nan("")}))[0]));

@@ -74,13 +74,13 @@ void check_same(const Fused& a, const Fused& b) {
 
 }  // namespace
 
-TEST_CASE("The same drive logged at 10, 25 and 100 Hz gives the same fused poses") {
+TEST_CASE("additivity: the same drive logged at 10, 25 and 100 Hz gives the same fused poses") {
   const Fused reference = fuse(drive_at(25));
   check_same(fuse(drive_at(10)), reference);
   check_same(fuse(drive_at(100)), reference);
 }
 
-TEST_CASE("Nodes that only split intervals do not change the fused poses") {
+TEST_CASE("additivity: nodes that only split intervals do not change the fused poses") {
   const PreparedDrive drive = drive_at(10);
   PreparedDrive split = drive;
   // Withheld fixes get nodes of their own but no edges: pure splits, at irregular places.

@@ -63,7 +63,7 @@ void add_identity_covariance(DriveSkeleton& skeleton) {
 
 }  // namespace
 
-TEST_CASE("From the anchored start all modelings and algorithms reach one minimum") {
+TEST_CASE("real drives: from the anchored start all modelings and algorithms reach one minimum") {
   const auto drive = GENERATE(from_range(drives()));
   if (is_absent(drive)) return;
   INFO(drive.name);
@@ -95,7 +95,7 @@ TEST_CASE("From the anchored start all modelings and algorithms reach one minimu
   }
 }
 
-TEST_CASE("From dead reckoning no failure passes for a success") {
+TEST_CASE("real drives: from dead reckoning no failure passes for a success") {
   const auto drive = GENERATE(from_range(drives()));
   if (is_absent(drive)) return;
   INFO(drive.name);

@@ -99,7 +99,7 @@ PreparedDrive prepared(const std::string& word) {
 
 }  // namespace
 
-TEST_CASE("dead reckoning starts at the last accepted fix and follows the gyro as it reads", "[outages]") {
+TEST_CASE("outages: dead reckoning starts at the last accepted fix and follows the gyro as it reads") {
   constexpr double kBias = 0.02;
   const bool calibrated = GENERATE(false, true);  // the estimated states must not help
   const auto result = dead_reckoned_at_withheld(straight_drive("waarwwwaw", kBias, calibrated));
@@ -116,7 +116,7 @@ TEST_CASE("dead reckoning starts at the last accepted fix and follows the gyro a
   CHECK((result.poses[8]->head<2>() - Eigen::Vector2d(70, 0) - on_arc(1, kBias)).norm() < 1e-9);
 }
 
-TEST_CASE("dead reckoning stands where the vehicle stood, and ends where the chain does", "[outages]") {
+TEST_CASE("outages: dead reckoning stands where the vehicle stood, and ends where the chain does") {
   GraphDocument document;
   document.fixes = fixes_of("awww");
   std::vector<VertexIndex> poses;
@@ -140,7 +140,7 @@ TEST_CASE("dead reckoning stands where the vehicle stood, and ends where the cha
   CHECK(result.poses[3]->isApprox(Eigen::Vector3d(20 * std::cos(1.0), 20 * std::sin(1.0), 1)));
 }
 
-TEST_CASE("runs of withheld fixes", "[outages]") {
+TEST_CASE("outages: runs of withheld fixes are found") {
   const std::vector<Fix> fixes = fixes_of("wwaawwraww");
   const std::vector<WithheldRun> runs = withheld_runs(fixes);
   REQUIRE(runs.size() == 3);
@@ -152,8 +152,7 @@ TEST_CASE("runs of withheld fixes", "[outages]") {
   CHECK(withheld_runs(fixes_of("ara")).empty());
 }
 
-TEST_CASE("a drive as it was known ends with the fix and the odometry that closes its interval",
-          "[outages]") {
+TEST_CASE("outages: a drive as it was known ends with the fix and the odometry that closes its interval") {
   const PreparedDrive known = known_until(prepared("aaaawwaaww"), 6);
   CHECK(known.fixes.size() == 6);
   CHECK(known.truth.empty());
@@ -162,7 +161,7 @@ TEST_CASE("a drive as it was known ends with the fix and the odometry that close
   CHECK(known.sensors[0].values.size() == 12);
 }
 
-TEST_CASE("causal poses come from one fusion per outage that never sees what follows", "[outages]") {
+TEST_CASE("outages: causal poses come from one fusion per outage that never sees what follows") {
   const PreparedDrive drive = prepared("waawwaaw");
   std::vector<std::size_t> seen;
   const PosesAtWithheld result = causal_at_withheld(drive, [&](const PreparedDrive& known) {
@@ -193,7 +192,7 @@ TEST_CASE("causal poses come from one fusion per outage that never sees what fol
   CHECK_THROWS_AS(causal_at_withheld(drive, other), UsageError);
 }
 
-TEST_CASE("an outage is a run of withheld epochs", "[outages]") {
+TEST_CASE("outages: an outage is a run of withheld epochs") {
   CHECK(outage_ends(fixes_of("awwawarwww")) == std::vector<std::size_t>{2, 9});
   CHECK(outage_ends(fixes_of("awawr")).empty());
   std::vector<Fix> two_receivers = fixes_of("aww");
@@ -201,7 +200,7 @@ TEST_CASE("an outage is a run of withheld epochs", "[outages]") {
   CHECK(outage_ends(two_receivers).empty());
 }
 
-TEST_CASE("errors at withheld fixes and at the end of each outage", "[outages]") {
+TEST_CASE("outages: errors at withheld fixes and at the end of each outage") {
   const std::vector<Fix> fixes = fixes_of("awwaw");
   Prediction prediction{.label = "drifting", .poses = {}, .position_covariances = {}};
   for (const Fix& fix : fixes)  // off to the left by 2 m per second; heading north, the antenna 1 m ahead

@@ -59,7 +59,7 @@ Scene straight(double speed, int count) {
 
 }  // namespace
 
-TEST_CASE("fixes that follow the odometry agree, whatever its frame", "[gate]") {
+TEST_CASE("gate: fixes that follow the odometry agree, whatever its frame") {
   Scene scene = circle(1, 10, 60);
   const GateSummary summary = scene.judge();
   CHECK(summary.accepted == 60);
@@ -71,7 +71,7 @@ TEST_CASE("fixes that follow the odometry agree, whatever its frame", "[gate]") 
   }
 }
 
-TEST_CASE("the angle limit is 1.5 degrees between the chords of one second", "[gate]") {
+TEST_CASE("gate: the angle limit is 1.5 degrees between the chords of one second") {
   for (const double degrees : {1.4, 1.6, -1.4, -1.6}) {
     Scene scene = straight(10, 3);
     scene.fixes[2].position = {10 + 10 * std::cos(degrees * kDegree), 10 * std::sin(degrees * kDegree)};
@@ -81,7 +81,7 @@ TEST_CASE("the angle limit is 1.5 degrees between the chords of one second", "[g
   }
 }
 
-TEST_CASE("the displacement is compared as a vector and its limit is 15 m", "[gate]") {
+TEST_CASE("gate: the displacement is compared as a vector and its limit is 15 m") {
   for (const double ahead : {14.0, 16.0}) {
     Scene scene = straight(30, 3);
     scene.fixes[2].position[0] += ahead;
@@ -96,21 +96,21 @@ TEST_CASE("the displacement is compared as a vector and its limit is 15 m", "[ga
   CHECK(sideways.fixes[2].reason == "both");
 }
 
-TEST_CASE("one outlier costs itself and the two fixes whose chords contain it", "[gate]") {
+TEST_CASE("gate: one outlier costs itself and the two fixes whose chords contain it") {
   Scene scene = straight(10, 20);
   scene.fixes[10].position[1] += 40;
   scene.judge();
   CHECK(scene.rejected() == Indices{10, 11, 12});
 }
 
-TEST_CASE("a lasting jump does not lock the gate out", "[gate]") {
+TEST_CASE("gate: a lasting jump does not lock the gate out") {
   Scene scene = straight(10, 40);
   for (std::size_t i = 20; i < 40; ++i) scene.fixes[i].position[1] += 25;
   scene.judge();
   CHECK(scene.rejected() == Indices{20, 21});
 }
 
-TEST_CASE("the first two fixes are judged by their successors", "[gate]") {
+TEST_CASE("gate: the first two fixes are judged by their successors") {
   Scene scene = straight(10, 10);
   scene.fixes[0].position[1] += 40;
   scene.judge();
@@ -119,7 +119,7 @@ TEST_CASE("the first two fixes are judged by their successors", "[gate]") {
   CHECK(scene.rejected() == Indices{0, 2});
 }
 
-TEST_CASE("two fixes are judged by the length of their chord, one is accepted", "[gate]") {
+TEST_CASE("gate: two fixes are judged by the length of their chord, one is accepted") {
   Scene two = straight(10, 2);
   two.judge();
   CHECK(two.fixes[0].reason == "pair");
@@ -136,7 +136,7 @@ TEST_CASE("two fixes are judged by the length of their chord, one is accepted", 
   CHECK(one.fixes[0].reason == "alone");
 }
 
-TEST_CASE("no chord is formed across a gap", "[gate]") {
+TEST_CASE("gate: no chord is formed across a gap") {
   Scene scene;
   for (int i = 0; i < 5; ++i) scene.add(i, {10.0 * i, 0});
   for (int i = 25; i < 30; ++i) scene.add(i, {10.0 * i, 0});
@@ -154,7 +154,7 @@ TEST_CASE("no chord is formed across a gap", "[gate]") {
   CHECK(scene.fixes[6].reason == "agrees");
 }
 
-TEST_CASE("missing epochs lengthen the chords and the angle limit with them", "[gate]") {
+TEST_CASE("gate: missing epochs lengthen the chords and the angle limit with them") {
   const auto turned = [](double degrees) {
     Scene scene;
     for (const double t : {0.0, 3.0, 6.0}) scene.add(t, {10 * t, 0});
@@ -166,7 +166,7 @@ TEST_CASE("missing epochs lengthen the chords and the angle limit with them", "[
   CHECK(turned(4.6) == "angle");
 }
 
-TEST_CASE("at other rates the chords still span a second", "[gate]") {
+TEST_CASE("gate: at other rates the chords still span a second") {
   for (const double period : {0.04, 0.1, 0.2, 0.9, 1.0, 1.1}) {
     Scene scene = circle(period, 10, 200);
     // A sideways error of 10 cm is 0.57 degrees of a chord of 10 m: harmless, yet 5.7 degrees of one at 10
@@ -183,7 +183,7 @@ TEST_CASE("at other rates the chords still span a second", "[gate]") {
   }
 }
 
-TEST_CASE("short chords have no angle, the displacement alone decides", "[gate]") {
+TEST_CASE("gate: short chords have no angle, the displacement alone decides") {
   Scene creeping = straight(0.8, 10);
   creeping.fixes[5].position[1] += 3;  // 75 degrees, and mere noise
   const GateSummary summary = creeping.judge();
@@ -195,7 +195,7 @@ TEST_CASE("short chords have no angle, the displacement alone decides", "[gate]"
   CHECK(creeping.fixes[5].reason == "displacement");
 }
 
-TEST_CASE("at standstill only a jump is rejected", "[gate]") {
+TEST_CASE("gate: at standstill only a jump is rejected") {
   Scene parked = straight(0, 10);
   parked.fixes[4].position = {2, 3};
   parked.fixes[7].position = {0, 20};
@@ -204,7 +204,7 @@ TEST_CASE("at standstill only a jump is rejected", "[gate]") {
   CHECK(parked.rejected() == Indices{7, 8});  // into the jump and out of it
 }
 
-TEST_CASE("a receiver that stands while the vehicle moves is frozen", "[gate]") {
+TEST_CASE("gate: a receiver that stands while the vehicle moves is frozen") {
   Scene scene = straight(10, 20);
   for (std::size_t i = 10; i < 15; ++i) scene.fixes[i].position = scene.fixes[9].position;
   scene.judge();
@@ -212,7 +212,7 @@ TEST_CASE("a receiver that stands while the vehicle moves is frozen", "[gate]") 
   for (std::size_t i = 10; i < 15; ++i) CHECK(scene.fixes[i].status == FixStatus::rejected);
 }
 
-TEST_CASE("withheld fixes are neither judged nor used", "[gate]") {
+TEST_CASE("gate: withheld fixes are neither judged nor used") {
   Scene scene = straight(10, 20);
   scene.fixes[10].status = FixStatus::withheld;
   scene.fixes[10].position[1] += 100;
@@ -224,7 +224,7 @@ TEST_CASE("withheld fixes are neither judged nor used", "[gate]") {
   CHECK(scene.fixes[10].reason == "unjudged");
 }
 
-TEST_CASE("receivers are judged apart: their offset is not a jump", "[gate]") {
+TEST_CASE("gate: receivers are judged apart: their offset is not a jump") {
   Scene scene;
   for (int i = 0; i < 20; ++i) {
     scene.add(i, {10.0 * i, 0}, 0);
@@ -234,7 +234,7 @@ TEST_CASE("receivers are judged apart: their offset is not a jump", "[gate]") {
   CHECK(scene.judge().rejected == 0);
 }
 
-TEST_CASE("the gate can be off, and options are checked", "[gate]") {
+TEST_CASE("gate: the gate can be off, and options are checked") {
   Scene scene = straight(10, 5);
   scene.fixes[2].position[1] += 100;
   scene.judge();
@@ -252,7 +252,7 @@ TEST_CASE("the gate can be off, and options are checked", "[gate]") {
   CHECK_THROWS_AS(scene.judge(), UsageError);
 }
 
-TEST_CASE("a drive without a fix, or with all rejected, is an error with a remedy", "[gate]") {
+TEST_CASE("gate: a drive without a fix, or with all rejected, is an error with a remedy") {
   CHECK_THROWS_WITH(require_accepted_fix(GateSummary{}), "the drive has no GNSS fix to work with");
   GateSummary rejected;
   rejected.rejected = 7;

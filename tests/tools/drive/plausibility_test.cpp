@@ -39,12 +39,12 @@ std::vector<std::string> warnings(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("odometry that agrees with the fixes is not complained about") {
+TEST_CASE("plausibility: odometry that agrees with the fixes is not complained about") {
   CHECK(warnings(scene(1, 1)).empty());
   CHECK(warnings(scene(1.1, 0.9)).empty());
 }
 
-TEST_CASE("a speed in km/h read as m/s is named with its factor") {
+TEST_CASE("plausibility: a speed in km/h read as m/s is named with its factor") {
   const auto said = warnings(scene(3.6, 1));
   REQUIRE(said.size() == 1);
   CHECK_THAT(said[0],
@@ -52,12 +52,12 @@ TEST_CASE("a speed in km/h read as m/s is named with its factor") {
   CHECK(warnings(scene(1 / 3.6, 1)).size() == 1);
 }
 
-TEST_CASE("a yaw rate of the wrong sign is named") {
+TEST_CASE("plausibility: a yaw rate of the wrong sign is named") {
   const auto said = warnings(scene(1, -1));
   REQUIRE(said.size() == 1);
   CHECK_THAT(said[0], Catch::StartsWith("the odometry turns against the fixes (correlation -1.00"));
 }
 
-TEST_CASE("a few fixes are no evidence") {
+TEST_CASE("plausibility: a few fixes are no evidence") {
   CHECK(warnings(scene(3.6, -1, 8)).empty());
 }

@@ -10,7 +10,7 @@
 using namespace waymark;
 using namespace waymark::drive;
 
-TEST_CASE("the fixes of one stop are one anchor", "[start]") {
+TEST_CASE("alignment: the fixes of one stop are one anchor") {
   Timeline timeline;
   for (int i = 0; i <= 10; ++i) {
     timeline.stamps.push_back(Stamp::from_seconds(i));
@@ -31,14 +31,14 @@ TEST_CASE("the fixes of one stop are one anchor", "[start]") {
   CHECK(anchors[4].node == 9);
 }
 
-TEST_CASE("knots are joined by lines and constant outside", "[start]") {
+TEST_CASE("alignment: knots are joined by lines and constant outside") {
   const start_detail::Knots knots{.at = {1, 3, 4}, .value = {10, 20, 0}};
   CHECK(start_detail::evaluate(knots, std::vector<double>{0, 1, 2, 3, 3.5, 9}) ==
         std::vector<double>{10, 10, 15, 20, 10, 0});
   CHECK(start_detail::evaluate({}, std::vector<double>{1}) == std::vector<double>{0});
 }
 
-TEST_CASE("a window that is wrong by half a turn does not change the winding", "[start]") {
+TEST_CASE("alignment: a window that is wrong by half a turn does not change the winding") {
   using start_detail::HeadingWindow;
   std::vector<HeadingWindow> windows;
   for (int k = 0; k < 30; ++k) {
@@ -52,7 +52,7 @@ TEST_CASE("a window that is wrong by half a turn does not change the winding", "
   CHECK(std::abs(knots.value[17] - knots.value[16]) < 0.5);
 }
 
-TEST_CASE("the alignment ignores less than half of wild points", "[start]") {
+TEST_CASE("alignment: the alignment ignores less than half of wild points") {
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
   for (int i = 0; i < 40; ++i) {

@@ -113,8 +113,7 @@ double winding_error_deg(const SyntheticDrive& drive, const Start& start) {
 
 }  // namespace
 
-TEST_CASE("a gyro bias of 0.35 deg/s over 40 minutes does not matter, with standstill or without",
-          "[start]") {
+TEST_CASE("start: a gyro bias of 0.35 deg/s over 40 minutes does not matter, with standstill or without") {
   for (const bool stop : {true, false}) {
     Settings settings;
     settings.duration_s = 2400;
@@ -129,7 +128,7 @@ TEST_CASE("a gyro bias of 0.35 deg/s over 40 minutes does not matter, with stand
   }
 }
 
-TEST_CASE("a bias that wanders while driving is followed piecewise", "[start]") {
+TEST_CASE("start: a bias that wanders while driving is followed piecewise") {
   Settings settings;
   settings.duration_s = 2400;
   SyntheticDrive drive = simulate(city(false), settings);
@@ -142,7 +141,7 @@ TEST_CASE("a bias that wanders while driving is followed piecewise", "[start]") 
   CHECK(winding_error_deg(drive, start) < 20);
 }
 
-TEST_CASE("windings across a stop come from the odometry", "[start]") {
+TEST_CASE("start: windings across a stop come from the odometry") {
   // Two full turns in a roundabout right before a stop of two minutes, no fix during all of it.
   const Motion motion = [](double t) -> std::pair<double, double> {
     if (t > 200 && t <= 240) return {6, 2 * 2 * std::numbers::pi / 40};
@@ -160,7 +159,7 @@ TEST_CASE("windings across a stop come from the odometry", "[start]") {
         Approx(drive.truth.back()[2] - drive.truth.front()[2]).margin(0.2));
 }
 
-TEST_CASE("headings are wrapped to half a turn either way", "[start]") {
+TEST_CASE("start: headings are wrapped to half a turn either way") {
   const SyntheticDrive drive = simulate([](double) { return std::pair(8.0, 0.2); }, {});
   for (const Start& start :
        {drive.anchored(), dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill)})
@@ -168,7 +167,7 @@ TEST_CASE("headings are wrapped to half a turn either way", "[start]") {
       REQUIRE((pose[2] > -std::numbers::pi && pose[2] <= std::numbers::pi));
 }
 
-TEST_CASE("reversing is not a turn", "[start]") {
+TEST_CASE("start: reversing is not a turn") {
   const Motion motion = [](double t) -> std::pair<double, double> {
     return {std::fmod(t, 120) > 90 ? -3.0 : 10.0, 0.06 * std::sin(0.09 * t)};
   };
@@ -178,7 +177,7 @@ TEST_CASE("reversing is not a turn", "[start]") {
   CHECK(worst_heading_deg(backwards, backwards.anchored()) < 15);
 }
 
-TEST_CASE("a parked beginning takes the heading of the first metres", "[start]") {
+TEST_CASE("start: a parked beginning takes the heading of the first metres") {
   const Motion motion = [](double t) -> std::pair<double, double> {
     return t < 300 ? std::pair(0.0, 0.0) : std::pair(10.0, 0.08 * std::sin(0.1 * t));
   };
@@ -190,7 +189,7 @@ TEST_CASE("a parked beginning takes the heading of the first metres", "[start]")
   CHECK(start.poses[0][2] == Approx(start.poses[2000][2]).margin(1e-12));
 }
 
-TEST_CASE("wild fixes and lost fixes do not turn the start", "[start]") {
+TEST_CASE("start: wild fixes and lost fixes do not turn the start") {
   SyntheticDrive drive = simulate(city(true), {});
   for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
     if (i % 7 == 3) drive.fixes[i].position += Eigen::Vector2d(150, -110);  // 186 m
@@ -202,13 +201,13 @@ TEST_CASE("wild fixes and lost fixes do not turn the start", "[start]") {
   CHECK(winding_error_deg(drive, start) < 25);
 }
 
-TEST_CASE("a straight drive with coarse fixes", "[start]") {
+TEST_CASE("start: a straight drive with coarse fixes") {
   SyntheticDrive drive = simulate([](double) { return std::pair(20.0, 0.0); }, {});
   for (Fix& fix : drive.fixes) fix.position = 11 * (fix.position / 11).array().round();
   CHECK(worst_heading_deg(drive, drive.anchored()) < 5);
 }
 
-TEST_CASE("rare fixes get longer windows", "[start]") {
+TEST_CASE("start: rare fixes get longer windows") {
   Settings settings;
   settings.fix_period_s = 45;
   settings.duration_s = 1800;
@@ -219,7 +218,7 @@ TEST_CASE("rare fixes get longer windows", "[start]") {
   CHECK(worst_heading_deg(drive, start) < 15);
 }
 
-TEST_CASE("the antenna's lever arm is taken off", "[start]") {
+TEST_CASE("start: the antenna's lever arm is taken off") {
   Settings settings;
   settings.antenna_m = {30, 5};  // absurd, so that it shows
   settings.fix_sigma_m = 0.1;
@@ -229,7 +228,7 @@ TEST_CASE("the antenna's lever arm is taken off", "[start]") {
   CHECK((start.poses[0] - drive.truth[0]).head<2>().norm() < 3);
 }
 
-TEST_CASE("two fixes are enough for a start, one is said to be a guess", "[start]") {
+TEST_CASE("start: two fixes are enough for a start, one is said to be a guess") {
   SyntheticDrive drive = simulate([](double) { return std::pair(10.0, 0.01); }, {});
   for (std::size_t i = 0; i < drive.fixes.size(); ++i)
     if (i != 100 && i != 160) drive.fixes[i].status = FixStatus::rejected;
@@ -247,7 +246,7 @@ TEST_CASE("two fixes are enough for a start, one is said to be a guess", "[start
   CHECK(worst_heading_deg(drive, course) < 5);
 }
 
-TEST_CASE("a drive that never moves starts at its fixes and says so", "[start]") {
+TEST_CASE("start: a drive that never moves starts at its fixes and says so") {
   const SyntheticDrive drive = simulate([](double) { return std::pair(0.0, 0.0); }, {});
   const Start start = drive.anchored();
   CHECK_THAT(start.note, Catch::Contains("say nothing about the heading"));
@@ -255,7 +254,7 @@ TEST_CASE("a drive that never moves starts at its fixes and says so", "[start]")
   CHECK_FALSE(dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill).note.empty());
 }
 
-TEST_CASE("the paper's start lies on the first accepted fix along its first long chord", "[start]") {
+TEST_CASE("start: the paper's start lies on the first accepted fix along its first long chord") {
   Settings settings;
   settings.fix_sigma_m = 0;
   SyntheticDrive drive = simulate(city(true), settings);
@@ -273,7 +272,7 @@ TEST_CASE("the paper's start lies on the first accepted fix along its first long
         course.poses);
 }
 
-TEST_CASE("without an accepted fix there is no start", "[start]") {
+TEST_CASE("start: without an accepted fix there is no start") {
   SyntheticDrive drive = simulate(city(true), {});
   for (Fix& fix : drive.fixes) fix.status = FixStatus::rejected;
   CHECK_THROWS_AS(drive.anchored(), InputError);
@@ -282,7 +281,7 @@ TEST_CASE("without an accepted fix there is no start", "[start]") {
   CHECK_THROWS_AS(drive.anchored(), UsageError);
 }
 
-TEST_CASE("the start is deterministic and quick on an hour at 25 Hz", "[start]") {
+TEST_CASE("start: the start is deterministic and quick on an hour at 25 Hz") {
   Settings settings;
   settings.duration_s = 4200;
   settings.rate_hz = 25;

@@ -47,7 +47,7 @@ double total_s(const Timeline& timeline) {
 
 }  // namespace
 
-TEST_CASE("a constant twist gives the exact arc at any odometry rate", "[timeline]") {
+TEST_CASE("timeline: a constant twist gives the exact arc at any odometry rate") {
   const double speed = 12.5;
   const double yaw_rate = -0.7;  // more than one turn in ten seconds
   const Eigen::Vector3d exact(speed / yaw_rate * std::sin(10 * yaw_rate),
@@ -60,7 +60,7 @@ TEST_CASE("a constant twist gives the exact arc at any odometry rate", "[timelin
   }
 }
 
-TEST_CASE("splitting at arbitrary stamps changes neither end pose nor total time", "[timeline]") {
+TEST_CASE("timeline: splitting at arbitrary stamps changes neither end pose nor total time") {
   std::vector<OdometrySample> odometry;
   for (int i = 0; i <= 250; ++i) {
     const double t = 0.04 * i;
@@ -78,7 +78,7 @@ TEST_CASE("splitting at arbitrary stamps changes neither end pose nor total time
     CHECK(std::abs(seconds_between(split.stamps[split.fix_node[i]], fixes[i].stamp)) < 0.001);
 }
 
-TEST_CASE("a fix in an interval splits it and both parts keep the mean twist", "[timeline]") {
+TEST_CASE("timeline: a fix in an interval splits it and both parts keep the mean twist") {
   const std::vector<OdometrySample> odometry{sample(0, 1, 0.1), sample(0.1, 3, 0.3)};
   const Timeline timeline = build_timeline(odometry, std::vector<Fix>{fix_at(0.03)}, {});
   REQUIRE(timeline.stamps.size() == 3);
@@ -92,7 +92,7 @@ TEST_CASE("a fix in an interval splits it and both parts keep the mean twist", "
   CHECK(timeline.intervals[1].dt_s == Approx(0.07));
 }
 
-TEST_CASE("an epoch nearer than a millisecond shares the odometry's node", "[timeline]") {
+TEST_CASE("timeline: an epoch nearer than a millisecond shares the odometry's node") {
   const std::vector<OdometrySample> odometry{sample(0, 1, 0), sample(0.1, 1, 0), sample(0.2, 1, 0)};
   const auto nodes = [&](std::vector<double> stamps) {
     std::vector<Fix> fixes;
@@ -110,7 +110,7 @@ TEST_CASE("an epoch nearer than a millisecond shares the odometry's node", "[tim
   CHECK(build_timeline(odometry, std::vector<Fix>{fix_at(0.1), fix_at(0.1001)}, exact).stamps.size() == 4);
 }
 
-TEST_CASE("a gap is bridged with the mean twist, or refused", "[timeline]") {
+TEST_CASE("timeline: a gap is bridged with the mean twist, or refused") {
   std::vector<OdometrySample> odometry = constant_twist(10, 8, 0.2);
   odometry.erase(odometry.begin() + 40, odometry.begin() + 70);  // 3.9 s to 7.0 s
   const std::vector<Fix> fixes{fix_at(5)};
@@ -127,7 +127,7 @@ TEST_CASE("a gap is bridged with the mean twist, or refused", "[timeline]") {
                     Catch::Contains("gap of 3.100 s") && Catch::Contains("3.900 s after its start"));
 }
 
-TEST_CASE("standstill is the identity whatever the gyro says, and reversing is not", "[timeline]") {
+TEST_CASE("timeline: standstill is the identity whatever the gyro says, and reversing is not") {
   const Eigen::Vector3d start(3, -4, 1);
   const Timeline still = build_timeline(constant_twist(10, 0.04, 0.01), {}, {});
   CHECK(dead_reckon(still, start, 0.05).back() == start);
@@ -139,12 +139,12 @@ TEST_CASE("standstill is the identity whatever the gyro says, and reversing is n
   CHECK(std::abs(end[0]) < 1e-12);
 }
 
-TEST_CASE("dead reckoning does not wrap headings", "[timeline]") {
+TEST_CASE("timeline: dead reckoning does not wrap headings") {
   const Timeline timeline = build_timeline(constant_twist(10, 5, 1.5), {}, {});
   CHECK(end_pose(timeline)[2] == Approx(15));
 }
 
-TEST_CASE("speeds are multiplied by the grid scale of the nearest fix", "[timeline]") {
+TEST_CASE("timeline: speeds are multiplied by the grid scale of the nearest fix") {
   const std::vector<Fix> fixes{fix_at(2, 0.9996), fix_at(8, 1.0002)};
   const Timeline timeline = build_timeline(constant_twist(10, 10, 0), fixes, {});
   CHECK(timeline.intervals.front().speed_mps == Approx(9.996).epsilon(1e-12));
@@ -152,7 +152,7 @@ TEST_CASE("speeds are multiplied by the grid scale of the nearest fix", "[timeli
   CHECK(end_pose(timeline)[0] == Approx(50 * 0.9996 + 50 * 1.0002).epsilon(1e-12));
 }
 
-TEST_CASE("the antenna at a fix turns with the body", "[timeline]") {
+TEST_CASE("timeline: the antenna at a fix turns with the body") {
   const std::vector<Fix> fixes{fix_at(2.05), fix_at(5)};
   const Timeline timeline = build_timeline(constant_twist(10, 5, 0.3), fixes, {});
   const auto poses = dead_reckon(timeline, {1, 2, 3}, 0.05);
@@ -164,7 +164,7 @@ TEST_CASE("the antenna at a fix turns with the body", "[timeline]") {
   CHECK(antennas[1][2] == body[2]);
 }
 
-TEST_CASE("what cannot be placed in time is refused", "[timeline]") {
+TEST_CASE("timeline: what cannot be placed in time is refused") {
   const std::vector<OdometrySample> odometry = constant_twist(10, 1, 0);
   CHECK_THROWS_AS(build_timeline(std::vector{odometry[0]}, {}, {}), InputError);
   CHECK_THROWS_AS(build_timeline(odometry, std::vector<Fix>{fix_at(-0.5)}, {}), InputError);

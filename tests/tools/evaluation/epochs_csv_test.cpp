@@ -29,13 +29,13 @@ EpochResult epoch_at(std::int64_t nanoseconds) {
 
 }  // namespace
 
-TEST_CASE("epochs.csv: what is not defined is an empty field", "[epochs]") {
+TEST_CASE("epochs.csv: what is not defined is an empty field") {
   const auto lines = lines_of(epochs_csv(std::vector{epoch_at(1'149'206'567'040'000'001)}));
   REQUIRE(lines.size() == 2);
   CHECK(lines[1] == "1149206567040000001,0,accepted," + std::string(kColumns - 4, ','));
 }
 
-TEST_CASE("epochs.csv: numbers, and offsets turned into the direction of travel", "[epochs]") {
+TEST_CASE("epochs.csv: numbers, and offsets turned into the direction of travel") {
   EpochResult epoch = epoch_at(2'900'000'000);
   epoch.status = FixStatus::rejected;
   epoch.reason = "far, \"very\"";
@@ -55,14 +55,14 @@ TEST_CASE("epochs.csv: numbers, and offsets turned into the direction of travel"
         "\"\"very\"\"\",2,3,1,4,-0.5,0.25,1,4,-0.5,0.25,-180,-1.5,4,1,9,0.125,6");
 }
 
-TEST_CASE("epochs.csv: without a direction of travel there is no along and across", "[epochs]") {
+TEST_CASE("epochs.csv: without a direction of travel there is no along and across") {
   EpochResult epoch = epoch_at(0);
   epoch.gnss_offset_m = {1, 4};
   const auto lines = lines_of(epochs_csv(std::vector{epoch}));
   CHECK(lines[1] == "0,0,accepted,,,,1,4" + std::string(kColumns - 8, ','));
 }
 
-TEST_CASE("epochs.csv: every row has the header's columns, and no fixes leave the header alone", "[epochs]") {
+TEST_CASE("epochs.csv: every row has the header's columns, and no fixes leave the header alone") {
   const auto lines = lines_of(epochs_csv({}));
   REQUIRE(lines.size() == 1);
   CHECK(std::count(lines[0].begin(), lines[0].end(), ',') == kColumns - 1);

@@ -47,7 +47,7 @@ bool holds(const Interval95& interval, double value) {
 
 }  // namespace
 
-TEST_CASE("white errors with their own covariance are consistent", "[consistency]") {
+TEST_CASE("consistency: white errors with their own covariance are consistent") {
   constexpr int kEpochs = 4000;
   Eigen::Matrix2d covariance;
   covariance << 4, 1.5, 1.5, 1;
@@ -65,7 +65,7 @@ TEST_CASE("white errors with their own covariance are consistent", "[consistency
   CHECK(s.median_error_ratio == Approx(1).epsilon(0.05));
 }
 
-TEST_CASE("a covariance too small by four gives NEES 8 and half the stated sigma", "[consistency]") {
+TEST_CASE("consistency: a covariance too small by four gives NEES 8 and half the stated sigma") {
   constexpr int kEpochs = 4000;
   const Errors errors = autoregressive(kEpochs, 0, 6);
   const ConsistencyStatistics s =
@@ -78,7 +78,7 @@ TEST_CASE("a covariance too small by four gives NEES 8 and half the stated sigma
   CHECK_FALSE(holds(s.coverage_honest, s.coverage));
 }
 
-TEST_CASE("autoregressive errors are worth n (1 - rho) / (1 + rho) samples", "[consistency]") {
+TEST_CASE("consistency: autoregressive errors are worth n (1 - rho) / (1 + rho) samples") {
   constexpr int kEpochs = 20000;
   for (const double rho : {0.5, 0.8, 0.95}) {
     const Errors errors = autoregressive(kEpochs, rho, 7);
@@ -88,12 +88,12 @@ TEST_CASE("autoregressive errors are worth n (1 - rho) / (1 + rho) samples", "[c
   }
 }
 
-TEST_CASE("errors that alternate are worth no more than their number", "[consistency]") {
+TEST_CASE("consistency: errors that alternate are worth no more than their number") {
   constexpr int kEpochs = 2000;
   CHECK(effective_sample_size(seconds(kEpochs), autoregressive(kEpochs, -0.5, 8)) == kEpochs);
 }
 
-TEST_CASE("a bias that lasts the whole drive is one sample", "[consistency]") {
+TEST_CASE("consistency: a bias that lasts the whole drive is one sample") {
   const Errors errors(500, Eigen::Vector2d(2, -1));
   CHECK(effective_sample_size(seconds(500), errors) == Approx(1));
   // Also across a hole in the middle of the drive.
@@ -102,7 +102,7 @@ TEST_CASE("a bias that lasts the whole drive is one sample", "[consistency]") {
   CHECK(effective_sample_size(stamps, errors) == Approx(1).margin(0.01));
 }
 
-TEST_CASE("fixes of several receivers at one epoch are no further samples", "[consistency]") {
+TEST_CASE("consistency: fixes of several receivers at one epoch are no further samples") {
   constexpr int kEpochs = 2000;
   const Errors once = autoregressive(kEpochs, 0.8, 9);
   Errors errors;
@@ -118,13 +118,13 @@ TEST_CASE("fixes of several receivers at one epoch are no further samples", "[co
   CHECK(effective_sample_size(std::vector<Stamp>(7), Errors(7, {1, 2})) == 1);
 }
 
-TEST_CASE("few or no errors have as many samples", "[consistency]") {
+TEST_CASE("consistency: few or no errors have as many samples") {
   CHECK(effective_sample_size({}, {}) == 0);
   CHECK(effective_sample_size(seconds(1), Errors{{1, 1}}) == 1);
   CHECK(effective_sample_size(seconds(3), Errors(3, Eigen::Vector2d::Zero())) == 3);
 }
 
-TEST_CASE("autocorrelation of a Gauss-Markov error at uneven stamps is exp(-lag / tau)", "[consistency]") {
+TEST_CASE("consistency: autocorrelation of a Gauss-Markov error at uneven stamps is exp(-lag / tau)") {
   // Intervals of 0.7 to 1.3 s with holes; stamps are not in order.
   constexpr double kTau = 30;
   std::mt19937_64 random(10);
@@ -152,7 +152,7 @@ TEST_CASE("autocorrelation of a Gauss-Markov error at uneven stamps is exp(-lag 
   CHECK(rho[2] == Approx(std::exp(-60 / kTau)).margin(0.09));
 }
 
-TEST_CASE("autocorrelation is undefined where there is no pair or no change", "[consistency]") {
+TEST_CASE("consistency: autocorrelation is undefined where there is no pair or no change") {
   const std::vector<double> lags{1, 100};
   const auto of_ten = error_autocorrelation(seconds(10), autoregressive(10, 0, 11), lags);
   CHECK(std::isfinite(of_ten[0]));
@@ -161,7 +161,7 @@ TEST_CASE("autocorrelation is undefined where there is no pair or no change", "[
   CHECK(std::isnan(error_autocorrelation({}, {}, lags)[0]));
 }
 
-TEST_CASE("intervals of an honest covariance", "[consistency]") {
+TEST_CASE("consistency: intervals of an honest covariance") {
   // chi2 with two degrees of freedom: quantile p is -2 ln(1 - p).
   CHECK(honest_nees_mean(1).low == Approx(-2 * std::log(0.975)));
   CHECK(honest_nees_mean(1).high == Approx(-2 * std::log(0.025)));
@@ -184,8 +184,7 @@ TEST_CASE("intervals of an honest covariance", "[consistency]") {
   CHECK(honest_coverage(10000).high == Approx(0.95 + 1.96 * std::sqrt(0.95 * 0.05 / 10000)).margin(2e-4));
 }
 
-TEST_CASE("the intervals hold for honest covariances of correlated errors and drive biases",
-          "[consistency]") {
+TEST_CASE("consistency: the intervals hold for honest covariances of correlated errors and drive biases") {
   // 15 minutes with tau = 30 s and a bias drawn for each drive; the covariance states both.
   constexpr int kDrives = 300;
   constexpr int kEpochs = 900;
@@ -214,7 +213,7 @@ TEST_CASE("the intervals hold for honest covariances of correlated errors and dr
   }
 }
 
-TEST_CASE("epochs without a covariance are counted and left out", "[consistency]") {
+TEST_CASE("consistency: epochs without a covariance are counted and left out") {
   const Errors errors{{1, 0}, {0, 1}, {1, 1}};
   std::vector<Eigen::Matrix2d> covariances = same(3, Eigen::Matrix2d::Identity());
   covariances[1].setZero();
@@ -229,7 +228,7 @@ TEST_CASE("epochs without a covariance are counted and left out", "[consistency]
   CHECK_THROWS_AS(consistency_statistics(seconds(2), errors, covariances), UsageError);
 }
 
-TEST_CASE("evaluate compares stated and actual error where covariances are given", "[consistency]") {
+TEST_CASE("consistency: evaluate compares stated and actual error where covariances are given") {
   EvaluationInput input;
   for (int i = 0; i < 3; ++i) {
     Fix fix;

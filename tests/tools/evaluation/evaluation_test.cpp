@@ -46,7 +46,7 @@ EvaluationInput northwards(bool truth_heading) {
 
 }  // namespace
 
-TEST_CASE("raw and fused against truth", "[evaluation]") {
+TEST_CASE("evaluation: raw and fused are held against the truth") {
   const bool truth_heading = GENERATE(true, false);
   const Evaluation e = evaluate(northwards(truth_heading));
   CHECK(e.fixes() == 4);
@@ -65,7 +65,7 @@ TEST_CASE("raw and fused against truth", "[evaluation]") {
   CHECK_FALSE(e.withheld_fixes);
 }
 
-TEST_CASE("raw and fused are compared at the same epochs, rejected and withheld ones too", "[evaluation]") {
+TEST_CASE("evaluation: raw and fused are compared at the same epochs, rejected and withheld ones too") {
   EvaluationInput input = northwards(true);
   input.fixes[1].status = FixStatus::rejected;
   input.fixes[1].position.x() = 50;
@@ -88,7 +88,7 @@ TEST_CASE("raw and fused are compared at the same epochs, rejected and withheld 
   CHECK_FALSE(e.epochs[4].gnss_offset_m);
 }
 
-TEST_CASE("lever arms: everything is compared at the body point", "[evaluation]") {
+TEST_CASE("lever arms: everything is compared at the body point") {
   // Body at the origin heading north; antenna 1 m ahead and 0.5 m left, truth reference 2 m behind.
   const bool truth_heading = GENERATE(true, false);
   EvaluationInput input;
@@ -106,7 +106,7 @@ TEST_CASE("lever arms: everything is compared at the body point", "[evaluation]"
     CHECK(e.truth->fused.heading.max_abs == Approx(0).margin(1e-12));  // windings do not count
 }
 
-TEST_CASE("the truth's heading moves the raw fix where both headings are known", "[evaluation]") {
+TEST_CASE("evaluation: the truth's heading moves the raw fix where both headings are known") {
   EvaluationInput input;
   input.antenna_m = {1, 0};
   input.fixes = {fix_at(0, 1, 0)};
@@ -117,7 +117,7 @@ TEST_CASE("the truth's heading moves the raw fix where both headings are known",
   CHECK(evaluate(input).truth->gnss.position.max_m == Approx(std::sqrt(2.0)));
 }
 
-TEST_CASE("error at withheld fixes, at the antenna", "[evaluation]") {
+TEST_CASE("evaluation: error at withheld fixes, at the antenna") {
   EvaluationInput input;
   input.antenna_m = {2, 0};
   input.fixes = {fix_at(0, 2, 0), fix_at(1, 5, 0, FixStatus::withheld),
@@ -134,7 +134,7 @@ TEST_CASE("error at withheld fixes, at the antenna", "[evaluation]") {
   CHECK(e.withheld_fixes->track.cross.mean == Approx(-2));
 }
 
-TEST_CASE("innovations are kept apart by what became of the fix", "[evaluation]") {
+TEST_CASE("evaluation: innovations are kept apart by what became of the fix") {
   EvaluationInput input;
   input.fixes = {fix_at(0, 1, 0), fix_at(1, 10, 0, FixStatus::rejected),
                  fix_at(2, 0, 2, FixStatus::withheld)};
@@ -155,7 +155,7 @@ TEST_CASE("innovations are kept apart by what became of the fix", "[evaluation]"
   CHECK(with_pose.prediction.mean == Approx(0.8));
 }
 
-TEST_CASE("a simulated drive: honest covariances give mean nu 2 at withheld fixes", "[evaluation]") {
+TEST_CASE("evaluation: a simulated drive: honest covariances give mean nu 2 at withheld fixes") {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   EvaluationInput input;
@@ -173,7 +173,7 @@ TEST_CASE("a simulated drive: honest covariances give mean nu 2 at withheld fixe
   CHECK(e.withheld_fixes->track.cross.deviation == Approx(2).epsilon(0.05));
 }
 
-TEST_CASE("no fixes: everything undefined, nothing thrown", "[evaluation]") {
+TEST_CASE("evaluation: no fixes: everything undefined, nothing thrown") {
   EvaluationInput input;
   CHECK(evaluate(input).fixes() == 0);
   input.truth = {truth_at(0, 0, 0)};
@@ -183,7 +183,7 @@ TEST_CASE("no fixes: everything undefined, nothing thrown", "[evaluation]") {
   CHECK(std::isnan(e.truth->improvement.max_percent));
 }
 
-TEST_CASE("inputs that do not belong together are refused", "[evaluation]") {
+TEST_CASE("evaluation: inputs that do not belong together are refused") {
   using Catch::Matchers::Contains;
   EvaluationInput input = northwards(true);
   SECTION("one pose short") {
@@ -212,7 +212,7 @@ TEST_CASE("inputs that do not belong together are refused", "[evaluation]") {
   }
 }
 
-TEST_CASE("an epoch says what was stated of it, and which way the truth went", "[evaluation]") {
+TEST_CASE("evaluation: an epoch says what was stated of it, and which way the truth went") {
   EvaluationInput input = northwards(true);
   input.fixes[1].status = FixStatus::rejected;
   input.fixes[1].reason = "displacement";
@@ -231,7 +231,7 @@ TEST_CASE("an epoch says what was stated of it, and which way the truth went", "
   CHECK(e.epochs[1].reason == "displacement");
 }
 
-TEST_CASE("an epoch without truth or covariance leaves them open", "[evaluation]") {
+TEST_CASE("evaluation: an epoch without truth or covariance leaves them open") {
   EvaluationInput input = northwards(false);
   input.truth.clear();
   const Evaluation e = evaluate(input);
@@ -241,7 +241,7 @@ TEST_CASE("an epoch without truth or covariance leaves them open", "[evaluation]
   CHECK(e.epochs[0].speed_mps);
 }
 
-TEST_CASE("speed of fused poses: chords, reverse, gaps, poses at one stamp", "[evaluation]") {
+TEST_CASE("evaluation: speed of fused poses: chords, reverse, gaps, poses at one stamp") {
   const std::vector<StampedPose> poses = {pose_at(0, 0, 0, 0), pose_at(1, 4, 0, 0), pose_at(1, 4, 0, 0),
                                           pose_at(2, 2, 0, 0), pose_at(3, 1, 0, 0), pose_at(60, 9, 0, 0)};
   const auto speeds = fused_speeds(poses);

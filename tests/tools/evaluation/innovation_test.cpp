@@ -29,7 +29,7 @@ Eigen::Vector2d draw(std::mt19937_64& random, const Eigen::Matrix2d& covariance)
 
 }  // namespace
 
-TEST_CASE("nu of known residuals", "[innovation]") {
+TEST_CASE("innovation: nu of known residuals is as by hand") {
   CHECK(normalised_innovation_squared({3, 4}, Eigen::Matrix2d::Identity()) == Approx(25));
   CHECK(normalised_innovation_squared({2, 3}, matrix(4, 0, 9)) == Approx(2));
   // S = [2 1; 1 2], S^-1 = [2 -1; -1 2] / 3: (1, 1) -> 2/3, (1, -1) -> 2
@@ -37,7 +37,7 @@ TEST_CASE("nu of known residuals", "[innovation]") {
   CHECK(normalised_innovation_squared({1, -1}, matrix(2, 1, 2)) == Approx(2));
 }
 
-TEST_CASE("nu is undefined for a covariance that is none", "[innovation]") {
+TEST_CASE("innovation: nu is undefined for a covariance that is none") {
   CHECK(std::isnan(normalised_innovation_squared({1, 1}, Eigen::Matrix2d::Zero())));
   CHECK(std::isnan(normalised_innovation_squared({1, 1}, matrix(1, 1, 1))));  // singular
   CHECK(std::isnan(normalised_innovation_squared({1, 1}, matrix(1, 2, 1))));  // indefinite
@@ -46,7 +46,7 @@ TEST_CASE("nu is undefined for a covariance that is none", "[innovation]") {
   CHECK(std::isnan(normalised_innovation_squared({INFINITY, 1}, Eigen::Matrix2d::Identity())));
 }
 
-TEST_CASE("statistics count, average and leave out what is undefined", "[innovation]") {
+TEST_CASE("innovation: statistics count, average and leave out what is undefined") {
   const std::vector<double> nu{1, 5.99, 6.0, kUndefined, 11.01};
   const InnovationStatistics s = innovation_statistics(ResidualKind::gated, nu);
   CHECK(s.kind == ResidualKind::gated);
@@ -62,11 +62,11 @@ TEST_CASE("statistics count, average and leave out what is undefined", "[innovat
   CHECK(std::isnan(none.fraction_inside));
 }
 
-TEST_CASE("the bound is the 95 % quantile of chi2 with two degrees of freedom", "[innovation]") {
+TEST_CASE("innovation: the bound is the 95 % quantile of chi2 with two degrees of freedom") {
   CHECK(1 - std::exp(-InnovationStatistics::kBound95 / 2) == Approx(0.95).epsilon(1e-12));
 }
 
-TEST_CASE("honest innovations have mean nu 2 and 95 % inside", "[innovation]") {
+TEST_CASE("innovation: honest innovations have mean nu 2 and 95 % inside") {
   std::mt19937_64 random(7);
   const Eigen::Matrix2d fix = matrix(4, 1.5, 1);
   const Eigen::Matrix2d pose = matrix(0.5, -0.2, 0.8);
@@ -86,7 +86,7 @@ TEST_CASE("honest innovations have mean nu 2 and 95 % inside", "[innovation]") {
   CHECK(without.mean > 2 + 10 * without.expected_deviation);
 }
 
-TEST_CASE("post-fit residuals are smaller than the noise: R - P makes them honest", "[innovation]") {
+TEST_CASE("innovation: post-fit residuals are smaller than the noise: R - P makes them honest") {
   // The best estimate of a constant from n readings is their mean, P = R / n.
   std::mt19937_64 random(11);
   const Eigen::Matrix2d fix = matrix(1, 0.3, 2);

@@ -13,7 +13,7 @@ using namespace waymark;
 using namespace waymark::evaluation;
 using Offsets = std::vector<Eigen::Vector2d>;
 
-TEST_CASE("a constant offset of (3, 4) is all accuracy and no precision", "[metrics]") {
+TEST_CASE("metrics: a constant offset of (3, 4) is all accuracy and no precision") {
   const Offsets offsets(7, Eigen::Vector2d(3, 4));
   const PositionMetrics m = position_metrics(offsets);
   CHECK(m.count == 7);
@@ -27,7 +27,7 @@ TEST_CASE("a constant offset of (3, 4) is all accuracy and no precision", "[metr
   CHECK(m.mean_m == Eigen::Vector2d(3, 4));
 }
 
-TEST_CASE("a cross of unit offsets has no bias and precision sqrt(4/3)", "[metrics]") {
+TEST_CASE("metrics: a cross of unit offsets has no bias and precision sqrt(4/3)") {
   const Offsets offsets{{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
   const PositionMetrics m = position_metrics(offsets);
   CHECK(m.accuracy_m == Approx(0).margin(1e-15));
@@ -35,7 +35,7 @@ TEST_CASE("a cross of unit offsets has no bias and precision sqrt(4/3)", "[metri
   CHECK(m.rmse_m == Approx(1));                          // divisor n = 4
 }
 
-TEST_CASE("D_i is the distance of an offset from the mean offset, not of a position", "[metrics]") {
+TEST_CASE("metrics: D_i is the distance of an offset from the mean offset, not of a position") {
   // mean (2, 0); distances 1, 0, 1; the paper's printed D_i, without the truth, would depend on where the car
   // is
   const Offsets offsets{{1, 0}, {2, 0}, {3, 0}};
@@ -44,7 +44,7 @@ TEST_CASE("D_i is the distance of an offset from the mean offset, not of a posit
   CHECK(m.precision_m == Approx(1));
 }
 
-TEST_CASE("quantiles: nearest rank for CEP, the middle for the median", "[metrics]") {
+TEST_CASE("quantiles: nearest rank for CEP, the middle for the median") {
   Offsets offsets;
   for (int i = 20; i >= 1; --i) offsets.emplace_back(i, 0);
   const PositionMetrics m = position_metrics(offsets);
@@ -59,7 +59,7 @@ TEST_CASE("quantiles: nearest rank for CEP, the middle for the median", "[metric
   CHECK(odd.cep95_m == 20);  // 19 of 21 would be 90.5 %, 20 are 95.2 %
 }
 
-TEST_CASE("nearest-rank quantile at its ends", "[metrics]") {
+TEST_CASE("metrics: nearest-rank quantile at its ends") {
   const std::vector<double> values{1, 2, 3, 4};
   CHECK(nearest_rank_quantile(values, 1.0) == 4);
   CHECK(nearest_rank_quantile(values, 0.25) == 1);
@@ -68,7 +68,7 @@ TEST_CASE("nearest-rank quantile at its ends", "[metrics]") {
   CHECK(std::isnan(nearest_rank_quantile({}, 0.5)));
 }
 
-TEST_CASE("none and one offset", "[metrics]") {
+TEST_CASE("metrics: none and one offset have their metrics") {
   const PositionMetrics none = position_metrics({});
   CHECK(none.count == 0);
   CHECK(std::isnan(none.max_m));
@@ -86,12 +86,12 @@ TEST_CASE("none and one offset", "[metrics]") {
   CHECK(std::isnan(one.precision_m));
 }
 
-TEST_CASE("precision survives a bias a million times larger", "[metrics]") {
+TEST_CASE("metrics: precision survives a bias a million times larger") {
   const Offsets offsets{{1e7 - 1, 0}, {1e7 + 1, 0}};
   CHECK(position_metrics(offsets).precision_m == Approx(std::sqrt(2.0)).epsilon(1e-9));
 }
 
-TEST_CASE("Gaussian offsets: theory of RMSE, CEP50 and CEP95", "[metrics]") {
+TEST_CASE("metrics: Gaussian offsets: theory of RMSE, CEP50 and CEP95") {
   std::mt19937_64 random(20240917);
   std::normal_distribution<double> normal(0, 2);
   Offsets offsets;
@@ -109,7 +109,7 @@ TEST_CASE("Gaussian offsets: theory of RMSE, CEP50 and CEP95", "[metrics]") {
         Approx(m.accuracy_m * m.accuracy_m + m.precision_m * m.precision_m * (n - 1) / n));
 }
 
-TEST_CASE("scalar statistics", "[metrics]") {
+TEST_CASE("metrics: scalar statistics are those of a small sample") {
   const std::vector<double> values{-3, 1, 2};
   const ScalarStatistics s = scalar_statistics(values);
   CHECK(s.count == 3);
@@ -121,7 +121,7 @@ TEST_CASE("scalar statistics", "[metrics]") {
   CHECK(std::isnan(scalar_statistics(std::vector<double>{1.0}).deviation));
 }
 
-TEST_CASE("along is ahead, across is to the left", "[metrics]") {
+TEST_CASE("metrics: along is ahead, across is to the left") {
   const double north = std::numbers::pi / 2;
   const Offsets offsets{{0, 2}, {-1, 0}, {100, 100}};
   const std::vector<std::optional<double>> directions{north, north, std::nullopt};
@@ -134,7 +134,7 @@ TEST_CASE("along is ahead, across is to the left", "[metrics]") {
   CHECK_THROWS_AS(track_metrics(offsets, std::span(directions).first(2)), UsageError);
 }
 
-TEST_CASE("improvement in percent", "[metrics]") {
+TEST_CASE("metrics: an improvement is in percent of what was") {
   CHECK(improvement_percent(2, 1) == Approx(50));
   CHECK(improvement_percent(2, 3) == Approx(-50));
   CHECK(std::isnan(improvement_percent(0, 1)));
@@ -142,7 +142,7 @@ TEST_CASE("improvement in percent", "[metrics]") {
   CHECK(std::isnan(improvement_percent(1, kUndefined)));
 }
 
-TEST_CASE("the published averages give the published improvements", "[metrics][paper]") {
+TEST_CASE("metrics: the published averages give the published improvements") {
   PositionMetrics gnss;
   gnss.max_m = 23.531;
   gnss.accuracy_m = 0.721;
@@ -167,7 +167,7 @@ TEST_CASE("the published averages give the published improvements", "[metrics][p
   }
 }
 
-TEST_CASE("the published drives average to the published rows", "[metrics][paper]") {
+TEST_CASE("metrics: the published drives average to the published rows") {
   const std::vector<double> gnss_max{66.291, 21.799, 49.068, 4.828, 16.776, 3.672, 7.775, 18.037};
   const std::vector<double> g2_max{6.282, 14.173, 14.015, 4.846, 4.266, 3.117, 5.297, 5.367};
   const std::vector<double> gnss_precision{2.653, 2.491, 2.293, 1.025, 1.141, 0.954, 1.177, 1.264};

@@ -45,7 +45,7 @@ std::size_t count_lines_starting(const std::string& text, const std::string& sta
 
 }  // namespace
 
-TEST_CASE("the table: raw gnss, then the modelings, then improvements, aligned", "[report]") {
+TEST_CASE("metrics table: the table: raw gnss, then the modelings, then improvements, aligned") {
   const std::vector<LabelledEvaluation> evaluations{{"g1", drive(1)}, {"g2", drive(0.5)}, {"g3", drive(3)}};
   const auto rows = lines(metrics_table(evaluations));
   REQUIRE(rows.size() > 9);
@@ -64,7 +64,7 @@ TEST_CASE("the table: raw gnss, then the modelings, then improvements, aligned",
   CHECK_THAT(rows[9], Catch::StartsWith("g3                          -50.00"));
 }
 
-TEST_CASE("the table has track, heading, innovation and counts", "[report]") {
+TEST_CASE("metrics table: the table has track, heading, innovation and counts") {
   const std::string text = metrics_table(std::vector<LabelledEvaluation>{{"g1", drive(1)}});
   CHECK_THAT(text, Contains("along / across track"));
   CHECK_THAT(text, Contains("1.000      1.000\n"));  // heading rms and max in degrees
@@ -73,7 +73,7 @@ TEST_CASE("the table has track, heading, innovation and counts", "[report]") {
   CHECK_THAT(text, Contains("rejected [%]"));
 }
 
-TEST_CASE("raw rows appear once unless they differ", "[report]") {
+TEST_CASE("metrics table: raw rows appear once unless they differ") {
   const std::vector<LabelledEvaluation> same{{"g1", drive(1)}, {"g2", drive(0)}};
   CHECK(count_lines_starting(metrics_table(same), "raw gnss") == 3);  // truth, track, autocorrelation
   const std::vector<LabelledEvaluation> gated{{"g1", drive(1)}, {"g2", drive(0, FixStatus::rejected)}};
@@ -81,7 +81,7 @@ TEST_CASE("raw rows appear once unless they differ", "[report]") {
   CHECK_THAT(text, Contains("raw gnss, accepted (g2)  2"));
 }
 
-TEST_CASE("withheld fixes have their own block, without truth too", "[report]") {
+TEST_CASE("metrics table: withheld fixes have their own block, without truth too") {
   Evaluation evaluation = drive(1, FixStatus::withheld);
   evaluation.truth.reset();
   const std::string text = metrics_table(std::vector<LabelledEvaluation>{{"g1", evaluation}});
@@ -90,12 +90,12 @@ TEST_CASE("withheld fixes have their own block, without truth too", "[report]") 
   CHECK_THAT(text, Contains("g1, innovations"));
 }
 
-TEST_CASE("tables of nothing do not crash", "[report]") {
+TEST_CASE("metrics table: tables of nothing do not crash") {
   CHECK(metrics_table({}).empty());
   CHECK_THAT(metrics_table(std::vector<LabelledEvaluation>{{"g1", Evaluation{}}}), Contains("-"));
 }
 
-TEST_CASE("metrics.json: schema, values, null for undefined, exact doubles", "[report]") {
+TEST_CASE("metrics.json: schema, values, null for undefined, exact doubles") {
   Evaluation evaluation = drive(0.1);
   evaluation.truth->fused.position.max_m = 0.1 + 0.2;
   const std::vector<LabelledEvaluation> evaluations{{"g1", evaluation}, {"empty", Evaluation{}}};
@@ -123,7 +123,7 @@ TEST_CASE("metrics.json: schema, values, null for undefined, exact doubles", "[r
   CHECK(json["evaluations"][1]["truth"].is_null());
 }
 
-TEST_CASE("metrics.json without a header has empty objects, not lists", "[report]") {
+TEST_CASE("metrics table: metrics.json without a header has empty objects, not lists") {
   const auto json = nlohmann::json::parse(metrics_json({}));
   CHECK(json["evaluations"].is_array());
   CHECK(json["provenance"].is_object());

@@ -44,14 +44,14 @@ Loss huber(double scale) {
 
 }  // namespace
 
-TEST_CASE("residuals: with independent components the whitened ones are errors in sigmas", "[residuals]") {
+TEST_CASE("residuals: with independent components the whitened ones are errors in sigmas") {
   const auto w = whitened(one_prior({0.2, -0.6, 0}, Eigen::Vector3d(100, 25, 4).asDiagonal()));
   CHECK(w[0] == Approx(2));
   CHECK(w[1] == Approx(-3));
   CHECK(w[2] == Approx(0).margin(1e-15));
 }
 
-TEST_CASE("residuals: correlated components keep their chi2, whatever their units", "[residuals]") {
+TEST_CASE("residuals: correlated components keep their chi2, whatever their units") {
   Eigen::Matrix3d information;
   information << 9, 4, 0, 4, 16, 0, 0, 0, 1;
   const Eigen::Vector3d error(0.3, -0.4, 0);
@@ -68,7 +68,7 @@ TEST_CASE("residuals: correlated components keep their chi2, whatever their unit
   CHECK(w[1] < 0);
 }
 
-TEST_CASE("residuals: noise as stated is white with variance 1 in every component", "[residuals]") {
+TEST_CASE("residuals: noise as stated is white with variance 1 in every component") {
   Eigen::Matrix3d information;
   information << 400, 50, 900, 50, 100, 0, 900, 0, 1e4;
   const Eigen::Matrix3d root = information.inverse().llt().matrixL();
@@ -99,7 +99,7 @@ TEST_CASE("residuals: noise as stated is white with variance 1 in every componen
   }
 }
 
-TEST_CASE("residuals: a component without information is left out", "[residuals]") {
+TEST_CASE("residuals: a component without information is left out") {
   const GraphResiduals residuals =
       residuals_by_type(one_prior({1, 2, 3}, Eigen::Vector3d(1, 1, 0).asDiagonal()));
   const TypeResiduals& type = residuals.types.front();
@@ -108,7 +108,7 @@ TEST_CASE("residuals: a component without information is left out", "[residuals]
   CHECK(residuals.components == 2);
 }
 
-TEST_CASE("residuals: after a fit the rms is what redundancy leaves", "[residuals]") {
+TEST_CASE("residuals: after a fit the rms is what redundancy leaves") {
   Graph graph = waymark_test::noisy_circle(4000, 3);
   const TypeRegistry registry = waymark_test::full_registry();
   const auto algorithm = registry.make_algorithm("gauss_newton", {});
@@ -124,7 +124,7 @@ TEST_CASE("residuals: after a fit the rms is what redundancy leaves", "[residual
   CHECK(residuals.chi2 == Approx(graph.chi2()).epsilon(1e-12));
 }
 
-TEST_CASE("residuals: shares, weights and the largest edges", "[residuals]") {
+TEST_CASE("residuals: shares, weights and the largest edges") {
   Graph graph;
   for (int i = 0; i < 4; ++i) {
     graph.add_vertex<VertexSe2>(10 * i, {1.0 * i, 0, 0});
@@ -158,7 +158,7 @@ TEST_CASE("residuals: shares, weights and the largest edges", "[residuals]") {
   CHECK_FALSE(prior.edges[0].stamp);
 }
 
-TEST_CASE("residuals: measurements, steps of a state, and what was said beforehand", "[residuals]") {
+TEST_CASE("residuals: measurements, steps of a state, and what was said beforehand") {
   Graph graph;
   graph.add_vertex<VertexGnssBias>(0, {0, 0});
   graph.add_vertex<VertexGnssBias>(1, {0.5, 0});
@@ -186,7 +186,7 @@ TEST_CASE("residuals: measurements, steps of a state, and what was said beforeha
   CHECK(residuals.components == 2 + 5 + 2 + 3 + 1);
 }
 
-TEST_CASE("residuals: of an empty graph there are none", "[residuals]") {
+TEST_CASE("residuals: of an empty graph there are none") {
   const GraphResiduals residuals = residuals_by_type(Graph());
   CHECK(residuals.types.empty());
   CHECK(residuals.expected_rms(0) == 0);

@@ -44,7 +44,7 @@ std::int64_t numbers(std::int64_t columns, std::int64_t below) {
 
 }  // namespace
 
-TEST_CASE("sparsity: a chain has no fill", "[sparsity]") {
+TEST_CASE("sparsity: a chain has no fill") {
   const int poses = GENERATE(1, 2, 50, 5000);  // long ones are eliminated from both ends
   const Sparsity s = sparsity_of(joined(poses, chain(poses)));
   CHECK(s.columns == static_cast<std::size_t>(poses));
@@ -57,7 +57,7 @@ TEST_CASE("sparsity: a chain has no fill", "[sparsity]") {
   CHECK(s.ordering == "natural");
 }
 
-TEST_CASE("sparsity: a ring fills one block per pose between its ends, in any order", "[sparsity]") {
+TEST_CASE("sparsity: a ring fills one block per pose between its ends, in any order") {
   // Eliminating a pose of a ring joins its two neighbours: a ring of n - 1 remains, until three are left.
   constexpr int kPoses = 40;
   auto edges = chain(kPoses);
@@ -68,7 +68,7 @@ TEST_CASE("sparsity: a ring fills one block per pose between its ends, in any or
   CHECK(s.factor.scalars == numbers(kPoses, kPoses + kPoses - 3));
 }
 
-TEST_CASE("sparsity: an arrow whose head goes last has no fill", "[sparsity]") {
+TEST_CASE("sparsity: an arrow whose head goes last has no fill") {
   constexpr int kPoses = 120;  // the head, vertex 0, touches all others and counts as a dense column
   std::vector<std::pair<int, int>> edges;
   for (int i = 1; i < kPoses; ++i) edges.emplace_back(0, i);
@@ -83,7 +83,7 @@ TEST_CASE("sparsity: an arrow whose head goes last has no fill", "[sparsity]") {
   }
 }
 
-TEST_CASE("sparsity: small patterns are shown block by block", "[sparsity]") {
+TEST_CASE("sparsity: small patterns are shown block by block") {
   const Sparsity s = sparsity_of(joined(4, {{0, 1}, {1, 2}, {2, 3}, {0, 3}}));
   CHECK(s.natural.cells == 4);
   const std::vector<std::uint32_t> expected = {1, 0, 0, 0,  //
@@ -95,7 +95,7 @@ TEST_CASE("sparsity: small patterns are shown block by block", "[sparsity]") {
   CHECK(total(s.factor_raster) == 9);
 }
 
-TEST_CASE("sparsity: every block is in one cell, and no cell holds more than it has places", "[sparsity]") {
+TEST_CASE("sparsity: every block is in one cell, and no cell holds more than it has places") {
   const Graph graph = waymark_test::grid_walk(1003, 20);
   const Sparsity s = sparsity_of(graph, 64);
   CHECK(s.natural.cells == 64);
@@ -114,7 +114,7 @@ TEST_CASE("sparsity: every block is in one cell, and no cell holds more than it 
   CHECK(places == n * (n + 1) / 2);
 }
 
-TEST_CASE("sparsity: the factor is as large as solvers say", "[sparsity]") {
+TEST_CASE("sparsity: the factor is as large as solvers say") {
   const TypeRegistry registry = waymark_test::full_registry();
   Graph graph = GENERATE(waymark_test::grid_walk(800, 12), waymark_test::noisy_circle(300));
   const Sparsity s = sparsity_of(graph);
@@ -134,7 +134,7 @@ TEST_CASE("sparsity: the factor is as large as solvers say", "[sparsity]") {
   }
 }
 
-TEST_CASE("sparsity: held and fixed vertices are no unknowns", "[sparsity]") {
+TEST_CASE("sparsity: held and fixed vertices are no unknowns") {
   Graph loose;
   for (int i = 0; i < 3; ++i) loose.add_vertex<VertexSe2>(i, {1.0 * i, 0, 0});
   for (int i = 0; i < 2; ++i) loose.add_edge(EdgeSe2{{1, 0, 0}}, {i, i + 1}, Eigen::Matrix3d::Identity());

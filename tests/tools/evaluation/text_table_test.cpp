@@ -6,7 +6,8 @@
 using namespace waymark;
 using namespace waymark::text;
 
-TEST_CASE("columns of numbers are flush right, those of words flush left, and no line ends in spaces") {
+TEST_CASE(
+    "text table: columns of numbers are flush right, those of words flush left, and no line ends in spaces") {
   TextTable table({"name", "unit", "value", "remark"});
   table.add({"gyro_bias", "rad/s", "-0.01", ""});
   table.add({"scale", "1", "12.5", "not observed"});
@@ -18,7 +19,7 @@ TEST_CASE("columns of numbers are flush right, those of words flush left, and no
         "missing    m          -\n");
 }
 
-TEST_CASE("width is counted in characters, not in bytes") {
+TEST_CASE("text table: width is counted in characters, not in bytes") {
   CHECK(display_width("Köln") == 4);
   CHECK(display_width("道路") == 4);  // two columns each
   TextTable table({"drive", "n"});
@@ -27,7 +28,7 @@ TEST_CASE("width is counted in characters, not in bytes") {
   CHECK(table.text() == "drive  n\nKöln   1\nBonn   2\n");
 }
 
-TEST_CASE("a table too wide for the terminal goes on below itself") {
+TEST_CASE("text table: a table too wide for the terminal goes on below itself") {
   TextTable table({"of", "first", "second", "third"});
   table.add({"a", "1", "2", "3"});
   const TextLook narrow{.colours = false, .columns = 17};
@@ -40,7 +41,7 @@ TEST_CASE("a table too wide for the terminal goes on below itself") {
         "of  first\na       1\nof  second\na        2\nof  third\na       3\n");
 }
 
-TEST_CASE("colours stand around the words and change no width") {
+TEST_CASE("text table: colours stand around the words and change no width") {
   TextTable table({"of", "n"});
   table.add({"a", "10"});
   table.paint(1, Tone::better);
@@ -49,7 +50,7 @@ TEST_CASE("colours stand around the words and change no width") {
         "\033[1mof\033[0m   \033[1mn\033[0m\na   \033[32m10\033[0m\n");
 }
 
-TEST_CASE("what is fitted into a line neither leaves it nor steers the terminal") {
+TEST_CASE("text table: what is fitted into a line neither leaves it nor steers the terminal") {
   CHECK(fitted("short", 5) == "short");
   CHECK(fitted("candump.log.gz", 10) == "candump...");
   CHECK(fitted("道路道路", 7) == "道路...");

@@ -34,7 +34,7 @@ std::vector<Stamp> stamps(std::initializer_list<double> seconds) {
 
 }  // namespace
 
-TEST_CASE("position is linear between two truth poses", "[truth]") {
+TEST_CASE("truth: position is linear between two truth poses") {
   const std::vector<TruthPose> truth{truth_pose(0, 0, 0), truth_pose(1, 10, -4)};
   const TruthMatch match = interpolate_truth(truth, stamps({0, 0.25, 1}));
   REQUIRE(match.matched == 3);
@@ -45,14 +45,14 @@ TEST_CASE("position is linear between two truth poses", "[truth]") {
   CHECK(match.median_interval_s == Approx(1));
 }
 
-TEST_CASE("heading goes along the shorter arc, across +-pi", "[truth]") {
+TEST_CASE("truth: heading goes along the shorter arc, across +-pi") {
   const std::vector<TruthPose> truth{truth_pose(0, 0, 0, 170 * kDegree), truth_pose(1, 0, 0, -170 * kDegree)};
   const TruthMatch match = interpolate_truth(truth, stamps({0.25, 0.75}));
   CHECK(*match.at[0]->pose.heading_rad == Approx(175 * kDegree));
   CHECK(*match.at[1]->pose.heading_rad == Approx(-175 * kDegree));
 }
 
-TEST_CASE("heading needs both neighbours", "[truth]") {
+TEST_CASE("truth: heading needs both neighbours") {
   const std::vector<TruthPose> truth{truth_pose(0, 0, 0, 0.5), truth_pose(1, 0, 0)};
   const TruthMatch match = interpolate_truth(truth, stamps({0, 0.5, 1}));
   CHECK(match.at[0]->pose.heading_rad == 0.5);
@@ -60,7 +60,7 @@ TEST_CASE("heading needs both neighbours", "[truth]") {
   CHECK_FALSE(match.at[2]->pose.heading_rad);
 }
 
-TEST_CASE("truth is never extrapolated", "[truth]") {
+TEST_CASE("truth: truth is never extrapolated") {
   const TruthMatch match = interpolate_truth(straight(2), stamps({-0.001, 0, 2, 2.001, 99}));
   CHECK(match.matched == 2);
   CHECK(match.before_truth == 1);
@@ -72,7 +72,7 @@ TEST_CASE("truth is never extrapolated", "[truth]") {
   CHECK(match.at[2]);
 }
 
-TEST_CASE("a gap of 1.5 median intervals is crossed, a longer one is not", "[truth]") {
+TEST_CASE("truth: a gap of 1.5 median intervals is crossed, a longer one is not") {
   std::vector<TruthPose> truth = straight(2);
   truth.push_back(truth_pose(2.3, 23, 0));  // 0.3 s = 1.5 x 0.2 s
   truth.push_back(truth_pose(2.7, 27, 0));  // 0.4 s
@@ -87,7 +87,7 @@ TEST_CASE("a gap of 1.5 median intervals is crossed, a longer one is not", "[tru
   CHECK(interpolate_truth(truth, epochs, {.max_gap_factor = 2}).matched == 4);
 }
 
-TEST_CASE("direction of motion from the truth's chord", "[truth]") {
+TEST_CASE("truth: direction of motion from the truth's chord") {
   const TruthMatch match = interpolate_truth(straight(4), stamps({0, 1.9, 2, 4}));
   for (const auto& at : match.at) {
     REQUIRE(at->direction_rad);
@@ -99,7 +99,7 @@ TEST_CASE("direction of motion from the truth's chord", "[truth]") {
   CHECK(*interpolate_truth(northwards, stamps({0.5})).at[0]->direction_rad == Approx(std::numbers::pi / 2));
 }
 
-TEST_CASE("noise of a fast truth does not turn the direction of motion", "[truth]") {
+TEST_CASE("truth: noise of a fast truth does not turn the direction of motion") {
   std::vector<TruthPose> truth;  // 100 Hz, 1 m/s along x, +-1 cm across: neighbours lie 63 degrees off
   for (int i = 0; i <= 400; ++i) truth.push_back(truth_pose(0.01 * i, 0.01 * i, i % 2 == 0 ? 0.01 : -0.01));
   const TruthMatch match = interpolate_truth(truth, stamps({2.0, 2.005}));
@@ -107,7 +107,7 @@ TEST_CASE("noise of a fast truth does not turn the direction of motion", "[truth
   CHECK(std::abs(*match.at[1]->direction_rad) < 2 * kDegree);
 }
 
-TEST_CASE("repeated truth stamps are tolerated, the last one counts", "[truth]") {
+TEST_CASE("truth: repeated truth stamps are tolerated, the last one counts") {
   const std::vector<TruthPose> truth{truth_pose(0, 0, 0), truth_pose(1, 1, 0), truth_pose(1, 2, 0),
                                      truth_pose(2, 4, 0)};
   const TruthMatch match = interpolate_truth(truth, stamps({1, 1.5}));
@@ -115,7 +115,7 @@ TEST_CASE("repeated truth stamps are tolerated, the last one counts", "[truth]")
   CHECK(match.at[1]->pose.position.x() == Approx(3));
 }
 
-TEST_CASE("truth that does not overlap is an error with both time spans", "[truth]") {
+TEST_CASE("truth: truth that does not overlap is an error with both time spans") {
   using Catch::Matchers::Contains;
   CHECK_THROWS_AS(interpolate_truth(straight(2), stamps({20, 30})), InputError);
   CHECK_THROWS_WITH(interpolate_truth(straight(2), stamps({30, 20.5})),
@@ -123,14 +123,14 @@ TEST_CASE("truth that does not overlap is an error with both time spans", "[trut
                         Contains("20.500000000 .. 30.000000000"));
 }
 
-TEST_CASE("fixes that all lie in gaps of the truth are an error", "[truth]") {
+TEST_CASE("truth: fixes that all lie in gaps of the truth are an error") {
   std::vector<TruthPose> truth = straight(1);
   truth.push_back(truth_pose(9, 90, 0));
   CHECK_THROWS_WITH(interpolate_truth(truth, stamps({3, 4})),
                     Catch::Matchers::Contains("2 of 2 lie in gaps of the truth longer than 0.300 s"));
 }
 
-TEST_CASE("truth out of order, empty or not finite is an error", "[truth]") {
+TEST_CASE("truth: truth out of order, empty or not finite is an error") {
   const std::vector<TruthPose> backwards{truth_pose(1, 0, 0), truth_pose(0.5, 0, 0)};
   CHECK_THROWS_WITH(interpolate_truth(backwards, stamps({1})), Catch::Matchers::Contains("pose 2 at 0.5"));
   CHECK_THROWS_AS(interpolate_truth({}, stamps({1})), InputError);
@@ -138,7 +138,7 @@ TEST_CASE("truth out of order, empty or not finite is an error", "[truth]") {
   CHECK_THROWS_AS(interpolate_truth(nan, stamps({0.5})), InputError);
 }
 
-TEST_CASE("no epochs and a single truth pose are no errors", "[truth]") {
+TEST_CASE("truth: no epochs and a single truth pose are no errors") {
   CHECK(interpolate_truth(straight(2), {}).matched == 0);
   const std::vector<TruthPose> one{truth_pose(1, 7, 8)};
   const TruthMatch match = interpolate_truth(one, stamps({1, 1.5}));
@@ -148,13 +148,13 @@ TEST_CASE("no epochs and a single truth pose are no errors", "[truth]") {
   CHECK_FALSE(match.at[0]->direction_rad);
 }
 
-TEST_CASE("truth options are checked", "[truth]") {
+TEST_CASE("truth: truth options are checked") {
   CHECK_THROWS_AS(interpolate_truth(straight(2), stamps({1}), {.max_gap_factor = 0.5}), UsageError);
   CHECK_THROWS_AS(interpolate_truth(straight(2), stamps({1}), {.direction_span_s = -1}), UsageError);
   CHECK_THROWS_AS(interpolate_truth(straight(2), stamps({1}), {.min_direction_speed_mps = 0}), UsageError);
 }
 
-TEST_CASE("poses become truth with headings", "[truth]") {
+TEST_CASE("truth: poses become truth with headings") {
   const std::vector<StampedPose> poses{{.stamp = Stamp{5}, .pose = {1, 2, 3}}};
   const std::vector<TruthPose> truth = truth_from_poses(poses);
   REQUIRE(truth.size() == 1);

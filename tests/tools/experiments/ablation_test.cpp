@@ -50,7 +50,7 @@ Outcome judged(const std::string& setting, double rmse_m, double nees, double co
 
 }  // namespace
 
-TEST_CASE("the default setting states nothing: all of it is the modeling's, as in run", "[reproduction]") {
+TEST_CASE("ablation: the default setting states nothing: all of it is the modeling's, as in run") {
   const Setting setting = default_setting();
   CHECK(setting.modeling == DriveConfig().modeling);
   CHECK(setting.modeling_options.empty());
@@ -61,8 +61,7 @@ TEST_CASE("the default setting states nothing: all of it is the modeling's, as i
   for (const Setting& other : our_settings()) CHECK(other.changes.shares_skeleton());
 }
 
-TEST_CASE("each ingredient differs from the default in one thing, and every name is its own",
-          "[reproduction]") {
+TEST_CASE("ablation: each ingredient differs from the default in one thing, and every name is its own") {
   const Setting standard = default_setting();
   std::set<std::string> names;
   std::set<std::string> titles;
@@ -84,8 +83,7 @@ TEST_CASE("each ingredient differs from the default in one thing, and every name
   for (const LossType& loss : builtin_losses()) CHECK(names.contains("white/" + loss.name));
 }
 
-TEST_CASE("the options that the ablation states are there, and each state can be left out",
-          "[reproduction]") {
+TEST_CASE("ablation: the options that the ablation states are there, and each state can be left out") {
   const TypeRegistry registry = waymark_test::full_registry();
   for (const Ablation& ablation : ablations()) {
     INFO(ablation.setting.name);
@@ -98,7 +96,7 @@ TEST_CASE("the options that the ablation states are there, and each state can be
   }
 }
 
-TEST_CASE("a factor up and the same factor down are no change on the average", "[reproduction]") {
+TEST_CASE("ablation: a factor up and the same factor down are no change on the average") {
   CHECK(mean_change_percent({2, 0.5}, {1, 1}) == Approx(0).margin(1e-12));
   CHECK(mean_change_percent({1.1, 2.2}, {1, 2}) == Approx(10));
   CHECK(mean_change_percent({1.1, kUndefined}, {1, 1}) ==
@@ -107,8 +105,8 @@ TEST_CASE("a factor up and the same factor down are no change on the average", "
   CHECK(std::isnan(mean_change_percent({}, {})));
 }
 
-TEST_CASE("inflation multiplies a covariance by the mean of nu over 2 about it, and never shrinks it",
-          "[reproduction]") {
+TEST_CASE(
+    "ablation: inflation multiplies a covariance by the mean of nu over 2 about it, and never shrinks it") {
   const std::vector<Fix> fixes = {fix_at(0), fix_at(10), fix_at(20), fix_at(20, 1), fix_at(100), fix_at(101)};
   const std::vector<EpochResult> residuals = {residual(8),          residual(4),
                                               residual(0),          residual(200),
@@ -123,7 +121,7 @@ TEST_CASE("inflation multiplies a covariance by the mean of nu over 2 about it, 
   CHECK_THROWS_AS(inflate_fixes(fixes, {}), UsageError);
 }
 
-TEST_CASE("the consistency study takes presets in turn and leaves no seed out", "[reproduction]") {
+TEST_CASE("ablation: the consistency study takes presets in turn and leaves no seed out") {
   const std::vector<Draw> draws = consistency_draws(6);
   REQUIRE(draws.size() == 6);
   const char* presets[] = {"highway", "urban", "rural", "mixed", "highway", "urban"};
@@ -133,8 +131,7 @@ TEST_CASE("the consistency study takes presets in turn and leaves no seed out", 
   }
 }
 
-TEST_CASE("pooled means count every drive once, with the standard error of independent drives",
-          "[reproduction]") {
+TEST_CASE("ablation: pooled means count every drive once, with the standard error of independent drives") {
   const PooledMean mean = pooled_mean({1, 3, 5});
   CHECK(mean.mean == Approx(3));
   CHECK(mean.standard_error == Approx(2 / std::sqrt(3.0)));
@@ -153,7 +150,7 @@ TEST_CASE("pooled means count every drive once, with the standard error of indep
   CHECK(table.rows.at(5)[3] == "1");                    // ours_g1 has a result on one of two
 }
 
-TEST_CASE("a drive of the ablation is judged by truth, or by the fixes kept out", "[reproduction]") {
+TEST_CASE("ablation: a drive of the ablation is judged by truth, or by the fixes kept out") {
   DriveResult with_truth;
   with_truth.name = "A";
   with_truth.outcomes = {judged(kDefaultModel, 2, 2, 0.95), judged(kWhiteReference, 4, 40, 0.1)};

@@ -13,7 +13,7 @@
 using namespace waymark;
 using namespace waymark::benchmark;
 
-TEST_CASE("the median is the middle value, or the mean of the two in the middle") {
+TEST_CASE("benchmark: the median is the middle value, or the mean of the two in the middle") {
   const Spread odd = spread_of({5, 1, 3});
   CHECK(odd.median == 3);
   CHECK(odd.least == 1);
@@ -24,7 +24,7 @@ TEST_CASE("the median is the middle value, or the mean of the two in the middle"
   CHECK_THROWS_AS(spread_of({}), UsageError);
 }
 
-TEST_CASE("an optimum is reached within a millionth, below it the list is wrong") {
+TEST_CASE("benchmark: an optimum is reached within a millionth, below it the list is wrong") {
   CHECK(compare_with_optimum(100.00009, 100) == Optimality::reached);
   CHECK(compare_with_optimum(99.99991, 100) == Optimality::reached);
   CHECK(compare_with_optimum(100.0002, 100) == Optimality::above);
@@ -34,7 +34,7 @@ TEST_CASE("an optimum is reached within a millionth, below it the list is wrong"
   CHECK(compare_with_optimum(1e-6, 0) == Optimality::above);
 }
 
-TEST_CASE("phases are those of the median run, ratios are paired run by run") {
+TEST_CASE("benchmark: phases are those of the median run, ratios are paired run by run") {
   Cell own{"dogleg", "eigen", false, {}};
   Cell peer{"ceres", "", true, {}};
   // A slow moment of the machine in the second repetition meets both: the ratio does not see it.
@@ -53,7 +53,7 @@ TEST_CASE("phases are those of the median run, ratios are paired run by run") {
   CHECK(cells[1].peer_ratios.empty());
 }
 
-TEST_CASE("every run starts from a fresh copy, all contestants in turn") {
+TEST_CASE("benchmark: every run starts from a fresh copy, all contestants in turn") {
   Graph graph;
   graph.add_vertex<VertexXy>(0, {1.0, 2.0});
   std::string order;
@@ -74,7 +74,7 @@ TEST_CASE("every run starts from a fresh copy, all contestants in turn") {
   CHECK(measure(graph, contestants, {.cancel = &cancel}).empty());
 }
 
-TEST_CASE("the peak of memory begins anew and sees what was taken and given back") {
+TEST_CASE("benchmark: the peak of memory begins anew and sees what was taken and given back") {
   const auto before = restart_peak_memory();
   if (!before) {
     WARN("SKIPPED: /proc does not let the peak begin anew here");

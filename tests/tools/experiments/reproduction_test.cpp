@@ -67,7 +67,7 @@ Outcome ended_at(const std::string& objective, double chi2, const Eigen::Vector3
 
 }  // namespace
 
-TEST_CASE("the paper's figures are all there, and its averages are those of its rows", "[reproduction]") {
+TEST_CASE("reproduction: the paper's figures are all there, and its averages are those of its rows") {
   CHECK(paper_drives().size() == 8);
   CHECK(paper_results().size() == 45);
   CHECK(paper_drives()[2].rejected_percent == 57.43);
@@ -86,7 +86,7 @@ TEST_CASE("the paper's figures are all there, and its averages are those of its 
   CHECK_FALSE(paper_metrics(1, "g4"));
 }
 
-TEST_CASE("improvements are formed from the averages, as the paper's tables have them", "[reproduction]") {
+TEST_CASE("reproduction: improvements are formed from the averages, as the paper's tables have them") {
   const auto drives = drives_as_printed();
   const MetricsColumn gnss = paper_column(drives, "gnss");
   // Last lines of its tables of G1, G2, G3 and G2 without rejection; the text's 10.11 % for G1 is none of
@@ -102,7 +102,7 @@ TEST_CASE("improvements are formed from the averages, as the paper's tables have
   }
 }
 
-TEST_CASE("every setting has a name of its own, and each cause changes one thing", "[reproduction]") {
+TEST_CASE("reproduction: every setting has a name of its own, and each cause changes one thing") {
   std::set<std::string> names;
   std::size_t count = 0;
   for (const auto& list :
@@ -125,7 +125,7 @@ TEST_CASE("every setting has a name of its own, and each cause changes one thing
   }
 }
 
-TEST_CASE("the lowest chi2 of an objective is its minimum, and distances wrap", "[reproduction]") {
+TEST_CASE("reproduction: the lowest chi2 of an objective is its minimum, and distances wrap") {
   const double pi = std::numbers::pi;
   std::vector<Outcome> outcomes = {ended_at("a", 12, {3, 4, pi - 0.01}),
                                    ended_at("a", 10, {0, 0, -pi + 0.01}), ended_at("b", 5, {1, 1, 1}),
@@ -143,8 +143,8 @@ TEST_CASE("the lowest chi2 of an objective is its minimum, and distances wrap", 
   CHECK_FALSE(near_minimum(outcomes[3]));
 }
 
-TEST_CASE("the six tables have the paper's figures beside ours, averages and improvements below",
-          "[reproduction]") {
+TEST_CASE(
+    "reproduction: the six tables have the paper's figures beside ours, averages and improvements below") {
   const std::vector<ReportTable> tables = paper_tables(drives_as_printed());
   REQUIRE(tables.size() == 7);  // the paper's six, and the default model
   for (const ReportTable& table : tables) {
@@ -165,7 +165,7 @@ TEST_CASE("the six tables have the paper's figures beside ours, averages and imp
   CHECK(table_named(tables, "table_1_dataset_overview").rows[0][8] == "25.00");
 }
 
-TEST_CASE("on the paper's own figures each of its findings holds", "[reproduction]") {
+TEST_CASE("reproduction: on the paper's own figures each of its findings holds") {
   const std::vector<Finding> found = findings(drives_as_printed());
   REQUIRE(found.size() == 7);
   for (std::size_t i = 0; i < 6; ++i) {
@@ -180,7 +180,7 @@ TEST_CASE("on the paper's own figures each of its findings holds", "[reproductio
   CHECK(findings({}).empty());
 }
 
-TEST_CASE("drives whose names have commas are listed with semicolons", "[reproduction]") {
+TEST_CASE("reproduction: drives whose names have commas are listed with semicolons") {
   std::vector<DriveResult> drives = drives_as_printed();
   for (DriveResult& drive : drives) {
     drive.name = "Town, street " + std::to_string(drive.dataset);
@@ -190,8 +190,8 @@ TEST_CASE("drives whose names have commas are listed with semicolons", "[reprodu
   CHECK_THAT(found[3].evidence[3].figures, Contains("Town, street 4; Town, street 7; Town, street 8"));
 }
 
-TEST_CASE("the default model stands beside G2: table, findings, what its covariances are worth",
-          "[reproduction]") {
+TEST_CASE(
+    "reproduction: the default model stands beside G2: table, findings, what its covariances are worth") {
   std::vector<DriveResult> drives = drives_as_printed();
   for (DriveResult& drive : drives) {
     const PaperMetrics raw = *paper_metrics(drive.dataset, "gnss");
@@ -215,7 +215,7 @@ TEST_CASE("the default model stands beside G2: table, findings, what its covaria
   CHECK(found[8].evidence[0].holds == false);  // nothing shows it
 }
 
-TEST_CASE("report tables are escaped for CSV and Markdown", "[reproduction]") {
+TEST_CASE("reproduction: report tables are escaped for CSV and Markdown") {
   ReportTable table;
   table.title = "T";
   table.columns = {"a", "b"};
@@ -228,7 +228,7 @@ TEST_CASE("report tables are escaped for CSV and Markdown", "[reproduction]") {
   CHECK(cell(-0.125, 2) == "-0.12");
 }
 
-TEST_CASE("a report without any drive has nothing to say and does not fail", "[reproduction]") {
+TEST_CASE("reproduction: a report without any drive has nothing to say and does not fail") {
   const ReproductionReport report = make_report({}, "nothing");
   CHECK(report.findings.empty());
   CHECK_THAT(report_markdown(report), Contains("nothing"));
