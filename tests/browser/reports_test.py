@@ -219,6 +219,24 @@ class Pages(unittest.TestCase):
         self.wheel("trajectory", *self.middle("trajectory"), -400)
         self.assertEqual(self.view("trajectory"), before)
 
+    def test_the_script_has_the_ticks_that_the_figure_was_drawn_with(self):
+        """Both choose them by the same rule, in two languages (tools/drawing/README.md)."""
+        ticks = ("return [...document.getElementById(arguments[0]).querySelectorAll('.tick-x, .tick-y')]"
+                 ".map((tick) => [tick.textContent, tick.getAttribute('x'), tick.getAttribute('y')])")
+        for page in ("gated/report.html", "compared/comparison.html"):
+            self.open(page)
+            text = self.browser.execute_script("return document.getElementById('page-data').textContent")
+            for name, figure in json.loads(text)["figures"].items():
+                if figure["motion"] == "still":
+                    continue
+                drawn = self.browser.execute_script(ticks, name)
+                self.wake(name)
+                again = self.browser.execute_script(ticks, name)
+                self.assertEqual([tick[0] for tick in again], [tick[0] for tick in drawn], name)
+                for old, new in zip(drawn, again):
+                    self.assertAlmostEqual(float(new[1]), float(old[1]), delta=0.11)
+                    self.assertAlmostEqual(float(new[2]), float(old[2]), delta=0.11)
+
     def test_the_scale_bar_is_as_long_as_it_says(self):
         self.open("gated/report.html")
         self.wake("trajectory")

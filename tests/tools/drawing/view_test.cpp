@@ -7,7 +7,7 @@
 
 #include <waymark/tools/drawing/figure/thinning.hpp>
 #include <waymark/tools/drawing/figure/view.hpp>
-#include <waymark/tools/drawing/page/packed_column.hpp>
+#include <waymark/tools/drawing/page/rounded_column.hpp>
 
 using namespace waymark;
 using namespace waymark::drawing;
@@ -30,35 +30,13 @@ View view_of(Range x, Range y) {
   return view;
 }
 
-/// The documented format, read by another hand.
-std::vector<double> unpacked(const std::string& text) {
-  const double step = std::stod(text.substr(0, text.find(':')));
-  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<unsigned> bytes;
-  unsigned bits = 0;
-  int have = 0;
-  for (const char c : text.substr(text.find(':') + 1)) {
-    if (c == '=') break;
-    bits = (bits << 6U) | static_cast<unsigned>(digits.find(c));
-    have += 6;
-    if (have < 8) continue;
-    have -= 8;
-    bytes.push_back((bits >> static_cast<unsigned>(have)) & 255U);
-  }
+/// The numbers of a column, summed as a page's script does it.
+std::vector<double> summed(const RoundedColumn& column) {
   std::vector<double> values;
   double sum = 0;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    unsigned long long value = bytes[i] & 127U;
-    for (unsigned shift = 7; bytes[i] > 127; shift += 7)
-      value |= static_cast<unsigned long long>(bytes[++i] & 127U) << shift;
-    if (value == 0) {
-      values.push_back(std::nan(""));
-      continue;
-    }
-    const unsigned long long zigzag = value - 1;
-    const double half = static_cast<double>(zigzag / 2);
-    sum += zigzag % 2 == 0 ? half : -half - 1;
-    values.push_back(sum * step);
+  for (const auto& difference : column.differences) {
+    sum += static_cast<double>(difference.value_or(0));
+    values.push_back(difference ? sum * column.step : std::nan(""));
   }
   return values;
 }
@@ -160,14 +138,14 @@ TEST_CASE("view: a line breaks where a number is missing") {
   CHECK(parts[1].size() == 2);
 }
 
-TEST_CASE("view: a packed column is within half a step of what went in, gaps included") {
+TEST_CASE("view: a rounded column is within half a step of what went in, gaps included") {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(-1e4, 1e4);
   std::vector<double> values;
   for (int i = 0; i < 1000; ++i) values.push_back(i % 97 == 0 ? std::nan("") : uniform(random));
-  const double step = packing_step(values);
+  const double step = rounding_step(values);
   CHECK(step <= 1e-7 * 2e4);
-  const std::vector<double> back = unpacked(pack(values));
+  const std::vector<double> back = summed(rounded(values));
   REQUIRE(back.size() == values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     REQUIRE(std::isnan(back[i]) == std::isnan(values[i]));
@@ -175,19 +153,20 @@ TEST_CASE("view: a packed column is within half a step of what went in, gaps inc
   }
 }
 
-TEST_CASE("view: whole numbers are packed exactly, and those of a drive in two bytes each") {
+TEST_CASE("view: whole numbers are kept exactly, and a drive takes four digits a number at most") {
   const std::vector<double> whole = {-3, 0, 7, 4e12, -4e12, 5};
-  CHECK(unpacked(pack(whole)) == whole);
-  std::vector<double> drive;
-  for (int i = 0; i < 100000; ++i) drive.push_back(0.4 * i + std::sin(i * 0.01));
-  CHECK(pack(drive).size() < 100000 * 2 * 4 / 3 + 100);
+  CHECK(summed(rounded(whole)) == whole);
+  std::vector<double> drive;  // 40 km in steps of a millimetre
+  for (int i = 0; i < 100'000; ++i) drive.push_back(0.4 * i + std::sin(i * 0.01));
+  CHECK(rounding_step(drive) == Approx(1e-3));
+  for (const auto& difference : rounded(drive).differences) CHECK(std::abs(*difference) < 10'000);
 }
 
-TEST_CASE("view: columns of one value, none, and of nothing finite are packed") {
-  CHECK(unpacked(pack({})).empty());
-  CHECK(unpacked(pack({1.5}))[0] == Approx(1.5));
-  CHECK(std::isnan(unpacked(pack({std::nan("")}))[0]));
-  const std::vector<double> wild = unpacked(pack({1e300, -1e300}));
+TEST_CASE("view: columns of one value, none, and of nothing finite are rounded") {
+  CHECK(summed(rounded({})).empty());
+  CHECK(summed(rounded({1.5}))[0] == Approx(1.5));
+  CHECK(std::isnan(summed(rounded({std::nan("")}))[0]));
+  const std::vector<double> wild = summed(rounded({1e300, -1e300}));
   CHECK(wild[0] == Approx(1e300));
   CHECK(wild[1] == Approx(-1e300));
 }

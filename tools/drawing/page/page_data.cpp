@@ -7,8 +7,8 @@
 #include <waymark/tools/drawing/figure/figure_svg.hpp>
 #include <waymark/tools/drawing/figure/look.hpp>
 #include <waymark/tools/drawing/figure/marks_svg.hpp>
-#include <waymark/tools/drawing/page/packed_column.hpp>
 #include <waymark/tools/drawing/page/page_data.hpp>
+#include <waymark/tools/drawing/page/rounded_column.hpp>
 
 namespace waymark::drawing {
 namespace {
@@ -17,14 +17,22 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongColumn = 64;
 
+Json rounded_json(const std::vector<double>& values) {
+  const RoundedColumn column = rounded(values);
+  Json differences = Json::array();
+  for (const auto& difference : column.differences)
+    differences.push_back(difference ? Json(*difference) : Json(nullptr));
+  return {{"step", column.step}, {"differences", std::move(differences)}};
+}
+
 /// The columns of all figures, each once.
 class ColumnStore {
  public:
-  /// @param packed whether the column may be rounded to a step; not on a logarithmic axis
-  std::size_t add(const std::vector<double>& values, bool packed) {
+  /// @param may_round whether the column may be rounded to a step; not on a logarithmic axis
+  std::size_t add(const std::vector<double>& values, bool may_round) {
     Json column;
-    if (packed && values.size() >= kLongColumn) {
-      column = pack(values);
+    if (may_round && values.size() >= kLongColumn) {
+      column = rounded_json(values);
     } else {
       column = Json::array();
       for (const double value : values) column.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
@@ -45,8 +53,8 @@ Json series_json(const Series& series, const Figure& figure, ColumnStore& store)
                {"mark", name_of(series.mark)},
                {"look", style_of(series.look).name},
                {"marker", style_of(series.look).marker}};
-  const auto put = [&](const char* key, const std::vector<double>& values, bool packed) {
-    if (!values.empty()) json[key] = store.add(values, packed);
+  const auto put = [&](const char* key, const std::vector<double>& values, bool may_round) {
+    if (!values.empty()) json[key] = store.add(values, may_round);
   };
   const bool linear = !figure.x.logarithmic && !figure.y.logarithmic;
   put("x", series.x, !figure.x.logarithmic);

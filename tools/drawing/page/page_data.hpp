@@ -9,7 +9,7 @@
 namespace waymark::drawing {
 
 /// Returns a JSON document that is safe inside a script element: {"columns": [...], "figures": {ID:
-/// ...}}. Equal columns of numbers are stored once, and long ones are packed (packed_column.hpp).
+/// ...}}. Equal columns of numbers are stored once, and long ones are rounded (rounded_column.hpp).
 /// Figures of cells are left out, because they do not move.
 [[nodiscard]] std::string page_data(const std::vector<const Figure*>& figures);
 

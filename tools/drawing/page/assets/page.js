@@ -5,42 +5,25 @@
   const data = JSON.parse(document.getElementById("page-data").textContent);
   const plots = [];
 
-  // Numbers. The packing is described in tools/report/packed_column.hpp.
+  // Numbers. Long columns are rounded: see tools/drawing/page/rounded_column.hpp.
 
   const columns = new Map();
-  function unpack(text) {
-    const colon = text.indexOf(":");
+  function summed({ step, differences }) {
     // A step of 0.001 is no binary number, 1000 is: dividing by it gives the decimal that was meant.
-    const step = Number(text.slice(0, colon));
     const perUnit = step < 1 ? Math.round(1 / step) : 1;
-    const bytes = atob(text.slice(colon + 1));
-    const values = [];
     let sum = 0;
-    for (let i = 0; i < bytes.length;) {
-      let value = 0;
-      let factor = 1;
-      let byte;
-      do {
-        byte = bytes.charCodeAt(i++);
-        value += (byte & 127) * factor;
-        factor *= 128;
-      } while (byte > 127);
-      if (value === 0) {
-        values.push(NaN);
-        continue;
-      }
-      const zigzag = value - 1;
-      sum += zigzag % 2 === 0 ? zigzag / 2 : -(zigzag + 1) / 2;
-      values.push(perUnit > 1 ? sum / perUnit : sum * step);
-    }
-    return Float64Array.from(values);
+    return Float64Array.from(differences, (difference) => {
+      if (difference === null) return NaN;
+      sum += difference;
+      return perUnit > 1 ? sum / perUnit : sum * step;
+    });
   }
   function column(index) {
     if (index === undefined) return null;
     if (!columns.has(index)) {
       const stored = data.columns[index];
-      const values = typeof stored === "string" ? unpack(stored)
-        : Float64Array.from(stored, (value) => (value === null ? NaN : value));
+      const values = Array.isArray(stored)
+        ? Float64Array.from(stored, (value) => (value === null ? NaN : value)) : summed(stored);
       columns.set(index, values);
     }
     return columns.get(index);
@@ -144,7 +127,7 @@
       return element;
     }
 
-    /// The series with its columns, which are unpacked when first needed.
+    /// The series with its columns, which are made when first needed.
     loaded(index) {
       const series = this.series[index];
       if (!series.isLoaded) {
