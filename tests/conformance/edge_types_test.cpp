@@ -15,7 +15,7 @@ using namespace waymark;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 double magnitude(const Eigen::MatrixXd& m) {
   return 1 + (m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0);
@@ -95,8 +95,8 @@ TEST_CASE("every edge type: finite at coordinates of 1e7 and headings of pi") {
   for (const auto& [type, origin] : registry.edges()) {
     INFO(type.tag);
     std::mt19937_64 random(12);
-    for (const double heading : {kPi, -kPi, 0.0, std::nextafter(kPi, 0)}) {
-      for (const double field : {0.0, 1e-300, kPi, 1e3}) {
+    for (const double heading : {kHalfTurn, -kHalfTurn, 0.0, std::nextafter(kHalfTurn, 0)}) {
+      for (const double field : {0.0, 1e-300, kHalfTurn, 1e3}) {
         const Graph graph = single_edge(registry, type, {"extreme", 1e7, heading, 0, field}, random);
         Eigen::VectorXd error;
         std::vector<Eigen::MatrixXd> jacobians;
@@ -117,7 +117,7 @@ TEST_CASE("every edge type: an error of whole turns is no error") {
       if (type.tag != "VERTEX_SE2") continue;
       Graph turned = graph;
       std::vector<double> value(graph.value(v).begin(), graph.value(v).end());
-      value[2] += 2 * kPi;  // not normalised
+      value[2] += 2 * kHalfTurn;  // not normalised
       turned.set_value(v, value);
       CHECK(turned.chi2() == Approx(graph.chi2()).epsilon(1e-6).margin(1e-12));
     }

@@ -5,13 +5,14 @@
 #include <catch2/catch.hpp>
 
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kScript = WAYMARK_SOURCE_DIR "/tools/packaging/check_abi.sh";
-const std::string kSource = WAYMARK_SOURCE_DIR "/tests/consumer/abi";
+const std::string kScript = waymark_test::source_dir() + "/tools/packaging/check_abi.sh";
+const std::string kSource = waymark_test::source_dir() + "/tests/consumer/abi";
 
 /// The sample library with one of the header's changes; its file.
 std::string build(const std::string& change) {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
@@ -42,7 +43,7 @@ TEST_CASE("installed: the program runs from any prefix, and nothing points into 
     const std::string suffix = entry.path().extension();
     if (suffix == ".cmake" || suffix == ".pc") {
       INFO(entry.path());
-      CHECK_FALSE(contains(read_text(entry.path()), WAYMARK_SOURCE_DIR));
+      CHECK_FALSE(contains(read_text(entry.path()), waymark_test::source_dir()));
     }
   }
 }

@@ -10,10 +10,11 @@
 
 #include "program/support/program.hpp"
 #include "support/markdown.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
-const std::string kTemplate = WAYMARK_SOURCE_DIR "/examples/plugin_template/";
+const std::string kTemplate = waymark_test::source_dir() + "/examples/plugin_template/";
 
 RunResult waymark(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--plugin", PLUGIN_TEMPLATE});
@@ -47,7 +48,8 @@ int code_lines(const std::string& source) {
 
 /// The fenced block of plugins/README.md that is headed by this file name: "```cpp gnss_lever_arm.cpp".
 std::string listing(const std::string& file) {
-  const auto readme = waymark_test::parse_markdown(read_text(WAYMARK_SOURCE_DIR "/plugins/README.md"));
+  const auto readme =
+      waymark_test::parse_markdown(read_text(waymark_test::source_dir() + "/plugins/README.md"));
   const std::vector<std::string> wanted = {file};
   const auto found = std::find_if(readme.blocks.begin(), readme.blocks.end(),
                                   [&](const auto& block) { return block.words == wanted; });

@@ -24,7 +24,7 @@ using Catch::Contains;
 namespace {
 
 std::string module_file(const std::string& name) {
-  return std::string(WAYMARK_PLUGIN_DIR) + "/" + name + ".so";
+  return waymark_test::plugin_dir() + "/" + name + ".so";
 }
 
 /// Core, SE(2) and solvers only: everything else must come from modules.

@@ -23,7 +23,7 @@ using Catch::Contains;
 namespace {
 
 std::string module_file(const std::string& name) {
-  return std::string(WAYMARK_TEST_MODULES) + "/" + name + ".so";
+  return waymark_test::test_module_dir() + "/" + name + ".so";
 }
 
 /// Loads a module and says whether any of its code ran.

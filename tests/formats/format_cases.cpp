@@ -12,6 +12,7 @@
 #include <waymark/formats/text/text_file.hpp>
 
 #include "formats/read_helpers.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 using namespace waymark;
 using namespace waymark::formats;
 
-const fs::path kCases = fs::path(WAYMARK_SOURCE_DIR) / "tests/formats/cases";
+const fs::path kCases = fs::path(waymark_test::source_dir()) / "tests/formats/cases";
 
 bool has_part(const fs::path& input, const std::string& part) {
   return input.filename().string().find("." + part + ".") != std::string::npos;

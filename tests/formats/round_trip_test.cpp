@@ -29,7 +29,8 @@ std::uint64_t bits(double value) {
 
 /// The file of examples in the specification, formats/README.md.
 std::string specification_example() {
-  const auto readme = waymark_test::parse_markdown(read_text_file(WAYMARK_SOURCE_DIR "/formats/README.md"));
+  const auto readme =
+      waymark_test::parse_markdown(read_text_file(waymark_test::source_dir() + "/formats/README.md"));
   const auto found = std::find_if(readme.blocks.begin(), readme.blocks.end(),
                                   [](const auto& block) { return block.language == "graph"; });
   REQUIRE(found != readme.blocks.end());
@@ -69,7 +70,8 @@ TEST_CASE("round trip: stamps and ids at the ends of their range come back") {
 }
 
 TEST_CASE("round trip: writing is a fixed point after the first reading") {
-  for (const auto& entry : std::filesystem::directory_iterator(WAYMARK_SOURCE_DIR "/tests/formats/cases")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(waymark_test::source_dir() + "/tests/formats/cases")) {
     if (entry.path().extension() != ".graph" && entry.path().extension() != ".g2o") continue;
     std::string once;
     try {

@@ -38,7 +38,7 @@ const std::map<std::string, Rooms> kArrows = {
 };
 
 fs::path root() {
-  return WAYMARK_SOURCE_DIR;
+  return waymark_test::source_dir();
 }
 
 bool is_source(const fs::path& file) {

@@ -13,13 +13,14 @@
 #include <catch2/catch.hpp>
 
 #include "support/markdown.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
 
-const fs::path kRoot = WAYMARK_SOURCE_DIR;
+const fs::path kRoot = waymark_test::source_dir();
 /// The folders of the top level; build trees and results may lie beside them.
 const std::vector<std::string> kRooms = {"core",  "types_se2", "solvers", "plugins",
                                          "tools", "formats",   "tests",   "examples"};

@@ -16,12 +16,13 @@
 #include <catch2/catch.hpp>
 
 #include "support/markdown.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = WAYMARK_SOURCE_DIR;
+const fs::path kRoot = waymark_test::source_dir();
 const std::vector<std::string> kRooms = {"core",  "types_se2", "solvers", "plugins",
                                          "tools", "formats",   "tests",   "examples"};
 

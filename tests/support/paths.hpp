@@ -1,5 +1,6 @@
-/// Where tests find their data, and where they may write. The folders are compile definitions of
-/// the build, so tests run from any working directory.
+/// Where tests find their data, and where they may write. The folders come from the build, so tests
+/// run from any working directory. Only paths.cpp is compiled with their names: the other objects
+/// are the same in every build folder.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +12,21 @@ namespace waymark_test {
 
 /// Large drives and benchmark graphs. They may be missing; a test then prints "SKIPPED: reason"
 /// and returns.
-[[nodiscard]] inline std::filesystem::path shared_data_dir() {
-  return WAYMARK_SHARED_DATA;
-}
+[[nodiscard]] std::filesystem::path shared_data_dir();
 
 /// The drives, graphs and descriptions that come with the repository.
-[[nodiscard]] inline std::filesystem::path examples_dir() {
-  return WAYMARK_SOURCE_DIR "/examples";
-}
+[[nodiscard]] std::filesystem::path examples_dir();
+
+/// The sources of Waymark.
+[[nodiscard]] std::string source_dir();
+/// The modules of the plugins that come with Waymark.
+[[nodiscard]] std::string plugin_dir();
+/// The modules that are made for the tests (modules/sample.cpp).
+[[nodiscard]] std::string test_module_dir();
+/// The modules of examples/extensions.
+[[nodiscard]] std::string extension_dir();
+/// The program that was built.
+[[nodiscard]] std::string program_path();
 
 /// A folder of this process for files that a test writes. It is created at first use and
 /// removed at the end.

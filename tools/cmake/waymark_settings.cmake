@@ -5,7 +5,7 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
@@ -39,16 +39,31 @@ list(JOIN options " " options)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}} ${options}" WAYMARK_CXX_FLAGS)
 set_property(GLOBAL PROPERTY WAYMARK_CXX_FLAGS "${WAYMARK_CXX_FLAGS}")
 
-# A fast linker and a compiler cache where present: neither changes what is built.
-find_program(WAYMARK_MOLD mold)
-if(WAYMARK_MOLD)
-  add_link_options(-fuse-ld=mold)
+# The presets ask for these two; neither changes the program that is built.
+if(WAYMARK_FAST_TOOLS)
+  find_program(WAYMARK_MOLD mold)
+  if(WAYMARK_MOLD)
+    add_link_options(-fuse-ld=mold)
+  endif()
+  find_program(WAYMARK_CCACHE ccache)
+  if(WAYMARK_CCACHE)
+    # The cache must be told that precompiled headers may be trusted to be what they were.
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${WAYMARK_CCACHE}")
+  endif()
 endif()
-find_program(WAYMARK_CCACHE ccache)
-if(WAYMARK_CCACHE)
-  # The cache must be told that precompiled headers may be trusted to be what they were.
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${WAYMARK_CCACHE}")
-endif()
+
+# All libraries share one precompiled header. Its owner has no definition of its own, so that it fits every other target.
+file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cpp" CONTENT "// The owner of the precompiled header needs a source.\n")
+add_library(waymark_precompiled OBJECT "${PROJECT_BINARY_DIR}/precompiled.cpp")
+target_link_libraries(waymark_precompiled PRIVATE waymark_settings Eigen3::Eigen)
+target_precompile_headers(waymark_precompiled PRIVATE <Eigen/Core> <algorithm> <array> <functional> <map> <memory>
+  <optional> <span> <string> <string_view> <variant> <vector>)
+
+# waymark_not_merged(FILES...): a build that merges sources (CMAKE_UNITY_BUILD) compiles these one by one: their inner loops
+# are compiled for several processors, and that code must not depend on its neighbours.
+function(waymark_not_merged)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
 
 # waymark_library(NAME [SHARED] [WITHOUT FOLDERS...]): a library of every *.cpp below the calling CMakeLists.txt, but for
 # those in the folders given, with the shared settings and the alias waymark::NAME.
@@ -66,5 +81,5 @@ function(waymark_library name)
   add_library(waymark::${name} ALIAS waymark_${name})
   set_target_properties(waymark_${name} PROPERTIES EXPORT_NAME ${name})
   target_link_libraries(waymark_${name} PUBLIC waymark_settings)
-  target_precompile_headers(waymark_${name} PRIVATE <Eigen/Core> <string> <vector>)
+  target_precompile_headers(waymark_${name} REUSE_FROM waymark_precompiled)
 endfunction()

@@ -36,7 +36,7 @@ struct Goal {
 
 /// Metrics of the default modeling, or null where the drive's logs are absent.
 Json metrics_of(const std::string& name, const std::vector<std::string>& options) {
-  const std::string yaml = WAYMARK_SOURCE_DIR "/examples/drives/" + name + ".yaml";
+  const std::string yaml = waymark_test::source_dir() + "/examples/drives/" + name + ".yaml";
   const std::filesystem::path logs = waymark_test::shared_data_dir() / "drives" / name;
   if (!std::filesystem::exists(logs)) {
     WARN("SKIPPED: " << logs.string() << " is absent");

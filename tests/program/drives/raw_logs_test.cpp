@@ -23,7 +23,7 @@ bool aarhus_is_absent() {
 }
 
 std::string example(const std::string& name) {
-  return read_text(std::string(WAYMARK_SOURCE_DIR) + "/examples/drives/" + name);
+  return read_text(waymark_test::source_dir() + "/examples/drives/" + name);
 }
 
 /// All but where it comes from.

@@ -9,13 +9,14 @@
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
 /// The bundled drive's logs with all fixes (5 Hz), its odometry changed in each row.
 std::string drive_with(const std::string& folder,
                        const std::function<std::string(double, double, double)>& row) {
-  const std::string data = WAYMARK_SOURCE_DIR "/examples/berlin_potsdamer_platz/";
+  const std::string data = waymark_test::source_dir() + "/examples/berlin_potsdamer_platz/";
   std::istringstream log(read_text(data + "odometry_50hz.csv"));
   std::string text = "time,speed,yaw_rate\n";
   for (std::string line; std::getline(log, line);) {

@@ -7,6 +7,7 @@
 #include "program/support/material.hpp"
 #include "program/support/page_checks.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 using Json = nlohmann::json;
 
@@ -308,9 +309,8 @@ TEST_CASE("bench: the shipped list of optima is read") {
   const std::string input = write_text(folder + "ring.g2o",
                                        "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\n"
                                        "EDGE_SE2 0 1 1.5 0 0 1 0 0 1 0 1\n");
-  const RunResult result =
-      run({"bench", input, "--repeat", "1", "--optima",
-           std::string(WAYMARK_SOURCE_DIR) + "/examples/benchmarks/standard_graphs.csv"});
+  const RunResult result = run({"bench", input, "--repeat", "1", "--optima",
+                                waymark_test::source_dir() + "/examples/benchmarks/standard_graphs.csv"});
   CHECK(result.code == 0);
   CHECK(contains(result.out, "optimum 11.163101 (listed)"));
 }

@@ -13,13 +13,14 @@
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
 using Json = nlohmann::json;
 
 std::string extension(const std::string& name) {
-  return WAYMARK_EXTENSIONS "/" + name + ".so";
+  return waymark_test::extension_dir() + "/" + name + ".so";
 }
 
 bool are_built() {
@@ -100,7 +101,7 @@ std::string as_line_log(const std::string& csv, char letter) {
 
 TEST_CASE("extensions: vertex and edges on one, two and three vertices have their minimum where it was put") {
   if (!are_built()) return;
-  const std::string graph = WAYMARK_SOURCE_DIR "/examples/extensions/pseudorange.graph";
+  const std::string graph = waymark_test::source_dir() + "/examples/extensions/pseudorange.graph";
   const std::string out = fresh_folder() + "out.graph";
   const RunResult result =
       run_with("pseudorange", {"optimize", graph, "-o", out, "--json", "--tolerance", "1e-15"});
@@ -122,8 +123,8 @@ TEST_CASE("extensions: derivatives by dual numbers and by hand are checked alike
   for (const char* tag : {"EDGE_CLOCK_SET", "EDGE_CLOCK_DRIFT", "EDGE_PSEUDORANGE"})
     CHECK(contains(types.out, tag));
   CHECK(contains(types.out, "no problems found"));
-  const RunResult graph =
-      run_with("pseudorange", {"check", WAYMARK_SOURCE_DIR "/examples/extensions/pseudorange.graph"});
+  const RunResult graph = run_with(
+      "pseudorange", {"check", waymark_test::source_dir() + "/examples/extensions/pseudorange.graph"});
   INFO(graph.out << graph.err);
   CHECK(graph.code == 0);
 }
@@ -299,7 +300,7 @@ TEST_CASE("extensions: step halving reaches the minimum from where full steps le
   if (!are_built()) return;
   const std::string folder = fresh_folder();
   // Both places close to a beacon, where the ranges bend most.
-  std::string text = read_text(WAYMARK_SOURCE_DIR "/examples/extensions/pseudorange.graph");
+  std::string text = read_text(waymark_test::source_dir() + "/examples/extensions/pseudorange.graph");
   text.replace(text.find("25 45 0.2"), 9, "29 1 3");
   text.replace(text.find("66 37 -0.1"), 10, "31 1 0");
   const std::string graph = write_text(folder + "far.graph", text);

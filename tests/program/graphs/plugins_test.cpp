@@ -7,11 +7,12 @@
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
 std::string module_file(const std::string& name) {
-  return std::string(WAYMARK_TEST_MODULES) + "/" + name + ".so";
+  return waymark_test::test_module_dir() + "/" + name + ".so";
 }
 
 /// Sets WAYMARK_PLUGIN_PATH for one test.

@@ -8,13 +8,14 @@
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 using Json = nlohmann::json;
 
 namespace {
 
 std::string module_file(const std::string& name) {
-  return std::string(WAYMARK_TEST_MODULES) + "/" + name + ".so";
+  return waymark_test::test_module_dir() + "/" + name + ".so";
 }
 
 /// A variable of the environment for one test.

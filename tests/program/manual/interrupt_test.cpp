@@ -11,6 +11,7 @@
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
@@ -77,7 +78,7 @@ TEST_CASE("interrupt: interrupted while reading: nothing is written, and that is
     ::close(descriptor);
   });
   const RunResult result =
-      run({"-c", "echo $$ > pid; exec \"$0\" optimize a.graph -o b.graph", WAYMARK_PROGRAM},
+      run({"-c", "echo $$ > pid; exec \"$0\" optimize a.graph -o b.graph", waymark_test::program_path()},
           {.folder = folder, .program = "/bin/sh"});
   writer.join();
   CHECK(result.code == 130);

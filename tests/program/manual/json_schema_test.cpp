@@ -39,7 +39,7 @@ std::map<std::string, Table> read_tables(const std::string& markdown) {
 
 class Schema {
  public:
-  Schema() : tables_(read_tables(read_text(std::string(WAYMARK_SOURCE_DIR) + "/tools/program/JSON.md"))) {}
+  Schema() : tables_(read_tables(read_text(waymark_test::source_dir() + "/tools/program/JSON.md"))) {}
 
   /// What is wrong with a document that names its own kind; empty: nothing.
   [[nodiscard]] std::string problems_of(const Json& document) {

@@ -7,6 +7,7 @@
 
 #include "program/support/help.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
@@ -58,7 +59,7 @@ Words completed(const std::vector<std::string>& words, const std::string& folder
   static const std::string kScript =
       "source <(\"$0\" completion bash) && COMP_WORDS=(\"$0\" \"$@\") COMP_CWORD=$# && _waymark && "
       "{ [[ ${#COMPREPLY[@]} -eq 0 ]] || printf '%s\\n' \"${COMPREPLY[@]}\"; }";
-  std::vector<std::string> arguments = {"--norc", "-c", kScript, WAYMARK_PROGRAM};
+  std::vector<std::string> arguments = {"--norc", "-c", kScript, waymark_test::program_path()};
   arguments.insert(arguments.end(), words.begin(), words.end());
   const RunResult result = run(arguments, {.folder = folder, .program = "/bin/bash"});
   INFO(result.err);
@@ -190,10 +191,10 @@ TEST_CASE("completion: files by what a command reads, folders where it writes") 
 
 TEST_CASE("completion: plugins add names, from the folders and from the command line") {
   if (!has_bash()) return;
-  const std::string sound = std::string(WAYMARK_TEST_MODULES) + "/sound.so";
+  const std::string sound = waymark_test::test_module_dir() + "/sound.so";
   CHECK(completed({"optimize", "--trusted", "EDGE_SAM"}).empty());
   CHECK(completed({"optimize", "--plugin", sound, "--trusted", "EDGE_SAM"}) == Words{"EDGE_SAMPLE"});
-  setenv("WAYMARK_PLUGIN_PATH", WAYMARK_TEST_MODULES, 1);
+  setenv("WAYMARK_PLUGIN_PATH", waymark_test::test_module_dir().c_str(), 1);
   const Words edges = completed({"optimize", "--trusted", "EDGE_SAM"});
   const Words plugins = completed({"info", "--plugin", "sou"});
   unsetenv("WAYMARK_PLUGIN_PATH");

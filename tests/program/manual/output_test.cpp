@@ -3,6 +3,7 @@
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
@@ -64,7 +65,7 @@ TEST_CASE("output: a full disk under the shell's limit ends a run the same way")
   const std::string folder = fresh_folder();
   write_drive(folder);
   const RunResult result =
-      run({"-c", "ulimit -f 8; exec \"$0\" run drive.yaml --out results", WAYMARK_PROGRAM},
+      run({"-c", "ulimit -f 8; exec \"$0\" run drive.yaml --out results", waymark_test::program_path()},
           {.folder = folder, .program = "/bin/sh"});
   CHECK(result.code == 5);
   CHECK(contains(result.err, "results/correlated.graph: cannot write: File too large"));

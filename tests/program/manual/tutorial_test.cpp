@@ -27,7 +27,8 @@ using Words = std::span<const std::string>;
 using waymark_test::FencedBlock;
 
 std::vector<FencedBlock> tutorial() {
-  return waymark_test::parse_markdown(read_text(WAYMARK_SOURCE_DIR "/examples/tutorial/README.md")).blocks;
+  return waymark_test::parse_markdown(read_text(waymark_test::source_dir() + "/examples/tutorial/README.md"))
+      .blocks;
 }
 
 /// Of "NAME=VALUE" behind the fence.
@@ -94,9 +95,10 @@ std::string missing_lines(const std::string& shown, const std::string& printed) 
 class Reader {
  public:
   Reader() {
-    fs::create_symlink(WAYMARK_SOURCE_DIR "/examples", root_ + "examples");
+    fs::create_symlink(waymark_test::source_dir() + "/examples", root_ + "examples");
     fs::create_directories(root_ + "build/release");
-    fs::create_directory_symlink(fs::path(WAYMARK_PROGRAM).parent_path(), root_ + "build/release/bin");
+    fs::create_directory_symlink(fs::path(waymark_test::program_path()).parent_path(),
+                                 root_ + "build/release/bin");
   }
 
   void follow(const FencedBlock& block) {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
@@ -89,5 +90,5 @@ std::string write_drive(const std::string& folder, const DriveRecipe& recipe) {
 }
 
 std::string bundled_drive() {
-  return WAYMARK_SOURCE_DIR "/examples/berlin_potsdamer_platz/drive.yaml";
+  return waymark_test::source_dir() + "/examples/berlin_potsdamer_platz/drive.yaml";
 }

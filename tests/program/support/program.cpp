@@ -73,7 +73,8 @@ bool read_some(int descriptor, std::string& text) {
 }
 
 RunResult run(std::vector<std::string> arguments, const RunOptions& options) {
-  arguments.insert(arguments.begin(), options.program.empty() ? WAYMARK_PROGRAM : options.program);
+  arguments.insert(arguments.begin(),
+                   options.program.empty() ? waymark_test::program_path() : options.program);
   int out[2];
   int err[2];
   if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");

@@ -12,7 +12,7 @@ struct RunOptions {
   long file_size_limit = -1;  ///< bytes, as `ulimit -f`; -1: none
   std::string folder{};       ///< working folder; empty: the folder of the test
   bool close_output = false;  ///< close the reader of standard output, as in `waymark info | true`
-  std::string program{};      ///< in place of WAYMARK_PROGRAM
+  std::string program{};      ///< in place of the program that was built
 };
 
 struct RunResult {

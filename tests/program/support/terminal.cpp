@@ -12,6 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "support/paths.hpp"
+
 namespace {
 
 [[noreturn]] void become_program(const Terminal& terminal, std::vector<std::string>& arguments, int out,
@@ -38,7 +40,7 @@ std::string without_colours(const std::string& text) {
 }  // namespace
 
 RunResult run_on(const Terminal& terminal, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), WAYMARK_PROGRAM);
+  arguments.insert(arguments.begin(), waymark_test::program_path());
   int master = -1;
   int slave = -1;
   struct winsize size {};

@@ -144,7 +144,7 @@ TEST_CASE("sync: Aarhus' fixes lag the speed of its OBD by 0.4 s") {
     return;
   }
   DriveConfig config =
-      load_drive_config(WAYMARK_SOURCE_DIR "/examples/drives/aarhus_horsens.yaml", data.string());
+      load_drive_config(waymark_test::source_dir() + "/examples/drives/aarhus_horsens.yaml", data.string());
   config.gnss_delay_s = 0;
   TypeRegistry registry;
   register_log_readers(registry);

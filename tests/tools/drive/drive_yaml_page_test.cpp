@@ -16,6 +16,7 @@
 #include <waymark/tools/drive/logs/odometry_parts.hpp>
 
 #include "support/markdown.hpp"
+#include "support/paths.hpp"
 
 using namespace waymark;
 using namespace waymark::drive;
@@ -24,7 +25,7 @@ using namespace waymark::formats;
 namespace {
 
 std::string file_text(const std::string& path) {
-  std::ifstream in(WAYMARK_SOURCE_DIR "/" + path);
+  std::ifstream in(waymark_test::source_dir() + "/" + path);
   REQUIRE(in);
   return std::string(std::istreambuf_iterator<char>(in), {});
 }

@@ -24,7 +24,7 @@ struct DriveCase {
 };
 
 std::vector<DriveCase> drives() {
-  const std::filesystem::path source = WAYMARK_SOURCE_DIR;
+  const std::filesystem::path source = waymark_test::source_dir();
   std::vector<DriveCase> cases = {{"bundled", source / "examples/berlin_potsdamer_platz/drive.yaml", ""}};
   for (const char* name :
        {"berlin_gendarmenmarkt", "nagoya", "aarhus_horsens", "munich_2009", "pittsburgh_i376"}) {
