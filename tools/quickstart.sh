@@ -4,8 +4,8 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 out=${1:-$root/out/berlin_potsdamer_platz}
 
-"$root/tools/setup/install_packages.sh"
+"$root/tools/setup/install_packages.sh" build
 cd "$root"
-cmake --preset release -DWAYMARK_BUILD_TESTS=OFF -DWAYMARK_BUILD_BENCHMARKS=OFF -DWAYMARK_BUILD_EXAMPLES=OFF >/dev/null
-cmake --build --preset release --target waymark
+cmake --preset quickstart >/dev/null
+cmake --build --preset quickstart
 exec build/release/bin/waymark run examples/berlin_potsdamer_platz/drive.yaml --out "$out" --modeling all

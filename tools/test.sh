@@ -3,14 +3,14 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-"$root/tools/setup/install_packages.sh"
+"$root/tools/setup/install_packages.sh" test
 cd "$root"
-cmake --preset dev >/dev/null
-cmake --build --preset dev
+cmake --preset test >/dev/null
+cmake --build --preset test
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 status=0
-ctest --preset dev --parallel "$(nproc)" "$@" | tee "$log" || status=$?
+ctest --preset test --parallel "$(nproc)" "$@" | tee "$log" || status=$?
 skipped=$(grep -c '\*\*\*Skipped' "$log" || true)
 echo "tests skipped for want of data or packages: $skipped"
 exit "$status"

@@ -1,11 +1,18 @@
 #!/usr/bin/env bash
-# Installs the Debian packages listed in packages.txt, as far as they are missing; with sudo where not root.
+# Installs the Debian packages listed in packages.txt, as far as they are missing: tools/setup/install_packages.sh [build|test|all]
+# build: what the program needs; test: what its tests need, too; all (default): everything. With sudo if you are not root.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+case ${1:-all} in
+  build) wanted=' build ' ;;
+  test) wanted=' build test ' ;;
+  all) wanted=' build test hand ' ;;
+  *) echo "usage: $0 [build|test|all]" >&2; exit 2 ;;
+esac
 
 missing=()
-while read -r package _; do
-  [[ -z $package || $package == \#* ]] && continue
+while read -r need package _; do
+  [[ $wanted == *" $need "* ]] || continue
   status=$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null || true)
   [[ $status == "install ok installed" ]] || missing+=("$package")
 done < "$here/packages.txt"
