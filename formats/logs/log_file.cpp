@@ -169,10 +169,13 @@ std::string read_in_pieces(const std::string& path, const std::function<void(std
 }
 
 LogData read_log_file(const LogReader& reader, const std::string& path, const LogRequest& request,
-                      const ReadProgress& progress) {
+                      const ReadProgress& progress, const std::function<void(std::string_view)>& seen) {
   const std::unique_ptr<LogDecoder> decoder = reader.open(path, request);
-  const std::string trouble = read_in_pieces(
-      path, [&](std::string_view piece) { decoder->take(piece); }, progress);
+  const auto take = [&](std::string_view piece) {
+    if (seen) seen(piece);
+    decoder->take(piece);
+  };
+  const std::string trouble = read_in_pieces(path, take, progress);
   decoder->finish();
   LogData& data = decoder->data();
   if (!trouble.empty()) {

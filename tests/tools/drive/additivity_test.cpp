@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/core/optimize/optimizer.hpp>
-#include <waymark/tools/drive/model/assemble.hpp>
+#include <waymark/tools/drive/model/fuse.hpp>
+#include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 #include "support/registry.hpp"
@@ -48,16 +48,15 @@ struct Fused {
   double chi2 = 0;
 };
 
-Fused fuse(const PreparedDrive& drive) {
+Fused fused(const PreparedDrive& drive) {
   const TypeRegistry registry = waymark_test::full_registry();
-  DriveConfig config;
-  config.gate.enabled = false;
-  GraphDocument document = add_modeling(build_skeleton(drive, config, registry), "g1", {}, registry);
-  const auto algorithm = registry.make_algorithm("dogleg");
-  const auto solver = registry.make_linear_solver("eigen");
-  const Summary summary = optimize(document.graph, *algorithm, *solver, {});
-  REQUIRE(summary.converged());
-  return {poses_at_fixes(document), summary.final_chi2};
+  FusionSettings settings;
+  settings.modeling = "g1";
+  settings.gate.enabled = false;
+  settings.minimization.solver = "eigen";
+  const FusedDrive result = fuse(drive, settings, registry);
+  REQUIRE(result.minimum.summary.converged());
+  return {poses_at_fixes(result.model.document), result.minimum.summary.final_chi2};
 }
 
 void check_same(const Fused& a, const Fused& b) {
@@ -75,9 +74,9 @@ void check_same(const Fused& a, const Fused& b) {
 }  // namespace
 
 TEST_CASE("additivity: the same drive logged at 10, 25 and 100 Hz gives the same fused poses") {
-  const Fused reference = fuse(drive_at(25));
-  check_same(fuse(drive_at(10)), reference);
-  check_same(fuse(drive_at(100)), reference);
+  const Fused reference = fused(drive_at(25));
+  check_same(fused(drive_at(10)), reference);
+  check_same(fused(drive_at(100)), reference);
 }
 
 TEST_CASE("additivity: nodes that only split intervals do not change the fused poses") {
@@ -92,11 +91,11 @@ TEST_CASE("additivity: nodes that only split intervals do not change the fused p
   }
   std::sort(split.fixes.begin(), split.fixes.end(),
             [](const Fix& a, const Fix& b) { return a.stamp < b.stamp; });
-  Fused fused = fuse(split);
+  Fused of_split = fused(split);
   std::vector<StampedPose> kept;
-  for (std::size_t i = 0; i < fused.poses.size(); ++i) {
-    if (split.fixes[i].status == FixStatus::accepted) kept.push_back(fused.poses[i]);
+  for (std::size_t i = 0; i < of_split.poses.size(); ++i) {
+    if (split.fixes[i].status == FixStatus::accepted) kept.push_back(of_split.poses[i]);
   }
-  fused.poses = kept;
-  check_same(fused, fuse(drive));
+  of_split.poses = kept;
+  check_same(of_split, fused(drive));
 }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include <waymark/formats/logs/log_readers.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/clock_sync.hpp>
 
 #include "support/paths.hpp"
@@ -143,12 +144,13 @@ TEST_CASE("sync: Aarhus' fixes lag the speed of its OBD by 0.4 s") {
     std::cout << "SKIPPED: " << data << " is absent\n";
     return;
   }
-  DriveConfig config =
-      load_drive_config(waymark_test::source_dir() + "/examples/drives/aarhus_horsens.yaml", data.string());
-  config.gnss_delay_s = 0;
+  DriveDescription description =
+      load_drive_file(waymark_test::source_dir() + "/examples/drives/aarhus_horsens.yaml", data.string())
+          .description;
+  description.gnss_delay_s = 0;
   TypeRegistry registry;
   register_log_readers(registry);
-  const SyncReport report = estimate_clock_offsets(load_drive(config, registry), {});
+  const SyncReport report = estimate_clock_offsets(load_drive(description, registry), {});
   // Both on the logger's clock: the odometry is early by what the fixes are late. 0.36 s by the receiver's
   // own speeds (gnss_speed_heading.csv against obd_speed.csv by a script of its own), 0.4 s to one digit.
   REQUIRE(report.speed);

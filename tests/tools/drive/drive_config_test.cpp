@@ -7,7 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 
 using namespace waymark;
 using namespace waymark::drive;
@@ -16,8 +16,8 @@ using Catch::Matchers::Message;
 
 namespace {
 
-DriveConfig parse(const std::string& text, const std::string& data_folder = "") {
-  return parse_drive_config(text, "tours/drive.yaml", data_folder);
+DriveFile parse(const std::string& text, const std::string& data_folder = "") {
+  return parse_drive_file(text, "tours/drive.yaml", data_folder);
 }
 
 /// The error that a line added to a minimal drive gives.
@@ -42,29 +42,28 @@ std::string error_of_gnss(const std::string& entries) {
 }  // namespace
 
 TEST_CASE("drive.yaml: the least there is, and its defaults") {
-  const DriveConfig config = parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n");
-  CHECK(config.name == "drive");
-  CHECK(config.odometry.front().file == "tours/o.csv");
-  CHECK(config.odometry.front().format == "csv");
-  CHECK(config.odometry.front().request.stream == StreamKind::odometry);
-  REQUIRE(config.gnss.size() == 1);
-  CHECK(config.gnss[0].file == "tours/g.csv");
-  CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::automatic);
-  CHECK(config.gnss[0].request.time_scale == TimeScale::gps);
-  CHECK(!config.truth);
-  CHECK(!config.utm_zone);
-  CHECK(config.gate.enabled);
-  CHECK(config.gate.max_angle_rad == Approx(1.5 * std::numbers::pi / 180));
-  CHECK(config.gate.max_displacement_m == 15);
-  CHECK(config.start.method == StartMethod::anchored);
-  CHECK(config.modeling == "correlated");
-  CHECK_FALSE(config.gate_stated);
-  CHECK_FALSE(config.calibration_stated);
-  CHECK_FALSE(config.estimates_noise.has_value());
+  const DriveFile config = parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n");
+  CHECK(config.description.name == "drive");
+  CHECK(config.description.odometry.front().file == "tours/o.csv");
+  CHECK(config.description.odometry.front().format == "csv");
+  CHECK(config.description.odometry.front().request.stream == StreamKind::odometry);
+  REQUIRE(config.description.gnss.size() == 1);
+  CHECK(config.description.gnss[0].file == "tours/g.csv");
+  CHECK(config.description.gnss[0].request.accuracy == AccuracyMeaning::automatic);
+  CHECK(config.description.gnss[0].request.time_scale == TimeScale::gps);
+  CHECK(!config.description.truth);
+  CHECK(!config.description.utm_zone);
+  CHECK(config.settings.gate.max_angle_rad == Approx(1.5 * std::numbers::pi / 180));
+  CHECK(config.settings.gate.max_displacement_m == 15);
+  CHECK(config.settings.initial_guess.method == StartMethod::anchored);
+  CHECK(config.settings.modeling == "correlated");
+  CHECK_FALSE(config.settings.gate.enabled.has_value());  // left to the modeling, as the next two
+  CHECK_FALSE(config.settings.calibration.has_value());
+  CHECK_FALSE(config.settings.estimates_noise.has_value());
 }
 
 TEST_CASE("drive.yaml: everything that can be said") {
-  const DriveConfig config = parse(R"(
+  const DriveFile config = parse(R"(
 name: Somewhere
 folder: logs
 time: {scale: utc, from: 10, to: 70.5}
@@ -89,14 +88,14 @@ snap: 0.002
 initial_guess: dead_reckoning
 modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
 )");
-  CHECK(config.name == "Somewhere");
-  CHECK(config.time_scale == TimeScale::utc);
-  CHECK(*config.from_s == 10);
-  CHECK(*config.to_s == 70.5);
-  CHECK(*config.utm_zone == -56);
-  CHECK(*config.utm_origin == Eigen::Vector2d(300000, 6250000));
-  CHECK(config.odometry.front().file == "tours/logs/can.tsv");
-  const LogRequest& odometry = config.odometry.front().request;
+  CHECK(config.description.name == "Somewhere");
+  CHECK(config.description.time_scale == TimeScale::utc);
+  CHECK(*config.description.from_s == 10);
+  CHECK(*config.description.to_s == 70.5);
+  CHECK(*config.description.utm_zone == -56);
+  CHECK(*config.description.utm_origin == Eigen::Vector2d(300000, 6250000));
+  CHECK(config.description.odometry.front().file == "tours/logs/can.tsv");
+  const LogRequest& odometry = config.description.odometry.front().request;
   CHECK(odometry.separator == '\t');
   CHECK(odometry.columns.at("time").column == "1");
   CHECK(odometry.columns.at("speed").unit == "km/h");
@@ -104,39 +103,40 @@ modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
   CHECK(odometry.time_scale == TimeScale::gps);
   CHECK(odometry.gps_week == 1900);
   CHECK(odometry.time_offset_s == -0.4);
-  CHECK(config.odometry_options.at("heading_variance_per_s") == "1e-7");
-  CHECK(config.places.at("odometry.options.heading_variance_per_s") == "tours/drive.yaml:14:37: ");
-  REQUIRE(config.gnss.size() == 2);
-  CHECK(config.gnss[0].format == "gpsd_json");
-  CHECK(config.gnss[0].request.accuracy == AccuracyMeaning::drms);
-  CHECK(config.gnss[0].request.default_sigma_m == 5);
-  CHECK(config.gnss[0].request.time_scale == TimeScale::utc);  // the drive's, where it states none
-  CHECK(config.gnss[1].file == "/logs/b.csv");
-  CHECK(config.gnss[1].request.source == 1);
-  CHECK(config.antenna_m == Eigen::Vector2d(1, -0.5));
-  CHECK(config.gnss_period_s == 0.25);
-  CHECK(config.gnss_delay_s == 0.1);
-  CHECK(config.withhold_every == 10);
-  CHECK(config.truth->request.time_scale == TimeScale::unix_time);
-  CHECK(config.truth_reference_m == Eigen::Vector2d(0.1, 0.2));
-  CHECK(!config.gate.enabled);
-  CHECK(config.gate.max_angle_rad == Approx(2 * std::numbers::pi / 180));
-  CHECK(config.gate.max_displacement_m == 20);
-  CHECK(config.timeline.gap_s == 1);
-  CHECK(config.timeline.gap_policy == GapPolicy::error);
-  CHECK(config.timeline.gap_noise_factor == 10);
-  CHECK(config.timeline.snap_s == 0.002);
-  CHECK(config.start.method == StartMethod::dead_reckoning);
-  CHECK(config.modeling == "g2");
-  CHECK(config.loss == "cauchy:1");
-  CHECK(config.modeling_options.at("weight") == "1e6");
+  CHECK(config.settings.odometry_options.at("heading_variance_per_s") == "1e-7");
+  CHECK(config.places.of.at("odometry.options.heading_variance_per_s") == "tours/drive.yaml:14:37: ");
+  REQUIRE(config.description.gnss.size() == 2);
+  CHECK(config.description.gnss[0].format == "gpsd_json");
+  CHECK(config.description.gnss[0].request.accuracy == AccuracyMeaning::drms);
+  CHECK(config.description.gnss[0].request.default_sigma_m == 5);
+  CHECK(config.description.gnss[0].request.time_scale ==
+        TimeScale::utc);  // the drive's, where it states none
+  CHECK(config.description.gnss[1].file == "/logs/b.csv");
+  CHECK(config.description.gnss[1].request.source == 1);
+  CHECK(config.description.antenna_m == Eigen::Vector2d(1, -0.5));
+  CHECK(config.description.gnss_period_s == 0.25);
+  CHECK(config.description.gnss_delay_s == 0.1);
+  CHECK(config.description.withhold_every == 10);
+  CHECK(config.description.truth->request.time_scale == TimeScale::unix_time);
+  CHECK(config.description.truth_reference_m == Eigen::Vector2d(0.1, 0.2));
+  CHECK(config.settings.gate.enabled == false);
+  CHECK(config.settings.gate.max_angle_rad == Approx(2 * std::numbers::pi / 180));
+  CHECK(config.settings.gate.max_displacement_m == 20);
+  CHECK(config.description.timeline.gap_s == 1);
+  CHECK(config.description.timeline.gap_policy == GapPolicy::error);
+  CHECK(config.description.timeline.gap_noise_factor == 10);
+  CHECK(config.description.timeline.snap_s == 0.002);
+  CHECK(config.settings.initial_guess.method == StartMethod::dead_reckoning);
+  CHECK(config.settings.modeling == "g2");
+  CHECK(config.settings.loss == "cauchy:1");
+  CHECK(config.settings.modeling_options.at("weight") == "1e6");
 }
 
 TEST_CASE("drive.yaml: a data folder given from outside replaces the stated one, absolute names stand") {
-  const DriveConfig config =
+  const DriveFile config =
       parse("folder: logs\nodometry: {file: o.csv}\ngnss: {file: /g.csv}\n", "/elsewhere");
-  CHECK(config.odometry.front().file == "/elsewhere/o.csv");
-  CHECK(config.gnss[0].file == "/g.csv");
+  CHECK(config.description.odometry.front().file == "/elsewhere/o.csv");
+  CHECK(config.description.gnss[0].file == "/g.csv");
 }
 
 TEST_CASE("drive.yaml: an unknown key is an error with its place and the right key") {
@@ -194,7 +194,7 @@ TEST_CASE("drive.yaml: wrong types and ranges") {
 }
 
 TEST_CASE("drive.yaml: odometry from parts, a CAN log with its DBC, a velocity apart") {
-  const DriveConfig config = parse(R"(
+  const DriveFile config = parse(R"(
 odometry:
   parts:
     - {file: v.csv, columns: {time: t, speed: v}, time: {offset: -0.4}}
@@ -214,28 +214,29 @@ gnss:
   velocity: {file: doppler.csv, columns: {time: t, speed: v, course: c}}
 truth: {file: oxts/data, format: kitti_oxts, timestamps: oxts/times.txt}
 )");
-  REQUIRE(config.odometry.size() == 2);
-  CHECK(config.odometry[0].request.time_offset_s == -0.4);
-  CHECK(config.odometry[1].format == "candump");
-  CHECK(config.odometry[1].companions.at("dbc") == "tours/car.dbc");
-  CHECK(config.odometry[1].request.columns.at("gyro_x").column == "IMU.Rate");
-  CHECK(config.odometry[1].request.readings.size() == odometry_channels().size());
-  CHECK(config.assembly.rate_hz == 20);
-  CHECK(config.assembly.speed_from == "speed");
-  CHECK(config.assembly.yaw_rate_from == "gyro");
-  CHECK(config.assembly.gyro_axis == "-x");
-  CHECK(config.assembly.track_width_m == 1.5);
-  CHECK(config.assembly.wheelbase_m == 2.7);
-  CHECK(config.assembly.steering_ratio == 15);
-  CHECK(config.assembly.metres_per_tick == 0.02);
-  CHECK(config.assembly.tick_range == 65536);
-  CHECK(config.speed_delay_s == 0.4);
-  CHECK(config.yaw_rate_delay_s == -0.1);
-  CHECK(config.gnss[0].request.date->nanoseconds == 1'238'544'000'000'000'000);  // 2009-04-01T00:00:00Z
-  CHECK(config.gnss[0].request.range_error_m == 5);
-  CHECK(config.gnss[0].velocity->file == "tours/doppler.csv");
-  CHECK(config.gnss[0].velocity->request.readings.size() == velocity_channels().size());
-  CHECK(config.truth->companions.at("timestamps") == "tours/oxts/times.txt");
+  REQUIRE(config.description.odometry.size() == 2);
+  CHECK(config.description.odometry[0].request.time_offset_s == -0.4);
+  CHECK(config.description.odometry[1].format == "candump");
+  CHECK(config.description.odometry[1].companions.at("dbc") == "tours/car.dbc");
+  CHECK(config.description.odometry[1].request.columns.at("gyro_x").column == "IMU.Rate");
+  CHECK(config.description.odometry[1].request.readings.size() == odometry_channels().size());
+  CHECK(config.description.assembly.rate_hz == 20);
+  CHECK(config.description.assembly.speed_from == "speed");
+  CHECK(config.description.assembly.yaw_rate_from == "gyro");
+  CHECK(config.description.assembly.gyro_axis == "-x");
+  CHECK(config.description.assembly.track_width_m == 1.5);
+  CHECK(config.description.assembly.wheelbase_m == 2.7);
+  CHECK(config.description.assembly.steering_ratio == 15);
+  CHECK(config.description.assembly.metres_per_tick == 0.02);
+  CHECK(config.description.assembly.tick_range == 65536);
+  CHECK(config.description.speed_delay_s == 0.4);
+  CHECK(config.description.yaw_rate_delay_s == -0.1);
+  CHECK(config.description.gnss[0].request.date->nanoseconds ==
+        1'238'544'000'000'000'000);  // 2009-04-01T00:00:00Z
+  CHECK(config.description.gnss[0].request.range_error_m == 5);
+  CHECK(config.description.gnss[0].velocity->file == "tours/doppler.csv");
+  CHECK(config.description.gnss[0].velocity->request.readings.size() == velocity_channels().size());
+  CHECK(config.description.truth->companions.at("timestamps") == "tours/oxts/times.txt");
 }
 
 TEST_CASE("drive.yaml: what is wrong with parts, dates and signals is told with its place") {
@@ -270,12 +271,12 @@ TEST_CASE("drive.yaml: what is wrong with parts, dates and signals is told with 
 
 TEST_CASE("drive.yaml: calibration is on, off, or stated state by state") {
   const auto calibration = [](const std::string& more) {
-    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n" + more).calibration;
+    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n" + more).settings.calibration;
   };
   using Map = std::map<std::string, std::string>;
-  CHECK(calibration("").empty());
-  CHECK(calibration("calibration: off\n").empty());
-  CHECK(calibration("calibration: false\n").empty());
+  CHECK_FALSE(calibration("").has_value());
+  CHECK(calibration("calibration: off\n") == Map());
+  CHECK(calibration("calibration: false\n") == Map());
   CHECK(calibration("calibration: on\n") == default_calibration());
   CHECK(calibration("calibration: true\n") == default_calibration());
   CHECK(default_calibration().count("gyro_bias") == 1);
@@ -284,20 +285,20 @@ TEST_CASE("drive.yaml: calibration is on, off, or stated state by state") {
         Map{{"gyro_bias", "constant"}, {"gyro_bias_sigma", "0.02"}});
   CHECK(error_of("calibration: maybe\n") ==
         "tours/drive.yaml:3:14: calibration: expected one of on, off, true, false, got 'maybe'");
-  const DriveConfig config =
+  const DriveFile config =
       parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\ncalibration: {time_offset: constant}\n");
-  CHECK(config.places.at("calibration.time_offset") == "tours/drive.yaml:3:28: ");
+  CHECK(config.places.of.at("calibration.time_offset") == "tours/drive.yaml:3:28: ");
 }
 
 TEST_CASE("drive.yaml: the odometry's model") {
-  const DriveConfig config = parse("odometry: {file: o.csv, model: bicycle}\ngnss: {file: g.csv}\n");
-  CHECK(config.odometry_model == "bicycle");
-  CHECK(config.places.at("odometry.model") == "tours/drive.yaml:1:32: ");
-  CHECK(parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n").odometry_model == "constant_twist");
+  const DriveFile config = parse("odometry: {file: o.csv, model: bicycle}\ngnss: {file: g.csv}\n");
+  CHECK(config.settings.odometry_model == "bicycle");
+  CHECK(config.places.of.at("odometry.model") == "tours/drive.yaml:1:32: ");
+  CHECK(parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n").settings.odometry_model == "constant_twist");
 }
 
 TEST_CASE("drive.yaml: sensors are a list or a single one, with logs and options of their own") {
-  const DriveConfig config = parse(R"(
+  const DriveFile config = parse(R"(
 folder: logs
 odometry: {file: o.csv}
 gnss: {file: g.csv}
@@ -310,8 +311,8 @@ sensors:
     options: {sigma_deg: 0.5}
   - {name: gnss_velocity}
 )");
-  REQUIRE(config.sensors.size() == 2);
-  const SensorConfig& compass = config.sensors[0];
+  REQUIRE(config.description.sensors.size() == 2);
+  const SensorConfig& compass = config.description.sensors[0];
   CHECK(compass.name == "heading");
   CHECK(compass.place == "tours/drive.yaml:6:5: ");
   CHECK(compass.log->file == "tours/logs/compass.csv");
@@ -321,12 +322,12 @@ sensors:
   CHECK(compass.log->request.time_scale == TimeScale::unix_time);
   CHECK(compass.log->request.time_offset_s == 0.1);
   CHECK(compass.options.at("sigma_deg") == "0.5");
-  CHECK(!config.sensors[1].log);
+  CHECK(!config.description.sensors[1].log);
 
-  const DriveConfig single =
+  const DriveFile single =
       parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\nsensors: {name: lane, file: m.csv}\n");
-  REQUIRE(single.sensors.size() == 1);
-  CHECK(single.sensors[0].name == "lane");
+  REQUIRE(single.description.sensors.size() == 1);
+  CHECK(single.description.sensors[0].name == "lane");
 
   CHECK(error_of("sensors: [{file: m.csv}]\n") == "tours/drive.yaml:3:11: sensors: 'name' is missing");
   CHECK(error_of("sensors: heading\n") ==
@@ -341,7 +342,8 @@ sensors:
 
 TEST_CASE("drive.yaml: plugins are names, or files beside the drive.yaml") {
   const auto plugins = [](const std::string& value) {
-    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\nplugins: " + value + "\n", "/data").plugins;
+    return parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\nplugins: " + value + "\n", "/data")
+        .description.plugins;
   };
   using Names = std::vector<std::string>;
   CHECK(plugins("[my_sensor.so, lib/other, named, /opt/third.so]") ==
@@ -368,6 +370,6 @@ TEST_CASE("drive.yaml: what is missing, doubled or no YAML") {
       parse("odometry: {file: o.csv}\ngnss: [{file: a.csv}, {file: b.csv, delay: 1}]\n"), InputError,
       Message("tours/drive.yaml:2:23: gnss: all logs must state the same antenna, period, delay and "
               "withhold_every"));
-  CHECK_THROWS_MATCHES(load_drive_config("absent/drive.yaml"), InputError,
+  CHECK_THROWS_MATCHES(load_drive_file("absent/drive.yaml"), InputError,
                        Message("absent/drive.yaml: cannot read: No such file or directory"));
 }

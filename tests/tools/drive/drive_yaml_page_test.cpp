@@ -12,7 +12,7 @@
 
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/odometry_parts.hpp>
 
 #include "support/markdown.hpp"
@@ -67,15 +67,17 @@ TEST_CASE("drive.yaml: the reader takes every key of the list on its page") {
   const std::vector<waymark_test::FencedBlock> blocks =
       waymark_test::parse_markdown(drive_yaml_page()).blocks;
   REQUIRE(blocks.size() == 2);
-  CHECK_NOTHROW(parse_drive_config(blocks[0].text, "page.yaml", ""));
+  CHECK_NOTHROW(parse_drive_file(blocks[0].text, "page.yaml", ""));
   // The second shows another way to give odometry: on its own it lacks the GNSS log.
-  CHECK_NOTHROW(parse_drive_config(blocks[1].text + "gnss: {file: gnss.csv}\n", "page.yaml", ""));
+  CHECK_NOTHROW(parse_drive_file(blocks[1].text + "gnss: {file: gnss.csv}\n", "page.yaml", ""));
 }
 
 TEST_CASE("drive.yaml: its page names every key and word that the reader knows") {
   const std::set<std::string> named = words_of(drive_yaml_page());
   std::set<std::string> known;
-  for (const char* source : {"tools/drive/description/config.cpp", "tools/drive/description/log_config.cpp"})
+  for (const char* source :
+       {"tools/drive/description/drive_file.cpp", "tools/drive/description/description_yaml.cpp",
+        "tools/drive/description/settings_yaml.cpp", "tools/drive/description/log_config.cpp"})
     known.merge(literal_words(file_text(source)));
   known.insert(kSpeedSources.begin(), kSpeedSources.end());
   known.insert(kYawRateSources.begin(), kYawRateSources.end());

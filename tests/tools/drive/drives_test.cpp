@@ -6,7 +6,8 @@
 
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
-#include <waymark/tools/drive/model/assemble.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
+#include <waymark/tools/drive/model/fuse.hpp>
 
 #include "support/paths.hpp"
 #include "support/registry.hpp"
@@ -40,10 +41,20 @@ bool is_absent(const DriveCase& drive) {
   return true;
 }
 
-DriveSkeleton skeleton_of(const DriveCase& drive, StartMethod start, const TypeRegistry& registry) {
-  DriveConfig config = load_drive_config(drive.yaml.string(), drive.data.string());
-  config.start.method = start;
-  return build_skeleton(load_drive(config, registry), config, registry);
+/// A drive and how its drive.yaml has it fused.
+struct LoadedDrive {
+  PreparedDrive drive;
+  FusionSettings settings;
+};
+
+LoadedDrive load(const DriveCase& drive, const TypeRegistry& registry) {
+  const DriveFile file = load_drive_file(drive.yaml.string(), drive.data.string());
+  return {load_drive(file.description, registry), file.settings};
+}
+
+GraphDocument document_of(Fusion& fusion, FusionSettings settings, const std::string& modeling) {
+  settings.modeling = modeling;
+  return fusion.model(settings).document;
 }
 
 Summary solve(GraphDocument& document, const std::string& algorithm, const TypeRegistry& registry) {
@@ -55,10 +66,9 @@ Summary solve(GraphDocument& document, const std::string& algorithm, const TypeR
 const std::vector<std::string> kAlgorithms = {"gauss_newton", "levenberg_marquardt", "dogleg"};
 
 /// What G1 and G3 must be compared with G2 under: the fix's covariance plus that of the stiff identity edge.
-void add_identity_covariance(DriveSkeleton& skeleton) {
+void add_identity_covariance(PreparedDrive& drive) {
   constexpr double kIdentityInformation = 1e6;  // default of g2
-  for (Fix& fix : skeleton.document.fixes)
-    fix.covariance += Eigen::Matrix2d::Identity() / kIdentityInformation;
+  for (Fix& fix : drive.fixes) fix.covariance += Eigen::Matrix2d::Identity() / kIdentityInformation;
 }
 
 }  // namespace
@@ -69,16 +79,18 @@ TEST_CASE("real drives: from the anchored start all modelings and algorithms rea
   INFO(drive.name);
   TypeRegistry registry = waymark_test::full_registry();
   register_log_readers(registry);
-  const DriveSkeleton plain = skeleton_of(drive, StartMethod::anchored, registry);
-  DriveSkeleton effective = plain;
+  const LoadedDrive plain = load(drive, registry);
+  PreparedDrive effective = plain.drive;
   add_identity_covariance(effective);
+  Fusion fusion(plain.drive, registry);
+  Fusion effective_fusion(effective, registry);
 
   double reference = 0;
   double effective_reference = 0;
   for (const std::string& algorithm : kAlgorithms) {
     for (const std::string modeling : {"g1", "g3", "g2"}) {
       INFO(modeling << " " << algorithm);
-      GraphDocument document = add_modeling(plain, modeling, {}, registry);
+      GraphDocument document = document_of(fusion, plain.settings, modeling);
       const Summary summary = solve(document, algorithm, registry);
       CHECK(summary.converged());
       if (modeling == "g2") {
@@ -87,7 +99,7 @@ TEST_CASE("real drives: from the anchored start all modelings and algorithms rea
       }
       if (reference == 0) {
         reference = summary.final_chi2;
-        GraphDocument stiff = add_modeling(effective, "g1", {}, registry);
+        GraphDocument stiff = document_of(effective_fusion, plain.settings, "g1");
         effective_reference = solve(stiff, algorithm, registry).final_chi2;
       }
       CHECK(summary.final_chi2 == Approx(reference).epsilon(1e-6));
@@ -101,12 +113,15 @@ TEST_CASE("real drives: from dead reckoning no failure passes for a success") {
   INFO(drive.name);
   TypeRegistry registry = waymark_test::full_registry();
   register_log_readers(registry);
-  GraphDocument best = add_modeling(skeleton_of(drive, StartMethod::anchored, registry), "g1", {}, registry);
+  const LoadedDrive loaded = load(drive, registry);
+  Fusion fusion(loaded.drive, registry);
+  GraphDocument best = document_of(fusion, loaded.settings, "g1");
   const double minimum = solve(best, "dogleg", registry).final_chi2;
-  const DriveSkeleton skeleton = skeleton_of(drive, StartMethod::dead_reckoning, registry);
+  FusionSettings dead_reckoning = loaded.settings;
+  dead_reckoning.initial_guess.method = StartMethod::dead_reckoning;
   for (const std::string modeling : {"g1", "g2", "g3"}) {
     for (const std::string& algorithm : kAlgorithms) {
-      GraphDocument document = add_modeling(skeleton, modeling, {}, registry);
+      GraphDocument document = document_of(fusion, dead_reckoning, modeling);
       const double start = document.graph.chi2();
       const Summary summary = solve(document, algorithm, registry);
       INFO(modeling << " " << algorithm);

@@ -93,7 +93,7 @@ PreparedDrive prepared(const std::string& word) {
     sensor.stamps.push_back(Stamp::from_seconds(i));
     sensor.values.insert(sensor.values.end(), {1.0 * i, 2.0 * i});
   }
-  drive.sensors.push_back(sensor);
+  drive.sensors.push_back({.name = "sensor", .readings = sensor});
   return drive;
 }
 
@@ -157,8 +157,8 @@ TEST_CASE("outages: a drive as it was known ends with the fix and the odometry t
   CHECK(known.fixes.size() == 6);
   CHECK(known.truth.empty());
   CHECK(known.odometry.back().stamp == Stamp{5'030'000'000});  // samples at 0.03 s + k 0.1 s
-  CHECK(known.sensors[0].size() == 6);
-  CHECK(known.sensors[0].values.size() == 12);
+  CHECK(known.sensors[0].readings.size() == 6);
+  CHECK(known.sensors[0].readings.values.size() == 12);
 }
 
 TEST_CASE("outages: causal poses come from one fusion per outage that never sees what follows") {

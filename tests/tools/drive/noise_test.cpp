@@ -7,7 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/model/coarse.hpp>
-#include <waymark/tools/drive/model/model.hpp>
+#include <waymark/tools/drive/model/fuse.hpp>
 
 #include <waymark/types_se2/se2.hpp>
 
@@ -75,18 +75,18 @@ const TypeRegistry& registry() {
   return value;
 }
 
-DriveConfig complete_config() {
-  DriveConfig config = config_for(registry().gnss_modeling("correlated"), {});
-  config.odometry_options = {{"heading_variance_per_m", "0"},
-                             {"longitudinal_variance_per_m", "1e-6"},
-                             {"lateral_variance_per_m", "1e-6"}};
-  return config;
+/// The default modeling with what else the odometry has of noise stated.
+FusionSettings complete_settings(const Options& modeling_options = {}) {
+  FusionSettings settings;
+  settings.modeling_options = modeling_options;
+  settings.odometry_options = {{"heading_variance_per_m", "0"},
+                               {"longitudinal_variance_per_m", "1e-6"},
+                               {"lateral_variance_per_m", "1e-6"}};
+  return decided(settings, registry());
 }
 
-NoiseEstimate estimate(const PreparedDrive& drive, const DriveConfig& config, const Options& options = {}) {
-  return estimate_noise(place_drive(drive, config, registry()), config, "correlated",
-                        with_calibration(options, config, registry().gnss_modeling("correlated").options),
-                        registry(), drive.antenna_m);
+NoiseEstimate estimate(const PreparedDrive& drive, const FusionSettings& settings) {
+  return estimate_noise(place_drive(drive, timeline_of(drive), settings, registry()), settings, registry());
 }
 
 const NoiseParameter& find(const NoiseEstimate& noise, const std::string& option) {
@@ -111,7 +111,7 @@ TEST_CASE("noise: what a drive was made with is found, within what the drive can
   std::map<std::string, double> mean;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const NoiseEstimate noise =
-        estimate(make_drive(truth, 40 + static_cast<std::uint64_t>(seed)), complete_config());
+        estimate(make_drive(truth, 40 + static_cast<std::uint64_t>(seed)), complete_settings());
     CHECK(noise.evaluations < 300);
     for (const auto& [option, value] : expected) {
       const NoiseParameter& parameter = find(noise, option);
@@ -134,7 +134,7 @@ TEST_CASE("noise: what is stated is not estimated, what the drive cannot show ke
   Truth truth;
   PreparedDrive drive = make_drive(truth, 3);
   for (Fix& fix : drive.fixes) fix.covariance = Eigen::Matrix2d::Identity();
-  const NoiseEstimate noise = estimate(drive, complete_config(), {{"white_sigma", "1"}});
+  const NoiseEstimate noise = estimate(drive, complete_settings({{"white_sigma", "1"}}));
   for (const NoiseParameter& parameter : noise.parameters) {
     CHECK(parameter.option != "white_sigma");
     CHECK(parameter.option != "longitudinal_variance_per_m");
@@ -142,48 +142,51 @@ TEST_CASE("noise: what is stated is not estimated, what the drive cannot show ke
   const NoiseParameter& exponent = find(noise, "accuracy_exponent");
   CHECK_FALSE(exponent.observed());
   CHECK(exponent.deviation == Approx(exponent.prior.deviation).epsilon(0.05));
-  CHECK(with_noise({{"white_sigma", "1"}}, noise, "correlated").at("white_sigma") == "1");
-  CHECK(with_noise({}, noise, "correlated").contains("multipath_sigma"));
-  CHECK_FALSE(with_noise({}, noise, "correlated").contains("heading_variance_per_s"));
+  const FusionSettings with = with_noise(complete_settings({{"white_sigma", "1"}}), noise);
+  CHECK(with.modeling_options.at("white_sigma") == "1");
+  CHECK(with.modeling_options.contains("multipath_sigma"));
+  CHECK_FALSE(with.modeling_options.contains("heading_variance_per_s"));
+  CHECK(with.odometry_options.contains("heading_variance_per_s"));
 }
 
 TEST_CASE("noise: a modeling without such options and fixes that leave nothing open have none") {
   const PreparedDrive drive = make_drive({}, 3);
-  DriveConfig config;
-  config.odometry_options = {{"heading_variance_per_s", "1e-6"}, {"longitudinal_variance_per_m", "1e-3"}};
-  const NoiseEstimate noise =
-      estimate_noise(place_drive(drive, config, registry()), config, "g1", {}, registry(), drive.antenna_m);
+  FusionSettings settings;
+  settings.modeling = "g1";
+  settings.odometry_options = {{"heading_variance_per_s", "1e-6"}, {"longitudinal_variance_per_m", "1e-3"}};
+  const NoiseEstimate noise = estimate(drive, decided(settings, registry()));
   CHECK(noise.parameters.empty());
   CHECK(noise.evaluations == 0);
 }
 
-TEST_CASE("model: a complete error model brings its own defaults, and a drive.yaml overrides them") {
-  const GnssModelingType& complete = registry().gnss_modeling("correlated");
-  const GnssModelingType& paper = registry().gnss_modeling("g2");
-  REQUIRE(complete.complete);
-  REQUIRE_FALSE(paper.complete);
-  const DriveConfig ours = config_for(complete, {});
-  CHECK_FALSE(ours.gate.enabled);
+TEST_CASE("model: a complete error model brings its own defaults, and what is stated overrides them") {
+  REQUIRE(registry().gnss_modeling("correlated").complete);
+  REQUIRE_FALSE(registry().gnss_modeling("g2").complete);
+  FusionSettings settings;
+  const FusionSettings ours = decided(settings, registry());
+  CHECK(ours.gate.enabled == false);
   CHECK(ours.calibration == default_calibration());
   CHECK(ours.estimates_noise == true);
-  const DriveConfig theirs = config_for(paper, {});
-  CHECK(theirs.gate.enabled);
-  CHECK(theirs.calibration.empty());
+  CHECK(decided(ours, registry()) == ours);
+  settings.modeling = "g2";
+  const FusionSettings theirs = decided(settings, registry());
+  CHECK(theirs.gate.enabled == true);
+  CHECK(theirs.calibration == Options());
   CHECK(theirs.estimates_noise == false);
 
-  DriveConfig stated;
-  stated.gate_stated = stated.calibration_stated = true;
+  FusionSettings stated;
+  stated.gate.enabled = true;
+  stated.calibration = Options();
   stated.estimates_noise = false;
-  CHECK(config_for(complete, stated).gate.enabled);
-  CHECK(config_for(complete, stated).calibration.empty());
-  CHECK(config_for(complete, stated).estimates_noise == false);
+  CHECK(decided(stated, registry()).gate.enabled == true);
+  CHECK(decided(stated, registry()).calibration == Options());
+  CHECK(decided(stated, registry()).estimates_noise == false);
 }
 
 TEST_CASE("coarse: fewer nodes and fixes, the same way and turn") {
   const PreparedDrive drive = make_drive({}, 5);
-  const DriveConfig config = complete_config();
-  const PlacedDrive placed = place_drive(drive, config, registry());
-  const CoarseDrive coarse = coarsen(placed);
+  const PlacedDrive placed = place_drive(drive, timeline_of(drive), complete_settings(), registry());
+  const PlacedDrive coarse = coarsen(placed);
   const auto sum = [](const std::vector<Interval>& intervals, auto quantity) {
     double total = 0;
     for (const Interval& interval : intervals) total += quantity(interval);
@@ -191,13 +194,49 @@ TEST_CASE("coarse: fewer nodes and fixes, the same way and turn") {
   };
   const auto way = [](const Interval& i) { return i.speed_mps * i.dt_s; };
   const auto turn = [](const Interval& i) { return i.yaw_rate_radps * i.dt_s; };
-  CHECK(sum(coarse.intervals, way) == Approx(sum(placed.timeline.intervals, way)).epsilon(1e-12));
-  CHECK(sum(coarse.intervals, turn) == Approx(sum(placed.timeline.intervals, turn)).margin(1e-9));
-  CHECK(coarse.stamps.front() == placed.timeline.stamps.front());
-  CHECK(coarse.stamps.back() == placed.timeline.stamps.back());
-  CHECK(coarse.intervals.size() == coarse.stamps.size() - 1);
-  CHECK(coarse.stamps.size() < placed.timeline.stamps.size() * 11 / 20);
+  CHECK(sum(coarse.timeline.intervals, way) == Approx(sum(placed.timeline.intervals, way)).epsilon(1e-12));
+  CHECK(sum(coarse.timeline.intervals, turn) == Approx(sum(placed.timeline.intervals, turn)).margin(1e-9));
+  CHECK(coarse.timeline.stamps.front() == placed.timeline.stamps.front());
+  CHECK(coarse.timeline.stamps.back() == placed.timeline.stamps.back());
+  CHECK(coarse.timeline.intervals.size() == coarse.timeline.stamps.size() - 1);
+  CHECK(coarse.timeline.stamps.size() < placed.timeline.stamps.size() * 11 / 20);
   CHECK(coarse.fixes.size() == 172);  // every seventh of 1200
   for (const Fix& fix : coarse.fixes)
-    CHECK(coarse.stamps[static_cast<std::size_t>(fix.vertex) - 1] == fix.stamp);
+    CHECK(coarse.timeline.stamps[static_cast<std::size_t>(fix.vertex) - 1] == fix.stamp);
+}
+
+TEST_CASE("fuse: modelings that agree on gate and guess share them, and give what each gives alone") {
+  const PreparedDrive drive = make_drive({}, 7);
+  Fusion fusion(drive, registry());
+  FusionSettings settings;
+  for (const std::string modeling : {"g1", "g2", "g3"}) {
+    INFO(modeling);
+    settings.modeling = modeling;
+    const FusedDrive together = fusion.fuse(settings);
+    const FusedDrive alone = fuse(drive, settings, registry());
+    CHECK(together.minimum.summary.converged());
+    CHECK(together.minimum.summary.final_chi2 == alone.minimum.summary.final_chi2);
+    CHECK(together.model.document.graph.values() == alone.model.document.graph.values());
+    CHECK(together.model.document.provenance == alone.model.document.provenance);
+    CHECK(together.model.placed.gate.rejected == alone.model.placed.gate.rejected);
+  }
+}
+
+TEST_CASE("fuse: the gate, the lever arm and the guess are those of the settings, not of the one before") {
+  PreparedDrive drive = make_drive({}, 7);
+  drive.antenna_m = {1, 0};
+  Fusion fusion(drive, registry());
+  FusionSettings settings;
+  settings.modeling = "g1";
+  const ModeledDrive gated = fusion.model(settings);
+  settings.gate.enabled = false;
+  settings.lever_arm = false;
+  settings.initial_guess.first_heading_rad = 1.25;
+  const ModeledDrive open = fusion.model(settings);
+  CHECK(gated.placed.gate.reasons.contains("off") == false);
+  CHECK(open.placed.gate.reasons.at("off") == drive.fixes.size());
+  CHECK(gated.document.antenna_m == Eigen::Vector2d(1, 0));
+  CHECK(open.document.antenna_m == Eigen::Vector2d(0, 0));
+  CHECK(open.placed.start.poses.front()[2] == Approx(1.25));
+  CHECK(gated.placed.start.poses.front()[2] != Approx(1.25));
 }

@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/logs/projection.hpp>
 
@@ -60,17 +61,17 @@ DriveLogs small_drive() {
   return logs;
 }
 
-DriveConfig small_config() {
-  DriveConfig config;
-  config.path = "drive.yaml";
-  config.name = "small";
-  return config;
+DriveDescription small_description() {
+  DriveDescription description;
+  description.path = "drive.yaml";
+  description.name = "small";
+  return description;
 }
 
 }  // namespace
 
 TEST_CASE("prepare: a clean drive passes whole") {
-  const PreparedDrive drive = prepare_drive(small_drive(), small_config());
+  const PreparedDrive drive = prepare_drive(small_drive(), small_description());
   CHECK(drive.name == "small");
   CHECK(drive.odometry.size() == 101);
   REQUIRE(drive.fixes.size() == 8);
@@ -100,7 +101,7 @@ TEST_CASE("prepare: disorder, repetition, garbage and reversing are counted") {
   fixes.push_back(fixes[2]);
   fixes.push_back(fix_at(104, 15.1));
   fixes.push_back(fix_at(105, kNan));
-  const PreparedDrive drive = prepare_drive(logs, small_config());
+  const PreparedDrive drive = prepare_drive(logs, small_description());
   CHECK(drive.odometry.size() == 102);
   const StreamReport& report = drive.report.odometry;
   CHECK(report.read == 106);
@@ -124,7 +125,7 @@ TEST_CASE("prepare: two receivers may speak at one stamp: one epoch, two fixes")
   DriveLogs logs = small_drive();
   logs.gnss.emplace_back();
   for (int i = 1; i <= 8; ++i) logs.gnss[1].data.fixes.push_back(fix_at(100 + i, 15, 1));
-  const PreparedDrive drive = prepare_drive(logs, small_config());
+  const PreparedDrive drive = prepare_drive(logs, small_description());
   REQUIRE(drive.fixes.size() == 16);
   CHECK(drive.fixes[2].epoch == 1);
   CHECK(drive.fixes[3].epoch == 1);
@@ -139,7 +140,7 @@ TEST_CASE("prepare: gaps are named") {
   });
   std::erase_if(logs.gnss[0].data.fixes,
                 [](const GeodeticFix& f) { return f.stamp.seconds() > 103.5 && f.stamp.seconds() < 107; });
-  const PreparedDrive drive = prepare_drive(logs, small_config());
+  const PreparedDrive drive = prepare_drive(logs, small_description());
   REQUIRE(drive.report.odometry.gaps.size() == 1);
   CHECK(drive.report.odometry.gaps[0].start == Stamp::from_seconds(103));
   CHECK(drive.report.odometry.gaps[0].length_s == Approx(2));
@@ -150,23 +151,23 @@ TEST_CASE("prepare: gaps are named") {
 TEST_CASE("prepare: fixes outside the odometry are dropped, those on its ends kept") {
   DriveLogs logs = small_drive();
   for (const double t : {99.9, 100.0, 110.0, 110.001}) logs.gnss[0].data.fixes.push_back(fix_at(t));
-  const PreparedDrive drive = prepare_drive(logs, small_config());
+  const PreparedDrive drive = prepare_drive(logs, small_description());
   CHECK(drive.fixes.size() == 10);
   CHECK(drive.report.fixes_outside_odometry == 2);
 }
 
 TEST_CASE("prepare: window and delay") {
-  DriveConfig config = small_config();
-  config.from_s = 2;
-  config.to_s = 5;
-  PreparedDrive drive = prepare_drive(small_drive(), config);
+  DriveDescription description = small_description();
+  description.from_s = 2;
+  description.to_s = 5;
+  PreparedDrive drive = prepare_drive(small_drive(), description);
   CHECK(drive.odometry.front().stamp == Stamp::from_seconds(102));
   CHECK(drive.odometry.back().stamp == Stamp::from_seconds(105));
   CHECK(drive.fixes.size() == 4);  // 102 .. 105
   CHECK(drive.report.odometry_outside_window == 70);
 
-  config.gnss_delay_s = 0.25;  // stamped late: each happened a quarter second before
-  drive = prepare_drive(small_drive(), config);
+  description.gnss_delay_s = 0.25;  // stamped late: each happened a quarter second before
+  drive = prepare_drive(small_drive(), description);
   REQUIRE(drive.fixes.size() == 3);
   CHECK(drive.fixes[0].stamp.nanoseconds == 102'750'000'000);
 }
@@ -177,24 +178,24 @@ TEST_CASE("prepare: thinning keeps the fix nearest to each whole multiple of the
   fixes.clear();
   // 5 Hz as of a receiver whose epochs straddle the second: .9 and .1 are equally near, the earlier wins.
   for (int i = 0; i < 18; ++i) fixes.push_back(fix_at(100.9 + 0.2 * i));
-  DriveConfig config = small_config();
-  config.gnss_period_s = 1;
-  PreparedDrive drive = prepare_drive(logs, config);
+  DriveDescription description = small_description();
+  description.gnss_period_s = 1;
+  PreparedDrive drive = prepare_drive(logs, description);
   REQUIRE(drive.fixes.size() == 4);
   for (std::size_t i = 0; i < 4; ++i)
     CHECK(drive.fixes[i].stamp == Stamp::from_seconds(100.9 + static_cast<double>(i)));
   CHECK(drive.report.fixes_thinned == 14);
 
-  config.gnss_period_s = 0.5;
-  drive = prepare_drive(logs, config);
+  description.gnss_period_s = 0.5;
+  drive = prepare_drive(logs, description);
   CHECK(drive.fixes.size() == 8);
   CHECK(drive.fixes[1].stamp == Stamp::from_seconds(101.5));
 }
 
 TEST_CASE("prepare: every n-th epoch is withheld") {
-  DriveConfig config = small_config();
-  config.withhold_every = 3;
-  const PreparedDrive drive = prepare_drive(small_drive(), config);
+  DriveDescription description = small_description();
+  description.withhold_every = 3;
+  const PreparedDrive drive = prepare_drive(small_drive(), description);
   CHECK(drive.report.fixes_withheld == 2);
   for (const Fix& fix : drive.fixes) {
     const bool withheld = fix.epoch == 2 || fix.epoch == 5;
@@ -212,13 +213,13 @@ TEST_CASE("prepare: logs on other scales are converted, which needs dates") {
   logs.gnss.emplace_back();
   logs.gnss[0].scale = TimeScale::utc;
   logs.gnss[0].data.fixes.push_back(fix_at(1'200'000'000 + 315'964'800 - 18 + 5));  // 18 leap seconds in 2018
-  const PreparedDrive drive = prepare_drive(logs, small_config());
+  const PreparedDrive drive = prepare_drive(logs, small_description());
   CHECK(drive.fixes.at(0).stamp == Stamp::from_seconds(1'200'000'005));
 
-  DriveConfig config = small_config();
-  config.time_scale = TimeScale::utc;
+  DriveDescription description = small_description();
+  description.time_scale = TimeScale::utc;
   CHECK_THROWS_MATCHES(
-      prepare_drive(small_drive(), config), InputError,
+      prepare_drive(small_drive(), description), InputError,
       Message("odometry.csv: seconds of week cannot be put onto the scale 'utc' of the drive; state "
               "the log's 'time: {week: ...}'"));
 }
@@ -226,16 +227,16 @@ TEST_CASE("prepare: logs on other scales are converted, which needs dates") {
 TEST_CASE("prepare: what cannot become a drive says why and what to do") {
   DriveLogs logs = small_drive();
   logs.odometry.front().data.odometry.resize(1);
-  CHECK_THROWS_MATCHES(prepare_drive(logs, small_config()), InputError,
+  CHECK_THROWS_MATCHES(prepare_drive(logs, small_description()), InputError,
                        Message("odometry.csv: 1 usable odometry samples; at least 2 are needed"));
   logs = small_drive();
   logs.gnss[0].data.fixes.clear();
   CHECK_THROWS_MATCHES(
-      prepare_drive(logs, small_config()), InputError,
+      prepare_drive(logs, small_description()), InputError,
       Message("gnss.csv: the GNSS logs hold no usable fix; a drive without a fix has no place"));
   logs = small_drive();
   for (GeodeticFix& fix : logs.gnss[0].data.fixes) fix.stamp.nanoseconds += 1'000'000'000'000;
-  CHECK_THROWS_MATCHES(prepare_drive(logs, small_config()), InputError,
+  CHECK_THROWS_MATCHES(prepare_drive(logs, small_description()), InputError,
                        Message("drive.yaml: no fix lies within the odometry: odometry from 100.000000000 s "
                                "to 110.000000000 s, fixes "
                                "from 1101.000000000 s to 1108.000000000 s on the scale 'gps'; check 'time: "
@@ -244,26 +245,26 @@ TEST_CASE("prepare: what cannot become a drive says why and what to do") {
   logs = small_drive();
   logs.truth.emplace_back();
   logs.truth[0].data.truth = {truth_at(90), truth_at(91)};
-  CHECK_THROWS_MATCHES(prepare_drive(logs, small_config()), InputError,
+  CHECK_THROWS_MATCHES(prepare_drive(logs, small_description()), InputError,
                        Message("drive.yaml: the truth does not overlap the odometry: odometry from "
                                "100.000000000 s to 110.000000000 s, "
                                "truth from 90.000000000 s to 91.000000000 s on the scale 'gps'; check 'time: "
                                "{scale, week, offset}' of "
                                "both logs and 'time: {from, to}'"));
-  DriveConfig config = small_config();
-  config.from_s = 20;
-  CHECK_THROWS_AS(prepare_drive(small_drive(), config), InputError);
+  DriveDescription description = small_description();
+  description.from_s = 20;
+  CHECK_THROWS_AS(prepare_drive(small_drive(), description), InputError);
 }
 
-TEST_CASE("prepare: reading the logs of a config") {
-  DriveConfig config = small_config();
-  CHECK_THROWS_MATCHES(load_drive(config, registry_with_readers()), InputError,
+TEST_CASE("prepare: reading the logs of a description") {
+  DriveDescription description = small_description();
+  CHECK_THROWS_MATCHES(load_drive(description, registry_with_readers()), InputError,
                        Message("drive.yaml: no odometry log is named"));
-  config.odometry.emplace_back();
-  config.odometry.front().place = "drive.yaml:2:3: ";
-  config.odometry.front().format = "cvs";
+  description.odometry.emplace_back();
+  description.odometry.front().place = "drive.yaml:2:3: ";
+  description.odometry.front().format = "cvs";
   CHECK_THROWS_MATCHES(
-      load_drive(config, registry_with_readers()), InputError,
+      load_drive(description, registry_with_readers()), InputError,
       Message(
           "drive.yaml:2:3: unknown log format 'cvs'; did you mean 'csv'?; `waymark info` lists those there "
           "are; a plugin that brings it is loaded with --plugin"));
@@ -293,7 +294,7 @@ TEST_CASE("prepare: the real drives that come as configs") {
     }
     INFO(expected.name);
     const PreparedDrive drive =
-        load_drive(load_drive_config(yaml.string(), folder.string()), registry_with_readers());
+        load_drive(load_drive_file(yaml.string(), folder.string()).description, registry_with_readers());
     CHECK(drive.frame.zone == expected.zone);
     CHECK(drive.fixes.size() >= expected.fixes);
     CHECK(drive.odometry.size() >= expected.odometry);

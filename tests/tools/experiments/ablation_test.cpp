@@ -5,7 +5,6 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/model/model.hpp>
 #include <waymark/tools/reproduction/experiment/ablation.hpp>
 #include <waymark/tools/reproduction/experiment/consistency_study.hpp>
 #include <waymark/tools/reproduction/experiment/outlier_treatment.hpp>
@@ -52,13 +51,16 @@ Outcome judged(const std::string& setting, double rmse_m, double nees, double co
 
 TEST_CASE("ablation: the default setting states nothing: all of it is the modeling's, as in run") {
   const Setting setting = default_setting();
-  CHECK(setting.modeling == DriveConfig().modeling);
-  CHECK(setting.modeling_options.empty());
-  CHECK_FALSE(setting.changes.gate.has_value());
-  CHECK_FALSE(setting.changes.calibration.has_value());
-  CHECK_FALSE(setting.changes.estimates_noise.has_value());
-  CHECK_FALSE(setting.changes.shares_skeleton());
-  for (const Setting& other : our_settings()) CHECK(other.changes.shares_skeleton());
+  CHECK(setting.fusion == drive::FusionSettings());
+  CHECK(setting.fusion.modeling_options.empty());
+  CHECK_FALSE(setting.fusion.gate.enabled.has_value());
+  CHECK_FALSE(setting.fusion.calibration.has_value());
+  CHECK_FALSE(setting.fusion.estimates_noise.has_value());
+  for (const Setting& other : our_settings()) {
+    CHECK(other.fusion.gate.enabled.has_value());
+    CHECK(other.fusion.calibration == Options());
+    CHECK(other.fusion.estimates_noise == false);
+  }
 }
 
 TEST_CASE("ablation: each ingredient differs from the default in one thing, and every name is its own") {
@@ -71,11 +73,14 @@ TEST_CASE("ablation: each ingredient differs from the default in one thing, and 
     INFO(setting.name);
     CHECK(names.insert(setting.name).second);
     CHECK(titles.insert(ablation.title).second);
-    if (setting.modeling != standard.modeling || setting.name == standard.name) continue;
+    if (setting.fusion.modeling != standard.fusion.modeling || setting.name == standard.name) continue;
     ++switched;
-    CHECK((setting.modeling_options != standard.modeling_options) + !(setting.changes == standard.changes) ==
+    drive::FusionSettings rest = setting.fusion;
+    rest.modeling_options = standard.fusion.modeling_options;
+    CHECK((setting.fusion.modeling_options != standard.fusion.modeling_options) +
+              !(rest == standard.fusion) ==
           1);
-    CHECK_FALSE(setting.loss.has_value());
+    CHECK(setting.fusion.loss.empty());
   }
   CHECK(switched == 12);
   CHECK(names.contains(kWhiteReference));
@@ -87,10 +92,10 @@ TEST_CASE("ablation: the options that the ablation states are there, and each st
   const TypeRegistry registry = waymark_test::full_registry();
   for (const Ablation& ablation : ablations()) {
     INFO(ablation.setting.name);
-    CHECK_NOTHROW(
-        (void)registry.make_gnss_modeling(ablation.setting.modeling, ablation.setting.modeling_options));
-    if (ablation.setting.loss) CHECK(registry.find_loss(ablation.setting.loss->name) != nullptr);
-    const auto& calibration = ablation.setting.changes.calibration;
+    CHECK_NOTHROW((void)registry.make_gnss_modeling(ablation.setting.fusion.modeling,
+                                                    ablation.setting.fusion.modeling_options));
+    CHECK_NOTHROW((void)drive::loss_of_fixes(ablation.setting.fusion.loss, registry));
+    const auto& calibration = ablation.setting.fusion.calibration;
     if (ablation.setting.name.starts_with("waymark/no_") && calibration)
       CHECK(calibration->size() + 1 == default_calibration().size());
   }

@@ -11,7 +11,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/formats/text/text_file.hpp>
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/inspection/inspection.hpp>
 #include <waymark/tools/inspection/proposal/drive_proposal.hpp>
 
@@ -346,7 +346,7 @@ TEST_CASE("inspection: roles are decided and told, and the drive.yaml parses") {
   const std::string yaml = drive_yaml(proposal, logs, folder + "/drive.yaml");
   INFO(yaml);
   CHECK(has(yaml, "\n  file: odometry.csv\n"));  // relative to the drive.yaml
-  const DriveConfig config = parse_drive_config(yaml, folder + "/drive.yaml");
+  const DriveDescription config = parse_drive_file(yaml, folder + "/drive.yaml").description;
   REQUIRE(config.odometry.size() == 1);
   CHECK(config.odometry[0].file == folder + "/odometry.csv");
   CHECK(config.odometry[0].request.columns.at("speed").unit == "km/h");
@@ -376,7 +376,7 @@ TEST_CASE("inspection: odometry in two logs becomes parts, columns that say the 
   INFO(yaml);
   CHECK(has(yaml, "# CHECK: no unit is named; m/s is assumed"));
   CHECK(has(yaml, "gyro: {axis: y}"));  // the one that turns
-  const DriveConfig config = parse_drive_config(yaml, path);
+  const DriveDescription config = parse_drive_file(yaml, path).description;
   CHECK(config.odometry.size() == 2);
   CHECK(config.assembly.gyro_axis == "y");
 }
@@ -387,13 +387,13 @@ TEST_CASE("inspection: a drive.yaml without odometry or positions parses and say
   CHECK(proposal.decisions.back() == "no log with odometry was found: fill in odometry");
   const std::string yaml = drive_yaml(proposal, logs, "/somewhere/else.yaml");
   CHECK(has(yaml, "file: FILL_IN_odometry.csv"));
-  const DriveConfig config = parse_drive_config(yaml, "/somewhere/else.yaml");
+  const DriveDescription config = parse_drive_file(yaml, "/somewhere/else.yaml").description;
   CHECK(config.gnss[0].file == logs[0].path);  // nothing in common: absolute
 }
 
 TEST_CASE("inspection: the template parses, with every key uncommented too") {
   const std::string text = drive_template();
-  CHECK_NOTHROW(parse_drive_config(text, "drive.yaml"));
+  CHECK_NOTHROW(parse_drive_file(text, "drive.yaml"));
   std::string all;
   std::size_t begin = 0;
   while (begin < text.size()) {
@@ -402,7 +402,7 @@ TEST_CASE("inspection: the template parses, with every key uncommented too") {
     all += line.starts_with("# ") ? line.substr(2) : line;
     begin = end + 1;
   }
-  const DriveConfig config = parse_drive_config(all, "drive.yaml");
+  const DriveDescription config = parse_drive_file(all, "drive.yaml").description;
   CHECK(config.name == "Somewhere");
   CHECK(config.gnss[0].request.range_error_m == 5);
   CHECK(config.sensors.size() == 1);

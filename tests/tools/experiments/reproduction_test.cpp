@@ -113,14 +113,17 @@ TEST_CASE("reproduction: every setting has a name of its own, and each cause cha
   CHECK(names.size() == count);
 
   const Setting literal = paper_settings().front();
-  CHECK(literal.minimization.options.at("initial_radius") == "1e4");
+  CHECK(literal.fusion.minimization.options.at("initial_radius") == "1e4");
   for (const Setting& setting : cause_settings()) {
-    if (setting.modeling != "g1" || setting.name == "paper_g1/all_but_start") continue;
+    if (setting.fusion.modeling != "g1" || setting.name == "paper_g1/all_but_start") continue;
     INFO(setting.name);
-    const int changed = (setting.minimization.options != literal.minimization.options) +
-                        (setting.minimization.stopping != literal.minimization.stopping) +
-                        (setting.modeling_options != literal.modeling_options) +
-                        !(setting.changes == literal.changes);
+    drive::FusionSettings rest = setting.fusion;
+    rest.minimization = literal.fusion.minimization;
+    rest.modeling_options = literal.fusion.modeling_options;
+    const int changed = (setting.fusion.minimization.options != literal.fusion.minimization.options) +
+                        (setting.stopping != literal.stopping) +
+                        (setting.fusion.modeling_options != literal.fusion.modeling_options) +
+                        !(rest == literal.fusion);
     CHECK(changed == 1);
   }
 }

@@ -1,4 +1,4 @@
-/// The part of a drive.yaml that says how one log is read (see config.hpp).
+/// The part of a drive.yaml that says how one log is read (see drive_description.hpp).
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/drive_description.hpp>
 #include <waymark/tools/drive/description/yaml_section.hpp>
 
 namespace waymark::drive {

@@ -12,9 +12,9 @@
 #include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/tools/drive/logs/clock_sync.hpp>
 #include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/logs/sensor_logs.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 #include <waymark/tools/drive/logs/velocity.hpp>
-#include <waymark/tools/drive/model/sensors.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -48,13 +48,14 @@ bool finite_place(const auto& sample) {
 }
 
 /// Puts logs in channels together. @throws InputError where some are whole odometry and some are not
-void assemble_parts(const DriveLogs& logs, const DriveConfig& config, std::vector<OdometrySample>& odometry,
-                    PrepareReport& report) {
+void assemble_parts(const DriveLogs& logs, const DriveDescription& description,
+                    std::vector<OdometrySample>& odometry, PrepareReport& report) {
   std::vector<OdometryPart> parts;
   for (const DriveLogs::Log& log : logs.odometry) {
     if (log.data.readings.size() == 0) continue;
     OdometryPart part{log.data.readings, log.file};
-    put_on_scale(part.readings.stamps, log, config.time_scale, [](Stamp& stamp) -> Stamp& { return stamp; });
+    put_on_scale(part.readings.stamps, log, description.scale(),
+                 [](Stamp& stamp) -> Stamp& { return stamp; });
     parts.push_back(std::move(part));
   }
   if (parts.empty()) return;
@@ -62,12 +63,12 @@ void assemble_parts(const DriveLogs& logs, const DriveConfig& config, std::vecto
     throw InputError(
         fmt::format("{}: some of the odometry's parts hold speed and yaw rate side by side, others channels; "
                     "leave out what is not needed",
-                    config.path));
+                    description.path));
   AssembledOdometry assembled = [&] {
     try {
-      return assemble_odometry(parts, config.assembly, config.timeline.gap_s);
+      return assemble_odometry(parts, description.assembly, description.timeline.gap_s);
     } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", config.path, error.what()));
+      throw InputError(fmt::format("{}: {}", description.path, error.what()));
     }
   }();
   odometry = std::move(assembled.samples);
@@ -88,12 +89,12 @@ void note_gaps(double gap_s, Stamp start, PrepareReport& report) {
                   seconds_between(start, longest.start)));
 }
 
-std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveConfig& config,
+std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveDescription& description,
                                              PrepareReport& report) {
   std::vector<OdometrySample> odometry;
   for (const DriveLogs::Log& log : logs.odometry)
-    append_log(log.data.odometry, log, config.time_scale, odometry, report.odometry, report);
-  assemble_parts(logs, config, odometry, report);
+    append_log(log.data.odometry, log, description.scale(), odometry, report.odometry, report);
+  assemble_parts(logs, description, odometry, report);
   clean_stream(
       odometry, report.odometry,
       [](const OdometrySample& s) { return std::isfinite(s.speed_mps) && std::isfinite(s.yaw_rate_radps); },
@@ -104,26 +105,26 @@ std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveC
   if (odometry.size() < 2)
     throw InputError(fmt::format("{}: {} usable odometry samples; at least 2 are needed",
                                  logs.odometry.front().file, odometry.size()));
-  if (config.speed_delay_s != 0 || config.yaw_rate_delay_s != 0)
-    odometry = without_delays(odometry, config.speed_delay_s, config.yaw_rate_delay_s);
+  if (description.speed_delay_s != 0 || description.yaw_rate_delay_s != 0)
+    odometry = without_delays(odometry, description.speed_delay_s, description.yaw_rate_delay_s);
   const std::int64_t first = odometry.front().stamp.nanoseconds;
   const std::size_t before = odometry.size();
   const double length_s = seconds_between(odometry.front().stamp, odometry.back().stamp);
   std::erase_if(odometry, [&](const OdometrySample& s) {
     const std::int64_t after_first = s.stamp.nanoseconds - first;
-    return (config.from_s && after_first < nanoseconds(*config.from_s)) ||
-           (config.to_s && after_first > nanoseconds(*config.to_s));
+    return (description.from_s && after_first < nanoseconds(*description.from_s)) ||
+           (description.to_s && after_first > nanoseconds(*description.to_s));
   });
   report.odometry_outside_window = before - odometry.size();
   if (odometry.size() < 2)
     throw InputError(fmt::format(
         "{}: the window from {} s to {} holds {} odometry samples of a log of {:.6g} s; widen 'time: "
         "{{from, to}}' or --from and --to",
-        config.path, config.from_s.value_or(0), config.to_s ? fmt::format("{} s", *config.to_s) : "the end",
-        odometry.size(), length_s));
+        description.path, description.from_s.value_or(0),
+        description.to_s ? fmt::format("{} s", *description.to_s) : "the end", odometry.size(), length_s));
   for (const OdometrySample& sample : odometry) report.reversing += sample.speed_mps < 0;
-  describe_stream(odometry, config.timeline.gap_s, report.odometry);
-  note_gaps(config.timeline.gap_s, odometry.front().stamp, report);
+  describe_stream(odometry, description.timeline.gap_s, report.odometry);
+  note_gaps(description.timeline.gap_s, odometry.front().stamp, report);
   return odometry;
 }
 
@@ -158,6 +159,21 @@ void thin(std::vector<GeodeticFix>& fixes, std::int64_t period) {
   std::erase_if(fixes, [&](const GeodeticFix&) { return keep[index++] == 0; });
 }
 
+std::vector<InputFile> inputs_of(const DriveLogs& logs) {
+  std::vector<InputFile> inputs;
+  const auto add = [&inputs](const DriveLogs::Log& log) {
+    inputs.insert(inputs.end(), log.inputs.begin(), log.inputs.end());
+  };
+  for (const DriveLogs::Log& log : logs.odometry) add(log);
+  for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
+    add(logs.gnss[i]);
+    if (i < logs.velocity.size()) add(logs.velocity[i]);
+  }
+  for (const DriveLogs::Log& log : logs.truth) add(log);
+  for (const DriveLogs::Log& log : logs.sensors) add(log);
+  return inputs;
+}
+
 /// Tells what a log's messages say of its stamps.
 void report_clock(const DriveLogs::Log& log, PrepareReport& report) {
   const std::optional<ClockReport> clock = clock_of(log);
@@ -188,15 +204,15 @@ void leave_out_null_island(std::vector<GeodeticFix>& fixes, PrepareReport& repor
         "{} fixes at latitude 0, longitude 0 are left out: receivers write that without a fix", left_out));
 }
 
-std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig& config,
+std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescription& description,
                                        const std::vector<OdometrySample>& odometry, PrepareReport& report) {
   std::vector<GeodeticFix> fixes;
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
     const DriveLogs::Log& log = logs.gnss[i];
     const std::size_t before = fixes.size();
-    append_log(log.data.fixes, log, config.time_scale, fixes, report.gnss, report);
+    append_log(log.data.fixes, log, description.scale(), fixes, report.gnss, report);
     if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)
-      add_logged_velocity(logs.velocity[i], config.time_scale, std::span(fixes).subspan(before), report);
+      add_logged_velocity(logs.velocity[i], description.scale(), std::span(fixes).subspan(before), report);
     report_clock(log, report);
   }
   leave_out_null_island(fixes, report);
@@ -209,8 +225,8 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig&
       });
   if (fixes.empty())
     throw InputError(fmt::format("{}: the GNSS logs hold no usable fix; a drive without a fix has no place",
-                                 logs.gnss.empty() ? config.path : logs.gnss.front().file));
-  for (GeodeticFix& fix : fixes) fix.stamp.nanoseconds -= nanoseconds(config.gnss_delay_s);
+                                 logs.gnss.empty() ? description.path : logs.gnss.front().file));
+  for (GeodeticFix& fix : fixes) fix.stamp.nanoseconds -= nanoseconds(description.gnss_delay_s);
 
   const std::string gnss_span = span_text(fixes);
   const std::size_t before = fixes.size();
@@ -222,19 +238,18 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveConfig&
     throw InputError(
         fmt::format("{}: no fix lies within the odometry: odometry {}, fixes {} on the scale '{}'; check "
                     "'time: {{scale, week, offset}}' of both logs and 'time: {{from, to}}'",
-                    config.path, span_text(odometry), gnss_span, to_string(config.time_scale)));
+                    description.path, span_text(odometry), gnss_span, to_string(description.scale())));
   const std::size_t within = fixes.size();
-  if (config.gnss_period_s > 0) thin(fixes, nanoseconds(config.gnss_period_s));
+  if (description.gnss_period_s > 0) thin(fixes, nanoseconds(description.gnss_period_s));
   report.fixes_thinned = within - fixes.size();
   describe_stream(fixes, 0, report.gnss);
   return fixes;
 }
 
-std::vector<GeodeticTruth> prepare_truth(const DriveLogs& logs, const DriveConfig& config,
-                                         const std::vector<OdometrySample>& odometry, PrepareReport& report) {
+std::vector<GeodeticTruth> clean_truth(const std::vector<DriveLogs::Log>& logs, TimeScale scale,
+                                       PrepareReport& report) {
   std::vector<GeodeticTruth> truth;
-  for (const DriveLogs::Log& log : logs.truth)
-    append_log(log.data.truth, log, config.time_scale, truth, report.truth, report);
+  for (const DriveLogs::Log& log : logs) append_log(log.data.truth, log, scale, truth, report.truth, report);
   clean_stream(
       truth, report.truth, [](const GeodeticTruth& t) { return finite_place(t); },
       [](const GeodeticTruth&, const GeodeticTruth&) { return true; },
@@ -242,14 +257,18 @@ std::vector<GeodeticTruth> prepare_truth(const DriveLogs& logs, const DriveConfi
         return same_place(a, b) && a.heading_rad == b.heading_rad;
       });
   describe_stream(truth, 0, report.truth);
+  return truth;
+}
+
+void require_overlap(const std::vector<GeodeticTruth>& truth, const std::vector<OdometrySample>& odometry,
+                     const DriveDescription& description) {
   const bool apart = !truth.empty() && (truth.back().stamp < odometry.front().stamp ||
                                         truth.front().stamp > odometry.back().stamp);
   if (apart)
     throw InputError(
         fmt::format("{}: the truth does not overlap the odometry: odometry {}, truth {} on the scale "
                     "'{}'; check 'time: {{scale, week, offset}}' of both logs and 'time: {{from, to}}'",
-                    config.path, span_text(odometry), span_text(truth), to_string(config.time_scale)));
-  return truth;
+                    description.path, span_text(odometry), span_text(truth), to_string(description.scale())));
 }
 
 bool in_outage(const OutagePattern& outage, double after_first_s) {
@@ -257,13 +276,14 @@ bool in_outage(const OutagePattern& outage, double after_first_s) {
 }
 
 /// Numbers the epochs and withholds what is asked for: fixes of one stamp are one epoch.
-void number_epochs(std::vector<Fix>& fixes, const DriveConfig& config, PrepareReport& report) {
+void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description, PrepareReport& report) {
   int epoch = -1;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (i == 0 || fixes[i].stamp != fixes[i - 1].stamp) ++epoch;
     fixes[i].epoch = epoch;
-    const bool nth = config.withhold_every >= 2 && (epoch + 1) % config.withhold_every == 0;
-    if (!nth && !in_outage(config.outage, seconds_between(fixes.front().stamp, fixes[i].stamp))) continue;
+    const bool nth = description.withhold_every >= 2 && (epoch + 1) % description.withhold_every == 0;
+    if (!nth && !in_outage(description.outage, seconds_between(fixes.front().stamp, fixes[i].stamp)))
+      continue;
     fixes[i].status = FixStatus::withheld;
     fixes[i].reason = "withheld";
     ++report.fixes_withheld;
@@ -272,29 +292,47 @@ void number_epochs(std::vector<Fix>& fixes, const DriveConfig& config, PrepareRe
 
 }  // namespace
 
-PreparedDrive prepare_drive(const DriveLogs& logs, const DriveConfig& config) {
+PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& description) {
   PreparedDrive drive;
-  drive.name = config.name;
-  drive.scale = config.time_scale;
-  drive.antenna_m = config.antenna_m;
-  drive.truth_reference_m = config.truth_reference_m;
-  drive.odometry = prepare_odometry(logs, config, drive.report);
-  const std::vector<GeodeticFix> fixes = prepare_fixes(logs, config, drive.odometry, drive.report);
-  const std::vector<GeodeticTruth> truth = prepare_truth(logs, config, drive.odometry, drive.report);
+  drive.name = description.name;
+  drive.scale = description.scale();
+  drive.antenna_m = description.antenna_m;
+  drive.truth_reference_m = description.truth_reference_m;
+  drive.timeline = description.timeline;
+  drive.inputs = inputs_of(logs);
+  drive.odometry = prepare_odometry(logs, description, drive.report);
+  const std::vector<GeodeticFix> fixes = prepare_fixes(logs, description, drive.odometry, drive.report);
+  const std::vector<GeodeticTruth> truth = clean_truth(logs.truth, drive.scale, drive.report);
+  require_overlap(truth, drive.odometry, description);
 
-  drive.frame = choose_frame({fixes.front().latitude_deg, fixes.front().longitude_deg}, config.utm_zone,
-                             config.utm_origin);
+  drive.frame = choose_frame({fixes.front().latitude_deg, fixes.front().longitude_deg}, description.utm_zone,
+                             description.utm_origin);
   const Projection projection(drive.frame);
   for (const GeodeticFix& fix : fixes) drive.fixes.push_back(projection.project(fix));
   for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection.project(pose));
-  number_epochs(drive.fixes, config, drive.report);
+  number_epochs(drive.fixes, description, drive.report);
   for (std::size_t i = 0; i < logs.sensors.size(); ++i) {
-    const auto& log = config.sensors[i].log;
-    drive.sensors.push_back(log ? prepare_readings(logs.sensors[i], log->request.readings, config.time_scale,
-                                                   fixes, projection, drive.report)
-                                : SensorTable());
+    const SensorConfig& sensor = description.sensors[i];
+    PreparedSensor& prepared = drive.sensors.emplace_back(
+        PreparedSensor{.name = sensor.name, .options = sensor.options, .place = sensor.place});
+    if (sensor.log)
+      prepared.readings = prepare_readings(logs.sensors[i], sensor.log->request.readings, drive.scale, fixes,
+                                           projection, drive.report);
   }
+  std::vector<std::string>& notes = drive.report.notes;
+  notes.insert(notes.end(), logs.notes.begin(), logs.notes.end());
+  if (!description.time_scale)
+    notes.emplace_back("time scale gps is assumed; state time: {scale: gps | utc | unix}");
   return drive;
+}
+
+std::vector<TruthPose> prepare_truth(const DriveLogs::Log& log, TimeScale scale, const Frame& frame) {
+  PrepareReport report;
+  const Projection projection(frame);
+  std::vector<TruthPose> truth;
+  for (const GeodeticTruth& pose : clean_truth({log}, scale, report))
+    truth.push_back(projection.project(pose));
+  return truth;
 }
 
 }  // namespace waymark::drive

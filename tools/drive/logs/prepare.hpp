@@ -14,7 +14,7 @@
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/logs/log_file.hpp>
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/drive_description.hpp>
 
 namespace waymark::drive {
 
@@ -60,8 +60,22 @@ struct PrepareReport {
   std::size_t fixes_thinned = 0;    ///< dropped: not the nearest to a multiple of gnss_period_s
   std::size_t fixes_withheld = 0;   ///< kept, but out of the graph
   std::vector<ClockReport> clocks;  ///< of logs that hold their own stamps and GNSS time
-  std::vector<std::string> notes;   ///< the readers' assumptions and what was concluded here
+  std::vector<std::string> notes;   ///< the readers' assumptions and what was concluded here, in sentences
   std::vector<std::string> corrupt_examples;
+};
+
+/// The readings of a further sensor.
+struct PreparedSensor {
+  std::string name;        ///< of a registered sensor model
+  Options options{};       ///< of the model
+  std::string place{};     ///< of its entry in the drive.yaml, for messages
+  SensorTable readings{};  ///< empty for a sensor without a log
+};
+
+/// A file that a drive was read from.
+struct InputFile {
+  std::string path;
+  std::string fingerprint;  ///< of its content, which is the same compressed or not: "fnv1a64:" and 16 digits
 };
 
 /// A drive in its frame on its clock. Every stream is sorted by stamp.
@@ -72,9 +86,11 @@ struct PreparedDrive {
   std::vector<OdometrySample> odometry;     ///< stamps unique; at least 2
   std::vector<Fix> fixes;                   ///< stamp and source unique; at least 1; `epoch` counts from 0
   std::vector<TruthPose> truth;             ///< stamps unique; may be empty
-  std::vector<SensorTable> sensors;         ///< as DriveConfig::sensors; empty for one without a log
+  std::vector<PreparedSensor> sensors;      ///< as DriveDescription::sensors
   Eigen::Vector2d antenna_m{0, 0};          ///< body frame
   Eigen::Vector2d truth_reference_m{0, 0};  ///< body frame
+  TimelineOptions timeline;                 ///< how samples become nodes
+  std::vector<InputFile> inputs;  ///< in the order of the description, each log before its companions
   PrepareReport report;
 };
 
@@ -83,13 +99,15 @@ struct DriveLogs {
   struct Log {
     LogData data;
     TimeScale scale = TimeScale::gps;
-    std::string file;  ///< for messages
+    std::string file;                 ///< for messages
+    std::vector<InputFile> inputs{};  ///< the log and the companions that the description names
   };
-  std::vector<Log> odometry;  ///< in the order of DriveConfig::odometry
-  std::vector<Log> gnss;      ///< in the order of DriveConfig::gnss
+  std::vector<Log> odometry;  ///< in the order of DriveDescription::odometry
+  std::vector<Log> gnss;      ///< in the order of DriveDescription::gnss
   std::vector<Log> velocity;  ///< as gnss; readings as velocity_channels(), nothing in it where there is none
   std::vector<Log> truth;     ///< none or one
-  std::vector<Log> sensors;   ///< as DriveConfig::sensors; nothing in it for one without a log
+  std::vector<Log> sensors;   ///< as DriveDescription::sensors; nothing in it for one without a log
+  std::vector<std::string> notes;  ///< what was done to all of them (synchronise.hpp)
 };
 
 /// Puts logs onto one clock and into one frame. Pure.
@@ -103,18 +121,27 @@ struct DriveLogs {
 /// @throws InputError with the remedy for: fewer than two odometry samples, no fix, no fix within the
 /// odometry's span, truth that does not overlap the odometry, a log of seconds of week that would need a
 /// date.
-[[nodiscard]] PreparedDrive prepare_drive(const DriveLogs& logs, const DriveConfig& config);
+[[nodiscard]] PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& description);
+
+/// A log of truth on the drive's clock and in a frame that is given: cleaned as in a drive. Pure.
+[[nodiscard]] std::vector<TruthPose> prepare_truth(const DriveLogs::Log& log, TimeScale scale,
+                                                   const Frame& frame);
 
 /// Told while a log is read: its file, bytes done and in all (0: not known). May throw to stop.
 using LogWatch = std::function<void(const std::string& file, std::uint64_t done, std::uint64_t size)>;
 
-/// Reads the logs that a drive.yaml names.
+/// Reads the logs that a description names, each once.
 /// @throws InputError for an unknown format, a missing file, an unusable log.
-[[nodiscard]] DriveLogs read_drive_logs(const DriveConfig& config, const TypeRegistry& registry,
+[[nodiscard]] DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistry& registry,
                                         const LogWatch& watch = {});
 
-/// read_drive_logs and prepare_drive.
-[[nodiscard]] PreparedDrive load_drive(const DriveConfig& config, const TypeRegistry& registry,
+/// resolve_sensors (sensor_logs.hpp), read_drive_logs and prepare_drive.
+[[nodiscard]] PreparedDrive load_drive(DriveDescription description, const TypeRegistry& registry,
                                        const LogWatch& watch = {});
+
+/// The truth alone of a description, in a frame that is given: no other log is read.
+/// @throws InputError for a description without truth, an unusable log
+[[nodiscard]] std::vector<TruthPose> load_truth(const DriveDescription& description, const Frame& frame,
+                                                const TypeRegistry& registry, const LogWatch& watch = {});
 
 }  // namespace waymark::drive

@@ -5,7 +5,9 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/text/hash.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/drive/logs/sensor_logs.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -40,7 +42,8 @@ LogReaderType named_reader(const LogConfig& log, const std::vector<LogReaderType
 
 /// The text of the files that belong to the log. A folder of KITTI oxts has its time stamps beside it by the
 /// layout of the data set.
-void read_companions(const LogConfig& log, LogRequest& request, std::vector<std::string>& notes) {
+void read_companions(const LogConfig& log, LogRequest& request, std::vector<InputFile>& inputs,
+                     std::vector<std::string>& notes) {
   std::map<std::string, std::string> companions = log.companions;
   const std::filesystem::path beside = std::filesystem::path(log.file).parent_path() / "timestamps.txt";
   if (std::filesystem::is_directory(log.file) && !companions.contains("timestamps") &&
@@ -52,6 +55,7 @@ void read_companions(const LogConfig& log, LogRequest& request, std::vector<std:
     std::string text;
     const std::string trouble = formats::read_in_pieces(path, [&](std::string_view piece) { text += piece; });
     if (!trouble.empty()) throw InputError(path + ": " + trouble);
+    if (log.companions.contains(key)) inputs.push_back({path, "fnv1a64:" + formats::fnv1a64_hex(text)});
     request.companions[key] = {path, std::move(text)};
   }
 }
@@ -71,12 +75,19 @@ DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, cons
   // A table tells by its columns whether it holds odometry in channels; other logs are asked for both.
   if (request.stream == StreamKind::odometry && reader.name != "csv")
     request.readings = formats::odometry_channels();
-  read_companions(log, request, notes);
+  std::vector<InputFile> inputs{{log.file, {}}};
+  read_companions(log, request, inputs, notes);
   const formats::ReadProgress progress = [&](std::uint64_t done, std::uint64_t size) {
     if (watch) watch(log.file, done, size);
   };
-  DriveLogs::Log result{formats::read_log_file(*reader.reader, log.file, request, progress),
-                        request.time_scale, log.file};
+  formats::Fnv1a64 hash;
+  const auto seen = [&](std::string_view piece) { hash.add(piece); };
+  DriveLogs::Log result{formats::read_log_file(*reader.reader, log.file, request, progress, seen),
+                        request.time_scale,
+                        log.file,
+                        {}};
+  inputs.front().fingerprint = "fnv1a64:" + hash.hex();
+  result.inputs = std::move(inputs);
   result.data.notes.insert(result.data.notes.begin(), notes.begin(), notes.end());
   if (log.request.stream == StreamKind::sensor) check_readings(result.data.readings, log);
   return result;
@@ -84,22 +95,31 @@ DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, cons
 
 }  // namespace
 
-DriveLogs read_drive_logs(const DriveConfig& config, const TypeRegistry& registry, const LogWatch& watch) {
+DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistry& registry,
+                          const LogWatch& watch) {
   DriveLogs logs;
-  if (config.odometry.empty()) throw InputError(fmt::format("{}: no odometry log is named", config.path));
-  for (const LogConfig& log : config.odometry) logs.odometry.push_back(read_log(log, registry, watch));
-  for (const GnssConfig& log : config.gnss) {
+  if (description.odometry.empty())
+    throw InputError(fmt::format("{}: no odometry log is named", description.path));
+  for (const LogConfig& log : description.odometry) logs.odometry.push_back(read_log(log, registry, watch));
+  for (const GnssConfig& log : description.gnss) {
     logs.gnss.push_back(read_log(log, registry, watch));
     logs.velocity.push_back(log.velocity ? read_log(*log.velocity, registry, watch) : DriveLogs::Log{});
   }
-  if (config.truth) logs.truth.push_back(read_log(*config.truth, registry, watch));
-  for (const SensorConfig& sensor : config.sensors)
+  if (description.truth) logs.truth.push_back(read_log(*description.truth, registry, watch));
+  for (const SensorConfig& sensor : description.sensors)
     logs.sensors.push_back(sensor.log ? read_log(*sensor.log, registry, watch) : DriveLogs::Log{});
   return logs;
 }
 
-PreparedDrive load_drive(const DriveConfig& config, const TypeRegistry& registry, const LogWatch& watch) {
-  return prepare_drive(read_drive_logs(config, registry, watch), config);
+PreparedDrive load_drive(DriveDescription description, const TypeRegistry& registry, const LogWatch& watch) {
+  resolve_sensors(description, registry);
+  return prepare_drive(read_drive_logs(description, registry, watch), description);
+}
+
+std::vector<TruthPose> load_truth(const DriveDescription& description, const Frame& frame,
+                                  const TypeRegistry& registry, const LogWatch& watch) {
+  if (!description.truth) throw InputError(description.path + ": has no 'truth' section");
+  return prepare_truth(read_log(*description.truth, registry, watch), description.scale(), frame);
 }
 
 }  // namespace waymark::drive

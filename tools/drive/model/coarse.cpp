@@ -29,18 +29,22 @@ void merge(Interval& whole, const Interval& part) {
 
 }  // namespace
 
-CoarseDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_period_s) {
+PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_period_s) {
   const Timeline& timeline = placed.timeline;
   const std::vector<std::size_t> kept = kept_fixes(placed.fixes, fix_period_s);
   std::vector<char> needed(timeline.stamps.size(), 0);
   for (const std::size_t fix : kept) needed[timeline.fix_node[fix]] = 1;
 
-  CoarseDrive coarse;
+  PlacedDrive coarse;
+  coarse.gate = placed.gate;
+  coarse.antenna_m = placed.antenna_m;
+  coarse.standstill_mps = placed.standstill_mps;
+  coarse.gap_noise_factor = placed.gap_noise_factor;
   std::vector<std::size_t> coarse_node(timeline.stamps.size(), 0);
   const auto add_node = [&](std::size_t node) {
-    coarse_node[node] = coarse.stamps.size();
-    coarse.stamps.push_back(timeline.stamps[node]);
-    coarse.poses.push_back(placed.start.poses[node]);
+    coarse_node[node] = coarse.timeline.stamps.size();
+    coarse.timeline.stamps.push_back(timeline.stamps[node]);
+    coarse.start.poses.push_back(placed.start.poses[node]);
   };
   const auto stands = [&](const Interval& i) { return std::abs(i.speed_mps) < placed.standstill_mps; };
   add_node(0);
@@ -52,19 +56,19 @@ CoarseDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_
       merge(open, next);
       continue;
     }
-    coarse.intervals.push_back(open);
+    coarse.timeline.intervals.push_back(open);
     add_node(i);
     open = next;
   }
-  coarse.intervals.push_back(open);
+  coarse.timeline.intervals.push_back(open);
   add_node(timeline.intervals.size());
 
-  const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};
   for (const std::size_t i : kept) {
-    Fix fix = placed.fixes[i];
-    fix.vertex = static_cast<VertexId>(coarse_node[timeline.fix_node[i]]) + 1;
-    coarse.fixes.push_back(fix);
-    coarse.motion.push_back(motion_at(nodes, timeline.fix_node[i]));
+    const std::size_t node = coarse_node[timeline.fix_node[i]];
+    coarse.timeline.fix_node.push_back(node);
+    coarse.fixes.push_back(placed.fixes[i]);
+    coarse.fixes.back().vertex = vertex_of(node);
+    coarse.motion.push_back(placed.motion[i]);
   }
   return coarse;
 }

@@ -11,8 +11,8 @@
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/system/gauge.hpp>
+#include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/coarse.hpp>
-#include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -43,21 +43,15 @@ void add_parameters(const std::string& owner, const std::vector<OptionInfo>& kno
 /// The function that the noise minimises: -log of prior times marginal likelihood.
 class Objective {
  public:
-  Objective(const PlacedDrive& placed, const DriveConfig& config, const std::string& modeling,
-            const Options& modeling_options, const TypeRegistry& registry, const Eigen::Vector2d& antenna_m,
-            const std::optional<Loss>& loss)
+  Objective(const PlacedDrive& placed, const FusionSettings& settings, const TypeRegistry& registry)
       : coarse_(coarsen(placed)),
-        antenna_m_(antenna_m),
-        config_(config),
-        modeling_(modeling),
-        modeling_options_(modeling_options),
+        settings_(settings),
         registry_(registry),
-        loss_(loss),
         algorithm_(registry.make_algorithm("dogleg")) {}
 
   double operator()(const NoiseEstimate& noise) {
     ++evaluations_;
-    Graph graph = build(noise);
+    Graph graph = build_graph(coarse_, {}, with_noise(settings_, noise), registry_).graph;
     prepare(graph);
     OptimizerOptions options;
     options.decrement_tolerance = 1e-7;
@@ -76,22 +70,6 @@ class Objective {
   [[nodiscard]] int evaluations() const { return evaluations_; }
 
  private:
-  Graph build(const NoiseEstimate& noise) const {
-    DriveConfig config = config_;
-    config.odometry_options = with_noise(config.odometry_options, noise, config.odometry_model);
-    Graph graph;
-    std::vector<VertexIndex> poses;
-    for (std::size_t i = 0; i < coarse_.stamps.size(); ++i) {
-      const Eigen::Vector3d& pose = coarse_.poses[i];
-      poses.push_back(graph.add_vertex<VertexSe2>(static_cast<VertexId>(i) + 1, {pose[0], pose[1], pose[2]}));
-      graph.set_stamp(poses.back(), coarse_.stamps[i]);
-    }
-    make_odometry_model(config, registry_)->build({coarse_.stamps, poses, coarse_.intervals}, graph);
-    registry_.make_gnss_modeling(modeling_, with_noise(modeling_options_, noise, modeling_))
-        ->build({coarse_.fixes, coarse_.motion, antenna_m_, loss_}, graph);
-    return graph;
-  }
-
   /// The same vertices and edges every time: structure and analysis are made once, and the search goes on
   /// from where the last minimum was.
   void prepare(Graph& graph) {
@@ -104,13 +82,9 @@ class Objective {
     cholesky_.analyze(structure_.pattern());
   }
 
-  CoarseDrive coarse_;
-  Eigen::Vector2d antenna_m_;
-  const DriveConfig& config_;
-  const std::string& modeling_;
-  const Options& modeling_options_;
+  PlacedDrive coarse_;
+  const FusionSettings& settings_;
   const TypeRegistry& registry_;
-  const std::optional<Loss>& loss_;
   std::unique_ptr<Algorithm> algorithm_;
   Structure structure_;
   BlockCholesky cholesky_;
@@ -187,17 +161,16 @@ void find_deviations(Objective& objective, NoiseEstimate& noise) {
 
 }  // namespace
 
-NoiseEstimate estimate_noise(const PlacedDrive& placed, const DriveConfig& config,
-                             const std::string& modeling, const Options& modeling_options,
-                             const TypeRegistry& registry, const Eigen::Vector2d& antenna_m,
-                             const std::optional<Loss>& loss) {
+NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
+                             const TypeRegistry& registry) {
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
-  add_parameters(config.odometry_model, registry.odometry_model(config.odometry_model).options,
-                 config.odometry_options, noise.parameters);
-  add_parameters(modeling, registry.gnss_modeling(modeling).options, modeling_options, noise.parameters);
+  add_parameters(settings.odometry_model, registry.odometry_model(settings.odometry_model).options,
+                 settings.odometry_options, noise.parameters);
+  add_parameters(settings.modeling, registry.gnss_modeling(settings.modeling).options,
+                 settings.modeling_options, noise.parameters);
   if (noise.parameters.empty()) return noise;
-  Objective objective(placed, config, modeling, modeling_options, registry, antenna_m, loss);
+  Objective objective(placed, settings, registry);
   minimize(objective, noise);
   find_deviations(objective, noise);
   noise.evaluations = objective.evaluations();
@@ -205,11 +178,14 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, const DriveConfig& confi
   return noise;
 }
 
-Options with_noise(Options options, const NoiseEstimate& noise, const std::string& owner) {
+FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise) {
   for (const NoiseParameter& parameter : noise.parameters) {
-    if (parameter.owner == owner) options.try_emplace(parameter.option, shortest(parameter.value));
+    if (parameter.owner == settings.odometry_model)
+      settings.odometry_options.try_emplace(parameter.option, shortest(parameter.value));
+    if (parameter.owner == settings.modeling)
+      settings.modeling_options.try_emplace(parameter.option, shortest(parameter.value));
   }
-  return options;
+  return settings;
 }
 
 }  // namespace waymark::drive

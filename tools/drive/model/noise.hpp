@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <waymark/core/registry/registry.hpp>
-#include <waymark/tools/drive/model/assemble.hpp>
+#include <waymark/tools/drive/model/place.hpp>
 
 namespace waymark::drive {
 
@@ -32,18 +32,17 @@ struct NoiseEstimate {
   double seconds = 0;
 };
 
-/// Maximises prior times marginal likelihood over the options with a prior that the drive.yaml does not
-/// state. Works on fixes thinned to one in 7.5 s per receiver, for receivers smooth their output and white
-/// noise would be found too small, and on nodes four times a second; further sensors take no part.
-/// @param modeling_options  what is stated for the modeling
+/// Maximises prior times marginal likelihood over the options with a prior that the settings do not state.
+/// Works on fixes thinned to one in 7.5 s per receiver, for receivers smooth their output and white noise
+/// would be found too small, and on nodes four times a second; further sensors take no part.
+/// @param settings  decided
 /// @return no parameters where none is left to be estimated
 /// @throws UsageError and InputError as the odometry model and the modeling do
-[[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, const DriveConfig& config,
-                                           const std::string& modeling, const Options& modeling_options,
-                                           const TypeRegistry& registry, const Eigen::Vector2d& antenna_m,
-                                           const std::optional<Loss>& loss = std::nullopt);
+[[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
+                                           const TypeRegistry& registry);
 
-/// The estimated options of one owner, over those given.
-[[nodiscard]] Options with_noise(Options options, const NoiseEstimate& noise, const std::string& owner);
+/// The settings with what was estimated as options of the odometry model and the modeling; what is stated
+/// stays.
+[[nodiscard]] FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise);
 
 }  // namespace waymark::drive

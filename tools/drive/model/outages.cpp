@@ -4,7 +4,7 @@
 #include <string>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/model/assemble.hpp>
+#include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
@@ -122,7 +122,8 @@ PreparedDrive known_until(const PreparedDrive& drive, std::size_t end) {
   const auto last = std::find_if(known.odometry.begin(), known.odometry.end(),
                                  [&](const OdometrySample& sample) { return sample.stamp >= last_fix; });
   if (last != known.odometry.end()) known.odometry.erase(last + 1, known.odometry.end());
-  for (SensorTable& sensor : known.sensors) {
+  for (PreparedSensor& prepared : known.sensors) {
+    SensorTable& sensor = prepared.readings;
     const auto first_later = std::upper_bound(sensor.stamps.begin(), sensor.stamps.end(), last_fix);
     sensor.stamps.erase(first_later, sensor.stamps.end());
     sensor.values.resize(sensor.stamps.size() * sensor.columns);

@@ -207,7 +207,7 @@ double GateSummary::rejected_percent() const {
 GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned,
                        const GateOptions& options) {
   check(fixes, dead_reckoned, options);
-  if (options.enabled) {
+  if (options.enabled.value_or(true)) {
     for (const int source : sources_of(fixes)) judge_source(fixes, dead_reckoned, source, options);
   } else {
     for (Fix& fix : fixes)

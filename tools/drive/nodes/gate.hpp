@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -13,12 +14,14 @@
 namespace waymark::drive {
 
 struct GateOptions {
-  bool enabled = true;
+  std::optional<bool> enabled;                  ///< empty: whoever asks decides; on, where nobody does
   double max_angle_rad = 0.026179938779914945;  ///< 1.5 degrees: chord angle of GNSS against odometry, > 0
   double max_displacement_m = 15;               ///< difference of the displacement vectors, > 0
   double chord_s = 1;      ///< chords span about this long; both limits are meant for it, > 0
   double max_chord_s = 5;  ///< fixes further apart than this form no chord, >= chord_s
   double min_chord_m = 1;  ///< a shorter chord (GNSS or odometry) has no direction, > 0
+
+  friend bool operator==(const GateOptions&, const GateOptions&) = default;
 };
 
 /// What the gate did. Every fix is in exactly one count.

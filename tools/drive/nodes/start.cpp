@@ -199,6 +199,15 @@ Knots translation(const Drive& drive, std::span<const Eigen::Vector3d> poses, in
   return knots;
 }
 
+void turn_about_first(double first_heading_rad, std::vector<Eigen::Vector3d>& poses) {
+  const Eigen::Vector3d first = poses.front();
+  const double turn = first_heading_rad - first[2];
+  for (Eigen::Vector3d& pose : poses) {
+    const Eigen::Vector2d place = first.head<2>() + rotate(turn, Eigen::Vector2d((pose - first).head<2>()));
+    pose = {place[0], place[1], wrap_angle(pose[2] + turn)};
+  }
+}
+
 }  // namespace
 
 Start dead_reckoning_start(const Timeline& timeline, std::span<const Fix> fixes,
@@ -248,9 +257,11 @@ Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes, const
 
 Start make_start(const Timeline& timeline, std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m,
                  double standstill_mps, const StartOptions& options) {
-  return options.method == StartMethod::anchored
-             ? anchored_start(timeline, fixes, antenna_m, standstill_mps)
-             : dead_reckoning_start(timeline, fixes, antenna_m, standstill_mps);
+  Start start = options.method == StartMethod::anchored
+                    ? anchored_start(timeline, fixes, antenna_m, standstill_mps)
+                    : dead_reckoning_start(timeline, fixes, antenna_m, standstill_mps);
+  if (options.first_heading_rad) turn_about_first(*options.first_heading_rad, start.poses);
+  return start;
 }
 
 }  // namespace waymark::drive

@@ -1,6 +1,7 @@
 /// Where the optimisation starts: the paper's dead reckoning, or a start anchored to the GNSS fixes.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,10 @@ enum class StartMethod {
 
 struct StartOptions {
   StartMethod method = StartMethod::anchored;
+  /// Heading of the first pose: the start is turned about that pose to have it. Empty: as it comes out.
+  std::optional<double> first_heading_rad{};
+
+  friend bool operator==(const StartOptions&, const StartOptions&) = default;
 };
 
 /// Initial poses and how they came about.
@@ -47,7 +52,7 @@ struct Start {
 [[nodiscard]] Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes,
                                    const Eigen::Vector2d& antenna_m, double standstill_mps);
 
-/// The start that `options.method` names.
+/// The start that the options ask for.
 [[nodiscard]] Start make_start(const Timeline& timeline, std::span<const Fix> fixes,
                                const Eigen::Vector2d& antenna_m, double standstill_mps,
                                const StartOptions& options);

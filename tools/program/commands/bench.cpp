@@ -6,14 +6,15 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/text/hash.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/benchmark/benchmark_report.hpp>
 #include <waymark/tools/benchmark/contestants.hpp>
 #include <waymark/tools/benchmark/page/benchmark_page.hpp>
+#include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
-#include <waymark/tools/program/jobs/hash.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 
@@ -24,8 +25,8 @@ using Names = std::vector<std::string>;
 
 struct BenchOptions {
   CommonOptions common;
-  OptimizationChoice
-      choice;  ///< the defaults of `optimize`; here only the stopping rules are set from outside
+  drive::Minimization
+      minimization;  ///< the defaults of `optimize`; here only the stopping rules are set from outside
   Names files;
   std::string input_format = "graph";
   Names algorithms;
@@ -60,9 +61,9 @@ Names chosen(const Names& asked, const std::string& by_default, const Names& all
 
 std::vector<benchmark::Contestant> make_contestants(const BenchOptions& options,
                                                     const TypeRegistry& registry) {
-  const OptimizerOptions rules = optimizer_options(options.choice);
+  const OptimizerOptions rules = drive::optimizer_options(options.minimization, {.cancel = &interrupted});
   const Names all_solvers = all_names(registry.linear_solvers());
-  const std::string solver = solver_name(options.choice, registry);
+  const std::string solver = drive::solver_name(options.minimization, registry);
   Names backends = chosen(options.solvers, solver, all_solvers);
   std::replace(backends.begin(), backends.end(), std::string("auto"), solver);
   std::vector<benchmark::Contestant> contestants;
@@ -71,7 +72,7 @@ std::vector<benchmark::Contestant> make_contestants(const BenchOptions& options,
     for (const std::string& backend : backends) {
       contestants.push_back(
           algorithm == benchmark::kDefaultContestant
-              ? benchmark::default_contestant(options.choice.algorithm, backend, rules, registry)
+              ? benchmark::default_contestant(options.minimization.algorithm, backend, rules, registry)
               : benchmark::waymark_contestant(algorithm, backend, rules, registry));
     }
   }
@@ -93,8 +94,8 @@ LoadedGraph load(const std::string& path, const std::string& format, const TypeR
   formats::ReadReport report;
   formats::GraphDocument document = formats::read_graph_as(*formats::graph_format_from_string(format), text,
                                                            path, registry, false, &report);
-  return {std::filesystem::path(path).filename().string(), fnv1a64_hex(text), std::move(document.graph),
-          report.edges_only};
+  return {std::filesystem::path(path).filename().string(), formats::fnv1a64_hex(text),
+          std::move(document.graph), report.edges_only};
 }
 
 /// Puts the values of a start into the graph. @throws InputError where it cannot be made
@@ -106,7 +107,7 @@ void apply_start(const std::string& name, LoadedGraph& loaded, const TypeRegistr
     throw InputError(loaded.name + ": start " + name + " cannot be made: " + start.note);
   }
   loaded.graph.set_values(std::move(start.values));
-  if (start.apart > 0) console.note(loaded.name + ", start " + name + ": " + apart_note(start.apart));
+  if (start.apart > 0) console.note(loaded.name + ", start " + name + ": " + drive::apart_note(start.apart));
 }
 
 /// The starts that differ for this file: one without vertices has no values of its own.
@@ -155,12 +156,12 @@ std::string processor() {
 }
 
 benchmark::BenchmarkHeader make_header(const BenchOptions& options) {
-  const OptimizationChoice& choice = options.choice;
+  const drive::Minimization& minimization = options.minimization;
   benchmark::BenchmarkHeader header = {{"waymark", WAYMARK_VERSION},
                                        {"processor", processor()},
                                        {"repetitions", std::to_string(options.repeat)},
-                                       {"max_iterations", std::to_string(choice.max_iterations)},
-                                       {"decrement_tolerance", fmt::format("{}", choice.tolerance)}};
+                                       {"max_iterations", std::to_string(minimization.max_iterations)},
+                                       {"decrement_tolerance", fmt::format("{}", minimization.tolerance)}};
   for (const std::string& peer : benchmark::built_in_peers()) header.emplace_back("peer", peer);
   return header;
 }
@@ -249,7 +250,7 @@ void add_bench(CLI::App& app, Action& action) {
       ->add_option("--optima", options->optima,
                    "Known optima, CSV 'file,chi2' (examples/benchmarks/standard_graphs.csv)")
       ->type_name("FILE.csv");
-  add_stopping_options(*command, options->choice);
+  add_stopping_options(*command, options->minimization);
   command
       ->add_option("-o,--out", options->folder,
                    "Folder for bench.html with its figures, bench.csv and bench.json")

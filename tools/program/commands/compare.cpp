@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/evaluation/output/result_folder.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/tools/report/comparison/comparison_page.hpp>
@@ -61,9 +62,11 @@ ExitCode compare(const CompareOptions& options) {
   tell_limits(runs, console);
   const drawing::Page page = report::comparison_page(runs, WAYMARK_VERSION);
   formats::make_folder(options.output);
-  std::vector<std::string> files = drawing::write_page(page, options.output, "comparison");
+  const evaluation::ResultFolder folder(options.output);
+  std::vector<std::string> files =
+      drawing::write_page(page, folder.path(), evaluation::ResultFolder::kComparison);
   const std::string json = merged_metrics(runs);
-  files.push_back(options.output + "/metrics.json");
+  files.push_back(folder.metrics());
   formats::write_file_atomically(files.back(), json);
   if (options.common.json) {
     console.result(json);
@@ -71,9 +74,9 @@ ExitCode compare(const CompareOptions& options) {
   }
   std::vector<evaluation::LabelledEvaluation> evaluations;
   for (report::ComparedRun& run : runs) evaluations.push_back({run.label, std::move(run.evaluation)});
-  console.result(fmt::format("{}\nwritten:\n  {}\n  {}\n  {} figures as SVG and CSV in {}/figures\n",
+  console.result(fmt::format("{}\nwritten:\n  {}\n  {}\n  {} figures as SVG and CSV in {}\n",
                              evaluation::metrics_table(evaluations, console.look()), files.front(),
-                             files.back(), drawing::figures_of(page).size(), options.output));
+                             files.back(), drawing::figures_of(page).size(), folder.figures()));
   return kSuccess;
 }
 

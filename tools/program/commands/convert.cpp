@@ -1,16 +1,18 @@
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/text/hash.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
+#include <waymark/tools/program/jobs/drive_job.hpp>
+#include <waymark/tools/program/jobs/drive_text.hpp>
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
-#include <waymark/tools/program/jobs/hash.hpp>
-#include <waymark/tools/program/jobs/model_report.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 
@@ -19,7 +21,7 @@ namespace {
 
 struct ConvertOptions {
   CommonOptions common;
-  DriveOverrides overrides;
+  DriveChoice choice;
   std::string input;
   std::string output;
   std::string input_format = "graph";
@@ -51,21 +53,22 @@ nlohmann::ordered_json graph_json(const ConvertOptions& options, const formats::
           {"fixes", document.fixes.size()}};
 }
 
-ExitCode convert_drive(const ConvertOptions& options, const TypeRegistry& registry, const Console& console) {
+ExitCode convert_drive(const ConvertOptions& options, const drive::DriveFile& file,
+                       const TypeRegistry& registry, const Console& console) {
   refuse_options(options.of_graphs, "a drive");
-  const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
-  if (loaded.modelings.size() != 1)
+  const LoadedDrive loaded = load_drive_for(file, options.choice, registry, console);
+  if (loaded.settings.size() != 1)
     throw UsageError("convert writes one graph: name one modeling ('run' takes many)");
-  const std::string& modeling = loaded.modelings.front();
+  const std::string& modeling = loaded.settings.front().modeling;
   require_not_read(options.output, loaded.files);
-  const drive::ModeledDrive modeled =
-      model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry), registry, console);
+  drive::Fusion fusion(loaded.drive, registry);
+  const drive::ModeledDrive modeled = model_loaded(fusion, loaded.settings.front(), registry, console);
   const formats::GraphDocument& document = modeled.document;
   stop_if_interrupted();
   announce_output(options.format, document, options.input, console);
   write_graph_file(options.output, options.format, document, options.input, registry);
   if (options.common.json) {
-    const drive::GateSummary& gate = modeled.gate;
+    const drive::GateSummary& gate = modeled.placed.gate;
     nlohmann::ordered_json json = graph_json(options, document);
     json["modeling"] = modeling;
     json["accepted"] = gate.accepted;
@@ -78,7 +81,8 @@ ExitCode convert_drive(const ConvertOptions& options, const TypeRegistry& regist
     console.result(json_document("convert", json), is_stdout(options.output));
     return kSuccess;
   }
-  console.result(describe_drive(loaded) + describe_model(modeled, console.look(is_stdout(options.output))) +
+  console.result(describe_drive(loaded.drive) +
+                     describe_model(modeled, console.look(is_stdout(options.output))) +
                      fmt::format("written     {}: {} vertices, {} edges, modeling {}\n", options.output,
                                  document.graph.vertex_count(), document.graph.edge_count(), modeling),
                  is_stdout(options.output));
@@ -93,10 +97,10 @@ ExitCode convert_graph(const ConvertOptions& options, const TypeRegistry& regist
       read_graph_file(text, options.input, options.input_format, options.lenient, registry, console);
   stop_if_interrupted();
   announce_output(options.format, document, options.input, console);
-  document.provenance.emplace_back(
-      "converted", fmt::format("waymark {} from {} fnv1a64:{} read as {}", WAYMARK_VERSION,
-                               std::filesystem::path(options.input).filename().string(), fnv1a64_hex(text),
-                               options.input_format));
+  document.provenance.emplace_back("converted",
+                                   fmt::format("waymark {} from {} fnv1a64:{} read as {}", WAYMARK_VERSION,
+                                               std::filesystem::path(options.input).filename().string(),
+                                               formats::fnv1a64_hex(text), options.input_format));
   write_graph_file(options.output, options.format, document, options.input, registry);
   if (options.common.json) {
     nlohmann::ordered_json json = graph_json(options, document);
@@ -115,11 +119,13 @@ ExitCode convert_graph(const ConvertOptions& options, const TypeRegistry& regist
 
 ExitCode convert(const ConvertOptions& options) {
   const Console console(options.common);
-  const TypeRegistry registry = make_registry_for(options.input, options.common);
+  std::optional<drive::DriveFile> file;
+  if (drive::is_drive_file(options.input)) file = read_drive_file(options.input, options.choice);
+  const TypeRegistry registry =
+      make_registry(options.common, file ? file->description.plugins : std::vector<std::string>());
   (void)chosen_format(options.format);
   require_output_place(options.output);
-  return drive::is_drive_file(options.input) ? convert_drive(options, registry, console)
-                                             : convert_graph(options, registry, console);
+  return file ? convert_drive(options, *file, registry, console) : convert_graph(options, registry, console);
 }
 
 /// The options that `add` adds to a command.
@@ -163,7 +169,7 @@ void add_convert(CLI::App& app, Action& action) {
     command->add_flag("--lenient", options->lenient, "Skip and count wrong lines of a graph file");
   });
   add_output_format(*command, options->format, true);
-  const auto of_drives = added_by(*command, [&] { add_drive_options(*command, options->overrides); });
+  const auto of_drives = added_by(*command, [&] { add_drive_options(*command, options->choice); });
   add_common_options(*command, options->common);
   command->footer(
       "Example:\n  waymark convert drive.yaml -o drive.graph --modeling g2\n"

@@ -1,7 +1,9 @@
 #include <cmath>
+#include <utility>
 
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
+#include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/manual/usage_hints.hpp>
 
 namespace waymark::program {
@@ -20,6 +22,33 @@ CLI::Validator rule(const std::string& words, bool (*holds)(double)) {
 
 bool at_least_zero(double value) {
   return value >= 0 && std::isfinite(value);
+}
+
+using drive::DriveFile;
+
+/// An option whose value changes what the drive.yaml says.
+template <typename Value>
+CLI::Option* add_edit(CLI::App& command, DriveChoice& choice, const std::string& name,
+                      const std::string& text, void (*apply)(DriveFile&, const Value&)) {
+  const auto take = [&choice, apply](const Value& value) {
+    choice.edits.emplace_back([apply, value](DriveFile& file) { apply(file, value); });
+  };
+  return command.add_option_function<Value>(name, take, text);
+}
+
+/// An option that may be given several times, with one value each.
+CLI::Option* repeated(CLI::Option* option) {
+  return option->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void set_initial_guess(DriveFile& file, const std::string& way) {
+  file.settings.initial_guess.method =
+      way == "anchored" ? drive::StartMethod::anchored : drive::StartMethod::dead_reckoning;
+}
+
+void set_loss(DriveFile& file, const std::string& loss) {
+  file.settings.loss = loss;
+  file.places.of.erase("modeling.loss");
 }
 
 }  // namespace
@@ -43,98 +72,106 @@ void add_plugin_option(CLI::App& command, CommonOptions& options) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void add_drive_options(CLI::App& command, DriveOverrides& overrides) {
+void add_drive_options(CLI::App& command, DriveChoice& choice) {
   const OptionHeading heading(command, "The drive");
-  command.add_option("--data", overrides.data_folder, "Folder of the logs, instead of the drive.yaml's own")
+  command.add_option("--data", choice.data_folder, "Folder of the logs, instead of the drive.yaml's own")
       ->type_name("DIR");
-  command
-      .add_option("-m,--modeling", overrides.modelings,
-                  "GNSS modelings, or 'all' (default: the drive.yaml's)")
+  repeated(command.add_option("-m,--modeling", choice.modelings,
+                              "GNSS modelings, or 'all' (default: the drive.yaml's)"))
       ->delimiter(',')
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("MODELING|all[,...]");
-  command
-      .add_option("--modeling-option", overrides.modeling_options,
-                  "Option of the modeling, see 'waymark info'")
-      ->type_name("NAME=VALUE")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--from", overrides.from_s, "Begin so many seconds after the first odometry sample")
+  repeated(command.add_option("--modeling-option", choice.modeling_options,
+                              "Option of the modeling, see 'waymark info'"))
+      ->type_name("NAME=VALUE");
+  add_edit<double>(command, choice, "--from", "Begin so many seconds after the first odometry sample",
+                   [](DriveFile& file, const double& s) { file.description.from_s = s; })
       ->type_name("SECONDS")
       ->check(rule("must be a number of seconds, at least 0", at_least_zero));
-  command.add_option("--to", overrides.to_s, "End so many seconds after the first odometry sample")
+  add_edit<double>(command, choice, "--to", "End so many seconds after the first odometry sample",
+                   [](DriveFile& file, const double& s) { file.description.to_s = s; })
       ->type_name("SECONDS")
       ->check(rule("must be a number of seconds, at least 0", at_least_zero));
-  command
-      .add_option("--withhold", overrides.withhold_every,
-                  "Keep the fixes of every N-th epoch out of the graph, to evaluate against")
+  add_edit<int>(command, choice, "--withhold",
+                "Keep the fixes of every N-th epoch out of the graph, to evaluate against",
+                [](DriveFile& file, const int& every) { file.description.withhold_every = every; })
       ->type_name("N")
       ->check(rule("must be 0 (none) or at least 2", [](double n) { return n == 0 || n >= 2; }));
-  command
-      .add_option(
-          "--outage", overrides.outage,
-          "Keep the last LENGTH of every EVERY seconds of fixes out of the graph, to evaluate against")
+  add_edit<std::string>(
+      command, choice, "--outage",
+      "Keep the last LENGTH of every EVERY seconds of fixes out of the graph, to evaluate against",
+      [](DriveFile& file, const std::string& text) { file.description.outage = parse_outage(text); })
       ->type_name("LENGTH/EVERY");
-  command.add_option("--initial-guess", overrides.start, "How the poses are guessed from the logs")
+  add_edit<std::string>(command, choice, "--initial-guess", "How the poses are guessed from the logs",
+                        set_initial_guess)
       ->check(one_of("initial guess", {"anchored", "dead_reckoning"}));
-  command.add_option("--gnss-loss", overrides.loss, "Robust loss of the fixes, or 'none'")
+  add_edit<std::string>(command, choice, "--gnss-loss", "Robust loss of the fixes, or 'none'", set_loss)
       ->type_name("LOSS:SCALE|none");
-  command
-      .add_option("--calibrate", overrides.calibrate,
-                  "States to estimate with the poses: 'on' (gyro_bias, speed_scale, time_offset), 'off', or "
-                  "options of the odometry model or the modeling, such as gyro_bias=constant")
-      ->type_name("on|off|NAME=VALUE[,...]")
+  repeated(add_edit<std::vector<std::string>>(
+               command, choice, "--calibrate",
+               "States to estimate with the poses: 'on' (gyro_bias, speed_scale, time_offset), 'off', or "
+               "options of the odometry model or the modeling, such as gyro_bias=constant",
+               [](DriveFile& file, const std::vector<std::string>& words) {
+                 set_calibration(words, file.settings);
+               }))
       ->delimiter(',')
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command
-      .add_option("--noise", overrides.noise,
-                  "Noise parameters: estimated from the drive, or as stated (default: the modeling decides)")
+      ->type_name("on|off|NAME=VALUE[,...]");
+  add_edit<std::string>(
+      command, choice, "--noise",
+      "Noise parameters: estimated from the drive, or as stated (default: the modeling decides)",
+      [](DriveFile& file, const std::string& way) { file.settings.estimates_noise = way == "estimate"; })
       ->check(one_of("way", {"estimate", "stated"}));
-  command.add_flag("--no-gate", overrides.no_gate, "Accept every fix");
-  command.add_flag("--sync", overrides.sync,
+  command.add_flag_callback(
+      "--no-gate",
+      [&choice] { choice.edits.emplace_back([](DriveFile& file) { file.settings.gate.enabled = false; }); },
+      "Accept every fix");
+  command.add_flag("--sync", choice.sync,
                    "Estimate how late speed and yaw rate are stamped against the GNSS, and apply it");
 }
 
-void add_optimization_options(CLI::App& command, OptimizationChoice& choice) {
+void add_optimization_options(CLI::App& command, drive::Minimization& minimization) {
   const OptionHeading heading(command, "Optimisation");
   command
-      .add_option("-a,--algorithm", choice.algorithm,
+      .add_option("-a,--algorithm", minimization.algorithm,
                   "gauss_newton, levenberg_marquardt, dogleg or a plugin's")
       ->type_name("ALGORITHM")
       ->capture_default_str();
   command
-      .add_option("-s,--solver", choice.solver,
+      .add_option("-s,--solver", minimization.solver,
                   "Linear solver, see 'waymark info'; auto: the fastest by measurement")
       ->type_name("SOLVER|auto")
       ->capture_default_str();
-  command.add_option("--algorithm-option", choice.options, "Option of the algorithm, see 'waymark info'")
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--algorithm-option",
+          [&minimization](const std::vector<std::string>& pairs) {
+            minimization.options = parse_options(pairs);
+          },
+          "Option of the algorithm, see 'waymark info'")
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
-      .add_option("--covariance", choice.covariance, "Covariances to write: of no, the fixes' or all poses")
+      .add_option("--covariance", minimization.covariances,
+                  "Covariances to write: of no, the fixes' or all poses")
       ->check(one_of("choice", {"none", "fixes", "all"}))
       ->capture_default_str();
-  add_stopping_options(command, choice);
+  add_stopping_options(command, minimization);
 }
 
-void add_stopping_options(CLI::App& command, OptimizationChoice& choice) {
+void add_stopping_options(CLI::App& command, drive::Minimization& minimization) {
   const OptionHeading heading(command, "Optimisation");
   command
-      .add_option("--threads", choice.threads, "Threads to work with; the result is the same for any number")
+      .add_option("--threads", minimization.threads,
+                  "Threads to work with; the result is the same for any number")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  command.add_option("--max-iterations", choice.max_iterations, "Give up after so many steps")
+  command.add_option("--max-iterations", minimization.max_iterations, "Give up after so many steps")
       ->check(rule("must be at least 0", at_least_zero))
       ->capture_default_str();
   command
-      .add_option("--tolerance", choice.tolerance, "Newton decrement relative to 1 + chi2 that ends the run")
+      .add_option("--tolerance", minimization.tolerance,
+                  "Newton decrement relative to 1 + chi2 that ends the run")
       ->check(rule("must be above 0", [](double x) { return x > 0 && std::isfinite(x); }))
       ->capture_default_str();
 }

@@ -3,14 +3,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include <waymark/tools/program/jobs/graph/optimization.hpp>
-#include <waymark/tools/program/jobs/pipeline.hpp>
+#include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/program/jobs/drive_choice.hpp>
 
 namespace waymark::program {
 
-void add_drive_options(CLI::App& command, DriveOverrides& overrides);
-void add_optimization_options(CLI::App& command, OptimizationChoice& choice);
+void add_drive_options(CLI::App& command, DriveChoice& choice);
+void add_optimization_options(CLI::App& command, drive::Minimization& minimization);
 /// Those of them that say when to stop; `bench` has these alone.
-void add_stopping_options(CLI::App& command, OptimizationChoice& choice);
+void add_stopping_options(CLI::App& command, drive::Minimization& minimization);
 
 }  // namespace waymark::program

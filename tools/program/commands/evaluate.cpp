@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
-#include <waymark/tools/program/jobs/pipeline.hpp>
+#include <waymark/tools/program/jobs/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
-#include <waymark/tools/program/jobs/report_files.hpp>
+#include <waymark/tools/program/jobs/result_files.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 
 namespace waymark::program {
@@ -20,9 +22,6 @@ struct EvaluateOptions {
   std::string folder;
 };
 
-/// Name of the page that `waymark evaluate -o` writes in any case.
-constexpr const char* kReport = "report";
-
 /// The files' names without folder and suffix, made different where they are not: fused, fused_2. Of several
 /// files none is called as the page that compares them.
 std::vector<std::string> labels_of(const std::vector<std::string>& paths) {
@@ -31,7 +30,7 @@ std::vector<std::string> labels_of(const std::vector<std::string>& paths) {
     const std::string stem = std::filesystem::path(path).stem().string();
     const auto is_taken = [&](const std::string& label) {
       return std::find(labels.begin(), labels.end(), label) != labels.end() ||
-             (paths.size() > 1 && label == kReport);
+             (paths.size() > 1 && label == evaluation::ResultFolder::kReport);
     };
     std::string label = stem;
     for (int n = 2; is_taken(label); ++n) {
@@ -51,62 +50,82 @@ std::vector<evaluation::StateReport> states_at(const formats::GraphDocument& doc
   }
 }
 
-/// One graph: read, compared with its truth, and, where a folder is given, told in files.
-evaluation::LabelledEvaluation evaluate_file(const EvaluateOptions& options, const std::string& input,
-                                             const std::string& label, const TypeRegistry& registry,
-                                             const Console& console, evaluation::ReportHeader& header) {
-  console.progress("evaluating " + input);
-  const formats::GraphDocument document =
-      formats::read_graph(formats::read_text_file(input), input, registry);
+/// What the graphs of a command are evaluated with.
+struct EvaluationJob {
+  const EvaluateOptions& options;
+  const std::optional<drive::DriveFile>& truth_file;  ///< empty: the truth is none, or a TUM file
+  const TypeRegistry& registry;
+  const Console& console;
+};
+
+std::vector<TruthPose> truth_of(const formats::GraphDocument& document, const EvaluationJob& job) {
+  if (job.truth_file) return truth_for(document, job.truth_file->description, job.registry);
+  return job.options.truth.empty() ? std::vector<TruthPose>() : truth_from_tum(job.options.truth);
+}
+
+formats::GraphDocument read_fused(const std::string& input, const EvaluationJob& job) {
+  job.console.progress("evaluating " + input);
+  formats::GraphDocument document = formats::read_graph(formats::read_text_file(input), input, job.registry);
   if (document.fixes.empty()) throw InputError(input + ": has no GNSS records to evaluate at");
   const bool optimised = std::any_of(document.provenance.begin(), document.provenance.end(),
                                      [](const auto& entry) { return entry.first == "optimized"; });
   if (!optimised)
-    console.note(input + " does not say that it was optimised: these are the metrics of its values");
-  std::vector<TruthPose> truth;
-  if (!options.truth.empty()) truth = read_truth(options.truth, options.data_folder, document, registry);
+    job.console.note(input + " does not say that it was optimised: these are the metrics of its values");
+  return document;
+}
+
+/// One graph: read, compared with its truth, and, where a folder is given, told in files.
+evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std::string& input,
+                                             const std::string& label, evaluation::ReportHeader& header) {
+  const Console& console = job.console;
+  const formats::GraphDocument document = read_fused(input, job);
+  const std::vector<TruthPose> truth = truth_of(document, job);
   evaluation::LabelledEvaluation evaluated{label, evaluate_document(document, truth)};
   add_provenance(document, label, header);
-  if (options.folder.empty()) return evaluated;
-  std::vector<std::string> files = write_trajectories(document, options.folder + "/" + label, label);
-  files.push_back(write_epochs(evaluated.evaluation, options.folder + "/" + label));
-  const bool alone = options.inputs.size() == 1;
-  const std::string report = write_drive_report({.drive = header.drive,
-                                                 .page = alone ? kReport : label,
-                                                 .document = document,
-                                                 .evaluated = evaluated,
-                                                 .truth = truth,
-                                                 .states = states_at(document),
-                                                 .files = files},
-                                                options.folder, console);
-  for (const std::string& file : files) console.detail("written " + file);
-  if (alone) {
-    console.note("written " + report);
+  if (job.options.folder.empty()) return evaluated;
+  const std::vector<std::string> files =
+      write_result({.drive = header.drive,
+                    .document = document,
+                    .evaluated = evaluated,
+                    .truth = truth,
+                    .states = states_at(document)},
+                   evaluation::ResultFolder(job.options.folder), job.options.inputs.size(), console);
+  for (std::size_t i = 0; i + 1 < files.size(); ++i) console.detail("written " + files[i]);
+  if (job.options.inputs.size() == 1) {
+    console.note("written " + files.back());
   } else {
-    console.detail("written " + report);
+    console.detail("written " + files.back());
   }
   return evaluated;
 }
 
+/// The drive.yaml that names the truth, if one does.
+std::optional<drive::DriveFile> read_truth_file(const EvaluateOptions& options) {
+  if (!drive::is_drive_file(options.truth)) return std::nullopt;
+  return drive::load_drive_file(options.truth, options.data_folder);
+}
+
 ExitCode evaluate_files(const EvaluateOptions& options) {
   const Console console(options.common);
-  const TypeRegistry registry = make_registry_for(options.truth, options.common);
+  const std::optional<drive::DriveFile> truth_file = read_truth_file(options);
+  const TypeRegistry registry = make_registry(
+      options.common, truth_file ? truth_file->description.plugins : std::vector<std::string>());
+  const EvaluationJob job{options, truth_file, registry, console};
   std::vector<evaluation::LabelledEvaluation> evaluations;
   evaluation::ReportHeader header;
   const std::vector<std::string> labels = labels_of(options.inputs);
   if (!options.folder.empty()) formats::make_folder(options.folder);
   for (std::size_t i = 0; i < options.inputs.size(); ++i) {
     stop_if_interrupted();
-    evaluations.push_back(evaluate_file(options, options.inputs[i], labels[i], registry, console, header));
+    evaluations.push_back(evaluate_file(job, options.inputs[i], labels[i], header));
   }
   const std::string json = evaluation::metrics_json(evaluations, header);
   if (!options.folder.empty()) {
-    formats::write_file_atomically(options.folder + "/metrics.json", json);
-    if (evaluations.size() > 1) {
-      std::vector<ComparedReport> reports;
-      for (const evaluation::LabelledEvaluation& evaluation : evaluations) reports.push_back({evaluation});
-      console.note("written " + write_comparison(reports, header, options.folder, console));
-    }
+    std::vector<ComparedResult> results;
+    for (const evaluation::LabelledEvaluation& evaluation : evaluations) results.push_back({evaluation});
+    const std::vector<std::string> files =
+        write_overview(results, header, json, evaluation::ResultFolder(options.folder), console);
+    if (evaluations.size() > 1) console.note("written " + files.front());
   }
   console.result(options.common.json ? json : evaluation::metrics_table(evaluations, console.look()));
   return kSuccess;

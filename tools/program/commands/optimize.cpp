@@ -1,9 +1,11 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/evaluation/output/summary_json.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
 #include <waymark/tools/program/jobs/graph/covariance.hpp>
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
+#include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/graph/robust.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -13,7 +15,7 @@ namespace {
 
 struct OptimizeOptions {
   CommonOptions common;
-  OptimizationChoice choice;
+  drive::Minimization minimization;
   RobustChoice robust;
   std::string input;
   std::string output;
@@ -26,10 +28,10 @@ struct OptimizeOptions {
 ExitCode optimize_file(const OptimizeOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
-  check_choice(options.choice, registry);
+  drive::check_minimization(options.minimization, registry);
   check_robust(options.robust, registry);
   require_output_place(options.output);
-  check_covariance_file(options.covariance_file, options.choice.covariance);
+  check_covariance_file(options.covariance_file, options.minimization.covariances);
   console.progress("reading " + options.input);
   formats::GraphDocument document = read_graph_file(formats::read_text_file(options.input), options.input,
                                                     options.input_format, options.lenient, registry, console);
@@ -38,10 +40,11 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   stop_if_interrupted();
 
   std::optional<Graduated> graduated;
-  const Minimizer minimizer = options.robust.method == "gnc"
-                                  ? graduating_minimizer(options.robust, registry, graduated)
-                                  : Minimizer();
-  const MultiStartSummary result = optimize_document(document, options.choice, registry, console, minimizer);
+  const drive::Minimizer minimizer = options.robust.method == "gnc"
+                                         ? graduating_minimizer(options.robust, registry, graduated)
+                                         : drive::Minimizer();
+  const MultiStartSummary result =
+      optimize_document(document, options.minimization, registry, console, minimizer);
   document.provenance.emplace_back("optimized", describe_optimization(result));
   if (graduated) {
     document.provenance.emplace_back(
@@ -60,7 +63,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   }
   const std::vector<evaluation::StateReport> states = states_of_minimum(document, result.summary, console);
   if (options.common.json) {
-    nlohmann::ordered_json json = summary_json(result);
+    nlohmann::ordered_json json = evaluation::summary_json(result);
     json["states"] = evaluation::states_json(states);
     if (graduated) json["graduation"] = graduation_json(*graduated);
     console.result(json_document("optimize", json), to_stdout);
@@ -91,15 +94,15 @@ void add_optimize(CLI::App& app, Action& action) {
       ->type_name("FILE");
   add_input_format(*command, options->input_format);
   add_output_format(*command, options->format, false);
-  options->choice.start = "auto";
+  options->minimization.start = "auto";
   command
-      ->add_option("--start", options->choice.start,
+      ->add_option("--start", options->minimization.start,
                    "Where to begin: 'file' (its values), a start that `waymark info` lists, or 'auto': what "
                    "promises most, and others where the minimum found is implausible")
       ->type_name("START|file|auto")
       ->capture_default_str();
   command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");
-  add_optimization_options(*command, options->choice);
+  add_optimization_options(*command, options->minimization);
   {
     const OptionHeading heading(*command, "Optimisation");
     command

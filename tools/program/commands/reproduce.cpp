@@ -6,9 +6,10 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
+#include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
-#include <waymark/tools/program/jobs/graph/covariance.hpp>
-#include <waymark/tools/program/jobs/pipeline.hpp>
+#include <waymark/tools/program/jobs/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/tools/reproduction/experiment/consistency_study.hpp>
@@ -31,17 +32,25 @@ struct ReproduceOptions {
 
 /// A drive to be studied.
 struct Subject {
-  std::string path;     ///< of its drive.yaml
+  drive::DriveDescription drive;
   int dataset = 0;      ///< of the paper; 0: none
   std::string group{};  ///< the preset it is a draw of, where draws are pooled
 };
+
+/// The drive of a drive.yaml without its further sensors: the settings say what is done, the same for every
+/// drive.
+drive::DriveDescription read_drive(const std::string& path) {
+  drive::DriveDescription description = drive::load_drive_file(path).description;
+  description.sensors.clear();
+  return description;
+}
 
 /// Covariances only of a minimum: elsewhere they mean nothing.
 evaluation::Evaluation evaluate_fused(formats::GraphDocument& document, const std::vector<TruthPose>& truth,
                                       bool converged) {
   if (converged) {
     try {
-      add_covariances(document, "fixes");
+      drive::add_covariances(document, "fixes");
     } catch (const InputError&) {
       document.covariances.clear();  // H is singular where the rule of g2o ended the run
     }
@@ -56,10 +65,10 @@ class StudyProgress {
                 const Console& console)
       : drives_(subjects.size()), steps_(console, runs_of(experiment, subjects)), experiment_(experiment) {}
 
-  void begin_drive(const drive::DriveConfig& config) {
+  void begin_drive(const drive::DriveDescription& drive) {
     ++drive_;
     run_ = 0;
-    runs_ = reproduction::run_count(experiment_, config.truth.has_value());
+    runs_ = reproduction::run_count(experiment_, drive.truth.has_value());
   }
   void begin_run(const std::string& setting) {
     steps_.next(fmt::format("{}: drive {} of {}  setting {} of {}", setting, drive_, drives_, ++run_, runs_));
@@ -70,7 +79,7 @@ class StudyProgress {
                              const std::vector<Subject>& subjects) {
     std::size_t runs = 0;
     for (const Subject& subject : subjects)
-      runs += reproduction::run_count(experiment, drive::load_drive_config(subject.path).truth.has_value());
+      runs += reproduction::run_count(experiment, subject.drive.truth.has_value());
     return runs;
   }
 
@@ -85,9 +94,8 @@ class StudyProgress {
 reproduction::DriveResult study(const reproduction::Experiment& experiment, const Subject& subject,
                                 const TypeRegistry& registry, const Console& console,
                                 StudyProgress& progress) {
-  const drive::DriveConfig config = drive::load_drive_config(subject.path);
-  progress.begin_drive(config);
-  const drive::DriveLogs logs = drive::read_drive_logs(config, registry, watch_reading(console));
+  progress.begin_drive(subject.drive);
+  const drive::DriveLogs logs = drive::read_drive_logs(subject.drive, registry, watch_reading(console));
   const reproduction::Laboratory laboratory{registry, evaluate_fused,
                                             [&](const std::string& setting) {
                                               stop_if_interrupted();
@@ -95,7 +103,7 @@ reproduction::DriveResult study(const reproduction::Experiment& experiment, cons
                                             },
                                             &interrupted};
   reproduction::DriveResult result =
-      reproduction::run_experiment(experiment, subject.dataset, config, logs, laboratory);
+      reproduction::run_experiment(experiment, subject.dataset, subject.drive, logs, laboratory);
   result.group = subject.group;
   stop_if_interrupted();
   return result;
@@ -124,8 +132,7 @@ std::vector<Subject> given_subjects(const ReproduceOptions& options) {
     throw UsageError("--drives and --seed are for the simulated drives; drive.yaml files are given");
   std::vector<Subject> subjects;
   for (const std::string& path : options.files) {
-    (void)drive::load_drive_config(path);
-    subjects.push_back({path, 0});
+    subjects.push_back({read_drive(path), 0});
   }
   return subjects;
 }
@@ -146,14 +153,14 @@ std::vector<int> chosen_datasets(const ReproduceOptions& options) {
   return datasets;
 }
 
-/// Written as raw logs: simulated drives come in by the door of real ones. Returns the drive.yaml.
-std::string write_simulated(const simulation::SimulationPreset& preset, std::uint64_t seed,
-                            const std::string& folder, StepProgress& progress) {
+/// Written as raw logs: simulated drives come in by the door of real ones.
+drive::DriveDescription write_simulated(const simulation::SimulationPreset& preset, std::uint64_t seed,
+                                        const std::string& folder, StepProgress& progress) {
   stop_if_interrupted();
   progress.next("simulating " + preset.name);
   formats::make_folder(folder);
   simulation::write_simulated_drive(simulation::simulate(preset.recipe, seed), folder);
-  return folder + "/drive.yaml";
+  return read_drive(folder + "/drive.yaml");
 }
 
 /// The paper's drives.

@@ -4,13 +4,17 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/evaluation/output/summary_json.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
-#include <waymark/tools/program/jobs/graph/covariance.hpp>
-#include <waymark/tools/program/jobs/model_report.hpp>
+#include <waymark/tools/program/jobs/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/drive_job.hpp>
+#include <waymark/tools/program/jobs/drive_text.hpp>
+#include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
-#include <waymark/tools/program/jobs/report_files.hpp>
 #include <waymark/tools/program/jobs/result_doubts.hpp>
+#include <waymark/tools/program/jobs/result_files.hpp>
+#include <waymark/tools/program/terminal/iteration_table.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 
 namespace waymark::program {
@@ -18,8 +22,8 @@ namespace {
 
 struct RunOptions {
   CommonOptions common;
-  DriveOverrides overrides;
-  OptimizationChoice choice;
+  DriveChoice choice;
+  drive::Minimization minimization;
   std::string input;
   std::string folder;
   bool causal = false;
@@ -35,96 +39,104 @@ struct ModelingRun {
   std::vector<std::string> files;
 };
 
-/// Covariances of the poses at the fixes, for the evaluation; said where there are none.
-void add_covariances_at_fixes(formats::GraphDocument& document, const Summary& summary,
-                              const Console& console) {
-  if (!summary.converged() || !document.covariances.empty()) return;
-  try {
-    add_covariances(document, "fixes");
-  } catch (const InputError& error) {
-    console.warning("stated errors cannot be judged: " + std::string(error.what()));
-  }
-}
+/// What the modelings of a run share.
+struct RunOfDrive {
+  const RunOptions& options;
+  const LoadedDrive& loaded;
+  const evaluation::ResultFolder folder;
+  const TypeRegistry& registry;
+  const Console& console;
+};
 
 /// What was known of the withheld fixes before each outage's end: the same settings on the drive so far.
-evaluation::Prediction predict_causally(const RunOptions& options, const LoadedDrive& loaded,
-                                        const std::string& modeling, const TypeRegistry& registry,
-                                        const Console& console) {
-  OptimizationChoice choice = options.choice;
-  choice.covariance = "fixes";
-  const auto runs = drive::withheld_runs(loaded.drive.fixes);
-  const auto outages = std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.begin > 0; });
-  StepProgress progress(console, static_cast<std::size_t>(outages));
+evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSettings settings) {
+  settings.minimization.covariances = "fixes";
+  const auto runs = drive::withheld_runs(run.loaded.drive.fixes);
+  const auto outages = std::count_if(runs.begin(), runs.end(), [](const auto& of) { return of.begin > 0; });
+  StepProgress progress(run.console, static_cast<std::size_t>(outages));
   const drive::FuseDrive fuse =
       [&](const drive::PreparedDrive& known) -> std::optional<formats::GraphDocument> {
     if (interrupted) return std::nullopt;
-    progress.next(fmt::format("{}: causal, outage {} of {}", modeling, progress.step() + 1, outages));
+    progress.next(
+        fmt::format("{}: causal, outage {} of {}", settings.modeling, progress.step() + 1, outages));
     try {
-      formats::GraphDocument document =
-          drive::model_drive(known, loaded.config, modeling,
-                             known_options(modeling, options.overrides, registry), registry, loaded.loss)
-              .document;
-      const Summary summary =
-          optimize_document(document, choice, registry, console, {}, progress.line()).summary;
-      if (summary.termination == Termination::interrupted) return std::nullopt;
-      return document;
+      IterationTable iterations(run.console, progress.line());
+      drive::FusedDrive fused =
+          drive::fuse(known, settings, run.registry,
+                      {.observer = [&](const IterationRecord& record) { iterations.add(record); },
+                       .cancel = &interrupted});
+      run.console.end_progress();
+      tell_ending(fused.minimum.summary, run.console);
+      if (fused.minimum.summary.termination == Termination::interrupted) return std::nullopt;
+      return std::move(fused.model.document);
     } catch (const InputError& error) {
-      console.warning(fmt::format("nothing is known causally of the outage that ends with epoch {}: {}",
-                                  known.fixes.back().epoch, error.what()));
+      run.console.warning(fmt::format("nothing is known causally of the outage that ends with epoch {}: {}",
+                                      known.fixes.back().epoch, error.what()));
       return std::nullopt;
     }
   };
-  evaluation::Prediction causal = as_prediction("causal", drive::causal_at_withheld(loaded.drive, fuse));
-  if (interrupted) console.warning("interrupted: the causal predictions end early");
+  evaluation::Prediction causal = as_prediction("causal", drive::causal_at_withheld(run.loaded.drive, fuse));
+  if (interrupted) run.console.warning("interrupted: the causal predictions end early");
   return causal;
 }
 
-ModelingRun run_modeling(const RunOptions& options, const LoadedDrive& loaded, drive::ModeledDrive modeled,
-                         const TypeRegistry& registry, const Console& console,
-                         evaluation::ReportHeader& header) {
-  const std::string& modeling = modeled.modeling;
-  ModelingRun run;
-  const std::string prefix = options.folder + "/" + modeling;
-  run.noise = modeled.noise;
-  run.description = describe_model(modeled, console.look());
+/// Evaluates a document with the covariances at its fixes; it keeps those that were asked for.
+evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, formats::GraphDocument& document,
+                                        const Summary& summary, const drive::FusionSettings& settings) {
+  run.console.progress(settings.modeling + ": covariances");
+  const std::vector<formats::VertexCovariance> asked_for = document.covariances;
+  if (summary.converged() && document.covariances.empty()) {
+    try {
+      drive::add_covariances(document, "fixes");
+    } catch (const InputError& error) {
+      warn("stated errors cannot be judged: " + std::string(error.what()), document, run.console);
+    }
+  }
+  std::vector<evaluation::Prediction> further;
+  if (run.options.causal) further.push_back(predict_causally(run, settings));
+  evaluation::Evaluation evaluation = evaluate_document(document, run.loaded.drive.truth, further);
+  run.console.end_progress();
+  document.covariances = asked_for;
+  return evaluation;
+}
+
+ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
+                         const drive::FusionSettings& settings, evaluation::ReportHeader& header) {
+  const std::string& modeling = settings.modeling;
+  const Console& console = run.console;
+  ModelingRun result;
+  result.noise = modeled.noise;
+  result.description = describe_model(modeled, console.look());
   formats::GraphDocument& document = modeled.document;
   const auto write = [&](const std::string& name) {
     formats::write_file_atomically(
-        name, [&](const formats::TextSink& sink) { formats::write_graph(document, registry, sink); });
-    run.files.push_back(name);
+        name, [&](const formats::TextSink& sink) { formats::write_graph(document, run.registry, sink); });
   };
-  write(prefix + ".graph");
+  write(run.folder.graph(modeling));
   console.detail("optimising " + modeling);
-  run.result = optimize_document(document, options.choice, registry, console, {}, modeling);
-  document.provenance.emplace_back("optimized", describe_optimization(run.result));
-  write(prefix + ".fused.graph");
-  run.states = states_of_minimum(document, run.result.summary, console);
-  for (const std::string& file : write_trajectories(document, prefix, modeling)) run.files.push_back(file);
-  console.progress(modeling + ": covariances");
-  add_covariances_at_fixes(document, run.result.summary, console);
-  std::vector<evaluation::Prediction> further;
-  if (options.causal) further.push_back(predict_causally(options, loaded, modeling, registry, console));
-  run.evaluation = {modeling, evaluate_document(document, loaded.drive.truth, further)};
-  run.files.push_back(write_epochs(run.evaluation.evaluation, prefix));
-  console.end_progress();
-  for (const std::string& warning : doubts_of_result(run.states, run.noise, run.evaluation.evaluation)) {
-    console.warning(warning);
-    document.provenance.emplace_back("warning", warning);
-  }
+  result.result = optimize_document(document, settings.minimization, run.registry, console, {}, modeling);
+  const Summary& summary = result.result.summary;
+  document.provenance.emplace_back("optimized", describe_optimization(result.result));
+  if (!summary.converged()) document.provenance.emplace_back("warning", no_minimum_warning(summary));
+  write(run.folder.fused_graph(modeling));  // whatever comes after, the minimum is kept
+  const std::size_t known = document.provenance.size();
+  result.states = states_of_minimum(document, summary, console);
+  result.evaluation = {modeling, evaluate_minimum(run, document, summary, settings)};
+  for (const std::string& doubt : doubts_of_result(result.states, result.noise, result.evaluation.evaluation))
+    warn(doubt, document, console);
+  if (document.provenance.size() > known) write(run.folder.fused_graph(modeling));
   add_provenance(document, modeling, header);
-  const bool alone = loaded.modelings.size() == 1;
-  run.files.push_back(write_drive_report(
-      {.drive = loaded.config.name,
-       .page = alone ? "report" : modeling,
-       .document = document,
-       .evaluated = run.evaluation,
-       .truth = loaded.drive.truth,
-       .optimization = &run.result,
-       .states = run.states,
-       .went_in = {{"odometry", odometry_in_words(loaded)}, {"left out", left_out(loaded)}},
-       .files = run.files},
-      options.folder, console));
-  return run;
+  result.files = write_result({.drive = header.drive,
+                               .document = document,
+                               .evaluated = result.evaluation,
+                               .truth = run.loaded.drive.truth,
+                               .optimization = &result.result,
+                               .states = result.states,
+                               .went_in = {{"odometry", odometry_in_words(run.loaded.drive)},
+                                           {"left out", left_out(run.loaded.drive)}},
+                               .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)}},
+                              run.folder, run.loaded.settings.size(), console);
+  return result;
 }
 
 std::string run_line(const std::string& modeling, const Summary& s) {
@@ -133,104 +145,96 @@ std::string run_line(const std::string& modeling, const Summary& s) {
                      s.initial_chi2, s.final_chi2, s.converged() ? "" : " (" + s.message + ")");
 }
 
-/// Files of every modeling, after its name; those of the whole run.
-constexpr const char* kOfModeling[] = {".graph", ".fused.graph", ".csv",        ".tum", ".geojson",
-                                       ".kml",   ".gpx",         ".epochs.csv", ".html"};
-constexpr const char* kOfRun[] = {"report.html", "metrics.json", "summary.json"};
-
-void require_logs_stay(const RunOptions& options, const LoadedDrive& loaded) {
-  const std::string folder = options.folder + "/";
-  for (const std::string& modeling : loaded.modelings) {
-    for (const char* ending : kOfModeling) require_not_read(folder + modeling + ending, loaded.files);
-  }
-  for (const char* name : kOfRun) require_not_read(folder + name, loaded.files);
+void require_logs_stay(const RunOfDrive& run) {
+  std::vector<std::string> modelings;
+  for (const drive::FusionSettings& settings : run.loaded.settings) modelings.push_back(settings.modeling);
+  for (const std::string& file : run.folder.files(modelings)) require_not_read(file, run.loaded.files);
 }
 
 /// The modelings of a drive; what is wrong with one of them shows before anything is written.
-std::vector<drive::ModeledDrive> model_all(const RunOptions& options, const LoadedDrive& loaded,
-                                           const TypeRegistry& registry, const Console& console) {
+std::vector<drive::ModeledDrive> model_all(const RunOfDrive& run) {
+  drive::Fusion fusion(run.loaded.drive, run.registry);
   std::vector<drive::ModeledDrive> models;
-  for (const std::string& modeling : loaded.modelings) {
-    models.push_back(model_loaded(loaded, modeling, known_options(modeling, options.overrides, registry),
-                                  registry, console));
+  for (const drive::FusionSettings& settings : run.loaded.settings) {
+    models.push_back(model_loaded(fusion, settings, run.registry, run.console));
     stop_if_interrupted();
   }
   return models;
 }
 
 /// What all modelings have in common: the comparison, metrics.json, summary.json. Returns the files.
-std::vector<std::string> write_common(const std::vector<ModelingRun>& runs, const std::string& metrics,
-                                      const evaluation::ReportHeader& header, const std::string& folder,
-                                      const Console& console) {
-  std::vector<std::string> files;
-  if (runs.size() > 1) {
-    std::vector<ComparedReport> reports;
-    for (const ModelingRun& run : runs) reports.push_back({run.evaluation, &run.result});
-    files.push_back(write_comparison(reports, header, folder, console));
+std::vector<std::string> write_common(const RunOfDrive& run, const std::vector<ModelingRun>& runs,
+                                      const std::string& metrics, const evaluation::ReportHeader& header) {
+  std::vector<ComparedResult> results;
+  std::vector<nlohmann::ordered_json> noise;
+  for (const ModelingRun& of : runs) {
+    results.push_back({of.evaluation, &of.result});
+    noise.push_back(noise_json(of.noise));
   }
-  nlohmann::ordered_json summaries;
-  for (const ModelingRun& run : runs) {
-    nlohmann::ordered_json& summary = summaries[run.evaluation.label];
-    summary = summary_json(run.result);
-    summary["states"] = evaluation::states_json(run.states);
-    summary["noise"] = noise_json(run.noise);
-  }
-  files.push_back(folder + "/metrics.json");
-  formats::write_file_atomically(files.back(), metrics);
-  files.push_back(folder + "/summary.json");
-  formats::write_file_atomically(files.back(), json_text(summaries));
+  std::vector<std::string> files = write_overview(results, header, metrics, run.folder, run.console);
+  std::vector<evaluation::RunSummary> summaries;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    summaries.push_back({runs[i].evaluation.label, runs[i].result, runs[i].states, noise[i]});
+  files.push_back(run.folder.summary());
+  formats::write_file_atomically(files.back(), json_text(evaluation::run_summary_json(summaries)));
   return files;
 }
 
-std::string describe_runs(const LoadedDrive& loaded, const std::vector<ModelingRun>& runs,
-                          const Console& console) {
-  std::string text = describe_drive(loaded);
-  for (const ModelingRun& run : runs) {
-    if (text.find(run.description) == std::string::npos) text += run.description;
-    text += run_line(run.evaluation.label, run.result.summary) +
-            evaluation::states_text(run.states, console.look());
+std::string describe_runs(const RunOfDrive& run, const std::vector<ModelingRun>& runs) {
+  std::string text = describe_drive(run.loaded.drive);
+  std::vector<std::string> described;
+  for (const ModelingRun& of : runs) {
+    const bool known = std::any_of(described.begin(), described.end(), [&](const std::string& earlier) {
+      return earlier.starts_with(of.description);
+    });
+    if (!known) text += described.emplace_back(of.description);
+    text += run_line(of.evaluation.label, of.result.summary) +
+            evaluation::states_text(of.states, run.console.look());
   }
   return text;
 }
 
+/// What is printed of a run: its modelings, the metrics, the files.
+std::string run_text(const RunOfDrive& run, const std::vector<ModelingRun>& runs,
+                     const std::vector<evaluation::LabelledEvaluation>& evaluations,
+                     const std::vector<std::string>& common) {
+  std::string text = describe_runs(run, runs) + "\n" +
+                     evaluation::metrics_table(evaluations, run.console.look()) + "\nwritten:\n";
+  for (const ModelingRun& of : runs) {
+    for (const std::string& file : of.files) text += "  " + file + "\n";
+  }
+  for (const std::string& file : common) text += "  " + file + "\n";
+  return text + "  and the figures of the report as SVG and CSV in " + run.folder.figures() + "\n";
+}
+
 ExitCode run_drive(const RunOptions& options) {
   const Console console(options.common);
-  const TypeRegistry registry =
-      make_registry(options.common, drive::load_drive_config(options.input).plugins);
-  check_choice(options.choice, registry);
-  const LoadedDrive loaded = load_drive_for(options.input, options.overrides, registry, console);
-  if (options.causal && loaded.config.outage.length_s == 0)
+  drive::DriveFile file = read_drive_file(options.input, options.choice);
+  file.settings.minimization = options.minimization;
+  const TypeRegistry registry = make_registry(options.common, file.description.plugins);
+  drive::check_minimization(options.minimization, registry);
+  const LoadedDrive loaded = load_drive_for(file, options.choice, registry, console);
+  if (options.causal && file.description.outage.length_s == 0)
     throw UsageError("--causal: there are no outages to be predicted; name them with --outage LENGTH/EVERY");
-  require_logs_stay(options, loaded);
+  const RunOfDrive run{options, loaded, evaluation::ResultFolder(options.folder), registry, console};
+  require_logs_stay(run);
   stop_if_interrupted();
-  std::vector<drive::ModeledDrive> models = model_all(options, loaded, registry, console);
+  std::vector<drive::ModeledDrive> models = model_all(run);
   formats::make_folder(options.folder);
-  evaluation::ReportHeader header{loaded.config.name, {}};
+  evaluation::ReportHeader header{loaded.drive.name, {}};
   std::vector<ModelingRun> runs;
+  std::vector<evaluation::LabelledEvaluation> evaluations;
   ExitCode code = kSuccess;
-  for (drive::ModeledDrive& modeled : models) {
-    runs.push_back(run_modeling(options, loaded, std::move(modeled), registry, console, header));
+  for (std::size_t i = 0; i < models.size() && code != kInterrupted; ++i) {
+    runs.push_back(run_modeling(run, std::move(models[i]), loaded.settings[i], header));
+    evaluations.push_back(runs.back().evaluation);
     const ExitCode of_run = exit_code(runs.back().result.summary);
     if (of_run != kSuccess) code = of_run;
     if (interrupted) code = kInterrupted;
-    if (code == kInterrupted) break;
   }
-  std::vector<evaluation::LabelledEvaluation> evaluations;
-  for (const ModelingRun& run : runs) evaluations.push_back(run.evaluation);
   const std::string metrics = evaluation::metrics_json(evaluations, header);
-  const std::vector<std::string> common = write_common(runs, metrics, header, options.folder, console);
-  if (options.common.json) {
-    console.result(metrics);
-    return code;
-  }
-  std::string text = describe_runs(loaded, runs, console);
-  text += "\n" + evaluation::metrics_table(evaluations, console.look()) + "\nwritten:\n";
-  for (const ModelingRun& run : runs) {
-    for (const std::string& file : run.files) text += "  " + file + "\n";
-  }
-  for (const std::string& file : common) text += "  " + file + "\n";
-  text += "  and the figures of the report as SVG and CSV in " + options.folder + "/figures\n";
-  console.result(text);
+  const std::vector<std::string> common = write_common(run, runs, metrics, header);
+  console.result(options.common.json ? metrics : run_text(run, runs, evaluations, common));
   return code;
 }
 
@@ -248,13 +252,13 @@ void add_run(CLI::App& app, Action& action) {
       ->required()
       ->type_name("DRIVE.yaml");
   command->add_option("-o,--out", options->folder, "Folder for all results")->required()->type_name("DIR");
-  add_drive_options(*command, options->overrides);
+  add_drive_options(*command, options->choice);
   {
     const OptionHeading heading(*command, "The drive");
     command->add_flag("--causal", options->causal,
                       "Also predict each outage of --outage from what was known before its end");
   }
-  add_optimization_options(*command, options->choice);
+  add_optimization_options(*command, options->minimization);
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark run drive.yaml --out results --modeling all");
   command->callback([options, &action] { action = [options] { return run_drive(*options); }; });

@@ -8,7 +8,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
@@ -91,11 +91,11 @@ nlohmann::ordered_json statistics_json(const std::string& name, const simulation
 
 /// A drive through the door by which every drive comes, simulated ones too.
 ExitCode describe(const std::string& path, const CommonOptions& common, const Console& console) {
-  const drive::DriveConfig config = drive::load_drive_config(path);
-  const TypeRegistry registry = make_registry(common, config.plugins);
-  const drive::PreparedDrive drive = drive::load_drive(config, registry, watch_reading(console));
+  const drive::DriveFile file = drive::load_drive_file(path);
+  const TypeRegistry registry = make_registry(common, file.description.plugins);
+  const drive::PreparedDrive drive = drive::load_drive(file.description, registry, watch_reading(console));
   console.end_progress();
-  const simulation::DriveStatistics statistics = simulation::drive_statistics(drive, config.gate);
+  const simulation::DriveStatistics statistics = simulation::drive_statistics(drive, file.settings.gate);
   console.result(console.json() ? json_document("simulate", statistics_json(drive.name, statistics))
                                 : statistics_text(drive.name, statistics));
   return kSuccess;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/clock_sync.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
@@ -50,7 +51,7 @@ text::TextTable::Row row_of(const std::string& quantity, const drive::ClockOffse
           offset.against};
 }
 
-std::string table_of(const drive::SyncReport& report, const drive::DriveConfig& config,
+std::string table_of(const drive::SyncReport& report, const drive::DriveDescription& drive,
                      const text::TextLook& look) {
   text::TextTable table({"odometry's", "late by [s]", "sigma [s]", "correlation", "samples", "against"});
   if (report.speed) table.add(row_of("speed", *report.speed));
@@ -64,19 +65,19 @@ std::string table_of(const drive::SyncReport& report, const drive::DriveConfig& 
       "Late: stamped later than the GNSS says; negative: early.\n\nTo apply it: --sync of run and convert, "
       "or in the drive.yaml under 'odometry':\n";
   if (report.speed)
-    text += fmt::format("  speed_delay: {:.3f}\n", config.speed_delay_s + report.speed->late_s);
+    text += fmt::format("  speed_delay: {:.3f}\n", drive.speed_delay_s + report.speed->late_s);
   if (report.yaw_rate)
-    text += fmt::format("  yaw_rate_delay: {:.3f}\n", config.yaw_rate_delay_s + report.yaw_rate->late_s);
+    text += fmt::format("  yaw_rate_delay: {:.3f}\n", drive.yaw_rate_delay_s + report.yaw_rate->late_s);
   return text;
 }
 
 ExitCode synchronise(const SyncCommand& command) {
   const Console console(command.common);
-  const drive::DriveConfig config = drive::load_drive_config(command.input, command.data_folder);
-  const TypeRegistry registry = make_registry(command.common, config.plugins);
-  drive::DriveConfig alone = config;
-  alone.sensors.clear();  // nothing of them is needed
-  const drive::PreparedDrive drive = drive::load_drive(alone, registry, watch_reading(console));
+  drive::DriveDescription description =
+      drive::load_drive_file(command.input, command.data_folder).description;
+  const TypeRegistry registry = make_registry(command.common, description.plugins);
+  description.sensors.clear();  // nothing of them is needed
+  const drive::PreparedDrive drive = drive::load_drive(description, registry, watch_reading(console));
   console.progress("comparing clocks");
   const drive::SyncReport report = drive::estimate_clock_offsets(drive, command.options);
   console.end_progress();
@@ -85,7 +86,7 @@ ExitCode synchronise(const SyncCommand& command) {
     console.result(json_document("sync", json_of(report, drive.report.clocks)));
     return kSuccess;
   }
-  std::string text = table_of(report, config, console.look());
+  std::string text = table_of(report, description, console.look());
   for (const drive::ClockReport& clock : drive.report.clocks)
     text += fmt::format(
         "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual deviation "

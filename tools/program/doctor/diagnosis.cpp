@@ -14,7 +14,7 @@
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
 #include <waymark/formats/text/text_file.hpp>
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/program/doctor/doctor.hpp>
 #include <waymark/tools/program/doctor/libraries.hpp>
 #include <waymark/tools/program/doctor/self_test.hpp>
@@ -130,11 +130,12 @@ std::string read_input(const std::string& path, const TypeRegistry& registry) {
     return fmt::format("{} vertices, {} edges, every tag is known", document.graph.vertex_count(),
                        document.graph.edge_count());
   }
-  const drive::DriveConfig config = drive::load_drive_config(path);
-  std::vector<drive::LogConfig> logs = config.odometry;
-  logs.insert(logs.end(), config.gnss.begin(), config.gnss.end());
-  if (config.truth) logs.push_back(*config.truth);
-  for (const drive::SensorConfig& sensor : config.sensors) {
+  const drive::DriveFile file = drive::load_drive_file(path);
+  const drive::DriveDescription& drive = file.description;
+  std::vector<drive::LogConfig> logs = drive.odometry;
+  logs.insert(logs.end(), drive.gnss.begin(), drive.gnss.end());
+  if (drive.truth) logs.push_back(*drive.truth);
+  for (const drive::SensorConfig& sensor : drive.sensors) {
     if (sensor.log) logs.push_back(*sensor.log);
   }
   for (const drive::LogConfig& log : logs) {
@@ -142,9 +143,9 @@ std::string read_input(const std::string& path, const TypeRegistry& registry) {
     if (!std::filesystem::exists(log.file, unknown))
       throw InputError(log.place + log.file + ": there is no such log");
   }
-  (void)registry.gnss_modeling(config.modeling);
+  (void)registry.gnss_modeling(file.settings.modeling);
   return fmt::format("{} logs, all there (not read: `waymark inspect` does); modeling {}", logs.size(),
-                     config.modeling);
+                     file.settings.modeling);
 }
 
 Json inputs_json(const std::vector<std::string>& inputs, const TypeRegistry& registry, Diagnosis& diagnosis) {
@@ -211,7 +212,7 @@ std::vector<std::string> wanted_plugins(const CommonOptions& options,
   for (const std::string& path : inputs) {
     if (!drive::is_drive_file(path)) continue;
     try {
-      const std::vector<std::string> plugins = drive::load_drive_config(path).plugins;
+      const std::vector<std::string> plugins = drive::load_drive_file(path).description.plugins;
       wanted.insert(wanted.end(), plugins.begin(), plugins.end());
     } catch (const Error&) {
     }

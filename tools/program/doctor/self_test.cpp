@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/optimize/optimizer.hpp>
-#include <waymark/tools/program/jobs/graph/optimization.hpp>
+#include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace waymark::program {
@@ -78,7 +78,7 @@ std::vector<SelfTest> test_solvers(const TypeRegistry& registry) {
   std::vector<SelfTest> tests;
   for (const auto& [solver, origin] : registry.linear_solvers())
     tests.push_back(
-        test_on_known_problem(solver.name, OptimizationChoice().algorithm, solver.name, registry));
+        test_on_known_problem(solver.name, drive::Minimization().algorithm, solver.name, registry));
   return tests;
 }
 

@@ -11,7 +11,7 @@
 #include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/plugins/builtin.hpp>
 #include <waymark/solvers/register.hpp>
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/types_se2/register.hpp>
 
 namespace waymark::program {
@@ -167,11 +167,6 @@ std::vector<std::string> installed_plugin_names() {
     }
   }
   return names;
-}
-
-TypeRegistry make_registry_for(const std::string& input, const CommonOptions& options) {
-  return make_registry(options, drive::is_drive_file(input) ? drive::load_drive_config(input).plugins
-                                                            : std::vector<std::string>());
 }
 
 }  // namespace waymark::program

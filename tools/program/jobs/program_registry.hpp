@@ -20,9 +20,6 @@ namespace waymark::program {
 [[nodiscard]] TypeRegistry make_registry(const CommonOptions& options,
                                          const std::vector<std::string>& plugins = {});
 
-/// The registry for a command whose input may be a drive.yaml: with the plugins that it names.
-[[nodiscard]] TypeRegistry make_registry_for(const std::string& input, const CommonOptions& options);
-
 /// A folder in which plugins are looked for.
 struct PluginFolder {
   std::string path;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <map>
 
 #include <waymark/tools/report/comparison/compared_run.hpp>
@@ -50,20 +49,6 @@ std::vector<std::pair<std::string, std::string>> provenance_of(const std::string
   return {entries.begin(), entries.end()};
 }
 
-ComparedEnding ending_of(const Summary& summary) {
-  ComparedEnding ending;
-  ending.converged = summary.converged();
-  ending.message = summary.message;
-  ending.iterations = static_cast<std::size_t>(std::max(summary.iterations, 0));
-  ending.seconds = summary.total_seconds;
-  ending.initial_chi2 = summary.initial_chi2;
-  ending.final_chi2 = summary.final_chi2;
-  ending.chi2 = {summary.initial_chi2};
-  for (const IterationRecord& record : summary.records)
-    if (record.accepted) ending.chi2.push_back(record.chi2);
-  return ending;
-}
-
 }  // namespace
 
 ComparedRun compared_run(const evaluation::LabelledEvaluation& evaluation,
@@ -75,7 +60,7 @@ ComparedRun compared_run(const evaluation::LabelledEvaluation& evaluation,
   run.provenance = provenance_of(evaluation.label, header);
   for (const auto& [key, text] : run.provenance)
     if (key == "drive") run.drive = text;
-  if (result != nullptr) run.ending = ending_of(result->summary);
+  if (result != nullptr) run.ending = evaluation::run_ending(*result);
   return run;
 }
 

@@ -9,26 +9,15 @@
 
 #include <waymark/core/optimize/multi_start.hpp>
 #include <waymark/tools/evaluation/output/report.hpp>
+#include <waymark/tools/evaluation/output/summary_json.hpp>
 
 namespace waymark::report {
-
-/// How the optimisation of a run ended.
-struct ComparedEnding {
-  bool converged = false;
-  std::string message;
-  std::size_t iterations = 0;
-  double seconds = evaluation::kUndefined;
-  double initial_chi2 = evaluation::kUndefined;
-  double final_chi2 = evaluation::kUndefined;
-  /// at the initial guess and after every accepted step; empty: not known
-  std::vector<double> chi2;
-};
 
 struct ComparedRun {
   std::string label;  ///< name of the run in tables and figures
   std::string drive;  ///< name of the drive; errors of one drive are comparable
   evaluation::Evaluation evaluation;
-  std::optional<ComparedEnding> ending;
+  std::optional<evaluation::RunEnding> ending;
   /// Settings and inputs: key and text, each key once, ordered by key ("input gnss.csv",
   /// "modeling_option tails", "start").
   std::vector<std::pair<std::string, std::string>> provenance;

@@ -224,7 +224,7 @@ drawing::PageTable ending_table(const std::vector<ComparedRun>& runs) {
   table.notes = {"chi2 of different modelings is not comparable: their graphs differ."};
   for (const ComparedRun& run : runs) {
     if (!run.ending) continue;
-    const ComparedEnding& e = *run.ending;
+    const evaluation::RunEnding& e = *run.ending;
     table.rows.push_back({run.label, e.converged ? "converged" : "NOT CONVERGED", counted(e.iterations),
                           decimals(e.seconds, 3), fmt::format("{:.6g}", e.initial_chi2),
                           fmt::format("{:.6g}", e.final_chi2)});

@@ -8,9 +8,9 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/metrics_reader.hpp>
+#include <waymark/tools/evaluation/output/result_folder.hpp>
 #include <waymark/tools/report/comparison/compared_run.hpp>
 #include <waymark/tools/report/comparison/epochs_table.hpp>
-#include <waymark/tools/text/json_place.hpp>
 
 namespace waymark::report {
 namespace {
@@ -22,44 +22,31 @@ bool is_file(const std::string& path) {
   return fs::is_regular_file(path, unknown);
 }
 
-ComparedEnding ending(const text::JsonPlace& json) {
-  ComparedEnding ending;
-  ending.converged = json.at("converged").flag();
-  ending.message = json.text("message");
-  ending.iterations = json.count("iterations");
-  ending.seconds = json.number("total_seconds");
-  ending.initial_chi2 = json.number("initial_chi2");
-  ending.final_chi2 = json.number("final_chi2");
-  ending.chi2 = {ending.initial_chi2};
-  for (const text::JsonPlace& record : json.at("records").items())
-    if (record.at("accepted").flag()) ending.chi2.push_back(record.number("chi2"));
-  return ending;
-}
-
-void add_endings(const std::string& folder, std::vector<ComparedRun>& runs) {
-  const std::string file = folder + "/summary.json";
+void add_endings(const evaluation::ResultFolder& folder, std::vector<ComparedRun>& runs) {
+  const std::string file = folder.summary();
   if (!is_file(file)) return;
-  const nlohmann::ordered_json document = text::parse_json(formats::read_text_file(file), file);
-  const text::JsonPlace json(document, file);
-  for (ComparedRun& run : runs)
-    if (json.has(run.label)) run.ending = ending(json.at(run.label));
+  const auto endings = evaluation::read_run_summary(formats::read_text_file(file), file);
+  for (ComparedRun& run : runs) {
+    if (const auto ending = endings.find(run.label); ending != endings.end()) run.ending = ending->second;
+  }
 }
 
-void add_epochs(const std::string& folder, std::vector<ComparedRun>& runs) {
+void add_epochs(const evaluation::ResultFolder& folder, std::vector<ComparedRun>& runs) {
   for (ComparedRun& run : runs) {
-    const std::string file = folder + "/" + run.label + ".epochs.csv";
+    const std::string file = folder.epochs(run.label);
     if (is_file(file)) run.evaluation.epochs = read_epochs_table(formats::read_text_file(file), file);
   }
 }
 
-std::vector<ComparedRun> read_folder(const std::string& folder) {
-  const std::string file = folder + "/metrics.json";
+std::vector<ComparedRun> read_folder(const std::string& path) {
+  const evaluation::ResultFolder folder(path);
+  const std::string file = folder.metrics();
   if (!is_file(file)) {
     std::error_code unknown;
-    const bool there = fs::is_directory(folder, unknown);
+    const bool there = fs::is_directory(path, unknown);
     throw InputError(fmt::format(
         "{}: {}; name a folder that `waymark run DRIVE -o DIR` or `waymark evaluate GRAPH -o DIR` wrote",
-        folder, there ? "has no metrics.json" : "is no folder"));
+        path, there ? "has no metrics.json" : "is no folder"));
   }
   const evaluation::MetricsDocument document =
       evaluation::read_metrics_json(formats::read_text_file(file), file);

@@ -16,22 +16,22 @@ Ablation switched(const std::string& title, const std::string& name, Setting set
 /// The default model with options of its modeling stated.
 Ablation with_options(const std::string& title, const std::string& name, const Options& options) {
   Setting setting = default_setting();
-  setting.modeling_options = options;
+  setting.fusion.modeling_options = options;
   return switched(title, name, std::move(setting));
 }
 
 /// The default model without one of its calibration states.
 Ablation without_state(const std::string& title, const std::string& state) {
   Setting setting = default_setting();
-  setting.changes.calibration = drive::default_calibration();
-  setting.changes.calibration->erase(state);
+  setting.fusion.calibration = drive::default_calibration();
+  setting.fusion.calibration->erase(state);
   return switched(title, "no_" + state, std::move(setting));
 }
 
 template <typename Change>
 Ablation with_change(const std::string& title, const std::string& name, Change change) {
   Setting setting = default_setting();
-  change(setting.changes);
+  change(setting.fusion);
   return switched(title, name, std::move(setting));
 }
 
@@ -50,26 +50,27 @@ std::vector<Ablation> ingredients() {
                    {{"accuracy_exponent", "1"}}),
       with_options("time constant 30 s", "time_30", {{"multipath_time", "30"}}),
       with_change("noise as stated", "noise_stated",
-                  [](DriveChanges& changes) { changes.estimates_noise = false; }),
-      with_change("with the paper's gate", "gate", [](DriveChanges& changes) { changes.gate = true; }),
+                  [](drive::FusionSettings& fusion) { fusion.estimates_noise = false; }),
+      with_change("with the paper's gate", "gate",
+                  [](drive::FusionSettings& fusion) { fusion.gate.enabled = true; }),
       with_change("dead-reckoned start", "dead_reckoning",
-                  [](DriveChanges& changes) { changes.start = drive::StartMethod::dead_reckoning; }),
+                  [](drive::FusionSettings& fusion) {
+                    fusion.initial_guess.method = drive::StartMethod::dead_reckoning;
+                  }),
   };
 }
 
 /// g1 with calibration states and no gate.
 Setting white_noise() {
-  Setting setting;
-  setting.name = "white";
-  setting.modeling = "g1";
-  setting.changes = {.gate = false, .calibration = drive::default_calibration()};
+  Setting setting = stated_setting("white", "g1");
+  setting.fusion.gate.enabled = false;
+  setting.fusion.calibration = drive::default_calibration();
   return setting;
 }
 
 /// The customary scales: 95 % efficiency for normal errors in one dimension, else 1 standard deviation.
-std::vector<NamedLoss> customary_losses() {
-  return {{"huber", 1.345},  {"cauchy", 1}, {"geman_mcclure", 1},
-          {"welsch", 2.985}, {"dcs", 1},    {"tukey", 4.685}};
+std::vector<std::string> customary_losses() {
+  return {"huber:1.345", "cauchy:1", "geman_mcclure:1", "welsch:2.985", "dcs:1", "tukey:4.685"};
 }
 
 std::vector<Ablation> alternatives() {
@@ -77,19 +78,20 @@ std::vector<Ablation> alternatives() {
   Setting reference = our_settings().front();
   rows.push_back({"white noise, paper's gate, no calibration (g1)", reference});
   rows.push_back(switched("white noise, calibration: squared", "squared", white_noise()));
-  for (const NamedLoss& loss : customary_losses()) {
+  for (const std::string& loss : customary_losses()) {
     Setting setting = white_noise();
-    setting.loss = loss;
+    setting.fusion.loss = loss;
     rows.push_back(
-        switched(fmt::format("white noise, calibration: {}:{}", loss.name, loss.scale), loss.name, setting));
+        switched("white noise, calibration: " + loss, loss.substr(0, loss.find(':')), std::move(setting)));
   }
   Setting graduated = white_noise();
   graduated.outliers = OutlierTreatment::graduation;
   rows.push_back(switched("white noise, calibration: GNC", "gnc", graduated));
   Setting gated = white_noise();
-  gated.changes.gate = true;
+  gated.fusion.gate.enabled = true;
   rows.push_back(switched("white noise, calibration: paper's gate", "gate", gated));
-  gated.changes.gate_chord_s = 5;
+  gated.fusion.gate.chord_s = 5;
+  gated.fusion.gate.max_chord_s = 10;
   rows.push_back(switched("white noise, calibration: gate over 5 s", "gate_5s", gated));
   Setting inflated = white_noise();
   inflated.outliers = OutlierTreatment::inflation;

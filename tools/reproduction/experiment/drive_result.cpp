@@ -30,7 +30,7 @@ DriveResult study_drive(int dataset, StudiedDrive& drive, const std::vector<Sett
   result.dataset = dataset;
   result.name = drive.drive().name;
   result.simulated = dataset > 0 || result.name.starts_with("Simulated");
-  for (const drive::LogConfig& log : drive.config().odometry)
+  for (const drive::LogConfig& log : drive.description().odometry)
     result.imitated_odometry = result.imitated_odometry || log.file.find("imitated") != std::string::npos;
   const auto& odometry = drive.drive().odometry;
   result.duration_s = seconds_between(odometry.front().stamp, odometry.back().stamp);
@@ -47,7 +47,7 @@ DriveResult study_drive(int dataset, StudiedDrive& drive, const std::vector<Sett
 std::optional<evaluation::PositionMetrics> metrics_of(const DriveResult& drive, const std::string& system) {
   if (system == "gnss") {  // the same in all of them that know of the antenna's lever arm
     for (const Outcome& outcome : drive.outcomes) {
-      if (outcome.evaluation.truth && outcome.setting.changes.lever_arm)
+      if (outcome.evaluation.truth && outcome.setting.fusion.lever_arm)
         return outcome.evaluation.truth->gnss.position;
     }
     return std::nullopt;

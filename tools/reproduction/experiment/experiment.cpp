@@ -42,20 +42,20 @@ std::size_t run_count(const Experiment& experiment, bool has_truth) {
   return has_truth ? whole : whole + experiment.ways.size() * experiment.withheld_settings.size();
 }
 
-DriveResult run_experiment(const Experiment& experiment, int dataset, drive::DriveConfig config,
+DriveResult run_experiment(const Experiment& experiment, int dataset, drive::DriveDescription description,
                            const drive::DriveLogs& logs, const Laboratory& laboratory) {
-  config.withhold_every = 0;
-  config.outage = {};
-  StudiedDrive drive(config, logs);
+  description.withhold_every = 0;
+  description.outage = {};
+  StudiedDrive drive(description, logs, laboratory.registry);
   const bool has_truth = !drive.drive().truth.empty();
   const bool whole = has_truth || !experiment.truth_only;
   DriveResult result =
       study_drive(dataset, drive, whole ? experiment.settings : std::vector<Setting>(), laboratory);
   if (has_truth) return result;
   for (const Way& way : experiment.ways) {
-    config.withhold_every = way.withhold_every;
-    config.outage = way.outage;
-    StudiedDrive gapped(config, logs);
+    description.withhold_every = way.withhold_every;
+    description.outage = way.outage;
+    StudiedDrive gapped(description, logs, laboratory.registry);
     Laboratory told = laboratory;
     if (laboratory.progress)
       told.progress = [&](const std::string& setting) { laboratory.progress(way.name + ", " + setting); };

@@ -37,8 +37,9 @@ struct Experiment {
 [[nodiscard]] std::size_t run_count(const Experiment& experiment, bool has_truth);
 
 /// Runs an experiment on a drive. @param dataset of the paper, or 0
-/// @param config what it keeps out itself is not kept out here
-[[nodiscard]] DriveResult run_experiment(const Experiment& experiment, int dataset, drive::DriveConfig config,
-                                         const drive::DriveLogs& logs, const Laboratory& laboratory);
+/// @param description  what it keeps out itself is not kept out here
+[[nodiscard]] DriveResult run_experiment(const Experiment& experiment, int dataset,
+                                         drive::DriveDescription description, const drive::DriveLogs& logs,
+                                         const Laboratory& laboratory);
 
 }  // namespace waymark::reproduction

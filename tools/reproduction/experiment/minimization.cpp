@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/reproduction/experiment/minimization.hpp>
 
 namespace waymark::reproduction {
@@ -58,27 +58,23 @@ Ending describe(const Summary& summary) {
   return ending;
 }
 
-Ending minimize(Graph& graph, const Minimization& how, const TypeRegistry& registry,
+Ending minimize(Graph& graph, const Setting& setting, const TypeRegistry& registry,
                 const std::atomic<bool>* cancel) {
-  const auto algorithm = registry.make_algorithm(how.algorithm, how.options);
-  const auto solver = registry.make_linear_solver(registry.linear_solvers().front().type.name);
-  OptimizerOptions options;
-  options.max_iterations = how.max_iterations;
-  options.decrement_tolerance = how.tolerance;
-  options.cancel = cancel;
-  if (how.all_starts)
-    return describe(optimize_from_best_start(graph, registry.starts(), *algorithm, *solver, options).summary);
-  if (how.stopping == StoppingRule::full_steps)
-    return describe(optimize(graph, *algorithm, *solver, options));
-
+  const drive::Minimization& how = setting.fusion.minimization;
+  if (setting.stopping == StoppingRule::full_steps)
+    return describe(drive::minimize(graph, how, registry, {.cancel = cancel}).summary);
   GainRule rule(cancel);
-  options.max_iterations = kGainIterations * kGainAttempts;
-  options.decrement_tolerance = 1e-300;  // the rule alone ends the run
-  options.gradient_tolerance = 0;
-  options.step_tolerance = 0;
-  options.cancel = rule.token();
-  options.observer = [&](const IterationRecord& record) { rule.observe(record); };
-  Ending ending = describe(optimize(graph, *algorithm, *solver, options));
+  const drive::Minimizer search = [](Graph& of, Algorithm& algorithm, LinearSolver& solver,
+                                     OptimizerOptions options) {
+    options.max_iterations = kGainIterations * kGainAttempts;
+    options.decrement_tolerance = 1e-300;  // the rule alone ends the run
+    options.gradient_tolerance = 0;
+    options.step_tolerance = 0;
+    return optimize(of, algorithm, solver, options);
+  };
+  const drive::MinimizationWatch watch{
+      .observer = [&rule](const IterationRecord& record) { rule.observe(record); }, .cancel = rule.token()};
+  Ending ending = describe(drive::minimize(graph, how, registry, watch, search).summary);
   if (rule.ended()) {
     ending.converged = rule.converged();
     ending.message = rule.message();

@@ -23,9 +23,10 @@ struct Ending {
 /// The summary of a run by our stopping rule.
 [[nodiscard]] Ending describe(const Summary& summary);
 
-/// Minimises; the graph holds the best values found. @param cancel as OptimizerOptions::cancel
+/// Minimises as a setting says; the graph holds the best values found. @param cancel as
+/// OptimizerOptions::cancel
 /// @throws what optimize() throws
-[[nodiscard]] Ending minimize(Graph& graph, const Minimization& how, const TypeRegistry& registry,
+[[nodiscard]] Ending minimize(Graph& graph, const Setting& setting, const TypeRegistry& registry,
                               const std::atomic<bool>* cancel);
 
 }  // namespace waymark::reproduction

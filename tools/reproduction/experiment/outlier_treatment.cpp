@@ -3,24 +3,30 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/robust/graduation.hpp>
+#include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/reproduction/experiment/outlier_treatment.hpp>
 
 namespace waymark::reproduction {
 
-Graduated graduate_fixes(Graph& graph, const Minimization& how, const TypeRegistry& registry,
+Graduated graduate_fixes(Graph& graph, const Setting& setting, const TypeRegistry& registry,
                          const std::atomic<bool>* cancel) {
-  const auto algorithm = registry.make_algorithm(how.algorithm, how.options);
-  const auto solver = registry.make_linear_solver(registry.linear_solvers().front().type.name);
-  GraduationOptions options;
-  options.trusted = [](const Graph& of, EdgePlace place) {
-    return of.edge_type(place.batch).form != "position";
+  Graduated graduated;
+  const drive::Minimizer search = [&graduated](Graph& of, Algorithm& algorithm, LinearSolver& solver,
+                                               const OptimizerOptions& rules) {
+    GraduationOptions options;
+    options.trusted = [](const Graph& in, EdgePlace place) {
+      return in.edge_type(place.batch).form != "position";
+    };
+    options.optimizer = rules;
+    GraduationResult found = graduate(of, algorithm, solver, options);
+    of = without_edges(of, found.outliers);
+    graduated.outliers = found.outliers.size();
+    return std::move(found.summary);
   };
-  options.optimizer.max_iterations = how.max_iterations;
-  options.optimizer.decrement_tolerance = how.tolerance;
-  options.optimizer.cancel = cancel;
-  const GraduationResult found = graduate(graph, *algorithm, *solver, options);
-  graph = without_edges(graph, found.outliers);
-  return {describe(found.summary), found.outliers.size()};
+  const MultiStartSummary result =
+      drive::minimize(graph, setting.fusion.minimization, registry, {.cancel = cancel}, search);
+  graduated.ending = describe(result.summary);
+  return graduated;
 }
 
 std::vector<Fix> inflate_fixes(std::span<const Fix> fixes,

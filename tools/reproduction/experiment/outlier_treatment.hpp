@@ -17,7 +17,7 @@ struct Graduated {
 
 /// Graduated non-convexity as `waymark optimize --robust gnc` has it, but that nothing is doubted beside the
 /// fixes (edges whose error is a "position").
-[[nodiscard]] Graduated graduate_fixes(Graph& graph, const Minimization& how, const TypeRegistry& registry,
+[[nodiscard]] Graduated graduate_fixes(Graph& graph, const Setting& setting, const TypeRegistry& registry,
                                        const std::atomic<bool>* cancel);
 
 /// Fixes whose residuals, averaged over this time to either side, judge a fix.

@@ -4,11 +4,10 @@
 #include <atomic>
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <waymark/core/registry/registry.hpp>
-#include <waymark/tools/drive/model/model.hpp>
+#include <waymark/tools/drive/model/fuse.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
 #include <waymark/tools/reproduction/experiment/minimization.hpp>
 #include <waymark/tools/reproduction/experiment/setting.hpp>
@@ -55,22 +54,24 @@ struct Outcome {
 /// A drive with everything that its settings share.
 class StudiedDrive {
  public:
-  /// @param config  from a drive.yaml; its modeling, loss, calibration and further sensors are set aside: the
-  ///                settings say what is done, the same for every drive
-  StudiedDrive(drive::DriveConfig config, const drive::DriveLogs& logs);
+  /// @param description  of a drive.yaml, without further sensors: the settings say what is done, the same for
+  ///                     every drive
+  /// @param logs         of it
+  /// @param registry     must outlive the object
+  StudiedDrive(drive::DriveDescription description, const drive::DriveLogs& logs,
+               const TypeRegistry& registry);
+  StudiedDrive(const StudiedDrive&) = delete;
+  StudiedDrive& operator=(const StudiedDrive&) = delete;
 
-  [[nodiscard]] const drive::DriveConfig& config() const { return config_; }
+  [[nodiscard]] const drive::DriveDescription& description() const { return description_; }
   [[nodiscard]] const drive::PreparedDrive& drive() const { return drive_; }
-  /// Made on first use and kept. @throws what build_skeleton throws
-  [[nodiscard]] const drive::DriveSkeleton& skeleton(const DriveChanges& changes,
-                                                     const TypeRegistry& registry);
-  /// The drive.yaml with the changes of a setting.
-  [[nodiscard]] drive::DriveConfig changed(const DriveChanges& changes) const;
+  /// The graph of a setting at its initial guess. @throws what Fusion::model throws
+  [[nodiscard]] drive::ModeledDrive model(const Setting& setting) { return fusion_.model(setting.fusion); }
 
  private:
-  drive::DriveConfig config_;
+  drive::DriveDescription description_;
   drive::PreparedDrive drive_;
-  std::vector<std::pair<DriveChanges, drive::DriveSkeleton>> skeletons_;
+  drive::Fusion fusion_;  // of drive_
 };
 
 /// Fuses the drive as the setting says. What a drive does not allow (all fixes rejected, a lever arm with the

@@ -3,35 +3,31 @@
 namespace waymark::reproduction {
 namespace {
 
-/// The dogleg of g2o.
-Minimization g2o_dogleg() {
-  return {.algorithm = "dogleg",
-          .options = {{"scaling", "none"}, {"radius", "absolute"}, {"initial_radius", "1e4"}},
-          .stopping = StoppingRule::relative_gain};
+/// The dogleg of g2o, and its rule to stop.
+void use_g2o_dogleg(Setting& setting) {
+  setting.fusion.minimization.options = {
+      {"scaling", "none"}, {"radius", "absolute"}, {"initial_radius", "1e4"}};
+  setting.stopping = StoppingRule::relative_gain;
 }
 
 /// An objective is the same for G1 and G3; G2's differs by the slack of its identity edges, far below what is
 /// told apart here.
 Setting paper_setting(const std::string& modeling) {
-  Setting setting;
-  setting.name = "paper_" + modeling;
-  setting.modeling = modeling;
-  setting.modeling_options = {{"error", "literal"}};
+  Setting setting = stated_setting("paper_" + modeling, modeling);
+  setting.fusion.modeling_options = {{"error", "literal"}};
   // The paper does not say where G2's nodes begin. From the fixes, kilometres from dead reckoning, g2o's
   // dogleg does not get G2 to its minimum, and the paper says that it got there in all its drives.
-  if (modeling == "g2") setting.modeling_options["nodes_begin"] = "pose";
-  setting.changes = {.lever_arm = false,
-                     .start = drive::StartMethod::dead_reckoning,
-                     .odometry_options = {{"noise", "paper"}}};
-  setting.minimization = g2o_dogleg();
+  if (modeling == "g2") setting.fusion.modeling_options["nodes_begin"] = "pose";
+  setting.fusion.lever_arm = false;
+  setting.fusion.initial_guess.method = drive::StartMethod::dead_reckoning;
+  setting.fusion.odometry_options = {{"noise", "paper"}};
+  use_g2o_dogleg(setting);
   setting.objective = "literal " + modeling;
   return setting;
 }
 
 Setting our_setting(const std::string& modeling) {
-  Setting setting;
-  setting.name = "ours_" + modeling;
-  setting.modeling = modeling;
+  Setting setting = stated_setting("ours_" + modeling, modeling);
   setting.objective = "decoupled";
   return setting;
 }
@@ -44,27 +40,27 @@ std::vector<Setting> four_settings(Make make) {
   Setting open = make("g2");
   open.name += "_no_rejection";
   open.objective += " without rejection";
-  open.changes.gate = false;
+  open.fusion.gate.enabled = false;
   settings.push_back(open);
   return settings;
 }
 
 void use_our_radius(Setting& setting) {
-  setting.minimization.options = {};
+  setting.fusion.minimization.options = {};
 }
 
 void use_our_error(Setting& setting) {
-  setting.modeling_options["error"] = "decoupled";
-  setting.objective = "decoupled " + setting.modeling;
+  setting.fusion.modeling_options["error"] = "decoupled";
+  setting.objective = "decoupled " + setting.fusion.modeling;
 }
 
 void use_our_stopping(Setting& setting) {
-  setting.minimization.stopping = StoppingRule::full_steps;
-  setting.minimization.max_iterations = kBareIterations;
+  setting.stopping = StoppingRule::full_steps;
+  setting.fusion.minimization.max_iterations = kBareIterations;
 }
 
 void use_our_start(Setting& setting) {
-  setting.changes.start = drive::StartMethod::anchored;
+  setting.fusion.initial_guess.method = drive::StartMethod::anchored;
 }
 
 void apply_cause(const std::string& cause, Setting& setting) {
@@ -72,22 +68,23 @@ void apply_cause(const std::string& cause, Setting& setting) {
   if (cause == "heading" || cause == "all_but_start") use_our_error(setting);
   if (cause == "stopping" || cause == "all_but_start") use_our_stopping(setting);
   if (cause == "start") use_our_start(setting);
-  if (cause == "east") setting.changes.first_heading_rad = 0;
-  if (cause == "nodes_at_fixes") setting.modeling_options["nodes_begin"] = "fix";
+  if (cause == "east") setting.fusion.initial_guess.first_heading_rad = 0;
+  if (cause == "nodes_at_fixes") setting.fusion.modeling_options["nodes_begin"] = "fix";
 }
 
 }  // namespace
 
-bool DriveChanges::shares_skeleton() const {
-  return gate && estimates_noise == false && calibration && calibration->empty();
+Setting stated_setting(const std::string& name, const std::string& modeling) {
+  Setting setting{.name = name};
+  setting.fusion.modeling = modeling;
+  setting.fusion.gate.enabled = true;
+  setting.fusion.calibration = Options();
+  setting.fusion.estimates_noise = false;
+  return setting;
 }
 
 Setting default_setting() {
-  Setting setting;
-  setting.name = kDefaultModel;
-  setting.modeling = drive::DriveConfig().modeling;
-  setting.changes = {.gate = std::nullopt, .calibration = std::nullopt, .estimates_noise = std::nullopt};
-  return setting;
+  return {.name = kDefaultModel};
 }
 
 std::vector<Setting> paper_settings() {
@@ -125,11 +122,12 @@ std::vector<Setting> minimum_settings() {
   std::vector<Setting> settings;
   for (Setting setting : paper_settings()) {
     const std::string name = setting.name;
-    setting.minimization = {.tolerance = 1e-12};
+    setting.fusion.minimization = {.tolerance = 1e-12};
+    setting.stopping = StoppingRule::full_steps;
     use_our_start(setting);
     setting.name = name + "/minimum";
     settings.push_back(setting);
-    if (setting.changes.gate == false) continue;
+    if (setting.fusion.gate.enabled == false) continue;
     setting.evaluated = false;
     use_our_error(setting);
     setting.name = name + "/heading_minimum";
@@ -145,18 +143,21 @@ std::vector<Setting> convergence_settings() {
       for (const std::string algorithm : kConvergenceAlgorithms) {
         Setting setting = our_setting(modeling);
         setting.name += "/" + start + "/" + algorithm;
-        if (start != "anchored") setting.changes.start = drive::StartMethod::dead_reckoning;
-        if (start == "east") setting.changes.first_heading_rad = 0;
+        drive::StartOptions& guess = setting.fusion.initial_guess;
+        if (start != "anchored") guess.method = drive::StartMethod::dead_reckoning;
+        if (start == "east") guess.first_heading_rad = 0;
         const std::size_t plus = algorithm.find('+');
-        setting.minimization.all_starts = plus != std::string::npos || algorithm == "default";
-        if (start == "east" && !setting.minimization.all_starts) continue;
-        if (!setting.minimization.all_starts) {
-          setting.minimization.max_iterations = kBareIterations;
+        const bool all_starts = plus != std::string::npos || algorithm == "default";
+        if (start == "east" && !all_starts) continue;
+        drive::Minimization& minimization = setting.fusion.minimization;
+        if (all_starts) {
+          minimization.start = "auto";
+        } else {
+          minimization.max_iterations = kBareIterations;
           // What damps the first step of kilometres bends it into a wrong winding.
-          if (algorithm == "levenberg_marquardt")
-            setting.minimization.options = {{"initial_damping", "1e-12"}};
+          if (algorithm == "levenberg_marquardt") minimization.options = {{"initial_damping", "1e-12"}};
         }
-        if (algorithm != "default") setting.minimization.algorithm = algorithm.substr(0, plus);
+        if (algorithm != "default") minimization.algorithm = algorithm.substr(0, plus);
         setting.evaluated = false;
         settings.push_back(setting);
       }

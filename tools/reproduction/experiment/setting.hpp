@@ -1,33 +1,12 @@
 /// What is varied in the experiment: one Setting is one way to fuse a drive; an experiment is a list of them.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include <waymark/core/optimize/algorithm.hpp>
-#include <waymark/tools/drive/description/config.hpp>
+#include <waymark/tools/drive/description/fusion_settings.hpp>
 
 namespace waymark::reproduction {
-
-/// What a setting changes before there is a graph. What is empty belongs to the modeling, as in `waymark run`
-/// (config_for of tools/drive/model/model.hpp). Settings whose changes are equal share one skeleton, where nothing
-/// is empty, estimated or calibrated.
-struct DriveChanges {
-  std::optional<bool> gate = true;
-  double gate_chord_s = 0;  ///< instead of the drive.yaml's; 0: that one
-  bool lever_arm = true;    ///< false: the antenna counts as the body point, as in the paper
-  drive::StartMethod start = drive::StartMethod::anchored;
-  /// Heading of the first pose of the start, which is turned about that pose; empty: as it comes out. For
-  /// settings that share a skeleton.
-  std::optional<double> first_heading_rad{};
-  Options odometry_options{};                     ///< instead of the drive.yaml's
-  std::optional<Options> calibration{Options()};  ///< the same; no options: no states
-  std::optional<bool> estimates_noise = false;
-
-  [[nodiscard]] bool shares_skeleton() const;
-  friend bool operator==(const DriveChanges&, const DriveChanges&) = default;
-};
 
 /// When a run ends.
 enum class StoppingRule {
@@ -45,16 +24,6 @@ inline constexpr int kGainAttempts = 100;  ///< shorter and shorter steps tried 
 /// Most steps of a bare algorithm with full_steps: what is not there after 100 creeps.
 inline constexpr int kBareIterations = 100;
 
-/// How the graph is minimised.
-struct Minimization {
-  std::string algorithm = "dogleg";
-  Options options{};
-  bool all_starts = false;  ///< let it choose among registered starts, as `waymark optimize` does
-  StoppingRule stopping = StoppingRule::full_steps;
-  int max_iterations = 500;  ///< with full_steps
-  double tolerance = 1e-6;   ///< with full_steps: decrement_tolerance
-};
-
 /// What is done about outliers beside gate and loss.
 enum class OutlierTreatment {
   none,
@@ -62,25 +31,19 @@ enum class OutlierTreatment {
   inflation    ///< a second pass with covariances inflated where fixes did not fit (outlier_treatment.hpp)
 };
 
-/// A registered loss and its scale.
-struct NamedLoss {
-  std::string name;
-  double scale = 1;
-};
-
-/// One way to fuse a drive.
+/// One way to fuse a drive, the same for every drive.
 struct Setting {
-  std::string name;      ///< unique, for tables and files: "paper_g1", "paper_g1/radius"
-  std::string modeling;  ///< registered GNSS modeling
-  Options modeling_options{};
-  DriveChanges changes;
-  std::optional<NamedLoss> loss{};  ///< of the fixes
+  std::string name;  ///< unique, for tables and files: "paper_g1", "paper_g1/radius"
+  drive::FusionSettings fusion{};
+  StoppingRule stopping = StoppingRule::full_steps;
   OutlierTreatment outliers = OutlierTreatment::none;
-  Minimization minimization;
   /// Settings of one objective have one minimum, so the poses that they end at are compared; empty: not.
-  std::string objective;
+  std::string objective{};
   bool evaluated = true;  ///< against truth or withheld fixes; else it is run for its convergence alone
 };
+
+/// A modeling with nothing left to it: the paper's gate, no calibration states, the noise as stated.
+[[nodiscard]] Setting stated_setting(const std::string& name, const std::string& modeling);
 
 /// The modelings of the paper, in its order.
 inline constexpr const char* kModelings[] = {"g1", "g2", "g3"};

@@ -17,22 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string>;
 
-std::vector<VertexIndex> wanted_vertices(const formats::GraphDocument& document, const std::string& which) {
-  std::vector<VertexIndex> vertices;
-  if (which == "fixes") {
-    for (const Fix& fix : document.fixes) {  // fixes of several receivers may share a vertex
-      if (const auto vertex = document.graph.find(fix.vertex)) vertices.push_back(*vertex);
-    }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  } else if (which == "all") {
-    for (VertexIndex v = 0; v < static_cast<VertexIndex>(document.graph.vertex_count()); ++v) {
-      if (!document.graph.fixed(v)) vertices.push_back(v);
-    }
-  }
-  return vertices;
-}
-
 /// Names of the upper triangle, row by row. A type whose value has more numbers than degrees of freedom has
 /// no names for the latter: they are counted.
 Names triangle_names(const VertexType& type) {
@@ -171,19 +155,6 @@ void write_json(const formats::GraphDocument& document, const Summary& summary,
 }
 
 }  // namespace
-
-void add_covariances(formats::GraphDocument& document, const std::string& which) {
-  document.covariances.clear();
-  const std::vector<VertexIndex> vertices = wanted_vertices(document, which);
-  if (vertices.empty()) return;
-  const Marginals marginals(document.graph);
-  const CovarianceBlocks blocks = marginals.blocks(vertices);
-  document.covariances.reserve(vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    // No line is honester than one of zeros, which reads as certainty.
-    if (marginals.estimated(vertices[i])) document.covariances.push_back({vertices[i], blocks[i]});
-  }
-}
 
 void check_covariance_file(const std::string& path, const std::string& which) {
   if (path.empty()) return;

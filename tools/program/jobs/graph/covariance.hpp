@@ -1,4 +1,4 @@
-/// Covariances of an optimised document: which are wanted, and tables of them.
+/// Tables of the covariances of an optimised document.
 #pragma once
 
 #include <string>
@@ -8,10 +8,6 @@
 #include <waymark/formats/text/text_sink.hpp>
 
 namespace waymark::program {
-
-/// Fills document.covariances at the present values. @param which "none", "fixes" (vertices of fixes) or
-/// "all" (whatever is not fixed). Vertices that are not estimated get none.
-void add_covariances(formats::GraphDocument& document, const std::string& which);
 
 /// @throws UsageError where a table is asked for without covariances, or its name ends neither in .csv nor
 /// in .json; OutputError where it cannot be written.

@@ -33,7 +33,8 @@ LossRequest parse_loss(const std::string& text, const TypeRegistry& registry) {
     request.tag = text.substr(0, equals);
     require_edge(registry, request.tag, "--loss");
   }
-  request.loss = named_loss(equals == std::string::npos ? text : text.substr(equals + 1), "--loss", registry);
+  request.loss =
+      drive::named_loss(equals == std::string::npos ? text : text.substr(equals + 1), "--loss", registry);
   return request;
 }
 
@@ -71,25 +72,6 @@ void describe(const Graph& graph, EdgePlace place, formats::TextBuilder& lines,
 }
 
 }  // namespace
-
-Loss named_loss(const std::string& text, const std::string& place, const TypeRegistry& registry) {
-  const auto colon = text.find(':');
-  const std::string name = text.substr(0, colon);
-  const LossType* type = registry.find_loss(name);
-  if (type == nullptr) {
-    std::vector<std::string_view> names;
-    for (const auto& [known, origin] : registry.losses()) names.push_back(known.name);
-    throw UsageError(place + ": unknown loss '" + name + "'" + suggestion(name, names));
-  }
-  double scale = 0;
-  const char* first = text.data() + (colon == std::string::npos ? text.size() : colon + 1);
-  const char* last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(first, last, scale);
-  if (error != std::errc() || end != last || !(scale > 0) || !(scale < 1e300)) {
-    throw UsageError(place + ": expected [TAG=]NAME:SCALE with a scale above 0, got '" + text + "'");
-  }
-  return Loss{type->name, type->evaluate, scale};
-}
 
 void add_robust_options(CLI::App& command, RobustChoice& choice) {
   const OptionHeading heading(command, "Outliers");
@@ -146,8 +128,8 @@ void attach_losses(Graph& graph, const RobustChoice& choice, const TypeRegistry&
   }
 }
 
-Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
-                               std::optional<Graduated>& found) {
+drive::Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
+                                      std::optional<Graduated>& found) {
   GraduationOptions options;
   if (!choice.losses.empty()) options.loss = parse_loss(choice.losses.front(), registry).loss;
   options.trusted = trust_rule(choice);

@@ -24,10 +24,6 @@ struct RobustChoice {
 /// --loss, --robust, --trusted, --outliers.
 void add_robust_options(CLI::App& command, RobustChoice& choice);
 
-/// "cauchy:1": a registered loss with its scale. @param place  of the text, for messages @throws UsageError
-[[nodiscard]] Loss named_loss(const std::string& text, const std::string& place,
-                              const TypeRegistry& registry);
-
 /// Whether losses and tags exist and fit together, before anything is read. @throws UsageError
 void check_robust(const RobustChoice& choice, const TypeRegistry& registry);
 
@@ -43,8 +39,8 @@ struct Graduated {
 
 /// A minimiser for optimize_document that looks for outliers and takes them out of the graph.
 /// @param found filled when the minimiser has run; must outlive it
-[[nodiscard]] Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
-                                             std::optional<Graduated>& found);
+[[nodiscard]] drive::Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
+                                                    std::optional<Graduated>& found);
 
 /// One line for the terminal.
 [[nodiscard]] std::string graduation_text(const GraduationResult& result);

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace waymark::program {
+namespace waymark::formats {
 
 /// FNV-1a, 64 bits. Tells files apart; it is no protection against forgery.
 /// Source: Fowler, Noll, Vo; RFC draft "The FNV Non-Cryptographic Hash Algorithm".
@@ -36,4 +36,4 @@ class Fnv1a64 {
   return hash.hex();
 }
 
-}  // namespace waymark::program
+}  // namespace waymark::formats

@@ -1,19 +1,33 @@
-#include <waymark/tools/program/jobs/model_report.hpp>
+#include <waymark/tools/program/jobs/drive_text.hpp>
 
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <waymark/tools/text/text_table.hpp>
 
 namespace waymark::program {
+namespace {
+
+/// The way that the odometry says was driven.
+double distance_by(const std::vector<OdometrySample>& odometry) {
+  double distance = 0;
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    distance += 0.5 * (std::abs(odometry[i].speed_mps) + std::abs(odometry[i - 1].speed_mps)) *
+                seconds_between(odometry[i - 1].stamp, odometry[i].stamp);
+  }
+  return distance;
+}
+
+}  // namespace
 
 std::string describe_model(const drive::ModeledDrive& modeled, const text::TextLook& look) {
   std::string text;
-  const drive::GateSummary& gate = modeled.gate;
+  const drive::GateSummary& gate = modeled.placed.gate;
   std::string reasons;
   for (const auto& [reason, count] : gate.reasons) reasons += fmt::format(" {} {}", reason, count);
-  if (modeled.config.gate.enabled) {
+  if (*modeled.settings.gate.enabled) {
     text += fmt::format("gate        {} of {} fixes rejected ({:.1f} %):{}\n", gate.rejected,
                         gate.accepted + gate.rejected, gate.rejected_percent(), reasons);
   } else {
@@ -29,6 +43,26 @@ std::string describe_model(const drive::ModeledDrive& modeled, const text::TextL
                p.observed() ? fmt::format("{:.3g}", p.prior.mean) : "not observed"});
   }
   return text + table.text(look);
+}
+
+std::string left_out(const drive::PreparedDrive& drive) {
+  const drive::PrepareReport& report = drive.report;
+  return fmt::format("{} fixes outside the odometry, {} by thinning, {} withheld",
+                     report.fixes_outside_odometry, report.fixes_thinned, report.fixes_withheld);
+}
+
+std::string odometry_in_words(const drive::PreparedDrive& drive) {
+  return fmt::format("{:.0f} m in {} samples", distance_by(drive.odometry), drive.odometry.size());
+}
+
+std::string describe_drive(const drive::PreparedDrive& drive) {
+  std::string text;
+  const auto& odometry = drive.odometry;
+  text += fmt::format("drive       {}: {:.0f} s, {:.0f} m by odometry, {} odometry samples, {} fixes\n",
+                      drive.name, seconds_between(odometry.front().stamp, odometry.back().stamp),
+                      distance_by(odometry), odometry.size(), drive.fixes.size());
+  text += "left out    " + left_out(drive) + "\n";
+  return text;
 }
 
 nlohmann::ordered_json noise_json(const drive::NoiseEstimate& noise) {

@@ -1,0 +1,254 @@
+#include <waymark/tools/drive/description/description_yaml.hpp>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/channels.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
+#include <waymark/tools/drive/description/log_config.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr std::array<std::string_view, 2> kGapPolicies{"bridge", "error"};
+constexpr NumberRule kRate{1e-3, 1000, "a rate in Hz from 0.001 to 1000"};
+constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
+constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
+constexpr NumberRule kWithhold{0, 1e9, "0 (none) or a whole number from 2"};
+
+/// What a gnss entry says beyond its log.
+struct Receiver {
+  Eigen::Vector2d antenna_m{0, 0};
+  double period_s = 0;
+  double delay_s = 0;
+  int withhold_every = 0;
+
+  friend bool operator==(const Receiver&, const Receiver&) = default;
+};
+
+void read_time(const YamlSection& top, DriveDescription& drive) {
+  const auto time = top.section("time", {"scale", "from", "to"});
+  if (!time) return;
+  if (const auto scale = time->read_word("scale", kTimeScaleWords))
+    drive.time_scale = time_scale_from_string(kTimeScaleWords[*scale]);
+  time->read("from", drive.from_s, kNotNegative);
+  time->read("to", drive.to_s, kPositive);
+  if (drive.to_s && *drive.to_s <= drive.from_s.value_or(0)) time->fail("to", "must lie after 'from'");
+}
+
+/// 32, "32N" or "32S"; a plain number is north.
+int read_zone(const YamlSection& frame) {
+  std::string text;
+  frame.read("utm_zone", text);
+  bool north = true;
+  if (!text.empty() && (text.back() == 'N' || text.back() == 'S')) {
+    north = text.back() == 'N';
+    text.pop_back();
+  }
+  int zone = 0;
+  for (const char c : text) {
+    const bool good = c >= '0' && c <= '9' && zone < 100;
+    zone = good ? 10 * zone + (c - '0') : 100;
+  }
+  if (zone < 1 || zone > 60) frame.fail_value("utm_zone", "a zone such as 32N or 56S");
+  return north ? zone : -zone;
+}
+
+void read_frame(const YamlSection& top, DriveDescription& drive) {
+  const auto frame = top.section("frame", {"utm_zone", "origin"});
+  if (!frame) return;
+  if (frame->has("utm_zone")) drive.utm_zone = read_zone(*frame);
+  if (!frame->has("origin")) return;
+  if (!drive.utm_zone) frame->fail("origin", "needs a stated utm_zone: it counts from that zone's corner");
+  Eigen::Vector2d origin;
+  frame->read("origin", origin);
+  drive.utm_origin = origin;
+}
+
+std::vector<YAML::Node> entries_of(const YAML::Node& node) {
+  std::vector<YAML::Node> entries;
+  if (node.IsSequence()) {
+    for (const auto& entry : node) entries.push_back(entry);
+  } else {
+    entries.push_back(node);
+  }
+  return entries;
+}
+
+void read_assembly(const YamlSection& section, OdometryAssembly& assembly) {
+  section.read("rate", assembly.rate_hz, kRate);
+  if (const auto word = section.read_word("speed_from", kSpeedSources))
+    assembly.speed_from = kSpeedSources[*word];
+  if (const auto word = section.read_word("yaw_rate_from", kYawRateSources))
+    assembly.yaw_rate_from = kYawRateSources[*word];
+  if (const auto gyro = section.section("gyro", {"axis"})) {
+    if (const auto word = gyro->read_word("axis", kGyroAxes)) assembly.gyro_axis = kGyroAxes[*word];
+  }
+  const auto vehicle = section.section(
+      "vehicle", {"track_width", "wheelbase", "steering_ratio", "metres_per_tick", "tick_range"});
+  if (!vehicle) return;
+  vehicle->read("track_width", assembly.track_width_m, kPositive);
+  vehicle->read("wheelbase", assembly.wheelbase_m, kPositive);
+  vehicle->read("steering_ratio", assembly.steering_ratio, kPositive);
+  vehicle->read("metres_per_tick", assembly.metres_per_tick, kPositive);
+  vehicle->read("tick_range", assembly.tick_range, kPositive);
+}
+
+/// Whether a log's columns name more than whole odometry has: then it holds channels.
+bool names_channels(const YamlSection& section) {
+  const auto columns = section.free_section("columns");
+  if (!columns) return false;
+  const std::vector<std::string> keys = columns->keys();
+  return std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
+    return key != "time" && key != "speed" && key != "yaw_rate";
+  });
+}
+
+void read_odometry(const YamlSection& top, DriveDescription& drive) {
+  if (!top.has("odometry")) throw InputError(top.place() + "'odometry' is missing");
+  const YamlSection section(top.node("odometry"), "odometry", top.file(),
+                            log_keys({"parts", "rate", "speed_from", "yaw_rate_from", "gyro", "vehicle",
+                                      "speed_delay", "yaw_rate_delay", "model", "options"}));
+  const auto read_log = [&](const YamlSection& from, bool in_channels) {
+    LogRequest request;
+    request.stream = StreamKind::odometry;
+    if (in_channels) request.readings = formats::odometry_channels();
+    drive.odometry.push_back(read_log_config(from, request, drive.folder, drive.scale()));
+  };
+  if (section.has("parts")) {
+    if (section.has("file")) section.fail("file", "give either 'file' or 'parts'");
+    for (const YAML::Node& entry : entries_of(section.node("parts")))
+      read_log(YamlSection(entry, "odometry.parts", top.file(), log_keys()), true);
+    if (drive.odometry.empty()) section.fail("parts", "at least one log is needed");
+  } else {
+    read_log(section, names_channels(section));
+  }
+  read_assembly(section, drive.assembly);
+  section.read("speed_delay", drive.speed_delay_s, kAnyNumber);
+  section.read("yaw_rate_delay", drive.yaw_rate_delay_s, kAnyNumber);
+}
+
+Receiver read_receiver(const YamlSection& section) {
+  Receiver receiver;
+  section.read("antenna", receiver.antenna_m);
+  section.read("period", receiver.period_s, kNotNegative);
+  section.read("delay", receiver.delay_s, kAnyNumber);
+  section.read("withhold_every", receiver.withhold_every, kWithhold);
+  if (receiver.withhold_every == 1) section.fail_value("withhold_every", kWithhold.words);
+  return receiver;
+}
+
+std::optional<LogConfig> read_velocity(const YamlSection& section, const DriveDescription& drive) {
+  if (!section.has("velocity")) return std::nullopt;
+  LogRequest request;
+  request.readings = formats::velocity_channels();
+  return read_log_config(YamlSection(section.node("velocity"), "gnss.velocity", section.file(), log_keys()),
+                         request, drive.folder, drive.scale());
+}
+
+void read_gnss(const YamlSection& top, DriveDescription& drive) {
+  if (!top.has("gnss")) throw InputError(top.place() + "'gnss' is missing");
+  const std::vector<YAML::Node> entries = entries_of(top.node("gnss"));
+  if (entries.empty()) top.fail("gnss", "at least one log is needed");
+  std::optional<Receiver> first;
+  for (const YAML::Node& entry : entries) {
+    const YamlSection section(
+        entry, "gnss", top.file(),
+        log_keys({"accuracy", "velocity", "antenna", "period", "delay", "withhold_every"}));
+    LogRequest request;
+    request.source = static_cast<int>(drive.gnss.size());
+    GnssConfig log{read_log_config(section, request, drive.folder, drive.scale()),
+                   read_velocity(section, drive)};
+    drive.gnss.push_back(std::move(log));
+    const Receiver receiver = read_receiver(section);
+    if (first && !(receiver == *first))
+      throw InputError(section.place() +
+                       "gnss: all logs must state the same antenna, period, delay and withhold_every");
+    first = receiver;
+  }
+  drive.antenna_m = first->antenna_m;
+  drive.gnss_period_s = first->period_s;
+  drive.gnss_delay_s = first->delay_s;
+  drive.withhold_every = first->withhold_every;
+}
+
+void read_truth(const YamlSection& top, DriveDescription& drive) {
+  if (!top.has("truth")) return;
+  const YamlSection section(top.node("truth"), "truth", top.file(), log_keys({"accuracy", "reference"}));
+  LogRequest request;
+  request.stream = StreamKind::truth;
+  drive.truth = read_log_config(section, request, drive.folder, drive.scale());
+  section.read("reference", drive.truth_reference_m);
+}
+
+void read_timeline(const YamlSection& top, DriveDescription& drive) {
+  top.read("snap", drive.timeline.snap_s, kSnap);
+  const auto gap = top.section("gap", {"longer_than", "policy", "noise_factor"});
+  if (!gap) return;
+  gap->read("longer_than", drive.timeline.gap_s, kPositive);
+  if (const auto policy = gap->read_word("policy", kGapPolicies))
+    drive.timeline.gap_policy = *policy == 0 ? GapPolicy::bridge : GapPolicy::error;
+  gap->read("noise_factor", drive.timeline.gap_noise_factor, kFactor);
+}
+
+void read_sensors(const YamlSection& top, DriveDescription& drive) {
+  if (!top.has("sensors")) return;
+  for (const YAML::Node& entry : entries_of(top.node("sensors"))) {
+    const YamlSection section(entry, "sensors", top.file(), log_keys({"name", "options"}));
+    SensorConfig sensor;
+    sensor.place = section.place();
+    section.read("name", sensor.name);
+    if (sensor.name.empty()) throw InputError(sensor.place + "sensors: 'name' is missing");
+    LogRequest request;
+    request.stream = StreamKind::sensor;
+    if (section.has("file")) sensor.log = read_log_config(section, request, drive.folder, drive.scale());
+    if (const auto options = section.free_section("options")) {
+      for (const std::string& option : options->keys()) options->read(option, sensor.options[option]);
+    }
+    drive.sensors.push_back(std::move(sensor));
+  }
+}
+
+/// Files lie beside the drive.yaml.
+void read_plugins(const YamlSection& top, DriveDescription& drive) {
+  if (!top.has("plugins")) return;
+  const auto beside = std::filesystem::path(drive.path).parent_path();
+  for (const YAML::Node& entry : entries_of(top.node("plugins"))) {
+    if (!entry.IsScalar()) top.fail_value("plugins", "a list of plugin files");
+    const std::string plugin = entry.Scalar();
+    drive.plugins.push_back(is_plugin_file(plugin) ? (beside / plugin).lexically_normal().string() : plugin);
+  }
+}
+
+void read_folder(const YamlSection& top, const std::string& data_folder, DriveDescription& drive) {
+  std::string stated = ".";
+  top.read("folder", stated);
+  const std::filesystem::path beside = std::filesystem::path(drive.path).parent_path();
+  drive.folder = data_folder.empty() ? (beside / stated).lexically_normal().string() : data_folder;
+}
+
+}  // namespace
+
+DriveDescription read_description(const YamlSection& top, const std::string& data_folder) {
+  DriveDescription drive;
+  drive.path = top.file();
+  drive.name = std::filesystem::path(drive.path).stem().string();
+  top.read("name", drive.name);
+  read_folder(top, data_folder, drive);
+  read_time(top, drive);
+  read_frame(top, drive);
+  read_odometry(top, drive);
+  read_gnss(top, drive);
+  read_truth(top, drive);
+  read_timeline(top, drive);
+  read_sensors(top, drive);
+  read_plugins(top, drive);
+  return drive;
+}
+
+}  // namespace waymark::drive

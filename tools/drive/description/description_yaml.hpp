@@ -1,0 +1,16 @@
+/// The part of a drive.yaml that describes the drive (see drive_description.hpp).
+#pragma once
+
+#include <string>
+
+#include <waymark/tools/drive/description/drive_description.hpp>
+#include <waymark/tools/drive/description/yaml_section.hpp>
+
+namespace waymark::drive {
+
+/// Reads logs, clocks, frame and mounting. @param top  the whole file
+/// @param data_folder  where relative log names are looked up; empty: where the file says
+/// @throws InputError with the place of what is wrong
+[[nodiscard]] DriveDescription read_description(const YamlSection& top, const std::string& data_folder);
+
+}  // namespace waymark::drive

@@ -1,0 +1,55 @@
+#include <waymark/tools/drive/description/drive_file.hpp>
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/description/description_yaml.hpp>
+#include <waymark/tools/drive/description/settings_yaml.hpp>
+
+namespace waymark::drive {
+namespace {
+
+YAML::Node load_yaml(const std::string& text, const std::string& path) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format("{}:{}:{}: no valid YAML: {}", path, error.mark.line + 1,
+                                 error.mark.column + 1, error.msg));
+  }
+}
+
+}  // namespace
+
+std::string Places::at(const std::string& key) const {
+  const auto place = of.find(key);
+  return place == of.end() ? file + ": " : place->second;
+}
+
+bool is_drive_file(std::string_view path) {
+  return path.ends_with(".yaml") || path.ends_with(".yml");
+}
+
+bool is_plugin_file(std::string_view plugin) {
+  const std::filesystem::path path(plugin);
+  return path.has_parent_path() || path.has_extension();
+}
+
+DriveFile parse_drive_file(const std::string& text, const std::string& path, const std::string& data_folder) {
+  const YamlSection top(load_yaml(text, path), "", path,
+                        {"name", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap",
+                         "snap", "initial_guess", "modeling", "calibration", "noise", "sensors", "plugins"});
+  DriveFile file;
+  file.places.file = path;
+  file.description = read_description(top, data_folder);
+  read_settings(top, file.settings, file.places);
+  return file;
+}
+
+DriveFile load_drive_file(const std::string& path, const std::string& data_folder) {
+  return parse_drive_file(formats::read_text_file(path), path, data_folder);
+}
+
+}  // namespace waymark::drive

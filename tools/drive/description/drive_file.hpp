@@ -1,0 +1,46 @@
+/// A drive.yaml: what it says of the drive, how the drive is to be fused, and where that stands.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include <waymark/tools/drive/description/drive_description.hpp>
+#include <waymark/tools/drive/description/fusion_settings.hpp>
+
+namespace waymark::drive {
+
+/// Where a file says what only a plugin can check, for messages.
+struct Places {
+  std::string file;
+  /// "drive.yaml:12:5: " by key: "modeling.options.NAME", "modeling.loss", "odometry.model",
+  /// "odometry.options.NAME", "calibration.NAME".
+  std::map<std::string, std::string> of;
+
+  /// The place of a key; that of the file if it does not state the key.
+  [[nodiscard]] std::string at(const std::string& key) const;
+};
+
+/// A drive.yaml, parsed. Every member that it does not state has its default.
+struct DriveFile {
+  DriveDescription description;
+  FusionSettings settings;
+  Places places;
+};
+
+/// A drive is known by its name, .yaml or .yml: a graph or truth file never has it, whatever its format.
+[[nodiscard]] bool is_drive_file(std::string_view path);
+/// Whether a plugin is named by its file; a word without folder and ending is looked up by whoever loads it.
+[[nodiscard]] bool is_plugin_file(std::string_view plugin);
+
+/// Reads and checks a drive.yaml (schema: tools/drive/README.md). Logs are not opened.
+/// @param data_folder  where relative log names are looked up, instead of the file's own `folder` (empty:
+/// that one)
+/// @throws InputError "drive.yaml:12:5: unknown key 'colums'; did you mean 'columns'?" and the like.
+[[nodiscard]] DriveFile load_drive_file(const std::string& path, const std::string& data_folder = "");
+
+/// The same from text. @param path  the file's name, for messages and as the anchor of relative folders
+[[nodiscard]] DriveFile parse_drive_file(const std::string& text, const std::string& path,
+                                         const std::string& data_folder = "");
+
+}  // namespace waymark::drive

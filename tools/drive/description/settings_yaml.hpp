@@ -1,0 +1,13 @@
+/// The part of a drive.yaml that says how the drive is fused (see fusion_settings.hpp).
+#pragma once
+
+#include <waymark/tools/drive/description/drive_file.hpp>
+#include <waymark/tools/drive/description/yaml_section.hpp>
+
+namespace waymark::drive {
+
+/// Reads the settings, and the places of those that only a plugin can check. @param top  the whole file
+/// @throws InputError with the place of what is wrong
+void read_settings(const YamlSection& top, FusionSettings& settings, Places& places);
+
+}  // namespace waymark::drive

@@ -1,0 +1,69 @@
+#include <waymark/tools/drive/logs/sensor_logs.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+#include <waymark/tools/drive/logs/streams.hpp>
+
+namespace waymark::drive {
+namespace {
+
+const GeodeticFix& nearest_fix(std::span<const GeodeticFix> fixes, Stamp moment) {
+  const auto after = std::lower_bound(fixes.begin(), fixes.end(), moment,
+                                      [](const GeodeticFix& fix, Stamp stamp) { return fix.stamp < stamp; });
+  if (after == fixes.begin()) return *after;
+  const auto before = after - 1;
+  if (after == fixes.end()) return *before;
+  return seconds_between(before->stamp, moment) < seconds_between(moment, after->stamp) ? *before : *after;
+}
+
+/// Rows in order of time.
+SensorTable sorted(const SensorTable& table) {
+  std::vector<std::size_t> order(table.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return table.stamps[a] < table.stamps[b]; });
+  SensorTable result;
+  result.columns = table.columns;
+  for (const std::size_t row : order) {
+    result.stamps.push_back(table.stamps[row]);
+    for (std::size_t c = 0; c < table.columns; ++c) result.values.push_back(table.at(row, c));
+  }
+  return result;
+}
+
+}  // namespace
+
+void resolve_sensors(DriveDescription& description, const TypeRegistry& registry) {
+  for (SensorConfig& sensor : description.sensors) {
+    at_place_of(sensor.place, sensor.name, [&] {
+      const SensorModelType& type = registry.sensor_model(sensor.name);
+      (void)registry.make_sensor_model(sensor.name, sensor.options);  // what is wrong shows before the work
+      if (type.columns.empty() && sensor.log) throw InputError("takes no log; leave out 'file'");
+      if (!type.columns.empty() && !sensor.log)
+        throw InputError("needs a log: name it with 'file: ...' (`waymark info` lists its columns)");
+      if (sensor.log) sensor.log->request.readings = type.columns;
+    });
+  }
+}
+
+SensorTable prepare_readings(const DriveLogs::Log& log, std::span<const SensorColumn> columns,
+                             TimeScale scale, std::span<const GeodeticFix> fixes,
+                             const Projection& projection, PrepareReport& report) {
+  SensorTable table = log.data.readings;
+  put_on_scale(table.stamps, log, scale, [](Stamp& stamp) -> Stamp& { return stamp; });
+  add_log_report(log.data, report.sensor, report);
+  table = sorted(table);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].sense != "ccw_from_east") continue;
+    for (std::size_t row = 0; row < table.size(); ++row) {
+      const GeodeticFix& fix = nearest_fix(fixes, table.stamps[row]);
+      double& heading = table.values[row * table.columns + c];
+      heading = grid_heading_from_true(
+          heading, projection.to_grid({fix.latitude_deg, fix.longitude_deg}).convergence_rad);
+    }
+  }
+  return table;
+}
+
+}  // namespace waymark::drive

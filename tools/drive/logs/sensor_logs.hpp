@@ -1,0 +1,39 @@
+/// The logs of a drive's further sensors: what their models ask for, and their readings on the drive's clock
+/// and frame. Their part of the graph: model/sensors.hpp.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/registry.hpp>
+#include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/drive/logs/projection.hpp>
+
+namespace waymark::drive {
+
+/// Runs a step of a sensor; what is wrong with it is said with its place in the drive.yaml.
+template <typename Step>
+auto at_place_of(const std::string& place, const std::string& sensor, const Step& step) {
+  try {
+    return step();
+  } catch (const Error& error) {
+    throw InputError(place + "sensor " + sensor + ": " + error.what());
+  }
+}
+
+/// Tells the sensors' logs which columns their models ask for.
+/// @throws InputError with the place in the drive.yaml: an unknown sensor or option, a log that is missing or
+/// not wanted
+void resolve_sensors(DriveDescription& description, const TypeRegistry& registry);
+
+/// The readings of a sensor on the drive's scale, sorted (stable), headings from true east turned into the
+/// frame by the meridian convergence at the fix nearest in time.
+/// @param columns  what the values are
+/// @param fixes    sorted by stamp, at least one
+/// @throws InputError for a log of seconds of week that would need a date
+[[nodiscard]] SensorTable prepare_readings(const DriveLogs::Log& log, std::span<const SensorColumn> columns,
+                                           TimeScale scale, std::span<const GeodeticFix> fixes,
+                                           const Projection& projection, PrepareReport& report);
+
+}  // namespace waymark::drive

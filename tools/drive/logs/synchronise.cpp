@@ -1,0 +1,43 @@
+#include <waymark/tools/drive/logs/synchronise.hpp>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/drive/logs/clock_sync.hpp>
+
+namespace waymark::drive {
+namespace {
+
+/// Adds an offset to a delay if it is one; what was done is noted either way.
+bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s,
+                  std::vector<std::string>& notes) {
+  if (!offset) {
+    notes.push_back(fmt::format("sync: no offset of the {} was found; it stays as it is", quantity));
+    return false;
+  }
+  const bool is_one = std::abs(offset->late_s) > kOffsetSigmas * offset->sigma_s;
+  if (is_one) delay_s += offset->late_s;
+  notes.push_back(
+      fmt::format("sync: the odometry's {} {} late by {:.3f} s (sigma {:.3f} s, correlation {:.4f}); {}",
+                  quantity, is_one ? "was" : "seems", offset->late_s, offset->sigma_s, offset->correlation,
+                  is_one ? "applied" : "within three sigmas, so not applied"));
+  return is_one;
+}
+
+}  // namespace
+
+void synchronise(DriveLogs& logs, DriveDescription& description) {
+  std::vector<std::string> notes = put_on_told_time(logs);
+  const SyncReport report = estimate_clock_offsets(prepare_drive(logs, description), {});
+  const bool speed_moved = apply_offset(report.speed, "speed", description.speed_delay_s, notes);
+  (void)apply_offset(report.yaw_rate, "yaw rate", description.yaw_rate_delay_s, notes);
+  // One log has one clock: half of it must not be moved alone.
+  if (description.odometry.size() == 1 && speed_moved && !report.yaw_rate) {
+    description.yaw_rate_delay_s += report.speed->late_s;
+    notes.emplace_back("sync: the yaw rate stands in the log of the speed and is moved with it");
+  }
+  logs.notes.insert(logs.notes.end(), notes.begin(), notes.end());
+}
+
+}  // namespace waymark::drive

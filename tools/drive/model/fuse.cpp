@@ -1,0 +1,77 @@
+#include <waymark/tools/drive/model/fuse.hpp>
+
+#include <cmath>
+
+#include <waymark/tools/drive/model/build.hpp>
+#include <waymark/tools/drive/model/provenance.hpp>
+
+namespace waymark::drive {
+namespace {
+
+double distance_of(const Timeline& timeline) {
+  double distance_m = 0;
+  for (const Interval& interval : timeline.intervals)
+    distance_m += std::abs(interval.speed_mps) * interval.dt_s;
+  return distance_m;
+}
+
+}  // namespace
+
+std::vector<std::string> ModeledDrive::warnings() const {
+  std::vector<std::string> all = placed.warnings;
+  all.insert(all.end(), sensor_warnings.begin(), sensor_warnings.end());
+  return all;
+}
+
+const PlacedDrive& Fusion::placed(const FusionSettings& settings) {
+  const double standstill_mps =
+      make_odometry_model(settings, drive_.timeline.gap_noise_factor, registry_)->standstill_speed();
+  const Key key{settings.gate, settings.initial_guess, settings.lever_arm, standstill_mps};
+  for (const auto& [known, placed] : placed_) {
+    if (known == key) return placed;
+  }
+  if (!timeline_) timeline_ = timeline_of(drive_);
+  return placed_.emplace_back(key, place_drive(drive_, *timeline_, settings, registry_)).second;
+}
+
+ModeledDrive Fusion::model(const FusionSettings& settings) {
+  ModeledDrive modeled;
+  modeled.settings = decided(settings, registry_);
+  modeled.placed = placed(modeled.settings);
+  if (*modeled.settings.estimates_noise) {
+    modeled.noise = estimate_noise(modeled.placed, modeled.settings, registry_);
+    modeled.settings = with_noise(std::move(modeled.settings), modeled.noise);
+  }
+  BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
+  modeled.sensor_warnings = std::move(built.warnings);
+  modeled.distance_m = distance_of(modeled.placed.timeline);
+  formats::GraphDocument& document = modeled.document;
+  document.graph = std::move(built.graph);
+  document.frame = drive_.frame;
+  document.time_scale = drive_.scale;
+  document.antenna_m = modeled.placed.antenna_m;
+  document.truth_reference_m = drive_.truth_reference_m;
+  document.fixes = modeled.placed.fixes;
+  document.provenance = provenance_of(drive_, modeled, registry_);
+  return modeled;
+}
+
+FusedDrive minimized(ModeledDrive model, const TypeRegistry& registry, const MinimizationWatch& watch) {
+  FusedDrive fused{std::move(model), {}};
+  formats::GraphDocument& document = fused.model.document;
+  const Minimization& how = fused.model.settings.minimization;
+  fused.minimum = minimize(document.graph, how, registry, watch);
+  if (fused.minimum.summary.converged()) add_covariances(document, how.covariances);
+  return fused;
+}
+
+FusedDrive Fusion::fuse(const FusionSettings& settings, const MinimizationWatch& watch) {
+  return minimized(model(settings), registry_, watch);
+}
+
+FusedDrive fuse(const PreparedDrive& drive, const FusionSettings& settings, const TypeRegistry& registry,
+                const MinimizationWatch& watch) {
+  return Fusion(drive, registry).fuse(settings, watch);
+}
+
+}  // namespace waymark::drive

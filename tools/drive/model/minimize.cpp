@@ -1,0 +1,116 @@
+#include <waymark/tools/drive/model/minimize.hpp>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/core/covariance/marginals.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr std::string_view kAutoStart = "auto";
+constexpr std::string_view kFileStart = "file";
+
+void check_start(const std::string& start, const TypeRegistry& registry) {
+  std::vector<std::string_view> names = {kAutoStart, kFileStart};
+  for (const auto& [type, origin] : registry.starts()) names.push_back(type.name);
+  if (std::find(names.begin(), names.end(), start) != names.end()) return;
+  throw UsageError("unknown start '" + start + "'" + suggestion(start, names));
+}
+
+MultiStartSummary minimize_from(const std::string& start, Graph& graph, const TypeRegistry& registry,
+                                Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options,
+                                const Minimizer& search) {
+  if (start == kAutoStart && !search)
+    return optimize_from_best_start(graph, registry.starts(), algorithm, solver, options);
+  InitialValues made;
+  if (start != kFileStart && start != kAutoStart) {
+    made = registry.make_start(start, graph);
+    if (made.values.empty()) throw InputError("start " + start + " cannot be made: " + made.note);
+    graph.set_values(std::move(made.values));
+  }
+  MultiStartSummary result;
+  result.summary =
+      search ? search(graph, algorithm, solver, options) : optimize(graph, algorithm, solver, options);
+  result.start = start == kAutoStart ? kFileStart : start;
+  result.total_seconds = result.summary.total_seconds;
+  if (made.apart > 0) result.summary.notes.push_back(apart_note(made.apart));
+  return result;
+}
+
+std::vector<VertexIndex> wanted_vertices(const formats::GraphDocument& document, const std::string& which) {
+  std::vector<VertexIndex> vertices;
+  if (which == "fixes") {
+    for (const Fix& fix : document.fixes) {  // fixes of several receivers may share a vertex
+      if (const auto vertex = document.graph.find(fix.vertex)) vertices.push_back(*vertex);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  } else if (which == "all") {
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(document.graph.vertex_count()); ++v) {
+      if (!document.graph.fixed(v)) vertices.push_back(v);
+    }
+  }
+  return vertices;
+}
+
+}  // namespace
+
+// The backends are registered fastest first: on every graph measured the first was the fastest.
+std::string solver_name(const Minimization& how, const TypeRegistry& registry) {
+  return how.solver == "auto" ? registry.linear_solvers().front().type.name : how.solver;
+}
+
+OptimizerOptions optimizer_options(const Minimization& how, const MinimizationWatch& watch) {
+  OptimizerOptions options;
+  options.max_iterations = how.max_iterations;
+  options.decrement_tolerance = how.tolerance;
+  options.threads = how.threads;
+  options.observer = watch.observer;
+  options.cancel = watch.cancel;
+  return options;
+}
+
+void check_minimization(const Minimization& how, const TypeRegistry& registry) {
+  (void)registry.make_algorithm(how.algorithm, how.options);
+  (void)registry.make_linear_solver(solver_name(how, registry));
+  check_start(how.start, registry);
+}
+
+MultiStartSummary minimize(Graph& graph, const Minimization& how, const TypeRegistry& registry,
+                           const MinimizationWatch& watch, const Minimizer& search) {
+  const auto algorithm = registry.make_algorithm(how.algorithm, how.options);
+  const auto solver = registry.make_linear_solver(solver_name(how, registry));
+  MultiStartSummary result =
+      minimize_from(how.start, graph, registry, *algorithm, *solver, optimizer_options(how, watch), search);
+  result.summary.algorithm = how.algorithm;
+  return result;
+}
+
+std::string apart_note(std::size_t vertices) {
+  return fmt::format(
+      "{} vertices are not joined to the first one by relative edges; each part begins at its own "
+      "first vertex",
+      vertices);
+}
+
+void add_covariances(formats::GraphDocument& document, const std::string& which) {
+  document.covariances.clear();
+  const std::vector<VertexIndex> vertices = wanted_vertices(document, which);
+  if (vertices.empty()) return;
+  const Marginals marginals(document.graph);
+  const CovarianceBlocks blocks = marginals.blocks(vertices);
+  document.covariances.reserve(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    // No line is honester than one of zeros, which reads as certainty.
+    if (marginals.estimated(vertices[i])) document.covariances.push_back({vertices[i], blocks[i]});
+  }
+}
+
+}  // namespace waymark::drive

@@ -1,0 +1,45 @@
+#include <waymark/tools/drive/model/place.hpp>
+
+#include <waymark/tools/drive/nodes/plausibility.hpp>
+
+namespace waymark::drive {
+
+std::unique_ptr<OdometryModel> make_odometry_model(const FusionSettings& settings, double gap_noise_factor,
+                                                   const TypeRegistry& registry) {
+  const OdometryModelType& type = registry.odometry_model(settings.odometry_model);
+  Options options = with_calibration(settings.odometry_options, settings, type.options);
+  if (!type.gap_factor_option.empty())
+    options.try_emplace(type.gap_factor_option, shortest(gap_noise_factor));
+  return registry.make_odometry_model(settings.odometry_model, options);
+}
+
+Timeline timeline_of(const PreparedDrive& drive) {
+  return build_timeline(drive.odometry, drive.fixes, drive.timeline);
+}
+
+PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
+                        const TypeRegistry& registry) {
+  PlacedDrive placed;
+  placed.timeline = timeline;
+  placed.fixes = drive.fixes;
+  if (settings.lever_arm) placed.antenna_m = drive.antenna_m;
+  placed.gap_noise_factor = drive.timeline.gap_noise_factor;
+  placed.standstill_mps =
+      make_odometry_model(settings, placed.gap_noise_factor, registry)->standstill_speed();
+  const std::vector<Eigen::Vector3d> reckoned =
+      dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
+  const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.antenna_m);
+  placed.warnings = compare_odometry_with_fixes(placed.fixes, antenna);
+  placed.gate = apply_gate(placed.fixes, antenna, settings.gate);
+  require_accepted_fix(placed.gate);
+  placed.start =
+      make_start(timeline, placed.fixes, placed.antenna_m, placed.standstill_mps, settings.initial_guess);
+  const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};
+  for (std::size_t i = 0; i < placed.fixes.size(); ++i) {
+    placed.fixes[i].vertex = vertex_of(timeline.fix_node[i]);
+    placed.motion.push_back(motion_at(nodes, timeline.fix_node[i]));
+  }
+  return placed;
+}
+
+}  // namespace waymark::drive

@@ -1,0 +1,99 @@
+#include <waymark/tools/drive/model/poses_at_fixes.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/nodes/timeline.hpp>
+#include <waymark/types_se2/edge_gnss.hpp>
+#include <waymark/types_se2/se2.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
+
+namespace waymark::drive {
+namespace {
+
+std::optional<double> estimated_time_offset(const Graph& graph) {
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (graph.vertex_type(v).tag == VertexTimeOffset::kTag && !graph.fixed(v)) return graph.value(v)[0];
+  }
+  return std::nullopt;
+}
+
+/// All poses with a stamp, by time; one of each stamp.
+std::vector<StampedPose> stamped_poses(const Graph& graph) {
+  std::vector<StampedPose> poses;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (const auto pose = stamped_pose(graph, v)) poses.push_back(*pose);
+  }
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
+  const auto same = [](const auto& a, const auto& b) { return a.stamp == b.stamp; };
+  poses.erase(std::unique(poses.begin(), poses.end(), same), poses.end());
+  return poses;
+}
+
+Pose2<double> as_pose(const StampedPose& pose) {
+  return {pose.pose[0], pose.pose[1], pose.pose[2]};
+}
+
+/// The pose `later_s` seconds after a stamp, on the twist between the two poses beside; beyond the ends that
+/// of the last two goes on. @param nodes at least two
+Eigen::Vector3d pose_at(const std::vector<StampedPose>& nodes, Stamp stamp, double later_s) {
+  const Stamp moment{stamp.nanoseconds + std::llround(later_s * 1e9)};
+  auto after = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, moment,
+                                [](Stamp time, const StampedPose& pose) { return time < pose.stamp; });
+  const StampedPose& before = *(after - 1);
+  const double part = seconds_between(before.stamp, moment) / seconds_between(before.stamp, after->stamp);
+  const Vector3<double> twist = se2_log(between(as_pose(before), as_pose(*after)));
+  return compose(as_pose(before), se2_exp<double>(part * twist)).vector();
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> poses_when_measured(const formats::GraphDocument& document) {
+  const std::optional<double> offset = estimated_time_offset(document.graph);
+  if (!offset) return {};
+  const std::vector<StampedPose> nodes = stamped_poses(document.graph);
+  if (nodes.size() < 2)
+    throw InputError("a time offset is estimated, but fewer than two poses have stamps of their own");
+  std::vector<Eigen::Vector3d> poses;
+  for (const Fix& fix : document.fixes) poses.push_back(pose_at(nodes, fix.stamp, -*offset));
+  return poses;
+}
+
+std::vector<std::optional<Eigen::Matrix2d>> position_covariances_at_fixes(
+    const formats::GraphDocument& document) {
+  std::vector<const formats::VertexCovariance*> of_vertex(document.graph.vertex_count(), nullptr);
+  for (const formats::VertexCovariance& block : document.covariances)
+    of_vertex[static_cast<std::size_t>(block.vertex)] = &block;
+  std::vector<std::optional<Eigen::Matrix2d>> covariances(document.fixes.size());
+  for (std::size_t i = 0; i < document.fixes.size(); ++i) {
+    const auto vertex = document.graph.find(document.fixes[i].vertex);
+    const formats::VertexCovariance* block = vertex ? of_vertex[static_cast<std::size_t>(*vertex)] : nullptr;
+    if (block != nullptr) covariances[i] = block->covariance.topLeftCorner<2, 2>();
+  }
+  return covariances;
+}
+
+std::vector<StampedPose> poses_at_fixes(const formats::GraphDocument& document) {
+  std::vector<StampedPose> poses;
+  poses.reserve(document.fixes.size());
+  for (const Fix& fix : document.fixes) {
+    const auto vertex = document.graph.find(fix.vertex);
+    if (!vertex || document.graph.vertex_type(*vertex).tag != VertexSe2::kTag ||
+        !document.graph.stamp(*vertex)) {
+      throw InputError("fix of epoch " + std::to_string(fix.epoch) + ": its vertex " +
+                       std::to_string(fix.vertex) + " is no pose with a stamp");
+    }
+    const Stamp stamp = *document.graph.stamp(*vertex);
+    if (std::abs(seconds_between(fix.stamp, stamp)) > kLargestSnap) {
+      throw InputError("fix of epoch " + std::to_string(fix.epoch) +
+                       ": its stamp is not that of its vertex " + std::to_string(fix.vertex));
+    }
+    const auto value = document.graph.value(*vertex);
+    poses.push_back({stamp, {value[0], value[1], value[2]}});
+  }
+  return poses;
+}
+
+}  // namespace waymark::drive

@@ -1,0 +1,21 @@
+/// What a drive's document says of how it came about.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <waymark/tools/drive/model/fuse.hpp>
+
+namespace waymark::drive {
+
+/// Key and text, in order of writing: drive, input (name and fingerprint of each file), modeling,
+/// modeling_option, loss, noise, calibration, sensor, plugin, gate, start, assumed, warning.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(const PreparedDrive& drive,
+                                                                             const ModeledDrive& modeled,
+                                                                             const TypeRegistry& registry);
+
+/// "12 corrupt records were left out"; empty if there were none.
+[[nodiscard]] std::string corrupt_warning(const PrepareReport& report);
+
+}  // namespace waymark::drive

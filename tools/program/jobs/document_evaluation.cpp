@@ -1,0 +1,58 @@
+#include <waymark/tools/program/jobs/document_evaluation.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/text_file.hpp>
+#include <waymark/formats/trajectory/trajectory.hpp>
+#include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/drive/model/poses_at_fixes.hpp>
+
+namespace waymark::program {
+
+evaluation::Prediction as_prediction(std::string label, drive::PosesAtWithheld at) {
+  return {.label = std::move(label),
+          .poses = std::move(at.poses),
+          .position_covariances = std::move(at.position_covariances)};
+}
+
+evaluation::Evaluation evaluate_document(const formats::GraphDocument& document,
+                                         const std::vector<TruthPose>& truth,
+                                         const std::vector<evaluation::Prediction>& further) {
+  evaluation::EvaluationInput input;
+  input.fused = drive::poses_at_fixes(document);
+  input.when_measured = drive::poses_when_measured(document);
+  input.fixes = document.fixes;
+  input.truth = truth;
+  input.antenna_m = document.antenna_m;
+  input.truth_reference_m = document.truth_reference_m;
+  input.frame = document.frame.value_or(Frame());
+  input.max_stamp_offset_s = drive::kLargestSnap;  // a fix may share the node of an odometry sample
+  const auto covariances = drive::position_covariances_at_fixes(document);
+  if (std::all_of(covariances.begin(), covariances.end(), [](const auto& c) { return c.has_value(); })) {
+    for (const auto& covariance : covariances) input.position_covariances.push_back(*covariance);
+  }
+  input.predictions = {as_prediction("dead reckoning", drive::dead_reckoned_at_withheld(document))};
+  for (const evaluation::Prediction& prediction : further) input.predictions.push_back(prediction);
+  return evaluation::evaluate(input);
+}
+
+std::vector<TruthPose> truth_for(const formats::GraphDocument& document,
+                                 const drive::DriveDescription& description, const TypeRegistry& registry) {
+  if (!description.truth) throw InputError(description.path + ": has no 'truth' section");
+  if (!document.frame || document.frame->zone == 0)
+    throw InputError("the graph has no UTM frame, so geodetic truth cannot be compared with it");
+  return drive::load_truth(description, *document.frame, registry);
+}
+
+std::vector<TruthPose> truth_from_tum(const std::string& path) {
+  std::vector<TruthPose> truth;
+  for (const StampedPose& pose : formats::read_tum(formats::read_text_file(path), path))
+    truth.push_back({pose.stamp, pose.pose.head<2>(), pose.pose[2]});
+  std::stable_sort(truth.begin(), truth.end(),
+                   [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
+  return truth;
+}
+
+}  // namespace waymark::program

@@ -1,0 +1,31 @@
+/// A document judged at its fixes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <waymark/formats/graph/graph_document.hpp>
+#include <waymark/tools/drive/description/drive_description.hpp>
+#include <waymark/tools/drive/model/outages.hpp>
+#include <waymark/tools/evaluation/evaluation.hpp>
+
+namespace waymark::program {
+
+/// Evaluates a document at its fixes. @param truth may be empty
+/// @param further  predictions of its withheld fixes, beside the fused poses and dead reckoning
+[[nodiscard]] evaluation::Evaluation evaluate_document(
+    const formats::GraphDocument& document, const std::vector<TruthPose>& truth,
+    const std::vector<evaluation::Prediction>& further = {});
+
+[[nodiscard]] evaluation::Prediction as_prediction(std::string label, drive::PosesAtWithheld at);
+
+/// The truth that a drive.yaml names, in the document's frame; no other log of it is read.
+/// @throws InputError for a description without truth, a document without a frame, an unusable log
+[[nodiscard]] std::vector<TruthPose> truth_for(const formats::GraphDocument& document,
+                                               const drive::DriveDescription& description,
+                                               const TypeRegistry& registry);
+
+/// Truth from a TUM file in the document's frame. @throws InputError for a file that cannot be read
+[[nodiscard]] std::vector<TruthPose> truth_from_tum(const std::string& path);
+
+}  // namespace waymark::program

@@ -1,0 +1,174 @@
+#include <waymark/tools/program/jobs/drive_choice.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
+#include <waymark/tools/drive/model/place.hpp>
+#include <waymark/tools/program/jobs/graph/optimization.hpp>
+
+namespace waymark::program {
+namespace {
+
+/// The loss as the drive.yaml or the command line names it.
+void check_loss(const drive::DriveFile& file, const TypeRegistry& registry) {
+  const auto place = file.places.of.find("modeling.loss");
+  if (place == file.places.of.end())
+    return (void)drive::loss_of_fixes(file.settings.loss, registry, "--gnss-loss");
+  try {
+    (void)drive::loss_of_fixes(file.settings.loss, registry, "modeling.loss");
+  } catch (const UsageError& error) {
+    throw InputError(place->second + error.what());
+  }
+}
+
+/// Where an option of the odometry model stands.
+std::string place_of_option(const drive::Places& places, const std::string& option) {
+  for (const char* section : {"odometry.options.", "calibration."}) {
+    const auto place = places.of.find(section + option);
+    if (place != places.of.end()) return place->second;
+  }
+  return places.at("odometry.model");
+}
+
+void check_odometry_model(const drive::FusionSettings& settings, const drive::DriveFile& file,
+                          const TypeRegistry& registry) {
+  try {
+    (void)drive::make_odometry_model(settings, file.description.timeline.gap_noise_factor, registry);
+  } catch (const OptionError& error) {
+    throw InputError(place_of_option(file.places, error.option()) + error.what());
+  } catch (const UsageError& error) {
+    throw InputError(file.places.at("odometry.model") + error.what());
+  }
+}
+
+/// @throws InputError with its place for a state that neither the odometry model nor one of the modelings
+/// knows
+void check_calibration(const drive::DriveFile& file, const std::vector<std::string>& modelings,
+                       const TypeRegistry& registry) {
+  const std::string& odometry_model = file.settings.odometry_model;
+  std::vector<std::string_view> known;
+  const auto add = [&known](const std::vector<OptionInfo>& options) {
+    for (const OptionInfo& option : options) known.push_back(option.name);
+  };
+  if (!file.settings.calibration || file.settings.calibration->empty()) return;
+  add(registry.odometry_model(odometry_model).options);
+  for (const std::string& modeling : modelings) add(registry.gnss_modeling(modeling).options);
+  for (const auto& [name, value] : *file.settings.calibration) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string hint = did_you_mean(name, known);
+    throw InputError(file.places.at("calibration." + name) + "calibration: neither odometry model '" +
+                     odometry_model + "' nor the GNSS modeling knows '" + name + "'" +
+                     (hint.empty() ? "; `waymark info` lists their options" : hint));
+  }
+}
+
+/// @throws UsageError for an option that no chosen modeling has
+void check_options_are_used(const std::vector<std::string>& modelings, const Options& given,
+                            const TypeRegistry& registry) {
+  for (const auto& entry : given) {
+    const auto has = [&](const std::string& modeling) {
+      return has_option(registry.gnss_modeling(modeling).options, entry.first);
+    };
+    if (std::any_of(modelings.begin(), modelings.end(), has)) continue;
+    // Its own message names the options that exist.
+    (void)registry.make_gnss_modeling(modelings.front(), {{entry.first, entry.second}});
+  }
+}
+
+std::vector<std::string> chosen_modelings(const drive::DriveFile& file, const DriveChoice& choice,
+                                          const TypeRegistry& registry) {
+  std::vector<std::string> names;
+  for (const std::string& name : choice.modelings) {
+    if (name != "all") {
+      names.push_back(name);
+      continue;
+    }
+    for (const auto& entry : registry.gnss_modelings()) names.push_back(entry.type.name);
+  }
+  if (names.empty()) names.push_back(file.settings.modeling);
+  std::vector<std::string> once;
+  for (const std::string& name : names) {
+    if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+  }
+  return once;
+}
+
+/// The settings of one modeling: options of the drive.yaml are those of the modeling that it names.
+drive::FusionSettings settings_of(const std::string& modeling, const drive::DriveFile& file,
+                                  const Options& given, const TypeRegistry& registry) {
+  drive::FusionSettings settings = file.settings;
+  if (modeling != settings.modeling) settings.modeling_options.clear();
+  settings.modeling = modeling;
+  for (const auto& [name, value] : given) {
+    if (has_option(registry.gnss_modeling(modeling).options, name)) settings.modeling_options[name] = value;
+  }
+  return settings;
+}
+
+}  // namespace
+
+drive::OutagePattern parse_outage(const std::string& text) {
+  drive::OutagePattern outage;
+  const char* last = text.data() + text.size();
+  const auto [slash, first_error] = std::from_chars(text.data(), last, outage.length_s);
+  const bool parted = first_error == std::errc() && slash != last && *slash == '/';
+  const auto [end, second_error] = std::from_chars(parted ? slash + 1 : last, last, outage.every_s);
+  if (!parted || second_error != std::errc() || end != last || !(outage.length_s > 0) ||
+      !(outage.every_s > outage.length_s) || !std::isfinite(outage.every_s)) {
+    throw UsageError("--outage: expected LENGTH/EVERY in seconds with 0 < LENGTH < EVERY, got '" + text +
+                     "'");
+  }
+  return outage;
+}
+
+void set_calibration(const std::vector<std::string>& words, drive::FusionSettings& settings) {
+  if (words.empty()) return;
+  if (!settings.calibration) settings.calibration.emplace();
+  for (const std::string& word : words) {
+    if (word == "on") {
+      settings.calibration = drive::default_calibration();
+    } else if (word == "off") {
+      settings.calibration->clear();
+    } else {
+      for (const auto& [name, value] : parse_options({word})) (*settings.calibration)[name] = value;
+    }
+  }
+}
+
+drive::DriveFile read_drive_file(const std::string& path, const DriveChoice& choice) {
+  drive::DriveFile file = drive::load_drive_file(path, choice.data_folder);
+  const auto from_s = file.description.from_s;
+  const auto to_s = file.description.to_s;
+  for (const DriveEdit& edit : choice.edits) edit(file);
+  const drive::DriveDescription& drive = file.description;
+  const bool edited = drive.from_s != from_s || drive.to_s != to_s;
+  if (edited && drive.from_s && drive.to_s && *drive.from_s >= *drive.to_s)
+    throw UsageError(
+        fmt::format("--from {} and --to {} leave nothing between them", *drive.from_s, *drive.to_s));
+  return file;
+}
+
+std::vector<drive::FusionSettings> chosen_settings(const drive::DriveFile& file, const DriveChoice& choice,
+                                                   const TypeRegistry& registry) {
+  const std::vector<std::string> modelings = chosen_modelings(file, choice, registry);
+  const Options given = parse_options(choice.modeling_options);
+  std::vector<drive::FusionSettings> all;
+  for (const std::string& modeling : modelings) {
+    all.push_back(settings_of(modeling, file, given, registry));
+    const drive::FusionSettings decided = drive::decided(all.back(), registry);
+    (void)registry.make_gnss_modeling(modeling, decided.modeling_options);
+  }
+  check_options_are_used(modelings, given, registry);
+  check_calibration(file, modelings, registry);
+  check_loss(file, registry);
+  for (const drive::FusionSettings& settings : all)
+    check_odometry_model(drive::decided(settings, registry), file, registry);
+  return all;
+}
+
+}  // namespace waymark::program

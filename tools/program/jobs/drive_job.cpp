@@ -1,0 +1,62 @@
+#include <waymark/tools/program/jobs/drive_job.hpp>
+
+#include <waymark/tools/drive/logs/sensor_logs.hpp>
+#include <waymark/tools/drive/logs/synchronise.hpp>
+#include <waymark/tools/drive/model/provenance.hpp>
+
+namespace waymark::program {
+namespace {
+
+void tell(const drive::PrepareReport& report, const Console& console) {
+  for (const std::string& note : report.notes) console.note(note);
+  const std::string corrupt = drive::corrupt_warning(report);
+  if (corrupt.empty()) return;
+  console.warning(corrupt + "; the first ones:");
+  for (const std::string& example : report.corrupt_examples) console.tell("  " + example);
+}
+
+/// Squared errors let biased fixes bend a scale; an error model of its own or a loss does not.
+bool scale_is_bent(const drive::FusionSettings& settings, const TypeRegistry& registry) {
+  const auto scale = settings.calibration->find("speed_scale");
+  const bool calibrated = scale != settings.calibration->end() && scale->second != "off";
+  return calibrated && (settings.loss.empty() || settings.loss == "none") &&
+         !registry.gnss_modeling(settings.modeling).complete;
+}
+
+}  // namespace
+
+LoadedDrive load_drive_for(const drive::DriveFile& file, const DriveChoice& choice,
+                           const TypeRegistry& registry, const Console& console) {
+  LoadedDrive loaded;
+  loaded.settings = chosen_settings(file, choice, registry);
+  drive::DriveDescription description = file.description;
+  drive::resolve_sensors(description, registry);
+  drive::DriveLogs logs = drive::read_drive_logs(description, registry, watch_reading(console));
+  if (choice.sync) {
+    console.progress("comparing clocks");
+    drive::synchronise(logs, description);
+  }
+  loaded.drive = drive::prepare_drive(logs, description);
+  tell(loaded.drive.report, console);
+  for (const drive::InputFile& input : loaded.drive.inputs) loaded.files.push_back(input.path);
+  loaded.files.push_back(description.path);
+  console.end_progress();
+  return loaded;
+}
+
+drive::ModeledDrive model_loaded(drive::Fusion& fusion, const drive::FusionSettings& settings,
+                                 const TypeRegistry& registry, const Console& console) {
+  console.progress(settings.modeling + ": start and noise");
+  drive::ModeledDrive modeled = fusion.model(settings);
+  console.end_progress();
+  for (const std::string& warning : modeled.warnings()) console.warning(warning);
+  if (!modeled.placed.start.note.empty()) console.note("start: " + modeled.placed.start.note);
+  if (scale_is_bent(modeled.settings, registry))
+    console.note(
+        "squared errors let biased fixes bend speed_scale; a robust loss protects it: --gnss-loss cauchy:1");
+  auto& provenance = modeled.document.provenance;
+  provenance.insert(provenance.begin(), {"program", "waymark " WAYMARK_VERSION});
+  return modeled;
+}
+
+}  // namespace waymark::program

@@ -1,0 +1,98 @@
+#include <filesystem>
+#include <optional>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/evaluation/output/epochs_csv.hpp>
+#include <waymark/tools/program/jobs/result_files.hpp>
+#include <waymark/tools/program/jobs/trajectory_files.hpp>
+#include <waymark/tools/report/comparison/comparison_page.hpp>
+#include <waymark/tools/report/drive/drive_report.hpp>
+
+namespace waymark::program {
+namespace {
+
+/// Writes the report and its figures; returns the page's name.
+std::string write_report(const DocumentResult& request, const std::vector<std::string>& files,
+                         const evaluation::ResultFolder& folder, const std::string& page_name,
+                         const Console& console) {
+  console.progress("writing report " + page_name + ".html");
+  const evaluation::GraphResiduals residuals = evaluation::residuals_by_type(request.document.graph);
+  std::optional<evaluation::Sparsity> sparsity;
+  try {
+    sparsity = evaluation::sparsity_of(request.document.graph);
+  } catch (const InputError& error) {  // an undetermined graph has residuals, but no normal equations to show
+    console.warning("the report has no matrices: " + std::string(error.what()));
+  }
+  report::ReportedDrive drive{.name = request.drive,
+                              .label = request.evaluated.label,
+                              .document = request.document,
+                              .evaluation = request.evaluated.evaluation,
+                              .truth = request.truth,
+                              .optimization = request.optimization,
+                              .states = &request.states,
+                              .residuals = &residuals,
+                              .sparsity = sparsity ? &*sparsity : nullptr};
+  drive.went_in = request.went_in;
+  for (const std::string& file : files)
+    drive.files.push_back(std::filesystem::path(file).filename().string());
+  drawing::Page page = report::drive_page(drive);
+  const std::vector<std::string> written = drawing::write_page(page, folder.path(), page_name);
+  for (std::size_t i = 1; i < written.size(); ++i) console.detail("written " + written[i]);
+  console.end_progress();
+  return written.front();
+}
+
+std::string write_comparison(const std::vector<ComparedResult>& results,
+                             const evaluation::ReportHeader& header, const evaluation::ResultFolder& folder,
+                             const Console& console) {
+  console.progress("writing report.html");
+  std::vector<report::ComparedRun> runs;
+  for (const ComparedResult& result : results)
+    runs.push_back(report::compared_run(result.evaluated, header, result.optimization));
+  drawing::Page page = report::comparison_page(runs, WAYMARK_VERSION);
+  drawing::Section alone{"reports", "Each by itself", {}};
+  for (const ComparedResult& result : results)
+    alone.blocks.emplace_back(
+        drawing::PageLink{result.evaluated.label + ".html", "Report of " + result.evaluated.label});
+  page.sections.push_back(std::move(alone));
+  const std::vector<std::string> written = drawing::write_page(page, folder.path(), folder.kReport);
+  for (std::size_t i = 1; i < written.size(); ++i) console.detail("written " + written[i]);
+  console.end_progress();
+  return written.front();
+}
+
+}  // namespace
+
+std::vector<std::string> write_result(const DocumentResult& result, const evaluation::ResultFolder& folder,
+                                      std::size_t results, const Console& console) {
+  const std::string& label = result.evaluated.label;
+  std::vector<std::string> files = result.files;
+  for (const std::string& file : write_trajectories(result.document, folder, label)) files.push_back(file);
+  files.push_back(folder.epochs(label));
+  formats::write_file_atomically(files.back(), evaluation::epochs_csv(result.evaluated.evaluation.epochs));
+  files.push_back(write_report(result, files, folder, folder.page_name(label, results), console));
+  return files;
+}
+
+std::vector<std::string> write_overview(const std::vector<ComparedResult>& results,
+                                        const evaluation::ReportHeader& header, const std::string& metrics,
+                                        const evaluation::ResultFolder& folder, const Console& console) {
+  std::vector<std::string> files;
+  if (results.size() > 1) files.push_back(write_comparison(results, header, folder, console));
+  files.push_back(folder.metrics());
+  formats::write_file_atomically(files.back(), metrics);
+  return files;
+}
+
+void add_provenance(const formats::GraphDocument& document, const std::string& label,
+                    evaluation::ReportHeader& header) {
+  for (const auto& [key, text] : document.provenance) {
+    if (key == "drive" && header.drive.empty()) header.drive = text;
+    std::string name = label + "." + key;
+    for (int n = 2; header.provenance.contains(name); ++n) name = label + "." + key + "." + std::to_string(n);
+    header.provenance[name] = text;
+  }
+}
+
+}  // namespace waymark::program

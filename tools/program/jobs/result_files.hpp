@@ -1,0 +1,54 @@
+/// What `run` and `evaluate` write of fused documents: for each its trajectory, epochs and report, for all of them
+/// metrics.json and a comparison.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
+#include <waymark/tools/evaluation/document/estimated_states.hpp>
+#include <waymark/tools/evaluation/output/report.hpp>
+#include <waymark/tools/evaluation/output/result_folder.hpp>
+#include <waymark/tools/program/terminal/console.hpp>
+
+namespace waymark::program {
+
+/// What is told of one document.
+struct DocumentResult {
+  std::string drive;                       ///< name of the drive
+  const formats::GraphDocument& document;  ///< at its minimum
+  const evaluation::LabelledEvaluation& evaluated;
+  const std::vector<TruthPose>& truth;
+  const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
+  std::vector<evaluation::StateReport> states{};
+  /// Of the logs, heading and text.
+  std::vector<std::pair<std::string, std::string>> went_in{};
+  std::vector<std::string> files{};  ///< written before, to be linked; paths
+};
+
+/// Writes trajectory, epochs and report with its figures.
+/// @param results  in the folder: the report of a single one is called so, of several each has its label
+/// @return the files, those written before first, the report last; figures are too many to be told
+std::vector<std::string> write_result(const DocumentResult& result, const evaluation::ResultFolder& folder,
+                                      std::size_t results, const Console& console);
+
+/// One of the results that the folder holds.
+struct ComparedResult {
+  const evaluation::LabelledEvaluation& evaluated;
+  const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
+};
+
+/// Writes the comparison if there are several results, and metrics.json.
+/// @param metrics  content of metrics.json
+/// @return the files
+std::vector<std::string> write_overview(const std::vector<ComparedResult>& results,
+                                        const evaluation::ReportHeader& header, const std::string& metrics,
+                                        const evaluation::ResultFolder& folder, const Console& console);
+
+/// Puts a document's provenance into a report, keys as "LABEL.KEY" (numbered where a key repeats).
+void add_provenance(const formats::GraphDocument& document, const std::string& label,
+                    evaluation::ReportHeader& header);
+
+}  // namespace waymark::program

@@ -1,0 +1,17 @@
+/// The trajectory of a document as files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <waymark/formats/graph/graph_document.hpp>
+#include <waymark/tools/evaluation/output/result_folder.hpp>
+
+namespace waymark::program {
+
+/// Writes the trajectory of all poses in the forms of kTrajectoryForms, for maps only if the frame is known;
+/// nothing for a document without poses. Returns the names.
+std::vector<std::string> write_trajectories(const formats::GraphDocument& document,
+                                            const evaluation::ResultFolder& folder, const std::string& label);
+
+}  // namespace waymark::program
