@@ -33,7 +33,7 @@ struct DriveFile {
 /// Whether a plugin is named by its file; a word without folder and ending is looked up by whoever loads it.
 [[nodiscard]] bool is_plugin_file(std::string_view plugin);
 
-/// Reads and checks a drive.yaml (schema: tools/drive/README.md). Logs are not opened.
+/// Reads and checks a drive.yaml (keys: tools/drive/DRIVE_YAML.md). Logs are not opened.
 /// @param data_folder  where relative log names are looked up, instead of the file's own `folder` (empty:
 /// that one)
 /// @throws InputError "drive.yaml:12:5: unknown key 'colums'; did you mean 'columns'?" and the like.
