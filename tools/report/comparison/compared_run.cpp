@@ -36,7 +36,7 @@ std::vector<std::pair<std::string, std::string>> provenance_of(const std::string
     if (!name.starts_with(label + ".")) continue;
     const std::string key = key_without_number(name.substr(label.size() + 1));
     if (key.empty()) continue;
-    if (key == "optimized") {  // ComparedEnding holds this
+    if (key == "optimized") {  // RunEnding holds this
       entries["algorithm"] = word_behind(text, "algorithm");
       entries["linear solver"] = word_behind(text, "solver");
       entries["start of the optimisation"] = word_behind(text, "start");
