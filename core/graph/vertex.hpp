@@ -29,16 +29,19 @@ using VertexIndex = std::int32_t;
 /// @endcode
 /// Invariants (tested for every registered type): retract by 0 is the identity on normalised values;
 /// local(v, v) = 0; local(v, retract(v, d)) = d for small d.
-/// Optional: `V::value_units()`, the unit of each of them, for types whose numbers are no coordinates: a
-/// state with units and without a place in the plane is reported with its sigma after a run. V::kDense = true
-/// for states that touch very many edges (calibration); their columns are ordered last. Optional:
-/// `V::position(const double*) -> Vector2d` and
-/// `V::rigid_motion(const double* value, const Vector2d& centre, double extent, double* columns)`: how the
+/// Optional members:
+/// - `V::value_units()`: the unit of each number, for types whose numbers are no coordinates. A state with
+///   units and without a place in the plane is reported with its sigma after a run.
+/// - `V::kDense = true`: the state touches very many edges (calibration). Its columns are ordered last.
+/// - `V::kLinearChart = true`: promises local(r, x [+] d) = local(r, x) + d, so that the retraction is a plain
+///   addition. Gaussian priors then take the identity as Jacobian of local(), Ceres a plain parameter block.
+/// - `V::position(const double*) -> Vector2d` and
+///   `V::rigid_motion(const double* value, const Vector2d& centre, double extent, double* columns)`: how the
 ///   value moves under a rigid motion of the plane, kTangentSize x 3 column-major: along x, along y, a turn
-///   about centre by 1/extent rad. Types without it do not take part in the gauge test. And
-/// `V::carry<R>(const double* from, const double* to, Matrix<double, R, kTangentSize>& m)`: m := m T, where T
-///   takes the change of `from` to that of `to` when both move rigidly together; edges between two of them
-///   that are relative (kRelative) are then linearised in half the time.
+///   about centre by 1/extent rad. Types without them do not take part in the gauge test.
+/// - `V::carry<R>(const double* from, const double* to, Matrix<double, R, kTangentSize>& m)`: m := m T, where T
+///   takes the change of `from` to that of `to` when both move rigidly together. Relative edges (kRelative)
+///   between two of them are then linearised in half the time.
 template <typename V>
 concept Vertex = requires(double* value, const double* constant) {
   { V::kTag } -> std::convertible_to<std::string_view>;
