@@ -1,4 +1,4 @@
-// Benchmarks of the hot paths by name: see README.md.
+// Benchmarks of what is no optimisation, by name: see README.md.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +13,6 @@
 
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
-#include <waymark/core/system/gauge.hpp>
 #include <waymark/core/window/incremental.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 
@@ -48,91 +47,6 @@ const Graph& problem(Problem kind, std::int64_t poses) {
     place->second = waymark_test::grid_walk(count, static_cast<int>(std::sqrt(static_cast<double>(count))));
   }
   return place->second;
-}
-
-/// A problem ready for numbers.
-struct Prepared {
-  explicit Prepared(const Graph& g) : graph(g), equations(graph, structure) {
-    structure.build(graph, find_gauge(graph).held);
-    equations.linearize(graph.values());
-  }
-  Prepared(const Prepared&) = delete;
-  Prepared& operator=(const Prepared&) = delete;
-
-  const Graph& graph;
-  Structure structure;
-  NormalEquations equations;
-};
-
-void linearize(benchmark::State& state, Problem kind) {
-  Prepared prepared(problem(kind, state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(prepared.equations.linearize(prepared.graph.values()));
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(prepared.graph.edge_count()));
-}
-
-void chi2(benchmark::State& state, Problem kind) {
-  const Graph& graph = problem(kind, state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(graph.chi2());
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(graph.edge_count()));
-}
-
-void gauge(benchmark::State& state, Problem kind) {
-  const Graph& graph = problem(kind, state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(find_gauge(graph));
-}
-
-void structure(benchmark::State& state, Problem kind) {
-  const Graph& graph = problem(kind, state.range(0));
-  const std::vector<char> held = find_gauge(graph).held;
-  for (auto _ : state) {
-    Structure made;
-    made.build(graph, held);
-    benchmark::DoNotOptimize(made.pattern().value_count());
-  }
-}
-
-void analyze(benchmark::State& state, Problem kind, const std::string& name) {
-  const Prepared prepared(problem(kind, state.range(0)));
-  const auto solver = registry().make_linear_solver(name);
-  for (auto _ : state) solver->analyze(prepared.structure.pattern());
-}
-
-void factorize(benchmark::State& state, Problem kind, const std::string& name) {
-  const Prepared prepared(problem(kind, state.range(0)));
-  const auto solver = registry().make_linear_solver(name);
-  solver->analyze(prepared.structure.pattern());
-  for (auto _ : state) {
-    if (solver->factorize(prepared.equations.hessian()) != FactorStatus::ok)
-      state.SkipWithError("not definite");
-  }
-  state.counters["factor"] = static_cast<double>(solver->factor_size());
-}
-
-void solve(benchmark::State& state, Problem kind, const std::string& name) {
-  const Prepared prepared(problem(kind, state.range(0)));
-  const auto solver = registry().make_linear_solver(name);
-  solver->analyze(prepared.structure.pattern());
-  if (solver->factorize(prepared.equations.hessian()) != FactorStatus::ok)
-    state.SkipWithError("not definite");
-  Eigen::VectorXd x = prepared.equations.gradient();
-  const std::span<const double> b(prepared.equations.gradient().data(), static_cast<std::size_t>(x.size()));
-  for (auto _ : state) solver->solve(b, {x.data(), static_cast<std::size_t>(x.size())});
-}
-
-void run_optimizer(benchmark::State& state, Problem kind, const std::string& algorithm,
-                   const std::string& solver) {
-  const Graph& start = problem(kind, state.range(0));
-  Summary summary;
-  for (auto _ : state) {
-    state.PauseTiming();
-    Graph graph = start;
-    state.ResumeTiming();
-    summary =
-        optimize(graph, *registry().make_algorithm(algorithm), *registry().make_linear_solver(solver), {});
-  }
-  if (!summary.converged()) state.SkipWithError(summary.message.c_str());
-  state.counters["iterations"] = summary.iterations;
-  state.counters["chi2"] = summary.final_chi2;
 }
 
 void read(benchmark::State& state, Problem kind) {
@@ -219,7 +133,7 @@ void window(benchmark::State& state, Problem kind, const std::string& how) {
   }
 }
 
-/// NAME/PROBLEM[/PARAMETERS]/POSES, each at a small size and at that of the key workload.
+/// NAME/PROBLEM/POSES, each at a small size and at that of an hour and more of driving.
 void register_all() {
   struct Sized {
     Problem kind;
@@ -229,33 +143,18 @@ void register_all() {
   constexpr Sized kProblems[] = {{Problem::drive, "drive", {2000, 105'000}},
                                  {Problem::grid, "grid", {2000, 20'000}}};
   for (const Sized& sized : kProblems) {
-    const auto add = [&](const std::string& name, auto run, auto... parameter) {
-      const std::string full = name + "/" + sized.name + (std::string() + ... + ("/" + parameter));
-      auto* made = benchmark::RegisterBenchmark(
-          full.c_str(), [=, kind = sized.kind](benchmark::State& state) { run(state, kind, parameter...); });
+    const auto add = [&](const std::string& name, auto run) {
+      auto* made =
+          benchmark::RegisterBenchmark((name + "/" + sized.name).c_str(),
+                                       [=, kind = sized.kind](benchmark::State& state) { run(state, kind); });
       made->Unit(benchmark::kMillisecond);
       for (const std::int64_t poses : sized.poses) made->Arg(poses);
     };
-    add("linearize", &linearize);
-    add("chi2", &chi2);
-    add("gauge", &gauge);
-    add("structure", &structure);
     add("read", &read);
     add("read_strtod", &read_strtod);
     add("write", &write);
     add("marginals", &marginals);
     add("copy", &copy_graph);
-    for (const auto& [solver, origin] : registry().linear_solvers()) {
-      add("analyze", &analyze, solver.name);
-      add("factorize", &factorize, solver.name);
-      add("solve", &solve, solver.name);
-    }
-    for (const auto& [algorithm, origin] : registry().algorithms()) {
-      add("optimize", &run_optimizer, algorithm.name, std::string("eigen"));
-    }
-    for (const auto& [solver, origin] : registry().linear_solvers()) {
-      if (solver.name != "eigen") add("optimize", &run_optimizer, std::string("gauss_newton"), solver.name);
-    }
   }
   for (const std::string how : {"follow", "anew"}) {
     auto* made =

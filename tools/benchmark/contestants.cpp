@@ -6,7 +6,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/core/optimize/multi_start.hpp>
-#ifdef WAYMARK_HAVE_CERES
+#ifdef WAYMARK_WITH_CERES
 #include <waymark/tools/benchmark/ceres/ceres_peer.hpp>
 #endif
 
@@ -67,20 +67,20 @@ Contestant peer_contestant(std::string_view name, const OptimizerOptions& option
   if (name != kPeerNames[0] && name != kPeerNames[1]) {
     throw UsageError("unknown peer '" + std::string(name) + "'" + suggestion(name, kPeerNames));
   }
-#ifdef WAYMARK_HAVE_CERES
+#ifdef WAYMARK_WITH_CERES
   const CeresOptions ceres{name == "ceres" ? CeresMethod::levenberg_marquardt : CeresMethod::dogleg,
                            options.max_iterations, options.cancel};
   return {std::string(name), "", true, [=](Graph& graph) { return optimize_with_ceres(graph, ceres); }};
 #else
   (void)options;
   throw UsageError("peer '" + std::string(name) +
-                   "': Ceres was not found when this program was built; install the Debian package "
-                   "libceres-dev and build again");
+                   "': this program was built without Ceres; install the Debian package libceres-dev "
+                   "and build again with -DWAYMARK_WITH_CERES=ON");
 #endif
 }
 
 std::vector<std::string> built_in_peers() {
-#ifdef WAYMARK_HAVE_CERES
+#ifdef WAYMARK_WITH_CERES
   return {ceres_version()};
 #else
   return {};

@@ -16,7 +16,7 @@ namespace {
 /// Whether this program was built with Ceres; says so where it was not.
 bool has_ceres() {
   const bool has = contains(run({"doctor"}).out, "Ceres");
-  if (!has) WARN("SKIPPED: Ceres was not found when this was built (package libceres-dev)");
+  if (!has) WARN("SKIPPED: this program was built without Ceres (WAYMARK_WITH_CERES)");
   return has;
 }
 
@@ -291,7 +291,8 @@ TEST_CASE("bench: a peer that is not built in is named with the remedy") {
   const std::string input = write_text(fresh_folder() + "a.graph", square_graph());
   const RunResult result = run({"bench", input, "--peer", "ceres"});
   CHECK(result.code == 2);
-  CHECK(contains(result.err, "install the Debian package libceres-dev and build again"));
+  CHECK(contains(result.err,
+                 "install the Debian package libceres-dev and build again with -DWAYMARK_WITH_CERES=ON"));
 }
 
 TEST_CASE("bench: Ctrl-C ends it") {
