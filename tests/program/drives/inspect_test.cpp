@@ -91,7 +91,6 @@ TEST_CASE(
   const RunResult again = run(arguments);
   CHECK(again.code == 5);
   CHECK(contains(again.err, "drive.yaml: it exists already; --force replaces it"));
-  arguments[0] = "inspect";
   arguments.emplace_back("--force");
   CHECK(run(arguments).code == 0);
   CHECK(read_text(folder + "drive.yaml") == written);
@@ -108,10 +107,9 @@ TEST_CASE("inspect: init without logs writes a template, and -o - goes to the st
   CHECK(contains(result.out, "FILL_IN_odometry.csv"));
   CHECK(contains(result.err, "a template was written"));
   const std::string folder = drive_folder();
-  const RunResult both = run({"inspect", folder + "gnss.csv", "-o", "-"});
+  const RunResult both = run({"init", folder + "gnss.csv", "-o", "-"});
   CHECK(both.code == 0);
   CHECK(both.out.starts_with("# Proposed by"));
-  CHECK(contains(both.err, "suspicious"));
   CHECK(contains(both.err, "no log with odometry was found: fill in odometry"));
 }
 
@@ -125,6 +123,8 @@ TEST_CASE("inspect: inspect and init refuse what they cannot read, with exit cod
     CHECK(result.out.empty());
   };
   check({"inspect"}, 2, "logs is required");
+  check({"inspect", folder + "a.yaml", folder + "gnss.csv"}, 2, "a.yaml: it names its own logs");
+  check({"inspect", folder + "a.yaml", "--dbc", "car.dbc"}, 2, "belong to logs, not to a drive.yaml");
   check({"inspect", folder + "nothing.csv"}, 3, "nothing.csv: cannot read: No such file or directory");
   check({"inspect", write_text(folder + "empty", "")}, 3, "the log is empty");
   check({"inspect", write_text(folder + "rubbish", std::string(5000, '\1'))}, 3, "format is not recognised");

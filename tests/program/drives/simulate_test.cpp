@@ -43,7 +43,7 @@ TEST_CASE("simulate: writes a drive that runs, and its logs say that they are si
   CHECK(evaluation.at("truth").at("match").at("unmatched") == 0);
 
   // What simulate said about the drive is what evaluating it says.
-  const Json told = Json::parse(run({"simulate", "--describe", folder + "drive/drive.yaml", "--json"}).out);
+  const Json told = Json::parse(run({"inspect", folder + "drive/drive.yaml", "--json"}).out);
   CHECK(told.at("name") == "Simulated: urban, seed 1");
   CHECK(told.at("odometry_points") == 120 * 25);
   CHECK(told.at("fixes").get<int>() + told.at("missing_epochs").get<int>() == 119);
@@ -67,7 +67,7 @@ TEST_CASE("simulate: writes the same bytes for the same seed, others for another
   }
 }
 
-TEST_CASE("simulate: prints the table as JSON, and describes real drives alike") {
+TEST_CASE("simulate: prints the table as JSON, and inspect that of real drives") {
   const std::string folder = fresh_folder();
   const RunResult result =
       run({"simulate", "--preset", "rural", "--duration", "60", "-o", folder + "d", "--json"});
@@ -76,15 +76,15 @@ TEST_CASE("simulate: prints the table as JSON, and describes real drives alike")
   CHECK(json.at("odometry_points") == 1500);
   CHECK(json.at("drift_percent").is_null());  // no piece of a kilometre in a minute
 
-  const RunResult real = run({"simulate", "--describe", bundled_drive()});
+  const RunResult real = run({"inspect", bundled_drive()});
   CHECK(real.code == 0);
   CHECK(contains(real.out, "Potsdamer Platz"));
   CHECK(contains(real.out, "171, 0 epochs missing"));
 }
 
-TEST_CASE("simulate: drives without truth have no errors to tell of") {
+TEST_CASE("inspect: drives without truth have no errors to tell of") {
   const std::string folder = fresh_folder();
-  const RunResult result = run({"simulate", "--describe", write_drive(folder, {.with_truth = false})});
+  const RunResult result = run({"inspect", write_drive(folder, {.with_truth = false})});
   CHECK(result.code == 0);
   CHECK(contains(result.out, "- / - / - m"));
 }

@@ -146,8 +146,8 @@ TEST_CASE("json: json of every subcommand is as tools/program/JSON.md documents 
       {"check", {"check", fused}},
       {"check", {"check", square}},
       {"derivatives", {"check", "--derivatives"}},
-      {"simulate", {"simulate", "--preset", "rural", "--duration", "60", "-o", folder + "simulated"}},
-      {"simulate", {"simulate", "--describe", drive}},
+      {"drive", {"simulate", "--preset", "rural", "--duration", "60", "-o", folder + "simulated"}},
+      {"drive", {"inspect", drive}},
       {"presets", {"simulate", "--list"}},
       {"reproduction", {"reproduce", drive, "-o", folder + "paper"}}};
   Schema schema;

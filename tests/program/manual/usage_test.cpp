@@ -125,7 +125,7 @@ TEST_CASE("usage: what is mistyped is answered by what was meant, before anythin
       {{"bench", "a.g2o", "--start", "odometri"}, "unknown start 'odometri'; did you mean 'odometry'?"},
       {{"bench", "a.g2o", "--peer", "cers"}, "unknown peer 'cers'; did you mean 'ceres'?"},
       {{"simulate", "--preset", "urbn", "-o", "out"}, "unknown preset 'urbn'; did you mean 'urban'?"},
-      {{"inspect", drive, "--format", "cvs"}, "unknown log format 'cvs'; did you mean 'csv'?"},
+      {{"inspect", "a.csv", "--format", "cvs"}, "unknown log format 'cvs'; did you mean 'csv'?"},
       {{"convert", "a.graph", "-o", "b", "--profile", "gtsm"},
        "--profile: unknown profile 'gtsm'; did you mean 'gtsam'?"}};
   const std::string folder = fresh_folder();

@@ -61,6 +61,9 @@ void add_init(CLI::App& app, Action& action) {
   const auto options = std::make_shared<InspectCommand>();
   command->add_option("logs", options->logs, "Logs, and the DBC of CAN logs; none: a template")
       ->type_name("LOG");
+  command->add_option("-o,--out", options->output, "The drive.yaml to write ('-': standard output)")
+      ->type_name("DRIVE.yaml");
+  command->add_flag("--force", options->force, "Replace an existing drive.yaml");
   add_inspection_options(*command, *options);
   command->footer(
       "Example:\n  waymark init odometry.csv gnss.nmea -o drive.yaml && waymark run drive.yaml -o out");

@@ -1,11 +1,15 @@
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/inspection/inspection.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
+#include <waymark/tools/program/commands/drive_statistics.hpp>
 #include <waymark/tools/program/jobs/log_inspection.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -13,21 +17,30 @@
 namespace waymark::program {
 namespace {
 
+/// A drive.yaml stands alone: it names its logs, and says how to read them.
+ExitCode inspect_drive(const InspectCommand& command, const std::string& path, const Console& console) {
+  if (command.logs.size() > 1) throw UsageError(path + ": it names its own logs; inspect it alone");
+  if (command.format != "auto" || !command.dbc.empty())
+    throw UsageError("--format and --dbc belong to logs, not to a drive.yaml");
+  print_drive_statistics(path, command.common, console);
+  return kSuccess;
+}
+
 ExitCode inspect(const InspectCommand& command) {
   const Console console(command.common);
+  const auto described = std::find_if(command.logs.begin(), command.logs.end(), drive::is_drive_file);
+  if (described != command.logs.end()) return inspect_drive(command, *described, console);
   const std::vector<inspection::LogInspection> logs = inspect_files(command, console);
   if (command.common.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const inspection::LogInspection& log : logs) json.push_back(inspection::inspection_json(log));
-    console.result(json_document("inspect", {{"logs", json}}), is_stdout(command.output));
+    console.result(json_document("inspect", {{"logs", json}}));
   } else {
     std::string text;
     for (const inspection::LogInspection& log : logs)
-      text += (text.empty() ? "" : "\n") +
-              inspection::inspection_text(log, console.look(is_stdout(command.output)));
-    console.result(text, is_stdout(command.output));
+      text += (text.empty() ? "" : "\n") + inspection::inspection_text(log, console.look());
+    console.result(text);
   }
-  if (!command.output.empty()) write_proposal(command, logs, console);
   return kSuccess;
 }
 
@@ -37,11 +50,14 @@ void add_inspect(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "inspect",
       "What is in raw logs: streams, rates, gaps, what looks wrong\n\n"
-      "Formats are known by their content. With -o a drive.yaml is written as well, as 'waymark init' does.");
+      "Formats are known by their content; 'waymark init' writes a drive.yaml for such logs. Of a drive.yaml "
+      "it prints what the drive is like: counts, errors of the fixes against truth, drift of the odometry.");
   const auto options = std::make_shared<InspectCommand>();
-  command->add_option("logs", options->logs, "Logs, and the DBC of CAN logs")->required()->type_name("LOG");
+  command->add_option("logs", options->logs, "Logs, and the DBC of CAN logs; or one drive.yaml")
+      ->required()
+      ->type_name("LOG|DRIVE.yaml");
   add_inspection_options(*command, *options);
-  command->footer("Example:\n  waymark inspect candump.log.gz --dbc car.dbc -o drive.yaml");
+  command->footer("Example:\n  waymark inspect candump.log.gz --dbc car.dbc");
   command->callback([options, &action] { action = [options] { return inspect(*options); }; });
 }
 

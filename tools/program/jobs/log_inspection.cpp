@@ -33,21 +33,18 @@ void add_inspection_options(CLI::App& command, InspectCommand& options) {
   command.add_option("--format", options.format, "The logs' format; default: known by their content")
       ->type_name("LOG_FORMAT");
   command.add_option("--dbc", options.dbc, "Which signals CAN frames hold")->type_name("FILE.dbc");
-  command.add_option("-o,--out", options.output, "Write a drive.yaml to edit")->type_name("DRIVE.yaml");
-  command.add_flag("--force", options.force, "Replace an existing drive.yaml");
   options.common = {};
   add_common_options(command, options.common);
 }
 
 void require_new_file(const InspectCommand& command) {
-  if (command.output.empty() || is_stdout(command.output)) return;
+  if (is_stdout(command.output)) return;
   require_output_place(command.output);
   if (!command.force && std::filesystem::exists(command.output))
     throw OutputError(command.output + ": it exists already; --force replaces it");
 }
 
 std::vector<inspection::LogInspection> inspect_files(const InspectCommand& command, const Console& console) {
-  require_new_file(command);
   const TypeRegistry registry = make_registry(command.common);
   inspection::InspectionOptions options;
   options.format = command.format;

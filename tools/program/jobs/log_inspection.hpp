@@ -14,14 +14,14 @@ struct InspectCommand {
   std::vector<std::string> logs;  ///< DBC files among them
   std::string format = "auto";
   std::string dbc;
-  std::string output;  ///< drive.yaml; empty: none
-  bool force = false;
+  std::string output;  ///< of init: the drive.yaml
+  bool force = false;  ///< of init
 };
 
-/// --format, --dbc, -o, --force and the common ones.
+/// --format, --dbc and the common ones.
 void add_inspection_options(CLI::App& command, InspectCommand& options);
 
-/// @throws InputError, UsageError as inspect_logs; OutputError where the drive.yaml could not be written
+/// @throws InputError, UsageError as inspect_logs
 [[nodiscard]] std::vector<inspection::LogInspection> inspect_files(const InspectCommand& command,
                                                                    const Console& console);
 
