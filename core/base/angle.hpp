@@ -1,4 +1,5 @@
-/// One degree in radians: degrees * kDegree is an angle in radians, radians / kDegree one in degrees.
+/// One degree in radians: degrees * kDegree is an angle in radians, radians / kDegree
+/// one in degrees.
 #pragma once
 
 #include <numbers>

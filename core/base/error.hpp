@@ -1,5 +1,5 @@
-/// The exceptions of Waymark. A library throws these and never prints or exits; `tools/program` maps each
-/// kind to an exit code.
+/// The exceptions of Waymark. A library throws these and never prints or exits; `tools/program`
+/// maps each kind to an exit code.
 #pragma once
 
 #include <stdexcept>
@@ -7,30 +7,31 @@
 
 namespace waymark {
 
-/// Base of all errors that Waymark raises on purpose. What is not derived from it is a defect (internal
-/// error).
+/// The base of all errors that Waymark raises on purpose. An exception without this base is a
+/// defect (internal error).
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   ~Error() override;  // key function: one typeinfo across shared libraries and modules
 };
 
-/// The caller asked for something that does not exist or does not fit: unknown solver, wrong option value.
+/// The caller requested something that does not exist or does not fit: an unknown solver, a wrong
+/// option value.
 class UsageError : public Error {
  public:
   using Error::Error;
   ~UsageError() override;
 };
 
-/// An input file, log or graph is wrong. The message starts with the place ("run.graph:812:17: ") where there
-/// is one and says what was expected.
+/// An input file, log or graph is wrong. The message starts with the place ("run.graph:812:17: ")
+/// if there is one, and says what was expected.
 class InputError : public Error {
  public:
   using Error::Error;
   ~InputError() override;
 };
 
-/// An output could not be written whole; nothing was left half-written under the final name.
+/// An output could not be written completely. No partial file is left under the final name.
 class OutputError : public Error {
  public:
   using Error::Error;

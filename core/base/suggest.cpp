@@ -12,7 +12,7 @@ char small(char c) {
 
 struct Nearest {
   std::string_view word;  // empty: none is near
-  bool alone = true;      // no other is as near
+  bool alone = true;      // no other candidate is as near
 };
 
 Nearest nearest_of(std::string_view word, std::span<const std::string_view> candidates) {
@@ -52,7 +52,7 @@ std::string joined_words(std::span<const Word> words) {
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Three rows of the table suffice: a swap looks two rows back.
+  // Three rows of the table suffice, because a swap looks two rows back.
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {

@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-/// Below this share of the largest eigenvalue an axis carries no information.
+/// An axis below this share of the largest eigenvalue carries no information.
 constexpr double kNoInformation = 1e-12;
 
 template <int N>
@@ -58,10 +58,12 @@ double log_det_information(const Graph& graph) {
   return sum;
 }
 
-/// The weight of a robust edge at which Laplace's method gives the density exp(-rho / 2) of its error the
-/// mass that it has: a heavy tail makes the peak narrower than a normal distribution of the same mass.
+/// Returns the weight of a robust edge at which Laplace's method gives the density exp(-rho / 2)
+/// of its error its true mass. A heavy tail makes the peak narrower than a normal distribution of
+/// the same mass.
 double weight_of_mass(const Loss& loss, int dimension) {
-  constexpr double kReach = 20;  // standard deviations; beyond them a bounded loss has mass without end
+  // standard deviations; further out a bounded loss has infinite mass
+  constexpr double kReach = 20;
   constexpr int kSteps = 4'000;
   double heavy = 0;
   double normal = 0;
@@ -74,7 +76,7 @@ double weight_of_mass(const Loss& loss, int dimension) {
   return std::pow(normal / heavy, 2.0 / dimension);
 }
 
-/// Of each batch: the least of its losses; 1 where it has none.
+/// Returns for each batch the smallest weight of its losses, and 1 if it has none.
 std::vector<double> evidence_weights(const Graph& graph) {
   std::vector<double> weights(graph.batch_count(), 1.0);
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {

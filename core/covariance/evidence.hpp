@@ -1,16 +1,20 @@
-/// The marginal likelihood of a graph's measurements: how well noise parameters explain a drive.
+/// The marginal likelihood of a graph's measurements. It tells how well noise parameters
+/// explain a drive.
 ///
-/// With the unknowns x integrated out by Laplace's method at the minimum (MacKay, "Bayesian Interpolation",
-/// Neural Computation 4, 1992),
+/// Laplace's method at the minimum integrates out the unknowns x (MacKay, "Bayesian Interpolation",
+/// Neural Computation 4, 1992):
 ///   -log p(z | noise) = 1/2 chi2 + 1/2 log det H - 1/2 sum_e log det Omega_e + const.
-/// The first term falls as the noise grows, the last rises, and log det H charges for the unknowns that fit
-/// the measurements. H is not that of the steps. For an edge with a robust loss it takes
-/// min(w, m) Omega: w is the weight of iteratively reweighted least squares, and m that at which a normal
-/// distribution has the mass of exp(-rho / 2) (2/3 for the Cauchy loss that makes Student's t of four degrees
-/// of freedom in the plane). With w alone, which is 1 at the peak, every error that other unknowns take up
-/// would seem 1/m too improbable, and noise with heavy tails be found where there is none; the second-order
-/// terms, kept for some edges and not for others, would make it jump. The constant takes in whatever depends
-/// only on the number and kind of edges: the powers of 2 pi and, under a loss of fixed scale, its normaliser.
+/// The first term falls if the noise grows, and the last one rises. log det H charges for the
+/// unknowns that fit the measurements. The constant contains everything that depends only on the
+/// number and kind of edges: the powers of 2 pi and, for a loss of fixed scale, its normaliser.
+///
+/// This H differs from the H of optimisation steps. An edge with a robust loss adds min(w, m) Omega
+/// to it. w is the weight of iteratively reweighted least squares. m is the weight at which a
+/// normal distribution has the mass of exp(-rho / 2). It is 2/3 for the Cauchy loss that makes
+/// Student's t with four degrees of freedom in the plane. With w alone, which is 1 at the peak,
+/// every error that other unknowns absorb would seem too improbable by the factor 1/m, and the
+/// search would find heavy-tailed noise that is not there. Second-order terms are left out, because
+/// some edges keep them and others do not, so the result would jump.
 #pragma once
 
 #include <waymark/core/graph/graph.hpp>
@@ -19,21 +23,23 @@
 
 namespace waymark {
 
-/// The terms at a graph's present values, which should be its minimum.
+/// The terms at the present values of a graph, which should be its minimum.
 struct Evidence {
   double chi2 = 0;
   double log_det_hessian = 0;
-  double log_det_information = 0;  ///< sum over all edges, of the part of Omega that is not zero
-  /// What the noise minimises. Infinite where H is not positive definite.
+  double log_det_information = 0;  ///< sum over all edges, for the part of Omega that is not zero
+  /// Returns the quantity that the best noise minimises. It is infinite if H is not
+  /// positive definite.
   [[nodiscard]] double negative_log() const { return 0.5 * (chi2 + log_det_hessian - log_det_information); }
 };
 
-/// @param structure  follows the graph, whose gauge whoever built it has looked at
-/// @param cholesky   has analysed the structure's pattern; is left with the factor of H
+/// @param structure follows the graph; its builder has checked the gauge
+/// @param cholesky has analysed the pattern of the structure; it keeps the factor of H
 [[nodiscard]] Evidence evidence(const Graph& graph, const Structure& structure, BlockCholesky& cholesky);
 
-/// The same, with both made for it. Where nothing anchors the graph, what is held (gauge.hpp) does not matter
-/// for comparisons under one structure. @throws InputError as find_gauge does
+/// Computes the same and makes structure and factor itself. If nothing anchors the graph,
+/// find_gauge holds a vertex (gauge.hpp); this does not matter for comparisons under one structure.
+/// @throws InputError as find_gauge does
 [[nodiscard]] Evidence evidence(const Graph& graph);
 
 }  // namespace waymark

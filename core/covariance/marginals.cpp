@@ -39,7 +39,7 @@ CovarianceBlocks Marginals::blocks(std::span<const VertexIndex> vertices) const 
     if (column >= 0) target[at(column)] = result.numbers_.data() + result.places_[i].begin;
   }
   cholesky_.invert_diagonal(target);
-  for (std::size_t i = 0; i < vertices.size(); ++i) {  // a vertex asked for twice
+  for (std::size_t i = 0; i < vertices.size(); ++i) {  // a vertex may be requested twice
     const int column = structure_.column_of(vertices[i]);
     double* own = result.numbers_.data() + result.places_[i].begin;
     if (column < 0 || target[at(column)] == own) continue;
@@ -69,7 +69,7 @@ Eigen::MatrixXd Marginals::joint(std::span<const VertexIndex> vertices) {
       if (unknown[at(r)] >= 0) covariance(r, c) = x[at(unknown[at(r)])];
     }
   }
-  // Symmetric but for rounding; + 0 takes the sign off a zero.
+  // The result is symmetric except for rounding. + 0 removes the sign of a zero.
   return (0.5 * (covariance + covariance.transpose())).array() + 0.0;
 }
 

@@ -3,9 +3,9 @@
 
 namespace waymark {
 
-/// x = UTM easting - origin_easting, y = UTM northing - origin_northing, both in grid metres; heading in
-/// radians counter-clockwise from grid east. `zone` 0 means a frame of no known place (plain pose-graph
-/// files).
+/// x = UTM easting - origin_easting and y = UTM northing - origin_northing, both in grid metres.
+/// The heading is in radians, counter-clockwise from grid east. `zone` 0 means a frame without a
+/// known place (plain pose-graph files).
 struct Frame {
   int zone = 0;                  ///< UTM zone 1..60, or 0 for a local frame
   bool north = true;             ///< hemisphere

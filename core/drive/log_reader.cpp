@@ -5,7 +5,7 @@
 namespace waymark {
 namespace {
 
-/// Collects the text for a reader that wants all of it.
+/// Collects the text for a reader that needs all of it.
 class WholeLogDecoder final : public LogDecoder {
  public:
   WholeLogDecoder(const WholeLogReader& reader, std::string path, LogRequest request)

@@ -1,5 +1,5 @@
-/// The interfaces through which a drive becomes a graph: how odometry intervals become edges, how GNSS fixes
-/// and the readings of further sensors become vertices and edges. Implementations are plugins.
+/// The interfaces through which a drive becomes a graph. Odometry intervals become edges; GNSS
+/// fixes and readings of further sensors become vertices and edges. Implementations are plugins.
 #pragma once
 
 #include <functional>
@@ -20,12 +20,12 @@ namespace waymark {
 
 class Graph;  // core/graph/graph.hpp
 
-/// The nodes of a drive in time: where everything that is measured finds its pose.
+/// The nodes of a drive in time. Every measurement finds its pose among them.
 struct DriveNodes {
-  std::span<const Stamp> stamps;  ///< strictly increasing, on the drive's scale
-  std::span<const VertexIndex>
-      poses;  ///< VERTEX_SE2 of each node; its value is the start of the optimisation
-  std::span<const Interval> intervals;  ///< the motion from each node to the next: one fewer
+  std::span<const Stamp> stamps;       ///< strictly increasing, on the drive's scale
+  std::span<const VertexIndex> poses;  ///< VERTEX_SE2 of each node; its value is the initial guess
+  /// the motion from each node to the next; one fewer than nodes
+  std::span<const Interval> intervals;
 };
 
 /// The node nearest to a moment.
@@ -33,54 +33,61 @@ struct NodeInTime {
   std::size_t node = 0;
   double ahead_s = 0;  ///< the moment minus the node's stamp
 };
-/// Empty where the moment lies more than `tolerance_s` outside the drive.
+/// Returns the node nearest to a moment. Empty if the moment is more than `tolerance_s`
+/// outside the drive.
 [[nodiscard]] std::optional<NodeInTime> nearest_node(const DriveNodes& nodes, Stamp moment,
                                                      double tolerance_s = 0.05);
 
-/// The odometry's motion at a node: of the interval after it, at the last node of the one before.
+/// Returns the motion of the odometry at a node: that of the interval after it, or before it for
+/// the last node.
 [[nodiscard]] const Interval& motion_at(const DriveNodes& nodes, std::size_t node);
 
-/// Joins the poses of neighbouring nodes.
+/// Joins the poses of consecutive nodes.
 class OdometryModel {
  public:
   virtual ~OdometryModel();
-  /// Adds one edge (or more) per interval, and the states that it calibrates (ids from Graph::free_id).
+  /// Adds one or more edges per interval, and the states that the model calibrates (ids from
+  /// Graph::free_id).
   virtual void build(const DriveNodes& nodes, Graph& graph) const = 0;
-  /// |speed| in m/s below which the vehicle counts as standing: its measured motion is then the identity.
+  /// Returns |speed| in m/s below which the vehicle stands. Its measured motion is then
+  /// the identity.
   [[nodiscard]] virtual double standstill_speed() const = 0;
 };
 
-/// What a GNSS modeling works on.
+/// The input of a GNSS modeling.
 struct GnssInput {
-  std::span<const Fix> fixes;        ///< accepted ones only; Fix::vertex names the pose at the epoch
-  std::span<const Interval> motion;  ///< the odometry's motion at each of them
+  std::span<const Fix> fixes;        ///< only accepted ones; Fix::vertex names the pose at the epoch
+  std::span<const Interval> motion;  ///< motion of the odometry at each fix
   Eigen::Vector2d antenna = {0, 0};  ///< antenna in the body frame, m
-  std::optional<Loss> loss = {};     ///< robust loss of the edges that carry the fixes' information
+  /// robust loss of the edges that carry the information of the fixes
+  std::optional<Loss> loss = {};
 };
 
-/// Ties the poses to the fixes (the paper's G1, G2, G3, and what plugins bring).
+/// Connects poses and fixes (the paper's G1, G2, G3, and those of plugins).
 class GnssModeling {
  public:
   virtual ~GnssModeling();
-  /// Adds vertices (ids from Graph::free_id) and edges for all fixes. Existing vertices' values are the start
-  /// of the optimisation.
+  /// Adds vertices (ids from Graph::free_id) and edges for all fixes. The values of existing
+  /// vertices are the initial guess.
   virtual void build(const GnssInput& input, Graph& graph) const = 0;
 };
 
-/// What a sensor model works on.
+/// The input of a sensor model.
 struct SensorInput {
   DriveNodes nodes;
-  std::span<const Fix> fixes;  ///< accepted ones only, with what their receiver says of course and speed
+  std::span<const Fix> fixes;        ///< only accepted ones, with course and speed of their receiver
   Eigen::Vector2d antenna = {0, 0};  ///< GNSS antenna in the body frame, m
-  const SensorTable& readings;  ///< the sensor's log in SI units; empty where the type asks for no columns
+  /// the log of the sensor in SI units; empty if the type has no columns
+  const SensorTable& readings;
 };
 
-/// Ties the poses to what a further sensor read: a compass, a scan matcher, a landmark detector.
+/// Connects poses with the readings of a further sensor: a compass, a scan matcher, a
+/// landmark detector.
 class SensorModel {
  public:
   virtual ~SensorModel();
-  /// Adds vertices (ids from Graph::free_id) and edges for all readings that lie within the drive.
-  /// @throws InputError for readings that make no sense, naming the row
+  /// Adds vertices (ids from Graph::free_id) and edges for all readings within the drive.
+  /// @throws InputError for impossible readings; it names the row
   virtual void build(const SensorInput& input, Graph& graph) const = 0;
 };
 
@@ -89,8 +96,8 @@ struct OdometryModelType {
   std::string description;
   std::vector<OptionInfo> options;
   std::function<std::unique_ptr<OdometryModel>(const CheckedOptions&)> make;
-  /// The option that is the variance factor of bridged intervals (Interval::bridged); empty: there is none. A
-  /// drive sets it from its timeline if nobody states it.
+  /// The option with the variance factor of bridged intervals (Interval::bridged). Empty: there is
+  /// none. A drive sets it from its timeline unless the user states it.
   std::string gap_factor_option = {};
 };
 
@@ -99,17 +106,17 @@ struct GnssModelingType {
   std::string description;
   std::vector<OptionInfo> options;
   std::function<std::unique_ptr<GnssModeling>(const CheckedOptions&)> make;
-  /// Whether outliers, biases and the odometry's calibration are part of its error model. Then a drive has no
-  /// gate, all calibration states and an estimated noise, unless it says otherwise; else the paper's gate,
-  /// none of the states and the noise as stated.
+  /// Whether its error model contains outliers, biases and the calibration of the odometry. Such a
+  /// drive has by default no gate, all calibration states and an estimated noise. Other drives have
+  /// by default the gate of the paper, no calibration states, and the stated noise.
   bool complete = false;
 };
 
-/// A registered sensor. drive.yaml names it under `sensors`; a log reader brings its columns.
+/// A registered sensor. drive.yaml names it under `sensors`, and a log reader reads its columns.
 struct SensorModelType {
   std::string name;
   std::string description;
-  std::vector<SensorColumn> columns;  ///< beside `time`; empty: the sensor has no log of its own
+  std::vector<SensorColumn> columns;  ///< besides `time`; empty: the sensor has no log of its own
   std::vector<OptionInfo> options;
   std::function<std::unique_ptr<SensorModel>(const CheckedOptions&)> make;
 };

@@ -1,5 +1,6 @@
-/// Time-stamped samples: what log readers deliver, what the drive tools and the GNSS modelings work on. Plain
-/// structs; units and frames in the names or beside them. Angles are radians unless a name says otherwise.
+/// Time-stamped samples. Log readers deliver them; the drive tools and the GNSS modelings use them.
+/// They are plain structs, with units and frames in the names or beside them. Angles are radians
+/// unless a name says otherwise.
 #pragma once
 
 #include <cmath>
@@ -23,22 +24,22 @@ struct OdometrySample {
   double yaw_rate_radps = 0;  ///< counter-clockwise seen from above, rad/s
 };
 
-/// The motion between two neighbouring nodes of a drive: constant speed and yaw rate over dt.
+/// The motion between two consecutive nodes of a drive: constant speed and yaw rate over dt.
 struct Interval {
   double speed_mps = 0;  ///< grid metres per second (grid scale applied); negative is reversing
   double yaw_rate_radps = 0;
   double dt_s = 0;
-  bool bridged = false;  ///< lies in a gap of the odometry
+  bool bridged = false;  ///< the interval lies in a gap of the odometry
 
   friend bool operator==(const Interval&, const Interval&) = default;
 };
 
-/// One GNSS reading as a receiver gives it: WGS84, true-north axes.
+/// One GNSS reading of a receiver: WGS84, true-north axes.
 struct GeodeticFix {
   Stamp stamp;
   double latitude_deg = 0;
   double longitude_deg = 0;
-  double height_m = std::numeric_limits<double>::quiet_NaN();   ///< NaN where not given
+  double height_m = std::numeric_limits<double>::quiet_NaN();   ///< NaN if not given
   Eigen::Matrix2d covariance_en = Eigen::Matrix2d::Identity();  ///< m^2; axes east, north (true)
   std::optional<double> course_rad;                             ///< clockwise from true north
   std::optional<double> course_sigma_rad;
@@ -57,17 +58,17 @@ struct GeodeticTruth {
   std::optional<double> heading_rad;  ///< counter-clockwise from true east
 };
 
-/// What became of a fix.
+/// The status of a fix.
 enum class FixStatus {
   accepted,  ///< in the graph
-  rejected,  ///< by the outlier gate
-  withheld   ///< kept out of the graph on purpose, to evaluate against
+  rejected,  ///< the outlier gate rejected it
+  withheld   ///< left out of the graph on purpose, for evaluation
 };
 
 [[nodiscard]] std::string_view to_string(FixStatus status);
 [[nodiscard]] std::optional<FixStatus> fix_status_from_string(std::string_view word);
 
-/// A GNSS fix in the metric frame (Frame), with the gate's verdict.
+/// A GNSS fix in the metric frame (Frame), with the verdict of the gate.
 struct Fix {
   Stamp stamp;
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< antenna, frame coordinates, m
@@ -81,29 +82,33 @@ struct Fix {
   double grid_scale = 1;     ///< grid metres per metre on the ground at this place (UTM point scale)
   int epoch = 0;             ///< running number of the fix in the drive
   int source = 0;            ///< index of the receiver
-  std::int64_t vertex = -1;  ///< id of the pose vertex at this epoch, -1 before the graph is built
+  std::int64_t vertex = -1;  ///< id of the pose vertex at this epoch; -1 before the graph is built
 
   FixStatus status = FixStatus::accepted;
   std::string reason = "unjudged";  ///< one word, see tools/drive/nodes/gate.hpp
-  double chord_angle_rad = std::numeric_limits<double>::quiet_NaN();  ///< gate's angle error, NaN: not formed
+  /// angle error in the gate; NaN: not computed
+  double chord_angle_rad = std::numeric_limits<double>::quiet_NaN();
   double displacement_m =
-      std::numeric_limits<double>::quiet_NaN();  ///< gate's displacement error, NaN: not formed
+      /// displacement error in the gate; NaN: not computed
+      std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A pose of the reference system in the metric frame.
 struct TruthPose {
   Stamp stamp;
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< truth reference point, frame coordinates, m
-  std::optional<double> heading_rad;                   ///< counter-clockwise from grid east
+  /// truth reference point, frame coordinates, m
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  std::optional<double> heading_rad;  ///< counter-clockwise from grid east
 };
 
-/// A column that a sensor's log must or may have.
+/// A column that the log of a sensor must or may have.
 struct SensorColumn {
-  std::string name;      ///< quantity, and the column's default name
-  std::string unit;      ///< the SI unit its numbers come in: "m", "m/s", "m/s^2", "s", "rad", "rad/s" or "1"
-  std::string sense;     ///< of rad: "" a size, "ccw" an angle or turn, "ccw_from_east" a heading (given from
-                         ///< true east, it comes as one in the frame); of rad/s: "ccw"; else ""
-  bool required = true;  ///< where it is not, NaN stands for a missing column or value
+  std::string name;  ///< the quantity, and the default name of the column
+  std::string unit;  ///< SI unit of its numbers: "m", "m/s", "m/s^2", "s", "rad", "rad/s" or "1"
+  /// sense of the numbers. For rad: "" is a size, "ccw" an angle or turn, "ccw_from_east" a heading
+  /// (given from true east, delivered in the frame). For rad/s: "ccw". Otherwise ""
+  std::string sense;
+  bool required = true;     ///< if false, NaN stands for a missing column or value
   std::string description;  ///< one sentence
 };
 

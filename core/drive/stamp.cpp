@@ -8,7 +8,7 @@ namespace {
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr std::int64_t kGpsEpochUnixSeconds = 315'964'800;  // 1980-01-06T00:00:00Z
 
-// UTC instants (POSIX seconds) from which GPS - UTC is one second more (IERS Bulletin C).
+// UTC instants (POSIX seconds) at which GPS - UTC grows by one second (IERS Bulletin C).
 constexpr std::array<std::int64_t, 18> kLeapInstants = {
     362793600, 394329600, 425865600, 489024000, 567993600,  631152000,  662688000,  709948800,  741484800,
     773020800, 820454400, 867715200, 915148800, 1136073600, 1230768000, 1341100800, 1435708800, 1483228800};
@@ -27,7 +27,7 @@ std::int64_t gps_from_utc(std::int64_t unix_nanoseconds) {
 
 std::int64_t utc_from_gps(std::int64_t gps_nanoseconds) {
   const std::int64_t without_leap = gps_nanoseconds + kGpsEpochUnixSeconds * kNanosecondsPerSecond;
-  // The count of leap seconds must be the one in force at the result, which lies at most 18 s earlier.
+  // The number of leap seconds must be that at the result, which is at most 18 s earlier.
   std::int64_t leap = leap_seconds_at_utc(without_leap);
   leap = leap_seconds_at_utc(without_leap - leap * kNanosecondsPerSecond);
   return without_leap - leap * kNanosecondsPerSecond;

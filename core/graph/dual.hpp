@@ -1,6 +1,6 @@
-/// Forward-mode automatic differentiation: a value with its N partial derivatives. An edge's error(...)
-/// evaluated in Dual numbers yields exact Jacobians; this is the default for every edge type that gives no
-/// linearize(...).
+/// Forward-mode automatic differentiation: a value with its N partial derivatives. error(...) of an
+/// edge, evaluated with Dual numbers, gives exact Jacobians. This is the default for every edge
+/// type without linearize(...).
 #pragma once
 
 #include <cmath>
@@ -17,10 +17,10 @@ struct Dual {
   Derivative derivative = Derivative::Zero();
 
   Dual() = default;
-  Dual(double v) : value(v) {}  // implicit: constants mix with variables in formulas
+  Dual(double v) : value(v) {}  // implicit, so that formulas may mix constants and variables
   Dual(double v, const Derivative& d) : value(v), derivative(d) {}
 
-  /// The variable number `index` with the given value.
+  /// Returns the variable with number `index` and the given value.
   [[nodiscard]] static Dual variable(double v, int index) {
     Dual result(v);
     result.derivative[index] = 1;

@@ -1,8 +1,8 @@
-/// Edges: what was measured. The author of an edge type writes one function and a field list.
+/// Edges: the measurements. The author of an edge type writes one function and a field list.
 /// @code
 ///   struct EdgeRange {
 ///     static constexpr std::string_view kTag = "EDGE_RANGE";
-///     static constexpr std::string_view kForm = "range";  // how the error is formed, printed beside chi2
+///     static constexpr std::string_view kForm = "range";  // form of the error, printed beside chi2
 ///     static constexpr int kErrorDimension = 1;
 ///     using Vertices = VertexList<VertexSe2, VertexXy>;
 ///     static constexpr auto fields() { return std::array{field<&EdgeRange::measured>("measured")}; }
@@ -11,17 +11,18 @@
 ///     double measured = 0;
 ///   };
 /// @endcode
-/// Derivatives are taken by dual numbers unless the type also gives
+/// Dual numbers give the derivatives, unless the type also has
 /// @code
-///   void linearize(const Pose2<double>&, const Vector2<double>&, Error& e, Jacobian<3>& J0, Jacobian<2>& J1)
-///   const;
+///   void linearize(const Pose2<double>&, const Vector2<double>&, Error& e, Jacobian<3>& J0,
+///                  Jacobian<2>& J1) const;
 /// @endcode
-/// with J_k the derivative of the error by the tangent vector of vertex k. The conformance tests compare the
-/// two. Two more things may be told:
-/// - `static constexpr bool kRelative = true;`
-///       the error stays when all vertices undergo one rigid motion of the plane (tested): the gauge test
-///       need not look, and between two vertices that carry (vertex.hpp) J_1 alone gives H and g
-/// - `void prepare();` called once when the fields are set: keeps what depends on the measurement alone
+/// where J_k is the derivative of the error by the tangent vector of vertex k. The conformance
+/// tests compare both. A type may have two more members:
+/// - `static constexpr bool kRelative = true;` promises that the error does not change if all
+///   vertices undergo one rigid motion of the plane (tested). The gauge test then skips such edges.
+///   If both vertex types have carry() (vertex.hpp), J_0 is derived from J_1.
+/// - `void prepare();` is called once after the fields are set. It stores what depends only on the
+///   measurement.
 #pragma once
 
 #include <concepts>
@@ -39,7 +40,8 @@
 
 namespace waymark {
 
-/// The vertex types an edge joins, in the order in which its error takes them; dimensions may be mixed.
+/// The vertex types that an edge joins, in the order of the arguments of its error. Their
+/// dimensions may differ.
 template <Vertex... V>
 struct VertexList {
   static constexpr int kSize = sizeof...(V);
@@ -59,20 +61,21 @@ concept Edge = requires {
 
 class EdgeBatchBase;
 
-/// An edge type at run time. `arity` is the number of vertices, kRuntimeArity where each edge has its own.
+/// An edge type at run time. `arity` is the number of vertices, or kRuntimeArity if each edge has
+/// its own number.
 struct EdgeType {
   static constexpr int kRuntimeArity = -1;
 
   std::string tag;
-  std::string form;  ///< how the error is formed: "(t, theta)", "log", "position", ...
+  std::string form;  ///< form of the error: "(t, theta)", "log", "position", ...
   int arity = 0;
   std::vector<std::string> vertex_tags;  ///< arity entries; empty for run-time arity
-  int error_dimension = 0;               ///< 0 for run-time arity: the sum of the vertices' tangent sizes
-  std::vector<FieldInfo> fields;         ///< without the information matrix, which every edge has
-  bool relative = false;                 ///< the error does not change under a common rigid motion
+  int error_dimension = 0;        ///< 0 for run-time arity: the sum of the tangent sizes of the vertices
+  std::vector<FieldInfo> fields;  ///< without the information matrix, which every edge has
+  bool relative = false;          ///< a common rigid motion does not change the error
   std::function<std::unique_ptr<EdgeBatchBase>()> make_batch;
 
-  /// Numbers in the field list together.
+  /// Returns how many numbers the field list has.
   [[nodiscard]] int field_size() const;
 };
 

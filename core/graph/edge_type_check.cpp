@@ -10,7 +10,7 @@ namespace {
 /// Vertices and reference values of one edge.
 struct Joined {
   std::vector<VertexIndex> vertices;
-  std::vector<double> reference;  ///< the vertices' numbers, each a little off
+  std::vector<double> reference;  ///< numbers of the vertices, each slightly changed
   std::size_t tangent_size = 0;
 };
 
@@ -18,7 +18,7 @@ Joined add_vertices(const TypeRegistry& registry, const EdgeType& type, const Ed
                     std::mt19937_64& random, Graph& graph) {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<std::string> tags = type.vertex_tags;
-  if (type.arity == EdgeType::kRuntimeArity) {  // takes any
+  if (type.arity == EdgeType::kRuntimeArity) {  // it takes any vertices
     for (const auto& [vertex, origin] : registry.vertices()) tags.push_back(vertex.tag);
   }
   Joined joined;
@@ -33,7 +33,7 @@ Joined add_vertices(const TypeRegistry& registry, const EdgeType& type, const Ed
                                         : scenario.place * unit(random));
     }
     const std::vector<double> zero(static_cast<std::size_t>(vertex->tangent_size), 0.0);
-    vertex->retract(value.data(), zero.data());  // normalised
+    vertex->retract(value.data(), zero.data());  // this normalises the value
     joined.vertices.push_back(
         graph.add_vertex(*vertex, static_cast<VertexId>(joined.vertices.size()), value));
     joined.tangent_size += zero.size();

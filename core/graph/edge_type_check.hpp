@@ -1,5 +1,5 @@
-/// Trying out an edge type by itself, on numbers that are hard on derivatives: for `waymark check
-/// --derivatives` and the conformance tests, for types of the house and of plugins alike.
+/// Tests a single edge type with numbers that make derivatives difficult. `waymark check
+/// --derivatives` and the conformance tests use it, for built-in types and for plugins.
 #pragma once
 
 #include <random>
@@ -11,38 +11,41 @@
 
 namespace waymark {
 
-/// How the numbers of a trial are drawn.
+/// The ranges from which the numbers of a trial are drawn.
 struct EdgeScenario {
   const char* name;
-  double place;    ///< half range of a vertex's numbers, m and the like
-  double heading;  ///< its headings lie around this...
-  double spread;   ///< ...within this
-  double field;    ///< half range of the edge's fields
+  double place;    ///< half range of the numbers of a vertex, in m and the like
+  double heading;  ///< its headings are around this
+  double spread;   ///< and at most this far from it
+  double field;    ///< half range of the fields of the edge
 };
 
-/// Identity, tiny motions (also at pi), headings on both sides of pi, random, far away.
+/// Returns the scenarios: identity, tiny motions (also at pi), headings on both sides of pi,
+/// random, far away.
 [[nodiscard]] std::span<const EdgeScenario> edge_scenarios();
 
-/// A graph of one edge of the type on vertices of its own, all numbers drawn from the scenario.
-/// @throws UsageError where a vertex type that it joins is not registered
+/// Returns a graph with one edge of the type and its vertices. All numbers are drawn from
+/// the scenario.
+/// @throws UsageError if a vertex type that the edge joins is not registered
 [[nodiscard]] Graph single_edge(const TypeRegistry& registry, const EdgeType& type,
                                 const EdgeScenario& scenario, std::mt19937_64& random);
 
-/// The largest disagreement of a type's Jacobians with differences of its error, over all scenarios.
+/// The largest difference between the Jacobians of a type and differences of its error, over
+/// all scenarios.
 struct EdgeTypeCheck {
   GradientCheck worst;
-  std::string scenario;        ///< where it was found
-  Graph graph;                 ///< the edge it was found at
-  std::size_t not_finite = 0;  ///< trials whose error or Jacobians are no numbers
+  std::string scenario;        ///< the scenario with this difference
+  Graph graph;                 ///< the edge with this difference
+  std::size_t not_finite = 0;  ///< trials whose error or Jacobians are not finite
   std::size_t trials = 0;
-  std::size_t judged = 0;  ///< Jacobians that differences could say something of
+  std::size_t judged = 0;  ///< Jacobians that differences could check
 
   [[nodiscard]] bool sound() const {
     return worst.error <= kGradientTolerance && not_finite == 0 && judged > 0;
   }
 };
 
-/// Deterministic. @param repetitions  trials per scenario
+/// Checks a type. The result is the same in every run. @param repetitions trials per scenario
 [[nodiscard]] EdgeTypeCheck check_edge_type(const TypeRegistry& registry, const EdgeType& type,
                                             int repetitions = 20);
 

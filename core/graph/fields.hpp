@@ -1,5 +1,5 @@
-/// The field list of a type is its schema: parsing, writing, `waymark info`, checks and fuzzing all come from
-/// it.
+/// The field list of a type is its schema. Parsing, writing, `waymark info`, checks and fuzzing are
+/// all based on it.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace waymark {
 
-/// A named group of numbers of an edge record, as `waymark info` and the TYPE line of a .graph file show it.
+/// A named group of numbers in an edge record, as `waymark info` and the TYPE line of a .graph
+/// file show it.
 struct FieldInfo {
   std::string name;
   int size = 1;  ///< number of doubles
@@ -18,7 +19,7 @@ struct FieldInfo {
   friend bool operator==(const FieldInfo&, const FieldInfo&) = default;
 };
 
-/// A field of the edge struct E: where its numbers are.
+/// A field of the edge struct E, with access to its numbers.
 template <typename E>
 struct Field {
   std::string_view name;

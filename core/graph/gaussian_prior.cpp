@@ -81,8 +81,9 @@ Eigen::VectorXd GaussianPriorBatch::error(const Record& record, const ValueView&
   return e - record.offset;
 }
 
-// d local(r, x [+] delta) / d delta. Exact where the chart is linear, as for all types of this project; a
-// foreign manifold is differentiated numerically (central differences, error near 1e-10).
+// Returns d local(r, x [+] delta) / d delta. It is exact if the chart is linear, as for all types
+// of this project. A foreign manifold is differentiated numerically (central differences, error
+// near 1e-10).
 Eigen::MatrixXd GaussianPriorBatch::jacobian(const Record& record, std::size_t vertex,
                                              const ValueView& view) {
   const VertexType& type = record.types[vertex];
@@ -173,8 +174,8 @@ void GaussianPriorBatch::add_rigid_information(const ValueView& view, const Rigi
   std::vector<Eigen::MatrixXd> jacobians;
   for (std::size_t i = 0; i < records_.size(); ++i) {
     linearize_edge(i, view, e, jacobians);
-    // A prior that knows nothing of where it is has an information that cancels to rounding only; its root,
-    // cleaned of rounding, cancels before it is squared.
+    // In a prior without knowledge of its place, the information cancels only to rounding. Its root
+    // is cleaned of rounding and cancels before it is squared.
     const Eigen::MatrixXd root = information_root(records_[i].information);
     Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(root.rows(), 3);
     std::int32_t component = -1;

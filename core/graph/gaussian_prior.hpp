@@ -1,5 +1,6 @@
-/// The batch of run-time arity: a Gaussian over any number of vertices of any types. Marginalisation leaves
-/// such priors behind (fixed lag), and a user's full-covariance prior over several states is one.
+/// The batch of run-time arity: a Gaussian over any number of vertices of any types.
+/// Marginalisation (fixed lag) creates such priors. A user can also state a full-covariance prior
+/// over several states.
 #pragma once
 
 #include <vector>
@@ -9,8 +10,9 @@
 
 namespace waymark {
 
-/// Error of an edge over vertices x_1..x_k: e = [local(r_1, x_1); ...; local(r_k, x_k)] - d, stacked in
-/// order, with reference values r and offset d. Fields in text: the values r_1..r_k, then d.
+/// The error over vertices x_1..x_k is e = [local(r_1, x_1); ...; local(r_k, x_k)] - d,
+/// stacked in order, with reference values r and offset d. In text, the fields are the values
+/// r_1..r_k and then d.
 class GaussianPriorBatch final : public EdgeBatchBase {
  public:
   static constexpr std::string_view kTag = "EDGE_GAUSSIAN_PRIOR";
@@ -39,10 +41,11 @@ class GaussianPriorBatch final : public EdgeBatchBase {
   struct Record {
     std::vector<VertexIndex> vertices;
     std::vector<VertexType> types;
-    std::vector<double> reference;  // all vertices' values
+    std::vector<double> reference;  // values of all vertices
     Eigen::VectorXd offset;
     Eigen::MatrixXd information;
-    std::size_t first_gradient = 0;  // its first places in the scatter: they depend on the edges before
+    // its first place in the scatter; it depends on the edges before
+    std::size_t first_gradient = 0;
     std::size_t first_block = 0;
   };
 

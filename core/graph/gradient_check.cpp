@@ -9,7 +9,8 @@
 namespace waymark {
 namespace {
 
-/// Difference of two errors; a component that jumped by a turn did so only because angles wrap.
+/// Returns the difference of two errors. A jump of a component by a full turn comes from angle
+/// wrapping and is removed.
 Eigen::VectorXd difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   Eigen::VectorXd d = a - b;
   for (double& x : d) {
@@ -18,7 +19,7 @@ Eigen::VectorXd difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return d;
 }
 
-/// The error of one edge as a function of one of its vertices.
+/// The error of an edge as a function of one of its vertices.
 class ErrorAlongVertex {
  public:
   ErrorAlongVertex(const Graph& graph, std::size_t b, std::size_t edge, VertexIndex v)
@@ -40,7 +41,7 @@ class ErrorAlongVertex {
     return error;
   }
 
-  /// Differences of fourth order.
+  /// Computes differences of fourth order.
   Eigen::MatrixXd differences(double step) {
     Eigen::MatrixXd jacobian(batch_.error_dimension(edge_), type_.tangent_size);
     for (int c = 0; c < type_.tangent_size; ++c) {
@@ -62,8 +63,8 @@ class ErrorAlongVertex {
   std::vector<Eigen::MatrixXd> unused_;
 };
 
-/// Takes over the largest disagreement of one Jacobian. Where the differences themselves are good to less
-/// than the tolerance, agreeing within that says nothing.
+/// Keeps the largest disagreement of one Jacobian. Disagreements below the accuracy of the
+/// differences are ignored.
 void compare(const Eigen::MatrixXd& given, const NumericJacobian& numeric, std::size_t edge, std::size_t k,
              GradientCheck& result) {
   const Eigen::MatrixXd& reference = numeric.jacobian;

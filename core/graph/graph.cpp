@@ -55,7 +55,7 @@ Graph& Graph::operator=(const Graph& other) {
 }
 
 std::size_t Graph::register_type(const VertexType& type) {
-  // Vertices mostly follow others of their type.
+  // A vertex usually follows another one of its type.
   if (!type_of_.empty() && vertex_types_[type_of_.back()].tag == type.tag) return type_of_.back();
   for (std::size_t t = 0; t < vertex_types_.size(); ++t) {
     if (vertex_types_[t].tag == type.tag) return t;
@@ -209,7 +209,7 @@ EdgeBatchBase& Graph::add_edge(const EdgeType& type, std::span<const VertexIndex
     }
   }
   EdgeBatchBase& target = batch(type);
-  constexpr std::size_t kFew = 4;  // most edges have two vertices: no list on the heap for them
+  constexpr std::size_t kFew = 4;  // most edges have two vertices, and their list needs no heap
   if (vertices.size() <= kFew) {
     std::array<const VertexType*, kFew> types{};
     for (std::size_t k = 0; k < vertices.size(); ++k) types[k] = &vertex_type(vertices[k]);

@@ -1,7 +1,8 @@
 /// The graph: vertices with their values, and batches of edges over them.
 ///
-/// All values lie in one flat array (copying it is a snapshot); a vertex is its index in insertion order.
-/// Nothing depends on hash or pointer order, so equal input gives equal bits.
+/// All values are in one flat array, so copying it is a snapshot. A vertex is identified by
+/// its index in insertion order. Nothing depends on hash or pointer order, so equal input
+/// gives equal bits.
 #pragma once
 
 #include <array>
@@ -20,7 +21,8 @@
 
 namespace waymark {
 
-/// Id -> index. Ids from 0 up are looked up in an array, all others in a hash map (never iterated).
+/// Maps ids to indices. Ids from 0 up are looked up in an array, all others in a hash map (which is
+/// never iterated).
 class VertexIds {
  public:
   [[nodiscard]] VertexIndex find(VertexId id) const {  ///< -1: absent
@@ -38,11 +40,12 @@ class VertexIds {
   std::unordered_map<VertexId, VertexIndex> map_;
 };
 
-/// What Graph::remove_vertices left, in terms of the graph as it was.
+/// The result of Graph::remove_vertices, in terms of the graph before the call.
 struct Removal {
-  std::vector<VertexIndex> new_index;         ///< per vertex; -1: it is gone
-  std::vector<std::vector<char>> gone_edges;  ///< per batch and edge; not zero: it is gone
-  std::vector<std::size_t> kept_edges;        ///< per batch: edges that stayed; they come first in it now
+  std::vector<VertexIndex> new_index;         ///< per vertex; -1: it was removed
+  std::vector<std::vector<char>> gone_edges;  ///< per batch and edge; not zero: it was removed
+  /// per batch: number of edges that stayed; they are now the first ones in it
+  std::vector<std::size_t> kept_edges;
 };
 
 class Graph {
@@ -55,7 +58,8 @@ class Graph {
 
   // ---- Vertices
 
-  /// Adds a vertex. @param value type.value_size numbers. @throws UsageError when the id exists already.
+  /// Adds a vertex. @param value type.value_size numbers. @throws UsageError if the id
+  /// exists already
   VertexIndex add_vertex(const VertexType& type, VertexId id, std::span<const double> value);
   template <Vertex V>
   VertexIndex add_vertex(VertexId id, const std::array<double, V::kValueSize>& value) {
@@ -69,7 +73,7 @@ class Graph {
     return v < 0 ? std::nullopt : std::optional(v);
   }
   [[nodiscard]] VertexId id(VertexIndex v) const { return ids_[index(v)]; }
-  /// An id that no vertex ever had: one above the largest so far, at least 1.
+  /// Returns an id that no vertex ever had: one above the largest so far, at least 1.
   [[nodiscard]] VertexId free_id() const { return free_id_; }
   [[nodiscard]] const VertexType& vertex_type(VertexIndex v) const {
     return vertex_types_[type_of_[index(v)]];
@@ -77,20 +81,20 @@ class Graph {
   [[nodiscard]] std::span<const double> value(VertexIndex v) const {
     return {values_.data() + offsets_[index(v)], static_cast<std::size_t>(vertex_type(v).value_size)};
   }
-  /// @throws UsageError for a wrong size.
+  /// @throws UsageError for a wrong size
   void set_value(VertexIndex v, std::span<const double> value);
-  /// A fixed vertex keeps its value in optimisation.
+  /// A fixed vertex keeps its value during optimisation.
   void set_fixed(VertexIndex v, bool fixed);
   [[nodiscard]] bool fixed(VertexIndex v) const { return fixed_[index(v)] != 0; }
   void set_stamp(VertexIndex v, Stamp stamp);
   [[nodiscard]] std::optional<Stamp> stamp(VertexIndex v) const;
 
-  /// Removes vertices and every edge that touches one of them. What stays keeps its order, so that indices
-  /// close up; batches stay even when they are empty.
+  /// Removes vertices and every edge that touches one of them. The rest keeps its order, so indices
+  /// move up. A batch stays even if it becomes empty.
   /// @param gone per vertex: not zero removes it
   Removal remove_vertices(std::span<const char> gone);
 
-  /// All values at once; offsets()[v] is where vertex v begins.
+  /// Returns all values at once. Vertex v begins at offsets()[v].
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
   [[nodiscard]] const std::vector<std::int64_t>& offsets() const { return offsets_; }
   void set_values(std::vector<double> values);
@@ -98,7 +102,8 @@ class Graph {
 
   // ---- Edges
 
-  /// The batch of a type, made when first asked for; batches keep the order in which they came.
+  /// Returns the batch of a type, and creates it at the first call. Batches keep the order of
+  /// their creation.
   EdgeBatchBase& batch(const EdgeType& type);
   [[nodiscard]] std::size_t batch_count() const { return batches_.size(); }
   [[nodiscard]] const EdgeBatchBase& batch(std::size_t b) const { return *batches_[b].edges; }
@@ -106,16 +111,18 @@ class Graph {
   [[nodiscard]] const EdgeType& edge_type(std::size_t b) const { return batches_[b].type; }
   [[nodiscard]] std::size_t edge_count() const;
 
-  /// Adds an edge by run-time type and returns its batch, whose last it is. @param fields see
-  /// EdgeType::fields; @param information symmetric.
-  /// @throws UsageError for a wrong number or type of vertices, a vertex named twice, wrong sizes.
+  /// Adds an edge by run-time type. It returns the batch, in which the edge is the last one.
+  /// @param fields see EdgeType::fields
+  /// @param information symmetric
+  /// @throws UsageError for a wrong number or type of vertices, a vertex named twice,
+  /// and wrong sizes
   EdgeBatchBase& add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
                           std::span<const double> fields, const Eigen::MatrixXd& information);
   template <Edge E>
   EdgeBatchBase& add_edge(const E& edge, const typename EdgeBatch<E>::Indices& vertices,
                           const typename EdgeBatch<E>::Information& information) {
     static const EdgeType type = make_edge_type<E>();
-    // A batch of this tag may live in another library; then its own append is the way in.
+    // A batch with this tag may come from another library, so its own append is used.
     EdgeBatchBase& target = batch(type);
     check_vertices(type, vertices);
     if (auto* typed = dynamic_cast<EdgeBatch<E>*>(&target)) {
@@ -127,10 +134,11 @@ class Graph {
     return target;
   }
 
-  /// Changes whenever a vertex or an edge is added or removed or a vertex is fixed or freed.
+  /// Returns a number that changes if a vertex or an edge is added or removed, or if a vertex is
+  /// fixed or freed.
   [[nodiscard]] std::uint64_t structure_version() const { return structure_version_; }
 
-  /// Sum over all edges of rho(e^T Omega e) at the present values.
+  /// Returns the sum of rho(e^T Omega e) over all edges at the present values.
   [[nodiscard]] double chi2() const;
 
  private:
@@ -151,7 +159,8 @@ class Graph {
       const double* data = f.data(edge);
       fields.insert(fields.end(), data, data + f.size);
     }
-    // Number by number: of a 1 x 1 matrix g++ 12 warns that a packet would not fit.
+    // The numbers are copied one by one, because g++ 12 warns for a 1 x 1 matrix that a packet
+    // would not fit.
     Eigen::MatrixXd dynamic(E::kErrorDimension, E::kErrorDimension);
     for (int r = 0; r < E::kErrorDimension; ++r) {
       for (int c = 0; c < E::kErrorDimension; ++c) dynamic(r, c) = information(r, c);
@@ -166,7 +175,7 @@ class Graph {
   std::vector<std::int64_t> offsets_;
   std::vector<double> values_;
   std::vector<char> fixed_;
-  std::vector<Stamp> stamps_;  // empty until the first is set; kNoStamp where a vertex has none
+  std::vector<Stamp> stamps_;  // empty until the first one is set; kNoStamp if a vertex has none
   VertexIds by_id_;
   VertexId free_id_ = 1;
   std::vector<Batch> batches_;

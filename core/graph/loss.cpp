@@ -38,8 +38,8 @@ LossValue welsch(double s, double c) {
   return {c2 * -std::expm1(-s / c2), w, -w / c2};
 }
 
-// Dynamic covariance scaling, in the form that is continuous and never negative: rho = s up to Phi, then
-// 4 Phi s / (Phi + s) - Phi.
+// Dynamic covariance scaling, in the form that is continuous and never negative: rho = s up to Phi,
+// then 4 Phi s / (Phi + s) - Phi.
 LossValue dcs(double s, double phi) {
   if (s <= phi) return {s, 1, 0};
   const double w = 2 * phi / (phi + s);

@@ -1,8 +1,8 @@
-/// Robust losses rho(s) of the squared error s = e^T Omega e. chi2 becomes sum rho(s); the weight of an edge
-/// is rho'(s).
+/// Robust losses rho(s) of the squared error s = e^T Omega e. chi2 becomes the sum of rho(s), and
+/// the weight of an edge is rho'(s).
 ///
-/// Every weight is in [0, 1] and rho(s) = s for small s. Losses are values: a name, a scale, a function
-/// pointer; a plugin registers its own LossType.
+/// Every weight is in [0, 1], and rho(s) = s for small s. A loss is a value: a name, a scale, a
+/// function pointer. A plugin registers its own LossType.
 #pragma once
 
 #include <span>
@@ -14,23 +14,24 @@ namespace waymark {
 struct LossValue {
   double rho = 0;
   double weight = 1;     ///< rho'(s), >= 0
-  double curvature = 0;  ///< rho''(s), <= 0; robust_information.hpp says what H has of it
+  double curvature = 0;  ///< rho''(s), <= 0; robust_information.hpp says which part of it enters H
 };
 
-/// A kind of loss. @param squared s >= 0; @param scale in standard deviations (DCS: Phi, in s), > 0.
+/// A kind of loss. @param squared s >= 0; @param scale in standard deviations (DCS:
+/// Phi, in s), > 0.
 struct LossType {
   std::string name;
   LossValue (*evaluate)(double squared, double scale) = nullptr;
   std::string formula;  ///< for `waymark info`
 };
 
-/// A loss as attached to an edge or a batch: m rho(s / m) with the stretch m.
+/// A loss that is attached to an edge or a batch: m rho(s / m) with the stretch m.
 struct Loss {
   std::string name;
   LossValue (*evaluate)(double squared, double scale) = nullptr;
   double scale = 1;
-  /// Widens any loss by sqrt(m) in standard deviations, whatever its scale means: graduation.hpp narrows it
-  /// to 1. Files know no other.
+  /// Widens any loss by sqrt(m) in standard deviations, whatever its scale means. graduation.hpp
+  /// narrows it to 1, the only value in files.
   double stretch = 1;
 
   [[nodiscard]] LossValue at(double squared) const {
@@ -42,7 +43,7 @@ struct Loss {
   }
 };
 
-/// huber, cauchy, tukey, geman_mcclure, welsch, dcs.
+/// Returns huber, cauchy, tukey, geman_mcclure, welsch and dcs.
 [[nodiscard]] std::span<const LossType> builtin_losses();
 
 }  // namespace waymark

@@ -1,4 +1,4 @@
-/// What all vertices of one plain number share: biases, scales, offsets.
+/// The common part of all vertices that are one plain number: biases, scales, offsets.
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ struct ScalarState {
   static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
 };
 
-/// Ties such a vertex to 0 by an EDGE_GAUSSIAN_PRIOR. @param sigma  in the state's unit, above 0
+/// Ties such a vertex to 0 with an EDGE_GAUSSIAN_PRIOR. @param sigma in the unit of the
+/// state, above 0
 inline void add_prior_about_zero(Graph& graph, VertexIndex state, double sigma) {
   graph.add_edge(gaussian_prior_type(), std::array{state}, std::array{0.0, 0.0},
                  Eigen::MatrixXd::Constant(1, 1, 1 / (sigma * sigma)));

@@ -1,5 +1,5 @@
-/// Vertices: what is estimated. A vertex type is a struct of static functions (concept Vertex); at run time
-/// it is known by its VertexType, found by tag and never by address.
+/// Vertices: the unknowns. A vertex type is a struct of static functions (concept Vertex). At run
+/// time it is represented by its VertexType, which is found by tag and never by address.
 #pragma once
 
 #include <concepts>
@@ -59,13 +59,14 @@ struct VertexType {
   int value_size = 0;
   int tangent_size = 0;
   std::vector<std::string> value_names;
-  std::vector<std::string> value_units;  ///< empty: not stated
+  std::vector<std::string> value_units;  ///< empty: the type does not state them
   bool dense = false;
   bool linear_chart = false;  ///< local(r, x [+] d) = local(r, x) + d: true for additive types
 
   void (*retract)(double* value, const double* delta) = nullptr;
   void (*local)(const double* from, const double* to, double* delta) = nullptr;
-  Eigen::Vector2d (*position)(const double* value) = nullptr;  ///< null: has no place in the plane
+  /// null: it has no place in the plane
+  Eigen::Vector2d (*position)(const double* value) = nullptr;
   void (*rigid_motion)(const double* value, const Eigen::Vector2d& centre, double extent,
                        double* columns) = nullptr;
 };

@@ -16,10 +16,10 @@ using detail::at;
 using Column = Eigen::Map<Eigen::VectorXd>;
 using ConstColumn = Eigen::Map<const Eigen::VectorXd>;
 
-/// Kernels read up to this many numbers behind an array.
+/// Kernels read up to this many numbers after the end of an array.
 constexpr std::int64_t kSlack = 16;
 
-/// Loads for one chain, and for two chains side by side.
+/// Loads the numbers of one chain, or of two chains side by side.
 double join(double a) {
   return a;
 }
@@ -45,12 +45,12 @@ bool is_pivot(const NumberPair& value) {
 struct Walk {
   int node = -1;
   int link = 0;
-  LinkUpdate<double> carry{};  // of a solve: the first three
+  LinkUpdate<double> carry{};  // in a solve, the first three
 };
 
 }  // namespace
 
-/// Works through the supernodes of one subtree, or of what is above all subtrees.
+/// Processes the supernodes of one subtree, or those above all subtrees.
 class BlockCholesky::Stream {
  public:
   Stream(BlockCholesky& owner, int index) : owner_(owner), symbolic_(owner.symbolic_) {
@@ -67,7 +67,8 @@ class BlockCholesky::Stream {
 
   [[nodiscard]] bool failed() const { return failed_; }
 
-  /// Takes one stream to its end, or two: where both stand at chains, link by link together.
+  /// Takes one stream to its end, or two. If both are at chains, their links are
+  /// processed together.
   template <typename Pass>
   static void walk(const Pass& pass, Stream& one, Stream* two) {
     while (two != nullptr && one.goes_on() && two->goes_on()) {
@@ -87,7 +88,8 @@ class BlockCholesky::Stream {
     while (two != nullptr && two->goes_on()) step(pass, *two);
   }
 
-  /// What a walk does at each supernode. Factorisation and forward substitution take them ascending.
+  /// The work of a walk at each supernode. Factorisation and forward substitution visit them in
+  /// ascending order.
   struct Ascending {
     [[nodiscard]] bool at_chain(const Stream& s) const { return s.node().links > 0; }
     [[nodiscard]] int links_left(const Stream& s) const { return s.node().links - s.walk_.link; }
@@ -120,7 +122,7 @@ class BlockCholesky::Stream {
       solve_links<T>(b, count, stream...);
     }
   };
-  /// Backward substitution takes them descending: `next_` stays, `end_` moves.
+  /// Backward substitution visits them in descending order: `next_` stays and `end_` moves.
   struct Backward {
     double* x;
     [[nodiscard]] bool at_chain(const Stream& s) const { return s.last_node().links > 0; }
@@ -162,7 +164,7 @@ class BlockCholesky::Stream {
       visit(symbolic_.nodes[at(c)]);
   }
 
-  /// Where the lower triangle of a chain's update stands: columns of a stride of 4.
+  /// The places of the lower triangle in the update of a chain, with columns of stride 4.
   static constexpr std::array<int, 6> kLower = {0, 1, 2, 5, 6, 10};
 
   void open_chain() {
@@ -172,7 +174,7 @@ class BlockCholesky::Stream {
     for_each_child(node(), [&](const Supernode& child) {
       const double* update = owner_.updates_.data() + child.update;
       for (unsigned i = 0; i < 6; ++i)
-        walk_.carry[i] -= update[kLower[i]];  // updates are to be added, carries subtracted
+        walk_.carry[i] -= update[kLower[i]];  // updates are added, carries are subtracted
     });
   }
 
@@ -260,7 +262,8 @@ class BlockCholesky::Stream {
     }
   }
 
-  /// Adds the update of a child to the front of its parent. Rows that stay neighbours are added as one run.
+  /// Adds the update of a child to the front of its parent. Rows that are adjacent in both are
+  /// added as one run.
   void extend_add(const Supernode& child, const Supernode& front, double* panel, double* update) const {
     const double* from = owner_.updates_.data() + child.update;
     const int stride = child.update_stride();
@@ -444,8 +447,8 @@ class BlockCholesky::Stream {
   bool failed_ = false;
 };
 
-// Two subtrees at a time in one thread, where there are no more threads than pairs: chains then hide each
-// other's latency.
+// Processes two subtrees at a time in one thread, unless there are more threads than pairs. The
+// chains then hide each other's latency.
 template <typename Work>
 void BlockCholesky::for_each_subtree(Work work) {
   const int count = static_cast<int>(symbolic_.subtrees.size());

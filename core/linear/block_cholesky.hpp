@@ -1,9 +1,10 @@
 /// Cholesky factorisation of a sparse symmetric positive definite matrix of small dense blocks.
 ///
-/// Chains are eliminated link by link in registers, from both ends; everything else in dense fronts, each
-/// handing its update to its parent (the multifrontal method; Duff, Reid 1983). Nothing recurses and, after
-/// the first factorisation, nothing allocates. Independent subtrees may be worked on by several threads; a
-/// sum is always formed in the same order, so the bits do not depend on their number.
+/// Chains are eliminated link by link in registers, from both ends. Everything else is eliminated
+/// in dense fronts, and each front passes its update to its parent (the multifrontal method; Duff,
+/// Reid 1983). Nothing recurses, and nothing allocates after the first factorisation. Several
+/// threads may work on independent subtrees. Sums always have the same order, so the bits do not
+/// depend on the number of threads.
 #pragma once
 
 #include <span>
@@ -22,7 +23,7 @@ class ThreadPool;
 
 class BlockCholesky final : public LinearSolver {
  public:
-  /// @param kernels must outlive this object; results of other ones differ by rounding
+  /// @param kernels must outlive this object; other kernels give other rounding
   explicit BlockCholesky(const DenseKernels& kernels = dense_kernels()) : kernels_(&kernels) {}
 
   void analyze(const BlockPattern& pattern) override;
@@ -32,20 +33,23 @@ class BlockCholesky final : public LinearSolver {
   [[nodiscard]] std::string description() const override;
   void set_threads(ThreadPool* pool) override { pool_ = pool; }
 
-  /// Diagonal blocks of the inverse, from the last factor, which must be ok (block_inverse.cpp).
-  /// @param blocks for each block column of the pattern given to analyze() where its block goes, whole and
-  /// column by column; null: not wanted. For all of them chains cost about as much as their factorisation,
-  /// dense fronts about four times as much; a subtree without a wanted one costs nothing.
+  /// Computes diagonal blocks of the inverse from the last factor, which must be ok
+  /// (block_inverse.cpp).
+  /// @param blocks for each block column of the pattern given to analyze(): where its whole block
+  /// goes, column by column; null: not wanted. For all blocks, chains cost about as much as their
+  /// factorisation, and dense fronts about four times as much. A subtree without a wanted block
+  /// costs nothing.
   void invert_diagonal(std::span<double* const> blocks) const;
 
-  /// log det of the matrix, from the last factor, which must be ok.
+  /// Returns log det of the matrix from the last factor, which must be ok.
   [[nodiscard]] double log_determinant() const;
 
  private:
   class Stream;
   class DiagonalInverse;
 
-  /// A pass over all subtrees, side by side, and one over what is above them; false: a pivot failed.
+  /// Makes a pass over all subtrees in parallel, and then over the nodes above them. Returns false
+  /// if a pivot failed.
   template <typename Pass>
   bool walk_subtrees(const Pass& pass);
   template <typename Pass>

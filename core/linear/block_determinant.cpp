@@ -5,7 +5,8 @@
 
 namespace waymark {
 
-// The factor holds reciprocals: of the pivots D of a chain's L D L^T, of the diagonal of a front's L.
+// The factor stores reciprocals: of the pivots D in L D L^T of a chain, and of the diagonal of
+// L in a front.
 double BlockCholesky::log_determinant() const {
   double sum = 0;
   for (const Supernode& node : symbolic_.nodes) {

@@ -14,14 +14,15 @@ using detail::at;
 using Matrix = Eigen::Map<Eigen::MatrixXd>;
 using ConstMatrix = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
-// A product of zeros may be -0; a covariance is written without that sign.
+// A product of zeros may be -0. Adding this removes the sign.
 constexpr double kPlainZero = 0.0;
 
 }  // namespace
 
-/// Selected inversion (Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975) by supernodes from the roots down:
-/// what a supernode needs of the inverse lies in the front of its parent. Inverses of fronts stand on a stack
-/// while children need them; of a chain that is the first link's only.
+/// Selected inversion (Takahashi, Fagan, Chin 1973; Erisman, Tinney 1975) by supernodes from the
+/// roots down. The part of the inverse that a supernode needs is in the front of its parent.
+/// Inverses of fronts are on a stack as long as children need them. For a chain the stack holds
+/// only the block of its first link.
 class BlockCholesky::DiagonalInverse {
  public:
   DiagonalInverse(const BlockCholesky& owner, std::span<double* const> blocks)
@@ -38,17 +39,17 @@ class BlockCholesky::DiagonalInverse {
   }
 
  private:
-  /// The inverse of a front on the stack, whole.
+  /// The whole inverse of a front on the stack.
   struct Open {
     int node = -1;
     int rows = 0;
     std::int64_t begin = 0;
   };
 
-  /// Rows of a supernode that are neighbours in the front of its parent too.
+  /// Rows of a supernode that are also adjacent in the front of its parent.
   struct Run {
     int own = 0;     // first row below the supernode's columns
-    int parent = 0;  // first row in the parent's front
+    int parent = 0;  // first row in the front of the parent
     int length = 0;
   };
 
@@ -66,7 +67,7 @@ class BlockCholesky::DiagonalInverse {
     }
   }
 
-  /// Room above what the open fronts hold, for the inverse of the supernode at hand.
+  /// Returns space above the open fronts for the inverse of the current supernode.
   double* room(int rows) {
     top_ = open_.empty() ? 0 : open_.back().begin + std::int64_t{open_.back().rows} * open_.back().rows;
     const std::size_t size = at(top_ + std::int64_t{rows} * rows);
@@ -74,7 +75,8 @@ class BlockCholesky::DiagonalInverse {
     return stack_.data() + top_;
   }
 
-  /// Takes the parent off the stack if this was its last child; keeps the new inverse if children follow.
+  /// Takes the parent off the stack if this was its last child. Keeps the new inverse if
+  /// children follow.
   void keep(int s, int rows) {
     const std::int64_t made = top_;
     if (symbolic_.nodes[at(s)].parent >= 0 && --waiting_[at(open_.back().node)] == 0) {
@@ -110,7 +112,7 @@ class BlockCholesky::DiagonalInverse {
     spread(z, first);
   }
 
-  /// Fills the part of the inverse that belongs to the rows below, from the parent's front.
+  /// Fills the part of the inverse for the rows below, from the front of the parent.
   void gather(const Supernode& front, Matrix& inverse) {
     runs_.clear();
     int row = 0;
@@ -172,11 +174,11 @@ class BlockCholesky::DiagonalInverse {
   const double* factor_;
   const BlockSymbolic& symbolic_;
   std::span<double* const> blocks_;
-  std::vector<char> needed_;  // per supernode: its inverse is wanted, or that of one under it
-  std::vector<int> waiting_;  // needed children still to come
-  std::vector<Open> open_;    // the last is the parent of the supernode at hand
+  std::vector<char> needed_;  // per supernode: its inverse, or that of a descendant, is wanted
+  std::vector<int> waiting_;  // needed children that are not processed yet
+  std::vector<Open> open_;    // the last one is the parent of the current supernode
   LargeArray<double> stack_;  // inverses of the open fronts
-  std::int64_t top_ = 0;      // begin of the inverse at hand
+  std::int64_t top_ = 0;      // begin of the current inverse
   std::vector<Run> runs_;
   LargeArray<double> work_;
 };

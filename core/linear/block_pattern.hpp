@@ -1,4 +1,5 @@
-/// The block pattern of the normal matrix and its numbers, as linear solvers see them: no graph, only blocks.
+/// The block pattern of the normal matrix and its numbers, in the form that linear solvers need: no
+/// graph, only blocks.
 #pragma once
 
 #include <cstdint>
@@ -8,30 +9,34 @@
 
 namespace waymark {
 
-/// The upper block triangle of a symmetric matrix, by block columns in elimination order, diagonal block
-/// last.
+/// The upper block triangle of a symmetric matrix, by block columns in elimination order,
+/// diagonal block last.
 ///
-/// The numbers of block column j form one dense column-major panel at value[j] with height[j] rows: the
-/// blocks stacked in the order of their rows, the whole diagonal block at the bottom. Read as scalars, that
-/// is a compressed-column matrix whose entries below the diagonal (inside diagonal blocks) mirror those
-/// above.
+/// The numbers of block column j form one dense column-major panel at value[j] with height[j] rows.
+/// It has the blocks in the order of their rows, and the whole diagonal block at the bottom. Read
+/// as scalars, this is a compressed-column matrix; inside diagonal blocks its entries below the
+/// diagonal mirror those above.
 struct BlockPattern {
-  std::vector<int> size;                ///< scalar columns of each block column
-  std::vector<std::int64_t> start{0};   ///< first scalar column; size.size() + 1 entries
-  std::vector<std::int64_t> column{0};  ///< begin of each block column in `row`; size.size() + 1 entries
-  std::vector<int> row;                 ///< block rows, ascending within a column
-  std::vector<int> row_offset;          ///< first scalar row of the block within its panel
-  std::vector<int> height;              ///< rows of each panel
-  std::vector<std::int64_t> value{0};   ///< begin of each panel; size.size() + 1 entries
-  std::uint64_t version = 0;  ///< changes with the pattern; equal versions of one structure: equal patterns
+  std::vector<int> size;               ///< scalar columns of each block column
+  std::vector<std::int64_t> start{0};  ///< first scalar column; size.size() + 1 entries
+  /// begin of each block column in `row`; size.size() + 1 entries
+  std::vector<std::int64_t> column{0};
+  std::vector<int> row;                ///< block rows, ascending within a column
+  std::vector<int> row_offset;         ///< first scalar row of the block within its panel
+  std::vector<int> height;             ///< rows of each panel
+  std::vector<std::int64_t> value{0};  ///< begin of each panel; size.size() + 1 entries
+  /// changes with the pattern; the same version of one structure means the same pattern
+  std::uint64_t version = 0;
 
   [[nodiscard]] int columns() const { return static_cast<int>(size.size()); }
-  [[nodiscard]] std::int64_t dimension() const { return start.back(); }  ///< scalar rows and columns
+  /// scalar rows and columns
+  [[nodiscard]] std::int64_t dimension() const { return start.back(); }
   [[nodiscard]] std::int64_t value_count() const { return value.back(); }
 };
 
-/// The same pattern entry by entry: compressed columns with full diagonal blocks, upper triangle of blocks.
-/// values[k] of the panels is the entry (row[k], column j) for column[j] <= k < column[j + 1].
+/// The same pattern entry by entry: compressed columns with full diagonal blocks, upper triangle
+/// of blocks. values[k] of the panels is the entry (row[k], column j) for column[j] <= k <
+/// column[j + 1].
 template <typename Index>
 struct ScalarPattern {
   std::vector<Index> column;

@@ -18,7 +18,7 @@ struct LowerBlocks {
     int row;          // the later column, in elimination order
     int from;         // block column of the pattern
     int entry;        // its entry there
-    bool transposed;  // stored are the rows of the earlier column
+    bool transposed;  // the rows of the earlier column are stored
   };
   std::vector<std::int64_t> begin;
   std::vector<Block> blocks;
@@ -45,7 +45,7 @@ LowerBlocks lower_blocks(const BlockPattern& pattern, const std::vector<int>& pl
   return lower;
 }
 
-/// Rows below the diagonal of every block column of the factor, ascending.
+/// The rows below the diagonal of every block column of the factor, ascending.
 struct FactorColumns {
   std::vector<std::int64_t> begin{0};
   std::vector<int> rows;
@@ -76,7 +76,7 @@ FactorColumns factor_columns(const LowerBlocks& lower, const std::vector<int>& p
   return factor;
 }
 
-/// Estimated nanoseconds of a dense front: a call, the numbers it touches, its flops.
+/// Estimates the nanoseconds of a dense front: a call, the numbers it touches, its flops.
 double front_cost(double columns, double below) {
   const double rows = columns + below;
   const double flops = columns * columns * (columns / 3 + below) + columns * below * below;
@@ -88,13 +88,13 @@ double cost(const Supernode& node) {
   return node.links > 0 ? kLinkCost * node.links : front_cost(node.columns, node.below);
 }
 
-/// Supernodes: chains, columns of nested structure, and further ones where a common front, with the zeros it
-/// then holds, is estimated to be faster.
+/// Finds supernodes: chains, and columns of nested structure. Further columns are joined if a
+/// common front, with its zeros, is estimated to be faster.
 std::vector<Supernode> find_supernodes(const BlockSymbolic& symbolic, const FactorColumns& factor,
                                        const std::vector<int>& parent) {
   const int n = static_cast<int>(parent.size());
-  std::vector<char> children(at(n), 0);    // counted up to two
-  std::vector<char> wide_child(at(n), 0);  // one that reaches further than its parent
+  std::vector<char> children(at(n), 0);    // counted only up to two
+  std::vector<char> wide_child(at(n), 0);  // a child reaches further than its parent
   for (int k = 0; k < n; ++k) {
     const int up = parent[at(k)];
     if (up < 0) continue;
@@ -123,7 +123,7 @@ std::vector<Supernode> find_supernodes(const BlockSymbolic& symbolic, const Fact
       made.push_back(node);
       continue;
     }
-    // The last child lies just before; it may join, and then the one that is then the last child.
+    // The last child is just before the node. If it joins, the next last child may join too.
     while (!made.empty()) {
       const Supernode& child = made.back();
       const int up = parent[at(child.last) - 1];
@@ -171,7 +171,7 @@ class Layout {
   }
 
  private:
-  /// The tree over the supernodes.
+  /// Builds the tree over the supernodes.
   void join() {
     std::vector<int> node_of(parent_.size());
     for (std::size_t s = 0; s < symbolic_.nodes.size(); ++s) {
@@ -210,8 +210,8 @@ class Layout {
   void lay_out_front(Supernode& node) {
     const int height = node.columns + node.below;
     node.stride = (height + 3) / 4 * 4;
-    // Kernels read whole registers: up to 3 numbers behind the last column, which must not be those of
-    // another subtree that a thread is writing.
+    // Kernels read whole registers: up to 3 numbers after the last column. These must not belong to
+    // another subtree, because a thread may be writing there.
     symbolic_.factor_size += std::int64_t{node.stride} * node.columns + (node.below + 3) / 4 * 4 - node.below;
     symbolic_.largest_front = std::max(symbolic_.largest_front, height);
     int row = 0;
@@ -239,8 +239,8 @@ class Layout {
     node.entries_end = static_cast<std::int64_t>(symbolic_.entries.size());
   }
 
-  /// Where each row of a supernode stands in the front of its parent. In a chain only the first link is ever
-  /// reached from outside.
+  /// Finds the place of each row of a supernode in the front of its parent. In a chain only the
+  /// first link is reached from outside.
   void find_positions() {
     symbolic_.position.assign(symbolic_.rows.size(), 0);
     for (const Supernode& node : symbolic_.nodes) {
@@ -270,10 +270,11 @@ class Layout {
 };
 
 constexpr std::size_t kMostSubtrees = 8;
-constexpr double kSmallestSubtree = 20'000;  // nanoseconds: below, a thread costs more than it saves
+// nanoseconds; for a smaller subtree a thread costs more than it saves
+constexpr double kSmallestSubtree = 20'000;
 
-/// Disjoint subtrees to work on at the same time: the heaviest is opened where it branches into parts that
-/// are both worth it and little work stays above.
+/// Finds disjoint subtrees that can be processed in parallel. The heaviest one is split at a
+/// branching if both parts are large enough and little work remains above.
 void find_subtrees(BlockSymbolic& symbolic) {
   const int n = static_cast<int>(symbolic.nodes.size());
   std::vector<double> weight(at(n));
@@ -289,7 +290,8 @@ void find_subtrees(BlockSymbolic& symbolic) {
     first[at(node.parent)] = std::min(first[at(node.parent)], first[at(s)]);
   }
   const Children children(parent);
-  // Opening a subtree: down its heaviest children to the first branching of weight; -1: not worth it.
+  // Goes down the heaviest children to the first branching with large parts. Returns -1 if
+  // there is none.
   const auto branching = [&](int root) {
     int s = root;
     while (weight[at(s)] > 0.7 * weight[at(root)]) {
@@ -346,8 +348,8 @@ void find_subtrees(BlockSymbolic& symbolic) {
   }
 }
 
-/// Places of the update matrices: a stack per subtree and one for the rest. The update of a front is made
-/// above those of its children and then moved to where the first of them began.
+/// Places of the update matrices: one stack per subtree, and one for the rest. The update of a
+/// front is computed above those of its children, and then moved to the begin of the first of them.
 class UpdateStack {
  public:
   explicit UpdateStack(std::int64_t base) : top_(base), peak_(base) {}

@@ -13,8 +13,8 @@ using detail::at;
 
 }  // namespace
 
-// Row k of the factor is the union of the paths in the elimination tree from its entries towards k (Gilbert,
-// Ng, Peyton 1994); tree and paths are walked together, without recursion.
+// Row k of the factor is the union of the paths in the elimination tree from its entries towards k
+// (Gilbert, Ng, Peyton 1994). Tree and paths are followed together, without recursion.
 std::int64_t count_fill(std::span<const std::int64_t> begin, std::span<const int> rows,
                         std::span<const char> left_out, std::int64_t limit) {
   const std::size_t n = begin.size() - 1;
@@ -42,8 +42,8 @@ std::int64_t count_fill(std::span<const std::int64_t> begin, std::span<const int
 
 namespace {
 
-/// The one neighbour of each node that has but one, -1 for all others. Of two that have only each other, the
-/// later one counts as leaf.
+/// Returns the only neighbour of each node that has just one, and -1 for all others. If two nodes
+/// have only each other, the later one is the leaf.
 std::vector<int> find_leaves(std::span<const std::int64_t> begin, std::span<const int> rows,
                              std::span<const char> dense) {
   const std::size_t n = begin.size() - 1;
@@ -67,7 +67,7 @@ std::vector<int> find_leaves(std::span<const std::int64_t> begin, std::span<cons
   return neighbour;
 }
 
-/// Nodes in their natural order, each led by its leaves.
+/// Returns the nodes in their natural order, with the leaves of each node before it.
 std::vector<int> leaves_first(const std::vector<int>& leaf_of, std::span<const char> dense) {
   const std::size_t n = leaf_of.size();
   std::vector<std::int64_t> begin(n + 1, 0);
@@ -90,7 +90,7 @@ std::vector<int> leaves_first(const std::vector<int>& leaf_of, std::span<const c
   return order;
 }
 
-/// The order of the nodes that are not dense.
+/// Returns the order of the nodes that are not dense.
 std::vector<int> minimum_degree(std::span<const std::int64_t> begin, std::span<const int> rows,
                                 std::span<const char> dense) {
   std::vector<int> node;
@@ -131,7 +131,8 @@ BlockOrder order_blocks(std::span<const std::int64_t> begin, std::span<const int
   for (std::size_t j = 0; j < n; ++j) {
     for (auto e = begin[j]; e < begin[j + 1]; ++e) entries += !dense[j] && !dense[at(rows[at(e)])];
   }
-  // A banded pattern (a chain) fills little as it is; reordering it would only scatter the memory.
+  // A banded pattern (a chain) has little fill in its natural order. Reordering would only
+  // scatter the memory.
   const std::int64_t limit = entries + entries / 4 + 16;
   BlockOrder result;
   std::int64_t natural_fill = count_fill(begin, rows, dense, limit);

@@ -14,17 +14,18 @@ namespace {
 using detail::Clock;
 using detail::seconds_since;
 
-constexpr int kPatience = 30;          // steps of one start before the next is tried
+constexpr int kPatience = 30;          // steps from one start before the next is tried
 constexpr double kSameMinimum = 1e-6;  // relative difference of chi2
 constexpr double kSuspicious = 6;      // standard deviations above the degrees of freedom
-constexpr double kLoopShare = 0.02;    // loops per free vertex from which a start costs less than a step
+// loops per free vertex; from here on a start costs less than a step
+constexpr double kLoopShare = 0.02;
 constexpr const char* kFile = "file";
 
 struct Size {
   std::int64_t unknowns = 0;   ///< scalar
   std::int64_t equations = 0;  ///< scalar
   std::int64_t vertices = 0;   ///< free
-  std::int64_t loops = 0;      ///< edges among free vertices beyond a tree of them
+  std::int64_t loops = 0;      ///< edges between free vertices beyond a spanning tree
 };
 
 Size measure(const Graph& graph) {
@@ -37,7 +38,7 @@ Size measure(const Graph& graph) {
   std::int64_t joints = 0;
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     const EdgeBatchBase& batch = graph.batch(b);
-    const int dimension = graph.edge_type(b).error_dimension;  // 0: each edge has its own
+    const int dimension = graph.edge_type(b).error_dimension;  // 0: each edge has its own dimension
     size.equations += dimension * static_cast<std::int64_t>(batch.size());
     if (dimension == 0) {
       for (std::size_t e = 0; e < batch.size(); ++e) size.equations += batch.error_dimension(e);
@@ -95,9 +96,9 @@ class MultiStart {
   MultiStartSummary result_;
   std::vector<double> file_values_;
   std::vector<double> best_values_;
-  std::vector<std::string> notes_;  // starts that could not be made or used
+  std::vector<std::string> notes_;  // about starts that could not be computed or used
   std::vector<std::string> tried_;
-  std::exception_ptr refusal_;  // the first
+  std::exception_ptr refusal_;  // the first one
   double plausible_ = 0;
   double file_chi2_ = 0;
   bool confirmed_ = false;  // two starts have ended at the best minimum
@@ -127,7 +128,8 @@ void MultiStart::try_from(const std::string& start, const std::vector<double>& v
   try {
     summary = optimize(graph_, algorithm_, solver_, options);
   } catch (const InputError& error) {
-    // The gauge is judged at the values: poses on one heap, say, seem to say nothing of their headings.
+    // The gauge is judged at these values. If, for example, all poses are at one place, they seem
+    // to say nothing about their headings.
     if (!refusal_) refusal_ = std::current_exception();
     notes_.push_back("start " + start + " could not be used: " + error.what());
     return;
@@ -140,7 +142,8 @@ void MultiStart::try_from(const std::string& start, const std::vector<double>& v
   const bool same = !first && best.converged() && summary.converged() &&
                     std::abs(summary.final_chi2 - best.final_chi2) <= kSameMinimum * (1 + best.final_chi2);
   confirmed_ = confirmed_ || same;
-  if (same || (!first && !(summary.final_chi2 < best.final_chi2))) return;  // of equals the first is kept
+  // of equal ones the first is kept
+  if (same || (!first && !(summary.final_chi2 < best.final_chi2))) return;
   confirmed_ = false;
   result_.summary = std::move(summary);
   result_.start = start;
@@ -173,7 +176,7 @@ void MultiStart::try_others() {
   }
 }
 
-/// The best run may have been cut short.
+/// Finishes the best run, which may have been cut short.
 void MultiStart::finish_best() {
   if (result_.summary.termination != Termination::max_iterations || iterations_left() <= 0) return;
   Summary& best = result_.summary;
@@ -181,7 +184,7 @@ void MultiStart::finish_best() {
   OptimizerOptions options = options_;
   options.max_iterations = iterations_left();
   Summary rest = optimize(graph_, algorithm_, solver_, options);
-  // One run in two pieces.
+  // The two parts become one run.
   for (IterationRecord& record : rest.records) record.iteration += best.iterations;
   rest.records.insert(rest.records.begin(), best.records.begin(), best.records.end());
   rest.iterations += best.iterations;
@@ -213,7 +216,7 @@ void MultiStart::describe() {
   if (result_.trials.size() == 1) {
     if (result_.start == kFile) return;
     std::string note = "started from " + result_.start;
-    if (!refusal_) {  // else chi2 was not asked for there
+    if (!refusal_) {  // otherwise chi2 at these values was not computed
       note += ": chi2 " + number("%.6g", result_.summary.initial_chi2) + " there, " +
               number("%.6g", file_chi2_) + " at the values given";
     }

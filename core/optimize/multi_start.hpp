@@ -1,15 +1,18 @@
-/// Optimisation that chooses where to begin: the default configuration of the program.
+/// Optimisation that chooses its initial guess: the default configuration of the program.
 ///
-/// A minimum says nothing about lower ones, but its chi2 does: under a model that holds, chi2 is distributed
-/// as chi-square with one degree of freedom per number measured beyond the unknowns. So:
-///   1. The values the graph came with are the first choice. Where the graph has loops, and chi2 at these
-///      values is not already that of a minimum, the first registered start is made as well, and the one of
-///      lower chi2 is taken (there a Newton step costs more than a start).
-///   2. Where that run ends at a minimum whose chi2 is plausible, that is the result.
-///   3. Else, or where the gauge cannot be judged at the values given, the other starts are tried, each for a
-///      limited number of steps, until a minimum is plausible or a second start has ended at the lowest
-///      minimum so far. The lowest is kept, and finished.
-/// Evidence: types_se2/start/MEASUREMENTS.md.
+/// A minimum does not show whether there are lower ones, but its chi2 gives a hint. If the model is
+/// right, chi2 has a chi-square distribution with one degree of freedom for each measured number
+/// beyond the unknowns. So:
+/// 1. The first choice is the values that come with the graph. If the graph has loops, and chi2
+///    at these values is not already that of a minimum, the first registered start is computed
+///    too. The one with lower chi2 is taken, because a Newton step costs more than a start in
+///    such a graph.
+/// 2. If that run ends at a minimum with a plausible chi2, it is the result.
+/// 3. Otherwise, or if the gauge cannot be judged at the given values, the other starts are tried,
+///    each for a limited number of steps. This ends if a minimum is plausible, or if a second start
+///    has ended at the lowest minimum so far. The lowest one is kept and run to its end.
+///
+/// types_se2/start/MEASUREMENTS.md has the evidence.
 #pragma once
 
 #include <string>
@@ -20,31 +23,32 @@
 
 namespace waymark {
 
-/// One start that was tried.
+/// One initial guess that was tried.
 struct StartTrial {
-  std::string start;  ///< "file" or a registered start's name
+  std::string start;  ///< "file" or the name of a registered start
   double initial_chi2 = 0;
   double final_chi2 = 0;
   int iterations = 0;
   Termination termination = Termination::non_finite;
-  double seconds = 0;  ///< making the start and optimising from it
+  double seconds = 0;  ///< time to compute the initial guess and to optimise from it
 };
 
-/// The run that was kept, and all that were made.
+/// The run that was kept, and all runs.
 struct MultiStartSummary {
-  Summary summary;  ///< of the run kept; its notes say which start won where several were tried
+  Summary summary;  ///< of the kept run; if several starts were tried, its notes name the best
   std::string start;
   std::vector<StartTrial> trials;
   double total_seconds = 0;
 };
 
-/// Largest chi2 at which a minimum is not called suspicious: degrees of freedom plus six standard deviations,
-/// d + 6 sqrt(2 d). Axes without information count as measured, which errs on the side of trust.
+/// Returns the largest chi2 at which a minimum is not suspicious: degrees of freedom plus six
+/// standard deviations, d + 6 sqrt(2 d). Axes without information count as measured, so the test
+/// rather accepts than rejects.
 [[nodiscard]] double plausible_chi2(const Graph& graph);
 
-/// Optimises by the rule above; on return the graph holds the best values found.
-/// options.max_iterations bounds the sum over all runs; the observer sees all of them.
-/// @throws as optimize, where no start avoids it
+/// Optimises by the rule above. Afterwards the graph holds the best values found.
+/// options.max_iterations limits the sum over all runs, and the observer sees all of them.
+/// @throws as optimize, if no start avoids it
 MultiStartSummary optimize_from_best_start(Graph& graph, const RegistryTable<StartType>& starts,
                                            Algorithm& algorithm, LinearSolver& solver,
                                            const OptimizerOptions& options);

@@ -17,7 +17,7 @@ namespace {
 using detail::Clock;
 using detail::seconds_since;
 
-/// Adds the time until it leaves its scope to a counter.
+/// Adds its lifetime to a counter.
 class Timer {
  public:
   explicit Timer(double& counter) : counter_(counter), start_(Clock::now()) {}
@@ -38,12 +38,13 @@ std::string text(const Part&... part) {
   return out.str();
 }
 
-/// Below this share of chi2 a difference of two sums is rounding, not a decrease.
+/// A difference of two sums below this share of chi2 is rounding, not a decrease.
 constexpr double kChi2Rounding = 1e-12;
 
 class Loop {
  public:
-  /// @param kept a structure that follows the graph, analysed by the solver; null: both are made
+  /// @param kept a structure that follows the graph and that the solver has analysed; null:
+  /// both are made
   Loop(Graph& graph, const Structure* kept, Algorithm& algorithm, LinearSolver& solver,
        const OptimizerOptions& options)
       : graph_(graph),
@@ -86,7 +87,8 @@ class Loop {
 
   std::vector<double> values_;  // present
   std::vector<double> trial_;
-  std::vector<double> best_;  // lowest chi2 seen, where that is not values_: after an uphill step
+  // values of the lowest chi2, if that is not at values_ (after an uphill step)
+  std::vector<double> best_;
   bool present_is_best_ = true;
   double chi2_ = 0;
   double best_chi2_ = 0;
@@ -169,7 +171,7 @@ std::string Loop::singular_message() const {
               "): it lacks edges or information");
 }
 
-// One proposed step: from the present linearisation to the next, or to the end.
+// Takes one step: from the present linearisation to the next one, or to the end.
 bool Loop::step_once() {
   // 1. Propose.
   ProposalStatus status;
@@ -195,11 +197,11 @@ bool Loop::step_once() {
   record.control = step_.control;
   record.kind = step_.kind;
 
-  // 2. Test convergence, on full Newton steps only; the last step is still taken where it does not climb.
+  // 2. Test convergence, only on full Newton steps. The last step is still taken unless chi2 rises.
   const bool converged = converged_by(step_, record.step);
 
-  // 3. Try it. A step is mostly taken: then its chi2 comes with the next linearisation. After a rejection,
-  // and for the last step, chi2 alone is computed.
+  // 3. Try it. Most steps are accepted, so their chi2 comes with the next linearisation. After a
+  //    rejection, and for the last step, only chi2 is computed.
   equations_.retract(values_, step_.delta, trial_);
   const bool linearized = !converged && last_accepted_;
   const double trial_chi2 = linearized ? linearize(trial_) : equations_.chi2(trial_);
@@ -210,7 +212,7 @@ bool Loop::step_once() {
   const double ratio = within_rounding ? 1 : record.decrease / step_.predicted_decrease;
   const bool finite = std::isfinite(trial_chi2);
 
-  // 4. Take it or not.
+  // 4. Accept or reject it.
   record.accepted = finite && (converged ? record.decrease >= -noise : algorithm_.acceptable(ratio));
   if (record.accepted) {
     accept(trial_chi2);
@@ -246,7 +248,7 @@ Summary Loop::run() {
   prepare();
   summary_.records.reserve(static_cast<std::size_t>(std::min(options_.max_iterations, 1000)));
   values_ = graph_.values();
-  best_.reserve(values_.size());  // not in an iteration; pages untouched are no memory yet
+  best_.reserve(values_.size());  // not inside an iteration; untouched pages use no memory yet
   chi2_ = best_chi2_ = summary_.initial_chi2 = linearize(values_);
   if (!std::isfinite(chi2_)) {
     finish(Termination::non_finite, "chi2 is not finite at the start");
@@ -265,13 +267,13 @@ Summary Loop::run() {
       moved = step_once();
     }
   }
-  // Full steps taken uphill may end at a minimum above values seen on the way: what is returned is then no
-  // minimum.
+  // Full steps that went uphill may end at a minimum above earlier values. The values that are then
+  // returned are no minimum.
   if (summary_.converged() && chi2_ - best_chi2_ > options_.decrement_tolerance * (1 + best_chi2_)) {
     finish(Termination::stalled, text("the steps ended at a stationary point of chi2 ", chi2_,
                                       ", above the lowest on the way, ", best_chi2_, ", which is kept"));
   }
-  // Damping hides an undetermined unknown; where no minimum was reached it is named.
+  // Damping hides an undetermined unknown. If no minimum was reached, the message names it.
   const bool gave_up =
       summary_.termination == Termination::max_iterations || summary_.termination == Termination::stalled;
   if (gave_up && solver_.factorize(equations_.hessian()) == FactorStatus::not_positive_definite) {

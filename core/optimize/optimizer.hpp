@@ -11,40 +11,41 @@
 
 namespace waymark {
 
-/// Convergence is declared where the values are stationary, or at a full (undamped, untruncated) Newton step
-/// d:
+/// Convergence is declared if the values are stationary, or at a full (undamped, untruncated)
+/// Newton step d:
 ///   gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(1 + chi2)
 ///   decrement  g^T H^-1 g <= decrement_tolerance (1 + chi2)      the full step promises no more than this
 ///   step       |d_i| <= step_tolerance (1 + |x|_max) for all i of the full step
-/// The first two are free of scale: they do not change with the units of the unknowns. g_i^2 / H_ii never
-/// exceeds the decrement, so the gradient test, at rounding level, serves a start that already is a minimum.
-/// A damped or truncated step never ends the run as converged, however little it changes.
+/// The first two tests do not depend on the units of the unknowns. g_i^2 / H_ii never exceeds the
+/// decrement, so the gradient test, at rounding level, is for an initial guess that already is a
+/// minimum. A damped or truncated step never ends the run as converged, however small it is.
 struct OptimizerOptions {
-  int max_iterations = 500;           ///< proposed steps, >= 0
-  double decrement_tolerance = 1e-6;  ///< relative to 1 + chi2, > 0; that last step is still taken
+  int max_iterations = 500;           ///< limit on proposed steps, >= 0
+  double decrement_tolerance = 1e-6;  ///< relative to 1 + chi2, > 0; the last step is still taken
   double gradient_tolerance = 1e-12;  ///< relative to sqrt(1 + chi2), >= 0
   double step_tolerance = 1e-14;      ///< relative to 1 + largest value, >= 0
 
-  /// Threads for linearisation and, where the backend has them, factorisation; >= 1. The result is the same,
-  /// bit by bit, for any number.
+  /// Threads for linearisation and, if the backend has them, factorisation; >= 1. The result is the
+  /// same, bit by bit, for any number.
   int threads = 1;
 
-  /// Asked before every step; true ends the run with the best values so far.
+  /// Checked before every step; true ends the run with the best values so far.
   const std::atomic<bool>* cancel = nullptr;
   /// Called after every proposed step.
   std::function<void(const IterationRecord&)> observer;
 
-  /// @throws UsageError naming field, value and rule.
+  /// @throws UsageError that names field, value and rule
   void check() const;
 };
 
-/// Minimises chi2 of the graph; on return the graph holds the best values found, whatever the outcome.
-/// @throws UsageError for invalid options; InputError where the gauge is undetermined (see find_gauge).
+/// Minimises chi2 of the graph. Afterwards the graph holds the best values found, whatever
+/// the outcome.
+/// @throws UsageError for invalid options; InputError if the gauge is undetermined (see find_gauge)
 Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options);
 
-/// The same with a structure and a symbolic analysis that are kept between calls.
-/// @param structure follows the graph; who built it has looked at the gauge
-/// @param solver has analysed the structure's present pattern
+/// Minimises chi2 with a structure and a symbolic analysis that the caller keeps between calls.
+/// @param structure follows the graph; its builder has checked the gauge
+/// @param solver has analysed the present pattern of the structure
 Summary optimize(Graph& graph, const Structure& structure, Algorithm& algorithm, LinearSolver& solver,
                  const OptimizerOptions& options);
 

@@ -1,4 +1,5 @@
-/// Starts: ways to initial values that read a graph's edges rather than the values it came with.
+/// Starts: methods that compute an initial guess from the edges of a graph, and not from the values
+/// that came with it.
 #pragma once
 
 #include <functional>
@@ -9,16 +10,18 @@
 
 namespace waymark {
 
-/// What a start makes of a graph.
+/// The result of a start.
 struct InitialValues {
-  std::vector<double> values;  ///< laid out as Graph::values(); empty where the edges do not allow this start
-  std::string note;            ///< why not, or what the user should know; empty where all was well
-  std::size_t apart = 0;  ///< vertices that nothing joins to the first one that was placed: each part of them
-                          ///< begins at its own first vertex
+  /// in the layout of Graph::values(); empty if the edges do not allow this start
+  std::vector<double> values;
+  std::string note;  ///< the reason for that, or a fact that the user should know; empty: none
+  /// vertices that nothing joins to the first one that was placed; each part of them begins at its
+  /// own first vertex
+  std::size_t apart = 0;
 };
 
-/// A registered start. Fixed vertices keep their values; a part of the graph that nothing anchors keeps the
-/// value of its first vertex, and with it its place in the plane.
+/// A registered start. Fixed vertices keep their values. A part of the graph that nothing anchors
+/// keeps the value of its first vertex, and so its place in the plane.
 struct StartType {
   std::string name;
   std::string description;

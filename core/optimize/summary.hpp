@@ -1,4 +1,4 @@
-/// What an optimisation did: outcome, message, one record per iteration.
+/// The report of an optimisation: outcome, message, one record per iteration.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +8,21 @@
 
 namespace waymark {
 
-/// Why the loop ended. The first four leave nothing to be gained.
+/// Why the loop ended. After the first four the result is a minimum.
 enum class Termination {
-  converged_decrement,  ///< Newton decrement below tolerance on a full step
-  converged_gradient,   ///< gradient at rounding level
-  converged_step,       ///< full Newton step below the resolution of the values
-  nothing_to_do,        ///< no unknowns
+  converged_decrement,  ///< the Newton decrement is below tolerance on a full step
+  converged_gradient,   ///< the gradient is at rounding level
+  converged_step,       ///< the full Newton step is below the resolution of the values
+  nothing_to_do,        ///< there are no unknowns
   max_iterations,
-  stalled,     ///< no acceptable step left: damping or trust region exhausted
-  singular,    ///< normal equations not positive definite
+  stalled,     ///< no acceptable step is left: damping or trust region is exhausted
+  singular,    ///< the normal equations are not positive definite
   non_finite,  ///< an error or a Jacobian was not finite
   interrupted  ///< by the cancel token; the best values so far are kept
 };
 
 [[nodiscard]] std::string_view to_string(Termination termination);
-/// Whether the result is a minimum to tolerance.
+/// Tells whether the result is a minimum to tolerance.
 [[nodiscard]] bool is_converged(Termination termination);
 
 /// One proposed step.
@@ -31,28 +31,29 @@ struct IterationRecord {
   double chi2 = 0;                ///< at the proposed values
   double decrease = 0;            ///< actual decrease of chi2
   double predicted_decrease = 0;  ///< by the quadratic model
-  double newton_decrement = 0;    ///< g^T H^-1 g; NaN where not known
+  double newton_decrement = 0;    ///< g^T H^-1 g; NaN if not known
   double gradient = 0;            ///< max |g_i| / sqrt(H_ii) before the step
   double step = 0;                ///< largest component of the step, |d_i|
   double control = 0;             ///< damping or trust radius
   std::string kind;               ///< "newton", "damped", "dogleg", "cauchy"
   bool accepted = false;
-  double seconds = 0;  ///< since the start of the optimisation
+  double seconds = 0;  ///< since the begin of the optimisation
 };
 
 struct Summary {
   Termination termination = Termination::non_finite;
-  std::string message = "optimize was not called";  ///< one sentence: why it ended, with the numbers
+  /// one sentence: why the run ended, with the numbers
+  std::string message = "optimize was not called";
   double initial_chi2 = 0;
   double final_chi2 = 0;
   int iterations = 0;  ///< accepted and rejected steps
   std::vector<IterationRecord> records;
-  std::vector<std::string> notes;  ///< gauge and other things the user must know
+  std::vector<std::string> notes;  ///< about the gauge and other facts that the user must know
 
   std::string algorithm;
-  std::string solver;       ///< name and what it chose inside
+  std::string solver;       ///< its name and its own choice
   std::string ordering;     ///< "natural" or "amd"
-  std::string error_forms;  ///< "EDGE_SE2 (t, theta), ...": how the errors behind chi2 are formed
+  std::string error_forms;  ///< "EDGE_SE2 (t, theta), ...": the forms of the errors behind chi2
   std::size_t vertices = 0;
   std::size_t edges = 0;
   std::int64_t unknowns = 0;     ///< scalar

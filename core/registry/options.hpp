@@ -1,5 +1,5 @@
-/// Options of registered types: which values an option may have, and the values that a user gave. Names and
-/// values are checked in one place, CheckedOptions.
+/// Options of registered types: the values that an option may have, and the values that a user
+/// gave. CheckedOptions is the only place that checks names and values.
 #pragma once
 
 #include <limits>
@@ -33,7 +33,8 @@ struct OptionRange {
 /// The words that an option may have.
 using OptionWords = std::vector<std::string>;
 
-/// What is known beforehand of a noise parameter: a normal distribution of it, or of its natural logarithm.
+/// Prior knowledge about a noise parameter: a normal distribution of the parameter, or of its
+/// natural logarithm.
 struct NoisePrior {
   double mean = 0;       ///< of the parameter itself, in the option's unit
   double deviation = 1;  ///< of its logarithm; of the parameter itself if `linear` is set
@@ -47,7 +48,8 @@ struct OptionInfo {
   std::string unit;   ///< empty: none
   std::variant<OptionRange, OptionWords> allowed;
   std::string text;  ///< what the option is; of words it says what each of them does
-  /// If given, the option is a noise parameter that can be estimated from a drive (core/covariance/evidence.hpp).
+  /// If given, the option is a noise parameter that can be estimated from a drive
+  /// (core/covariance/evidence.hpp).
   std::optional<NoisePrior> prior = {};
 
   /// The text with the range: "sigma of the readings; in [1e-6, 10]". `waymark info` shows it.
@@ -81,9 +83,11 @@ class CheckedOptions {
   CheckedOptions(std::string_view owner, const Options& given, std::span<const OptionInfo> known);
 
   [[nodiscard]] const std::string& owner() const { return owner_; }
-  /// The value of an option that is declared with a range. @throws std::logic_error if none of this name is
+  /// The value of an option that is declared with a range. @throws std::logic_error if none of
+  /// this name is
   [[nodiscard]] double number(std::string_view name) const;
-  /// The value of an option that is declared with words. @throws std::logic_error if none of this name is
+  /// The value of an option that is declared with words. @throws std::logic_error if none of
+  /// this name is
   [[nodiscard]] const std::string& word(std::string_view name) const;
 
  private:

@@ -1,5 +1,6 @@
-/// The plugin boundary: one constant data symbol per plugin, read from its file before any of its code runs.
-/// The policy behind the numbers: plugins/README.md, "ABI and versions".
+/// The plugin boundary. Each plugin has one constant data symbol, which is read from its file
+/// before any of its code runs. plugins/README.md, "ABI and versions", explains the policy behind
+/// the numbers.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +13,24 @@
 
 namespace waymark {
 
-/// Raised whenever a type that crosses the boundary changes its layout or meaning.
+/// Raised if a type that crosses the boundary changes its layout or meaning.
 inline constexpr std::uint32_t kPluginAbi = 4;
 inline constexpr std::uint32_t kPluginMagic = 0x57415950;  // "WAYP"
 
-/// How a binary was built, as far as it decides whether two binaries may share types.
+/// The properties of a build that decide whether two binaries may share types.
 struct BuildTraits {
   std::uint32_t compiler = 0;          ///< 1 GCC family, 2 Clang
   std::uint32_t standard_library = 0;  ///< 1 libstdc++ (new ABI), 2 libstdc++ (old ABI), 3 libc++
   std::uint32_t eigen_version = 0;     ///< world * 10000 + major * 100 + minor
-  std::uint32_t eigen_max_align = 0;   ///< bytes; -mavx changes it
+  std::uint32_t eigen_max_align = 0;   ///< bytes; -mavx changes them
   std::uint32_t fast_math = 0;
   std::uint32_t debug_stl = 0;
-  std::uint32_t layout = 0;  ///< sizes of the types that cross the boundary, mixed into one number
+  /// sizes of the types that cross the boundary, combined into one number
+  std::uint32_t layout = 0;
 };
 
-/// A number that changes with the size of any type that both sides of the boundary touch: it catches headers
-/// of another Waymark where somebody forgot to raise kPluginAbi.
+/// Returns a number that depends on the size of every type that both sides of the boundary use. It
+/// detects headers of another Waymark if somebody forgot to raise kPluginAbi.
 constexpr std::uint32_t layout_fingerprint() {
   std::uint32_t mixed = 2166136261u;  // FNV-1a
   for (const std::size_t size : {sizeof(TypeRegistry),
@@ -63,7 +65,7 @@ constexpr std::uint32_t layout_fingerprint() {
   return mixed;
 }
 
-/// The traits of the binary this is compiled into.
+/// Returns the traits of the binary that this is compiled into.
 constexpr BuildTraits build_traits() {
   BuildTraits traits;
 #if defined(__clang__)
@@ -90,8 +92,8 @@ constexpr BuildTraits build_traits() {
   return traits;
 }
 
-/// What the symbol `waymark_plugin` of a module holds. Data without a single pointer, so that it can be read
-/// from the file as it lies there, without loading it.
+/// The content of the symbol `waymark_plugin` of a module. It has no pointers, so it can be read
+/// from the file without loading it.
 struct PluginDescriptor {
   std::uint32_t magic = kPluginMagic;
   std::uint32_t abi = kPluginAbi;
@@ -100,10 +102,11 @@ struct PluginDescriptor {
   char version[32] = {};
 };
 
-/// Registers a plugin's types: the symbol `waymark_plugin_enter` of a module. May throw waymark::Error.
+/// Registers the types of a plugin: the symbol `waymark_plugin_enter` of a module. It may throw
+/// waymark::Error.
 using PluginEntry = void (*)(TypeRegistry& registry);
 
-/// A descriptor of this build. @throws at compile time: a name or version that does not fit
+/// Returns a descriptor of this build. @throws at compile time: a name or version that does not fit
 consteval PluginDescriptor describe_plugin(const char* name, const char* version) {
   PluginDescriptor descriptor;
   for (int i = 0; name[i] != 0; ++i) descriptor.name[i] = name[i];
@@ -113,9 +116,9 @@ consteval PluginDescriptor describe_plugin(const char* name, const char* version
 
 }  // namespace waymark
 
-/// Defines a plugin: WAYMARK_PLUGIN(gnss_g1, "0.1.0", register_types). Compiled into a module
-/// (WAYMARK_PLUGIN_MODULE defined) the symbols are `waymark_plugin` and `waymark_plugin_enter`; built in,
-/// they end in _NAME, so that many fit in one program.
+/// Defines a plugin: WAYMARK_PLUGIN(gnss_g1, "0.1.0", register_types). In a module
+/// (WAYMARK_PLUGIN_MODULE is defined) the symbols are `waymark_plugin` and `waymark_plugin_enter`.
+/// In a built-in plugin they end in _NAME, so that one program can hold many.
 #if defined(WAYMARK_PLUGIN_MODULE)
 #define WAYMARK_PLUGIN_SYMBOL(name) waymark_plugin
 #define WAYMARK_PLUGIN_ENTER_SYMBOL(name) waymark_plugin_enter

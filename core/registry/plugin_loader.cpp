@@ -46,13 +46,14 @@ void check_descriptor(const PluginDescriptor& descriptor, const std::string& pla
                 "build the plugin again with the headers of this waymark");
 }
 
-/// The descriptor as it lies in the file.
+/// Returns the descriptor as it is in the file.
 PluginDescriptor read_descriptor(const std::string& file) {
   const ModuleFile module(file);
   const auto bytes = module.symbol("waymark_plugin");
   if (!bytes)
     refuse(file, "is no waymark plugin (no symbol 'waymark_plugin')", "define it with WAYMARK_PLUGIN");
-  // Other versions may have shorter or longer ones; what is checked first lies at the front of all.
+  // Other versions may have shorter or longer descriptors. The members that are checked first are
+  // at the front of all.
   PluginDescriptor descriptor{};
   descriptor.magic = 0;
   std::memcpy(&descriptor, bytes->data(), std::min(bytes->size(), sizeof descriptor));
@@ -71,7 +72,8 @@ PluginDescriptor read_descriptor(const std::string& file) {
 void enter_plugin(const PluginDescriptor& descriptor, PluginEntry enter, const std::string& place,
                   TypeRegistry& registry) {
   check_descriptor(descriptor, place);
-  // Into a copy first: a registration that fails half-way leaves no types behind.
+  // The types are first registered in a copy, so that a registration that fails half-way leaves no
+  // types behind.
   TypeRegistry extended = registry;
   extended.set_origin(descriptor.name);
   extended.add_plugin({descriptor.name, descriptor.version, place});
@@ -89,12 +91,12 @@ void enter_plugin(const PluginDescriptor& descriptor, PluginEntry enter, const s
 
 void load_plugin(const std::string& file, TypeRegistry& registry) {
   const PluginDescriptor descriptor = read_descriptor(file);
-  // A bare name would be searched in the system's library folders instead of here.
+  // The system would search a bare name in its library folders.
   const std::string path = file.find('/') == std::string::npos ? "./" + file : file;
   std::fenv_t environment;
   std::fegetenv(&environment);
   void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  std::fesetenv(&environment);  // whatever its start-up code did
+  std::fesetenv(&environment);  // undoes whatever its start-up code did
   if (handle == nullptr) throw UsageError("cannot load plugin: " + std::string(dlerror()));
   const auto enter = reinterpret_cast<PluginEntry>(dlsym(handle, "waymark_plugin_enter"));
   if (enter == nullptr)

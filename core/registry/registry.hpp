@@ -1,5 +1,5 @@
-/// The registry of types: a value, filled by explicit calls, passed to whoever needs it. No singletons, no
-/// static initialisers (linkers drop those from libraries).
+/// The registry of types. It is a value: explicit calls fill it, and it is passed to its users.
+/// There are no singletons and no static initialisers (linkers drop those from libraries).
 #pragma once
 
 #include <functional>
@@ -23,14 +23,14 @@ namespace waymark {
 struct PluginRecord {
   std::string name;
   std::string version;
-  std::string place;  ///< file of a module, "built in"
+  std::string place;  ///< file of a module, or "built in"
 };
 
-/// An entry and who registered it.
+/// An entry and its origin.
 template <typename T>
 struct Registered {
   T type;
-  std::string origin;  ///< "waymark" or the plugin's name
+  std::string origin;  ///< "waymark" or the name of the plugin
 };
 
 /// One table of the registry: entries in the order of registration, found by name.
@@ -39,10 +39,10 @@ using RegistryTable = std::vector<Registered<T>>;
 
 class TypeRegistry {
  public:
-  /// Entries added from now on come from this origin.
+  /// Sets the origin of all entries that are added from now on.
   void set_origin(std::string origin) { origin_ = std::move(origin); }
 
-  /// Each throws UsageError when the name is taken, naming both origins.
+  /// Each throws UsageError if the name exists already, and names both origins.
   void add_vertex(VertexType type);
   void add_edge(EdgeType type);
   void add_loss(LossType type);
@@ -63,14 +63,14 @@ class TypeRegistry {
     add_edge(make_edge_type<E>());
   }
 
-  /// Null where nothing has the tag or name.
+  /// Each returns null if nothing has the tag or name.
   [[nodiscard]] const VertexType* find_vertex(std::string_view tag) const;
   [[nodiscard]] const EdgeType* find_edge(std::string_view tag) const;
   [[nodiscard]] const LossType* find_loss(std::string_view name) const;
   [[nodiscard]] const LogReader* find_log_reader(std::string_view name) const;
 
-  /// Each throws UsageError for an unknown name, listing the names that exist, and OptionError for options that
-  /// the type does not have or values that they cannot have.
+  /// Each throws UsageError for an unknown name (it lists the names that exist), and OptionError
+  /// for options that the type does not have and values that they cannot have.
   [[nodiscard]] std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) const;
   [[nodiscard]] InitialValues make_start(std::string_view name, const Graph& graph) const;
   [[nodiscard]] std::unique_ptr<Algorithm> make_algorithm(std::string_view name,
@@ -81,7 +81,8 @@ class TypeRegistry {
                                                                  const Options& options = {}) const;
   [[nodiscard]] std::unique_ptr<SensorModel> make_sensor_model(std::string_view name,
                                                                const Options& options = {}) const;
-  /// The type by name. @throws UsageError for an unknown one, listing the names that exist
+  /// Returns the type with this name. @throws UsageError for an unknown one; it lists the
+  /// names that exist
   [[nodiscard]] const OdometryModelType& odometry_model(std::string_view name) const;
   [[nodiscard]] const GnssModelingType& gnss_modeling(std::string_view name) const;
   [[nodiscard]] const SensorModelType& sensor_model(std::string_view name) const;
@@ -96,7 +97,7 @@ class TypeRegistry {
   [[nodiscard]] const RegistryTable<SensorModelType>& sensor_models() const { return sensor_models_; }
   [[nodiscard]] const RegistryTable<LogReaderType>& log_readers() const { return log_readers_; }
   [[nodiscard]] const RegistryTable<StartType>& starts() const { return starts_; }
-  /// In the order in which they were entered.
+  /// Returns the plugins in the order in which they were entered.
   [[nodiscard]] const std::vector<PluginRecord>& plugins() const { return plugins_; }
 
  private:
@@ -114,7 +115,7 @@ class TypeRegistry {
   std::vector<PluginRecord> plugins_;
 };
 
-/// Registers what core itself brings: the run-time-arity Gaussian prior and the robust losses.
+/// Registers the types of core itself: the Gaussian prior of run-time arity and the robust losses.
 void register_core_types(TypeRegistry& registry);
 
 }  // namespace waymark

@@ -9,7 +9,7 @@ double chi_square_tail(double x, int freedom) {
   const double half = 0.5 * x;
   const bool even = freedom % 2 == 0;
   double tail = even ? std::exp(-half) : std::erfc(std::sqrt(half));
-  // What two more degrees of freedom add: half^(d/2) e^(-half) / Gamma(d/2 + 1).
+  // Two more degrees of freedom add half^(d/2) e^(-half) / Gamma(d/2 + 1).
   double term = even ? half * std::exp(-half) : 2 * std::sqrt(half / std::numbers::pi) * std::exp(-half);
   for (int d = even ? 2 : 1; d < freedom; d += 2) {
     tail += term;

@@ -65,7 +65,7 @@ std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> e
     const EdgeBatchBase& batch = graph.batch(edges[i].batch);
     const std::span<const VertexIndex> vertices = batch.vertices(edges[i].edge);
     batch.linearize_edge(edges[i].edge, kept.view(), e, jacobians);
-    // J P J^T, a row of J at a time.
+    // J P J^T, one row of J at a time.
     Eigen::MatrixXd predicted = Eigen::MatrixXd::Zero(e.size(), e.size());
     for (Eigen::Index r = 0; r < e.size() && unknowns > 0; ++r) {
       row.setZero();
@@ -84,13 +84,14 @@ std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> e
                                                           jacobians[k].cols());
       }
     }
-    // (Omega^-1 + C)^-1 = Omega (I + C Omega)^-1, also where Omega is singular.
+    // (Omega^-1 + C)^-1 = Omega (I + C Omega)^-1 also holds if Omega is singular.
     const Eigen::MatrixXd information = batch.information(edges[i].edge);
     const double sign = membership == Membership::outside ? 1 : -1;
     const Eigen::MatrixXd spread =
         Eigen::MatrixXd::Identity(e.size(), e.size()) + sign * predicted * information;
     const Eigen::FullPivLU<Eigen::MatrixXd> factor(spread);
-    // Inside, directions of which nobody else knows leave no spread: rounding would decide.
+    // For an edge inside, directions that no other edge knows leave no spread, and rounding
+    // would decide.
     const bool checked = membership == Membership::outside || factor.rcond() > 1e-9;
     result[i] = checked ? e.dot(information * factor.solve(e)) : 0;
   }

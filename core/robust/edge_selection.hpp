@@ -1,5 +1,5 @@
-/// Single edges of a graph: how large their errors are, what the other edges say of them, and the graph
-/// without some of them.
+/// Single edges of a graph: the size of their errors, their agreement with the other edges, and the
+/// graph without some of them.
 #pragma once
 
 #include <compare>
@@ -11,33 +11,35 @@
 
 namespace waymark {
 
-/// An edge of a graph: its batch, and its place there.
+/// An edge of a graph: its batch, and its place in the batch.
 struct EdgePlace {
   std::size_t batch = 0;
   std::size_t edge = 0;
   friend auto operator<=>(const EdgePlace&, const EdgePlace&) = default;
 };
 
-/// e^T Omega e at the present values, without loss.
+/// Returns e^T Omega e at the present values, without loss.
 [[nodiscard]] double squared_error(const Graph& graph, EdgePlace place);
 
-/// A copy of the graph, losses included, that lacks some edges. @param edges ascending
+/// Returns a copy of the graph, losses included, without some edges. @param edges ascending
 [[nodiscard]] Graph without_edges(const Graph& graph, std::span<const EdgePlace> edges);
 
-/// How an edge stands to the edges that innovations() judges it by.
+/// Whether an edge belongs to the edges that innovations() compares it with.
 enum class Membership {
-  outside,  ///< they lack it
-  inside    ///< they hold it; it is judged by the others alone
+  outside,  ///< it does not belong to them
+  inside    ///< it belongs to them, and is compared with the others only
 };
 
-/// What the edges of `kept` (a graph of the same vertices at a minimum) say of edges of `graph`: e^T S^-1 e,
-/// S = Omega^-1 + J P J^T for one outside, Omega^-1 - J P J^T for one inside, with P the covariance of the
-/// unknowns. That is chi-square distributed where the edge belongs to the same world, and the amount by which
-/// the minimum rises with the edge or falls without it (exactly where errors are linear). Zero for an
-/// edge inside that no other checks; infinite for all where the normal equations are not positive definite.
+/// Compares edges of `graph` with the edges of `kept` (a graph of the same vertices at a minimum).
+/// It returns e^T S^-1 e, with S = Omega^-1 + J P J^T for an edge outside and S = Omega^-1 - J P
+/// J^T for an edge inside. P is the covariance of the unknowns. The result is chi-square
+/// distributed if the edge is consistent with the others. It is also the amount by which the
+/// minimum rises with the edge, or falls without it (exactly if errors are linear). It is zero for
+/// an edge inside that no other edge checks, and infinite for all edges if the normal equations are
+/// not positive definite.
 ///
-/// Vertices that are held, fixed, or joined by no edge of `kept` count as known. One solve per edge and
-/// dimension of its error.
+/// Vertices that are held, fixed, or joined by no edge of `kept` count as known. The cost is one
+/// solve per edge and dimension of its error.
 [[nodiscard]] std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> edges,
                                               Membership membership, const Graph& kept, LinearSolver& solver);
 

@@ -12,31 +12,33 @@
 namespace waymark {
 namespace {
 
-/// Verdicts are passed at this stretch, at a quarter of it, ..., and at 1: Geman-McClure's default width is
-/// then 4, 2 and 1 standard deviations. Which width separates best depends on how far the stated noise is
-/// from the true one.
+/// There are verdicts at this stretch, at a quarter of it, ..., and at 1. The default width of
+/// Geman-McClure is then 4, 2 and 1 standard deviations. The best width depends on how far the
+/// stated noise is from the true one.
 constexpr double kFirstVerdict = 16;
 /// Steps towards the minimum of all edges.
 constexpr int kFirstIterations = 50;
-/// Steps towards the minimum of the loss before a verdict.
+/// Steps towards the minimum with the loss before a verdict.
 constexpr int kConverge = 30;
 
 LossValue no_loss(double squared, double) {
   return {squared, 1, 0};
 }
 
-/// Whether m rho(s / m) is still convex in the error at s: no negative curvature along it.
+/// Tells whether m rho(s / m) is still convex in the error at s: it has no negative curvature
+/// along the error.
 bool convex_at(const Loss& loss, double squared) {
   const LossValue value = loss.at(squared);
   return value.weight > 0 && value.weight + 2 * squared * value.curvature >= -1e-9 * value.weight;
 }
 
-/// A split of the edges and the minimum that belongs to it.
+/// A split of the edges, and its minimum.
 struct Verdict {
   std::vector<EdgePlace> outliers;
   std::vector<double> values;
   Summary summary;
-  double cost = std::numeric_limits<double>::infinity();  ///< chi2 of the kept edges + quantile per outlier
+  /// chi2 of the kept edges + quantile per outlier
+  double cost = std::numeric_limits<double>::infinity();
 };
 
 class Graduation {
@@ -65,8 +67,8 @@ class Graduation {
     return summary;
   }
 
-  Graph& graph_;   // with its own losses; its values are those last judged
-  Graph working_;  // with the loss that narrows
+  Graph& graph_;   // with its own losses, and the values of the last verdict
+  Graph working_;  // with the narrowing loss
   Algorithm& algorithm_;
   LinearSolver& solver_;
   const GraduationOptions& options_;
@@ -107,7 +109,7 @@ std::vector<EdgePlace> Graduation::inside(const Verdict& verdict) const {
   return result;
 }
 
-// The smallest power of two at which no candidate lies where the loss bends down.
+// Returns the smallest power of two at which the loss is convex at every candidate.
 double Graduation::first_stretch() const {
   double largest = 0;
   for (const EdgePlace place : candidates_) largest = std::max(largest, squared_error(working_, place));
@@ -118,7 +120,7 @@ double Graduation::first_stretch() const {
   return loss.stretch;
 }
 
-// Candidates have the loss of their batch, which narrows; the others keep their own, or none.
+// Candidates have the loss of their batch, which narrows. The other edges keep their own, or none.
 void Graduation::attach_losses() {
   auto candidate = candidates_.begin();
   for (std::size_t b = 0; b < working_.batch_count(); ++b) {
@@ -143,7 +145,7 @@ void Graduation::narrow() {
     (void)count(optimize(working_, algorithm_, solver_, inner));
     ++result_.rounds;
     if (loss.stretch <= next_verdict) {
-      Graph settled = working_;  // the narrowing itself goes on from where it was
+      Graph settled = working_;  // the narrowing itself continues from its own values
       OptimizerOptions converge = inner;
       converge.max_iterations = kConverge;
       if (!interrupted_) (void)count(optimize(settled, algorithm_, solver_, converge));
@@ -169,8 +171,9 @@ Verdict Graduation::optimize_without(std::vector<EdgePlace> outliers) {
   return verdict;
 }
 
-// What is outside after this minimum. Those inside that are beyond the bound go; those outside return where
-// their innovation is within it, each once: the others raise the minimum by more than they cost outside.
+// Returns the edges that are outside after this minimum. Edges inside that exceed the bound go out.
+// Edges outside whose innovation is within it come in, each of them once; the other ones would
+// raise the minimum by more than they cost outside.
 std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector<EdgePlace>& returned) {
   const Graph kept = without_edges(graph_, verdict.outliers);
   const std::vector<double> innovation =
@@ -193,8 +196,9 @@ std::vector<EdgePlace> Graduation::still_out(const Verdict& verdict, std::vector
   return out;
 }
 
-// Those inside against which all others speak: the minimum would fall by more than they cost outside. A false
-// edge makes good neighbours look bad, so only what comes near the worst is named.
+// Returns the edges inside that all others contradict: without such an edge the minimum would fall
+// by more than it costs outside. A false edge makes good neighbours look bad, so only those close
+// to the worst are returned.
 std::vector<EdgePlace> Graduation::accused(const Verdict& verdict) {
   const std::vector<EdgePlace> members = inside(verdict);
   const Graph kept = without_edges(graph_, verdict.outliers);
@@ -207,7 +211,7 @@ std::vector<EdgePlace> Graduation::accused(const Verdict& verdict) {
   return result;
 }
 
-// From a first split to one that neither edge nor edge back makes cheaper.
+// Improves a first split until no single edge makes it cheaper by leaving or returning.
 void Graduation::judge(std::vector<EdgePlace> outliers) {
   constexpr int kMaxPasses = 20;  // two or three are usual
   std::vector<EdgePlace> returned;
@@ -218,7 +222,7 @@ void Graduation::judge(std::vector<EdgePlace> outliers) {
     try {
       verdict = optimize_without(std::move(outliers));
     } catch (const InputError&) {
-      return;  // what is left determines no solution: no split to choose
+      return;  // the remaining edges determine no solution, so there is no split to choose
     }
     if (interrupted_) return;
     outliers = still_out(verdict, returned);
@@ -226,8 +230,8 @@ void Graduation::judge(std::vector<EdgePlace> outliers) {
   }
 }
 
-// What bends the rest without being large itself shows only here; looked at for the best split alone, as it
-// takes a solve per candidate and dimension.
+// Finds edges that bend the rest without a large error of their own. This is done only for the best
+// split, because it takes a solve per candidate and dimension.
 void Graduation::cross_examine() {
   constexpr int kMaxRounds = 20;
   for (int round = 0; round < kMaxRounds && !interrupted_; ++round) {
@@ -246,15 +250,15 @@ GraduationResult Graduation::run() {
   const auto start = std::chrono::steady_clock::now();
   options_.check();
   find_candidates();
-  // 1. All edges: where none is beyond its bound, there is nothing to find. With outliers this minimum may be
-  // far; it need not be reached to start from.
+  // 1. Use all edges. If none is beyond its bound, there are no outliers. With outliers this
+  //    minimum may be far away; the next step need not start exactly from it.
   OptimizerOptions first = options_.optimizer;
   first.max_iterations = std::min(kFirstIterations, first.max_iterations);
   (void)count(optimize(graph_, algorithm_, solver_, first));
   const bool suspicious = !beyond_bound().empty();
   working_.set_values(graph_.values());
   if (!interrupted_ && suspicious) {
-    // 2. Narrow the loss from there; the cheapest split on the way counts.
+    // 2. Narrow the loss from there. The cheapest split on the way counts.
     narrow();
     cross_examine();
   }

@@ -15,7 +15,8 @@ namespace {
 
 using detail::at;
 
-/// Components of free vertices by union-find with path halving; the root is the first vertex of each.
+/// Finds components of free vertices by union-find with path halving. The root is the first
+/// vertex of each.
 std::vector<std::int32_t> find_components(const Graph& graph) {
   std::vector<std::int32_t> parent(graph.vertex_count());
   std::iota(parent.begin(), parent.end(), 0);
@@ -42,9 +43,9 @@ std::vector<std::int32_t> find_components(const Graph& graph) {
   return parent;
 }
 
-/// The components of the vertices that move under a rigid motion.
+/// The components of the vertices that a rigid motion moves.
 struct Components {
-  std::vector<std::int32_t> of;    // per vertex; -1: it is fixed or does not move
+  std::vector<std::int32_t> of;    // per vertex; -1: the vertex is fixed or does not move
   std::vector<VertexIndex> first;  // first vertex with edges
   std::vector<int> count;          // vertices that move
   std::vector<RigidMotionView::Place> places;
@@ -73,19 +74,20 @@ Components describe_components(const Graph& graph) {
     ++result.count[at(component)];
     boxes[at(component)].extend(type.position(graph.values().data() + graph.offsets()[v]));
   }
-  // At least a metre: below, a turn of the component means only turning its poses.
+  // The extent is at least a metre. In a smaller component a turn would only turn its poses.
   for (const Eigen::AlignedBox2d& box : boxes) {
     result.places.push_back({box.center(), std::max(1.0, 0.5 * box.diagonal().norm())});
   }
   return result;
 }
 
-/// Number of eigenvalues above the noise of the largest; 0 where all of them are no more than rounding.
+/// Returns how many eigenvalues are above the noise of the largest. 0 if all of them are
+/// only rounding.
 int rank_of(const Eigen::Matrix3d& information) {
   const Eigen::Vector3d eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(information).eigenvalues();
   constexpr double kRounding =
-      1e-12;  // (J T) of an unanchored component cancels to about 1e-12, squared times Omega
+      1e-12;  // (J T) of a component without anchor cancels to about 1e-12, squared times Omega
   constexpr double kRelative = 1e-12;
   int rank = 0;
   for (const double value : eigenvalues) rank += value > std::max(kRounding, kRelative * eigenvalues[2]);

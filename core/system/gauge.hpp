@@ -1,4 +1,4 @@
-/// The gauge of a graph: which rigid motions of its parts the edges cannot see.
+/// The gauge of a graph: the rigid motions of its parts that the edges cannot observe.
 #pragma once
 
 #include <string>
@@ -8,18 +8,21 @@
 
 namespace waymark {
 
-/// What is held to make the problem determined, and what must be told to the user.
+/// The vertices that are held so that the problem is determined, and the messages for the user.
 struct Gauge {
-  std::vector<char> held;  ///< per vertex: kept at its value (fixed vertices of the graph are not counted)
+  /// per vertex: it keeps its value (fixed vertices of the graph are not counted)
+  std::vector<char> held;
   std::vector<std::string> messages;  ///< one sentence per component that was held
 };
 
-/// Looks at every component of free vertices joined by edges. Its rigid-motion information M = sum (J T)^T
-/// Omega (J T), T the motions along x, along y and about the centre (scaled by the extent), has rank
-///   0: nothing anchors the component; its first vertex is held, as the field does, and the message says so;
-///   3: it is anchored; nothing is held;
-///   1, 2: it is anchored in part (one fix; a parked car).
-/// @throws InputError for rank 1 or 2: names a vertex and what would fix it.
+/// Examines every component of free vertices joined by edges. Its rigid-motion information is M =
+/// sum (J T)^T Omega (J T), where T are the motions along x, along y and about the centre (scaled
+/// by the extent). The rank of M decides:
+/// - 0: nothing anchors the component. Its first vertex is held, as usual in the field, and a
+///   message says so.
+/// - 3: the component is anchored, and nothing is held.
+/// - 1 or 2: it is anchored in part (one fix; a parked car).
+/// @throws InputError for rank 1 or 2; it names a vertex and the missing measurement
 [[nodiscard]] Gauge find_gauge(const Graph& graph);
 
 }  // namespace waymark

@@ -101,7 +101,7 @@ void NormalEquations::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) con
 
 void NormalEquations::retract(const std::vector<double>& values, const Eigen::VectorXd& step,
                               std::vector<double>& moved) const {
-  if (moved.size() != values.size()) moved = values;  // what is no unknown never moves
+  if (moved.size() != values.size()) moved = values;  // vertices that are no unknowns never move
   const BlockPattern& p = pattern();
   for (int j = 0; j < p.columns(); ++j) {
     const VertexIndex v = structure_.vertex_of(j);

@@ -1,5 +1,6 @@
-/// The normal equations H d = -g of a graph at its present values: H = sum w J^T Omega J, g = sum w J^T Omega
-/// e. chi2 = sum rho(e^T Omega e) is not halved, so its gradient is 2 g and its Gauss-Newton Hessian 2 H.
+/// The normal equations H d = -g of a graph at its present values: H = sum w J^T Omega J, g = sum w
+/// J^T Omega e. chi2 = sum rho(e^T Omega e) is not halved. So its gradient is 2 g, and its
+/// Gauss-Newton Hessian is 2 H.
 #pragma once
 
 #include <span>
@@ -16,42 +17,43 @@ namespace waymark {
 
 class NormalEquations {
  public:
-  /// Both must outlive this object; the structure must have been built for the graph.
+  /// Both must outlive this object. The structure must have been built for the graph.
   NormalEquations(const Graph& graph, const Structure& structure);
 
-  /// Threads to work with from now on, null: the caller's alone. The bits of H, g and chi2 do not depend on
-  /// it.
+  /// Sets the threads for all later calls; null: only the caller's. The bits of H, g and chi2 do
+  /// not depend on it.
   void set_threads(ThreadPool* pool) { pool_ = pool; }
 
-  /// Fills H and g at `values` (laid out as graph.values()) and returns chi2 there.
-  /// @param evidence_weights  empty, or for each batch NormalView::evidence_weight
+  /// Computes H and g at `values` (in the layout of graph.values()), and returns chi2 there.
+  /// @param evidence_weights empty, or NormalView::evidence_weight for each batch
   double linearize(const std::vector<double>& values, std::span<const double> evidence_weights = {});
-  /// chi2 at other values; H and g stay.
+  /// Returns chi2 at other values. H and g do not change.
   [[nodiscard]] double chi2(const std::vector<double>& values) const;
 
   [[nodiscard]] const BlockPattern& pattern() const { return structure_.pattern(); }
-  /// Numbers of H, laid out as pattern() says.
+  /// Returns the numbers of H in the layout of pattern().
   [[nodiscard]] std::span<const double> hessian() const {
     return {hessian_.data(), static_cast<std::size_t>(pattern().value_count())};
   }
   [[nodiscard]] Eigen::Map<const Eigen::VectorXd> gradient() const {
     return {gradient_.data(), pattern().dimension()};
   }
-  /// Diagonal of H, in elimination order like all vectors here; gathered once for each linearisation.
+  /// Returns the diagonal of H in elimination order, like all vectors here. It is collected once
+  /// per linearisation.
   [[nodiscard]] const Eigen::VectorXd& diagonal() const;
-  /// H + diag(extra), into `damped` (same layout as hessian()).
+  /// Computes H + diag(extra) into `damped` (in the layout of hessian()).
   void add_to_diagonal(const Eigen::VectorXd& extra, std::vector<double>& damped) const;
-  /// H x, into `product`.
+  /// Computes H x into `product`.
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& product) const;
-  /// values [+] step, into `moved`: empty, or earlier filled by this function.
+  /// Computes values [+] step into `moved`, which is empty or was filled by this function before.
   void retract(const std::vector<double>& values, const Eigen::VectorXd& step,
                std::vector<double>& moved) const;
-  /// The vertex that a scalar unknown belongs to.
+  /// Returns the vertex of a scalar unknown.
   [[nodiscard]] VertexIndex vertex_of_unknown(std::int64_t unknown) const;
 
  private:
-  /// Calls work(batch, range) for all edges, chunks side by side, the last one after the others, and
-  /// sums what it returns in order.
+  /// Calls work(batch, range) for all edges: the chunks in parallel, then the last one. It sums the
+  /// results in order.
   template <typename Work>
   double sum_over_chunks(const Work& work) const;
 

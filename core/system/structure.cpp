@@ -13,7 +13,7 @@ namespace {
 
 using detail::at;
 
-/// Pairs of block columns (row < column) that share an edge, by column; rows sorted, each once.
+/// Pairs of block columns (row < column) that share an edge, by column. Rows are sorted and unique.
 struct Columns {
   std::vector<std::int64_t> begin;
   std::vector<int> rows;
@@ -49,7 +49,7 @@ Columns collect_columns(const Graph& graph, const std::vector<int>& column_of, i
   for_each_pair(graph, column_of, [&](int row, int column) {
     if (column >= first_column) rows[at(next[at(column)]++)] = row;
   });
-  // Sorted and each once, moved up to close the gaps.
+  // Sort the rows, make them unique, and close the gaps.
   result.begin.assign(at(columns) + 1, 0);
   std::int64_t kept = 0;
   for (int j = 0; j < columns; ++j) {
@@ -66,7 +66,7 @@ Columns collect_columns(const Graph& graph, const std::vector<int>& column_of, i
   return result;
 }
 
-/// A column is dense when its type says so or when it meets far more others than a pose ever does.
+/// A column is dense if its type says so, or if it meets far more others than a pose ever does.
 bool is_dense(std::int64_t degree, int n) {
   return static_cast<double>(degree) > std::max(64.0, 10.0 * std::sqrt(static_cast<double>(n)));
 }
@@ -90,7 +90,7 @@ void Structure::build(const Graph& graph, std::span<const char> held) {
   const int n = static_cast<int>(vertex_of_.size());
   Columns upper = collect_columns(graph, column_of_, 0, n);
 
-  // Dense columns go last; the others are ordered.
+  // Dense columns come last; the others are ordered.
   std::vector<int> degree(at(n), 0);
   for (int j = 0; j < n; ++j) {
     for (auto k = upper.begin[at(j)]; k < upper.begin[at(j) + 1]; ++k) {
@@ -125,13 +125,14 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
   const std::size_t old_vertices = column_of_.size();
   bool append_only = dense_columns_ == 0;
   for (std::size_t v = old_vertices; v < graph.vertex_count(); ++v) {
-    append_only = append_only && !graph.vertex_type(static_cast<VertexIndex>(v)).dense;  // goes last
+    // a dense column comes last
+    append_only = append_only && !graph.vertex_type(static_cast<VertexIndex>(v)).dense;
   }
   for (std::size_t b = 0; b < graph.batch_count() && append_only; ++b) {
     const std::size_t known = b < scattered_edges_.size() ? scattered_edges_[b] : 0;
     const auto look = [&](std::span<const VertexIndex> vertices) {
-      // Two old vertices in one new edge may need a block inside an old column; an old vertex that had no
-      // edge before needs a column of its own in the middle.
+      // A new edge between two old vertices may need a block inside an old column. An old vertex
+      // that had no edge before needs its own column in the middle.
       const auto old_in_edge = std::count_if(vertices.begin(), vertices.end(),
                                              [&](VertexIndex v) { return at(v) < old_vertices; });
       const bool loose = std::any_of(vertices.begin(), vertices.end(), [&](VertexIndex v) {
@@ -147,7 +148,7 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
         collect_columns(graph, column_of_, old_columns, static_cast<int>(vertex_of_.size()));
     make_pattern(graph, old_columns, upper.begin, upper.rows);
     size_slots(graph);
-    retarget_held(graph);  // slots lie behind the numbers, which have grown
+    retarget_held(graph);  // slots are after the numbers, which have grown
     make_scatter(graph, true);
     return;
   }
@@ -162,7 +163,8 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
   make_scatter(graph, false);
 }
 
-// Orders the chosen unknowns: old ones as they were, new ones before the dense, new dense ones last.
+// Orders the chosen unknowns: old ones as they were, then new ones, then dense ones, new
+// dense ones last.
 void Structure::keep_order(const Graph& graph, std::span<const VertexIndex> old_order) {
   const std::size_t first_dense = old_order.size() - at(dense_columns_);
   std::vector<VertexIndex> vertices;
@@ -215,9 +217,10 @@ void Structure::make_pattern(const Graph& graph, int first_column, std::span<con
   }
 }
 
-// Each chunk has a slot behind the numbers: a place where what concerns held vertices is thrown, as large as
-// the largest block that an edge makes of a held vertex and any other, and one for the blocks among dense
-// columns, which all chunks write to and which are summed afterwards.
+// Each chunk has a slot after the numbers. Its first part is scratch space for held vertices,
+// as large as the largest block that an edge makes of a held vertex and any other. Its second
+// part is for the blocks among dense columns: all chunks add to these blocks, so the slots are
+// summed afterwards.
 void Structure::size_slots(const Graph& graph) {
   int longest = 0;
   bool any_held = false;
@@ -271,12 +274,13 @@ BlockTarget Structure::target(int chunk, int first, int second) const {
     offset = pattern_.value[column] + pattern_.row_offset[entry];
     stride = pattern_.height[column];
   }
-  // The kernel's block has the rows of the first and the columns of the second; stored are the rows of the
-  // earlier one.
+  // The block of the kernel has the rows of the first vertex and the columns of the second one. The
+  // stored block has the rows of the earlier one.
   return {static_cast<std::uint32_t>(offset), first > second ? -stride : stride};
 }
 
-// All vertices of the edge that are neither held nor dense lie in one chunk, or it belongs to the last.
+// Returns the chunk of an edge. If not all its vertices that are neither held nor dense are in one
+// chunk, it belongs to the last chunk.
 int Structure::chunk_of(std::span<const VertexIndex> vertices) const {
   const int first_dense = pattern_.columns() - dense_columns_;
   int chunk = -1;
@@ -306,7 +310,7 @@ void Structure::make_scatter(const Graph& graph, bool only_new) {
     }
     ranges.assign(at(chunks_), {});
     for (std::size_t c = 0; c + 1 < scatter.chunk.size(); ++c) {
-      // The last chunk stays the last when there are more.
+      // The last chunk stays the last if there are more.
       auto& list = ranges[c + 2 < scatter.chunk.size() ? c : ranges.size() - 1];
       list.assign(scatter.ranges.begin() + static_cast<std::ptrdiff_t>(scatter.chunk[c]),
                   scatter.ranges.begin() + static_cast<std::ptrdiff_t>(scatter.chunk[c + 1]));

@@ -1,5 +1,5 @@
-/// The structure of the normal equations of a graph: which vertices are unknowns, in which order they are
-/// eliminated, the block pattern, and where each edge adds its part.
+/// The structure of the normal equations of a graph: the unknown vertices, their order of
+/// elimination, the block pattern, and the places where each edge adds its part.
 #pragma once
 
 #include <optional>
@@ -15,48 +15,53 @@ namespace waymark {
 
 class Structure {
  public:
-  /// Makes the structure new: order, pattern, scatter offsets.
-  /// @param held per vertex: not zero keeps it out of the unknowns (beside the graph's own fixed vertices)
+  /// Computes the structure anew: order, pattern, scatter offsets.
+  /// @param held per vertex: not zero keeps it out of the unknowns (like the fixed vertices
+  /// of the graph)
   void build(const Graph& graph, std::span<const char> held);
 
-  /// Follows a graph that has grown at its end: new vertices are ordered after the old ones (before dense
-  /// columns) and the old order stays. Where each new edge has a new vertex and no column is dense, old
-  /// columns and scatter offsets are kept and only new ones are made; otherwise the pattern is made again in
-  /// the kept order.
-  /// @param held as in build, for all vertices; it must not change for old ones.
+  /// Follows a graph that has grown at its end. New vertices are ordered after the old ones (but
+  /// before dense columns), and the old order stays. If each new edge has a new vertex and no
+  /// column is dense, old columns and scatter offsets are kept, and only new ones are computed.
+  /// Otherwise the pattern is computed anew in the kept order.
+  /// @param held as in build, for all vertices; it must not change for old ones
   void extend(const Graph& graph, std::span<const char> held);
 
-  /// Follows a graph that has lost vertices, and has since then at most gained edges among those that stayed
-  /// (marginalisation priors). What stays keeps its order; old columns lose the rows that are gone and gain
-  /// those the new edges need, without looking at the other edges. A block that no edge needs any more stays,
-  /// as zeros, until one of its vertices goes.
-  /// @param removal what Graph::remove_vertices said; the structure had followed the graph until then
+  /// Follows a graph that has lost vertices. Since then it may only have gained edges among the
+  /// remaining vertices (marginalisation priors). The rest keeps its order. Old columns lose
+  /// the removed rows and gain those that the new edges need, without a pass over the other
+  /// edges. A block that no edge needs any more stays, filled with zeros, until one of its
+  /// vertices is removed.
+  /// @param removal the result of Graph::remove_vertices; the structure had followed the
+  /// graph until then
   /// @param held as in build, for the vertices that stayed
-  /// @throws UsageError where the structure had not followed the graph
+  /// @throws UsageError if the structure had not followed the graph
   void remove(const Graph& graph, const Removal& removal, std::span<const char> held);
 
   [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
   [[nodiscard]] const Scatter& scatter(std::size_t batch) const { return scatters_[batch]; }
-  /// Block column of a vertex, -1 where it is no unknown.
+  /// Returns the block column of a vertex, or -1 if it is no unknown.
   [[nodiscard]] int column_of(VertexIndex v) const { return column_of_[static_cast<std::size_t>(v)]; }
-  /// The vertex of a block column.
+  /// Returns the vertex of a block column.
   [[nodiscard]] VertexIndex vertex_of(int column) const {
     return vertex_of_[static_cast<std::size_t>(column)];
   }
-  /// Chunks of every scatter; the last is worked on alone, after the others.
+  /// Returns how many chunks every scatter has. The last one runs alone, after the others.
   [[nodiscard]] int chunks() const { return chunks_; }
-  /// Doubles to reserve for the matrix and the gradient: numbers plus a slot per chunk.
+  /// Returns how many doubles to reserve for the matrix and the gradient: the numbers plus a
+  /// slot per chunk.
   [[nodiscard]] std::int64_t hessian_size() const { return pattern_.value_count() + chunks_ * slot_block_; }
   [[nodiscard]] std::int64_t gradient_size() const { return pattern_.dimension() + chunks_ * slot_row_; }
-  /// Adds what the chunks gathered for dense columns in their slots, chunk by chunk, to its place.
+  /// Adds the sums that the chunks collected in their slots for dense columns to their places,
+  /// chunk by chunk.
   void add_slots(double* hessian, double* gradient) const;
-  /// "natural", "leaves first" or "amd".
+  /// Returns "natural", "leaves first" or "amd".
   [[nodiscard]] const std::string& ordering() const { return ordering_; }
-  /// Number of block columns ordered last because they touch very many edges.
+  /// Returns how many block columns are ordered last because they touch very many edges.
   [[nodiscard]] int dense_columns() const { return dense_columns_; }
 
  private:
-  /// Vertices per chunk, by index: fixed, so that a growing graph keeps its chunks.
+  /// Vertices per chunk, by index. It is constant, so that a growing graph keeps its chunks.
   static constexpr std::size_t kChunkVertices = 4096;
 
   void choose_unknowns(const Graph& graph, std::span<const char> held);
@@ -81,28 +86,29 @@ class Structure {
   std::vector<VertexIndex> vertex_of_;
   int dense_columns_ = 0;
   int chunks_ = 1;
-  int scratch_ = 0;     // rows of the largest vertex, where any is held
+  int scratch_ = 0;     // rows of the largest vertex, if any is held
   int dense_size_ = 0;  // scalar rows of all dense columns
   std::int64_t slot_block_ = 0;
   std::int64_t slot_row_ = 0;
   std::string ordering_ = "natural";
 };
 
-/// A fill-reducing order of a symmetric block pattern, and how it was found.
+/// A fill-reducing order of a symmetric block pattern, and the method that found it.
 struct BlockOrder {
-  std::vector<int> order;  ///< order[k] is the node eliminated as number k
+  std::vector<int> order;  ///< node order[k] is eliminated as number k
   std::string method;      ///< "natural", "leaves first" or "amd"
 };
 
-/// Orders the columns 0..n-1 of an upper triangle (rows of column j: rows[begin[j]..begin[j + 1]), ascending,
-/// without the diagonal). Columns marked dense go last. The others: in their natural order where it fills
-/// little; or so that nodes with a single neighbour come just before it (GNSS nodes of a drive); else by
-/// approximate minimum degree (Amestoy, Davis, Duff 1996) on the block graph.
+/// Orders the columns 0..n-1 of an upper triangle (rows of column j: rows[begin[j]..begin[j + 1]),
+/// ascending, without the diagonal). Columns marked dense come last. The other columns keep their
+/// natural order if that has little fill. Otherwise nodes with a single neighbour are put just
+/// before it, if that has little fill (GNSS nodes of a drive). Otherwise the order is approximate
+/// minimum degree (Amestoy, Davis, Duff 1996) on the block graph.
 [[nodiscard]] BlockOrder order_blocks(std::span<const std::int64_t> begin, std::span<const int> rows,
                                       std::span<const char> dense);
 
-/// Off-diagonal blocks of the Cholesky factor in the natural order, leaving out what is marked, or -1 once
-/// they exceed `limit`.
+/// Counts the off-diagonal blocks of the Cholesky factor in the natural order, without marked
+/// columns. Returns -1 if they exceed `limit`.
 [[nodiscard]] std::int64_t count_fill(std::span<const std::int64_t> begin, std::span<const int> rows,
                                       std::span<const char> left_out, std::int64_t limit);
 

@@ -10,14 +10,14 @@ namespace {
 
 using detail::at;
 
-/// A block above the diagonal; sorted by column, then row.
+/// A block above the diagonal. Blocks are sorted by column, then row.
 struct Block {
   int column = 0;
   int row = 0;
   friend auto operator<=>(const Block&, const Block&) = default;
 };
 
-/// The blocks that edges from `first_edge` on (per batch) need, each once.
+/// Returns the blocks that edges from `first_edge` on (per batch) need, each once.
 std::vector<Block> blocks_of_new_edges(const Graph& graph, const std::vector<int>& column_of,
                                        std::span<const std::size_t> first_edge) {
   std::vector<Block> blocks;
@@ -42,11 +42,12 @@ std::vector<Block> blocks_of_new_edges(const Graph& graph, const std::vector<int
 struct FollowedColumns {
   std::vector<std::int64_t> begin{0};
   std::vector<int> rows;     // ascending in a column
-  std::vector<char> intact;  // per column: it has the rows that it had
+  std::vector<char> intact;  // per column: its rows have not changed
 };
 
-/// What stays of a pattern, and the added blocks. @param old_column of each new one, new_column of each old
-/// one; -1: there is none
+/// Returns the remaining part of a pattern with the added blocks.
+/// @param old_column of each new one; -1: there is none
+/// @param new_column of each old one; -1: there is none
 FollowedColumns follow_columns(const BlockPattern& pattern, std::span<const int> new_column,
                                std::span<const int> old_column, std::span<const Block> added) {
   FollowedColumns result;
@@ -61,7 +62,7 @@ FollowedColumns follow_columns(const BlockPattern& pattern, std::span<const int>
       had = diagonal - pattern.column[at(old)];
       for (auto k = pattern.column[at(old)]; k < diagonal; ++k) {
         const int row = new_column[at(pattern.row[at(k)])];
-        if (row >= 0) rows.push_back(row);  // ascending, as the order stays
+        if (row >= 0) rows.push_back(row);  // ascending, because the order stays
       }
     }
     const auto kept = static_cast<std::ptrdiff_t>(rows.size());
@@ -88,8 +89,8 @@ void Structure::remove(const Graph& graph, const Removal& removal, std::span<con
   choose_unknowns(graph, held);
   keep_order(graph, old_order);
 
-  std::vector<int> old_column(vertex_of_.size(), -1);  // of each new one; -1: it had none
-  std::vector<int> new_column(old_order.size(), -1);   // of each old one; -1: it is gone
+  std::vector<int> old_column(vertex_of_.size(), -1);  // of each new one; -1: there is none
+  std::vector<int> new_column(old_order.size(), -1);   // of each old one; -1: it was removed
   for (std::size_t j = 0; j < old_order.size(); ++j) {
     if (old_order[j] < 0 || column_of_[at(old_order[j])] < 0) continue;
     new_column[j] = column_of_[at(old_order[j])];
@@ -107,8 +108,8 @@ void Structure::remove(const Graph& graph, const Removal& removal, std::span<con
   move_scatter(graph, removal, shifts);
 }
 
-// Blocks of edges that stayed move with their columns; those at a held vertex, a dense column or a column
-// that lost or gained rows are looked up again.
+// Blocks of remaining edges move with their columns. Blocks at a held vertex, a dense column or a
+// column with lost or added rows are looked up again.
 void Structure::move_scatter(const Graph& graph, const Removal& removal,
                              std::span<const std::optional<std::int64_t>> shifts) {
   scatters_.resize(graph.batch_count());
@@ -120,7 +121,8 @@ void Structure::move_scatter(const Graph& graph, const Removal& removal,
     Scatter& scatter = scatters_[b];
     scatter.gradient.reserve(before.gradient.size());
     scatter.blocks.reserve(before.blocks.size());
-    const auto arity = at(batch.vertex_table().arity);  // 0: where blocks of an edge were is not known
+    // 0: the earlier places of the blocks of an edge are not known
+    const auto arity = at(batch.vertex_table().arity);
     const std::size_t known = arity > 0 && b < removal.kept_edges.size() ? removal.kept_edges[b] : 0;
     ranges.assign(at(chunks_), {});
     std::uint32_t edge = 0;

@@ -19,7 +19,8 @@ void IncrementalOptimizer::follow() {
   if (structure_.pattern().version > 0 && followed_version_ == graph_.structure_version()) return;
   Gauge gauge = find_gauge(graph_);
   notes_ = std::move(gauge.messages);
-  // An old vertex that is held, or no longer, changes its column: the structure starts over.
+  // If an old vertex becomes held, or is no longer held, its column changes. The structure then
+  // starts over.
   const bool same =
       structure_.pattern().version > 0 && std::equal(held_.begin(), held_.end(), gauge.held.begin());
   held_ = std::move(gauge.held);

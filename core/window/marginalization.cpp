@@ -24,15 +24,15 @@ struct Factor {
   Eigen::MatrixXd rows;
 };
 
-/// Not zero for vertices of the prefix that go: see the header for those that stay.
+/// Returns not zero for vertices of the prefix that are removed. The header says which ones stay.
 std::vector<char> choose_gone(const Graph& graph, VertexIndex count) {
   const auto in_prefix = [&](VertexIndex v) { return v < count && !graph.vertex_type(v).dense; };
   std::vector<char> gone(graph.vertex_count(), 0);
   for (VertexIndex v = 0; v < count; ++v) gone[at(v)] = in_prefix(v);
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     for_each_edge(graph.batch(b), [&](std::span<const VertexIndex> vertices) {
-      bool remains = true;   // no free vertex of it goes
-      bool outside = false;  // and it is of use
+      bool remains = true;   // none of its free vertices is removed
+      bool outside = false;  // and an edge outside needs it
       for (const VertexIndex v : vertices) {
         remains = remains && (!in_prefix(v) || graph.fixed(v));
         outside = outside || !in_prefix(v);
@@ -44,8 +44,8 @@ std::vector<char> choose_gone(const Graph& graph, VertexIndex count) {
   return gone;
 }
 
-/// Eliminates vertices from a sum of factors, one after the other; each leaves one factor over its
-/// neighbours.
+/// Eliminates vertices from a sum of factors, one after the other. Each of them leaves one factor
+/// over its neighbours.
 class Elimination {
  public:
   Elimination(const Graph& graph, VertexIndex count, std::span<const char> gone, std::span<const char> held)
@@ -53,10 +53,10 @@ class Elimination {
 
   void add_edge(const EdgeBatchBase& batch, const EdgeType& type, std::size_t edge);
   void eliminate(VertexIndex v);
-  /// What is left: factors over vertices that stay.
+  /// Returns the remaining factors, over vertices that stay.
   [[nodiscard]] const std::vector<Factor>& rest() const { return rest_; }
   [[nodiscard]] double constant() const { return constant_; }
-  /// The root of H_ii of the added edges, per tangent component of a vertex.
+  /// Returns the root of H_ii of the added edges, per tangent component of a vertex.
   [[nodiscard]] Eigen::VectorXd scale(VertexIndex v) const { return squares_.at(v).cwiseSqrt(); }
 
  private:
@@ -68,7 +68,8 @@ class Elimination {
   const Graph& graph_;
   std::span<const char> gone_;
   std::span<const char> held_;
-  std::vector<std::vector<Factor>> factors_of_;  // by the first vertex to be eliminated, of the prefix
+  // by the first vertex of the prefix that is eliminated
+  std::vector<std::vector<Factor>> factors_of_;
   std::vector<Factor> rest_;
   std::map<VertexIndex, Eigen::VectorXd> squares_;
   double constant_ = 0;
@@ -97,7 +98,8 @@ void Elimination::add_edge(const EdgeBatchBase& batch, const EdgeType& type, std
   const Loss* loss = batch.loss(edge);
   const LossValue value = loss == nullptr ? LossValue{squared, 1, 0} : loss->at(squared);
   const Eigen::MatrixXd root = information_root(robust_information(value, squared, omega, e));
-  // The root is that of w Omega with its part along e times the factor; the gradient is J^T w Omega e.
+  // The root is that of w Omega, with its part along e multiplied by the factor. The gradient is
+  // J^T w Omega e.
   const Eigen::VectorXd b = root * e / curvature_factor(value, squared);
 
   const std::span<const VertexIndex> named = batch.vertices(edge);
@@ -129,7 +131,7 @@ void Elimination::add_edge(const EdgeBatchBase& batch, const EdgeType& type, std
   add(std::move(factor));
 }
 
-/// All parts as one, the columns of `first` leading.
+/// Stacks all parts into one factor; the columns of `first` lead.
 Factor Elimination::stack(VertexIndex first, std::span<const Factor> parts) const {
   Factor all;
   Eigen::Index height = 0;
@@ -163,7 +165,7 @@ Factor Elimination::stack(VertexIndex first, std::span<const Factor> parts) cons
   return all;
 }
 
-/// Compares with what the edges hold of the vertex when everything else is known.
+/// Compares with the information of the edges about the vertex if everything else is known.
 void Elimination::check_determined(VertexIndex v, const Eigen::MatrixXd& triangle) const {
   const Eigen::VectorXd scale = squares_.at(v).cwiseSqrt();
   bool determined = triangle.rows() == triangle.cols() && scale.minCoeff() > 0;
@@ -178,8 +180,8 @@ void Elimination::check_determined(VertexIndex v, const Eigen::MatrixXd& triangl
                    "to none that stay; add a prior or a fix, FIX a vertex, or hold what find_gauge names");
 }
 
-// QR of all rows that see v: the rows that hold only R_vv and what it is multiplied with determine v, and
-// vanish at the minimum over v; those below are what is known of its neighbours.
+// Eliminates v by QR of all rows that contain it. The rows with R_vv determine v, and vanish at the
+// minimum over v. The rows below hold the information about its neighbours.
 void Elimination::eliminate(VertexIndex v) {
   const std::vector<Factor> parts = std::exchange(factors_of_[at(v)], {});
   if (parts.empty()) return;
@@ -196,11 +198,12 @@ void Elimination::eliminate(VertexIndex v) {
   add(std::move(rest));
 }
 
-/// The factor as a prior: information Lambda, and offset d with A d = -b as far as b lies in the range of A.
+/// The factor as a prior: information Lambda, and offset d. A d = -b holds for the part of b in
+/// the range of A.
 struct Prior {
   Eigen::MatrixXd information;
   Eigen::VectorXd offset;
-  double constant = 0;  ///< squared length of what of b lies outside
+  double constant = 0;  ///< squared length of the part of b outside
 };
 
 Prior to_prior(const Factor& factor, const Elimination& elimination) {
@@ -276,7 +279,7 @@ Marginalization marginalize_prefix(Graph& graph, VertexIndex count, std::span<co
   for (const Factor& factor : elimination.rest()) {
     const Prior prior = to_prior(factor, elimination);
     result.constant += prior.constant;
-    if (prior.information.isZero(0)) continue;  // nothing is known of them
+    if (prior.information.isZero(0)) continue;  // there is no information about them
     std::vector<VertexIndex> vertices;
     std::vector<double> fields;
     for (const VertexIndex old : factor.vertices) {

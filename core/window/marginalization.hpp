@@ -1,4 +1,5 @@
-/// Fixed lag: the oldest vertices of a graph go, and what their edges said of the others stays as a prior.
+/// Fixed lag: removes the oldest vertices of a graph, and keeps the information of their edges
+/// about the others as a prior.
 #pragma once
 
 #include <span>
@@ -7,43 +8,45 @@
 
 namespace waymark {
 
-/// What marginalize_prefix left.
+/// The result of marginalize_prefix.
 struct Marginalization {
-  Removal removal;         ///< old index -> new index, and the edges kept: Structure::remove wants it
-  std::size_t priors = 0;  ///< the last ones of the batch EDGE_GAUSSIAN_PRIOR are new
-  /// chi2 that is in no edge any more: that of the removed edges at their (quadratic) minimum. chi2 of the
-  /// graph as it was, minimised over what is gone = chi2 of the graph as it is + constant.
+  Removal removal;         ///< old index -> new index, and the kept edges; Structure::remove needs it
+  std::size_t priors = 0;  ///< so many last edges of the batch EDGE_GAUSSIAN_PRIOR are new
+  /// The part of chi2 that is in no edge any more: chi2 of the removed edges at their (quadratic)
+  /// minimum. The old graph's chi2, minimised over the removed vertices, equals the new graph's
+  /// chi2 + constant.
   double constant = 0;
 };
 
-/// Removes the first `count` vertices of the graph and every edge that touches one of them, and adds what
-/// those edges, linearised at the present values, say of the vertices that stay: over x_s with H and g of the
-/// removed edges alone,
-///   Lambda = H_ss - H_sr H_rr^-1 H_rs,   h = g_s - H_sr H_rr^-1 g_r,
-/// as EDGE_GAUSSIAN_PRIOR with reference the present values, information Lambda and offset d = -Lambda^+ h;
-/// one for each group of vertices that the removed edges join. Where Lambda is singular (nothing removed
-/// knows the position) the pseudo-inverse keeps form and gradient all the same, as h lies in its range.
-/// Computed from square roots, vertex by vertex in their order (QR), so that nothing is squared before it
-/// cancels. The cost does not grow with what stays, but for one look at every edge's vertices and for moving
-/// up what stays.
+/// Removes the first `count` vertices of the graph and every edge that touches one of them. The
+/// removed edges, linearised at the present values, also have information about vertices that stay.
+/// This is kept as a prior. Over x_s, with H and g of the removed edges alone, it is
+///   Lambda = H_ss - H_sr H_rr^-1 H_rs,   h = g_s - H_sr H_rr^-1 g_r.
+/// It is added as EDGE_GAUSSIAN_PRIOR with the present values as reference and offset d = -Lambda^+
+/// h, one edge for each group of vertices that the removed edges join. If Lambda is singular (no
+/// removed edge knows the position), the pseudo-inverse still keeps form and gradient, because h is
+/// in its range. The prior is computed from square roots (QR), vertex by vertex in their order, so
+/// that nothing is squared before it cancels. The cost does not grow with the remaining graph,
+/// except for a pass over the vertices of every edge and for moving the rest.
 ///
-/// Exact where errors are linear. Elsewhere exact to second order at the present values, which therefore
-/// should be near the minimum: the step, the minimum found from there, and its covariances are those of the
-/// whole graph.
+/// The result is exact if errors are linear. Otherwise it is exact to second order at the present
+/// values, which therefore should be near the minimum. The step, the minimum found from there, and
+/// its covariances are then those of the whole graph.
 ///
-/// What of the prefix stays: vertices of a dense type (calibration states belong to no time), and fixed
-/// vertices that remaining edges touch. Fixed vertices count as known, and so do those in `held`; a held one
-/// goes with the prefix, and the prior then anchors the rest where it stood. A fixed origin that no edge of
-/// the window touches any more (GNSS outage) goes too; who needs it later adds it again, under the same id.
-/// Robust losses count with their weights and second-order terms at the present values
-/// (robust_information.hpp); from then on they are frozen.
+/// Some vertices of the prefix stay: those of a dense type (calibration states belong to no time),
+/// and fixed vertices that remaining edges touch. Fixed vertices count as known, and so do those in
+/// `held`. A held vertex goes with the prefix, and the prior then anchors the rest at its place. A
+/// fixed origin that no remaining edge touches (GNSS outage) goes too; a caller that needs it later
+/// adds it again with the same id. Robust losses enter with their weights and second-order terms at
+/// the present values (robust_information.hpp), and are frozen from then on.
 ///
-/// @param held per vertex, or empty: known beside the fixed ones, as find_gauge says. Without it a graph that
-///   nothing anchors stays so, to first order: the prior is quadratic in the frame's axes, and later turns of
-///   the whole graph by more than a little would strain it.
-/// @throws UsageError for a count that is not in 0..vertex_count(), and where the batch EDGE_GAUSSIAN_PRIOR
-///   as a whole has a loss; InputError where the removed edges do not determine a removed vertex, or are not
-///   finite. The graph is then unchanged.
+/// @param held per vertex, or empty: vertices that are known besides the fixed ones, as find_gauge
+/// returns them. Without it, a graph that nothing anchors stays so to first order. The prior is
+/// quadratic in the axes of the frame, so a later turn of the whole graph by more than a little
+/// would strain it.
+/// @throws UsageError if count is not in 0..vertex_count(), and if the batch EDGE_GAUSSIAN_PRIOR
+/// has a loss as a whole; InputError if the removed edges do not determine a removed vertex, or are
+/// not finite. The graph is then unchanged.
 [[nodiscard]] Marginalization marginalize_prefix(Graph& graph, VertexIndex count,
                                                  std::span<const char> held = {});
 

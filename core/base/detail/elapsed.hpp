@@ -1,4 +1,4 @@
-/// Time that has passed on the clock that is never set.
+/// Measures elapsed time with the clock that nobody sets.
 #pragma once
 
 #include <chrono>

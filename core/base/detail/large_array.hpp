@@ -1,5 +1,6 @@
-/// A growing array of numbers for the largest data of an optimisation, on huge pages where the system gives
-/// them on request: touching fresh memory 4 KB at a time costs more than a factorisation of a chain.
+/// A growing array for the largest data of an optimisation. It uses huge pages if the system
+/// gives them on request, because touching fresh memory 4 KB at a time costs more than
+/// factorising a chain.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +36,8 @@ struct LargeAllocator {
     void* memory = std::aligned_alloc(kHugePage, whole);
     if (memory == nullptr) throw std::bad_alloc();
 #if defined(__linux__)
-    // Advice only; not for the rest behind the last whole page, which would be cleared for nothing.
+    // This is only advice. It leaves out the rest after the last whole page, because the system
+    // would clear that for nothing.
     (void)madvise(memory, std::max(bytes / kHugePage, std::size_t{1}) * kHugePage, MADV_HUGEPAGE);
 #endif
     return static_cast<T*>(memory);

@@ -8,7 +8,7 @@ ThreadPool::ThreadPool(int threads) {
   try {
     for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { wait_for_work(); });
   } catch (const std::system_error&) {
-    // Out of threads: results do not depend on their number.
+    // The system has no more threads. Results do not depend on their number.
   }
 }
 

@@ -1,5 +1,5 @@
-/// A few threads that wait for work. Which thread does what is left open; that results do not depend on it is
-/// up to the work: disjoint outputs, sums in a fixed order.
+/// A few threads that wait for work. Any thread may do any part of it. So the work must ensure that
+/// results do not depend on the thread: its outputs are disjoint, and sums have a fixed order.
 #pragma once
 
 #include <condition_variable>
@@ -13,8 +13,8 @@ namespace waymark {
 
 class ThreadPool {
  public:
-  /// @param threads number of threads that work, the caller's among them; >= 1. Where the system gives fewer,
-  /// these do the work.
+  /// @param threads number of working threads including the caller's; >= 1. If the system gives
+  /// fewer, these do all the work.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -22,7 +22,8 @@ class ThreadPool {
 
   [[nodiscard]] int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// Calls work(0) ... work(count - 1), each once, and returns when all have returned. `work` must not throw.
+  /// Calls work(0) ... work(count - 1), each once. Returns after all of them have returned. `work`
+  /// must not throw.
   void run(int count, const std::function<void(int)>& work);
 
  private:
@@ -34,20 +35,20 @@ class ThreadPool {
   std::condition_variable wake_;
   std::condition_variable done_;
   const std::function<void(int)>* work_ = nullptr;
-  std::uint64_t round_ = 0;  // of the present run; a worker joins each round once
+  std::uint64_t round_ = 0;  // number of the current run; a worker joins each round once
   int count_ = 0;
   int next_ = 0;
   int busy_ = 0;
   bool stop_ = false;
 };
 
-/// Calls work(0) ... work(count - 1), in order where there is no pool.
+/// Calls work(0) ... work(count - 1). Without a pool it calls them in order.
 template <typename Work>
 void run_parallel(ThreadPool* pool, int count, const Work& work) {
   if (pool == nullptr || pool->threads() == 1 || count == 1) {
     for (int i = 0; i < count; ++i) work(i);
   } else {
-    pool->run(count, std::cref(work));  // a copy would be allocated
+    pool->run(count, std::cref(work));  // a copy would allocate
   }
 }
 

@@ -1,5 +1,5 @@
-/// Loops over a few constants, unrolled before the optimiser sees them: small matrices then live in
-/// registers.
+/// Unrolls loops over a few constants before the optimiser sees them, so that small matrices live
+/// in registers.
 #pragma once
 
 #include <type_traits>
@@ -7,7 +7,8 @@
 
 namespace waymark {
 
-/// body(i) for i = first ... last - 1, i an integral constant; a plain loop where there are more than 16.
+/// Calls body(i) for i = first ... last - 1, where i is an integral constant. With more than 16
+/// calls it is a plain loop.
 template <int kFirst, int kLast, typename Body>
 [[gnu::always_inline]] inline void unrolled(const Body& body) {
   if constexpr (kLast - kFirst <= 16) {

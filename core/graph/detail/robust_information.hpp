@@ -1,13 +1,15 @@
-/// The second-order term of a robust loss, as a change of the edge's information matrix.
+/// The second-order term of a robust loss, as a change of the information matrix of an edge.
 ///
 /// With s = e^T Omega e and e linear in the unknowns, half the Hessian of rho(s) is
 ///   J^T (rho' Omega + 2 rho'' Omega e e^T Omega) J
-/// (Triggs, McLauchlan, Hartley, Fitzgibbon, "Bundle Adjustment: A Modern Synthesis", 2000, section 4.3). The
-/// second term changes the information along e alone, from rho' to rho' + 2 s rho''. All losses bend down
-/// (rho'' <= 0). Where that leaves less than kLeastCurvature of rho', the edge lies where the loss is flat or
-/// concave along e and no quadratic model with a minimum describes it: there the term is left out. What
-/// remains, rho' Omega, bounds the loss from above (rho is concave in s), so that a full step cannot climb
-/// for it; holding the factor at a small positive number instead makes steps wild (core/MEASUREMENTS.md has
+/// (Triggs, McLauchlan, Hartley, Fitzgibbon, "Bundle Adjustment: A Modern Synthesis", 2000, section
+/// 4.3). The second term changes the information only along e, from rho' to rho' + 2 s rho''. All
+/// losses bend down (rho'' <= 0).
+///
+/// The term is left out if it leaves less than kLeastCurvature of rho'. The loss is then flat or
+/// concave along e, and no quadratic model with a minimum describes it. The rest, rho' Omega,
+/// bounds the loss from above (rho is concave in s), so a full step cannot increase the loss.
+/// Holding the factor at a small positive number would make steps wild (core/MEASUREMENTS.md has
 /// the figures). g = rho' J^T Omega e has no such term.
 #pragma once
 
@@ -17,16 +19,18 @@
 
 namespace waymark {
 
-/// Below this share of rho' the second-order term is left out.
+/// The second-order term is left out if its factor is below this share of rho'.
 inline constexpr double kLeastCurvature = 0.4;
 
-/// The information along e relative to rho' Omega, in [kLeastCurvature, 1].
+/// Returns the information along e relative to rho' Omega, in [kLeastCurvature, 1].
 [[nodiscard]] inline double curvature_factor(const LossValue& loss, double squared) {
   const double factor = 1 + 2 * squared * loss.curvature / loss.weight;
-  return factor >= kLeastCurvature && factor < 1 ? factor : 1;  // weight 0: not a number, so 1
+  // for weight 0 the factor is NaN, so the result is 1
+  return factor >= kLeastCurvature && factor < 1 ? factor : 1;
 }
 
-/// The information of the linearised edge: rho' Omega, with its second-order term where that is kept.
+/// Returns the information of the linearised edge: rho' Omega, with the second-order term unless
+/// that is left out.
 /// @param squared e^T Omega e
 template <typename Information, typename Error>
 [[nodiscard]] auto robust_information(const LossValue& loss, double squared, const Information& information,

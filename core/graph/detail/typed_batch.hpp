@@ -1,4 +1,4 @@
-/// EdgeBatch<E>: the contiguous records of one edge type and the kernels over them.
+/// EdgeBatch<E>: the contiguous records of one edge type, and the kernels over them.
 #pragma once
 
 #include <array>
@@ -165,7 +165,7 @@ class EdgeBatch final : public EdgeBatchBase {
     return full;
   }
 
-  /// Omega x for every column of x.
+  /// Returns Omega x for every column of x.
   template <int N>
   [[gnu::always_inline]] static JacobianMatrix<kDimension, N> times(const Triangle& information,
                                                                     const JacobianMatrix<kDimension, N>& x) {
@@ -198,7 +198,7 @@ class EdgeBatch final : public EdgeBatchBase {
   }
 
 #if defined(__x86_64__)
-  // The same, compiled for processors with fused multiply-add.
+  // Computes the same, compiled for processors with fused multiply-add.
   [[gnu::target("avx2,fma")]] double chi2_fused(const ValueView& view, EdgeRange range) const {
     return chi2_range(view, range);
   }
@@ -291,7 +291,7 @@ class EdgeBatch final : public EdgeBatchBase {
     }
   }
 
-  /// Offset of vertex K's tangent among the edge's derivative lanes.
+  /// Returns the offset of the tangent of vertex K among the derivative lanes of the edge.
   template <std::size_t K>
   static constexpr int lane() {
     return []<std::size_t... L>(std::index_sequence<L...>) {
@@ -323,7 +323,7 @@ class EdgeBatch final : public EdgeBatchBase {
     }
   }
 
-  /// Whether J_0 = -J_1 T: a relative error between two vertices of a type that can carry a motion over.
+  /// Tells whether J_0 = -J_1 T: a relative error between two vertices of a type with carry().
   static constexpr bool carries() {
     if constexpr (requires { requires E::kRelative; } && kArity == 2) {
       using V = VertexOf<0>;
@@ -336,8 +336,8 @@ class EdgeBatch final : public EdgeBatchBase {
     }
   }
 
-  /// The same as add() where J_0 = -J_1 T: with P = J_1^T Omega J_1 the blocks are P, -P T and T^T P T, and
-  /// the gradient q = J_1^T Omega e and -T^T q; T costs a few operations only.
+  /// Adds the same as add() if J_0 = -J_1 T. With P = J_1^T Omega J_1 the blocks are P, -P T and
+  /// T^T P T. With q = J_1^T Omega e the gradient is q and -T^T q. T costs only a few operations.
   template <typename V>  // a template, so that types without carry() need not compile it
   [[gnu::always_inline]] static void add_carried(const Record& record, const ValueView& view,
                                                  const Jacobians& jacobians, const Triangle& information,
@@ -423,8 +423,8 @@ class EdgeBatch final : public EdgeBatchBase {
     });
   }
 
-  // The block (k, l) is (Omega J_k)^T J_l; its place in the upper triangle is (l, k), unless k is ordered
-  // first.
+  // The block (k, l) is (Omega J_k)^T J_l. Its place in the upper triangle is (l, k), unless k is
+  // ordered first.
   template <bool kDiagonal, typename Left, typename Jacobian>
   [[gnu::always_inline]] static void add_block(const Left& left, const Jacobian& jacobian,
                                                const BlockTarget& target, double* hessian) {
@@ -463,7 +463,8 @@ class EdgeBatch final : public EdgeBatchBase {
     }
   }
 
-  /// Whether the edge cannot see a rigid motion: all its vertices take part in it and its type says so.
+  /// Tells whether the edge cannot observe a rigid motion: all its vertices take part in the
+  /// motion, and its type is relative.
   static bool is_blind(const Record& record, const RigidMotionView& motion) {
     if constexpr (requires { E::kRelative; }) {
       bool all_move = E::kRelative;

@@ -1,9 +1,10 @@
 /// Kernels for the links of a chain: blocks of 3 x 3, each joined only to the next.
 ///
-/// A link is factorised as L D L^T (one division a pivot, no square root), for its latency is what a long
-/// chain waits for. Written for one number or a pair: a pair works on two independent chains at once, which
-/// hides half of that latency. Both do the same operations in the same order, so results do not depend on
-/// which is used; this file must be compiled without contraction of products and sums.
+/// A link is factorised as L D L^T (one division per pivot, no square root), because a long chain
+/// waits for the latency of a link. The kernels work on one number or on a pair. A pair processes
+/// two independent chains at once and hides half of that latency. Both do the same operations in
+/// the same order, so the choice does not change results. This file must be compiled without
+/// contraction of products and sums.
 #pragma once
 
 #include <array>
@@ -14,19 +15,23 @@ namespace waymark {
 /// Two numbers in one register.
 using NumberPair [[gnu::vector_size(16)]] = double;
 
-/// What a link hands on to the next: the lower triangle of its update, column by column, to be subtracted.
+/// The update that a link passes to the next one: a lower triangle, column by column, to
+/// be subtracted.
 template <typename T>
 using LinkUpdate = std::array<T, 6>;
 
-/// The factor of a link, as stored: reciprocal pivots r, L below them (unit diagonal), G = B L^-T D^-1 of the
-/// block B towards the next, column by column: r0 l10 l20 g00 g10 g20  r1 l21 g01 g11 g21  r2 g02 g12 g22.
+/// The factor of a link as it is stored, column by column: reciprocal pivots r, L below them (unit
+/// diagonal), and G = B L^-T D^-1 of the block B towards the next link. r0 l10 l20 g00 g10 g20  r1
+/// l21 g01 g11 g21  r2 g02 g12 g22.
 template <typename T>
 using LinkFactor = std::array<T, 15>;
-/// Where r0, r1, r2 stand in it.
+/// The places of r0, r1, r2 in it.
 inline constexpr std::array<unsigned, 3> kLinkPivots = {0, 6, 11};
 
-/// @param diagonal lower triangle, column by column @param below B, column by column
-/// @param carry in: what earlier links hand on; out: what this one does @param pivots the three pivots
+/// @param diagonal lower triangle, column by column
+/// @param below B, column by column
+/// @param carry in: the update of earlier links; out: the update of this one
+/// @param pivots the three pivots
 template <typename T>
 [[gnu::always_inline]] inline void factorize_link(const std::array<T, 6>& diagonal,
                                                   const std::array<T, 9>& below, LinkUpdate<T>& carry,
@@ -63,7 +68,8 @@ template <typename T>
   factor = {r0, l10, l20, g[0], g[1], g[2], r1, l21, g[3], g[4], g[5], r2, g[6], g[7], g[8]};
 }
 
-/// Forward substitution: x = D^-1 L^-1 (b + carry); carry becomes what the next link's right side gets.
+/// Forward substitution: x = D^-1 L^-1 (b + carry). carry becomes the term for the right side of
+/// the next link.
 template <typename T>
 [[gnu::always_inline]] inline void solve_link(const LinkFactor<T>& f, const std::array<T, 3>& b,
                                               std::array<T, 3>& carry, std::array<T, 3>& x) {
@@ -76,7 +82,8 @@ template <typename T>
   x = {y0 * f[0], y1 * f[6], y2 * f[11]};
 }
 
-/// Backward substitution: x = L^-T (x - G^T next), next the solution of the next link, which becomes x.
+/// Backward substitution: x = L^-T (x - G^T next). next is the solution of the next link,
+/// and becomes x.
 template <typename T>
 [[gnu::always_inline]] inline void solve_link_back(const LinkFactor<T>& f, std::array<T, 3>& next,
                                                    std::array<T, 3>& x) {
@@ -92,9 +99,9 @@ template <typename T>
 /// A symmetric block of three, its lower triangle column by column.
 using LinkInverse = std::array<double, 6>;
 
-/// The inverse's block of a link from that of the next one: with M = L^-T G^T, from which the link's unknowns
-/// are -M times the next link's and an independent rest, Z := L^-T D^-1 L^-1 + M Z M^T. What is coupled by
-/// zeros only stays zero exactly.
+/// Computes the block of the inverse for a link from that of the next link. With M = L^-T G^T, the
+/// unknowns of the link are -M times those of the next link plus an independent part. So Z := L^-T
+/// D^-1 L^-1 + M Z M^T. Entries that only zeros couple stay exactly zero.
 [[gnu::always_inline]] inline void invert_link(const double* f, LinkInverse& z) {
   const double m20 = f[12];
   const double m21 = f[13];

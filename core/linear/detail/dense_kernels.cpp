@@ -5,13 +5,13 @@
 #include <waymark/core/base/detail/processor.hpp>
 #include <waymark/core/linear/detail/dense_kernels.hpp>
 
-// Everything below is inlined into functions that are compiled for one instruction set each.
+// All functions below are inlined into functions that are compiled for one instruction set each.
 #define WAYMARK_INLINE [[gnu::always_inline]] inline
 
 namespace waymark {
 namespace {
 
-/// W numbers in a register. GCC and clang split it where the instruction set has only shorter ones.
+/// W numbers in a register. GCC and clang split it if the instruction set has only shorter ones.
 template <int W>
 struct Register {
   using Type [[gnu::vector_size(W * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
@@ -27,8 +27,8 @@ WAYMARK_INLINE void store(const typename Register<W>::Type& from, double* to) {
   *reinterpret_cast<typename Register<W>::Type*>(to) = from;
 }
 
-/// A tile of 4 columns and R registers of rows: c -= a b^T, over `depth` columns. Of the columns only the
-/// first `width` are stored.
+/// Computes a tile of 4 columns and R registers of rows: c -= a b^T, over `depth` columns. Only the
+/// first `width` columns are stored.
 template <int W, int R>
 WAYMARK_INLINE void subtract_tile(const double* a, const double* b, int stride, int depth, double* c,
                                   int c_stride, int width) {
@@ -51,7 +51,8 @@ WAYMARK_INLINE void subtract_tile(const double* a, const double* b, int stride, 
   }
 }
 
-/// Rows [0, rows) of four columns at most, rows rounded up to a multiple of 4.
+/// Computes rows [0, rows) of at most four columns. The number of rows is rounded up to a
+/// multiple of 4.
 template <int W>
 WAYMARK_INLINE void subtract_columns(const double* a, const double* b, int stride, int depth, double* c,
                                      int c_stride, int rows, int width) {
@@ -69,7 +70,7 @@ WAYMARK_INLINE void subtract_columns(const double* a, const double* b, int strid
   }
 }
 
-/// Cholesky of the diagonal block of up to four columns, reciprocals on the diagonal.
+/// Factorises the diagonal block of up to four columns, with reciprocals on the diagonal.
 WAYMARK_INLINE int factorize_diagonal(double* block, int size, int stride) {
   for (int j = 0; j < size; ++j) {
     double pivot = block[j + j * stride];
@@ -86,7 +87,7 @@ WAYMARK_INLINE int factorize_diagonal(double* block, int size, int stride) {
   return 0;
 }
 
-/// W rows below the diagonal block: x L^T = c, column by column.
+/// Solves W rows below the diagonal block: x L^T = c, column by column.
 template <int W>
 WAYMARK_INLINE void solve_rows(const double* block, int size, int stride, double* rows) {
   using V = typename Register<W>::Type;
@@ -108,7 +109,7 @@ WAYMARK_INLINE int factorize_panel(double* panel, int rows, int columns, int str
     if (j > 0) subtract_columns<W>(panel + j, panel + j, stride, j, block, stride, rows - j, width);
     if (const int bad = factorize_diagonal(block, width, stride)) return j + bad;
     int i = width;
-    const int behind = stride - j;  // rows that belong to this column
+    const int behind = stride - j;  // rows of this column
     for (; i < rows - j && i + W <= behind; i += W) solve_rows<W>(block, width, stride, block + i);
     if constexpr (W > 2) {
       for (; i < rows - j && i + 2 <= behind; i += 2) solve_rows<2>(block, width, stride, block + i);
@@ -128,7 +129,7 @@ WAYMARK_INLINE void subtract_product(const double* b, int stride, int rows, int 
   }
 }
 
-// One pair of functions for each instruction set.
+// Defines a pair of functions for an instruction set.
 #define WAYMARK_KERNELS(name, attribute, width)                                                              \
   attribute int factorize_panel_##name(double* panel, int rows, int columns, int stride) {                   \
     return factorize_panel<width>(panel, rows, columns, stride);                                             \

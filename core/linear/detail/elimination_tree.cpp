@@ -56,8 +56,8 @@ void append_postorder(const Children& children, int root, std::vector<int>& orde
   }
 }
 
-/// Nodes whose column of the factor has at most one block below the diagonal, as have those of all nodes
-/// under them: by induction, such a node's column is that of the matrix.
+/// Finds nodes for which they and all their descendants have a column of the factor with at most
+/// one block below the diagonal. By induction, the column of such a node is that of the matrix.
 std::vector<char> find_simple(const BlockPattern& pattern, const std::vector<int>& parent) {
   const int n = pattern.columns();
   std::vector<int> below(at(n), 0);
@@ -74,7 +74,7 @@ std::vector<char> find_simple(const BlockPattern& pattern, const std::vector<int
   return simple;
 }
 
-constexpr int kShortestTwist = 64;  // a shorter chain is not worth two halves
+constexpr int kShortestTwist = 64;  // a shorter chain does not profit from two halves
 
 }  // namespace
 
@@ -91,7 +91,8 @@ std::vector<int> twisted_postorder(const BlockPattern& pattern, std::vector<int>
   std::vector<int> path;
   for (int root = 0; root < n; ++root) {
     if (parent[at(root)] >= 0) continue;
-    // Down the heaviest children while everything below is simple, until half of the tree is passed.
+    // Go down the heaviest children as long as everything below is simple, until half of the
+    // tree is passed.
     path.clear();
     int node = root;
     while (simple[at(node)] && weight[at(node)] > weight[at(root)] / 2) {
@@ -107,7 +108,8 @@ std::vector<int> twisted_postorder(const BlockPattern& pattern, std::vector<int>
       append_postorder(children, root, order);
       continue;
     }
-    // The last of the path becomes the root: first what hangs below it, then the path from the old root on.
+    // The last node of the path becomes the root. First come its descendants, then the path from
+    // the old root.
     const int middle = path.back();
     for (int c = children.first[at(middle)]; c >= 0; c = children.next[at(c)]) {
       append_postorder(children, c, order);

@@ -21,7 +21,7 @@ constexpr Elf64_Half kMachine = EM_AARCH64;
 constexpr Elf64_Half kMachine = EM_NONE;
 #endif
 
-/// The object of type T at an offset. @return empty where the file ends before
+/// Returns the object of type T at an offset. @return empty if the file ends before its end
 template <typename T>
 std::optional<T> object_at(std::span<const std::byte> bytes, std::uint64_t offset) {
   if (offset > bytes.size() || bytes.size() - offset < sizeof(T)) return std::nullopt;
@@ -30,7 +30,7 @@ std::optional<T> object_at(std::span<const std::byte> bytes, std::uint64_t offse
   return object;
 }
 
-/// Calls visit(entry) for each entry of a table until it gives true. @return whether it did
+/// Calls visit(entry) for each entry of a table until it returns true. @return whether it did
 template <typename Entry, typename Visit>
 bool any_of_table(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t count, Visit visit) {
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -41,7 +41,7 @@ bool any_of_table(std::span<const std::byte> bytes, std::uint64_t offset, std::u
   return false;
 }
 
-/// The zero-terminated name at an offset; empty where it does not end within the file.
+/// Returns the zero-terminated name at an offset. Empty if it does not end within the file.
 std::string_view name_at(std::span<const std::byte> bytes, std::uint64_t offset) {
   if (offset >= bytes.size()) return {};
   const auto* begin = reinterpret_cast<const char*>(bytes.data()) + offset;
@@ -49,7 +49,7 @@ std::string_view name_at(std::span<const std::byte> bytes, std::uint64_t offset)
   return end == nullptr ? std::string_view() : std::string_view(begin);
 }
 
-/// `size` bytes at an address of the loaded image, where the file holds them.
+/// Returns `size` bytes at an address of the loaded image, if the file holds them.
 std::optional<std::span<const std::byte>> bytes_at_address(std::span<const std::byte> bytes,
                                                            const Elf64_Ehdr& header, std::uint64_t address,
                                                            std::uint64_t size) {
@@ -68,7 +68,8 @@ std::optional<std::span<const std::byte>> bytes_at_address(std::span<const std::
 
 bool sets_flush_to_zero_in(std::span<const std::byte> code) {
   constexpr std::array kBits{std::byte{0x40}, std::byte{0x80}, std::byte{0}, std::byte{0}};
-  constexpr std::ptrdiff_t kReach = 16;  // bytes between the immediate and the instruction that takes it
+  // bytes between the immediate and the instruction that uses it
+  constexpr std::ptrdiff_t kReach = 16;
   for (auto at = code.begin();; ++at) {
     at = std::search(at, code.end(), kBits.begin(), kBits.end());
     if (at == code.end()) return false;

@@ -1,4 +1,4 @@
-/// Looking into a shared object without loading it (ELF, System V ABI).
+/// Examines a shared object without loading it (ELF, System V ABI).
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,16 @@ namespace waymark {
 /// The bytes of a shared object for this processor.
 class ModuleFile {
  public:
-  /// @throws UsageError where the file cannot be read or is no 64-bit shared object for this processor
+  /// @throws UsageError if the file cannot be read or is no 64-bit shared object for this processor
   explicit ModuleFile(const std::string& path);
 
-  /// The bytes of a dynamic symbol as they lie in the file, before any relocation; empty where the file has
-  /// no such symbol or does not hold all of it.
+  /// Returns the bytes of a dynamic symbol as they are in the file, before any relocation. Empty if
+  /// the file does not have the symbol, or does not hold all of it.
   [[nodiscard]] std::optional<std::span<const std::byte>> symbol(std::string_view name) const;
 
-  /// Whether its code switches the processor to flush denormal numbers to zero, as the start-up file that
-  /// -ffast-math links does: `orl $0x8040` right before `ldmxcsr`. Always false on other processors.
+  /// Tells whether its code makes the processor flush denormal numbers to zero. The start-up file
+  /// that -ffast-math links does so, with `orl $0x8040` right before `ldmxcsr`. Always false on
+  /// other processors.
   [[nodiscard]] bool sets_flush_to_zero() const;
 
  private:

@@ -1,4 +1,4 @@
-/// Which vertices have edges at all.
+/// Finds the vertices that have edges.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace waymark {
 
-/// Per vertex: not zero where at least one edge joins it. A vertex without edges is neither an unknown nor
-/// judged for its gauge.
+/// Returns a number per vertex: not zero if at least one edge joins it. A vertex without edges is
+/// no unknown, and its gauge is not judged.
 [[nodiscard]] std::vector<char> vertices_with_edges(const Graph& graph);
 
 }  // namespace waymark

@@ -4,8 +4,8 @@
 
 namespace waymark {
 
-// With D the diagonal and D^-1/2 Omega D^-1/2 = V W V^T: A = W^1/2 V^T D^1/2. Metres, radians and scale
-// factors then do not compare.
+// With D the diagonal and D^-1/2 Omega D^-1/2 = V W V^T, A = W^1/2 V^T D^1/2. Metres, radians and
+// scale factors are then not compared with each other.
 Eigen::MatrixXd information_root(const Eigen::MatrixXd& information) {
   const Eigen::Index n = information.rows();
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(0).cwiseSqrt();
