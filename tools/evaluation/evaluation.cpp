@@ -49,18 +49,18 @@ ResidualKind residual_kind(FixStatus status) {
   return ResidualKind::post_fit;
 }
 
-/// The fused pose when fix i was measured.
+/// Returns the fused pose at the moment when fix i was measured.
 const Eigen::Vector3d& pose_when_measured(const EvaluationInput& input, std::size_t i) {
   return input.when_measured.empty() ? input.fused[i].pose : input.when_measured[i];
 }
 
-/// Where the fused trajectory puts the antenna of fix i.
+/// Returns the position of the antenna of fix i by the fused trajectory.
 Eigen::Vector2d predicted_antenna(const EvaluationInput& input, std::size_t i) {
   const Eigen::Vector3d& pose = pose_when_measured(input, i);
   return pose.head<2>() + rotate(pose[2], input.antenna_m);
 }
 
-/// Offsets of one system, gathered over the epochs.
+/// The offsets of one system over the epochs.
 struct Gathered {
   std::vector<Stamp> stamps;
   std::vector<Eigen::Vector2d> offsets;
@@ -133,7 +133,7 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
   return evaluation;
 }
 
-/// What every fix has, truth or not; `nu` is not among it.
+/// Fills everything that needs no truth, except `nu`.
 std::vector<EpochResult> epochs_without_truth(const EvaluationInput& input) {
   const std::vector<std::optional<double>> speeds = fused_speeds(input.fused);
   std::vector<EpochResult> epochs(input.fixes.size());
@@ -149,7 +149,7 @@ std::vector<EpochResult> epochs_without_truth(const EvaluationInput& input) {
   return epochs;
 }
 
-/// Residuals of all fixes against the fused trajectory: no truth needed.
+/// Computes the residuals of all fixes against the fused trajectory. This needs no truth.
 void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
   std::vector<double> post_fit;
   std::vector<double> gated;
@@ -180,7 +180,7 @@ void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
   if (!withheld.offsets.empty()) evaluation.withheld_fixes = withheld.metrics();
 }
 
-/// The fused poses as one of the predictions.
+/// Returns the fused poses as one of the predictions.
 Prediction fused_prediction(const EvaluationInput& input) {
   Prediction fused{.label = "fused", .poses = {}, .position_covariances = {}};
   for (std::size_t i = 0; i < input.fixes.size(); ++i) fused.poses.emplace_back(pose_when_measured(input, i));
@@ -202,10 +202,10 @@ void compare_at_withheld(const EvaluationInput& input, Evaluation& evaluation) {
 }  // namespace
 
 std::vector<std::optional<double>> fused_speeds(std::span<const StampedPose> poses) {
-  constexpr double kLongestSide = 5;  // a chord over more says little of the speed here
+  constexpr double kLongestSide = 5;  // s; a longer chord says little about the speed here
   std::vector<std::optional<double>> speeds(poses.size());
-  std::size_t before = 0;  // the last pose with an earlier stamp, where there is one
-  std::size_t after = 0;   // the first with a later one
+  std::size_t before = 0;  // the last pose with an earlier stamp, if there is one
+  std::size_t after = 0;   // the first pose with a later stamp
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Stamp now = poses[i].stamp;
     if (i > 0 && poses[i - 1].stamp < now) before = i - 1;

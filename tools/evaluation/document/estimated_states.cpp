@@ -25,7 +25,7 @@ struct StateVertices {
   std::vector<VertexIndex> vertices;
 };
 
-/// Whether a vertex goes on with a state: a later value of the same type.
+/// Tells whether a vertex continues a state: it is a later value of the same type.
 bool goes_on(const Graph& graph, const StateVertices& state, VertexIndex v) {
   const auto before = graph.stamp(state.vertices.back());
   const auto now = graph.stamp(v);
@@ -45,7 +45,7 @@ std::vector<StateVertices> states_of(const Graph& graph) {
   return states;
 }
 
-/// Priors of single vertices: the information of each.
+/// Returns the priors of single vertices: the information of each.
 std::map<VertexIndex, Eigen::MatrixXd> single_priors(const Graph& graph) {
   std::map<VertexIndex, Eigen::MatrixXd> priors;
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
@@ -58,7 +58,8 @@ std::map<VertexIndex, Eigen::MatrixXd> single_priors(const Graph& graph) {
   return priors;
 }
 
-/// A posterior sigma above this share of the prior's is the prior's.
+/// If the posterior sigma is above this share of the prior sigma, the drive did not
+/// observe the state.
 constexpr double kNotObserved = 0.9;
 
 StateReport report(const Graph& graph, const StateVertices& state, int axis,
@@ -80,7 +81,8 @@ StateReport report(const Graph& graph, const StateVertices& state, int axis,
       result.wandering.push_back(value(v));
     }
   }
-  const double variance = last_covariance(axis, axis);  // 0: not estimated, no edge touches it
+  // 0: the vertex was not estimated, because no edge touches it
+  const double variance = last_covariance(axis, axis);
   result.sigma = variance > 0 ? std::sqrt(variance) : std::numeric_limits<double>::quiet_NaN();
   return result;
 }

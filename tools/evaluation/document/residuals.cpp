@@ -9,7 +9,7 @@
 namespace waymark::evaluation {
 namespace {
 
-/// w of an error, see the header. @return as many numbers as `error`
+/// Computes w of an error, see the header. @return as many numbers as `error` has
 Eigen::VectorXd whiten(const Eigen::MatrixXd& information, const Eigen::VectorXd& error) {
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(0).cwiseSqrt();
   Eigen::VectorXd scaled = scale.cwiseProduct(error);
@@ -36,7 +36,7 @@ std::vector<std::string> split_at_commas(const std::string& form) {
   return words;
 }
 
-/// Names of the components of a batch's errors, by how they are formed.
+/// Returns the names of the components of a batch's errors, by the form of the error.
 std::vector<std::string> component_names(const Graph& graph, std::size_t batch, std::size_t dimension) {
   const std::string& form = graph.edge_type(batch).form;
   const VertexType& first = graph.vertex_type(graph.batch(batch).vertices(0).front());
@@ -67,7 +67,7 @@ std::optional<Stamp> latest_stamp(const Graph& graph, std::span<const VertexInde
   return latest;
 }
 
-/// Errors of all edges of a batch.
+/// Adds the errors of all edges of a batch.
 void add_edges(const Graph& graph, std::size_t b, TypeResiduals& type) {
   const EdgeBatchBase& batch = graph.batch(b);
   for (std::size_t i = 0; i < batch.size(); ++i)

@@ -1,18 +1,22 @@
-/// Residuals of a graph by edge type, whitened: which edges do not fit, and whether the errors of a type are
-/// as large as its information says.
+/// Residuals of a graph by edge type, whitened. They show which edges do not fit, and whether the
+/// errors of a type are as large as its information says.
 ///
-/// **Whitened** is w = C^(1/2) D e with D = diag(sqrt(Omega_kk)) and C = D^-1 Omega D^-1, the symmetric root
-/// of the correlation: |w|^2 = e^T Omega e, the unit of no component matters, and component k of w stays as
-/// near to component k of e as any whitening lets it (Kessy, Lewin, Strimmer 2018, "ZCA-cor"). Of a component
-/// that the information knows nothing of (Omega_kk = 0) w is NaN and left out of all statistics.
+/// **Whitened** is w = C^(1/2) D e with D = diag(sqrt(Omega_kk)) and C = D^-1 Omega D^-1, using the
+/// symmetric root of the correlation. So |w|^2 = e^T Omega e, the units of components do not
+/// matter, and component k of w is as near to component k of e as whitening allows (Kessy, Lewin,
+/// Strimmer 2018, "ZCA-cor"). If the information of a component is zero (Omega_kk = 0), its w is
+/// NaN and left out of all statistics.
 ///
-/// **What to expect**: were the noise as stated, each w would be white with variance 1 before the fit; after
-/// it, less, as the unknowns take part of it up. Over a whole graph the rms is about sqrt(1 - unknowns /
-/// components) (GraphResiduals::expected_rms). By type nothing so simple holds: edges that others check
-/// little (odometry between two fixes, the steps of a state's random walk) come out well below 1 even where
-/// the noise is as stated. Three kinds are told apart (EdgeRole), since the last two are no measurements.
-/// Information is what the edge holds: under a modeling whose fixes share states (`correlated`) that of a fix
-/// is of its own white part only (times 1.5 under Student's t), and the rest of its error lies in the states.
+/// **Expected values**: if the noise is as stated, each w is white with variance 1 before the fit.
+/// After the fit it is smaller, because the unknowns absorb a part. Over a whole graph the rms is
+/// about sqrt(1 - unknowns / components) (GraphResiduals::expected_rms). There is no such rule for
+/// a single type. Edges with little redundancy (odometry between two fixes, the random-walk steps
+/// of a state) have an rms well below 1 even if the noise is as stated.
+///
+/// There are three kinds of edges (EdgeRole), because process edges and priors are no measurements.
+/// The information is that of the edge. In a modeling whose fixes share states (`correlated`), the
+/// edge of a fix has only the information of its white part (times 1.5 for Student's t); the rest
+/// of its error is in the states.
 #pragma once
 
 #include <cstddef>
@@ -26,71 +30,75 @@
 
 namespace waymark::evaluation {
 
-/// What the edges of a type stand for.
+/// The role of the edges of a type.
 enum class EdgeRole {
   measurement,  ///< a reading: odometry, a fix, a loop closure, a gyro at rest
-  process,      ///< how a state without a place (a bias, a scale) goes on from one of its values to the next
-  prior         ///< what was said beforehand of a state, or what marginalised vertices left
+  /// a step of a state without a place (a bias, a scale) from one of its values to the next
+  process,
+  prior  ///< prior knowledge of a state, or the rest of marginalised vertices
 };
 
-/// "measurement", "process", "prior".
+/// Returns "measurement", "process" or "prior".
 [[nodiscard]] const char* to_string(EdgeRole role);
 
 /// One edge at the values of the graph.
 struct EdgeResidual {
-  std::size_t edge = 0;        ///< its place in the batch of its type, 0-based
-  std::optional<Stamp> stamp;  ///< the latest of its vertices' stamps; empty: none has one
+  std::size_t edge = 0;        ///< its index in the batch of its type
+  std::optional<Stamp> stamp;  ///< the latest stamp of its vertices; empty: none has one
   double squared = 0;          ///< |w|^2 = e^T Omega e
-  double rho = 0;              ///< what it adds to chi2: rho(squared)
-  double weight = 1;           ///< of the loss: rho'(squared); 1 without a loss
+  double rho = 0;              ///< its part of chi2: rho(squared)
+  double weight = 1;           ///< weight from the loss: rho'(squared); 1 without a loss
 };
 
-/// An edge among the largest of its type.
+/// One of the largest edges of its type.
 struct LargeResidual {
   EdgeResidual residual;
   std::vector<VertexId> vertices;
-  std::vector<double> whitened;  ///< its components
+  std::vector<double> whitened;  ///< components of its whitened error
 };
 
-/// One component of a type's whitened error.
+/// One component of the whitened error of a type.
 struct ResidualComponent {
-  std::string name;             ///< "x", "y", "heading" where the form says so, else its number from 1
-  ScalarStatistics statistics;  ///< of w; count: edges whose information knows the component
+  std::string name;             ///< "x", "y", "heading" if the form defines them, else its number from 1
+  ScalarStatistics statistics;  ///< of w; count: edges with information on the component
 };
 
 /// All edges of one type.
 struct TypeResiduals {
   std::string tag;
-  std::string form;  ///< how the error is formed: "(t, theta)", "log", "position", ...
+  std::string form;  ///< form of the error: "(t, theta)", "log", "position", ...
   EdgeRole role = EdgeRole::measurement;
-  std::size_t dimension = 0;  ///< of the error; of the largest error where each edge has its own
+  std::size_t dimension = 0;  ///< of the error; of the largest error if the dimension varies
   double squared = 0;         ///< sum of e^T Omega e
   double chi2 = 0;            ///< sum of rho(e^T Omega e)
-  double squared_share = 0;   ///< of the graph's, in [0, 1]; 0 where that is 0
+  double squared_share = 0;   ///< share of the graph's sum, in [0, 1]; 0 if that is 0
   double chi2_share = 0;
   std::size_t robust = 0;                     ///< edges with a loss
-  double weight_sum = 0;                      ///< over all edges: how many of them count, in effect
+  double weight_sum = 0;                      ///< sum over all edges: the effective number of edges
   std::vector<ResidualComponent> components;  ///< `dimension` of them
-  std::vector<LargeResidual> largest;         ///< by `squared`, the largest first; equal ones in order
-  std::vector<EdgeResidual> edges;            ///< every edge, in order
-  /// w of every edge: edge i's component k at [i dimension + k]; NaN where an edge has none or knows none.
+  /// by `squared`, largest first; equal ones in the order of the batch
+  std::vector<LargeResidual> largest;
+  std::vector<EdgeResidual> edges;  ///< every edge, in order
+  /// w of every edge: component k of edge i is at [i dimension + k]. It is NaN if the edge has no
+  /// such component, or no information on it.
   std::vector<double> whitened;
 };
 
 struct GraphResiduals {
-  std::vector<TypeResiduals> types;  ///< those that have edges, in the graph's order
+  std::vector<TypeResiduals> types;  ///< types with edges, in the order of the graph
   double squared = 0;
   double chi2 = 0;
-  std::size_t components = 0;  ///< scalar errors that carry information
+  std::size_t components = 0;  ///< scalar errors with information
 
-  /// Root of the mean square to be expected of all whitened components together, were the noise as stated and
-  /// white: sqrt(1 - unknowns / components); 0 where the graph has no more errors than unknowns.
-  /// @param unknowns  scalar ones: Summary::unknowns
+  /// Returns the expected rms of all whitened components, if the noise is as stated and white:
+  /// sqrt(1 - unknowns / components). It is 0 if the graph has no more errors than unknowns.
+  /// @param unknowns scalar ones: Summary::unknowns
   [[nodiscard]] double expected_rms(std::int64_t unknowns) const;
 };
 
-/// Residuals of every edge at the graph's present values. Linear in the number of edges; 30 ms for 100,000.
-/// @param most  edges to be listed as the largest, per type
+/// Returns the residuals of every edge at the present values of the graph. The time is linear in
+/// the number of edges: 30 ms for 100,000.
+/// @param most number of largest edges to list, per type
 [[nodiscard]] GraphResiduals residuals_by_type(const Graph& graph, std::size_t most = 10);
 
 }  // namespace waymark::evaluation

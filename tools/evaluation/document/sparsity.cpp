@@ -23,12 +23,12 @@ DensityRaster empty_raster(std::size_t columns, std::size_t most_cells) {
   return raster;
 }
 
-/// Counts blocks, and puts them into a raster.
+/// Counts blocks and enters them into a raster.
 class Counter {
  public:
   Counter(DensityRaster& raster, TriangleCount& count) : raster_(raster), count_(count) {}
 
-  /// Row and column are places in the order of the raster.
+  /// Row and column are indices in the order of the raster.
   void add(int row, int column, int row_size, int column_size) {
     const auto low = at(std::min(row, column));
     const auto high = at(std::max(row, column));
@@ -45,7 +45,7 @@ class Counter {
   TriangleCount& count_;
 };
 
-/// visit(row, column) for every stored block of H, by columns of the pattern; row <= column.
+/// Calls visit(row, column) for every stored block of H, by columns of the pattern, row <= column.
 template <typename Visit>
 void for_each_block(const BlockPattern& pattern, Visit visit) {
   for (int j = 0; j < pattern.columns(); ++j) {
@@ -75,8 +75,9 @@ LowerRows lower_rows(const BlockPattern& pattern, const std::vector<int>& place)
   return rows;
 }
 
-/// visit(row, column) for every block of the factor. Row k is the union of the paths in the elimination tree
-/// from its entries towards k (Gilbert, Ng, Peyton 1994); the tree grows along.
+/// Calls visit(row, column) for every block of the factor. Row k is the union of the paths in
+/// the elimination tree from its entries towards k (Gilbert, Ng, Peyton 1994). The tree grows
+/// during the walk.
 template <typename Visit>
 void for_each_factor_block(const LowerRows& lower, Visit visit) {
   const std::size_t n = lower.begin.size() - 1;
@@ -96,7 +97,7 @@ void for_each_factor_block(const LowerRows& lower, Visit visit) {
   }
 }
 
-/// Places of the pattern's columns in the order of the graph's vertices.
+/// Returns the places of the pattern's columns in the order of the graph's vertices.
 std::vector<int> natural_places(const Graph& graph, const Structure& structure) {
   std::vector<int> place(at(structure.pattern().columns()));
   int next = 0;

@@ -14,10 +14,10 @@
 namespace waymark::evaluation {
 namespace {
 
-/// From here on neighbouring lags are taken together, a part of their lag at a time.
+/// From here on adjacent lags are combined; the width of a group is a fraction of its lag.
 constexpr std::int64_t kFirstWideLag = 32;
 
-/// Products of the pairs at one lag, added up.
+/// The sum of the products of the pairs at one lag.
 struct LagSum {
   double products = 0;
   std::size_t pairs = 0;
@@ -42,7 +42,7 @@ class Series {
   }
 
   [[nodiscard]] std::size_t size() const { return times_.size(); }
-  /// Median of the intervals between different stamps; 0 where there is none.
+  /// Returns the median of the intervals between different stamps; 0 if there is none.
   [[nodiscard]] std::int64_t interval() const { return interval_; }
   [[nodiscard]] std::int64_t span() const { return times_.empty() ? 0 : times_.back() - times_.front(); }
 
@@ -60,7 +60,8 @@ class Series {
     add_up();
   }
 
-  /// The pairs from `low` to, but not, `high` apart, so that neighbouring ranges share none. O(n).
+  /// Sums the pairs at least `low` and less than `high` apart, so that adjacent ranges
+  /// share none. O(n).
   [[nodiscard]] LagSum between(std::int64_t low, std::int64_t high) const {
     LagSum sum;
     std::size_t first = 0;
@@ -76,13 +77,13 @@ class Series {
     return sum;
   }
 
-  /// The pairs so far apart to within half an interval.
+  /// Sums the pairs at this lag, within half an interval.
   [[nodiscard]] LagSum at_lag(std::int64_t lag) const {
     const std::int64_t low = lag - interval_ / 2;
     return between(low, low + interval_);
   }
 
-  /// The pairs k, k + 1, ... k + count - 1 intervals apart, rounded.
+  /// Sums the pairs k, k + 1, ... k + count - 1 intervals apart, rounded.
   [[nodiscard]] LagSum at_multiples(std::int64_t k, std::int64_t count) const {
     const std::int64_t low = k * interval_ - interval_ / 2;
     return between(low, low + count * interval_);
@@ -107,11 +108,11 @@ class Series {
 
   std::vector<std::int64_t> times_;
   std::vector<Eigen::Vector2d> errors_;
-  std::vector<Eigen::Vector2d> sums_;  // of the errors before each
+  std::vector<Eigen::Vector2d> sums_;  // of the errors before each one
   std::int64_t interval_ = 0;
 };
 
-/// Where the correlation falls to 1/e, between the lags walked through, in intervals.
+/// Finds where the correlation falls to 1/e, in intervals, by interpolating between the lags.
 class CorrelationTime {
  public:
   void see(double lag, double correlation) {
@@ -125,7 +126,7 @@ class CorrelationTime {
       last_ = correlation;
     }
   }
-  /// As far as was seen where it did not fall so low.
+  /// If the correlation did not fall so low, returns the largest lag seen.
   [[nodiscard]] double intervals() const { return time_; }
 
  private:
@@ -158,7 +159,7 @@ double effective_sample_size(std::span<const Stamp> stamps, std::span<const Eige
   const auto n = static_cast<double>(series.size());
   const double squares = series.sum_of_squares();
   if (series.size() < 2 || !(squares > 0)) return n;
-  if (series.interval() == 0) return 1;  // all of one epoch
+  if (series.interval() == 0) return 1;  // all errors are of one epoch
 
   const std::int64_t lags = series.span() / series.interval() + 1;
   CorrelationTime tau;
@@ -176,7 +177,7 @@ double effective_sample_size(std::span<const Stamp> stamps, std::span<const Eige
         tau.see(static_cast<double>(lag) + 0.5 * static_cast<double>(width - 1),
                 sum.products / static_cast<double>(sum.pairs) * n / squares);
     }
-    if (pairs == 0) continue;  // a gap of the series says nothing of its correlation
+    if (pairs == 0) continue;  // a gap of the series does not show its correlation
     if (group <= 0) break;
     inflation += group;
   }

@@ -17,17 +17,17 @@ namespace waymark::evaluation {
 namespace {
 
 constexpr double kTail = 0.025;            // on each side of an interval
-constexpr double kNormal = 1.95996398454;  // the normal distribution's quantile at 1 - kTail
+constexpr double kNormal = 1.95996398454;  // quantile of the normal distribution at 1 - kTail
 
-/// Above 600 degrees of freedom the sum behind chi_square_quantile underflows before long; there Wilson and
-/// Hilferty's cube root is right to six digits.
+/// From about 600 degrees of freedom on the sum in chi_square_quantile underflows. The cube root of
+/// Wilson and Hilferty is then right to six digits.
 double two_sided_chi_square(int freedom, bool upper) {
   if (freedom <= 600) return chi_square_quantile(upper ? 1 - kTail : kTail, freedom);
   const double spread = 2.0 / (9.0 * freedom);
   return freedom * std::pow(1 - spread + (upper ? kNormal : -kNormal) * std::sqrt(spread), 3);
 }
 
-/// The smallest k with P(X <= k) >= probability, X binomial.
+/// Returns the smallest k with P(X <= k) >= probability, for a binomial X.
 long binomial_quantile(double probability, long trials, double success) {
   double log_chance = static_cast<double>(trials) * std::log1p(-success);  // of k = 0
   double sum = std::exp(log_chance);
@@ -41,7 +41,7 @@ long binomial_quantile(double probability, long trials, double success) {
   return k;
 }
 
-/// The error in sigmas: L^-1 d with P = L L^T.
+/// Returns the error in sigmas: L^-1 d with P = L L^T.
 std::optional<Eigen::Vector2d> in_sigmas(const Eigen::Vector2d& offset, const Eigen::Matrix2d& covariance) {
   if (std::isnan(normalised_innovation_squared(offset, covariance))) return std::nullopt;
   const double l11 = std::sqrt(covariance(0, 0));

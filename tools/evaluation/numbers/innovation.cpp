@@ -25,7 +25,7 @@ Eigen::Matrix2d residual_covariance(ResidualKind kind, const Eigen::Matrix2d& fi
 }
 
 double normalised_innovation_squared(const Eigen::Vector2d& residual_m, const Eigen::Matrix2d& covariance) {
-  // Cholesky by hand: the two pivots say whether S is positive definite.
+  // Cholesky by hand. The two pivots show whether S is positive definite.
   const double a = covariance(0, 0);
   const double b = 0.5 * (covariance(0, 1) + covariance(1, 0));
   const double pivot = covariance(1, 1) - b * b / a;

@@ -18,7 +18,7 @@ double sorted_median(std::span<const double> sorted) {
 double nearest_rank_quantile(std::span<const double> sorted, double probability) {
   if (sorted.empty()) return kUndefined;
   const auto n = static_cast<double>(sorted.size());
-  // 0.07 * 100 is 7.000000000000001: a rank must not move up by rounding alone.
+  // 0.07 * 100 is 7.000000000000001. Rounding alone must not raise a rank.
   const double rank = std::clamp(std::ceil(probability * n - 1e-9), 1.0, n);
   return sorted[static_cast<std::size_t>(rank) - 1];
 }
@@ -48,7 +48,8 @@ PositionMetrics position_metrics(std::span<const Eigen::Vector2d> offsets) {
   metrics.cep50_m = nearest_rank_quantile(radii, 0.50);
   metrics.cep95_m = nearest_rank_quantile(radii, 0.95);
   if (offsets.size() > 1) {
-    double scatter = 0;  // a second pass: sum of squares minus squared mean cancels for a large bias
+    // a second pass: sum of squares minus squared mean would cancel if the bias is large
+    double scatter = 0;
     for (const Eigen::Vector2d& d : offsets) scatter += (d - metrics.mean_m).squaredNorm();
     metrics.precision_m = std::sqrt(scatter / (n - 1));
   }

@@ -49,19 +49,20 @@ double median_interval_s(std::span<const TruthPose> truth) {
   return *middle;
 }
 
-/// Truth with what is known about its sampling.
+/// The truth and facts about its sampling.
 struct SampledTruth {
   std::span<const TruthPose> poses;
   double longest_interval_s;
   const TruthOptions& options;
 
-  /// True where the interval after pose `i` exists and is no gap. NaN (one pose) compares false.
+  /// Tells whether the interval after pose `i` exists and is no gap. NaN (one pose) compares false.
   [[nodiscard]] bool joined(std::size_t i) const {
     return i + 1 < poses.size() && seconds_between(poses[i].stamp, poses[i + 1].stamp) <= longest_interval_s;
   }
 };
 
-/// Direction of the chord around poses [first, last], widened in turn on both sides up to the span asked for.
+/// Returns the direction of the chord around poses [first, last]. The chord is widened alternately
+/// on both sides up to the requested span.
 std::optional<double> direction_around(const SampledTruth& truth, std::size_t first, std::size_t last) {
   const auto& poses = truth.poses;
   const auto span_s = [&] { return seconds_between(poses[first].stamp, poses[last].stamp); };
@@ -128,7 +129,7 @@ TruthMatch interpolate_truth(std::span<const TruthPose> truth, std::span<const S
   check_order(truth);
   TruthMatch match;
   match.median_interval_s = median_interval_s(truth);
-  // A microsecond of grace: 1.5 x 0.2 s must be allowed where the stamps say 0.3 s, rounded as they may be.
+  // A microsecond is added: 1.5 x 0.2 s must be allowed if rounded stamps say 0.3 s.
   match.longest_interpolated_s = options.max_gap_factor * match.median_interval_s + 1e-6;
   const SampledTruth sampled{
       .poses = truth, .longest_interval_s = match.longest_interpolated_s, .options = options};

@@ -1,4 +1,4 @@
-/// Errors at withheld fixes: of the fused poses, and of other ways to get there.
+/// Errors at withheld fixes: of the fused poses, and of other predictions.
 #pragma once
 
 #include <cstddef>
@@ -15,30 +15,31 @@
 
 namespace waymark::evaluation {
 
-/// One way to predict the withheld fixes: poses (x, y [m, frame], heading [rad]) of the body.
+/// One prediction of the withheld fixes: poses (x, y [m, frame], heading [rad]) of the body.
 struct Prediction {
-  std::string label;                                  ///< "dead reckoning", "causal"
-  std::vector<std::optional<Eigen::Vector3d>> poses;  ///< one per fix; only those at withheld ones count
-  /// Of their positions, m^2, frame axes; one per fix, or empty for none at all.
+  std::string label;  ///< "dead reckoning", "causal"
+  /// one per fix; only those at withheld fixes are used
+  std::vector<std::optional<Eigen::Vector3d>> poses;
+  /// Covariances of the positions, m^2, frame axes; one per fix, or empty if there are none.
   std::vector<std::optional<Eigen::Matrix2d>> position_covariances;
 };
 
-/// Predicted antenna - withheld fix; the noise of the fixes is in it.
+/// Predicted antenna - withheld fix. It contains the noise of the fixes.
 struct WithheldMetrics {
   std::string label;
   PositionMetrics at_fixes;  ///< at every withheld fix
   PositionMetrics at_ends;   ///< at the last withheld fix of each outage
-  /// With S = R + P, at the fixes whose prediction has a covariance; count 0 where none has.
+  /// With S = R + P, at the fixes whose prediction has a covariance. count is 0 if none has one.
   InnovationStatistics innovation;
 };
 
-/// The last withheld fix of each outage. An outage is a run of withheld fixes over more than one epoch: every
-/// n-th epoch withheld makes none. @param fixes in order of time
+/// Returns the last withheld fix of each outage. An outage is a run of withheld fixes over several
+/// epochs, so withholding every n-th epoch makes none. @param fixes in order of time
 [[nodiscard]] std::vector<std::size_t> outage_ends(std::span<const Fix> fixes);
 
-/// @param fixes      in order of time
-/// @param antenna_m  GNSS antenna in the body frame
-/// @throws UsageError where the prediction is not of these fixes.
+/// @param fixes in order of time
+/// @param antenna_m GNSS antenna in the body frame
+/// @throws UsageError if the prediction does not belong to these fixes
 [[nodiscard]] WithheldMetrics withheld_metrics(const Prediction& prediction, std::span<const Fix> fixes,
                                                const Eigen::Vector2d& antenna_m);
 

@@ -36,7 +36,8 @@ void append_covariance(std::string& out, const std::optional<Eigen::Matrix2d>& c
 
 void append_epoch(std::string& out, const EpochResult& epoch, Stamp first) {
   out += std::to_string(epoch.stamp.nanoseconds);
-  // A quotient is the double nearest to the decimal: 1.9, where a product with 1e-9 is 1.9000000000000001.
+  // A quotient is the double nearest to the decimal, 1.9. A product with 1e-9 would be
+  // 1.9000000000000001.
   formats::append_csv_number(out, static_cast<double>(epoch.stamp.nanoseconds - first.nanoseconds) / 1e9);
   out += ',';
   formats::append_csv_text(out, to_string(epoch.status));

@@ -1,4 +1,4 @@
-/// Every epoch of an evaluation as a table: for plots and programs of one's own.
+/// Every epoch of an evaluation as a table, for plots and for other programs.
 #pragma once
 
 #include <span>
@@ -8,9 +8,10 @@
 
 namespace waymark::evaluation {
 
-/// Comma-separated values (RFC 4180 with "\n" line ends) under one header line, a row per fix in the order
-/// given. The columns are always the same, those of tools/evaluation/README.md, "epochs.csv"; what is not
-/// defined is an empty field. Numbers read back to the same double.
+/// Returns comma-separated values (RFC 4180 with "\n" line ends) under one header line, one
+/// row per fix in the given order. The columns are always the same:
+/// tools/evaluation/README.md, "epochs.csv", lists them. Undefined values are empty fields.
+/// Numbers read back to the same double.
 [[nodiscard]] std::string epochs_csv(std::span<const EpochResult> epochs);
 
 }  // namespace waymark::evaluation

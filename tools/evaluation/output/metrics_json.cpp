@@ -23,7 +23,7 @@ Json to_json(const PositionMetrics& m) {
            Json::array({text::number_or_null(m.mean_m.x()), text::number_or_null(m.mean_m.y())})}};
 }
 
-/// @param unit  suffix of the keys: "m" or "rad".
+/// @param unit suffix of the keys: "m" or "rad"
 Json to_json(const ScalarStatistics& s, const std::string& unit) {
   return {{"n", s.count},
           {"mean_" + unit, text::number_or_null(s.mean)},
@@ -108,7 +108,7 @@ Json to_json(const TruthEvaluation& t) {
             {"fused", numbers(t.fused_autocorrelation)}}}};
 }
 
-/// What is predicted at withheld fixes, by label.
+/// Returns the predictions at withheld fixes, by label.
 Json predictions_json(const Evaluation& e) {
   Json predictions = Json::object();
   for (const WithheldMetrics& w : e.at_withheld)
@@ -152,7 +152,7 @@ std::string metrics_json(std::span<const LabelledEvaluation> evaluations, const 
                          {"drive", header.drive},
                          {"provenance", Json(header.provenance)},
                          {"evaluations", std::move(list)}};
-  // A label that is no UTF-8 must not cost the whole file.
+  // A label that is no UTF-8 must not make the whole file fail.
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

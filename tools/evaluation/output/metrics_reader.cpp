@@ -23,7 +23,7 @@ PositionMetrics position(const text::JsonPlace& json) {
   return m;
 }
 
-/// @param unit  suffix of the keys: "m" or "rad".
+/// @param unit suffix of the keys: "m" or "rad"
 ScalarStatistics scalar(const text::JsonPlace& json, const std::string& unit) {
   ScalarStatistics s;
   s.count = json.count("n");
@@ -45,7 +45,7 @@ Improvement improvement_of(const text::JsonPlace& json) {
           json.number("median"), json.number("cep50"),    json.number("cep95")};
 }
 
-/// @param kind  of the fixes at this place
+/// @param kind kind of the fixes at this place
 InnovationStatistics innovation(const text::JsonPlace& json, ResidualKind kind) {
   InnovationStatistics s;
   s.kind = kind;
@@ -117,7 +117,7 @@ std::vector<WithheldMetrics> predictions(const text::JsonPlace& json) {
   return result;
 }
 
-/// Outages and predictions came later within the version.
+/// Files of this version without outages and predictions exist, because these were added later.
 LabelledEvaluation labelled(const text::JsonPlace& json) {
   Evaluation e;
   e.frame = frame(json.at("frame"));

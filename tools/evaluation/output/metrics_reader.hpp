@@ -1,4 +1,4 @@
-/// metrics.json read back, for comparisons of runs that were made at other times.
+/// Reads metrics.json, for comparisons with earlier runs.
 #pragma once
 
 #include <string>
@@ -11,13 +11,14 @@ namespace waymark::evaluation {
 
 struct MetricsDocument {
   ReportHeader header;
-  /// As they were written; what is not in the file is empty: `epochs` and what the truth is at each of them.
+  /// The evaluations as they were written. Data that the file does not hold stay empty: `epochs`,
+  /// and the truth at each of them.
   std::vector<LabelledEvaluation> evaluations;
 };
 
-/// Reads what metrics_json wrote; keys that it does not know are passed over.
-/// @param name  of the file, for errors
-/// @throws InputError for a text that is no JSON, of another schema or version, or lacks something
+/// Reads the output of metrics_json. Unknown keys are skipped.
+/// @param name name of the file, for errors
+/// @throws InputError for a text that is no JSON, has another schema or version, or is incomplete
 [[nodiscard]] MetricsDocument read_metrics_json(std::string_view text, const std::string& name);
 
 }  // namespace waymark::evaluation

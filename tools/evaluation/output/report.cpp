@@ -40,7 +40,7 @@ Row position_row(const std::string& label, const PositionMetrics& m) {
           metres(m.cep95_m)};
 }
 
-/// What became better is green, what became worse red.
+/// Adds improvements; better numbers are green, worse ones red.
 void add_improvement(text::TextTable& table, const std::string& label, const Improvement& i) {
   const std::array values = {i.max_percent,    i.accuracy_percent, i.precision_percent, i.rmse_percent,
                              i.median_percent, i.cep50_percent,    i.cep95_percent};
@@ -71,7 +71,7 @@ Row position_heading(std::string title) {
           "RMSE [m]",       "median [m]", "CEP50 [m]", "CEP95 [m]"};
 }
 
-/// The raw row of the first evaluation, and of every further one whose numbers differ.
+/// Adds the raw row of the first evaluation, and of every further one with other numbers.
 template <typename MakeRow>
 void add_raw_rows(text::TextTable& table, std::span<const LabelledEvaluation> evaluations,
                   const std::string& name, const MakeRow& make_row) {
@@ -149,7 +149,7 @@ std::string autocorrelation_block(std::span<const LabelledEvaluation> evaluation
   return table.empty() ? "" : table.text(look) + "\n";
 }
 
-/// Rows of the fused poses ("g1") and of each prediction beside them ("g1, dead reckoning").
+/// Adds rows of the fused poses ("g1") and of each prediction ("g1, dead reckoning").
 std::string withheld_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
   Row heading = position_heading("against withheld fixes");
   heading.push_back("inside 95 % [%]");

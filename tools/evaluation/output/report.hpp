@@ -1,4 +1,4 @@
-/// Evaluations as text: the table of the terminal and metrics.json.
+/// Evaluations as text: the table for the terminal, and metrics.json.
 #pragma once
 
 #include <map>
@@ -10,29 +10,29 @@
 
 namespace waymark::evaluation {
 
-/// An evaluation under the name its rows carry ("g1", "g2 without gate").
+/// An evaluation and the name of its rows ("g1", "g2 without gate").
 struct LabelledEvaluation {
   std::string label;
   Evaluation evaluation;
 };
 
-/// Where the numbers come from; goes into metrics.json as it is.
+/// The origin of the numbers. It is copied into metrics.json.
 struct ReportHeader {
   std::string drive;                              ///< name of the drive
   std::map<std::string, std::string> provenance;  ///< version, options, input hashes
 };
 
-/// The table for the terminal: raw GNSS, then every evaluation, against truth; improvement over raw GNSS;
-/// along and across track and heading; stated against actual error; autocorrelation; withheld fixes;
-/// normalised innovations; counts. A block without data
-/// is left out. Raw GNSS rows that differ between the evaluations (another gate, other epochs) are printed
-/// for each. Metres and degrees as headed, "-" where a number is not defined. UTF-8 is not needed. Lines end
-/// with "\n".
+/// Returns the table for the terminal. Raw GNSS comes first, then every evaluation. The blocks are:
+/// against truth; improvement over raw GNSS; along and across track and heading; stated against
+/// actual error; autocorrelation; withheld fixes; normalised innovations; counts. Blocks without
+/// data are left out. If raw GNSS rows differ between evaluations (another gate, other epochs),
+/// each is printed. Units are metres and degrees as in the headings; "-" is an undefined number.
+/// The text is ASCII. Lines end with "\n".
 [[nodiscard]] std::string metrics_table(std::span<const LabelledEvaluation> evaluations,
                                         const text::TextLook& look = {});
 
-/// metrics.json, schema "waymark-metrics" version 1 (tools/program/JSON.md): SI units, radians, null
-/// where a number is not defined. Numbers read back to the same doubles.
+/// Returns metrics.json, schema "waymark-metrics" version 1 (tools/program/JSON.md): SI units,
+/// radians, null for undefined numbers. Numbers read back to the same doubles.
 [[nodiscard]] std::string metrics_json(std::span<const LabelledEvaluation> evaluations,
                                        const ReportHeader& header = {});
 

@@ -1,5 +1,5 @@
-/// The folder that `waymark run` and `waymark evaluate` write and `waymark compare` reads: the name of every
-/// file in it.
+/// The folder that `waymark run` and `waymark evaluate` write and `waymark compare` reads: the name
+/// of every file in it.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-/// summary.json: how each result of a run was minimised, and what was estimated beside the poses. Written by
-/// `waymark run`, read by `waymark compare`; keys: tools/program/README.md.
+/// summary.json: how each result of a run was minimised, and what was estimated beside the poses.
+/// Written by `waymark run`, read by `waymark compare`; keys: tools/program/README.md.
 #pragma once
 
 #include <map>
