@@ -13,14 +13,14 @@ Ablation switched(const std::string& title, const std::string& name, Setting set
   return {title, std::move(setting)};
 }
 
-/// The default model with options of its modeling stated.
+/// Returns the default model with stated options of its modeling.
 Ablation with_options(const std::string& title, const std::string& name, const Options& options) {
   Setting setting = default_setting();
   setting.fusion.modeling_options = options;
   return switched(title, name, std::move(setting));
 }
 
-/// The default model without one of its calibration states.
+/// Returns the default model without one of its calibration states.
 Ablation without_state(const std::string& title, const std::string& state) {
   Setting setting = default_setting();
   setting.fusion.calibration = drive::default_calibration();
@@ -60,7 +60,7 @@ std::vector<Ablation> ingredients() {
   };
 }
 
-/// g1 with calibration states and no gate.
+/// Returns g1 with calibration states and no gate.
 Setting white_noise() {
   Setting setting = stated_setting("white", "g1");
   setting.fusion.gate.enabled = false;
@@ -68,7 +68,8 @@ Setting white_noise() {
   return setting;
 }
 
-/// The customary scales: 95 % efficiency for normal errors in one dimension, else 1 standard deviation.
+/// Returns losses with customary scales: 95 % efficiency for normal errors in one dimension, or
+/// else 1 standard deviation.
 std::vector<std::string> customary_losses() {
   return {"huber:1.345", "cauchy:1", "geman_mcclure:1", "welsch:2.985", "dcs:1", "tukey:4.685"};
 }
@@ -103,7 +104,7 @@ const std::vector<Outcome>& judged(const DriveResult& drive) {
   return drive.outcomes.empty() && !drive.withheld.empty() ? drive.withheld.front().outcomes : drive.outcomes;
 }
 
-/// The drive, and what it is judged by where that is not the truth.
+/// Returns the drive, and how it is judged if that is not by truth.
 std::string column_label(const DriveResult& drive) {
   return drive.outcomes.empty() && !drive.withheld.empty()
              ? labelled(drive) + ": " + drive.withheld.front().way
@@ -117,7 +118,7 @@ const Outcome* outcome_of(const DriveResult& drive, const std::string& setting) 
 
 using Drives = std::vector<DriveResult>;
 
-/// A line for each ablation, a column for each drive.
+/// Returns a table with a line for each ablation and a column for each drive.
 template <typename Value>
 ReportTable table_of(const Drives& drives, const std::string& file, const std::string& title, int digits,
                      Value value) {
@@ -140,7 +141,8 @@ std::vector<double> rms_errors(const Drives& drives, const std::string& setting)
   return errors;
 }
 
-/// Changes against the default, and of the alternatives against the reference of the field too.
+/// Adds changes against the default, and for the alternatives also against the reference
+/// of the field.
 void add_changes(const Drives& drives, ReportTable& table) {
   table.columns.emplace_back("change %, mean");
   table.columns.emplace_back("against g1 with gate %, mean");
@@ -211,7 +213,7 @@ std::vector<Setting> ablation_settings() {
   std::vector<Setting> settings;
   for (const Ablation& ablation : ablations()) {
     settings.push_back(ablation.setting);
-    settings.back().objective.clear();  // ends are not compared
+    settings.back().objective.clear();  // their ends are not compared
   }
   return settings;
 }

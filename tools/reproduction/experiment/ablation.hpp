@@ -1,5 +1,5 @@
-/// What each ingredient of the default model is worth, and what the field's alternatives are: one thing
-/// switched at a time.
+/// The ablation: switches one thing at a time, to show the value of each ingredient of the default
+/// model and of the field's alternatives.
 #pragma once
 
 #include <string>
@@ -16,26 +16,29 @@ struct Ablation {
   Setting setting;
 };
 
-/// The default model and it with one ingredient switched; then the reference of the field, g1 with the
-/// paper's gate (kWhiteReference), and its alternatives: white noise as stated, calibration states, no gate
-/// but where the title says so.
+/// Returns the default model and its variants with one ingredient switched. Then it returns the
+/// reference of the field, g1 with the gate of the paper (kWhiteReference), and its alternatives.
+/// These have white noise as stated and calibration states, and no gate unless the title says so.
 [[nodiscard]] const std::vector<Ablation>& ablations();
 [[nodiscard]] std::vector<Setting> ablation_settings();
 inline constexpr const char* kWhiteReference = "ours_g1";
 
-/// 100 (exp(mean of log(error / reference)) - 1), percent, over the drives where both are known: a factor up
-/// in one drive and the same factor down in another cancel. NaN without any.
+/// Returns 100 (exp(mean of log(error / reference)) - 1), percent, over the drives with both
+/// numbers. A factor up in one drive and the same factor down in another cancel. NaN if
+/// there are none.
 [[nodiscard]] double mean_change_percent(const std::vector<double>& errors,
                                          const std::vector<double>& references);
 
-/// Errors of a setting against truth, else at the withheld fixes; no numbers where it gave no result.
+/// Returns the errors of a setting against truth, or else at the withheld fixes. They are undefined
+/// if there is no result.
 [[nodiscard]] evaluation::PositionMetrics judged_errors(const DriveResult& drive, const std::string& setting);
-/// The same for stated against actual errors, which need a truth.
+/// Returns the consistency of stated with actual errors, which needs a truth.
 [[nodiscard]] evaluation::ConsistencyStatistics judged_stated_errors(const DriveResult& drive,
                                                                      const std::string& setting);
 
-/// Errors, Max, NEES and coverage: a table each, a line for each setting, a column for each drive. Drives
-/// with truth are judged by it; the others by the first way in which fixes were kept out.
+/// Returns one table each of errors, Max, NEES and coverage, with a line for each setting and a
+/// column for each drive. Drives with truth are judged by it, the others by the first way of
+/// withholding fixes.
 [[nodiscard]] ReproductionReport ablation_report(const std::vector<DriveResult>& drives,
                                                  const std::string& introduction);
 

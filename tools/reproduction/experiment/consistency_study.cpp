@@ -14,11 +14,11 @@ constexpr const char* kTogether = "together";
 
 using Drives = std::vector<DriveResult>;
 
-/// What a setting gave on the drives of one preset, or on all.
+/// The results of a setting on the drives of one preset, or on all drives.
 struct Pool {
   std::vector<double> nees;
   std::vector<double> coverage_percent;
-  std::vector<double> squared_error;  ///< m^2, of each drive
+  std::vector<double> squared_error;  ///< m^2, one per drive
   int drives = 0;                     ///< with or without a result
 };
 
@@ -114,7 +114,7 @@ std::vector<Draw> consistency_draws(int count) {
 
 std::vector<Setting> consistency_settings() {
   Setting white = our_settings().front();
-  white.objective.clear();  // ends are not compared
+  white.objective.clear();  // their ends are not compared
   return {default_setting(), white};
 }
 

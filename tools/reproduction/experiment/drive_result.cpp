@@ -45,7 +45,7 @@ DriveResult study_drive(int dataset, StudiedDrive& drive, const std::vector<Sett
 }
 
 std::optional<evaluation::PositionMetrics> metrics_of(const DriveResult& drive, const std::string& system) {
-  if (system == "gnss") {  // the same in all of them that know of the antenna's lever arm
+  if (system == "gnss") {  // the same in all settings with the antenna's lever arm
     for (const Outcome& outcome : drive.outcomes) {
       if (outcome.evaluation.truth && outcome.setting.fusion.lever_arm)
         return outcome.evaluation.truth->gnss.position;

@@ -1,4 +1,4 @@
-/// An experiment: which settings are run on every drive, and what is made of their outcomes.
+/// An experiment: the settings that run on every drive, and the report of their outcomes.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace waymark::reproduction {
 
-/// How fixes are kept out of a drive without truth.
+/// A way of withholding fixes, for a drive without truth.
 struct Way {
   std::string name;
   int withhold_every = 0;
@@ -18,22 +18,24 @@ struct Way {
 };
 
 struct Experiment {
-  std::vector<Setting> settings{};           ///< on the whole drive
-  bool truth_only = false;                   ///< those only where there is truth
-  std::vector<Setting> withheld_settings{};  ///< on a drive without truth, in each of the ways
+  std::vector<Setting> settings{};  ///< on the whole drive
+  bool truth_only = false;          ///< those run only if there is truth
+  /// on a drive without truth, with each way of withholding fixes
+  std::vector<Setting> withheld_settings{};
   std::vector<Way> ways{};
   ReproductionReport (*report)(const std::vector<DriveResult>& drives,
                                const std::string& introduction) = nullptr;
 };
 
-/// The paper's, with the default model beside it: every 10th fix kept out, outages of 30 s and of 60 s.
+/// Returns the experiment of the paper, with the default model beside it. The ways are every 10th
+/// fix, outages of 30 s and outages of 60 s.
 [[nodiscard]] Experiment paper_experiment();
-/// One ingredient at a time (ablation.hpp); outages of 60 s.
+/// Returns the ablation, one ingredient at a time (ablation.hpp), with outages of 60 s.
 [[nodiscard]] Experiment ablation_experiment();
-/// Stated against actual errors (consistency_study.hpp).
+/// Returns the study of stated against actual errors (consistency_study.hpp).
 [[nodiscard]] Experiment consistency_experiment();
 
-/// Settings that are run on a drive, those with fixes kept out included.
+/// Returns how many settings run on a drive, including those with withheld fixes.
 [[nodiscard]] std::size_t run_count(const Experiment& experiment, bool has_truth);
 
 /// Runs an experiment on a drive. @param dataset of the paper, or 0

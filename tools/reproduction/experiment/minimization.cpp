@@ -6,7 +6,7 @@
 namespace waymark::reproduction {
 namespace {
 
-/// g2o's rule, as an observer that cancels.
+/// The rule of g2o, as an observer that cancels the run.
 class GainRule {
  public:
   explicit GainRule(const std::atomic<bool>* outer) : outer_(outer) {}
@@ -18,7 +18,7 @@ class GainRule {
     if (!record.accepted) return;
     ++taken_;
     const double gain = record.decrease / record.chi2;
-    // The first iteration has no gain in g2o: it counts from the chi2 after it.
+    // In g2o the first iteration has no gain: the rule starts from the chi2 after it.
     if (taken_ > 1 && gain >= 0 && gain < kGain)
       end(fmt::format("a {} step lowered chi2 by {:.2g} of it", record.kind, gain), true);
     if (taken_ >= kGainIterations) end(fmt::format("{} iterations", taken_), false);
@@ -67,7 +67,7 @@ Ending minimize(Graph& graph, const Setting& setting, const TypeRegistry& regist
   const drive::Minimizer search = [](Graph& of, Algorithm& algorithm, LinearSolver& solver,
                                      OptimizerOptions options) {
     options.max_iterations = kGainIterations * kGainAttempts;
-    options.decrement_tolerance = 1e-300;  // the rule alone ends the run
+    options.decrement_tolerance = 1e-300;  // only the rule of g2o ends the run
     options.gradient_tolerance = 0;
     options.step_tolerance = 0;
     return optimize(of, algorithm, solver, options);

@@ -1,4 +1,4 @@
-/// Minimises a graph as a setting says.
+/// Minimises a graph in the way of a setting.
 #pragma once
 
 #include <atomic>
@@ -12,15 +12,16 @@ namespace waymark::reproduction {
 
 /// How a minimisation ended.
 struct Ending {
-  bool converged = false;  ///< by the rule of its setting; whether at a minimum is another question
+  /// by the rule of its setting; whether it is at a minimum is another question
+  bool converged = false;
   std::string message;     ///< why it ended, with the numbers
-  int iterations = 0;      ///< steps taken
+  int iterations = 0;      ///< accepted steps
   int rejected_steps = 0;  ///< steps tried in vain
   double initial_chi2 = 0;
   double chi2 = 0;
 };
 
-/// The summary of a run by our stopping rule.
+/// Returns the ending of a run with our stopping rule.
 [[nodiscard]] Ending describe(const Summary& summary);
 
 /// Minimises as a setting says; the graph holds the best values found. @param cancel as

@@ -1,4 +1,4 @@
-/// What the field does about outliers beside gates and losses, for comparison.
+/// Treatments of outliers in the literature besides gates and losses, for comparison.
 #pragma once
 
 #include <span>
@@ -12,21 +12,22 @@ namespace waymark::reproduction {
 
 struct Graduated {
   Ending ending;
-  std::size_t outliers = 0;  ///< edges of fixes; the graph lacks them
+  std::size_t outliers = 0;  ///< edges of fixes; they were removed from the graph
 };
 
-/// Graduated non-convexity as `waymark optimize --robust gnc` has it, but that nothing is doubted beside the
-/// fixes (edges whose error is a "position").
+/// Runs graduated non-convexity as `waymark optimize --robust gnc` does, but only fixes are
+/// candidates (edges whose error is a "position").
 [[nodiscard]] Graduated graduate_fixes(Graph& graph, const Setting& setting, const TypeRegistry& registry,
                                        const std::atomic<bool>* cancel);
 
-/// Fixes whose residuals, averaged over this time to either side, judge a fix.
+/// The fixes within this time on either side judge a fix.
 inline constexpr double kInflationWindow = 15;  // s
 
-/// Adaptive inflation: the covariance of each fix times the mean of nu / 2 (the normalised residual squared,
-/// 1 on the average where covariances are honest) of the accepted fixes of its receiver within the window,
-/// where that is above 1.
-/// @param fixes      by time @param residuals of a first pass, one per fix
+/// Adaptive inflation. The covariance of each fix is multiplied by the mean of nu / 2 over the
+/// accepted fixes of its receiver within the window, if that is above 1. nu is the normalised
+/// residual squared; nu / 2 is 1 on average if covariances are consistent.
+/// @param fixes in order of time
+/// @param residuals of a first pass, one per fix
 [[nodiscard]] std::vector<Fix> inflate_fixes(std::span<const Fix> fixes,
                                              std::span<const evaluation::EpochResult> residuals);
 

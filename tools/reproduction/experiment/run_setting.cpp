@@ -44,7 +44,8 @@ StudiedDrive::StudiedDrive(drive::DriveDescription description, const drive::Dri
 
 namespace {
 
-/// The drive under a setting, with the covariances of its fixes inflated where their residuals are too large.
+/// The drive under a setting, with the covariances of its fixes inflated where their residuals
+/// are too large.
 drive::ModeledDrive inflated(const StudiedDrive& drive, const Setting& setting,
                              const evaluation::Evaluation& residuals, const TypeRegistry& registry) {
   drive::PreparedDrive prepared = drive.drive();
@@ -52,7 +53,7 @@ drive::ModeledDrive inflated(const StudiedDrive& drive, const Setting& setting,
   return drive::Fusion(prepared, registry).model(setting.fusion);
 }
 
-/// Fuses the drive; the outcome has everything but its evaluation. Returns the optimised document.
+/// Fuses the drive. The outcome has everything but its evaluation. Returns the optimised document.
 formats::GraphDocument fuse(StudiedDrive& drive, const Setting& setting, const Laboratory& laboratory,
                             Outcome& outcome) {
   const TypeRegistry& registry = laboratory.registry;
@@ -129,7 +130,8 @@ bool at_minimum(const Outcome& outcome) {
 }
 
 bool near_minimum(const Outcome& outcome) {
-  return outcome.ending.chi2 - outcome.minimum_chi2 <= kReachedChi2;  // not where there is none: NaN
+  // false if there is no minimum (NaN)
+  return outcome.ending.chi2 - outcome.minimum_chi2 <= kReachedChi2;
 }
 
 const Outcome* find_outcome(const std::vector<Outcome>& outcomes, const std::string& name) {

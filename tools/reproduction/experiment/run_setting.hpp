@@ -14,19 +14,19 @@
 
 namespace waymark::reproduction {
 
-/// What settings are run with.
+/// The equipment that all runs of settings share.
 struct Laboratory {
   const TypeRegistry& registry;
-  /// How a fused document is judged. @param converged whether the document is at a minimum
+  /// Evaluates a fused document. @param converged whether the document is at a minimum
   std::function<evaluation::Evaluation(formats::GraphDocument& document, const std::vector<TruthPose>& truth,
                                        bool converged)>
       evaluate;
-  /// Told before every run what comes; may throw to end all of it.
+  /// Called before every run with its description. It may throw to end all runs.
   std::function<void(const std::string&)> progress;
   const std::atomic<bool>* cancel = nullptr;  ///< as OptimizerOptions::cancel
 };
 
-/// The largest differences between the vehicle's poses of two results.
+/// The largest differences between the vehicle poses of two results.
 struct PoseDifference {
   double position_m = evaluation::kUndefined;
   double heading_rad = evaluation::kUndefined;
@@ -37,16 +37,15 @@ struct Outcome {
   Setting setting;
   std::string failure;  ///< why there is no result; empty: there is one
   Ending ending;
-  std::size_t accepted = 0;  ///< fixes
+  std::size_t accepted = 0;  ///< accepted fixes
   std::size_t rejected = 0;
-  drive::NoiseEstimate noise;  ///< no parameters where it is as stated
-  evaluation::Evaluation
-      evaluation;  ///< without its lists of epochs; nothing where the setting is not evaluated
-  /// From the lowest minimum that was found for the setting's objective (compare_outcomes); undefined without
-  /// objective.
+  drive::NoiseEstimate noise;         ///< without parameters if the noise is as stated
+  evaluation::Evaluation evaluation;  ///< without its lists of epochs; empty if the setting is not evaluated
+  /// Distance from the lowest minimum found for the objective of the setting (compare_outcomes).
+  /// Undefined without an objective.
   PoseDifference from_minimum;
   double minimum_chi2 = evaluation::kUndefined;
-  std::vector<Eigen::Vector3d> poses;  ///< of the vehicle, by time; dropped by compare_outcomes
+  std::vector<Eigen::Vector3d> poses;  ///< of the vehicle, by time; compare_outcomes removes them
 
   [[nodiscard]] double rejected_percent() const;
 };
@@ -74,27 +73,29 @@ class StudiedDrive {
   drive::Fusion fusion_;  // of drive_
 };
 
-/// Fuses the drive as the setting says. What a drive does not allow (all fixes rejected, a lever arm with the
-/// literal error) is the outcome's failure.
+/// Fuses the drive with a setting. If the drive does not allow it (all fixes rejected, a lever arm
+/// with the literal error), the outcome has a failure.
 [[nodiscard]] Outcome run_setting(StudiedDrive& drive, const Setting& setting, const Laboratory& laboratory);
 
-/// Runs all of them and compares their ends.
+/// Runs all settings and compares their ends.
 [[nodiscard]] std::vector<Outcome> run_settings(StudiedDrive& drive, const std::vector<Setting>& settings,
                                                 const Laboratory& laboratory);
 
-/// Fills from_minimum and minimum_chi2 of all outcomes: the lowest chi2 of each objective is its minimum.
+/// Fills from_minimum and minimum_chi2 of all outcomes. The lowest chi2 of each objective is
+/// its minimum.
 void compare_outcomes(std::vector<Outcome>& outcomes);
 
-/// Runs with our settings ended at the same minimum where no pose differs by more: 1 cm, 0.1 degrees.
+/// Two runs with our settings ended at the same minimum if no pose differs by more: 1 cm,
+/// 0.1 degrees.
 inline constexpr PoseDifference kSamePoses = {0.01, 0.1 * 0.017453292519943295};
 [[nodiscard]] bool at_minimum(const Outcome& outcome);
-/// A run with the paper's settings reached its minimum where chi2 is less than 1 above it: no pose is then
-/// further from it than one of its standard deviations. A length would not do: these runs stop early by
-/// design, and their weights leave some poses free by metres.
+/// A run with the settings of the paper reached its minimum if chi2 is less than this above it. No
+/// pose is then further from the minimum than one of its standard deviations. A length would not
+/// work: these runs stop early by design, and their weights leave some poses free by metres.
 inline constexpr double kReachedChi2 = 1;
 [[nodiscard]] bool near_minimum(const Outcome& outcome);
 
-/// @return null where there is none of this name
+/// @return null if there is none with this name
 [[nodiscard]] const Outcome* find_outcome(const std::vector<Outcome>& outcomes, const std::string& name);
 
 }  // namespace waymark::reproduction

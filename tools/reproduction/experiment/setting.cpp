@@ -10,13 +10,14 @@ void use_g2o_dogleg(Setting& setting) {
   setting.stopping = StoppingRule::relative_gain;
 }
 
-/// An objective is the same for G1 and G3; G2's differs by the slack of its identity edges, far below what is
-/// told apart here.
+/// G1 and G3 have the same objective. That of G2 differs by the slack of its identity edges, which
+/// is far below the differences that matter here.
 Setting paper_setting(const std::string& modeling) {
   Setting setting = stated_setting("paper_" + modeling, modeling);
   setting.fusion.modeling_options = {{"error", "literal"}};
-  // The paper does not say where G2's nodes begin. From the fixes, kilometres from dead reckoning, g2o's
-  // dogleg does not get G2 to its minimum, and the paper says that it got there in all its drives.
+  // The paper does not say where the nodes of G2 begin. If they begin at the fixes, kilometres from
+  // dead reckoning, g2o's dogleg does not reach the minimum of G2, but the paper says that it did
+  // in all its drives.
   if (modeling == "g2") setting.fusion.modeling_options["nodes_begin"] = "pose";
   setting.fusion.lever_arm = false;
   setting.fusion.initial_guess.method = drive::StartMethod::dead_reckoning;
@@ -32,7 +33,7 @@ Setting our_setting(const std::string& modeling) {
   return setting;
 }
 
-/// The three modelings, and g2 without the gate.
+/// Returns the three modelings, and g2 without the gate.
 template <typename Make>
 std::vector<Setting> four_settings(Make make) {
   std::vector<Setting> settings;
@@ -107,7 +108,8 @@ std::vector<Setting> cause_settings() {
   std::vector<Setting> settings;
   for (const char* modeling : kModelings) {
     for (const Cause& cause : causes()) {
-      if (cause.name == "nodes_at_fixes" && modeling != std::string("g2")) continue;  // they have none
+      // the others have no such nodes
+      if (cause.name == "nodes_at_fixes" && modeling != std::string("g2")) continue;
       Setting setting = paper_setting(modeling);
       setting.name += "/" + cause.name;
       setting.evaluated = false;
@@ -154,7 +156,7 @@ std::vector<Setting> convergence_settings() {
           minimization.start = "auto";
         } else {
           minimization.max_iterations = kBareIterations;
-          // What damps the first step of kilometres bends it into a wrong winding.
+          // Damping bends a first step of kilometres into a wrong winding.
           if (algorithm == "levenberg_marquardt") minimization.options = {{"initial_damping", "1e-12"}};
         }
         if (algorithm != "default") minimization.algorithm = algorithm.substr(0, plus);

@@ -16,11 +16,11 @@ namespace {
 
 using Drives = std::vector<DriveResult>;
 
-/// A system of the paper's figures: what we call it, and what the paper does.
+/// A system in the figures of the paper: our name, and the paper's name.
 struct System {
   const char* name;
   const char* title;
-  const char* paper;  ///< its name in the paper's tables; empty: not there
+  const char* paper;  ///< its name in the tables of the paper; empty: it is not in them
   drawing::Look look;
 };
 
@@ -55,7 +55,7 @@ bool any_of_paper(const Drives& drives) {
                      [](const DriveResult& drive) { return drive.dataset > 0; });
 }
 
-/// Numbers of a column, the average behind those of the drives.
+/// Returns the numbers of a column, with the average after those of the drives.
 std::vector<double> values_of(const MetricsColumn& column, double PaperMetrics::*value) {
   std::vector<double> values;
   for (const auto& metrics : column.of_drive)
@@ -76,7 +76,7 @@ void add_bars(const MetricsColumn& column, const System& system, double PaperMet
   if (!bars.x.empty()) figure.series.push_back(std::move(bars));
 }
 
-/// The paper's number of the same system on its own drive, at the bar.
+/// Adds at each bar the number of the paper for the same system on its own drive.
 void add_printed(const Drives& drives, double PaperMetrics::*value, drawing::Figure& figure) {
   drawing::Series printed{
       .name = "the paper's own number", .mark = drawing::Mark::points, .look = drawing::Look::truth};

@@ -17,7 +17,7 @@ std::string in_words(const std::optional<bool>& holds) {
   return *holds ? "holds" : "does\u00a0not\u00a0hold";
 }
 
-/// "ours/east/default" may be broken into lines at its parts.
+/// Allows line breaks between the parts of "ours/east/default".
 std::string spaced(const std::string& source) {
   std::string text;
   for (const char c : source) text += c == '/' ? std::string(" / ") : std::string(1, c);
@@ -41,7 +41,7 @@ drawing::Section findings_section(const std::vector<Finding>& findings) {
   return {"findings", "Findings", {std::move(table)}};
 }
 
-/// "Findings that hold: paper 4 of 5, literal 2 of 5, ..."
+/// Returns "Findings that hold: paper 4 of 5, literal 2 of 5, ...".
 std::string summary_of(const std::vector<Finding>& findings) {
   std::string text;
   for (const std::string source : {"paper", "literal", "minimum", "ours", "default model"}) {
@@ -59,7 +59,7 @@ std::string summary_of(const std::vector<Finding>& findings) {
   return text.empty() ? "" : "Findings that hold, by source:" + text + ".";
 }
 
-/// Mean NEES and coverage of each setting, pooled over the drives.
+/// Returns mean NEES and coverage of each setting, pooled over the drives.
 std::string summary_of_study(const Drives& drives) {
   std::string text;
   for (const Setting& setting : consistency_settings()) {
@@ -80,7 +80,7 @@ std::string summary_of_study(const Drives& drives) {
   return text;
 }
 
-/// The changes of the default that cost most, and that gain most.
+/// Returns the changes of the default model that cost most, and those that gain most.
 std::string summary_of_ablation(const Drives& drives) {
   const auto errors_of = [&](const std::string& setting) {
     std::vector<double> errors;
@@ -123,7 +123,7 @@ void add_figures(std::vector<drawing::Figure> figures, drawing::Section& section
   if (!row.figures.empty()) section.blocks.emplace_back(std::move(row));
 }
 
-/// The figures of what the report is about: it is known by its name.
+/// Returns the figures of the main results. The name of a report decides which they are.
 std::vector<drawing::Section> figure_sections(const ReproductionReport& report, const Drives& drives) {
   std::vector<drawing::Section> sections;
   const auto add = [&](const std::string& id, const std::string& title,

@@ -9,9 +9,9 @@
 
 namespace waymark::reproduction {
 
-/// Findings first, then figures of what the report is about, then all of its tables.
-/// @param drives   the report was made of them
-/// @param version  of the program, for the footer
+/// Returns the page: first the findings, then figures of the main results, then all tables.
+/// @param drives the drives of the report
+/// @param version version of the program, for the footer
 [[nodiscard]] drawing::Page reproduction_page(const ReproductionReport& report,
                                               const std::vector<DriveResult>& drives,
                                               const std::string& version);

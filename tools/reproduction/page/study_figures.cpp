@@ -13,7 +13,8 @@ namespace {
 
 using Drives = std::vector<DriveResult>;
 
-/// A bar for each setting: the geometric mean over the drives, with the smallest and the largest.
+/// Returns a bar for each setting: the geometric mean over the drives, with the smallest and the
+/// largest value.
 template <typename Value>
 drawing::Figure over_drives(const Drives& drives, drawing::Figure figure, const Value& value) {
   drawing::Series bars{
@@ -39,7 +40,7 @@ drawing::Figure over_drives(const Drives& drives, drawing::Figure figure, const 
   return figure;
 }
 
-/// The drives of a study in the order they were drawn.
+/// Returns the drives of a study in the order of their draws.
 drawing::Figure of_draws(const Drives& drives, const Setting& setting, drawing::Figure figure, double unit,
                          double evaluation::ConsistencyStatistics::*value,
                          evaluation::Interval95 evaluation::ConsistencyStatistics::*honest) {

@@ -1,5 +1,5 @@
-/// The figures that the paper printed, as data: A. Das, G. Dubbelman, "An Experimental Study on Relative and
-/// Absolute Pose Graph Fusion for Vehicle Localization".
+/// The printed figures of the paper, as data: A. Das, G. Dubbelman, "An Experimental Study on
+/// Relative and Absolute Pose Graph Fusion for Vehicle Localization".
 #pragma once
 
 #include <optional>
@@ -33,19 +33,20 @@ struct PaperMetrics {
 /// A line of one of the five tables of results.
 struct PaperResult {
   int dataset = 0;     ///< 1 ... 8; 0 is the paper's line "Average"
-  std::string system;  ///< gnss, g1, g2, g3, g2_no_rejection
+  std::string system;  ///< 1 ... 8; 0: the line "Average" of the paper
   PaperMetrics metrics;
 };
 
 [[nodiscard]] const std::vector<PaperDrive>& paper_drives();
 [[nodiscard]] const std::vector<PaperResult>& paper_results();
-/// @return empty for a line that the paper does not have
+/// @return empty for a line that is not in the paper
 [[nodiscard]] std::optional<PaperMetrics> paper_metrics(int dataset, std::string_view system);
 
-/// The improvement of the average precision with G1 as the text of Sec. III-C gives it, percent; its own
-/// table says -7.364.
+/// The improvement of the average precision with G1 in the text of Sec. III-C, percent. The paper's
+/// own table has -7.364.
 inline constexpr double kPaperTextG1Precision = -10.11;
-/// Drives in which G1 converged; G2 converged in all 8. Of G3 the text says that it performed well.
+/// Number of drives in which G1 converged. G2 converged in all 8. About G3 the text says that it
+/// performed well.
 inline constexpr int kPaperG1Converged = 3;
 
 }  // namespace waymark::reproduction

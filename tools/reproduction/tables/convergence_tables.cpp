@@ -32,7 +32,7 @@ std::string short_length(double metres) {
   return metres >= 1 ? fmt::format("{:.1f} m", metres) : fmt::format("{:.0f} mm", metres * 1000);
 }
 
-/// "12" where the minimum was reached in 12 steps, else "x 50: 3.2 m".
+/// Returns "12" if the minimum was reached in 12 steps, or else "x 50: 3.2 m".
 std::string ending_cell(const Outcome* outcome) {
   if (outcome == nullptr) return "-";
   if (!outcome->failure.empty()) return "failed";
@@ -49,7 +49,7 @@ std::string reached_cell(const Drives& drives, const std::string& setting) {
   return reached_text(count);
 }
 
-/// Smallest and largest number of steps, and how far apart the ends were.
+/// The smallest and largest number of steps, and the distance between the ends.
 struct Spread {
   int fewest = 1 << 30;
   int most = 0;

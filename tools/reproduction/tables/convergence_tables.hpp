@@ -1,4 +1,4 @@
-/// Where the runs ended, and why.
+/// Tables of where the runs ended, and why.
 #pragma once
 
 #include <vector>
@@ -8,25 +8,27 @@
 
 namespace waymark::reproduction {
 
-/// The paper's literal settings, and each cause of their failures switched off alone: whether the minimum of
-/// the objective was reached, in how many steps, else how far from it the run stopped.
+/// Returns the literal settings of the paper, and each cause of their failures removed alone. A
+/// cell says in how many steps the minimum of the objective was reached, or else how far from it
+/// the run stopped.
 [[nodiscard]] ReportTable cause_table(const std::vector<DriveResult>& drives);
 
-/// Our settings from both starts with every algorithm: in how many drives the common minimum was reached.
+/// Returns our settings from both starts with every algorithm: the number of drives in which the
+/// common minimum was reached.
 [[nodiscard]] ReportTable common_minimum_table(const std::vector<DriveResult>& drives);
 
-/// Every run of every drive, a line each: steps, chi2, the lowest chi2 of its objective, the distance from
-/// there, how it ended.
+/// Returns every run of every drive in one line: steps, chi2, the lowest chi2 of its objective, the
+/// distance from there, and how it ended.
 [[nodiscard]] ReportTable run_table(const std::vector<DriveResult>& drives);
 
-/// In how many of the drives, and in how many it was run.
+/// The number of drives in which it succeeded, and the number in which it ran.
 struct Reached {
   int reached = 0;
   int of = 0;
 };
-/// The setting ended near the minimum of its objective (near_minimum).
+/// Counts where the setting ended near the minimum of its objective (near_minimum).
 [[nodiscard]] Reached count_reached(const std::vector<DriveResult>& drives, const std::string& setting);
-/// It ended at it (at_minimum) and was declared converged.
+/// Counts where it ended at the minimum (at_minimum) and was declared converged.
 [[nodiscard]] Reached count_common_minimum(const std::vector<DriveResult>& drives,
                                            const std::string& setting);
 

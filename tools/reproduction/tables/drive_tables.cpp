@@ -14,7 +14,7 @@ void add_position(const evaluation::PositionMetrics& m, Row& row) {
 }
 
 const char* reached_word(const Outcome& outcome) {
-  const bool alone = outcome.setting.objective.empty();  // nothing to compare its end with
+  const bool alone = outcome.setting.objective.empty();  // there is nothing to compare its end with
   return (alone ? outcome.ending.converged : near_minimum(outcome)) ? "yes" : "no";
 }
 
@@ -98,8 +98,8 @@ void add_withheld(const evaluation::WithheldMetrics& withheld, Row& row) {
   for (const double value : {m.median_m, m.rmse_m, m.max_m, m.cep95_m}) row.push_back(cell(value, 2));
 }
 
-/// What odometry alone makes of the outages, from the last fix before each: the same fused poses to begin
-/// with for all systems.
+/// Adds the result of odometry alone in the outages. It begins at the last fix before each outage,
+/// with the same fused poses for all systems.
 void add_dead_reckoning(const DriveResult& drive, const WithheldResult& way, ReportTable& table) {
   const Outcome* from = find_outcome(way.outcomes, "ours_g2");
   const evaluation::WithheldMetrics* reckoned =

@@ -1,4 +1,4 @@
-/// Tables of drives that are not the paper's.
+/// Tables of drives that are not in the paper.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,15 @@
 
 namespace waymark::reproduction {
 
-/// What the drives are: length, logs, rejected share, what is imitated or simulated.
+/// Returns an overview of the drives: length, logs, rejected share, and what is imitated
+/// or simulated.
 [[nodiscard]] ReportTable overview_table(const std::vector<DriveResult>& drives);
 
-/// Drive x {raw, the paper's settings, ours} x {Max, Acc, Prec, RMSE, CEP95}, for drives with truth.
+/// Returns drive x {raw, the settings of the paper, ours} x {Max, Acc, Prec, RMSE, CEP95} for
+/// drives with truth.
 [[nodiscard]] ReportTable truth_table(const std::vector<DriveResult>& drives);
 
-/// Errors at withheld fixes, for drives without truth.
+/// Returns errors at withheld fixes, for drives without truth.
 [[nodiscard]] ReportTable withheld_table(const std::vector<DriveResult>& drives);
 
 }  // namespace waymark::reproduction

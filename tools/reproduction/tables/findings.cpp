@@ -11,7 +11,7 @@ namespace {
 
 using Drives = std::vector<DriveResult>;
 
-/// "4, 7, 8"; "none". Names that have commas themselves are parted by semicolons.
+/// Returns "4, 7, 8", or "none". Names that contain commas are separated by semicolons.
 std::string listed(const std::vector<std::string>& labels) {
   if (labels.empty()) return "none";
   bool commas = false;
@@ -19,11 +19,12 @@ std::string listed(const std::vector<std::string>& labels) {
   return fmt::format("{}", fmt::join(labels, commas ? "; " : ", "));
 }
 
-/// The numbers that a finding speaks of, from one source: the paper, its settings, the same at the minimum,
-/// ours.
+/// The numbers for a finding from one source: the paper, its settings, the same at the
+/// minimum, or ours.
 class Source {
  public:
-  /// @param prefix, suffix  around a system's name in the names of settings; both empty: the printed figures
+  /// @param prefix, suffix of the system's name in the names of settings; both empty: the
+  /// printed figures
   Source(std::string name, const Drives& drives, std::string prefix, std::string suffix = "")
       : name_(std::move(name)), drives_(&drives), prefix_(std::move(prefix)), suffix_(std::move(suffix)) {}
 
@@ -36,7 +37,8 @@ class Source {
   [[nodiscard]] PaperMetrics improvement(const std::string& system) const {
     return average_improvement(column("gnss"), column(system));
   }
-  /// Drives where the precision of `a` is worse than that of `b`, as "4, 7, 8"; "none".
+  /// Returns the drives in which the precision of `a` is worse than that of `b`, as "4,
+  /// 7, 8"; "none".
   [[nodiscard]] std::string worse_precision(const std::string& a, const std::string& b) const {
     const MetricsColumn left = column(a);
     const MetricsColumn right = column(b);
@@ -58,7 +60,7 @@ class Source {
 
 using Sources = std::vector<Source>;
 
-/// A finding whose figures and verdicts are functions of the source.
+/// Makes a finding from functions that give the figures and the verdict of a source.
 template <typename Figures, typename Holds>
 Finding make(const Sources& sources, const std::string& statement, Figures figures, Holds holds) {
   Finding finding{statement, {}};
@@ -135,7 +137,7 @@ Finding rejection_is_mixed(const Sources& sources) {
       });
 }
 
-/// The eight drives as the paper's figures know them.
+/// Returns the eight drives with the figures of the paper.
 Drives drives_of_paper() {
   Drives drives;
   for (const PaperDrive& drive : paper_drives()) {
@@ -148,7 +150,7 @@ Drives drives_of_paper() {
 
 using Counter = Reached (*)(const Drives&, const std::string&);
 
-/// "g1 3 of 8, g2 8 of 8, g3 8 of 8"
+/// Returns "g1 3 of 8, g2 8 of 8, g3 8 of 8".
 std::string counts(const Drives& drives, const std::string& prefix, const std::string& suffix,
                    Counter count_drives) {
   std::string text;
@@ -184,7 +186,7 @@ Finding convergence(const Drives& drives) {
   return finding;
 }
 
-/// The averages of ours G2 and of the default model against raw GNSS.
+/// Compares the averages of our G2 and of the default model with raw GNSS.
 Finding default_model_gains(const Drives& drives) {
   const MetricsColumn gnss = metrics_column(drives, "gnss");
   const PaperMetrics g2 = average_improvement(gnss, metrics_column(drives, "ours_g2"));
@@ -197,7 +199,7 @@ Finding default_model_gains(const Drives& drives) {
            {"default model", figures(model), model.max_m > g2.max_m && model.precision_m > g2.precision_m}}};
 }
 
-/// What the covariances of ours G2 and of the default model are worth.
+/// Judges the covariances of our G2 and of the default model.
 Finding default_model_is_honest(const Drives& drives) {
   Finding finding{
       fmt::format("Beyond the paper: at least {:.0f} % of the truth lies in the stated 95 % regions",

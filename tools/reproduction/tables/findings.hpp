@@ -1,5 +1,5 @@
-/// Which of the paper's findings hold on the drives at hand, and what the default model adds: computed from
-/// the numbers.
+/// Tests which findings of the paper hold on the present drives, and what the default model adds.
+/// Everything is computed from the numbers.
 #pragma once
 
 #include <optional>
@@ -10,30 +10,30 @@
 
 namespace waymark::reproduction {
 
-/// What one source says of a finding.
+/// The verdict of one source on a finding.
 struct Evidence {
   std::string source;  ///< "paper", "literal", "minimum", "ours", "default model"
   std::string figures;
-  std::optional<bool> holds;  ///< empty: the source is no judge of it
+  std::optional<bool> holds;  ///< empty: the source cannot judge it
 };
 
 struct Finding {
-  std::string statement;  ///< what the paper found, or what lies beyond it
+  std::string statement;  ///< a finding of the paper, or one beyond it
   std::vector<Evidence> evidence;
 };
 
-/// Largest change of the average accuracy that counts as none, percent: what the paper has in a single drive
-/// (2) and calls no change.
+/// A smaller change of the average accuracy counts as no change, percent. In the paper, a single
+/// drive (2) changes by this much, and the text calls it no change.
 inline constexpr double kUnchangedPercent = 10;
 
-/// Mean coverage of 95 % regions from which covariances are called honest.
+/// Covariances with at least this mean coverage of their 95 % regions are called honest.
 inline constexpr double kHonestCoverage = 0.9;
 
-/// The paper's, and after them what lies beyond it. Drives without truth have no part in it. Empty where no
-/// drive has truth.
+/// Returns the findings of the paper, and then those beyond it. Only drives with truth are used;
+/// empty if there are none.
 [[nodiscard]] std::vector<Finding> findings(const std::vector<DriveResult>& drives);
 
-/// A paragraph for each, for the terminal and Markdown alike.
+/// Returns a paragraph for each finding, for the terminal and for Markdown.
 [[nodiscard]] std::string findings_text(const std::vector<Finding>& findings);
 
 }  // namespace waymark::reproduction

@@ -56,7 +56,7 @@ ReportTable gnss_table(const Drives& drives) {
   return table;
 }
 
-/// "The paper prints 18.391 ...": whether its averages are those of its rows.
+/// Adds "The paper prints 18.391 ..." if its average is not that of its rows.
 void note_paper_average(const MetricsColumn& paper, const std::string& system, ReportTable& table) {
   const auto printed = paper_metrics(0, system);
   const bool all = paper.of_drive.size() == paper_drives().size();
@@ -132,7 +132,7 @@ ReportTable result_table(const Drives& drives, int number, const std::string& sy
   return table;
 }
 
-/// Mean NEES and coverage of both systems; nothing in the lines below the drives.
+/// Adds mean NEES and coverage of both systems. The cells are empty in the lines below the drives.
 void add_honesty(const DriveResult* drive, Row& row) {
   for (const std::string& setting : {std::string("ours_g2"), std::string(kDefaultModel)}) {
     const auto stated = drive != nullptr ? consistency_of(*drive, setting) : std::nullopt;

@@ -1,4 +1,4 @@
-/// The paper's six tables with its figures beside ours, and what lies beyond.
+/// The six tables of the paper with its figures beside ours, and one table more.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,11 @@
 
 namespace waymark::reproduction {
 
-/// Dataset overview; GNSS; G1; G2; G3; G2 without rejection; and one that the paper does not have: the
-/// default model beside G2, with what the covariances are worth. The results have three triples of columns:
-/// the paper's figures, the paper's settings on these drives, our settings on these drives; below them
-/// averages and improvements as the paper forms them. Drives that are not the paper's are left out.
+/// Returns Dataset overview; GNSS; G1; G2; G3; G2 without rejection; and a table that is not in the
+/// paper: the default model beside G2, with the consistency of the covariances. The tables of
+/// results have three triples of columns: the figures of the paper, its settings on these drives,
+/// our settings on these drives. Averages and improvements below them are computed as in the paper.
+/// Drives that are not in the paper are left out.
 [[nodiscard]] std::vector<ReportTable> paper_tables(const std::vector<DriveResult>& drives);
 
 }  // namespace waymark::reproduction

@@ -1,4 +1,4 @@
-/// A table of a report, and how it is written.
+/// A table of a report and its output formats.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 namespace waymark::reproduction {
 
 struct ReportTable {
-  std::string file;   ///< name of its CSV without ending
+  std::string file;   ///< name of its CSV without extension
   std::string title;  ///< says what is simulated
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
-  std::vector<std::string> notes;              ///< sentences below it
+  std::vector<std::string> notes;              ///< sentences below the table
 };
 
-/// For the terminal: title, aligned columns, notes.
+/// Returns title, aligned columns and notes for the terminal.
 [[nodiscard]] std::string table_text(const ReportTable& table, const text::TextLook& look = {});
-/// GitHub's Markdown, under a heading of second level.
+/// Returns GitHub's Markdown, under a heading of second level.
 [[nodiscard]] std::string table_markdown(const ReportTable& table);
-/// RFC 4180: the columns' names, then the rows. Without title and notes.
+/// Returns CSV (RFC 4180): the names of the columns, then the rows, without title and notes.
 [[nodiscard]] std::string table_csv(const ReportTable& table);
 
-/// "-" where a number is not defined.
+/// Returns "-" if the number is undefined.
 [[nodiscard]] std::string cell(double value, int digits);
 
 }  // namespace waymark::reproduction

@@ -1,4 +1,4 @@
-/// The whole result: all tables, the findings, files.
+/// The whole result: all tables, the findings, and files.
 #pragma once
 
 #include <string>
@@ -11,23 +11,25 @@
 namespace waymark::reproduction {
 
 struct ReproductionReport {
-  std::string name = "reproduction";  ///< of its files and, after "waymark-", of its schema
+  std::string name = "reproduction";  ///< for its files and, after "waymark-", for its schema
   std::string title = "The paper's experiment, reproduced";
   std::string introduction;  ///< a paragraph: program, version, what is simulated
   std::vector<ReportTable> tables;
   std::vector<Finding> findings;
-  ReportTable runs;  ///< every run; in files only
+  ReportTable runs;  ///< every run; only in files
 };
 
-/// The tables that the drives have material for: the paper's six, convergence, those of other drives.
+/// Returns the tables for which the drives have data: the six of the paper, convergence, and those
+/// of other drives.
 [[nodiscard]] ReproductionReport make_report(const std::vector<DriveResult>& drives,
                                              const std::string& introduction);
 
-/// For the terminal.
+/// Returns the report for the terminal.
 [[nodiscard]] std::string report_text(const ReproductionReport& report, const text::TextLook& look = {});
-/// NAME.md, the name in capitals
+/// Returns NAME.md, with the name in capitals.
 [[nodiscard]] std::string report_markdown(const ReproductionReport& report);
-/// NAME.json, schema "waymark-NAME" version 1 (tools/program/JSON.md): all numbers in full.
+/// Returns NAME.json, schema "waymark-NAME" version 1 (tools/program/JSON.md), with all
+/// numbers in full.
 [[nodiscard]] std::string report_json(const ReproductionReport& report,
                                       const std::vector<DriveResult>& drives);
 
