@@ -1,7 +1,6 @@
 // Graduated non-convexity: false edges are found, good ones stay, and what remains is the optimum without
 // them.
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -113,10 +112,10 @@ Score graduate_and_score(const Spoiled& spoiled, const std::string& name, const 
   score.precision = share(r.outliers.size());
   score.recall = share(spoiled.false_edges.size());
   score.chi2_error = std::abs(r.summary.final_chi2 / optimum.final_chi2 - 1);
-  std::printf(
-      "%-32s %-14s precision %.3f recall %.3f chi2 %.6f (optimum %.6f) rounds %d splits %d steps %d %.2f s\n",
-      name.c_str(), options.loss.name.c_str(), score.precision, score.recall, r.summary.final_chi2,
-      optimum.final_chi2, r.rounds, r.passes, r.iterations, r.seconds);
+  UNSCOPED_INFO(name << ", " << options.loss.name << ": precision " << score.precision << ", recall "
+                     << score.recall << ", chi2 " << r.summary.final_chi2 << ", optimum "
+                     << optimum.final_chi2 << ", " << r.rounds << " rounds, " << r.passes << " splits, "
+                     << r.iterations << " steps, " << r.seconds << " s");
   return score;
 }
 

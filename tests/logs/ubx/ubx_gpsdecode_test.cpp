@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -116,18 +115,6 @@ void check_agreement(const Differences& largest, double position_m, double hacc_
   CHECK(largest.sacc_mps < 5.01e-3);
 }
 
-/// Prints a row of the table file x epochs x largest differences.
-Differences compared(const std::string& name, const LogData& data, const std::vector<Report>& reports) {
-  const Differences largest = compare(data.fixes, reports);
-  std::printf(
-      "%-28s %4zu epochs, %4zu without a fix, %2zu corrupt, %4zu TPVs, %3zu not in gpsd: %.2e m %.1e s "
-      "%.1e m/s %.1e deg; hAcc %.1e m sAcc %.1e m/s\n",
-      name.c_str(), data.fixes.size(), data.without_fix, data.corrupt, reports.size(), largest.without_report,
-      largest.position_m, largest.time_s, largest.speed_mps, largest.course_deg, largest.hacc_m,
-      largest.sacc_mps);
-  return largest;
-}
-
 }  // namespace
 
 TEST_CASE("ubx: real logs of NAV-PVT agree with gpsdecode") {
@@ -148,7 +135,7 @@ TEST_CASE("ubx: real logs of NAV-PVT agree with gpsdecode") {
     CHECK(data.fixes.size() == log.fixes);
     CHECK(data.without_fix == log.without_fix);
     CHECK(data.corrupt == log.corrupt);
-    check_agreement(compared(log.name, data, reports_of(*objects)), 1e-6, 1e-9);
+    check_agreement(compare(data.fixes, reports_of(*objects)), 1e-6, 1e-9);
   }
 }
 
@@ -161,7 +148,7 @@ TEST_CASE("ubx: a real log of NAV-HPPOSLLH agrees with gpsdecode") {
   const std::vector<Report> reports = reports_of(*objects);
   // Where gpsd reports an epoch only once it is with NAV-PVT's position and hAcc, rounded to 1e-7 degree and
   // to 1 mm: 5.6 mm north, 3.9 mm east at most, and 0.5 mm.
-  check_agreement(compared(name, data, reports), 0.0068, 0.00051);
+  check_agreement(compare(data.fixes, reports), 0.0068, 0.00051);
   std::vector<GeodeticFix> precise;
   for (const GeodeticFix& fix : data.fixes) {
     const bool reported = std::any_of(reports.begin(), reports.end(), [&](const Report& report) {
@@ -182,7 +169,6 @@ TEST_CASE("ubx: real HNR-PVT agrees with what gpsd 3.25 made of it") {
   }
   const LogData data = read_fixes(name, "HNR-PVT");
   CHECK(data.fixes.size() == 189);
-  check_agreement(
-      compared(name + " (HNR)", data, reports_of(waymark_test::gpsd_objects(read_text_file(reference)))),
-      1e-6, 1e-9);
+  check_agreement(compare(data.fixes, reports_of(waymark_test::gpsd_objects(read_text_file(reference)))),
+                  1e-6, 1e-9);
 }
