@@ -16,7 +16,7 @@ constexpr const char* kDescription =
     "with truth. Each step is a subcommand of its own as well, and graphs of other programs are read and "
     "written.";
 
-/// The exit codes as a sentence, and an example.
+/// Returns the exit codes as a sentence, and an example.
 std::string footer() {
   std::string codes = "Exit codes:";
   for (const auto& [code, meaning] : kExitCodeMeanings) {

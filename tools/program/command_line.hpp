@@ -1,5 +1,5 @@
-/// The command line as a tree of subcommands and options. The parser reads it, and --help, the man pages and
-/// the completion are printed from it, so that they cannot differ.
+/// The command line as a tree of subcommands and options. The parser, --help, the man pages and the
+/// completion all use it, so they cannot differ.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace waymark::program {
 
-/// Adds every subcommand. @param action  what the chosen one does, after parsing
+/// Adds every subcommand. @param action receives what the chosen subcommand does, after parsing
 void build_command_line(CLI::App& app, Action& action);
 
-/// The subcommand of a name. @throws UsageError that names the nearest one, or all
+/// Returns the subcommand with a name. @throws UsageError that names the nearest one, or all
 [[nodiscard]] const CLI::App& find_command(const CLI::App& app, const std::string& name);
 
-/// A thing outside the command line that the program heeds.
+/// An environment variable or file that affects the program.
 struct Surrounding {
   std::string name;
   std::string meaning;

@@ -14,7 +14,7 @@ ExitCode fail(ExitCode code, const std::string& message) {
   return code;
 }
 
-/// The parser would only say that a subcommand is required. @throws UsageError
+/// The parser would only report that a subcommand is required. @throws UsageError
 void check_command(const CLI::App& app, int argc, char** argv) {
   const std::string_view word = argc > 1 ? argv[1] : "-";
   if (word.starts_with('-')) return;

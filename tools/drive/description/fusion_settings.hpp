@@ -16,7 +16,7 @@ struct Minimization {
   std::string start = "file";  ///< the values of the graph ("file"), a registered start, or "auto": the best
   std::string algorithm = "dogleg";
   Options options{};            ///< of the algorithm
-  std::string solver = "auto";  ///< auto: the fastest by measurement (solvers/README.md)
+  std::string solver = "auto";  ///< auto: the fastest in measurements (solvers/README.md)
   int threads = 1;
   int max_iterations = 500;
   double tolerance = 1e-6;           ///< OptimizerOptions::decrement_tolerance

@@ -32,7 +32,7 @@ void synchronise(DriveLogs& logs, DriveDescription& description) {
   const SyncReport report = estimate_clock_offsets(prepare_drive(logs, description), {});
   const bool speed_moved = apply_offset(report.speed, "speed", description.speed_delay_s, notes);
   (void)apply_offset(report.yaw_rate, "yaw rate", description.yaw_rate_delay_s, notes);
-  // One log has one clock: half of it must not be moved alone.
+  // A log has one clock, so one half of it must not be moved alone.
   if (description.odometry.size() == 1 && speed_moved && !report.yaw_rate) {
     description.yaw_rate_delay_s += report.speed->late_s;
     notes.emplace_back("sync: the yaw rate stands in the log of the speed and is moved with it");

@@ -5,7 +5,7 @@
 
 namespace waymark::drive {
 
-/// An offset within this many of its sigmas is none.
+/// An offset within this many of its sigmas counts as zero.
 inline constexpr double kOffsetSigmas = 3;
 
 /// Puts fixes onto the GNSS time that their log tells of, and adds the offsets of speed and yaw rate against

@@ -62,7 +62,7 @@ std::vector<VertexIndex> wanted_vertices(const formats::GraphDocument& document,
 
 }  // namespace
 
-// The backends are registered fastest first: on every graph measured the first was the fastest.
+// The backends are registered fastest first. On every measured graph the first one was the fastest.
 std::string solver_name(const Minimization& how, const TypeRegistry& registry) {
   return how.solver == "auto" ? registry.linear_solvers().front().type.name : how.solver;
 }
@@ -108,7 +108,7 @@ void add_covariances(formats::GraphDocument& document, const std::string& which)
   const CovarianceBlocks blocks = marginals.blocks(vertices);
   document.covariances.reserve(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    // No line is honester than one of zeros, which reads as certainty.
+    // A vertex that is not estimated gets no line, because zeros would look like certainty.
     if (marginals.estimated(vertices[i])) document.covariances.push_back({vertices[i], blocks[i]});
   }
 }

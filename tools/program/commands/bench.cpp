@@ -26,7 +26,7 @@ using Names = std::vector<std::string>;
 struct BenchOptions {
   CommonOptions common;
   drive::Minimization
-      minimization;  ///< the defaults of `optimize`; here only the stopping rules are set from outside
+      minimization;  ///< the defaults of `optimize`; the command line sets only the stopping rules
   Names files;
   std::string input_format = "graph";
   Names algorithms;
@@ -53,7 +53,7 @@ void check_bench_start(const std::string& name, const TypeRegistry& registry) {
   throw UsageError("unknown start '" + name + "'" + suggestion(name, known));
 }
 
-/// Empty: what `optimize` takes; "all": every registered one.
+/// Returns the names to use. Empty: that of `optimize`; "all": every registered one.
 Names chosen(const Names& asked, const std::string& by_default, const Names& all) {
   if (asked.empty()) return {by_default};
   return std::find(asked.begin(), asked.end(), "all") == asked.end() ? asked : all;
@@ -81,7 +81,7 @@ std::vector<benchmark::Contestant> make_contestants(const BenchOptions& options,
   return contestants;
 }
 
-/// A file as it was read.
+/// A file in memory.
 struct LoadedGraph {
   std::string name;  ///< without folder
   std::string fingerprint;
@@ -98,7 +98,7 @@ LoadedGraph load(const std::string& path, const std::string& format, const TypeR
           std::move(document.graph), report.edges_only};
 }
 
-/// Puts the values of a start into the graph. @throws InputError where it cannot be made
+/// Puts the values of a start into the graph. @throws InputError if it cannot be computed
 void apply_start(const std::string& name, LoadedGraph& loaded, const TypeRegistry& registry,
                  const Console& console) {
   if (name == "file") return;
@@ -110,7 +110,7 @@ void apply_start(const std::string& name, LoadedGraph& loaded, const TypeRegistr
   if (start.apart > 0) console.note(loaded.name + ", start " + name + ": " + drive::apart_note(start.apart));
 }
 
-/// The starts that differ for this file: one without vertices has no values of its own.
+/// Returns the starts that differ for this file. A file without vertices has no values of its own.
 Names starts_of(const LoadedGraph& loaded, const Names& asked, const Console& console) {
   Names starts = asked;
   const bool both = std::find(asked.begin(), asked.end(), "odometry") != asked.end();
@@ -121,7 +121,7 @@ Names starts_of(const LoadedGraph& loaded, const Names& asked, const Console& co
   return starts;
 }
 
-/// All starts of a file. @return nothing when interrupted
+/// Measures all starts of a file. @return nothing if interrupted
 std::optional<benchmark::FileSummary> bench_file(const std::string& path, const BenchOptions& options,
                                                  std::span<const benchmark::Contestant> contestants,
                                                  const TypeRegistry& registry, const Console& console,
@@ -146,7 +146,8 @@ std::optional<benchmark::FileSummary> bench_file(const std::string& path, const 
   return file;
 }
 
-/// "model name : AMD EPYC" of /proc/cpuinfo; a time means nothing without it.
+/// Returns "AMD EPYC" from "model name : AMD EPYC" of /proc/cpuinfo; a time means
+/// nothing without it.
 std::string processor() {
   std::ifstream cpuinfo("/proc/cpuinfo");
   for (std::string line; std::getline(cpuinfo, line);) {
@@ -175,7 +176,7 @@ ExitCode bench(const BenchOptions& options) {
   if (!options.optima.empty())
     known = benchmark::read_known_optima(formats::read_text_file(options.optima), options.optima);
   if (!options.folder.empty()) formats::make_folder(options.folder);
-  // A wrong file at the end of the list is found before the hours are spent.
+  // A wrong file at the end of the list is found before hours of work.
   for (std::size_t i = 1; i < options.files.size(); ++i) {
     console.progress("reading " + options.files[i]);
     (void)load(options.files[i], options.input_format, registry);
@@ -204,7 +205,7 @@ ExitCode bench(const BenchOptions& options) {
   return kInterrupted;
 }
 
-/// @param type  of one name, for the help
+/// @param type type of one name, for the help
 void add_name_list(CLI::App& command, const std::string& flags, Names& names, const std::string& type,
                    const std::string& about) {
   command.add_option(flags, names, about)

@@ -26,7 +26,7 @@ struct CheckOptions {
 
 constexpr std::size_t kCheckedEdges = 50;  // per type
 
-/// Of every registered edge type, without a graph.
+/// Checks every registered edge type without a graph.
 ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) {
   const Console console(options.common);
   const DerivativeReport report = check_derivatives(registry, console.look());
@@ -41,7 +41,7 @@ ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) 
 ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
   const Console console(options.common);
   formats::ReadReport report;
-  constexpr bool kLenient = true;  // to name the first ten wrong lines, not only one
+  constexpr bool kLenient = true;  // reports the first ten wrong lines, not only one
   const formats::GraphDocument document = formats::read_graph_as(
       *formats::graph_format_from_string(options.input_format), formats::read_text_file(options.input),
       options.input, registry, kLenient, &report);
@@ -73,7 +73,7 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
   if (!table.empty()) text += table.text(console.look());
   console.progress("factorising");
   try {
-    (void)marginal_covariances(graph, {});  // factorises without damping
+    (void)marginal_covariances(graph, {});  // this factorises without damping
     for (const std::string& message : find_gauge(graph).messages) {
       text += "note: " + message + "\n";
       json["notes"].push_back(message);

@@ -1,4 +1,5 @@
-/// The subcommands. Each adds itself to the parser; its action runs after parsing and gives the exit code.
+/// The subcommands. Each adds itself to the parser. Its action runs after parsing and returns
+/// the exit code.
 #pragma once
 
 #include <functional>
@@ -10,7 +11,7 @@
 
 namespace waymark::program {
 
-/// What the chosen subcommand does.
+/// The work of the chosen subcommand.
 using Action = std::function<ExitCode()>;
 
 void add_convert(CLI::App& app, Action& action);
@@ -30,7 +31,7 @@ void add_doctor(CLI::App& app, Action& action);
 void add_help(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 
-/// Options that are added while it lives stand under this heading in the help.
+/// Options that are added while this object lives appear under this heading in the help.
 class OptionHeading {
  public:
   OptionHeading(CLI::App& command, const std::string& heading)
@@ -46,9 +47,9 @@ class OptionHeading {
   std::string before_;
 };
 
-/// --quiet, -v, --json, --plugin.
+/// Adds --quiet, -v, --json and --plugin.
 void add_common_options(CLI::App& command, CommonOptions& options);
-/// --plugin alone.
+/// Adds only --plugin.
 void add_plugin_option(CLI::App& command, CommonOptions& options);
 
 }  // namespace waymark::program

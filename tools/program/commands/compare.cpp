@@ -24,7 +24,7 @@ std::vector<std::string> drives_of(const std::vector<report::ComparedRun>& runs)
   return drives;
 }
 
-/// What the reader of the numbers must know before them.
+/// Prints what the reader must know before the numbers.
 void tell_limits(const std::vector<report::ComparedRun>& runs, const Console& console) {
   const std::vector<std::string> drives = drives_of(runs);
   if (drives.size() > 1) {
@@ -43,7 +43,7 @@ void tell_limits(const std::vector<report::ComparedRun>& runs, const Console& co
         "`waymark run --withhold` and `waymark evaluate --truth`");
 }
 
-/// The runs in the schema that `run` has, under their labels here.
+/// Returns the runs in the schema of `run`, under their labels here.
 std::string merged_metrics(const std::vector<report::ComparedRun>& runs) {
   const std::vector<std::string> drives = drives_of(runs);
   evaluation::ReportHeader header{drives.size() == 1 ? drives.front() : "", {}};

@@ -27,8 +27,8 @@ struct ConvertOptions {
   std::string input_format = "graph";
   OutputFormat format;
   bool lenient = false;
-  std::vector<std::string> of_drives;  ///< options given that speak of logs only
-  std::vector<std::string> of_graphs;  ///< options given that speak of graph files only
+  std::vector<std::string> of_drives;  ///< given options that apply only to logs
+  std::vector<std::string> of_graphs;  ///< given options that apply only to graph files
 };
 
 void refuse_options(const std::vector<std::string>& given, const std::string& what) {
@@ -38,7 +38,7 @@ void refuse_options(const std::vector<std::string>& given, const std::string& wh
                    " (a file whose name ends in .yaml or .yml is a drive, any other a graph)");
 }
 
-/// "graph", or "g2o for GTSAM's load2D".
+/// Returns "graph", or "g2o for GTSAM's load2D".
 std::string describe(const OutputFormat& output) {
   const std::string format(to_string(chosen_format(output)));
   const formats::Recipient* profile = formats::find_profile(output.profile);
@@ -128,7 +128,7 @@ ExitCode convert(const ConvertOptions& options) {
   return file ? convert_drive(options, *file, registry, console) : convert_graph(options, registry, console);
 }
 
-/// The options that `add` adds to a command.
+/// Returns the options that `add` adds to a command.
 template <typename Add>
 std::vector<const CLI::Option*> added_by(CLI::App& command, Add add) {
   const std::size_t before = command.get_options().size();
@@ -137,7 +137,7 @@ std::vector<const CLI::Option*> added_by(CLI::App& command, Add add) {
   return {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()};
 }
 
-/// The names of those of them that stand on the command line.
+/// Returns the names of those that are on the command line.
 std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options) {
   std::vector<std::string> given;
   for (const CLI::Option* option : options) {

@@ -27,7 +27,7 @@ std::string line(const std::string& label, const std::string& value) {
   return fmt::format("{:<12}{}\n", label, value);
 }
 
-/// A table of words, each column as wide as its longest.
+/// Returns a table of words. Each column is as wide as its longest word.
 std::string columns(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {

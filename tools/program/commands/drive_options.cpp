@@ -9,7 +9,7 @@
 namespace waymark::program {
 namespace {
 
-/// A check of a number whose failure reads "--withhold: must be 0 (none) or at least 2, got 1".
+/// Checks a number. Its error reads "--withhold: must be 0 (none) or at least 2, got 1".
 CLI::Validator rule(const std::string& words, bool (*holds)(double)) {
   return CLI::Validator(
       [words, holds](const std::string& text) {

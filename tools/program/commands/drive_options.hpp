@@ -10,7 +10,7 @@ namespace waymark::program {
 
 void add_drive_options(CLI::App& command, DriveChoice& choice);
 void add_optimization_options(CLI::App& command, drive::Minimization& minimization);
-/// Those of them that say when to stop; `bench` has these alone.
+/// Adds those of them that say when to stop; `bench` has only these.
 void add_stopping_options(CLI::App& command, drive::Minimization& minimization);
 
 }  // namespace waymark::program

@@ -14,7 +14,7 @@
 namespace waymark::program {
 namespace {
 
-/// NaN: not defined, or there is no truth to define it.
+/// NaN: undefined, or there is no truth to define it.
 std::string number(double value, int decimals) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
 }

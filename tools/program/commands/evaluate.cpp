@@ -22,8 +22,8 @@ struct EvaluateOptions {
   std::string folder;
 };
 
-/// The files' names without folder and suffix, made different where they are not: fused, fused_2. Of several
-/// files none is called as the page that compares them.
+/// Returns the names of the files without folder and suffix. Equal names are made different: fused,
+/// fused_2. With several files, none gets the name of the page that compares them.
 std::vector<std::string> labels_of(const std::vector<std::string>& paths) {
   std::vector<std::string> labels;
   for (const std::string& path : paths) {
@@ -41,7 +41,8 @@ std::vector<std::string> labels_of(const std::vector<std::string>& paths) {
   return labels;
 }
 
-/// Empty where their sigmas cannot be had: the graph is then not at a minimum, or not determined.
+/// Returns the states with sigmas. Empty if these cannot be computed: the graph is then not at a
+/// minimum, or undetermined.
 std::vector<evaluation::StateReport> states_at(const formats::GraphDocument& document) {
   try {
     return evaluation::report_states(document);
@@ -74,7 +75,8 @@ formats::GraphDocument read_fused(const std::string& input, const EvaluationJob&
   return document;
 }
 
-/// One graph: read, compared with its truth, and, where a folder is given, told in files.
+/// Evaluates one graph: reads it, compares it with its truth, and writes files if there
+/// is a folder.
 evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std::string& input,
                                              const std::string& label, evaluation::ReportHeader& header) {
   const Console& console = job.console;

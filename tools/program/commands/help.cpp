@@ -16,7 +16,7 @@ struct HelpOptions {
   std::string folder;
 };
 
-/// Every page in a file of its own: waymark.1, waymark-run.1 ...
+/// Writes every page into its own file: waymark.1, waymark-run.1 ...
 void write_pages(const CLI::App& app, const std::string& folder) {
   formats::make_folder(folder);
   const auto write = [&](const CLI::App& command) {
@@ -33,7 +33,8 @@ ExitCode help(const CLI::App& app, const HelpOptions& options) {
     write_pages(app, options.folder);
     return kSuccess;
   }
-  // Not command.help(): of the program that would be the help of the subcommand that was chosen, this one.
+  // command.help() is not used, because for the program it would give the help of the chosen
+  // subcommand, this one.
   formats::write_file_atomically(
       "-", options.man ? man_page(command, source_date())
                        : command.get_formatter()->make_help(&command, "", CLI::AppFormatMode::Normal));

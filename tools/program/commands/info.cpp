@@ -57,7 +57,7 @@ std::string plugins_text(const Json& plugins, const text::TextLook& look) {
   return text;
 }
 
-/// Everything that is registered, as JSON; the text is made from the same.
+/// Returns everything that is registered, as JSON. The text is made from it.
 Json registry_json(const TypeRegistry& registry) {
   Json json = {{"program_version", WAYMARK_VERSION}};
   for (const auto& [type, origin] : registry.vertices()) {
@@ -125,7 +125,7 @@ Json registry_json(const TypeRegistry& registry) {
   return json;
 }
 
-/// Of the longest text that the entries have under a key.
+/// Returns the width of the longest text of the entries under a key.
 std::size_t width_of(const Json& entries, const char* key) {
   std::size_t width = 0;
   for (const Json& entry : entries) width = std::max(width, entry.at(key).get<std::string>().size());

@@ -11,7 +11,7 @@
 namespace waymark::program {
 namespace {
 
-/// The lines of a drive.yaml that are marked as assumed.
+/// Returns the lines of a drive.yaml that are marked as assumed.
 nlohmann::ordered_json checks_in(const std::string& yaml) {
   constexpr std::string_view kMark = "# CHECK";
   nlohmann::ordered_json checks = nlohmann::ordered_json::array();
@@ -20,7 +20,7 @@ nlohmann::ordered_json checks_in(const std::string& yaml) {
   for (int number = 1; std::getline(lines, line); ++number) {
     const auto mark = line.find(kMark);
     const auto begin = line.find_first_not_of(' ');
-    // A line of comment that speaks of the mark marks nothing.
+    // A comment line that only mentions the mark does not count.
     if (mark == std::string::npos || (line[begin] == '#' && mark != begin)) continue;
     checks.push_back({{"line", number}, {"text", line.substr(begin)}});
   }

@@ -24,41 +24,41 @@ struct ReproduceOptions {
   CommonOptions common;
   std::string folder;
   std::vector<std::string> files;  ///< drive.yaml
-  std::vector<int> presets;        ///< the paper's datasets; empty: all
+  std::vector<int> presets;        ///< datasets of the paper; empty: all
   std::optional<std::uint64_t> seed;
   bool ablation = false;
-  std::optional<int> consistency;  ///< drives to be drawn
+  std::optional<int> consistency;  ///< number of drives to draw
 };
 
-/// A drive to be studied.
+/// A drive of the study.
 struct Subject {
   drive::DriveDescription drive;
   int dataset = 0;      ///< of the paper; 0: none
-  std::string group{};  ///< the preset it is a draw of, where draws are pooled
+  std::string group{};  ///< the preset of which it is a draw, if draws are pooled
 };
 
-/// The drive of a drive.yaml without its further sensors: the settings say what is done, the same for every
-/// drive.
+/// The drive of a drive.yaml without its further sensors: the settings say what is done, the same
+/// for every drive.
 drive::DriveDescription read_drive(const std::string& path) {
   drive::DriveDescription description = drive::load_drive_file(path).description;
   description.sensors.clear();
   return description;
 }
 
-/// Covariances only of a minimum: elsewhere they mean nothing.
+/// Covariances are computed only at a minimum, because elsewhere they mean nothing.
 evaluation::Evaluation evaluate_fused(formats::GraphDocument& document, const std::vector<TruthPose>& truth,
                                       bool converged) {
   if (converged) {
     try {
       drive::add_covariances(document, "fixes");
     } catch (const InputError&) {
-      document.covariances.clear();  // H is singular where the rule of g2o ended the run
+      document.covariances.clear();  // H is singular at the place where g2o's rule ended the run
     }
   }
   return evaluate_document(document, truth);
 }
 
-/// All runs of all drives.
+/// Progress of all runs of all drives.
 class StudyProgress {
  public:
   StudyProgress(const reproduction::Experiment& experiment, const std::vector<Subject>& subjects,
@@ -126,7 +126,7 @@ std::vector<std::string> write_report(const reproduction::ReproductionReport& re
   return files;
 }
 
-/// Drives that were given: a wrong file at the end of the list is found before the work.
+/// Returns the given drives. A wrong file at the end of the list is found before the work.
 std::vector<Subject> given_subjects(const ReproduceOptions& options) {
   if (!options.presets.empty() || options.seed)
     throw UsageError("--drives and --seed are for the simulated drives; drive.yaml files are given");
@@ -137,7 +137,7 @@ std::vector<Subject> given_subjects(const ReproduceOptions& options) {
   return subjects;
 }
 
-/// @throws UsageError for a number that is none of the paper's
+/// @throws UsageError for a number that is not in the paper
 std::vector<int> chosen_datasets(const ReproduceOptions& options) {
   std::vector<int> datasets;
   for (const reproduction::PaperDrive& drive : reproduction::paper_drives()) {
@@ -163,7 +163,7 @@ drive::DriveDescription write_simulated(const simulation::SimulationPreset& pres
   return read_drive(folder + "/drive.yaml");
 }
 
-/// The paper's drives.
+/// Returns the drives of the paper.
 std::vector<Subject> simulated_subjects(const ReproduceOptions& options, const Console& console) {
   std::vector<Subject> subjects;
   const std::vector<int> datasets = chosen_datasets(options);
@@ -178,7 +178,7 @@ std::vector<Subject> simulated_subjects(const ReproduceOptions& options, const C
   return subjects;
 }
 
-/// The drives of the consistency study.
+/// Returns the drives of the consistency study.
 std::vector<Subject> drawn_subjects(const ReproduceOptions& options, const Console& console) {
   std::vector<Subject> subjects;
   const std::vector<reproduction::Draw> draws = reproduction::consistency_draws(*options.consistency);
@@ -197,7 +197,8 @@ reproduction::Experiment chosen_experiment(const ReproduceOptions& options) {
   return options.consistency ? reproduction::consistency_experiment() : reproduction::paper_experiment();
 }
 
-/// The simulated subjects, or those given. What is wrong with the request shows before the work.
+/// Returns the simulated drives, or the given ones. Errors in the request are found
+/// before the work.
 std::vector<Subject> find_subjects(const ReproduceOptions& options, const Console& console) {
   std::vector<Subject> given;
   if (!options.files.empty()) given = given_subjects(options);

@@ -48,7 +48,8 @@ struct RunOfDrive {
   const Console& console;
 };
 
-/// What was known of the withheld fixes before each outage's end: the same settings on the drive so far.
+/// Predicts the withheld fixes with data up to the end of each outage only: the same settings on
+/// the drive so far.
 evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSettings settings) {
   settings.minimization.covariances = "fixes";
   const auto runs = drive::withheld_runs(run.loaded.drive.fixes);
@@ -151,7 +152,7 @@ void require_logs_stay(const RunOfDrive& run) {
   for (const std::string& file : run.folder.files(modelings)) require_not_read(file, run.loaded.files);
 }
 
-/// The modelings of a drive; what is wrong with one of them shows before anything is written.
+/// Returns the modelings of a drive. Errors in one of them are found before anything is written.
 std::vector<drive::ModeledDrive> model_all(const RunOfDrive& run) {
   drive::Fusion fusion(run.loaded.drive, run.registry);
   std::vector<drive::ModeledDrive> models;
@@ -162,7 +163,8 @@ std::vector<drive::ModeledDrive> model_all(const RunOfDrive& run) {
   return models;
 }
 
-/// What all modelings have in common: the comparison, metrics.json, summary.json. Returns the files.
+/// Writes the files that all modelings share: the comparison, metrics.json, summary.json. Returns
+/// their names.
 std::vector<std::string> write_common(const RunOfDrive& run, const std::vector<ModelingRun>& runs,
                                       const std::string& metrics, const evaluation::ReportHeader& header) {
   std::vector<ComparedResult> results;

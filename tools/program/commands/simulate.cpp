@@ -40,7 +40,8 @@ ExitCode list_presets(const Console& console) {
   return kSuccess;
 }
 
-/// Logs of a real drive must not be taken for an old simulation. @throws UsageError
+/// Logs of a real drive must not be overwritten as if they were an old simulation.
+/// @throws UsageError
 void require_no_real_drive(const std::string& folder) {
   for (const char* name : {"drive.yaml", "odometry.csv", "truth.csv"}) {
     const std::string path = folder + "/" + name;
@@ -72,7 +73,7 @@ ExitCode simulate_drive(const SimulateOptions& options) {
   return kSuccess;
 }
 
-/// The parser would take -1 and numbers beyond 64 bits for the largest one.
+/// The parser would turn -1, and numbers beyond 64 bits, into the largest one.
 std::string wrong_seed(const std::string& text) {
   std::uint64_t seed = 0;
   const char* end = text.data() + text.size();

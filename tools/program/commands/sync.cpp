@@ -76,7 +76,7 @@ ExitCode synchronise(const SyncCommand& command) {
   drive::DriveDescription description =
       drive::load_drive_file(command.input, command.data_folder).description;
   const TypeRegistry registry = make_registry(command.common, description.plugins);
-  description.sensors.clear();  // nothing of them is needed
+  description.sensors.clear();  // sensors are not needed
   const drive::PreparedDrive drive = drive::load_drive(description, registry, watch_reading(console));
   console.progress("comparing clocks");
   const drive::SyncReport report = drive::estimate_clock_offsets(drive, command.options);

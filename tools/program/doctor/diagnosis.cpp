@@ -53,7 +53,7 @@ Json processor_json() {
           {"kernels", dense_kernels().name}};
 }
 
-/// The licence of the whole, and the libraries that make it so.
+/// Returns the licence of the whole, and the libraries that cause it.
 Json licence_json(const std::vector<Library>& libraries) {
   const LicenceTerms mode = licence_mode(libraries);
   Json because = Json::array();
@@ -70,7 +70,7 @@ Json libraries_json(const std::vector<Library>& libraries) {
   return json;
 }
 
-/// Adds a test's outcome to its list, and where it failed to the problems.
+/// Adds the outcome of a test to its list, and to the problems if it failed.
 template <typename Table>
 Json tests_json(const std::vector<SelfTest>& tests, const Table& table, const char* what,
                 Diagnosis& diagnosis) {
@@ -104,7 +104,8 @@ Json plugin_search_json(const PluginSearch& search, Diagnosis& diagnosis) {
       diagnosis.json["warnings"].push_back("no plugins from " + folder.path + ": " + folder.problem);
   }
   Json loaded = plugins_json(search.registry);
-  for (Json& plugin : loaded) plugin["abi"] = kPluginAbi;  // others are not loaded
+  // plugins with another one are not loaded
+  for (Json& plugin : loaded) plugin["abi"] = kPluginAbi;
   Json left_out = Json::array();
   for (const PluginModule& module : search.modules) {
     if (module.state == PluginModule::State::loaded) continue;
@@ -122,7 +123,7 @@ Json plugin_search_json(const PluginSearch& search, Diagnosis& diagnosis) {
           {"left_out", left_out}};
 }
 
-/// What a file holds, in a few words. @throws InputError, UsageError
+/// Describes the content of a file in a few words. @throws InputError, UsageError
 std::string read_input(const std::string& path, const TypeRegistry& registry) {
   if (!drive::is_drive_file(path)) {
     const formats::GraphDocument document =
@@ -164,7 +165,7 @@ Json inputs_json(const std::vector<std::string>& inputs, const TypeRegistry& reg
   return json;
 }
 
-/// Writes a file into the present folder and takes it away again.
+/// Writes a file into the present folder and removes it.
 Json folder_json(Diagnosis& diagnosis) {
   std::error_code unknown;
   const std::string folder = std::filesystem::current_path(unknown).string();
@@ -180,7 +181,7 @@ Json folder_json(Diagnosis& diagnosis) {
   return {{"path", folder}, {"writable", problem.empty()}, {"problem", problem}};
 }
 
-/// The locale that decides on characters: the first of these that is set.
+/// Returns the locale that decides on characters: the first of these that is set.
 std::string locale_name() {
   for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     if (const std::string value = environment(variable); !value.empty()) return value;
@@ -204,8 +205,8 @@ Json terminal_json() {
           {"utf8", locale.find("UTF-8") != std::string::npos || locale.find("utf8") != std::string::npos}};
 }
 
-/// --plugin, and the plugins of the drives; a drive.yaml that cannot be read is told of where it is looked
-/// at.
+/// Returns --plugin and the plugins of the drives. A drive.yaml that cannot be read is reported
+/// later, when it is examined.
 std::vector<std::string> wanted_plugins(const CommonOptions& options,
                                         const std::vector<std::string>& inputs) {
   std::vector<std::string> wanted = options.plugins;

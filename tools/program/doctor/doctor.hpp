@@ -1,4 +1,5 @@
-/// What `waymark doctor` finds out, as JSON (schema waymark-doctor, version 1) and as text made from it.
+/// The findings of `waymark doctor`, as JSON (schema waymark-doctor, version 1) and as text
+/// made from it.
 #pragma once
 
 #include <string>
@@ -13,15 +14,16 @@ namespace waymark::program {
 
 struct Diagnosis {
   nlohmann::ordered_json json;
-  ExitCode code = kSuccess;  ///< of the gravest problem: a solver, then plugins and inputs, then the folder
+  /// of the worst problem: a solver comes first, then plugins and inputs, then the folder
+  ExitCode code = kSuccess;
 };
 
-/// Looks at the program, its plugins, the present folder and the terminal. Throws for no problem that it
-/// finds.
-/// @param inputs  drive.yaml and graph files, read with all plugins
+/// Examines the program, its plugins, the present folder and the terminal. It does not throw for
+/// problems that it finds.
+/// @param inputs drive.yaml and graph files, read with all plugins
 [[nodiscard]] Diagnosis diagnose(const CommonOptions& options, const std::vector<std::string>& inputs);
 
-/// For people.
+/// Returns the text for people.
 [[nodiscard]] std::string diagnosis_text(const nlohmann::ordered_json& json);
 
 }  // namespace waymark::program

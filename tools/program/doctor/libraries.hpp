@@ -1,4 +1,5 @@
-/// What of others is built into the program: versions, licences, and which licence the whole has by them.
+/// The libraries that are built into the program: versions, licences, and the licence that follows
+/// for the whole.
 #pragma once
 
 #include <string>
@@ -6,28 +7,28 @@
 
 namespace waymark::program {
 
-/// What a licence asks of those who hand the program on.
+/// The obligations of a licence for those who distribute the program.
 enum class LicenceTerms {
-  permissive,  ///< name the authors; MPL-2.0 too: only its own files stay under it
-  lgpl,        ///< the user must be able to exchange the library
-  gpl          ///< the whole program goes out under the GPL
+  permissive,  ///< name the authors; also MPL-2.0, which covers only its own files
+  lgpl,        ///< the user must be able to replace the library
+  gpl          ///< the whole program is distributed under the GPL
 };
 
 struct Library {
   std::string name;
-  std::string version;  ///< of the one that is running, where the library tells; else of its headers
+  std::string version;  ///< of the running library if it tells, else of its headers
   std::string licence;
   LicenceTerms terms = LicenceTerms::permissive;
-  std::string use;  ///< what it is there for
+  std::string use;  ///< what the program uses it for
 };
 
-/// Linear solvers first, then the peer, then the rest.
+/// Returns the libraries: linear solvers first, then the peer, then the others.
 [[nodiscard]] std::vector<Library> built_in_libraries();
 
-/// The strictest terms of all.
+/// Returns the strictest terms of all.
 [[nodiscard]] LicenceTerms licence_mode(const std::vector<Library>& libraries);
 
-/// "permissive", "LGPL", "GPL".
+/// Returns "permissive", "LGPL" or "GPL".
 [[nodiscard]] std::string to_string(LicenceTerms terms);
 
 }  // namespace waymark::program

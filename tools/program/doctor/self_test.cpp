@@ -15,10 +15,10 @@ namespace {
 constexpr int kPoses = 40;
 constexpr int kClosure = 7;  ///< poses from one end of a closure to the other
 constexpr double kRadius_m = 20;
-/// Rounding in sums of a hundred squares stays far below.
+/// Rounding in sums of a hundred squares is far below this.
 constexpr double kAgreement = 1e-9;
 
-/// Where pose i lies at the minimum.
+/// Returns the place of pose i at the minimum.
 Pose2<double> pose_at(int i) {
   const double angle = 2 * std::numbers::pi * i / kPoses;
   return {kRadius_m * std::cos(angle), kRadius_m * std::sin(angle), wrap_angle(angle + std::numbers::pi / 2)};
@@ -40,7 +40,7 @@ SelfTest test_on_known_problem(const std::string& name, const std::string& algor
     } else if (!(std::abs(test.chi2 - problem.minimum) <= kAgreement * problem.minimum)) {
       test.problem = fmt::format("ended at chi2 {:.12g}; the minimum is {:.12g}", test.chi2, problem.minimum);
     }
-  } catch (const std::exception& error) {  // a plugin's may throw anything
+  } catch (const std::exception& error) {  // plugins may throw anything
     test.problem = error.what();
   }
   return test;
@@ -55,7 +55,8 @@ KnownProblem known_problem() {
   for (int i = 0; i < kPoses; ++i) {
     const Pose2<double> pose = pose_at(i);
     const double away =
-        i == 0 ? 0 : 0.3 * std::sin(1.7 * i);  // the start, off by some decimetres and degrees
+        // the initial guess is wrong by some decimetres and degrees
+        i == 0 ? 0 : 0.3 * std::sin(1.7 * i);
     problem.graph.add_vertex<VertexSe2>(
         i, {pose.position[0] + away, pose.position[1] - away, wrap_angle(pose.heading + 0.2 * away)});
   }

@@ -12,7 +12,7 @@
 namespace waymark::program {
 
 /// Evaluates a document at its fixes. @param truth may be empty
-/// @param further  predictions of its withheld fixes, beside the fused poses and dead reckoning
+/// @param further predictions of its withheld fixes, besides the fused poses and dead reckoning
 [[nodiscard]] evaluation::Evaluation evaluate_document(
     const formats::GraphDocument& document, const std::vector<TruthPose>& truth,
     const std::vector<evaluation::Prediction>& further = {});

@@ -75,7 +75,7 @@ void check_options_are_used(const std::vector<std::string>& modelings, const Opt
       return has_option(registry.gnss_modeling(modeling).options, entry.first);
     };
     if (std::any_of(modelings.begin(), modelings.end(), has)) continue;
-    // Its own message names the options that exist.
+    // This throws a message with the options that exist.
     (void)registry.make_gnss_modeling(modelings.front(), {{entry.first, entry.second}});
   }
 }

@@ -14,10 +14,11 @@ namespace waymark::program {
 using DriveEdit = std::function<void(drive::DriveFile&)>;
 
 struct DriveChoice {
-  std::string data_folder;                    ///< of the logs; empty: the drive.yaml's own
-  std::vector<std::string> modelings;         ///< empty: the drive.yaml's; "all": every registered one
+  std::string data_folder;  ///< of the logs; empty: the drive.yaml's own
+  /// empty: that of the drive.yaml; "all": every registered one
+  std::vector<std::string> modelings;
   std::vector<std::string> modeling_options;  ///< NAME=VALUE; each modeling takes those that it has
-  bool sync = false;                          ///< estimate how late the odometry is stamped, and apply it
+  bool sync = false;                          ///< estimate the delay of the odometry's stamps, and correct it
   std::vector<DriveEdit> edits;               ///< of all else, to be made in this order
 };
 
@@ -30,7 +31,7 @@ struct DriveChoice {
                                                                  const DriveChoice& choice,
                                                                  const TypeRegistry& registry);
 
-/// "60/240". @throws UsageError
+/// Reads "60/240". @throws UsageError
 [[nodiscard]] drive::OutagePattern parse_outage(const std::string& text);
 
 /// Makes "on", "off", or NAME=VALUE pairs the states to estimate, pairs over those that the settings name.

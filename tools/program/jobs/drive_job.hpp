@@ -1,4 +1,5 @@
-/// The main job up to the graph, as the commands use it: drive.yaml to a modeled drive, told on the console.
+/// The main job up to the graph, as the commands use it: drive.yaml to a modeled drive, told on
+/// the console.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@
 namespace waymark::program {
 namespace {
 
-/// The way that the odometry says was driven.
+/// Returns the distance by the odometry.
 double distance_by(const std::vector<OdometrySample>& odometry) {
   double distance = 0;
   for (std::size_t i = 1; i < odometry.size(); ++i) {

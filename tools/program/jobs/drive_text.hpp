@@ -10,16 +10,17 @@
 
 namespace waymark::program {
 
-/// The way that the odometry says was driven, and its samples.
+/// Describes the distance by the odometry, and its samples.
 [[nodiscard]] std::string odometry_in_words(const drive::PreparedDrive& drive);
 
 /// What of the logs did not go in.
 [[nodiscard]] std::string left_out(const drive::PreparedDrive& drive);
 
-/// A paragraph on what went in: samples, fixes, what was left out.
+/// Returns a paragraph about the input: samples, fixes, and omissions.
 [[nodiscard]] std::string describe_drive(const drive::PreparedDrive& drive);
 
-/// What the gate rejected and why; the noise that was estimated, and what the drive did not show of it.
+/// Describes the fixes that the gate rejected and why, the estimated noise, and the noise
+/// parameters that the drive does not show.
 [[nodiscard]] std::string describe_model(const drive::ModeledDrive& modeled, const text::TextLook& look = {});
 
 /// The estimated noise, a list.

@@ -1,4 +1,4 @@
-/// What `inspect` and `init` share: logs are looked at, and a drive.yaml is proposed from what was found.
+/// The common part of `inspect` and `init`: they inspect logs and propose a drive.yaml.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace waymark::program {
 
 struct InspectCommand {
   CommonOptions common;
-  std::vector<std::string> logs;  ///< DBC files among them
+  std::vector<std::string> logs;  ///< may include DBC files
   std::string format = "auto";
   std::string dbc;
   std::string output;  ///< of init: the drive.yaml
@@ -25,12 +25,13 @@ void add_inspection_options(CLI::App& command, InspectCommand& options);
 [[nodiscard]] std::vector<inspection::LogInspection> inspect_files(const InspectCommand& command,
                                                                    const Console& console);
 
-/// Writes the drive.yaml; what was decided and what is left to check goes to stderr. @return its text
+/// Writes the drive.yaml. Decisions and open checks are printed on stderr. @return its text
 /// @throws OutputError
 std::string write_proposal(const InspectCommand& command, const std::vector<inspection::LogInspection>& logs,
                            const Console& console);
 
-/// A place that a drive.yaml may be written to. @throws OutputError for an existing file without --force
+/// Checks that a drive.yaml may be written there. @throws OutputError for an existing file
+/// without --force
 void require_new_file(const InspectCommand& command);
 
 }  // namespace waymark::program

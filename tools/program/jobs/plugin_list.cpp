@@ -5,7 +5,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Names of the entries of one table that come from a plugin, appended.
+/// Appends the names of the entries of one table that come from a plugin.
 template <typename T, typename NameOf>
 void add_names(const RegistryTable<T>& table, const std::string& origin, NameOf name_of, Json& names) {
   for (const Registered<T>& entry : table) {

@@ -1,4 +1,4 @@
-/// What plugins bring, as JSON.
+/// The content of plugins, as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace waymark::program {
 
-/// Every plugin with name, version, place, and the names of what it registered.
+/// Returns every plugin with name, version, place, and the names of its registered types.
 [[nodiscard]] nlohmann::ordered_json plugins_json(const TypeRegistry& registry);
 
 }  // namespace waymark::program

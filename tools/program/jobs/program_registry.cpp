@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Empty where the program is not to be installed.
+/// Returns nothing if the program is not to be installed.
 fs::path installed_folder() {
 #ifdef WAYMARK_PLUGIN_FOLDER
   return WAYMARK_PLUGIN_FOLDER;
@@ -41,7 +41,8 @@ std::vector<PluginFolder> plugin_folders() {
   return folders;
 }
 
-/// The shared objects of a folder by name. @param folder  told why it has none
+/// Returns the shared objects of a folder by name. @param folder receives the reason if
+/// there are none
 std::vector<fs::path> modules_in(PluginFolder& folder) {
   std::vector<fs::path> modules;
   std::error_code missing;
@@ -53,17 +54,17 @@ std::vector<fs::path> modules_in(PluginFolder& folder) {
   return modules;
 }
 
-/// Why a file is none of ours; empty: it is a plugin, whether it fits or not.
+/// Returns why a file is no plugin of ours; empty: it is a plugin, whether it fits or not.
 std::string not_ours(const fs::path& file) {
   try {
     if (ModuleFile(file).symbol("waymark_plugin")) return {};
     return file.string() + ": is no waymark plugin (no symbol 'waymark_plugin')";
-  } catch (const UsageError& error) {  // not readable, or no shared object
+  } catch (const UsageError& error) {  // unreadable, or no shared object
     return error.what();
   }
 }
 
-/// A file as it stands; a name is looked up in the folders. @throws UsageError
+/// Returns a file as it is; looks up a name in the folders. @throws UsageError
 fs::path find_plugin(const std::string& wanted, const std::vector<PluginFolder>& folders) {
   if (drive::is_plugin_file(wanted)) return wanted;
   std::string looked;
@@ -153,7 +154,7 @@ TypeRegistry make_registry(const CommonOptions& options, const std::vector<std::
     if (!folder.problem.empty() && !folder.installed)
       console.warning("no plugins from " + folder.path + ": " + folder.problem);
   }
-  for (const PluginModule& module : search.modules) {  // other shared objects are none of ours
+  for (const PluginModule& module : search.modules) {  // other shared objects are not ours
     if (module.state == PluginModule::State::refused) console.warning("plugin left out: " + module.problem);
   }
   return std::move(search.registry);

@@ -1,5 +1,5 @@
-/// Is a result believable? A minimum is found for wrong units and clocks as well; what had to be bent for it
-/// tells.
+/// Warnings about implausible results. Wrong units and clocks also have a minimum, but distorted
+/// states and noise reveal them.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace waymark::program {
 
-/// A sentence for each thing that a sound drive does not show: a state more than 6 sigmas of its prior from
-/// zero, where its prior is; a noise parameter more than 4 deviations from its prior; fused positions half as
-/// far again from the truth as the raw fixes.
+/// Returns a sentence for each fact that a sound drive does not show: a state more than 6 sigmas of
+/// its prior from zero (the mean of the prior), a noise parameter more than 4 deviations from its
+/// prior, and fused positions whose error exceeds that of the raw fixes by half.
 [[nodiscard]] std::vector<std::string> doubts_of_result(const std::vector<evaluation::StateReport>& states,
                                                         const drive::NoiseEstimate& noise,
                                                         const evaluation::Evaluation& evaluation);

@@ -21,7 +21,8 @@ std::string write_report(const DocumentResult& request, const std::vector<std::s
   std::optional<evaluation::Sparsity> sparsity;
   try {
     sparsity = evaluation::sparsity_of(request.document.graph);
-  } catch (const InputError& error) {  // an undetermined graph has residuals, but no normal equations to show
+    // an undetermined graph has residuals, but no normal equations to show
+  } catch (const InputError& error) {
     console.warning("the report has no matrices: " + std::string(error.what()));
   }
   report::ReportedDrive drive{.name = request.drive,

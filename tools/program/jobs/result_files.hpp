@@ -1,5 +1,5 @@
-/// What `run` and `evaluate` write of fused documents: for each its trajectory, epochs and report, for all of them
-/// metrics.json and a comparison.
+/// What `run` and `evaluate` write of fused documents: for each its trajectory, epochs and report,
+/// for all of them metrics.json and a comparison.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct DocumentResult {
   const std::vector<TruthPose>& truth;
   const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
   std::vector<evaluation::StateReport> states{};
-  /// Of the logs, heading and text.
+  /// Inputs from the logs: heading and text.
   std::vector<std::pair<std::string, std::string>> went_in{};
   std::vector<std::string> files{};  ///< written before, to be linked; paths
 };
@@ -47,7 +47,8 @@ std::vector<std::string> write_overview(const std::vector<ComparedResult>& resul
                                         const evaluation::ReportHeader& header, const std::string& metrics,
                                         const evaluation::ResultFolder& folder, const Console& console);
 
-/// Puts a document's provenance into a report, keys as "LABEL.KEY" (numbered where a key repeats).
+/// Adds the provenance of a document to a report, with keys "LABEL.KEY" (numbered if a
+/// key repeats).
 void add_provenance(const formats::GraphDocument& document, const std::string& label,
                     evaluation::ReportHeader& header);
 

@@ -9,8 +9,8 @@
 
 namespace waymark::program {
 
-/// Writes the trajectory of all poses in the forms of kTrajectoryForms, for maps only if the frame is known;
-/// nothing for a document without poses. Returns the names.
+/// Writes the trajectory of all poses in the forms of kTrajectoryForms, for maps only if the frame
+/// is known; nothing for a document without poses. Returns the names.
 std::vector<std::string> write_trajectories(const formats::GraphDocument& document,
                                             const evaluation::ResultFolder& folder, const std::string& label);
 

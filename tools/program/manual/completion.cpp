@@ -41,7 +41,7 @@ Names presets(const TypeRegistry&) {
   return names;
 }
 
-/// A kind of name as type names have it, and who knows them.
+/// A kind of name in type names, and the source of the names.
 struct NameKind {
   const char* kind;
   Names (*names)(const TypeRegistry& registry);
@@ -69,7 +69,8 @@ const NameKind* find_kind(const std::string& kind) {
 
 // ---- The script
 
-/// What one alternative of a type name offers, as the script's function reads it; empty: nothing.
+/// Returns the offer of one alternative of a type name, in the form that the function of the script
+/// reads; empty: nothing.
 std::string offer_of(const std::string& alternative) {
   if (is_name_kind(alternative)) return "names:" + alternative;
   if (alternative == "DIR") return "folders";
@@ -98,7 +99,7 @@ std::string offers_of(std::string value, const Names& subcommands) {
   return offers;
 }
 
-/// The cases of one command: its words, what follows each option, what its positional is.
+/// Returns the cases of one command: its words, the values of each option, and its positional.
 std::string cases_of(const std::string& name, const CLI::App& command, const Names& subcommands) {
   std::string words;
   std::string cases;

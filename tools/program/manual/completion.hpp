@@ -1,5 +1,5 @@
-/// Completion for bash, from the tree of subcommands. Names of solvers, modelings and the like are asked for
-/// when they are completed, so that plugins add theirs.
+/// Completion for bash, from the tree of subcommands. Names of solvers, modelings and the like are
+/// requested at the moment of completion, so that plugins can add theirs.
 #pragma once
 
 #include <string>
@@ -11,13 +11,15 @@
 
 namespace waymark::program {
 
-/// The script to be sourced.
+/// Returns the script that bash sources.
 [[nodiscard]] std::string bash_completion(const CLI::App& app);
 
-/// Whether a word in an option's type name stands for names that completion_values() knows: "SOLVER".
+/// Tells whether a word in the type name of an option stands for names that completion_values()
+/// knows: "SOLVER".
 [[nodiscard]] bool is_name_kind(const std::string& kind);
 
-/// The names that a word may be: of SOLVER "cholmod", ...; of LOSS:SCALE "huber:", to be continued.
+/// Returns the possible names: for SOLVER "cholmod", ...; for LOSS:SCALE "huber:", which the
+/// user completes.
 /// @throws UsageError for an unknown kind
 [[nodiscard]] std::vector<std::string> completion_values(const std::string& kind,
                                                          const TypeRegistry& registry);

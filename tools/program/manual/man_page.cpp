@@ -14,12 +14,13 @@
 namespace waymark::program {
 namespace {
 
-/// Text that roff prints as it stands: quotes and hyphens can then be copied into a shell.
+/// Escapes text so that roff prints it unchanged. Quotes and hyphens can then be copied
+/// into a shell.
 std::string escaped(std::string_view text) {
   std::string roff;
   bool line_begins = true;
   for (const char c : text) {
-    if (line_begins && c == '.') roff += "\\&";  // else a macro
+    if (line_begins && c == '.') roff += "\\&";  // otherwise it would be a macro
     switch (c) {
       case '\\':
         roff += "\\e";
@@ -54,7 +55,7 @@ std::string bold(const std::string& text) {
   return "\\fB" + escaped(text) + "\\fR";
 }
 
-/// Words to be typed are bold, what stands for something is italic: "SOLVER|auto".
+/// Formats "SOLVER|auto": words to be typed are bold, placeholders are italic.
 std::string value_text(const std::string& value) {
   std::string text;
   for (const std::string& alternative : split_text(value, "|")) {
@@ -66,7 +67,7 @@ std::string value_text(const std::string& value) {
   return text;
 }
 
-/// Text as the macros like it: a sentence begins a line, and no line is long.
+/// Formats text for the macros: each sentence begins a line, and no line is long.
 std::string prose(std::string text) {
   constexpr std::size_t kSourceWidth = 72;
   std::size_t end = 0;
@@ -165,7 +166,8 @@ std::string examples(const CLI::App& command) {
   return text + ".fi\n";
 }
 
-/// The program's page, and those of the subcommands that this one's text names; of the program: all.
+/// Returns the page of the program, and those of the subcommands that this text names. The
+/// program's page names all.
 std::string see_also(const CLI::App& command, const std::string& page) {
   const CLI::App* program = command.get_parent();
   std::string text = program == nullptr ? "" : "\\fBwaymark\\fR(1)";
@@ -192,7 +194,7 @@ std::string man_page(const CLI::App& command, const std::string& date) {
   if (summary.ends_with('.')) summary.pop_back();
   std::string page =
       fmt::format(".TH {} 1 \"{}\" \"waymark {}\" \"Waymark manual\"\n", title, date, WAYMARK_VERSION);
-  page += ".nh\n.ad l\n";  // names such as WAYMARK_PLUGIN_PATH are not to be divided
+  page += ".nh\n.ad l\n";  // names such as WAYMARK_PLUGIN_PATH must not be hyphenated
   page += ".SH NAME\n" + escaped(page_name(command)) + " \\- " + escaped(summary) + "\n";
   page += ".SH SYNOPSIS\n" + synopsis(command);
   const std::string details = details_of(command);

@@ -7,16 +7,16 @@
 
 namespace waymark::program {
 
-/// "waymark", "waymark-run": the name of a command's page.
+/// Returns the name of a command's page: "waymark", "waymark-run".
 [[nodiscard]] std::string page_name(const CLI::App& command);
 
-/// The page of the program or of one of its subcommands: NAME, SYNOPSIS, DESCRIPTION, OPTIONS by heading,
-/// EXIT STATUS, ENVIRONMENT, FILES, EXAMPLES, SEE ALSO.
-/// @param date  for the header, "2026-11-21"; may be empty
+/// Returns the page of the program or of one of its subcommands: NAME, SYNOPSIS, DESCRIPTION,
+/// OPTIONS by heading, EXIT STATUS, ENVIRONMENT, FILES, EXAMPLES, SEE ALSO.
+/// @param date for the header, "2026-11-21"; may be empty
 [[nodiscard]] std::string man_page(const CLI::App& command, const std::string& date);
 
-/// The day that the environment variable SOURCE_DATE_EPOCH names (UTC), so that a build can be repeated;
-/// empty where it is not set. @throws UsageError where it holds no number of seconds
+/// Returns the day in the environment variable SOURCE_DATE_EPOCH (UTC), so that a build can be
+/// repeated. Empty if it is not set. @throws UsageError if it holds no number of seconds
 [[nodiscard]] std::string source_date();
 
 }  // namespace waymark::program

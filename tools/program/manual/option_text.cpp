@@ -9,7 +9,7 @@ constexpr std::size_t kHelpWidth = 100;
 constexpr std::size_t kHelpColumn = 30;
 constexpr std::string_view kExampleHeading = "Example:\n";
 
-/// The value as it is typed, and the range of a number: CLI11 writes "TEXT:{a,b}" and "INT:INT in [1 - 9]".
+/// Splits the value from the range of a number: CLI11 writes "TEXT:{a,b}" and "INT:INT in [1 - 9]".
 void split_type(const std::string& type, OptionText& text) {
   const auto choices = type.find(":{");
   const auto range = type.find(" in [");
@@ -45,7 +45,7 @@ OptionText describe(const CLI::Option& option) {
   text.repeated = text.positional() && option.get_expected_max() >= CLI::detail::expected_max_vector_size;
   for (const CLI::Option* other : option.get_needs()) text.needs.push_back(name_of(*other));
   for (const CLI::Option* other : option.get_excludes()) text.excludes.push_back(name_of(*other));
-  std::sort(text.needs.begin(), text.needs.end());  // the parser has them in the order of addresses
+  std::sort(text.needs.begin(), text.needs.end());  // the parser orders them by address
   std::sort(text.excludes.begin(), text.excludes.end());
   return text;
 }
@@ -145,7 +145,7 @@ std::string HelpFormatter::make_description(const CLI::App* command) const {
 
 std::string HelpFormatter::make_group(std::string group, bool positional,
                                       std::vector<const CLI::Option*> options) const {
-  // Between two groups of options the caller puts an empty line of its own.
+  // The caller adds its own empty line between two groups of options.
   const std::string text = CLI::Formatter::make_group(group, positional, std::move(options));
   return positional || group == "Options" ? text : text.substr(1);
 }

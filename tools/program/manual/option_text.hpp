@@ -1,9 +1,11 @@
-/// What --help, the man pages and the completion say of an option: read off the parser once, for all of them.
+/// The description of an option for --help, the man pages and the completion, read from the parser
+/// once for all of them.
 ///
-/// The type name of an option is a small language of its own: alternatives between '|', a list with "[,...]"
-/// behind them. `all` (small letters) is a word to be typed as it stands; DIR, FILE, LOG, GRAPH, DRIVE.yaml,
-/// FILE.so (anything with a suffix) are files; SOLVER, MODELING, LOSS:SCALE and the like are names that the
-/// registry has (completion.hpp); every other word in capitals is for people only.
+/// The type name of an option has its own small language: alternatives separated by '|', and
+/// "[,...]" after them for a list. `all` (small letters) is a word that is typed as it is. DIR,
+/// FILE, LOG, GRAPH, DRIVE.yaml, FILE.so (anything with a suffix) are files. SOLVER, MODELING,
+/// LOSS:SCALE and the like are names in the registry (completion.hpp). Every other word in capitals
+/// is only for people.
 #pragma once
 
 #include <string>
@@ -22,37 +24,39 @@ struct OptionText {
   std::string description;
   std::string group;
   bool required = false;
-  bool repeated = false;  ///< a positional that takes many
+  bool repeated = false;  ///< a positional that may be repeated
   std::vector<std::string> needs;
   std::vector<std::string> excludes;
 
   [[nodiscard]] bool positional() const { return names.empty(); }
 };
 
-/// Options and positionals of a command in their order, without the hidden ones.
+/// Returns the options and positionals of a command in their order, without hidden ones.
 [[nodiscard]] std::vector<OptionText> option_texts(const CLI::App& command);
 
-/// "waymark run [OPTIONS] -o DIR DRIVE.yaml", in pieces: an option with its value is one.
+/// Returns "waymark run [OPTIONS] -o DIR DRIVE.yaml" in pieces; an option with its value
+/// is one piece.
 [[nodiscard]] std::vector<std::string> usage_of(const CLI::App& command);
 
-/// "waymark run", "waymark".
+/// Returns "waymark run", "waymark".
 [[nodiscard]] std::string full_name(const CLI::App& command);
 
-/// A command's description: its first line, and the paragraphs behind it.
+/// Returns the description of a command: its first line, and the paragraphs after it.
 [[nodiscard]] std::string summary_of(const CLI::App& command);
 [[nodiscard]] std::string details_of(const CLI::App& command);
 
-/// A command's footer: remarks before "Example:", and the lines behind it without their indentation.
+/// Returns the footer of a command: remarks before "Example:", and the lines after it without their
+/// indentation.
 [[nodiscard]] std::string remarks_of(const CLI::App& command);
 [[nodiscard]] std::vector<std::string> examples_of(const CLI::App& command);
 
-/// Text between separators.
+/// Splits text at separators.
 [[nodiscard]] std::vector<std::string> split_text(std::string_view text, std::string_view separator);
 
-/// Breaks lines at spaces so that none is longer; line breaks that are there stay.
+/// Breaks lines at spaces, so that none is longer. Existing line breaks are kept.
 [[nodiscard]] std::string wrap_text(const std::string& text, std::size_t width);
 
-/// The program's help: sections as CLI11 has them, with our usage, values and lines that are not too long.
+/// The help of the program: the sections of CLI11, with our usage and values, and with short lines.
 class HelpFormatter final : public CLI::Formatter {
  public:
   HelpFormatter() { label("Positionals", "Arguments"); }

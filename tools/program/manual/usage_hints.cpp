@@ -18,7 +18,7 @@ const CLI::App* command_or_null(const CLI::App& app, const std::string& name) {
   return nullptr;
 }
 
-/// "--out" of "--out=folder"; "-m" of "-mg2".
+/// Returns "--out" for "--out=folder", and "-m" for "-mg2".
 std::string name_of(const std::string& word) {
   return word.starts_with("--") ? word.substr(0, word.find('=')) : word.substr(0, 2);
 }
@@ -29,7 +29,7 @@ bool looks_like_option(const std::string& word) {
   return !number;
 }
 
-/// Whether the next word is this one's value, whatever it looks like.
+/// Tells whether the next word is the value of this one, whatever it looks like.
 bool takes_next_word(const CLI::Option* option, const std::string& word) {
   const bool has_value = word.size() > name_of(word).size();
   return option != nullptr && option->get_expected_min() > 0 && option->get_items_expected_max() > 0 &&

@@ -26,14 +26,14 @@ std::string variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// Whether what is written there goes to a terminal that understands escape sequences.
+/// Tells whether a descriptor is a terminal that understands escape sequences.
 bool takes_escapes(int descriptor) {
   const std::string kind = variable("TERM");
   return ::isatty(descriptor) == 1 && !kind.empty() && kind != "dumb";
 }
 
 std::size_t columns_of(int descriptor) {
-  constexpr std::size_t kUsual = 80;  // of a terminal that does not say
+  constexpr std::size_t kUsual = 80;  // of a terminal that does not state its width
   struct winsize size {};
   if (::ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return kUsual;
   return size.ws_col;
@@ -95,7 +95,7 @@ void Console::detail(const std::string& text) const {
 
 void Console::progress(const std::string& text) const {
   if (!show_progress_) return;
-  // The last column stays free: a terminal may begin a new line once it is filled.
+  // The last column stays free, because a terminal may begin a new line once it is filled.
   const std::size_t columns = columns_of(STDERR_FILENO) - 1;
   std::fprintf(stderr, "\r\033[K%s", text::fitted(text, columns).c_str());
   progress_stands_ = true;

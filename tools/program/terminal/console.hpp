@@ -1,4 +1,5 @@
-/// How the program talks: results on stdout, all else on stderr; progress and colours only on a terminal.
+/// The output of the program: results on stdout, everything else on stderr. Progress and colours
+/// appear only on a terminal.
 #pragma once
 
 #include <atomic>
@@ -22,45 +23,47 @@ struct CommonOptions {
   std::vector<std::string> plugins;  ///< files or names of modules
 };
 
-/// Set by Ctrl-C; the optimizer looks at it before every step.
+/// Set by Ctrl-C. The optimizer checks it before every step.
 extern std::atomic<bool> interrupted;
-/// Lets Ctrl-C end a run in good order; a second one kills. File size limits and closed pipes become errors.
+/// Makes Ctrl-C end a run in an orderly way; a second one kills it. File size limits and closed
+/// pipes become errors.
 void install_signal_handlers();
 
-/// Ctrl-C before there was anything to keep.
+/// Ctrl-C before there was a result to keep.
 class Interrupted : public Error {
  public:
   Interrupted() : Error("interrupted before there was a result") {}
 };
-/// Between steps other than the optimizer's. @throws Interrupted
+/// Call it between steps other than those of the optimizer. @throws Interrupted
 void stop_if_interrupted();
 
 class Console {
  public:
   explicit Console(const CommonOptions& options);
-  /// A line of progress does not stay behind, an error neither.
+  /// Clears the progress line, also after an exception.
   ~Console() { end_progress(); }
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// The command's result. With --quiet nothing but JSON is printed. @param to_stderr where stdout carries a
-  /// file
+  /// Prints the result of the command. With --quiet only JSON is printed. @param to_stderr if
+  /// stdout carries a file
   void result(const std::string& text, bool to_stderr = false) const;
-  /// "warning: ...": something is or may be wrong. Like all below not printed with --quiet.
+  /// Prints "warning: ...": something is or may be wrong. --quiet suppresses this and
+  /// everything below.
   void warning(const std::string& text) const;
-  /// "note: ...": a sentence the user should know.
+  /// Prints "note: ...": a sentence that the user should know.
   void note(const std::string& text) const;
-  /// A line as it is.
+  /// Prints a line as it is.
   void tell(const std::string& text) const;
-  /// A line for -v.
+  /// Prints a line with -v.
   void detail(const std::string& text) const;
-  /// Work in progress: shown on a terminal, cut to its width, overwritten by what follows.
+  /// Shows work in progress on a terminal, cut to its width. The next output overwrites it.
   void progress(const std::string& text) const;
   void end_progress() const;
 
   [[nodiscard]] bool json() const { return options_.json; }
   [[nodiscard]] int verbosity() const { return options_.verbosity; }
-  /// How text looks that goes to stdout, or to stderr.
+  /// Returns the look of text on stdout, or on stderr.
   [[nodiscard]] text::TextLook look(bool to_stderr = false) const;
 
  private:
@@ -69,25 +72,25 @@ class Console {
   mutable bool progress_stands_ = false;
 };
 
-/// The line that a failure ends with: "waymark: error: ...".
+/// Returns the line that ends a failure: "waymark: error: ...".
 [[nodiscard]] std::string error_line(const std::string& message);
 
-/// Shows how far the reading of logs has come, and lets Ctrl-C end it: to be told of each piece read
-/// (LogWatch).
-/// @param console  must outlive what is returned
+/// Returns a function that shows how much of the logs is read, and lets Ctrl-C stop it. It is
+/// called for each piece that is read (LogWatch).
+/// @param console must outlive the function
 [[nodiscard]] std::function<void(const std::string& file, std::uint64_t done, std::uint64_t size)>
 watch_reading(const Console& console);
 
-/// Work of a known number of steps.
+/// Progress of work with a known number of steps.
 class StepProgress {
  public:
   StepProgress(const Console& console, std::size_t steps);
-  /// Another step begins. @param text  what it is
+  /// Begins the next step. @param text name of the step
   void next(const std::string& text);
 
-  /// Steps begun.
+  /// Returns how many steps have begun.
   [[nodiscard]] std::size_t step() const { return step_; }
-  /// What is shown: "TEXT  2:10 left".
+  /// Returns the line that is shown: "TEXT  2:10 left".
   [[nodiscard]] const std::string& line() const { return line_; }
 
  private:

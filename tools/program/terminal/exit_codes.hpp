@@ -1,5 +1,5 @@
-/// Exit codes of the program `waymark`: one per kind of failure. Documented in tools/README.md; `--help` and the
-/// man pages have them from here.
+/// Exit codes of the program `waymark`, one per kind of failure. tools/README.md documents them;
+/// `--help` and the man pages take them from here.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ enum ExitCode {
   kInterrupted = 130   ///< Ctrl-C: the best state so far was written
 };
 
-/// An exit code in words.
+/// An exit code and its meaning.
 struct ExitCodeMeaning {
   ExitCode code;
   const char* meaning;

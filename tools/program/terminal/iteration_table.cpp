@@ -5,8 +5,8 @@
 namespace waymark::program {
 namespace {
 
-// 80 columns. Time apart all are numbers without unit: chi2, its actual and predicted decrease, and the
-// largest gradient in units of its unknown's sigma.
+// 80 columns. All except the time are numbers without unit: chi2, its actual and predicted
+// decrease, and the largest gradient in units of the sigma of its unknown.
 constexpr const char* kHeading =
     "  no  step               chi2    decrease   predicted  gradient  taken  time [s]";
 

@@ -1,4 +1,5 @@
-/// The optimizer's steps as they come: a line each with -v, else a line of progress on a terminal.
+/// Shows the steps of the optimizer: one line each with -v, otherwise a progress line
+/// on a terminal.
 #pragma once
 
 #include <string>
@@ -8,10 +9,11 @@
 
 namespace waymark::program {
 
-/// To be told of every step of one optimisation after the other. With -v each begins with a heading.
+/// Is called for every step of consecutive optimisations. With -v each of them begins
+/// with a heading.
 class IterationTable {
  public:
-  /// @param work  what it is part of, before the line of progress; may be empty
+  /// @param work name of the work that it is a part of, before the progress line; may be empty
   explicit IterationTable(const Console& console, std::string work = {});
 
   void add(const IterationRecord& record);

@@ -11,7 +11,7 @@ bool is_stdout(const std::string& path) {
 
 void require_output_place(const std::string& path) {
   if (is_stdout(path)) return;
-  std::error_code unknown;  // what cannot be looked at fails when it is written
+  std::error_code unknown;  // if it cannot be examined, writing will report the error
   if (std::filesystem::is_directory(path, unknown))
     throw OutputError(path + ": cannot write: it is a folder");
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -22,7 +22,7 @@ void require_output_place(const std::string& path) {
 
 void require_not_read(const std::string& output, const std::vector<std::string>& read) {
   for (const std::string& input : read) {
-    std::error_code absent;  // what is not there is not overwritten
+    std::error_code absent;  // a missing file is not overwritten
     if (std::filesystem::equivalent(output, input, absent))
       throw UsageError(output +
                        ": is read as an input and would be overwritten; choose another name or folder");

@@ -1,5 +1,5 @@
-/// Where results go, looked at before the work is done: an hour of optimisation must not end at a folder's
-/// name.
+/// Checks output places before the work, because an hour of optimisation must not fail at the name
+/// of a folder.
 #pragma once
 
 #include <string>
@@ -9,22 +9,26 @@
 
 namespace waymark::program {
 
-/// Whether a file of this name goes to the standard output, so that reports must not.
+/// Tells whether a file with this name is the standard output. Reports must then not be
+/// printed there.
 [[nodiscard]] bool is_stdout(const std::string& path);
 
-/// @throws OutputError where the file cannot be written for a reason that shows already: it is a folder, or
-/// its folder does not exist.
+/// @throws OutputError if it is already clear that the file cannot be written: it is a folder, or
+/// its folder does not exist
 void require_output_place(const std::string& path);
 
-/// Whoever names an input as the output has made a slip; a log cannot be measured again.
-/// @throws UsageError where `output` is one of the files that are read
+/// Refuses an output that is also an input. This is a slip of the user, and a log cannot be
+/// measured again.
+/// @throws UsageError if `output` is one of the files that are read
 void require_not_read(const std::string& output, const std::vector<std::string>& read);
 
-/// What --json prints: a document of this kind, "schema": "waymark-KIND", "version": 1, then the keys of
-/// `json`. tools/program/JSON.md lists the keys of every kind; a test compares the two.
+/// Returns the output of --json: a document of this kind with "schema": "waymark-KIND", "version":
+/// 1, and then the keys of `json`. tools/program/JSON.md lists the keys of every kind; a test
+/// compares the two.
 [[nodiscard]] std::string json_document(const std::string& kind, const nlohmann::ordered_json& json);
 
-/// JSON for people and files: indented; what is not UTF-8 (a file name may be anything) is replaced.
+/// Returns indented JSON for people and files. Bytes that are not UTF-8 (a file name may be
+/// anything) are replaced.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& json);
 
 }  // namespace waymark::program

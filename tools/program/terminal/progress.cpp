@@ -63,7 +63,7 @@ std::string remaining_text(const ProgressMeter& meter) {
 
 std::string reading_line(const std::string& name, std::uint64_t done, std::uint64_t size,
                          const ProgressMeter& meter) {
-  constexpr std::size_t kNameColumns = 32;  // what follows it must be seen in 80
+  constexpr std::size_t kNameColumns = 32;  // the rest must be visible in 80 columns
   const bool large = std::max(done, size) >= 1'000'000;
   const double unit = large ? 1e6 : 1e3;
   const char* word = large ? "MB" : "kB";

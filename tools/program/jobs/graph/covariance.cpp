@@ -17,8 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string>;
 
-/// Names of the upper triangle, row by row. A type whose value has more numbers than degrees of freedom has
-/// no names for the latter: they are counted.
+/// Returns names of the upper triangle, row by row. If the value of a type has more numbers than
+/// degrees of freedom, the latter have no names and are counted.
 Names triangle_names(const VertexType& type) {
   Names axes = type.value_names;
   if (type.value_size != type.tangent_size) {
@@ -58,7 +58,7 @@ class Columns {
   }
 
   [[nodiscard]] const Names& names() const { return names_; }
-  /// Where the triangle of a type goes.
+  /// Returns the places of the triangle of a type.
   [[nodiscard]] const std::vector<std::size_t>& places(const std::string& tag) const {
     return places_.at(tag);
   }
@@ -86,7 +86,7 @@ void write_csv(const formats::GraphDocument& document, const formats::TextSink& 
   }
 }
 
-/// Names of the numbers, per vertex type.
+/// Returns the names of the numbers, per vertex type.
 Json chart_json(const formats::GraphDocument& document) {
   Json types = Json::object();
   for (const formats::VertexCovariance& block : document.covariances) {
@@ -99,7 +99,7 @@ Json chart_json(const formats::GraphDocument& document) {
       {"upper_triangle", types}};
 }
 
-/// The vertices that are certain by convention, and the sentences that say why.
+/// Returns the vertices that are certain by convention, and the sentences about the reason.
 Json held_json(const Graph& graph) {
   const Gauge gauge = find_gauge(graph);
   Json held = Json::array();
@@ -109,7 +109,7 @@ Json held_json(const Graph& graph) {
   return {{"vertices", held}, {"notes", gauge.messages}};
 }
 
-/// Losses with the number of edges that have them.
+/// Returns losses with the number of their edges.
 Json robust_json(const Graph& graph) {
   Json losses = Json::array();
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
@@ -127,7 +127,8 @@ Json robust_json(const Graph& graph) {
           {"counted", "weights at the optimum, and second-order terms where the information keeps them"}};
 }
 
-// One line per vertex: a hundred thousand of them must stay readable and need not be one tree in memory.
+// Writes one line per vertex, so that a hundred thousand of them are readable and need not be one
+// tree in memory.
 void write_json(const formats::GraphDocument& document, const Summary& summary,
                 const formats::TextSink& sink) {
   Json header = {{"version", "waymark " WAYMARK_VERSION},

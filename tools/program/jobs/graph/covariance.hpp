@@ -9,16 +9,17 @@
 
 namespace waymark::program {
 
-/// @throws UsageError where a table is asked for without covariances, or its name ends neither in .csv nor
-/// in .json; OutputError where it cannot be written.
+/// @throws UsageError if a table is requested without covariances, or its name ends neither in .csv
+/// nor in .json; OutputError if it cannot be written
 void check_covariance_file(const std::string& path, const std::string& which);
 
-/// Writes document.covariances as a table, all or nothing; numbers read back exactly.
+/// Writes document.covariances as a table, completely or not at all. Numbers read back exactly.
 ///
-/// CSV: id, tag, stamp_ns, then the upper triangle with columns named by the vertex's numbers: x_x, x_y,
-/// x_heading, y_y, y_heading, heading_heading. Where there are vertices of several types, columns of all;
-/// what a vertex has not is an empty field. JSON: the same, and before it what the covariances are of: chart,
-/// held vertices, robust losses, chi2, version.
+/// CSV has id, tag and stamp_ns, and then the upper triangle. Its columns are named by the numbers
+/// of the vertex: x_x, x_y, x_heading, y_y, y_heading, heading_heading. If there are vertices of
+/// several types, there are the columns of all types, and fields that a vertex does not have are
+/// empty. JSON has the same. Before that it describes the covariances: chart, held vertices, robust
+/// losses, chi2, version.
 void write_covariances(const std::string& path, const formats::GraphDocument& document,
                        const Summary& summary);
 

@@ -1,4 +1,4 @@
-/// The derivatives of every registered edge type, tried out without a graph.
+/// Tests the derivatives of every registered edge type without a graph.
 #pragma once
 
 #include <string>
@@ -11,14 +11,15 @@
 
 namespace waymark::program {
 
-/// What was found, ready to be told.
+/// The result as text and JSON.
 struct DerivativeReport {
-  std::string text;                   ///< a line per type
+  std::string text;                   ///< one line per type
   nlohmann::ordered_json json;        ///< the same
-  std::vector<std::string> problems;  ///< a sentence per type with a wrong Jacobian
+  std::vector<std::string> problems;  ///< one sentence per type with a wrong Jacobian
 };
 
-/// Compares each type's Jacobians with differences of its error (core/graph/edge_type_check.hpp).
+/// Compares the Jacobians of each type with differences of its error
+/// (core/graph/edge_type_check.hpp).
 [[nodiscard]] DerivativeReport check_derivatives(const TypeRegistry& registry,
                                                  const text::TextLook& look = {});
 

@@ -19,7 +19,7 @@ std::vector<std::string> profile_names() {
   return names;
 }
 
-/// Who is written for; not for our own format.
+/// Returns the reader of the output. It is not for our own format.
 const formats::Recipient& recipient_of(const OutputFormat& output, formats::GraphFormat format) {
   const formats::Recipient* profile = formats::find_profile(output.profile);
   return profile != nullptr ? *profile : formats::any_reader(format);

@@ -1,4 +1,4 @@
-/// Optimising a document from the command line: options, progress, outcome as text and JSON.
+/// Optimises a document from the command line: options, progress, and the outcome as text and JSON.
 #pragma once
 
 #include <string>
@@ -13,9 +13,10 @@
 
 namespace waymark::program {
 
-/// Optimises; fills document.covariances as the settings ask for. Iterations are shown by the console. A result
-/// that is no minimum is said on stderr. @param search instead of optimize(). @param work of which it is a
-/// part, shown beside the iterations. @throws InputError where the start asked for cannot be made
+/// Optimises; fills document.covariances as the settings ask for. Iterations are shown by the
+/// console. A result that is no minimum is said on stderr. @param search instead of optimize().
+/// @param work of which it is a part, shown beside the iterations. @throws InputError where the
+/// start asked for cannot be made
 MultiStartSummary optimize_document(formats::GraphDocument& document, const drive::Minimization& how,
                                     const TypeRegistry& registry, const Console& console,
                                     const drive::Minimizer& search = {}, const std::string& work = {});
@@ -29,22 +30,22 @@ void tell_ending(const Summary& summary, const Console& console);
 /// Says a warning on the console, and in the document's provenance.
 void warn(const std::string& warning, formats::GraphDocument& document, const Console& console);
 
-/// What the header of an optimised graph says of it.
+/// Returns the line about the optimisation for the header of the graph.
 [[nodiscard]] std::string describe_optimization(const MultiStartSummary& result);
 
-/// The estimated states of an optimised document: empty without a minimum; if their sigmas cannot be had, a
-/// warning is said.
+/// The estimated states of an optimised document: empty without a minimum; if their sigmas cannot
+/// be had, a warning is said.
 [[nodiscard]] std::vector<evaluation::StateReport> states_of_minimum(formats::GraphDocument& document,
                                                                      const Summary& summary,
                                                                      const Console& console);
 
-/// 0, 4 or 130.
+/// Returns 0, 4 or 130.
 [[nodiscard]] ExitCode exit_code(const Summary& summary);
 
-/// "name=value" pairs to Options. @throws UsageError
+/// Converts "name=value" pairs to Options. @throws UsageError
 [[nodiscard]] Options parse_options(const std::vector<std::string>& pairs);
 
-/// A few lines for the terminal.
+/// Returns a few lines for the terminal.
 [[nodiscard]] std::string summary_text(const MultiStartSummary& result);
 
 }  // namespace waymark::program

@@ -25,7 +25,7 @@ void require_edge(const TypeRegistry& registry, const std::string& tag, const st
   throw UsageError(option + ": unknown edge type '" + tag + "'" + suggestion(tag, tags));
 }
 
-// [TAG=]NAME:SCALE
+// Reads [TAG=]NAME:SCALE.
 LossRequest parse_loss(const std::string& text, const TypeRegistry& registry) {
   LossRequest request;
   const auto equals = text.find('=');

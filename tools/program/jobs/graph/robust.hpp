@@ -13,36 +13,38 @@
 
 namespace waymark::program {
 
-/// What `optimize` lets the user choose.
+/// The user's choices for `optimize`.
 struct RobustChoice {
   std::vector<std::string> losses;   ///< NAME:SCALE, or TAG=NAME:SCALE
   std::string method = "none";       ///< none, gnc
   std::string trusted = "odometry";  ///< odometry, none, or a tag
-  std::string outliers;              ///< file for the edges judged outliers; empty: none
+  std::string outliers;              ///< file for the edges that are found to be outliers; empty: none
 };
 
-/// --loss, --robust, --trusted, --outliers.
+/// Adds --loss, --robust, --trusted and --outliers.
 void add_robust_options(CLI::App& command, RobustChoice& choice);
 
-/// Whether losses and tags exist and fit together, before anything is read. @throws UsageError
+/// Checks before anything is read that losses and tags exist and fit together. @throws UsageError
 void check_robust(const RobustChoice& choice, const TypeRegistry& registry);
 
-/// Gives the losses asked for to all edges that are not trusted (method none; with gnc they are graduated).
+/// Gives the chosen losses to all edges that are not trusted (with method none; gnc
+/// graduates them).
 void attach_losses(Graph& graph, const RobustChoice& choice, const TypeRegistry& registry);
 
-/// What graduated non-convexity found.
+/// The result of graduated non-convexity.
 struct Graduated {
   GraduationResult result;
-  std::string outlier_lines;  ///< the outliers as lines of a graph file: tag, ids, fields, information
+  /// the outliers as lines of a graph file: tag, ids, fields, information
+  std::string outlier_lines;
   nlohmann::ordered_json outlier_edges = nlohmann::ordered_json::array();
 };
 
-/// A minimiser for optimize_document that looks for outliers and takes them out of the graph.
-/// @param found filled when the minimiser has run; must outlive it
+/// Returns a minimiser for optimize_document that finds outliers and removes them from the graph.
+/// @param found filled when the minimiser has run; it must outlive the minimiser
 [[nodiscard]] drive::Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
                                                     std::optional<Graduated>& found);
 
-/// One line for the terminal.
+/// Returns one line for the terminal.
 [[nodiscard]] std::string graduation_text(const GraduationResult& result);
 [[nodiscard]] nlohmann::ordered_json graduation_json(const Graduated& graduated);
 
