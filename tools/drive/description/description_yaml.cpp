@@ -21,7 +21,7 @@ constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
 constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
 constexpr NumberRule kWithhold{0, 1e9, "0 (none) or a whole number from 2"};
 
-/// What a gnss entry says beyond its log.
+/// The content of a gnss entry besides its log.
 struct Receiver {
   Eigen::Vector2d antenna_m{0, 0};
   double period_s = 0;
@@ -41,7 +41,7 @@ void read_time(const YamlSection& top, DriveDescription& drive) {
   if (drive.to_s && *drive.to_s <= drive.from_s.value_or(0)) time->fail("to", "must lie after 'from'");
 }
 
-/// 32, "32N" or "32S"; a plain number is north.
+/// Reads 32, "32N" or "32S"; a plain number is north.
 int read_zone(const YamlSection& frame) {
   std::string text;
   frame.read("utm_zone", text);
@@ -99,7 +99,7 @@ void read_assembly(const YamlSection& section, OdometryAssembly& assembly) {
   vehicle->read("tick_range", assembly.tick_range, kPositive);
 }
 
-/// Whether a log's columns name more than whole odometry has: then it holds channels.
+/// Tells whether a log has channels: its columns name more than complete odometry has.
 bool names_channels(const YamlSection& section) {
   const auto columns = section.free_section("columns");
   if (!columns) return false;
@@ -214,7 +214,7 @@ void read_sensors(const YamlSection& top, DriveDescription& drive) {
   }
 }
 
-/// Files lie beside the drive.yaml.
+/// Relative names of files are relative to the drive.yaml.
 void read_plugins(const YamlSection& top, DriveDescription& drive) {
   if (!top.has("plugins")) return;
   const auto beside = std::filesystem::path(drive.path).parent_path();

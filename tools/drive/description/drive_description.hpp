@@ -1,5 +1,5 @@
-/// Which logs a drive consists of, and how they lie in time and space: everything that is known before
-/// anything is fused. How it is fused: fusion_settings.hpp.
+/// Which logs a drive consists of, and how they lie in time and space: everything that is known
+/// before anything is fused. How it is fused: fusion_settings.hpp.
 #pragma once
 
 #include <map>
@@ -17,14 +17,16 @@
 
 namespace waymark::drive {
 
-/// One log of a stream: which reader, which file, how to read it.
+/// One log of a stream: its reader, its file, and how it is read.
 struct LogConfig {
-  std::string file;  ///< as resolved against the folder of the logs
+  std::string file;  ///< resolved against the folder of the logs
   std::string format =
-      "csv";           ///< name of a registered log reader; "auto": the one that knows the log's content
-  LogRequest request;  ///< without the text of companions
-  std::map<std::string, std::string> companions;  ///< files that belong to the log, resolved, by key ("dbc")
-  std::string place;                              ///< "drive.yaml:12:5: " of the entry, for messages
+      /// name of a registered log reader; "auto": the reader that recognises the content of the log
+      "csv";
+  LogRequest request;  ///< without the text of companion files
+  /// files that belong to the log, resolved, by key ("dbc")
+  std::map<std::string, std::string> companions;
+  std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
 };
 
 /// The log of a receiver, and the log of its velocity if that is another one.
@@ -40,7 +42,8 @@ struct SensorConfig {
   std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
 };
 
-/// Artificial outages: of every `every_s` seconds after the first fix the last `length_s` have no fix.
+/// Artificial outages. Time after the first fix is divided into periods of `every_s` seconds; the
+/// last `length_s` of each have no fixes.
 struct OutagePattern {
   double length_s = 0;  ///< 0: none
   double every_s = 0;   ///< above length_s
@@ -49,22 +52,23 @@ struct OutagePattern {
 /// The logs of a drive, their clocks, the frame, and where on the vehicle they were measured.
 struct DriveDescription {
   std::string path;                 ///< of the drive.yaml, for messages; may be empty
-  std::string name;                 ///< default: the file's name without ".yaml"
-  std::string folder;               ///< where relative log names are looked up
-  std::vector<LogConfig> odometry;  ///< one, or the parts that odometry is put together from
+  std::string name;                 ///< default: name of the file without ".yaml"
+  std::string folder;               ///< the folder for relative names of logs
+  std::vector<LogConfig> odometry;  ///< one, or the parts that odometry is assembled from
   OdometryAssembly assembly;
   std::vector<GnssConfig> gnss;  ///< at least one
   std::optional<LogConfig> truth;
   std::vector<SensorConfig> sensors;
-  std::vector<std::string> plugins;  ///< modules to load, resolved against the drive.yaml's own folder
+  /// modules to load, resolved against the folder of the drive.yaml
+  std::vector<std::string> plugins;
 
   std::optional<TimeScale>
       time_scale;            ///< the drive's own; logs on others are converted. Empty: gps is assumed
-  double speed_delay_s = 0;  ///< how late the odometry's speed is stamped; subtracted
+  double speed_delay_s = 0;  ///< how late the stamps of the odometry's speed are; subtracted
   double yaw_rate_delay_s = 0;
   double gnss_delay_s = 0;       ///< how late the receiver stamps; subtracted
   double gnss_period_s = 0;      ///< thin fixes to one per period (0: keep all)
-  std::optional<double> from_s;  ///< seconds after the drive's first stamp
+  std::optional<double> from_s;  ///< seconds after the first stamp of the drive
   std::optional<double> to_s;
   TimelineOptions timeline;  ///< how samples become nodes in time
 
@@ -72,10 +76,10 @@ struct DriveDescription {
   std::optional<Eigen::Vector2d>
       utm_origin;                   ///< easting, northing of the local origin; empty: near the first fix
   Eigen::Vector2d antenna_m{0, 0};  ///< GNSS antenna in the body frame (x forward, y left)
-  Eigen::Vector2d truth_reference_m{0, 0};  ///< truth reference point in the body frame
+  Eigen::Vector2d truth_reference_m{0, 0};  ///< reference point of the truth in the body frame
 
   int withhold_every = 0;  ///< every n-th fix is kept out of the graph, to judge it by (0: none)
-  OutagePattern outage;    ///< fixes in it are kept out of the graph too
+  OutagePattern outage;    ///< fixes in it are left out of the graph too
 
   [[nodiscard]] TimeScale scale() const { return time_scale.value_or(TimeScale::gps); }
 };

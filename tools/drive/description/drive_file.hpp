@@ -28,18 +28,21 @@ struct DriveFile {
   Places places;
 };
 
-/// A drive is known by its name, .yaml or .yml: a graph or truth file never has it, whatever its format.
+/// Tells whether a file is a drive, by its name (.yaml or .yml). A graph or truth file never has
+/// such a name, whatever its format.
 [[nodiscard]] bool is_drive_file(std::string_view path);
-/// Whether a plugin is named by its file; a word without folder and ending is looked up by whoever loads it.
+/// Tells whether a plugin is named by its file. A word without folder and extension is looked up by
+/// the caller that loads it.
 [[nodiscard]] bool is_plugin_file(std::string_view plugin);
 
-/// Reads and checks a drive.yaml (keys: tools/drive/DRIVE_YAML.md). Logs are not opened.
-/// @param data_folder  where relative log names are looked up, instead of the file's own `folder` (empty:
-/// that one)
-/// @throws InputError "drive.yaml:12:5: unknown key 'colums'; did you mean 'columns'?" and the like.
+/// Reads and checks a drive.yaml (tools/drive/DRIVE_YAML.md lists the keys). Logs are not opened.
+/// @param data_folder the folder for relative names of logs, in place of the file's own `folder`
+/// (empty: use that)
+/// @throws InputError "drive.yaml:12:5: unknown key 'colums'; did you mean 'columns'?" and the like
 [[nodiscard]] DriveFile load_drive_file(const std::string& path, const std::string& data_folder = "");
 
-/// The same from text. @param path  the file's name, for messages and as the anchor of relative folders
+/// Reads a drive.yaml from text. @param path name of the file, for messages and as the base of
+/// relative folders
 [[nodiscard]] DriveFile parse_drive_file(const std::string& text, const std::string& path,
                                          const std::string& data_folder = "");
 

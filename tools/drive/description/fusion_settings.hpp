@@ -1,4 +1,5 @@
-/// How a drive is fused: one plain value that a drive.yaml, the command line, experiments and programs fill.
+/// How a drive is fused: one plain value that a drive.yaml, the command line, experiments and
+/// programs fill.
 #pragma once
 
 #include <optional>
@@ -13,14 +14,16 @@ namespace waymark::drive {
 
 /// How a graph is minimised.
 struct Minimization {
-  std::string start = "file";  ///< the values of the graph ("file"), a registered start, or "auto": the best
+  /// the values of the graph ("file"), a registered start, or "auto": the best
+  std::string start = "file";
   std::string algorithm = "dogleg";
   Options options{};            ///< of the algorithm
   std::string solver = "auto";  ///< auto: the fastest in measurements (solvers/README.md)
   int threads = 1;
   int max_iterations = 500;
-  double tolerance = 1e-6;           ///< OptimizerOptions::decrement_tolerance
-  std::string covariances = "none";  ///< computed at the minimum: none, those of the fixes' vertices, all
+  double tolerance = 1e-6;  ///< OptimizerOptions::decrement_tolerance
+  /// computed at the minimum: none, those of the fixes' vertices, all
+  std::string covariances = "none";
 
   friend bool operator==(const Minimization&, const Minimization&) = default;
 };
@@ -30,14 +33,16 @@ struct FusionSettings {
   std::string modeling = "correlated";  ///< registered GNSS modeling
   Options modeling_options{};           ///< of it, checked by its plugin
   std::string
-      loss{};  ///< of the fixes, "cauchy:1": a registered loss and its scale; empty or "none": squared
+      /// of the fixes, "cauchy:1": a registered loss and its scale; empty or "none": squared
+      loss{};
   std::string odometry_model = "constant_twist";  ///< registered odometry model
   Options odometry_options{};                     ///< of it, checked by its plugin
-  /// States to estimate with the poses: options that go to the odometry model or the GNSS modeling, whichever
-  /// has them. Given without any: no states.
+  /// States to estimate with the poses: options that go to the odometry model or the GNSS modeling,
+  /// whichever has them. Given without any: no states.
   std::optional<Options> calibration{};
   GateOptions gate{};
-  std::optional<bool> estimates_noise{};  ///< whether options with a prior come from the drive (noise.hpp)
+  /// whether options with a prior come from the drive (noise.hpp)
+  std::optional<bool> estimates_noise{};
   StartOptions initial_guess{};
   bool lever_arm = true;  ///< false: the antenna counts as the body point
   Minimization minimization{};
@@ -45,7 +50,7 @@ struct FusionSettings {
   friend bool operator==(const FusionSettings&, const FusionSettings&) = default;
 };
 
-/// What `calibration: on` stands for: all states that the built-in plugins know.
+/// Returns the meaning of `calibration: on`: all states that the built-in plugins know.
 [[nodiscard]] Options default_calibration();
 
 /// The settings with nothing left open. For a complete error model (GnssModelingType::complete) that is no

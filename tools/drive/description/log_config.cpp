@@ -41,7 +41,8 @@ ColumnRequest read_column(const YamlSection& columns, const std::string& key) {
 
 void read_columns(const YamlSection& section, const std::string& format, LogRequest& request) {
   if (!section.has("columns")) return;
-  // Only its plugin knows a sensor's quantities, and only its reader what else a format may name.
+  // Only the plugin of a sensor knows its quantities, and only its reader knows further names
+  // of a format.
   const bool of_table = format == "csv" || format == "candump" || format == "auto";
   const bool open = request.stream == StreamKind::sensor || !of_table;
   std::vector<formats::Quantity> known = formats::quantities(request);
@@ -58,7 +59,7 @@ void read_columns(const YamlSection& section, const std::string& format, LogRequ
   }
 }
 
-/// UTC midnight of "2009-04-01".
+/// Reads "2009-04-01" as UTC midnight.
 void read_date(const YamlSection& time, LogRequest& request) {
   if (!time.has("date")) return;
   std::string text;

@@ -12,16 +12,17 @@
 
 namespace waymark::drive {
 
-/// The words for a time scale, in a drive and in a log.
+/// The words for a time scale, for drives and logs.
 inline constexpr std::array<std::string_view, 3> kTimeScaleWords{"gps", "utc", "unix"};
 
-/// The keys that say how a log is read, and a section's own.
+/// Returns the keys that define how a log is read, and those of the section.
 [[nodiscard]] std::vector<std::string_view> log_keys(std::initializer_list<std::string_view> own = {});
 
-/// Reads file, format, separator, columns, time, accuracy and companions of a stream's section.
-/// @param request      what is known of it: stream, channels, source
-/// @param folder       where relative names are looked up
-/// @param drive_scale  scale of a log that does not state its own
+/// Reads file, format, separator, columns, time, accuracy and companions from the section
+/// of a stream.
+/// @param request known members: stream, channels, source
+/// @param folder the folder for relative names
+/// @param drive_scale scale of a log that does not state its own
 [[nodiscard]] LogConfig read_log_config(const YamlSection& section, LogRequest request,
                                         const std::string& folder, TimeScale drive_scale);
 

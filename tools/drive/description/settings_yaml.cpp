@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 4> kSwitch{"on", "off", "true", "false"};
 constexpr std::array kSwitchValues{true, false, true, false};
 constexpr NumberRule kAngle{std::numeric_limits<double>::min(), 180, "degrees above 0, up to 180"};
 
-/// Options that only a plugin can check: name and value as they stand, with their places.
+/// Reads options that only a plugin can check: name and value as they are, with their places.
 void read_options(const YamlSection& section, std::string_view key, const std::string& name, Options& options,
                   Places& places) {
   const auto free = section.free_section(key);
@@ -64,7 +64,7 @@ void read_modeling(const YamlSection& top, FusionSettings& settings, Places& pla
   read_options(modeling, "options", "modeling.options.", settings.modeling_options, places);
 }
 
-/// `calibration: on`, `off`, or the states one by one.
+/// Reads `calibration: on`, `off`, or single states.
 void read_calibration(const YamlSection& top, FusionSettings& settings, Places& places) {
   if (!top.has("calibration")) return;
   Options& calibration = settings.calibration.emplace();

@@ -68,7 +68,7 @@ bool YamlSection::has(std::string_view key) const {
 }
 
 YAML::Node YamlSection::node(std::string_view key) const {
-  const YAML::Node& constant = node_;  // on a mutable node, operator[] would make the key
+  const YAML::Node& constant = node_;  // operator[] of a mutable node would create the key
   return constant[std::string(key)];
 }
 

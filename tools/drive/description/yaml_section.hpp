@@ -1,5 +1,5 @@
-/// A mapping of a YAML file whose every key must be known: reads values with their place in the file for
-/// messages.
+/// A mapping of a YAML file in which every key must be known. Values are read with their place in
+/// the file, for messages.
 #pragma once
 
 #include <initializer_list>
@@ -15,7 +15,7 @@
 
 namespace waymark::drive {
 
-/// Bounds of a number, with what they mean in words for the message.
+/// The bounds of a number, and their description for the message.
 struct NumberRule {
   double smallest = -std::numeric_limits<double>::infinity();
   double largest = std::numeric_limits<double>::infinity();
@@ -29,8 +29,8 @@ inline constexpr NumberRule kNotNegative{0, std::numeric_limits<double>::max(), 
 
 class YamlSection {
  public:
-  /// @param name  of the section, for messages; empty at the top
-  /// @throws InputError where the node is no mapping, a key is given twice or is not among `keys`.
+  /// @param name name of the section, for messages; empty at the top
+  /// @throws InputError if the node is no mapping, or a key appears twice or is not among `keys`
   YamlSection(YAML::Node node, std::string name, std::string file, std::span<const std::string_view> keys);
   YamlSection(YAML::Node node, std::string name, std::string file,
               std::initializer_list<std::string_view> keys)
@@ -46,24 +46,25 @@ class YamlSection {
   [[nodiscard]] std::string place() const { return place_of(node_); }
   [[nodiscard]] std::string place(std::string_view key) const { return place_of(node(key)); }
 
-  /// Each sets `value` where the key is there, and leaves it where it is not.
+  /// Each sets `value` if the key exists, and otherwise leaves it unchanged.
   void read(std::string_view key, std::string& value) const;
   void read(std::string_view key, bool& value) const;
   void read(std::string_view key, double& value, const NumberRule& rule) const;
   void read(std::string_view key, int& value, const NumberRule& rule) const;
   void read(std::string_view key, std::optional<double>& value, const NumberRule& rule) const;
-  /// Two numbers: [x, y].
+  /// Reads two numbers: [x, y].
   void read(std::string_view key, Eigen::Vector2d& value) const;
-  /// One of some words. @return its index, empty where the key is not there.
+  /// Reads one of some words. @return its index; empty if the key does not exist
   [[nodiscard]] std::optional<std::size_t> read_word(std::string_view key,
                                                      std::span<const std::string_view> words) const;
 
-  /// A section below, with its keys checked; empty where it is not there.
+  /// Returns a section below this one and checks its keys. Empty if it does not exist.
   [[nodiscard]] std::optional<YamlSection> section(std::string_view key,
                                                    std::initializer_list<std::string_view> keys) const;
   [[nodiscard]] std::optional<YamlSection> free_section(std::string_view key) const;
 
-  /// @throws InputError at the key's place: "drive.yaml:3:9: gnss.period: expected ..., got '...'"
+  /// @throws InputError with the place of the key: "drive.yaml:3:9: gnss.period: expected
+  /// ..., got '...'"
   [[noreturn]] void fail_value(std::string_view key, std::string_view expected) const;
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 

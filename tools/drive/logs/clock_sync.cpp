@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kCoarseStep = 0.1;     // s
 constexpr double kFineStep = 0.001;     // s
-constexpr double kSlow = 3;             // m/s: below it a course says little
-constexpr double kFastest = 70;         // m/s: a faster way between fixes is a jump
+constexpr double kSlow = 3;             // m/s: at lower speeds a course means little
+constexpr double kFastest = 70;         // m/s: a higher speed between fixes is a jump
 constexpr double kShortestChord = 2;    // m
 constexpr double kLongestInterval = 5;  // s between fixes that are compared
 constexpr double kDopplerWindow = 0.2;  // s around the stamp of a Doppler speed
@@ -22,7 +22,7 @@ constexpr double kLeastCorrelation = 0.25;
 constexpr std::size_t kLeastSamples = 30;
 constexpr double kOutlier = 4;  // median absolute deviations, scaled to a standard deviation
 
-/// What the GNSS says of a stretch of time.
+/// A GNSS measurement over a stretch of time.
 struct Stretch {
   Stamp from;
   Stamp to;
@@ -38,7 +38,7 @@ Stamp halfway(Stamp a, Stamp b) {
   return {a.nanoseconds + (b.nanoseconds - a.nanoseconds) / 2};
 }
 
-/// The fixes of the receiver that has most.
+/// Returns the fixes of the receiver with the most fixes.
 std::vector<const Fix*> of_one_receiver(const std::vector<Fix>& fixes) {
   std::vector<std::vector<const Fix*>> by_source;
   for (const Fix& fix : fixes) {
@@ -77,7 +77,7 @@ Comparison gnss_speeds(const std::vector<const Fix*>& fixes) {
   return result;
 }
 
-/// Turning between two directions of travel.
+/// Adds the turn between two directions of travel.
 void add_turn(Comparison& to, Stamp from, double from_angle, Stamp until, double until_angle) {
   const double dt = seconds_between(from, until);
   if (dt <= 0 || dt > kLongestInterval) return;
@@ -108,7 +108,7 @@ Comparison gnss_turns(const std::vector<const Fix*>& fixes) {
   return result;
 }
 
-/// Line through pairs (odometry, GNSS) and how well it fits.
+/// A line through pairs (odometry, GNSS), and the quality of its fit.
 struct Line {
   double slope = 0;
   double intercept = 0;
@@ -136,12 +136,13 @@ Line fit(const std::vector<double>& x, const std::vector<double>& y) {
   return {slope, mean_y - slope * mean_x, xy / std::sqrt(xx * yy)};
 }
 
-/// The odometry's side of a comparison.
+/// The odometry side of a comparison.
 class Correlator {
  public:
   Correlator(const TimeSeries& odometry, const std::vector<Stretch>& stretches, double largest_s)
       : integral_(odometry) {
-    // Only what the odometry covers at every offset, so that all are judged by the same readings.
+    // Only stretches that the odometry covers at every offset are used, so that the same readings
+    // judge all offsets.
     for (const Stretch& stretch : stretches) {
       if (moved(stretch.from, -largest_s) >= odometry.stamps.front() &&
           moved(stretch.to, largest_s) <= odometry.stamps.back())
@@ -175,10 +176,10 @@ class Correlator {
     return best(finer - 0.01, finer + 0.01, kFineStep);
   }
 
-  /// The usual residual is that of the livelier half: standing still fits by itself.
+  /// The usual residual is that of the half with more motion, because standstill always fits.
   void drop_outliers(double late_s) {
     const std::vector<double> left = residuals(late_s);
-    std::vector<std::pair<double, double>> by_motion;  // size of the motion, of the residual
+    std::vector<std::pair<double, double>> by_motion;  // size of the motion, size of the residual
     for (std::size_t i = 0; i < left.size(); ++i)
       by_motion.emplace_back(std::abs(stretches_[i].value), std::abs(left[i]));
     std::sort(by_motion.begin(), by_motion.end());
@@ -235,7 +236,7 @@ std::optional<ClockOffset> compare(const TimeSeries& odometry, const Comparison&
   if (correlator.size() < kLeastSamples) return std::nullopt;
   const double late = correlator.best(largest_s);
   const double correlation = correlator.at(late).correlation;
-  // Six standard deviations of chance: the largest of some hundred offsets is looked at.
+  // Six standard deviations of chance, because the largest of some hundred offsets is examined.
   const double chance = 6 / std::sqrt(static_cast<double>(correlator.size()));
   if (!(correlation >= std::max(kLeastCorrelation, chance))) return std::nullopt;
   return ClockOffset{gnss.against, late, correlator.sigma(late), correlation, correlator.size()};
@@ -248,7 +249,8 @@ SyncReport estimate_clock_offsets(const PreparedDrive& drive, const SyncOptions&
   const double length = seconds_between(drive.odometry.front().stamp, drive.odometry.back().stamp);
   const double largest = std::min(options.largest_s, 0.25 * length);
   TimeSeries speed = series_of(drive.odometry, &OdometrySample::speed_mps);
-  for (double& value : speed.values) value = std::abs(value);  // a receiver's has no sign
+  // the speed of a receiver has no sign
+  for (double& value : speed.values) value = std::abs(value);
   return {compare(speed, gnss_speeds(fixes), largest),
           compare(series_of(drive.odometry, &OdometrySample::yaw_rate_radps), gnss_turns(fixes), largest)};
 }

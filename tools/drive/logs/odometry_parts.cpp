@@ -17,10 +17,11 @@
 namespace waymark::drive {
 namespace {
 
-constexpr double kLargestRate = 50;        // Hz, of a clock that nobody stated
-constexpr double kCountWindow = 0.2;       // s: counts are differenced over at least so long
-constexpr double kStandstillSpeed = 0.05;  // m/s: gravity is looked for below it ...
-constexpr double kStandstillTime = 2;      // s: ... where there is so much of it
+constexpr double kLargestRate = 50;   // Hz, if the rate of the clock is not stated
+constexpr double kCountWindow = 0.2;  // s: shortest time over which counts are differenced
+// m/s: the direction of gravity is searched at lower speeds ...
+constexpr double kStandstillSpeed = 0.05;
+constexpr double kStandstillTime = 2;  // s: ... if they last at least this long
 
 using Channels = std::map<std::string, TimeSeries, std::less<>>;
 
@@ -29,7 +30,7 @@ struct Reading {
   double value = 0;
 };
 
-/// Readings in order of time; of several at one stamp the first.
+/// Returns readings in order of time. Of several with one stamp, the first is kept.
 TimeSeries series_of(std::vector<Reading> readings) {
   std::stable_sort(readings.begin(), readings.end(),
                    [](const Reading& a, const Reading& b) { return a.stamp < b.stamp; });
@@ -65,7 +66,7 @@ Channels collect_channels(std::span<const OdometryPart> parts) {
   return channels;
 }
 
-/// Combines two channels at the times of the first, where the other has a value too.
+/// Combines two channels at the times of the first, if the other one has a value there too.
 template <typename Combine>
 TimeSeries combined(const TimeSeries& a, const TimeSeries& b, double gap_s, Combine combine) {
   TimeSeries result;
@@ -79,8 +80,9 @@ TimeSeries combined(const TimeSeries& a, const TimeSeries& b, double gap_s, Comb
   return result;
 }
 
-/// Rate of a running count, in units per second, at the middle of each interval of at least kCountWindow.
-/// @param range  where the count starts again from 0; 0: never
+/// Returns the rate of a running count in units per second, at the middle of each interval of at
+/// least kCountWindow.
+/// @param range the count restarts from 0 here; 0: never
 TimeSeries rate_of_count(const TimeSeries& count, double range, double gap_s) {
   TimeSeries rate;
   const double limit = longest_silence_s(count, gap_s);
@@ -102,7 +104,7 @@ TimeSeries rate_of_count(const TimeSeries& count, double range, double gap_s) {
   return rate;
 }
 
-/// Makes speed and yaw rate of whatever channels there are.
+/// Computes speed and yaw rate from the available channels.
 class Assembler {
  public:
   Assembler(Channels channels, const OdometryAssembly& how, double gap_s)
@@ -152,13 +154,14 @@ class Assembler {
     return fmt::format("'gyro', axis {}", how_.gyro_axis);
   }
   void note(const std::string& text) { result_.notes.push_back("odometry: " + text); }
-  /// A number of the vehicle that a source needs.
+  /// Returns a vehicle parameter that a source needs.
   [[nodiscard]] double needed(double value, std::string_view key, std::string_view source) const {
     if (value > 0) return value;
     throw InputError(fmt::format("odometry: '{}' needs 'vehicle: {{{}: ...}}'", source, key));
   }
 
-  /// Half the sum of two channels of an axle, or the difference right - left over the track width.
+  /// Returns half the sum of two channels of an axle, or the difference right - left over the
+  /// track width.
   [[nodiscard]] std::optional<TimeSeries> of_axle(const TimeSeries* left, const TimeSeries* right,
                                                   std::string_view source, bool turning) const {
     if (left == nullptr || right == nullptr) return std::nullopt;
@@ -228,7 +231,8 @@ class Assembler {
     return rate;
   }
 
-  /// The rate about the direction that the accelerometer feels at rest: specific force at rest points up.
+  /// Returns the rate about the direction that the accelerometer measures at rest. Specific force
+  /// at rest points up.
   [[nodiscard]] TimeSeries along_gravity(const std::array<const TimeSeries*, 3>& axes) {
     const std::array<const TimeSeries*, 3> forces{find("acceleration_x"), find("acceleration_y"),
                                                   find("acceleration_z")};
@@ -290,7 +294,8 @@ class Assembler {
                     [&](double a, double v) { return v * std::tan(a / how_.steering_ratio) / wheelbase; });
   }
 
-  /// A speed without a sign gets one from the channel `reverse`, whose last reading holds.
+  /// Gives a speed without a sign the sign of the channel `reverse`; its last reading is valid
+  /// until the next.
   void flip_in_reverse() {
     const TimeSeries* reverse = find("reverse");
     if (reverse == nullptr) return;

@@ -23,7 +23,7 @@ std::int64_t nanoseconds(double seconds) {
   return std::llround(seconds * 1e9);
 }
 
-/// Appends the samples of one log, on the drive's scale, and its counts.
+/// Appends the samples of one log on the scale of the drive, and its counts.
 template <typename Sample>
 void append_log(const std::vector<Sample>& from, const DriveLogs::Log& log, TimeScale scale,
                 std::vector<Sample>& to, StreamReport& stream, PrepareReport& report) {
@@ -47,7 +47,8 @@ bool finite_place(const auto& sample) {
   return std::isfinite(sample.latitude_deg) && std::isfinite(sample.longitude_deg);
 }
 
-/// Puts logs in channels together. @throws InputError where some are whole odometry and some are not
+/// Assembles logs with channels. @throws InputError if some are complete odometry and
+/// others are not
 void assemble_parts(const DriveLogs& logs, const DriveDescription& description,
                     std::vector<OdometrySample>& odometry, PrepareReport& report) {
   std::vector<OdometryPart> parts;
@@ -75,7 +76,7 @@ void assemble_parts(const DriveLogs& logs, const DriveDescription& description,
   report.notes.insert(report.notes.end(), assembled.notes.begin(), assembled.notes.end());
 }
 
-/// What the drive does in them is not known, and the error there is not in proportion to anything.
+/// Notes the gaps. The motion in a gap is unknown, and no noise model fits its error.
 void note_gaps(double gap_s, Stamp start, PrepareReport& report) {
   const std::vector<GapReport>& gaps = report.odometry.gaps;
   if (gaps.empty()) return;
@@ -128,15 +129,15 @@ std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveD
   return odometry;
 }
 
-/// "from 12.5 s to 80.25 s".
+/// Returns "from 12.5 s to 80.25 s".
 template <typename Sample>
 std::string span_text(const std::vector<Sample>& samples) {
   return fmt::format("from {} s to {} s", formats::decimal_seconds(samples.front().stamp),
                      formats::decimal_seconds(samples.back().stamp));
 }
 
-/// Keeps of each source the fix nearest to each whole multiple of the period; the earlier of two equally
-/// near.
+/// Keeps, for each source, the fix nearest to each whole multiple of the period; the earlier of two
+/// equally near ones.
 void thin(std::vector<GeodeticFix>& fixes, std::int64_t period) {
   struct Nearest {
     std::size_t index = 0;
@@ -174,7 +175,7 @@ std::vector<InputFile> inputs_of(const DriveLogs& logs) {
   return inputs;
 }
 
-/// Tells what a log's messages say of its stamps.
+/// Reports what the messages of a log reveal about its stamps.
 void report_clock(const DriveLogs::Log& log, PrepareReport& report) {
   const std::optional<ClockReport> clock = clock_of(log);
   if (!clock) return;
@@ -195,7 +196,8 @@ void add_logged_velocity(const DriveLogs::Log& log, TimeScale scale, std::span<G
       fmt::format("{}: {} of {} fixes have their speed or course from it", log.file, given, fixes.size()));
 }
 
-/// Receivers without a fix write zeros; nobody drives in the Gulf of Guinea.
+/// Removes fixes at 0/0. Receivers without a fix write zeros, and nobody drives in the
+/// Gulf of Guinea.
 void leave_out_null_island(std::vector<GeodeticFix>& fixes, PrepareReport& report) {
   const std::size_t left_out = std::erase_if(
       fixes, [](const GeodeticFix& fix) { return fix.latitude_deg == 0 && fix.longitude_deg == 0; });
@@ -275,7 +277,7 @@ bool in_outage(const OutagePattern& outage, double after_first_s) {
   return outage.length_s > 0 && std::fmod(after_first_s, outage.every_s) >= outage.every_s - outage.length_s;
 }
 
-/// Numbers the epochs and withholds what is asked for: fixes of one stamp are one epoch.
+/// Numbers the epochs and withholds the requested ones. Fixes with one stamp are one epoch.
 void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description, PrepareReport& report) {
   int epoch = -1;
   for (std::size_t i = 0; i < fixes.size(); ++i) {

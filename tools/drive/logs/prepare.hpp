@@ -1,4 +1,5 @@
-/// From logs to one drive on one clock: sorted, cleaned, projected, and a report of everything that was done.
+/// Turns logs into one drive on one clock: sorted, cleaned and projected, with a report
+/// of every step.
 #pragma once
 
 #include <cstdint>
@@ -18,33 +19,35 @@
 
 namespace waymark::drive {
 
-/// Where a stream says nothing for longer than it should.
+/// A time in which a stream has no samples for longer than usual.
 struct GapReport {
   Stamp start;  ///< last sample before the gap
   double length_s = 0;
 };
 
-/// What became of the records of one stream. used = read - non_finite - duplicates - what the rules for fixes
-/// take.
+/// What happened to the records of one stream. used = read - non_finite - duplicates - those that
+/// the rules for fixes remove.
 struct StreamReport {
-  std::size_t records = 0;       ///< in the logs
-  std::size_t corrupt = 0;       ///< of them unusable, see PrepareReport::corrupt_examples
-  std::size_t read = 0;          ///< samples delivered by the readers
-  std::size_t non_finite = 0;    ///< dropped: a number that is no number
-  std::size_t out_of_order = 0;  ///< stamped before their predecessor in the log; sorted in, not dropped
-  std::size_t duplicates_identical = 0;  ///< dropped: stamp and content of a sample before it
+  std::size_t records = 0;     ///< in the logs
+  std::size_t corrupt = 0;     ///< unusable ones, see PrepareReport::corrupt_examples
+  std::size_t read = 0;        ///< samples delivered by the readers
+  std::size_t non_finite = 0;  ///< dropped: some number is not finite
+  /// stamped before their predecessor in the log; sorted, not dropped
+  std::size_t out_of_order = 0;
+  std::size_t duplicates_identical = 0;  ///< dropped: same stamp and content as an earlier sample
   std::size_t duplicates_conflicting =
-      0;  ///< dropped: stamp of a sample before it, other content; the first is kept
+      0;  ///< dropped: same stamp as an earlier sample, other content; the first one is kept
   std::size_t used = 0;
   double median_interval_s = 0;
-  std::vector<GapReport> gaps;  ///< odometry: above timeline.gap_s; others: above 2.5 median intervals
+  /// odometry: above timeline.gap_s; others: above 2.5 median intervals
+  std::vector<GapReport> gaps;
 };
 
-/// What the messages of a log say of the clock that stamped them.
+/// What the messages of a log reveal about the clock of its stamps.
 struct ClockReport {
   std::string file;
   std::size_t messages = 0;
-  double ahead_s = 0;   ///< median of stamp minus the time told; positive: the stamps are ahead
+  double ahead_s = 0;   ///< median of stamp minus GNSS time; positive: the stamps are ahead
   double spread_s = 0;  ///< median absolute deviation from it
 };
 
@@ -53,14 +56,16 @@ struct PrepareReport {
   StreamReport gnss;
   StreamReport truth;
   StreamReport sensor;        ///< of all further sensors: records and corrupt ones
-  std::size_t reversing = 0;  ///< odometry samples with negative speed: no error
+  std::size_t reversing = 0;  ///< odometry samples with negative speed; this is no error
   std::size_t odometry_outside_window = 0;
   std::size_t fixes_outside_odometry =
-      0;                            ///< dropped: before the first or after the last odometry sample used
-  std::size_t fixes_thinned = 0;    ///< dropped: not the nearest to a multiple of gnss_period_s
-  std::size_t fixes_withheld = 0;   ///< kept, but out of the graph
-  std::vector<ClockReport> clocks;  ///< of logs that hold their own stamps and GNSS time
-  std::vector<std::string> notes;   ///< the readers' assumptions and what was concluded here, in sentences
+      0;  ///< dropped: before the first or after the last used odometry sample
+  /// dropped: another fix was nearer to a multiple of gnss_period_s
+  std::size_t fixes_thinned = 0;
+  std::size_t fixes_withheld = 0;   ///< kept, but left out of the graph
+  std::vector<ClockReport> clocks;  ///< for logs with their own stamps and GNSS time
+  /// the readers' assumptions and what was concluded here, in sentences
+  std::vector<std::string> notes;
   std::vector<std::string> corrupt_examples;
 };
 
@@ -75,7 +80,8 @@ struct PreparedSensor {
 /// A file that a drive was read from.
 struct InputFile {
   std::string path;
-  std::string fingerprint;  ///< of its content, which is the same compressed or not: "fnv1a64:" and 16 digits
+  /// of its content, which is the same compressed or not: "fnv1a64:" and 16 digits
+  std::string fingerprint;
 };
 
 /// A drive in its frame on its clock. Every stream is sorted by stamp.
@@ -83,18 +89,20 @@ struct PreparedDrive {
   std::string name;
   Frame frame;
   TimeScale scale = TimeScale::gps;
-  std::vector<OdometrySample> odometry;     ///< stamps unique; at least 2
-  std::vector<Fix> fixes;                   ///< stamp and source unique; at least 1; `epoch` counts from 0
+  std::vector<OdometrySample> odometry;  ///< stamps unique; at least 2
+  /// stamp and source are unique together; at least 1; `epoch` counts from 0
+  std::vector<Fix> fixes;
   std::vector<TruthPose> truth;             ///< stamps unique; may be empty
   std::vector<PreparedSensor> sensors;      ///< as DriveDescription::sensors
   Eigen::Vector2d antenna_m{0, 0};          ///< body frame
   Eigen::Vector2d truth_reference_m{0, 0};  ///< body frame
   TimelineOptions timeline;                 ///< how samples become nodes
-  std::vector<InputFile> inputs;  ///< in the order of the description, each log before its companions
+  /// in the order of the description, each log before its companions
+  std::vector<InputFile> inputs;
   PrepareReport report;
 };
 
-/// The logs of a drive as read: one entry per file, stamps on the scale of its request.
+/// The logs of a drive as they were read: one entry per file, stamps on the scale of its request.
 struct DriveLogs {
   struct Log {
     LogData data;
@@ -104,30 +112,38 @@ struct DriveLogs {
   };
   std::vector<Log> odometry;  ///< in the order of DriveDescription::odometry
   std::vector<Log> gnss;      ///< in the order of DriveDescription::gnss
-  std::vector<Log> velocity;  ///< as gnss; readings as velocity_channels(), nothing in it where there is none
-  std::vector<Log> truth;     ///< none or one
-  std::vector<Log> sensors;   ///< as DriveDescription::sensors; nothing in it for one without a log
+  /// in the order of gnss; readings as in velocity_channels(), empty if there are none
+  std::vector<Log> velocity;
+  std::vector<Log> truth;          ///< none or one
+  std::vector<Log> sensors;        ///< as DriveDescription::sensors; nothing in it for one without a log
   std::vector<std::string> notes;  ///< what was done to all of them (synchronise.hpp)
 };
 
-/// Puts logs onto one clock and into one frame. Pure.
+/// Puts logs on one clock and into one frame. This is a pure function.
 ///
-/// In this order: scales are converted; non-finite samples dropped; each stream sorted (stable) and
-/// duplicates of a stamp dropped (fixes: stamp and source; the first in the log is kept); gnss_delay_s
-/// subtracted; the odometry cut to [from_s, to_s] after its first stamp; fixes outside the odometry's span
-/// dropped; fixes thinned per source to the one nearest to each whole multiple of gnss_period_s on the
-/// drive's scale (the earlier of two equally near); epochs numbered; epochs n-1, 2n-1, ... withheld for
-/// withhold_every = n (one epoch: fixes of one stamp), and those in an outage; all projected.
-/// @throws InputError with the remedy for: fewer than two odometry samples, no fix, no fix within the
-/// odometry's span, truth that does not overlap the odometry, a log of seconds of week that would need a
-/// date.
+/// The steps, in this order:
+/// 1. Scales are converted, and non-finite samples are dropped.
+/// 2. Each stream is sorted (stable), and duplicates of a stamp are dropped. For fixes, stamp and
+///    source count, and the first one in the log is kept.
+/// 3. gnss_delay_s is subtracted.
+/// 4. The odometry is cut to [from_s, to_s] after its first stamp. Fixes outside the span of the
+///    odometry are dropped.
+/// 5. Fixes are thinned per source to the one nearest to each whole multiple of gnss_period_s on
+///    the scale of the drive (the earlier of two equally near ones).
+/// 6. Epochs are numbered; fixes with one stamp are one epoch. For withhold_every = n, epochs n-1,
+///    2n-1, ... are withheld, and so are those in an outage.
+/// 7. Everything is projected.
+/// @throws InputError with the remedy for: fewer than two odometry samples, no fix, no fix within
+/// the span of the odometry, truth that does not overlap the odometry, and a log of seconds of week
+/// that would need a date
 [[nodiscard]] PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& description);
 
 /// A log of truth on the drive's clock and in a frame that is given: cleaned as in a drive. Pure.
 [[nodiscard]] std::vector<TruthPose> prepare_truth(const DriveLogs::Log& log, TimeScale scale,
                                                    const Frame& frame);
 
-/// Told while a log is read: its file, bytes done and in all (0: not known). May throw to stop.
+/// Called while a log is read, with its file, bytes done and bytes in all (0: not known). It may
+/// throw to stop.
 using LogWatch = std::function<void(const std::string& file, std::uint64_t done, std::uint64_t size)>;
 
 /// Reads the logs that a description names, each once.

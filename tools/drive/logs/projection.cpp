@@ -21,7 +21,7 @@ using std::numbers::pi;
 constexpr double kFalseEasting = 500'000;      // m
 constexpr double kFalseNorthing = 10'000'000;  // of the southern hemisphere, m
 constexpr double kWidestOffset = 30;           // degrees of longitude from the zone's central meridian
-constexpr double kFarthest = 5'000'000;        // m, easting of about that offset and more
+constexpr double kFarthest = 5'000'000;        // m, an easting of about that offset or more
 constexpr double kOriginStep = 100;            // m
 
 double central_meridian_deg(int zone) {
@@ -32,8 +32,9 @@ double false_northing(bool north) {
   return north ? 0 : kFalseNorthing;
 }
 
-/// UTM easting and northing. The transverse Mercator map itself knows no border and no equator; UTMUPS would
-/// refuse eastings beyond 1000 km and count northings by the hemisphere of the point.
+/// Returns UTM easting and northing. The transverse Mercator map itself has no border and no
+/// equator. UTMUPS would refuse eastings beyond 1000 km, and count northings by the hemisphere
+/// of the point.
 GridPoint forward(const GeodeticPoint& point, int zone, bool north) {
   const double meridian = central_meridian_deg(zone);
   const double offset = std::remainder(point.longitude_deg - meridian, 360);

@@ -12,7 +12,7 @@
 namespace waymark::drive {
 namespace {
 
-/// Not every format knows sensors, and a plugin's reader may be wrong.
+/// Not every format supports sensors, and the reader of a plugin may be wrong.
 void check_readings(const SensorTable& readings, const LogConfig& log) {
   const std::size_t columns = log.request.readings.size();
   if (readings.size() > 0 && readings.columns == columns &&
@@ -40,8 +40,8 @@ LogReaderType named_reader(const LogConfig& log, const std::vector<LogReaderType
                   log.place, log.format, did_you_mean(log.format, names)));
 }
 
-/// The text of the files that belong to the log. A folder of KITTI oxts has its time stamps beside it by the
-/// layout of the data set.
+/// Reads the text of the files that belong to the log. For a folder of KITTI oxts the time stamps
+/// are beside it, by the layout of the data set.
 void read_companions(const LogConfig& log, LogRequest& request, std::vector<InputFile>& inputs,
                      std::vector<std::string>& notes) {
   std::map<std::string, std::string> companions = log.companions;
@@ -72,7 +72,8 @@ DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, cons
   } else {
     reader = named_reader(log, readers);
   }
-  // A table tells by its columns whether it holds odometry in channels; other logs are asked for both.
+  // The columns of a table tell whether it holds channels of odometry. Other logs are
+  // asked for both.
   if (request.stream == StreamKind::odometry && reader.name != "csv")
     request.readings = formats::odometry_channels();
   std::vector<InputFile> inputs{{log.file, {}}};

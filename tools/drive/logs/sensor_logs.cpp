@@ -17,7 +17,7 @@ const GeodeticFix& nearest_fix(std::span<const GeodeticFix> fixes, Stamp moment)
   return seconds_between(before->stamp, moment) < seconds_between(moment, after->stamp) ? *before : *after;
 }
 
-/// Rows in order of time.
+/// Sorts rows by time.
 SensorTable sorted(const SensorTable& table) {
   std::vector<std::size_t> order(table.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -38,7 +38,8 @@ void resolve_sensors(DriveDescription& description, const TypeRegistry& registry
   for (SensorConfig& sensor : description.sensors) {
     at_place_of(sensor.place, sensor.name, [&] {
       const SensorModelType& type = registry.sensor_model(sensor.name);
-      (void)registry.make_sensor_model(sensor.name, sensor.options);  // what is wrong shows before the work
+      // errors are found before the work
+      (void)registry.make_sensor_model(sensor.name, sensor.options);
       if (type.columns.empty() && sensor.log) throw InputError("takes no log; leave out 'file'");
       if (!type.columns.empty() && !sensor.log)
         throw InputError("needs a log: name it with 'file: ...' (`waymark info` lists its columns)");

@@ -1,5 +1,5 @@
-/// The logs of a drive's further sensors: what their models ask for, and their readings on the drive's clock
-/// and frame. Their part of the graph: model/sensors.hpp.
+/// The logs of a drive's further sensors: what their models ask for, and their readings on the
+/// drive's clock and frame. Their part of the graph: model/sensors.hpp.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace waymark::drive {
 
-/// Runs a step of a sensor; what is wrong with it is said with its place in the drive.yaml.
+/// Runs a step of a sensor. Its errors get the place of the sensor in the drive.yaml.
 template <typename Step>
 auto at_place_of(const std::string& place, const std::string& sensor, const Step& step) {
   try {
@@ -22,15 +22,15 @@ auto at_place_of(const std::string& place, const std::string& sensor, const Step
   }
 }
 
-/// Tells the sensors' logs which columns their models ask for.
-/// @throws InputError with the place in the drive.yaml: an unknown sensor or option, a log that is missing or
-/// not wanted
+/// Adds the columns that the models need to the requests for their logs.
+/// @throws InputError with the place in the drive.yaml for an unknown sensor or option, a missing
+/// log, or a log that is not needed
 void resolve_sensors(DriveDescription& description, const TypeRegistry& registry);
 
-/// The readings of a sensor on the drive's scale, sorted (stable), headings from true east turned into the
-/// frame by the meridian convergence at the fix nearest in time.
-/// @param columns  what the values are
-/// @param fixes    sorted by stamp, at least one
+/// Returns the readings of a sensor on the scale of the drive, sorted (stable). Headings from true
+/// east are turned into the frame by the meridian convergence at the fix nearest in time.
+/// @param columns the meaning of the values
+/// @param fixes sorted by stamp, at least one
 /// @throws InputError for a log of seconds of week that would need a date
 [[nodiscard]] SensorTable prepare_readings(const DriveLogs::Log& log, std::span<const SensorColumn> columns,
                                            TimeScale scale, std::span<const GeodeticFix> fixes,

@@ -1,4 +1,4 @@
-/// What preparing a drive does to any stream of stamped samples: clean, sort, find gaps.
+/// Steps of preparing any stream of stamped samples: clean, sort, find gaps.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,11 @@
 
 namespace waymark::drive {
 
-/// Drops non-finite samples and duplicates, sorts the rest by stamp, stable.
-/// @param is_finite  bool(const Sample&)
-/// @param same_key   bool(const Sample&, const Sample&): neighbours of one stamp that exclude each other
-/// @param same       bool(const Sample&, const Sample&): identical in content
+/// Drops non-finite samples and duplicates, and sorts the rest by stamp (stable).
+/// @param is_finite bool(const Sample&)
+/// @param same_key bool(const Sample&, const Sample&): adjacent samples of one stamp that
+/// exclude each other
+/// @param same bool(const Sample&, const Sample&): identical content
 template <typename Sample, typename IsFinite, typename SameKey, typename Same>
 void clean_stream(std::vector<Sample>& samples, StreamReport& report, IsFinite is_finite, SameKey same_key,
                   Same same) {
@@ -32,7 +33,7 @@ void clean_stream(std::vector<Sample>& samples, StreamReport& report, IsFinite i
   std::vector<Sample> kept;
   kept.reserve(samples.size());
   for (const Sample& sample : samples) {
-    const Sample* earlier = nullptr;  // kept samples of the same stamp stand at the end
+    const Sample* earlier = nullptr;  // kept samples with the same stamp are at the end
     for (auto it = kept.rbegin(); it != kept.rend() && it->stamp == sample.stamp; ++it) {
       if (same_key(*it, sample)) earlier = &*it;
     }
@@ -45,7 +46,7 @@ void clean_stream(std::vector<Sample>& samples, StreamReport& report, IsFinite i
   samples = std::move(kept);
 }
 
-/// Adds what a log's reader counted and noted.
+/// Adds the counts and notes of a log's reader.
 inline void add_log_report(const LogData& data, StreamReport& stream, PrepareReport& report) {
   stream.records += data.records;
   stream.corrupt += data.corrupt;
@@ -54,7 +55,7 @@ inline void add_log_report(const LogData& data, StreamReport& stream, PrepareRep
                                  data.corrupt_examples.end());
 }
 
-/// Puts the stamps of a log onto the drive's scale. @param stamp_of  Stamp&(Sample&)
+/// Converts the stamps of a log to the scale of the drive. @param stamp_of Stamp&(Sample&)
 /// @throws InputError for seconds of week that would need a date
 template <typename Samples, typename StampOf>
 void put_on_scale(Samples&& samples, const DriveLogs::Log& log, TimeScale scale, StampOf stamp_of) {
@@ -70,7 +71,7 @@ void put_on_scale(Samples&& samples, const DriveLogs::Log& log, TimeScale scale,
 }
 
 /// Fills used, median_interval_s and gaps.
-/// @param gap_s  longer intervals are gaps; 0: 2.5 median intervals
+/// @param gap_s longer intervals are gaps; 0: 2.5 median intervals
 template <typename Sample>
 void describe_stream(const std::vector<Sample>& samples, double gap_s, StreamReport& report) {
   report.used = samples.size();

@@ -7,13 +7,13 @@
 namespace waymark::drive {
 namespace {
 
-/// Index of the first reading after the moment.
+/// Returns the index of the first reading after the moment.
 std::size_t first_after(const TimeSeries& series, Stamp moment) {
   return static_cast<std::size_t>(std::upper_bound(series.stamps.begin(), series.stamps.end(), moment) -
                                   series.stamps.begin());
 }
 
-/// On the line through readings i - 1 and i.
+/// Interpolates between readings i - 1 and i.
 double between(const TimeSeries& series, std::size_t i, Stamp moment) {
   const double share =
       seconds_between(series.stamps[i - 1], moment) / seconds_between(series.stamps[i - 1], series.stamps[i]);

@@ -1,4 +1,4 @@
-/// One quantity over time, its readings joined by straight lines.
+/// One quantity over time. Straight lines join its readings.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace waymark::drive {
 
-/// The instant so many seconds later, to the nanosecond.
+/// Returns a stamp shifted by seconds, to the nanosecond.
 [[nodiscard]] inline Stamp moved(Stamp stamp, double seconds) {
   return {stamp.nanoseconds + std::llround(seconds * 1e9)};
 }
@@ -22,28 +22,30 @@ struct TimeSeries {
   [[nodiscard]] bool empty() const { return stamps.empty(); }
 };
 
-/// The upper median. @param values  at least one
+/// Returns the upper median. @param values at least one
 [[nodiscard]] double median_of(std::vector<double> values);
 
-/// @param quantity  &OdometrySample::speed_mps or &OdometrySample::yaw_rate_radps
+/// @param quantity &OdometrySample::speed_mps or &OdometrySample::yaw_rate_radps
 [[nodiscard]] TimeSeries series_of(const std::vector<OdometrySample>& odometry,
                                    double OdometrySample::*quantity);
 
-/// Median of the intervals between readings, s; 0 for fewer than two.
+/// Returns the median of the intervals between readings in s; 0 for fewer than two.
 [[nodiscard]] double median_interval_s(const TimeSeries& series);
 
-/// How long a series may be silent before that is a gap: gap_s, and 2.5 of its usual intervals.
+/// Returns how long a series may be silent before that is a gap: the larger of gap_s and 2.5
+/// usual intervals.
 [[nodiscard]] double longest_silence_s(const TimeSeries& series, double gap_s);
 
-/// Value at an instant; empty outside the series, and between readings that are more than `gap_s` apart.
+/// Returns the value at an instant. Empty outside the series, and between readings more than
+/// `gap_s` apart.
 [[nodiscard]] std::optional<double> value_at(const TimeSeries& series, Stamp moment, double gap_s);
 
-/// Integrals of a series in constant time each.
+/// Integrals of a series, each in constant time.
 class SeriesIntegral {
  public:
   explicit SeriesIntegral(const TimeSeries& series);
-  /// Mean over [from, to], the series taken as constant beyond its ends; the value at `from` where both are
-  /// equal.
+  /// Returns the mean over [from, to]. The series is constant beyond its ends. If both are equal,
+  /// returns the value at `from`.
   [[nodiscard]] double mean(Stamp from, Stamp to) const;
 
  private:

@@ -10,7 +10,8 @@
 namespace waymark::drive {
 namespace {
 
-/// A column's values, angles wound on so that lines between readings go the short way round.
+/// Returns the values of a column. Angles are unwrapped, so that lines between readings go
+/// the short way.
 TimeSeries column(const SensorTable& readings, std::size_t c, bool is_angle) {
   TimeSeries series;
   for (std::size_t row = 0; row < readings.size(); ++row) {
@@ -24,12 +25,12 @@ TimeSeries column(const SensorTable& readings, std::size_t c, bool is_angle) {
   return series;
 }
 
-/// A channel of the log, and how long it may be silent: its median interval is found once.
+/// A channel of the log, and how long it may be silent; its median interval is computed once.
 struct Channel {
   Channel(const SensorTable& readings, std::size_t c, bool is_angle)
       : series(column(readings, c, is_angle)), silence_s(longest_silence_s(series, 0)) {}
 
-  /// Sets the value where the channel has one. @return whether it has
+  /// Sets the value if the channel has one. @return whether it has one
   bool give(Stamp stamp, std::optional<double>& value) const {
     const std::optional<double> found = value_at(series, stamp, silence_s);
     if (found) value = found;

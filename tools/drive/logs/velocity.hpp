@@ -1,4 +1,4 @@
-/// Speed and course of a receiver that stand in a log of their own.
+/// Adds speed and course of a receiver from a separate log.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,11 @@
 
 namespace waymark::drive {
 
-/// Gives fixes the speed and course that stand in `readings` (columns as velocity_channels(), stamps on the
-/// fixes' scale): those between the two readings around a fix where they are at most 2.5 usual intervals
-/// apart, else none. What a fix has of itself is replaced where the readings have it.
-/// @return how many fixes got something
+/// Gives fixes the speed and course in `readings` (columns as in velocity_channels(), stamps on
+/// the scale of the fixes). Values are interpolated between the two readings around a fix if these
+/// are at most 2.5 usual intervals apart; otherwise there is none. They replace the values that
+/// the fix has.
+/// @return how many fixes received a value
 std::size_t add_velocity(const SensorTable& readings, std::span<GeodeticFix> fixes);
 
 }  // namespace waymark::drive

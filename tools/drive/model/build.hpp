@@ -1,7 +1,9 @@
-/// The graph over a placed drive: poses, odometry edges, further sensors, and what ties them to the fixes.
+/// The graph over a placed drive: poses, odometry edges, further sensors, and what ties them
+/// to the fixes.
 ///
-/// The steps walk the nodes in order of time, and each hands its part to one plugin. A drive that grows calls
-/// them with the nodes and fixes that are new: DriveNodes is a view, and may begin at any node.
+/// The steps walk the nodes in order of time, and each hands its part to one plugin. A drive
+/// that grows calls them with the nodes and fixes that are new: DriveNodes is a view, and may
+/// begin at any node.
 #pragma once
 
 #include <span>

@@ -1,14 +1,15 @@
-/// A drive with fewer nodes and fewer fixes, for what need not be exact: estimating its noise.
+/// A drive with fewer nodes and fewer fixes. It is precise enough to estimate the noise.
 #pragma once
 
 #include <waymark/tools/drive/model/place.hpp>
 
 namespace waymark::drive {
 
-/// Keeps accepted fixes at least `fix_period_s` apart per receiver (less by a tenth, for jitter), and merges
-/// intervals between nodes without such a fix up to `node_period_s`, driving and standing ones apart. The
-/// mean twist misses the exact motion by v a T^3 / 12 across for a yaw acceleration a: 1 cm for 10 m/s, 1
-/// rad/s^2 and a quarter of a second. The gate's counts stay those of the whole drive.
+/// Keeps accepted fixes at least `fix_period_s` apart per receiver (less by a tenth, for jitter),
+/// and merges intervals between nodes without such a fix up to `node_period_s`, driving and
+/// standing ones apart. The mean twist misses the exact motion by v a T^3 / 12 across for a yaw
+/// acceleration a: 1 cm for 10 m/s, 1 rad/s^2 and a quarter of a second. The gate's counts stay
+/// those of the whole drive.
 [[nodiscard]] PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s = 7.5,
                                   double node_period_s = 0.25);
 

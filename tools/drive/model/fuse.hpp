@@ -38,7 +38,7 @@ struct ModeledDrive {
   PlacedDrive placed;       ///< nodes, gate, initial guess
   NoiseEstimate noise;      ///< no parameters if it is as stated
   std::vector<std::string> sensor_warnings;
-  double distance_m = 0;              ///< driven, by the odometry
+  double distance_m = 0;              ///< by the odometry
   formats::GraphDocument document{};  ///< with provenance: provenance.hpp
 
   /// What looks wrong about the logs, in sentences.
@@ -47,7 +47,8 @@ struct ModeledDrive {
 
 /// The same at its minimum.
 struct FusedDrive {
-  ModeledDrive model;         ///< the document holds the best values, and the covariances that were asked for
+  /// the document holds the best values, and the covariances that were asked for
+  ModeledDrive model;
   MultiStartSummary minimum;  ///< how it was found
 };
 
@@ -57,8 +58,8 @@ struct FusedDrive {
 [[nodiscard]] FusedDrive fuse(const PreparedDrive& drive, const FusionSettings& settings,
                               const TypeRegistry& registry, const MinimizationWatch& watch = {});
 
-/// Fuses one drive in several ways. Ways that agree on gate and initial guess share them, and all share the
-/// nodes in time.
+/// Fuses one drive in several ways. Ways that agree on gate and initial guess share them, and all
+/// share the nodes in time.
 class Fusion {
  public:
   /// Both must outlive the object.

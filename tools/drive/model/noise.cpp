@@ -17,7 +17,7 @@
 namespace waymark::drive {
 namespace {
 
-/// One estimated number, as the search sees it: the logarithm, or the number itself.
+/// Converts an estimated number for the search: its logarithm, or the number itself.
 double to_search(const NoisePrior& prior, double value) {
   return prior.linear ? value : std::log(value);
 }
@@ -25,7 +25,7 @@ double from_search(const NoisePrior& prior, double coordinate) {
   return prior.linear ? coordinate : std::exp(coordinate);
 }
 
-/// Options with a prior that nobody stated.
+/// Adds options with a prior that are not stated.
 void add_parameters(const std::string& owner, const std::vector<OptionInfo>& known, const Options& given,
                     std::vector<NoiseParameter>& parameters) {
   for (const OptionInfo& option : known) {
@@ -70,8 +70,8 @@ class Objective {
   [[nodiscard]] int evaluations() const { return evaluations_; }
 
  private:
-  /// The same vertices and edges every time: structure and analysis are made once, and the search goes on
-  /// from where the last minimum was.
+  /// Vertices and edges are the same every time. So structure and analysis are made once, and each
+  /// minimisation begins at the last minimum.
   void prepare(Graph& graph) {
     if (!values_.empty()) {
       graph.set_values(values_);
@@ -92,7 +92,7 @@ class Objective {
   int evaluations_ = 0;
 };
 
-/// The search behind a C interface.
+/// The search behind the C interface.
 struct Search {
   Objective& objective;
   NoiseEstimate& noise;
@@ -107,7 +107,8 @@ double evaluate(unsigned size, const double* coordinates, double*, void* data) {
   return search.objective(search.noise);
 }
 
-/// BOBYQA (Powell 2009): no derivatives, within bounds. A parameter may leave its prior by four deviations.
+/// BOBYQA (Powell 2009) needs no derivatives and respects bounds. A parameter may leave its prior
+/// by four deviations.
 void minimize(Objective& objective, NoiseEstimate& noise) {
   constexpr double kReach = 4;
   constexpr double kTolerance = 0.05;  // of a deviation of the prior
@@ -140,7 +141,7 @@ void minimize(Objective& objective, NoiseEstimate& noise) {
     noise.parameters[i].value = from_search(noise.parameters[i].prior, at[i]);
 }
 
-/// Standard deviations from second differences at the minimum.
+/// Computes standard deviations from second differences at the minimum.
 void find_deviations(Objective& objective, NoiseEstimate& noise) {
   const double least = objective(noise);
   for (NoiseParameter& parameter : noise.parameters) {

@@ -1,5 +1,6 @@
-/// The noise of a drive, estimated from the drive itself: the options of its odometry model and its GNSS
-/// modeling that state a prior, by the marginal likelihood of the fixes (core/covariance/evidence.hpp).
+/// Estimates the noise of a drive from the drive itself: those options of its odometry model and
+/// its GNSS modeling that have a prior. It uses the marginal likelihood of the fixes
+/// (core/covariance/evidence.hpp).
 #pragma once
 
 #include <optional>
@@ -11,24 +12,24 @@
 
 namespace waymark::drive {
 
-/// What was found for one option.
+/// The estimate of one option.
 struct NoiseParameter {
-  std::string owner;  ///< the odometry model or the modeling it is an option of
+  std::string owner;  ///< the odometry model or modeling that has the option
   std::string option;
   std::string unit;
   NoisePrior prior;
   double value = 0;
-  /// Standard deviation of the posterior in the prior's sense (of the logarithm, or linear), the other
-  /// parameters held.
+  /// Standard deviation of the posterior, in the form of the prior (of the logarithm, or linear),
+  /// with the other parameters held.
   double deviation = 0;
 
-  /// Whether the drive said more of it than was known before.
+  /// Tells whether the drive has more information about it than the prior.
   [[nodiscard]] bool observed() const { return deviation < 0.9 * prior.deviation; }
 };
 
 struct NoiseEstimate {
   std::vector<NoiseParameter> parameters;
-  int evaluations = 0;  ///< of the marginal likelihood
+  int evaluations = 0;  ///< evaluations of the marginal likelihood
   double seconds = 0;
 };
 
@@ -41,8 +42,8 @@ struct NoiseEstimate {
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
                                            const TypeRegistry& registry);
 
-/// The settings with what was estimated as options of the odometry model and the modeling; what is stated
-/// stays.
+/// The settings with what was estimated as options of the odometry model and the modeling; what is
+/// stated stays.
 [[nodiscard]] FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise);
 
 }  // namespace waymark::drive

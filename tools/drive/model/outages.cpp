@@ -11,7 +11,7 @@
 namespace waymark::drive {
 namespace {
 
-/// The odometry edges of a graph as a chain: from each pose to the next.
+/// The odometry edges of a graph as a chain from each pose to the next.
 class OdometryChain {
  public:
   explicit OdometryChain(const Graph& graph)
@@ -28,8 +28,8 @@ class OdometryChain {
     }
   }
 
-  /// The pose at a vertex, by odometry from another one at or before it; empty where the chain does not lead
-  /// there.
+  /// Returns the pose at a vertex, by odometry from another one at or before it. Empty if the chain
+  /// is interrupted.
   [[nodiscard]] std::optional<Pose2<double>> follow(VertexIndex from, Pose2<double> pose,
                                                     VertexIndex to) const {
     while (from != to) {
@@ -51,11 +51,12 @@ class OdometryChain {
   [[nodiscard]] bool is_pose(VertexIndex v) const {
     return graph_.vertex_type(v).tag == VertexSe2::kTag && graph_.stamp(v).has_value();
   }
-  /// Whether both are poses and the second is later.
+  /// Tells whether both are poses and the second one is later.
   [[nodiscard]] bool later(VertexIndex first, VertexIndex second) const {
     return is_pose(first) && is_pose(second) && *graph_.stamp(first) < *graph_.stamp(second);
   }
-  /// Edges that leap over poses (loop closures) give way to the one to the next.
+  /// Adds a link. An edge that skips poses (a loop closure) is replaced by the edge to
+  /// the next pose.
   void add(VertexIndex from, const Link& link) {
     Link& known = next_[static_cast<std::size_t>(from)];
     if (known.batch == nullptr || later(link.to, known.to)) known = link;

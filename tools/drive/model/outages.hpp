@@ -1,4 +1,4 @@
-/// What else could be said of withheld fixes than the fused poses say: odometry alone, and the past alone.
+/// Other predictions of withheld fixes than the fused poses: odometry alone, and the past alone.
 #pragma once
 
 #include <functional>
@@ -15,40 +15,44 @@ namespace waymark::drive {
 
 /// Poses (x, y [m, frame], heading [rad]) at the withheld fixes of a drive.
 struct PosesAtWithheld {
-  std::vector<std::optional<Eigen::Vector3d>> poses;  ///< one per fix; empty at fixes that are not withheld
-  /// Of their positions, m^2, frame axes; one per fix, or empty where none are known.
+  /// one per fix; empty at fixes that are not withheld
+  std::vector<std::optional<Eigen::Vector3d>> poses;
+  /// Covariances of the positions, m^2, frame axes; one per fix, or empty if none are known.
   std::vector<std::optional<Eigen::Matrix2d>> position_covariances;
 };
 
-/// Odometry alone: the pose that the graph's odometry, uncalibrated (its calibration states at zero), leads
-/// to from the optimised pose of the last accepted fix before. Empty before the first accepted fix, and where
-/// no chain of odometry edges leads on.
+/// Predicts with odometry alone. From the optimised pose of the last accepted fix it follows the
+/// odometry of the graph, uncalibrated (its calibration states are zero). Empty before the first
+/// accepted fix, and if the chain of odometry edges is interrupted.
 ///
-/// An odometry edge is a relative one of form "log" from a pose to the next in time; its error where all
-/// states are zero is the negative of its measured motion. Fixes must be in order of time, as a drive's are.
+/// An odometry edge is a relative edge of form "log" from a pose to the next one in time. If all
+/// states are zero, its error is the negative of its measured motion. Fixes must be in order of
+/// time, as those of a drive are.
 [[nodiscard]] PosesAtWithheld dead_reckoned_at_withheld(const formats::GraphDocument& document);
 
-/// Fixes [begin, end) of a drive, all withheld, with none withheld beside them.
+/// Fixes [begin, end) of a drive, all withheld, between fixes that are not withheld.
 struct WithheldRun {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
 
-/// The runs of withheld fixes, in order.
+/// Returns the runs of withheld fixes, in order.
 [[nodiscard]] std::vector<WithheldRun> withheld_runs(std::span<const Fix> fixes);
 
-/// The drive as it was known at its fix number end - 1: no later fix, the odometry to its first reading at or
-/// after that fix, other sensors up to it, no truth. What is withheld stays so.
+/// Returns the drive as it was known at its fix number end - 1: without later fixes, with the
+/// odometry up to its first reading at or after that fix, with other sensors up to it, and without
+/// truth. Withheld fixes stay withheld.
 [[nodiscard]] PreparedDrive known_until(const PreparedDrive& drive, std::size_t end);
 
-/// Builds the graph of a drive and optimises it; nothing where that cannot be done. Document fixes are those
-/// of the drive, in their order; covariances of poses are used where it has them.
+/// Builds the graph of a drive and optimises it. Returns nothing if that is impossible. The
+/// fixes of the document are those of the drive, in their order. If it has covariances of poses,
+/// they are used.
 using FuseDrive = std::function<std::optional<formats::GraphDocument>(const PreparedDrive& known)>;
 
-/// What a vehicle would have known on its way: for each run of withheld fixes the drive is fused from nothing
-/// but known_until its end. One call of `fuse` per run, none for a run with no fix before it; empty where it
-/// gave nothing.
-/// @throws UsageError for a document with other fixes; what `fuse` throws.
+/// Predicts what a vehicle would have known on its way. For each run of withheld fixes the drive is
+/// fused only from known_until its end. `fuse` is called once per run, but not for a run with no
+/// fix before it. The prediction is empty if `fuse` returns nothing.
+/// @throws UsageError for a document with other fixes; errors of `fuse`
 [[nodiscard]] PosesAtWithheld causal_at_withheld(const PreparedDrive& drive, const FuseDrive& fuse);
 
 }  // namespace waymark::drive

@@ -1,9 +1,10 @@
-/// A drive's nodes in time, the gate's verdicts and the initial guess: what comes before any vertex.
+/// A drive's nodes in time, the gate's verdicts and the initial guess: what comes
+/// before any vertex.
 ///
-/// Nodes and fixes stand in order of time, and the vertex of node i is i + 1 for good. So a drive that grows
-/// appends: a new odometry sample is a new node with the interval that leads to it, a new fix is judged
-/// with the fixes before it and named after its node, and the guess of a new node is the pose before it
-/// moved along its interval. Nothing that stands before is renumbered.
+/// Nodes and fixes stand in order of time, and the vertex of node i is i + 1 for good. So a drive
+/// that grows appends: a new odometry sample is a new node with the interval that leads to it, a
+/// new fix is judged with the fixes before it and named after its node, and the guess of a new node
+/// is the pose before it moved along its interval. Nothing that stands before is renumbered.
 #pragma once
 
 #include <memory>
@@ -31,7 +32,7 @@ struct PlacedDrive {
   Eigen::Vector2d antenna_m{0, 0};    ///< body frame
   double standstill_mps = 0;          ///< of the odometry model
   double gap_noise_factor = 1;        ///< for the odometry model, as PreparedDrive::timeline states it
-  std::vector<std::string> warnings;  ///< what looks wrong about units and signs of the logs
+  std::vector<std::string> warnings;  ///< suspicious units and signs of the logs
 };
 
 /// The vertex of a node.

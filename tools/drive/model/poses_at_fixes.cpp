@@ -19,7 +19,7 @@ std::optional<double> estimated_time_offset(const Graph& graph) {
   return std::nullopt;
 }
 
-/// All poses with a stamp, by time; one of each stamp.
+/// Returns all poses with a stamp, by time; one for each stamp.
 std::vector<StampedPose> stamped_poses(const Graph& graph) {
   std::vector<StampedPose> poses;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
@@ -36,8 +36,8 @@ Pose2<double> as_pose(const StampedPose& pose) {
   return {pose.pose[0], pose.pose[1], pose.pose[2]};
 }
 
-/// The pose `later_s` seconds after a stamp, on the twist between the two poses beside; beyond the ends that
-/// of the last two goes on. @param nodes at least two
+/// Returns the pose `later_s` seconds after a stamp, on the twist between the two adjacent poses.
+/// Beyond the ends the twist of the last two continues. @param nodes at least two
 Eigen::Vector3d pose_at(const std::vector<StampedPose>& nodes, Stamp stamp, double later_s) {
   const Stamp moment{stamp.nanoseconds + std::llround(later_s * 1e9)};
   auto after = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, moment,

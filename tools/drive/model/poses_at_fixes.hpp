@@ -11,17 +11,17 @@
 
 namespace waymark::drive {
 
-/// The poses at the fixes, in their order. @throws InputError where a fix's vertex is no pose, or has no
-/// stamp or another than the fix.
+/// Returns the poses at the fixes, in their order. @throws InputError if the vertex of a fix is no
+/// pose, or has another stamp or none
 [[nodiscard]] std::vector<StampedPose> poses_at_fixes(const formats::GraphDocument& document);
 
-/// The covariances of their positions, m^2, frame axes, in the order of the fixes; empty where the document
-/// has none of a pose.
+/// Returns the covariances of their positions, m^2, frame axes, in the order of the fixes. Empty if
+/// the document has no covariance of a pose.
 [[nodiscard]] std::vector<std::optional<Eigen::Matrix2d>> position_covariances_at_fixes(
     const formats::GraphDocument& document);
 
-/// The poses when the fixes were really measured: at their stamps minus the estimated time offset, along the
-/// constant twist between the nodes beside. Empty where the graph estimates none.
+/// Returns the poses at the true times of the fixes: their stamps minus the estimated time offset,
+/// along the constant twist between the adjacent nodes. Empty if the graph estimates no offset.
 [[nodiscard]] std::vector<Eigen::Vector3d> poses_when_measured(const formats::GraphDocument& document);
 
 }  // namespace waymark::drive

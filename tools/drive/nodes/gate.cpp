@@ -14,14 +14,16 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Odometry displacement over a chord below which the vehicle stood: below every log's resolution.
+/// The vehicle stood if the odometry displacement over a chord is below this. It is below the
+/// resolution of every log.
 constexpr double kStandstillChord = 0.02;
 
-/// A GNSS chord without direction is a frozen receiver where the odometry's chord is this many times as long
-/// as the shortest that has one; in between, slow driving and noise cannot be told from it.
+/// A GNSS chord without direction means a frozen receiver if the odometry's chord is this many
+/// times as long as the shortest chord with a direction. If it is shorter, slow driving and noise
+/// look the same.
 constexpr double kFrozenRatio = 2;
 
-/// One receiver's fixes that take part, in the order in which they are walked (either way in time).
+/// The fixes of one receiver that take part, in the order of the walk (either direction of time).
 struct Track {
   std::span<const Fix> fixes;
   std::span<const Eigen::Vector3d> odometry;
@@ -32,7 +34,7 @@ struct Track {
 struct Chord {
   Eigen::Vector2d gnss;
   Eigen::Vector2d odometry;
-  double duration_s = 0;  ///< > 0 in either direction of time
+  double duration_s = 0;  ///< > 0 in both directions of time
 };
 
 struct Verdict {
@@ -68,8 +70,8 @@ Chord chord(const Track& track, std::size_t from, std::size_t to) {
                .duration_s = apart_s(track, from, to)};
 }
 
-/// The fix nearest to `chord_s` before member `i`, at least half and at most max_chord_s away. Its status
-/// does not matter: see README, "The reference after a rejection".
+/// Returns the fix nearest to `chord_s` before member `i`, at least half of that and at most
+/// max_chord_s away. Its status does not matter: see README, "The reference after a rejection".
 std::optional<std::size_t> reference(const Track& track, std::size_t i, const GateOptions& options) {
   std::optional<std::size_t> best;
   for (std::size_t j = i; j-- > 0;) {
@@ -83,7 +85,7 @@ std::optional<std::size_t> reference(const Track& track, std::size_t i, const Ga
   return best;
 }
 
-/// Signed angle from a to b in (-pi, pi].
+/// Returns the signed angle from a to b in (-pi, pi].
 double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return std::atan2(a[0] * b[1] - a[1] * b[0], a.dot(b));
 }
@@ -92,8 +94,8 @@ bool has_direction(const Eigen::Vector2d& v, const GateOptions& options) {
   return v.norm() >= options.min_chord_m;
 }
 
-/// Where only one chord exists the vectors have no common frame; their lengths differ by no more than the
-/// vectors would under any alignment.
+/// If there is only one chord, the vectors have no common frame. Their lengths differ at most as
+/// much as the vectors under any alignment.
 Verdict judge_pair(const Chord& bc, const GateOptions& options) {
   Verdict verdict;
   verdict.displacement_m = std::abs(bc.gnss.norm() - bc.odometry.norm());
@@ -115,9 +117,11 @@ Verdict judge_chords(const Chord& ab, const Chord& bc, const GateOptions& option
   if (aligned && has_direction(bc.gnss, options) && has_direction(bc.odometry, options))
     verdict.angle_rad = wrap_angle(angle_between(ab.gnss, bc.gnss) - angle_between(ab.odometry, bc.odometry));
 
-  // The gyro bias turns the odometry's chord in proportion to the time between the middles of the chords.
+  // The gyro bias turns the chord of the odometry in proportion to the time between the middles
+  // of the chords.
   const double chords = std::max(1.0, 0.5 * (ab.duration_s + bc.duration_s) / options.chord_s);
-  const bool angle_fails = std::abs(verdict.angle_rad) >= options.max_angle_rad * chords;  // false for NaN
+  // false for NaN
+  const bool angle_fails = std::abs(verdict.angle_rad) >= options.max_angle_rad * chords;
   const bool displacement_fails = verdict.displacement_m >= options.max_displacement_m;
   const bool frozen =
       !has_direction(bc.gnss, options) && bc.odometry.norm() >= kFrozenRatio * options.min_chord_m;
@@ -138,7 +142,7 @@ Verdict judge_chords(const Chord& ab, const Chord& bc, const GateOptions& option
   return verdict;
 }
 
-/// Both chords before `c` in walking order, or nothing.
+/// Judges with both chords before `c` in the order of the walk, or returns nothing.
 std::optional<Verdict> judge(const Track& track, std::size_t c, const GateOptions& options) {
   const std::optional<std::size_t> b = reference(track, c, options);
   if (!b) return std::nullopt;

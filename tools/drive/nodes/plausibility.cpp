@@ -12,22 +12,22 @@ namespace {
 
 constexpr double kLongestChord_s = 5;
 constexpr double kShortestChord_s = 0.95;
-constexpr double kShortestChord_m = 5;  // a shorter one is mostly the noise of its fixes
+constexpr double kShortestChord_m = 5;  // a shorter one is mainly noise of its fixes
 constexpr std::size_t kFewestChords = 20;
 constexpr std::size_t kFewestTurns = 10;
 constexpr double kLargestFactor = 1.5;
 constexpr double kSmallestTurn = 5 * std::numbers::pi / 180;
 constexpr double kOppositeSigns = -0.3;
 
-/// The way between two fixes of the first receiver.
+/// The distance between two fixes of the first receiver.
 struct ChordPair {
   Eigen::Vector2d gnss;
   Eigen::Vector2d odometry;
-  bool follows = false;  ///< begins where the chord before ended
+  bool follows = false;  ///< it begins at the end of the previous chord
 };
 
-/// Chords long enough to be judged, whatever the rate of the fixes: each goes on until it spans a second and
-/// is no longer mostly noise, at most for kLongestChord_s.
+/// Returns chords that are long enough, whatever the rate of the fixes. Each is extended until it
+/// spans a second and is no longer mainly noise, at most for kLongestChord_s.
 std::vector<ChordPair> chords_of(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna) {
   std::vector<ChordPair> chords;
   std::size_t first = fixes.size();

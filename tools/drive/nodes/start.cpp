@@ -16,12 +16,14 @@ namespace {
 
 using namespace start_detail;
 
-constexpr double kMinChord = 10;        // m, of the dead-reckoning start's first chord
-constexpr double kMinCourseSpeed = 1;   // m/s: below it a course is noise
-constexpr double kMinWholeSpread = 15;  // m, as a window's: one alignment is trusted above it
-constexpr double kAnySpread = 1;        // m, below it fixes say nothing about the heading
-constexpr double kCoarsePairs = 30;     // s between windows, while the bias may still be degrees per second
-constexpr double kFinePairs = 120;      // s
+constexpr double kMinChord = 10;       // m, of the first chord for dead reckoning
+constexpr double kMinCourseSpeed = 1;  // m/s: at lower speeds a course is noise
+// m, like that of a window: a single alignment is trusted above it
+constexpr double kMinWholeSpread = 15;
+constexpr double kAnySpread = 1;  // m, below it fixes contain no information about the heading
+// s between windows, as long as the bias may be degrees per second
+constexpr double kCoarsePairs = 30;
+constexpr double kFinePairs = 120;         // s
 constexpr double kTranslationHalf = 15.5;  // s of moving time on either side of the median
 constexpr double kTranslationStep = 1;     // s between evaluations
 
@@ -47,8 +49,8 @@ void require_fix(const Timeline& timeline, std::span<const Fix> fixes) {
   throw InputError("no fix is accepted: the drive cannot be placed");
 }
 
-/// The body's heading that a fix's course implies, where the vehicle moves fast enough for it to mean
-/// anything.
+/// Returns the heading of the body for the course of a fix, if the vehicle moves fast enough for a
+/// meaningful course.
 std::optional<double> heading_from_course(const Timeline& timeline, const Fix& fix, std::size_t node) {
   if (!fix.heading_rad || timeline.intervals.empty()) return std::nullopt;
   const double speed = timeline.intervals[std::min(node, timeline.intervals.size() - 1)].speed_mps;
@@ -56,8 +58,8 @@ std::optional<double> heading_from_course(const Timeline& timeline, const Fix& f
   return *fix.heading_rad + (speed < 0 ? std::numbers::pi : 0);
 }
 
-/// Rotation of the dead reckoning that lays the first chord of at least kMinChord on its fixes; the longest
-/// chord where none is that long.
+/// Returns the rotation of the dead reckoning that aligns the first chord of at least kMinChord
+/// with its fixes; the longest chord if none is that long.
 double rotation_from_chord(const Timeline& timeline, std::span<const Fix> fixes, std::size_t first,
                            std::span<const Eigen::Vector3d> poses, const Eigen::Vector2d& antenna_m,
                            std::string& note) {
@@ -77,7 +79,7 @@ double rotation_from_chord(const Timeline& timeline, std::span<const Fix> fixes,
   return std::atan2(gnss[1], gnss[0]) - std::atan2(odometry[1], odometry[0]);
 }
 
-/// Headings of the odometry with a bias taken off while moving.
+/// Returns headings of the odometry, with a bias subtracted while moving.
 std::vector<double> odometry_headings(const Timeline& timeline, double bias, double standstill_mps) {
   std::vector<double> headings{0};
   headings.reserve(timeline.stamps.size());
@@ -88,7 +90,7 @@ std::vector<double> odometry_headings(const Timeline& timeline, double bias, dou
   return headings;
 }
 
-/// What the steps of the anchored start share.
+/// The data that all steps of the anchored start share.
 struct Drive {
   const Timeline& timeline;
   std::span<const Fix> fixes;
@@ -103,7 +105,8 @@ std::vector<HeadingWindow> windows_along(const Drive& drive, std::span<const dou
   return align_windows(drive.anchors, poses, drive.antenna_m);
 }
 
-/// Gyro bias: what it reads at standstill, then twice what the heading offset still gains per second.
+/// Estimates the gyro bias: first the reading at standstill, then twice the remaining slope of the
+/// heading offset.
 double estimate_bias(const Drive& drive) {
   double bias = standstill_bias(drive.timeline, drive.standstill_mps).value_or(0);
   for (const double apart : {kCoarsePairs, kFinePairs}) {
@@ -117,8 +120,8 @@ void add(std::vector<double>& values, std::span<const double> more) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] += more[i];
 }
 
-/// Bends the headings by the smoothed offsets of the windows; returns how many there were. The second bend
-/// sees stretches that are no longer curved by what the first took away.
+/// Bends the headings by the smoothed offsets of the windows. Returns the number of windows. The
+/// second bend works on stretches that the first one has straightened.
 std::size_t bend(const Drive& drive, std::vector<double>& headings) {
   std::size_t count = 0;
   for (int pass = 0; pass < 2; ++pass) {
@@ -147,7 +150,7 @@ std::optional<double> offset_from_courses(const Drive& drive, std::span<const do
   return weighted_median(offsets);
 }
 
-/// One offset for the whole drive, where no window could be aligned. Returns what is to be said about it.
+/// Applies one offset to the whole drive, if no window could be aligned. Returns the note about it.
 std::string turn_as_a_whole(const Drive& drive, std::vector<double>& headings) {
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
@@ -179,7 +182,8 @@ std::string turn_as_a_whole(const Drive& drive, std::vector<double>& headings) {
   return note;
 }
 
-/// Knots of the median distance from the bent dead reckoning to the anchors around, one coordinate.
+/// Returns knots of one coordinate of the median distance from the bent dead reckoning to the
+/// anchors around.
 Knots translation(const Drive& drive, std::span<const Eigen::Vector3d> poses, int axis) {
   Knots knots;
   const auto& anchors = drive.anchors;

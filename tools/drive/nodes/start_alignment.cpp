@@ -16,8 +16,8 @@ constexpr double kWindow = 40;          // s of moving time
 constexpr double kStep = 10;            // s of moving time
 constexpr std::size_t kMinAnchors = 3;  // of a window
 constexpr double kMaxMisfit = 0.3;      // median residual over spread
-constexpr double kResidualFloor = 1;    // m: no window is worth more than this noise allows
-constexpr double kReweightFloor = 0.5;  // m: distances below count alike
+constexpr double kResidualFloor = 1;    // m: limits the weight of a window
+constexpr double kReweightFloor = 0.5;  // m: shorter distances count alike
 constexpr int kReweightings = 20;
 constexpr std::size_t kSmoothingHalf = 2;  // windows on either side
 
@@ -35,7 +35,8 @@ Eigen::Vector2d weighted_mean(std::span<const Eigen::Vector2d> points, std::span
   return sum / total;
 }
 
-/// One weighted least-squares alignment (closed form); distances after it are written to `distances`.
+/// Computes one weighted least-squares alignment (closed form). Writes the distances after it to
+/// `distances`.
 double align_once(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> to,
                   std::span<const double> weights, std::vector<double>& distances) {
   const Eigen::Vector2d from_mean = weighted_mean(from, weights);
@@ -64,7 +65,7 @@ double spread_of(std::span<const Eigen::Vector2d> points) {
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
-/// Rare fixes need longer windows: the time of about five of them.
+/// Returns the length of a window. Rare fixes need longer ones: the time of about five of them.
 double window_length(std::span<const Anchor> anchors) {
   std::vector<double> spacing;
   for (std::size_t i = 1; i < anchors.size(); ++i)
@@ -91,7 +92,7 @@ std::optional<HeadingWindow> align_window(std::span<const Anchor> anchors,
                        .weight = std::pow(fit->spread_m / noise, 2)};
 }
 
-/// The value equal to `angle` up to whole turns that is nearest to `target`.
+/// Returns the value that is nearest to `target` and equals `angle` except for whole turns.
 double nearest_turn(double angle, double target) {
   return target + wrap_angle(angle - target);
 }
@@ -204,13 +205,13 @@ std::vector<HeadingWindow> align_windows(std::span<const Anchor> anchors,
   const double length = window_length(anchors);
   const double step = length * kStep / kWindow;
   std::size_t first = 0;
-  std::size_t last = 0;  // one past the window's last anchor
+  std::size_t last = 0;  // one past the last anchor of the window
   for (double from = anchors.front().moving_s; first < anchors.size(); from += step) {
     while (first < anchors.size() && anchors[first].moving_s < from) ++first;
     last = std::max(last, first);
     while (last < anchors.size() && anchors[last].moving_s < from + length) ++last;
     const auto window = align_window(anchors.subspan(first, last - first), poses, antenna_m);
-    // Two windows over the same anchors (around a gap) would be one vote cast twice.
+    // Two windows over the same anchors (around a gap) would count the same vote twice.
     if (window && (windows.empty() || window->moving_s > windows.back().moving_s)) windows.push_back(*window);
     if (last == anchors.size() && from + step + 0.5 * length > anchors.back().moving_s) break;
   }

@@ -14,7 +14,7 @@ double distance_s(Stamp a, Stamp b) {
   return std::abs(seconds_between(a, b));
 }
 
-/// The same stamp always shares a node, otherwise two nodes would have no time between them.
+/// Equal stamps always share a node, because two nodes would have no time between them.
 bool shares_node(Stamp a, Stamp b, double snap_s) {
   return a == b || distance_s(a, b) < snap_s;
 }
@@ -52,7 +52,8 @@ void check_gap(Stamp start, Stamp left, double length_s, const TimelineOptions& 
   throw InputError(text);
 }
 
-/// Grid scale at a stamp: that of the nearest fix in time. `hint` walks forward with the calls.
+/// Returns the grid scale at a stamp: that of the nearest fix in time. `hint` moves forward
+/// with the calls.
 double grid_scale_at(std::int64_t middle_ns, std::span<const Fix> fixes, std::size_t& hint) {
   if (fixes.empty()) return 1;
   const auto away = [&](std::size_t i) { return std::abs(fixes[i].stamp.nanoseconds - middle_ns); };
@@ -60,7 +61,7 @@ double grid_scale_at(std::int64_t middle_ns, std::span<const Fix> fixes, std::si
   return fixes[hint].grid_scale;
 }
 
-/// The twist between two neighbouring odometry samples; dt_s is filled per part.
+/// Returns the twist between two consecutive odometry samples. dt_s is filled for each part.
 Interval twist_between(const OdometrySample& left, const OdometrySample& right, double grid_scale,
                        double gap_s) {
   Interval twist;
@@ -70,8 +71,8 @@ Interval twist_between(const OdometrySample& left, const OdometrySample& right, 
   return twist;
 }
 
-/// Appends a node at `stamp`, reached with `twist`. dt is the difference of stamps, so that parts of a split
-/// interval add up to the whole.
+/// Appends a node at `stamp`, reached with `twist`. dt is the difference of stamps, so that the
+/// parts of a split interval add up to the whole.
 void append_node(Timeline& timeline, Stamp stamp, Interval twist) {
   twist.dt_s = seconds_between(timeline.stamps.back(), stamp);
   timeline.stamps.push_back(stamp);
@@ -91,7 +92,7 @@ Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<cons
   std::size_t fix = 0;
   std::size_t scale_hint = 0;
   timeline.stamps.push_back(odometry.front().stamp);
-  // Fixes that snap to the last node so far belong to it.
+  // Fixes that snap to the last node belong to it.
   const auto attach = [&] {
     while (fix < fixes.size() && (fixes[fix].stamp <= timeline.stamps.back() ||
                                   shares_node(fixes[fix].stamp, timeline.stamps.back(), options.snap_s))) {

@@ -1,5 +1,5 @@
-/// The drive's nodes in time: one at every odometry stamp and one at every GNSS epoch, with the constant
-/// twist that the vehicle followed between neighbours.
+/// The nodes of a drive in time: one at every odometry stamp and one at every GNSS epoch. Between
+/// consecutive nodes the vehicle follows a constant twist.
 #pragma once
 
 #include <span>
@@ -12,13 +12,13 @@
 
 namespace waymark::drive {
 
-/// What to do where the odometry has no sample for longer than `gap_s`.
+/// The treatment of odometry gaps longer than `gap_s`.
 enum class GapPolicy {
-  bridge,  ///< keep the mean twist of both sides, process noise inflated by `gap_noise_factor`
+  bridge,  ///< keep the mean twist of both sides; `gap_noise_factor` inflates the process noise
   error    ///< refuse the drive
 };
 
-/// The largest snap_s that makes sense: at 30 m/s already 1.5 m.
+/// The largest sensible snap_s: at 30 m/s it is already 1.5 m.
 inline constexpr double kLargestSnap = 0.05;
 
 struct TimelineOptions {
@@ -32,27 +32,29 @@ struct TimelineOptions {
 struct Timeline {
   std::vector<Stamp> stamps;          ///< of the n nodes, strictly increasing
   std::vector<Interval> intervals;    ///< n - 1
-  std::vector<std::size_t> fix_node;  ///< node of each fix given
+  std::vector<std::size_t> fix_node;  ///< node of each given fix
 };
 
-/// Builds nodes and intervals.
-/// Between odometry samples k and k+1 the twist is the mean of the two; an interval split at a fix keeps that
-/// twist on both parts. The speed is multiplied by the grid scale of the fix nearest in time to the middle of
-/// the odometry interval. Fixes outside the odometry's span must have been dropped before.
+/// Builds nodes and intervals. Between odometry samples k and k+1 the twist is the mean of the two.
+/// If a fix splits an interval, both parts keep that twist. The speed is multiplied by the grid
+/// scale of the fix nearest in time to the middle of the odometry interval. Fixes outside the span
+/// of the odometry must have been dropped before.
 /// @param odometry sorted by stamp, stamps unique, at least 2
-/// @param fixes    sorted by stamp
-/// @throws InputError for fewer than two samples, a gap under GapPolicy::error, a fix outside the odometry's
-/// span; UsageError for samples out of order.
+/// @param fixes sorted by stamp
+/// @throws InputError for fewer than two samples, a gap with GapPolicy::error, or a fix outside the
+/// span of the odometry; UsageError for samples out of order
 [[nodiscard]] Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<const Fix> fixes,
                                       const TimelineOptions& options);
 
-/// Poses of all nodes by exact integration of the intervals from `start`; headings are *not* wrapped, so that
-/// windings can be read off. An interval with |speed| below `standstill_mps` is the identity.
+/// Returns poses of all nodes by exact integration of the intervals from `start`. Headings are
+/// *not* wrapped, so they show windings. An interval with |speed| below `standstill_mps` is
+/// the identity.
 [[nodiscard]] std::vector<Eigen::Vector3d> dead_reckon(const Timeline& timeline, const Eigen::Vector3d& start,
                                                        double standstill_mps);
 
-/// For each fix of the timeline the pose of its node moved to the antenna (heading kept): what the gate
-/// compares with the fixes. @param antenna_m antenna in the body frame (x forward, y left)
+/// Returns, for each fix of the timeline, the pose of its node moved to the antenna (with the same
+/// heading), for comparison with the fixes in the gate. @param antenna_m antenna in the body frame
+/// (x forward, y left)
 [[nodiscard]] std::vector<Eigen::Vector3d> antenna_at_fixes(const Timeline& timeline,
                                                             std::span<const Eigen::Vector3d> poses,
                                                             const Eigen::Vector2d& antenna_m);

@@ -26,7 +26,7 @@ void check_loss(const drive::DriveFile& file, const TypeRegistry& registry) {
   }
 }
 
-/// Where an option of the odometry model stands.
+/// Returns the place of an option of the odometry model.
 std::string place_of_option(const drive::Places& places, const std::string& option) {
   for (const char* section : {"odometry.options.", "calibration."}) {
     const auto place = places.of.find(section + option);
