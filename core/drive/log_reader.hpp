@@ -94,7 +94,8 @@ struct LogData {
   std::size_t without_fix = 0;                ///< those that the receiver marks as without a fix
   std::size_t corrupt = 0;                    ///< records that should hold a sample and are unusable
   std::vector<std::string> corrupt_examples;  ///< the first few, "file:line:column: the error"
-  std::map<std::string, std::size_t> kinds;   ///< number of messages of each kind: "GPRMC", "NAV-PVT"
+  /// number of messages of each kind: "GPRMC", "NAV-PVT"
+  std::map<std::string, std::size_t> kinds;
 };
 
 /// Decodes one log.

@@ -17,31 +17,35 @@ using VertexId = std::int64_t;
 /// The place of a vertex in its graph: 0, 1, 2, ... in insertion order.
 using VertexIndex = std::int32_t;
 
-/// What a vertex type V gives:
+/// The members of a vertex type V:
 /// @code
 ///   V::kTag            std::string_view, its word in .graph files
 ///   V::kValueSize      doubles that hold a value;  V::kTangentSize  degrees of freedom
-///   V::value_names()   names of the value's numbers, container of strings
-///   V::Value<T>        what an edge's error sees, generic in the scalar
+///   V::value_names()   names of the numbers of a value, container of strings
+///   V::Value<T>        the value in the form that errors of edges take, generic in the scalar
 ///   V::at<T>(const double* value, const T* delta) -> Value<T>: the value retracted by delta
 ///   V::retract(double* value, const double* delta)            value := value [+] delta, normalised
 ///   V::local(const double* from, const double* to, double* delta)    delta with from [+] delta == to
 /// @endcode
-/// Invariants (tested for every registered type): retract by 0 is the identity on normalised values;
-/// local(v, v) = 0; local(v, retract(v, d)) = d for small d.
+/// Invariants (tested for every registered type): retract by 0 is the identity on normalised
+/// values; local(v, v) = 0; local(v, retract(v, d)) = d for small d.
+///
 /// Optional members:
-/// - `V::value_units()`: the unit of each number, for types whose numbers are no coordinates. A state with
-///   units and without a place in the plane is reported with its sigma after a run.
-/// - `V::kDense = true`: the state touches very many edges (calibration). Its columns are ordered last.
-/// - `V::kLinearChart = true`: promises local(r, x [+] d) = local(r, x) + d, so that the retraction is a plain
-///   addition. Gaussian priors then take the identity as Jacobian of local(), Ceres a plain parameter block.
-/// - `V::position(const double*) -> Vector2d` and
-///   `V::rigid_motion(const double* value, const Vector2d& centre, double extent, double* columns)`: how the
-///   value moves under a rigid motion of the plane, kTangentSize x 3 column-major: along x, along y, a turn
-///   about centre by 1/extent rad. Types without them do not take part in the gauge test.
-/// - `V::carry<R>(const double* from, const double* to, Matrix<double, R, kTangentSize>& m)`: m := m T, where T
-///   takes the change of `from` to that of `to` when both move rigidly together. Relative edges (kRelative)
-///   between two of them are then linearised in half the time.
+/// - `V::value_units()`: the unit of each number, for types whose numbers are no coordinates. A
+///   state with units and without a place in the plane is reported with its sigma after a run.
+/// - `V::kDense = true`: the state touches very many edges (calibration). Its columns are
+///   ordered last.
+/// - `V::kLinearChart = true`: promises local(r, x [+] d) = local(r, x) + d, so the retraction is a
+///   plain addition. Gaussian priors then use the identity as Jacobian of local(), and Ceres uses a
+///   plain parameter block.
+/// - `V::position(const double*) -> Vector2d`: the place of the vertex in the plane.
+/// - `V::rigid_motion(const double* value, const Vector2d& centre, double extent, double*
+///   columns)`: the change of the value under a rigid motion of the plane. The columns are
+///   kTangentSize x 3, column-major: along x, along y, and a turn about centre by 1/extent rad.
+///   Types without position and rigid_motion do not take part in the gauge test.
+/// - `V::carry<R>(const double* from, const double* to, Matrix<double, R, kTangentSize>& m)`: m :=
+///   m T, where T maps the change of `from` to the change of `to` if both move rigidly together.
+///   Relative edges (kRelative) between two such vertices are linearised in half the time.
 template <typename V>
 concept Vertex = requires(double* value, const double* constant) {
   { V::kTag } -> std::convertible_to<std::string_view>;

@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-/// An exponent without its plus sign and zeros: "1e-06" becomes "1e-6".
+/// Returns an exponent without its plus sign and zeros: "1e-06" becomes "1e-6".
 std::string with_short_exponent(std::string number) {
   const std::size_t exponent = number.find('e');
   if (exponent == std::string::npos) return number;
@@ -20,7 +20,7 @@ std::string with_short_exponent(std::string number) {
   return number;
 }
 
-/// A bound as people write it: "1e4", "100", "0.1".
+/// Returns a bound as people write it: "1e4", "100", "0.1".
 std::string bound(double value) {
   if (!std::isfinite(value)) return value < 0 ? "-inf" : "inf";
   char buffer[32];
@@ -30,7 +30,7 @@ std::string bound(double value) {
   return scientific.size() < plain.size() ? scientific : plain;
 }
 
-/// "'off' or 'constant'".
+/// Returns "'off' or 'constant'".
 std::string quoted(const OptionWords& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "'" : " or '") + word + "'";

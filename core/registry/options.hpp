@@ -15,7 +15,7 @@
 
 namespace waymark {
 
-/// Option name -> value as given by the user.
+/// Maps option names to values as the user gave them.
 using Options = std::map<std::string, std::string>;
 
 /// The numbers that an option may have.
@@ -26,7 +26,7 @@ struct OptionRange {
   bool high_open = false;  ///< whether `high` itself is excluded
 
   [[nodiscard]] bool contains(double value) const;
-  /// "[1e-6, 10]"; "(0, 1]" if `low` is excluded.
+  /// Returns "[1e-6, 10]", or "(0, 1]" if `low` is excluded.
   [[nodiscard]] std::string text() const;
 };
 
@@ -47,12 +47,13 @@ struct OptionInfo {
   std::string value;  ///< the default, as a user would write it
   std::string unit;   ///< empty: none
   std::variant<OptionRange, OptionWords> allowed;
-  std::string text;  ///< what the option is; of words it says what each of them does
+  std::string text;  ///< meaning of the option; for words it explains each of them
   /// If given, the option is a noise parameter that can be estimated from a drive
   /// (core/covariance/evidence.hpp).
   std::optional<NoisePrior> prior = {};
 
-  /// The text with the range: "sigma of the readings; in [1e-6, 10]". `waymark info` shows it.
+  /// Returns the text with the range: "sigma of the readings; in [1e-6, 10]". `waymark
+  /// info` shows it.
   [[nodiscard]] std::string description() const;
 };
 
@@ -62,10 +63,10 @@ class OptionError : public UsageError {
   OptionError(const std::string& message, std::string owner, std::string option, std::string value);
   ~OptionError() override;  // key function, as in error.hpp
 
-  /// The registered name of the type that has (or lacks) the option.
+  /// Returns the registered name of the type that has (or lacks) the option.
   [[nodiscard]] const std::string& owner() const { return owner_; }
   [[nodiscard]] const std::string& option() const { return option_; }
-  /// As it was given.
+  /// Returns the value as it was given.
   [[nodiscard]] const std::string& value() const { return value_; }
 
  private:
@@ -74,20 +75,20 @@ class OptionError : public UsageError {
   std::string value_;
 };
 
-/// The options of one type: the values given, and the defaults of all others. The registry makes it
+/// The options of one type: the given values, and the defaults of all others. The registry makes it
 /// (TypeRegistry::make_...), so a type never sees a value that its OptionInfo forbids.
 class CheckedOptions {
  public:
-  /// @throws OptionError "owner: option 'name' must lie in [0, 1], got 2", and for an unknown name the nearest
-  /// one or all that exist
+  /// @throws OptionError "owner: option 'name' must lie in [0, 1], got 2". For an unknown name it
+  /// proposes the nearest one, or lists all.
   CheckedOptions(std::string_view owner, const Options& given, std::span<const OptionInfo> known);
 
   [[nodiscard]] const std::string& owner() const { return owner_; }
-  /// The value of an option that is declared with a range. @throws std::logic_error if none of
-  /// this name is
+  /// Returns the value of an option with a range. @throws std::logic_error if no such
+  /// option is declared
   [[nodiscard]] double number(std::string_view name) const;
-  /// The value of an option that is declared with words. @throws std::logic_error if none of
-  /// this name is
+  /// Returns the value of an option with words. @throws std::logic_error if no such
+  /// option is declared
   [[nodiscard]] const std::string& word(std::string_view name) const;
 
  private:
@@ -98,7 +99,7 @@ class CheckedOptions {
   std::map<std::string, std::string, std::less<>> words_;
 };
 
-/// A number as the value of an option: the shortest text that reads back exactly.
+/// Returns a number as the value of an option: the shortest text that reads back exactly.
 [[nodiscard]] std::string shortest(double value);
 
 [[nodiscard]] bool has_option(std::span<const OptionInfo> known, std::string_view name);

@@ -26,7 +26,8 @@ using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t size)>
 
 /// Reads a log file with a reader. If a compressed file is cut or damaged, the content before the
 /// error is used, and a corrupt record states the error.
-/// @param seen  told every piece of the content, uncompressed, before it is decoded: for a fingerprint
+/// @param seen called with every piece of the uncompressed content before it is decoded, for
+/// a fingerprint
 /// @throws InputError from the reader, and if nothing in the log was usable
 [[nodiscard]] LogData read_log_file(const LogReader& reader, const std::string& path,
                                     const LogRequest& request, const ReadProgress& progress = {},

@@ -1,4 +1,4 @@
-/// Classes of characters; unlike those of <cctype> they know no locale.
+/// Classes of characters. Unlike those of <cctype> they do not depend on the locale.
 #pragma once
 
 namespace waymark::formats {

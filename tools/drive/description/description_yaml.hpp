@@ -8,9 +8,10 @@
 
 namespace waymark::drive {
 
-/// Reads logs, clocks, frame and mounting. @param top  the whole file
-/// @param data_folder  where relative log names are looked up; empty: where the file says
-/// @throws InputError with the place of what is wrong
+/// Reads logs, clocks, frame and mounting.
+/// @param top the whole file
+/// @param data_folder the folder for relative names of logs; empty: the folder that the file states
+/// @throws InputError with the place of the error
 [[nodiscard]] DriveDescription read_description(const YamlSection& top, const std::string& data_folder);
 
 }  // namespace waymark::drive

@@ -1,5 +1,5 @@
-/// Which logs a drive consists of, and how they lie in time and space: everything that is known
-/// before anything is fused. How it is fused: fusion_settings.hpp.
+/// The logs of a drive, and their place in time and space: everything that is known before the
+/// fusion. fusion_settings.hpp defines how the drive is fused.
 #pragma once
 
 #include <map>
@@ -37,7 +37,7 @@ struct GnssConfig : LogConfig {
 /// A further sensor of the vehicle.
 struct SensorConfig {
   std::string name;              ///< of a registered sensor model
-  std::optional<LogConfig> log;  ///< empty: the sensor has none
+  std::optional<LogConfig> log;  ///< empty: the sensor has no log
   Options options;
   std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
 };
@@ -49,7 +49,7 @@ struct OutagePattern {
   double every_s = 0;   ///< above length_s
 };
 
-/// The logs of a drive, their clocks, the frame, and where on the vehicle they were measured.
+/// The logs of a drive, their clocks, the frame, and the places of the sensors on the vehicle.
 struct DriveDescription {
   std::string path;                 ///< of the drive.yaml, for messages; may be empty
   std::string name;                 ///< default: name of the file without ".yaml"
@@ -63,10 +63,10 @@ struct DriveDescription {
   std::vector<std::string> plugins;
 
   std::optional<TimeScale>
-      time_scale;            ///< the drive's own; logs on others are converted. Empty: gps is assumed
+      time_scale;            ///< scale of the drive; logs on others are converted. Empty: gps is assumed
   double speed_delay_s = 0;  ///< how late the stamps of the odometry's speed are; subtracted
   double yaw_rate_delay_s = 0;
-  double gnss_delay_s = 0;       ///< how late the receiver stamps; subtracted
+  double gnss_delay_s = 0;       ///< how late the stamps of the receiver are; subtracted
   double gnss_period_s = 0;      ///< thin fixes to one per period (0: keep all)
   std::optional<double> from_s;  ///< seconds after the first stamp of the drive
   std::optional<double> to_s;
@@ -78,7 +78,7 @@ struct DriveDescription {
   Eigen::Vector2d antenna_m{0, 0};  ///< GNSS antenna in the body frame (x forward, y left)
   Eigen::Vector2d truth_reference_m{0, 0};  ///< reference point of the truth in the body frame
 
-  int withhold_every = 0;  ///< every n-th fix is kept out of the graph, to judge it by (0: none)
+  int withhold_every = 0;  ///< every n-th fix is left out of the graph, for evaluation (0: none)
   OutagePattern outage;    ///< fixes in it are left out of the graph too
 
   [[nodiscard]] TimeScale scale() const { return time_scale.value_or(TimeScale::gps); }

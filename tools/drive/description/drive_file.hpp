@@ -1,4 +1,5 @@
-/// A drive.yaml: what it says of the drive, how the drive is to be fused, and where that stands.
+/// A drive.yaml: the description of the drive, the settings for its fusion, and their places
+/// in the file.
 #pragma once
 
 #include <map>
@@ -10,14 +11,14 @@
 
 namespace waymark::drive {
 
-/// Where a file says what only a plugin can check, for messages.
+/// The places of entries that only a plugin can check, for messages.
 struct Places {
   std::string file;
   /// "drive.yaml:12:5: " by key: "modeling.options.NAME", "modeling.loss", "odometry.model",
   /// "odometry.options.NAME", "calibration.NAME".
   std::map<std::string, std::string> of;
 
-  /// The place of a key; that of the file if it does not state the key.
+  /// Returns the place of a key, or the place of the file if the key is not stated.
   [[nodiscard]] std::string at(const std::string& key) const;
 };
 

@@ -1,4 +1,4 @@
-/// How a drive is fused: one plain value that a drive.yaml, the command line, experiments and
+/// How a drive is fused. This is a plain value that a drive.yaml, the command line, experiments and
 /// programs fill.
 #pragma once
 
@@ -22,29 +22,30 @@ struct Minimization {
   int threads = 1;
   int max_iterations = 500;
   double tolerance = 1e-6;  ///< OptimizerOptions::decrement_tolerance
-  /// computed at the minimum: none, those of the fixes' vertices, all
+  /// covariances to compute at the minimum: none, fixes (vertices of fixes) or all
   std::string covariances = "none";
 
   friend bool operator==(const Minimization&, const Minimization&) = default;
 };
 
-/// What is empty is decided by the modeling (see decided()).
+/// The modeling decides about empty members (see decided()).
 struct FusionSettings {
   std::string modeling = "correlated";  ///< registered GNSS modeling
   Options modeling_options{};           ///< of it, checked by its plugin
   std::string
-      /// of the fixes, "cauchy:1": a registered loss and its scale; empty or "none": squared
+      /// loss of the fixes, "cauchy:1": a registered loss and its scale; empty or "none":
+      /// squared errors
       loss{};
   std::string odometry_model = "constant_twist";  ///< registered odometry model
   Options odometry_options{};                     ///< of it, checked by its plugin
-  /// States to estimate with the poses: options that go to the odometry model or the GNSS modeling,
-  /// whichever has them. Given without any: no states.
+  /// States that are estimated with the poses: options for the odometry model or the GNSS modeling,
+  /// whichever has them. An empty map means: no states.
   std::optional<Options> calibration{};
   GateOptions gate{};
-  /// whether options with a prior come from the drive (noise.hpp)
+  /// whether options with a prior are estimated from the drive (noise.hpp)
   std::optional<bool> estimates_noise{};
   StartOptions initial_guess{};
-  bool lever_arm = true;  ///< false: the antenna counts as the body point
+  bool lever_arm = true;  ///< false: the antenna is taken as the body point
   Minimization minimization{};
 
   friend bool operator==(const FusionSettings&, const FusionSettings&) = default;
@@ -53,24 +54,26 @@ struct FusionSettings {
 /// Returns the meaning of `calibration: on`: all states that the built-in plugins know.
 [[nodiscard]] Options default_calibration();
 
-/// The settings with nothing left open. For a complete error model (GnssModelingType::complete) that is no
-/// gate, all calibration states and an estimated noise; for others the gate, no states and the noise as
-/// stated. The modeling's options get the calibration states that it knows.
+/// Completes the settings with the defaults of the modeling. A complete error model
+/// (GnssModelingType::complete) has no gate, all calibration states and an estimated noise. Others
+/// have the gate, no states and the noise as stated. The options of the modeling receive the
+/// calibration states that it knows.
 /// @throws UsageError for an unknown modeling
 [[nodiscard]] FusionSettings decided(FusionSettings settings, const TypeRegistry& registry);
 
-/// Options of an odometry model or a GNSS modeling with the calibration states that it knows.
-/// @param known  the options that it has
+/// Returns the options of an odometry model or a GNSS modeling, with the calibration states
+/// that it knows.
+/// @param known the options that it has
 [[nodiscard]] Options with_calibration(Options options, const FusionSettings& settings,
                                        const std::vector<OptionInfo>& known);
 
-/// A loss as FusionSettings::loss names it; empty for squared errors.
-/// @param place  of the text, for messages
-/// @throws UsageError for an unknown loss, and a scale that is none
+/// Returns the loss that FusionSettings::loss names; empty for squared errors.
+/// @param place place of the text, for messages
+/// @throws UsageError for an unknown loss or an impossible scale
 [[nodiscard]] std::optional<Loss> loss_of_fixes(const std::string& loss, const TypeRegistry& registry,
                                                 const std::string& place = "loss");
 
-/// "NAME:SCALE" as a loss. @throws UsageError as loss_of_fixes
+/// Converts "NAME:SCALE" to a loss. @throws UsageError as loss_of_fixes
 [[nodiscard]] Loss named_loss(const std::string& text, const std::string& place,
                               const TypeRegistry& registry);
 

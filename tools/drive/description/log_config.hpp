@@ -1,4 +1,4 @@
-/// The part of a drive.yaml that says how one log is read (see drive_description.hpp).
+/// The part of a drive.yaml that defines how one log is read (see drive_description.hpp).
 #pragma once
 
 #include <array>

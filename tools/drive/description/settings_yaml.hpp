@@ -1,4 +1,4 @@
-/// The part of a drive.yaml that says how the drive is fused (see fusion_settings.hpp).
+/// The part of a drive.yaml that defines how the drive is fused (see fusion_settings.hpp).
 #pragma once
 
 #include <waymark/tools/drive/description/drive_file.hpp>
@@ -6,8 +6,9 @@
 
 namespace waymark::drive {
 
-/// Reads the settings, and the places of those that only a plugin can check. @param top  the whole file
-/// @throws InputError with the place of what is wrong
+/// Reads the settings, and the places of those that only a plugin can check.
+/// @param top the whole file
+/// @throws InputError with the place of the error
 void read_settings(const YamlSection& top, FusionSettings& settings, Places& places);
 
 }  // namespace waymark::drive

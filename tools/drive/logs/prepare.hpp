@@ -64,7 +64,7 @@ struct PrepareReport {
   std::size_t fixes_thinned = 0;
   std::size_t fixes_withheld = 0;   ///< kept, but left out of the graph
   std::vector<ClockReport> clocks;  ///< for logs with their own stamps and GNSS time
-  /// the readers' assumptions and what was concluded here, in sentences
+  /// the assumptions of the readers and conclusions of this step, in sentences
   std::vector<std::string> notes;
   std::vector<std::string> corrupt_examples;
 };
@@ -80,7 +80,7 @@ struct PreparedSensor {
 /// A file that a drive was read from.
 struct InputFile {
   std::string path;
-  /// of its content, which is the same compressed or not: "fnv1a64:" and 16 digits
+  /// fingerprint of its uncompressed content: "fnv1a64:" and 16 digits
   std::string fingerprint;
 };
 
@@ -114,9 +114,10 @@ struct DriveLogs {
   std::vector<Log> gnss;      ///< in the order of DriveDescription::gnss
   /// in the order of gnss; readings as in velocity_channels(), empty if there are none
   std::vector<Log> velocity;
-  std::vector<Log> truth;          ///< none or one
-  std::vector<Log> sensors;        ///< as DriveDescription::sensors; nothing in it for one without a log
-  std::vector<std::string> notes;  ///< what was done to all of them (synchronise.hpp)
+  std::vector<Log> truth;  ///< none or one
+  /// in the order of DriveDescription::sensors; empty for one without a log
+  std::vector<Log> sensors;
+  std::vector<std::string> notes;  ///< steps that concern all logs (synchronise.hpp)
 };
 
 /// Puts logs on one clock and into one frame. This is a pure function.
@@ -138,7 +139,8 @@ struct DriveLogs {
 /// that would need a date
 [[nodiscard]] PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& description);
 
-/// A log of truth on the drive's clock and in a frame that is given: cleaned as in a drive. Pure.
+/// Converts a log of truth to the clock of the drive and to a given frame, with the same cleaning
+/// as in a drive. This is a pure function.
 [[nodiscard]] std::vector<TruthPose> prepare_truth(const DriveLogs::Log& log, TimeScale scale,
                                                    const Frame& frame);
 
@@ -146,17 +148,17 @@ struct DriveLogs {
 /// throw to stop.
 using LogWatch = std::function<void(const std::string& file, std::uint64_t done, std::uint64_t size)>;
 
-/// Reads the logs that a description names, each once.
-/// @throws InputError for an unknown format, a missing file, an unusable log.
+/// Reads each log of a description once.
+/// @throws InputError for an unknown format, a missing file, or an unusable log
 [[nodiscard]] DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistry& registry,
                                         const LogWatch& watch = {});
 
-/// resolve_sensors (sensor_logs.hpp), read_drive_logs and prepare_drive.
+/// Calls resolve_sensors (sensor_logs.hpp), read_drive_logs and prepare_drive.
 [[nodiscard]] PreparedDrive load_drive(DriveDescription description, const TypeRegistry& registry,
                                        const LogWatch& watch = {});
 
-/// The truth alone of a description, in a frame that is given: no other log is read.
-/// @throws InputError for a description without truth, an unusable log
+/// Reads only the truth of a description, in a given frame. No other log is read.
+/// @throws InputError for a description without truth, and for an unusable log
 [[nodiscard]] std::vector<TruthPose> load_truth(const DriveDescription& description, const Frame& frame,
                                                 const TypeRegistry& registry, const LogWatch& watch = {});
 

@@ -1,5 +1,5 @@
-/// The logs of a drive's further sensors: what their models ask for, and their readings on the
-/// drive's clock and frame. Their part of the graph: model/sensors.hpp.
+/// The logs of further sensors: the columns that their models need, and their readings on the clock
+/// and in the frame of the drive. model/sensors.hpp adds them to the graph.
 #pragma once
 
 #include <span>

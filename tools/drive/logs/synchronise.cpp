@@ -9,7 +9,7 @@
 namespace waymark::drive {
 namespace {
 
-/// Adds an offset to a delay if it is one; what was done is noted either way.
+/// Adds an offset to a delay if it is significant. A note is made in either case.
 bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s,
                   std::vector<std::string>& notes) {
   if (!offset) {

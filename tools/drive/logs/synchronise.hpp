@@ -1,4 +1,4 @@
-/// Puts the logs of a drive onto one clock by what they say of the same motion.
+/// Puts the logs of a drive on one clock, using the motion that they all measure.
 #pragma once
 
 #include <waymark/tools/drive/logs/prepare.hpp>
@@ -8,9 +8,9 @@ namespace waymark::drive {
 /// An offset within this many of its sigmas counts as zero.
 inline constexpr double kOffsetSigmas = 3;
 
-/// Puts fixes onto the GNSS time that their log tells of, and adds the offsets of speed and yaw rate against
-/// the fixes (clock_sync.hpp) to the delays of the description. What was done is noted in the logs, a
-/// sentence each. The logs are not read again; prepare_drive applies what was found.
+/// Moves fixes to the GNSS time in their log. Adds the offsets of speed and yaw rate against the
+/// fixes (clock_sync.hpp) to the delays of the description. The logs receive one note for each
+/// step. The logs are not read again; prepare_drive applies the delays.
 /// @throws what prepare_drive throws
 void synchronise(DriveLogs& logs, DriveDescription& description);
 

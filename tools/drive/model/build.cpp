@@ -6,7 +6,7 @@
 namespace waymark::drive {
 namespace {
 
-/// A pose for every node, with its stamp, at the initial guess.
+/// Adds a pose for every node, with its stamp, at the initial guess.
 std::vector<VertexIndex> add_poses(const PlacedDrive& placed, Graph& graph) {
   const Timeline& timeline = placed.timeline;
   std::vector<VertexIndex> poses;
@@ -19,7 +19,7 @@ std::vector<VertexIndex> add_poses(const PlacedDrive& placed, Graph& graph) {
   return poses;
 }
 
-/// The fixes that the graph is built of, and the odometry's motion at them.
+/// The fixes in the graph, and the motion of the odometry at them.
 struct AcceptedFixes {
   std::vector<Fix> fixes;
   std::vector<Interval> motion;

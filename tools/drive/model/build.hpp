@@ -1,9 +1,8 @@
-/// The graph over a placed drive: poses, odometry edges, further sensors, and what ties them
+/// Builds the graph of a placed drive: poses, odometry edges, further sensors, and the connection
 /// to the fixes.
 ///
-/// The steps walk the nodes in order of time, and each hands its part to one plugin. A drive
-/// that grows calls them with the nodes and fixes that are new: DriveNodes is a view, and may
-/// begin at any node.
+/// The steps visit the nodes in order of time, and each passes its part to one plugin. A growing
+/// drive calls them with the new nodes and fixes: DriveNodes is a view, and may begin at any node.
 #pragma once
 
 #include <span>
@@ -23,9 +22,9 @@ struct BuiltGraph {
 };
 
 /// Builds the graph of the accepted fixes.
-/// @param sensors   further ones, on the clock and in the frame of the drive; may be empty
-/// @param settings  decided, with the estimated noise among the options
-/// @throws UsageError for an unknown modeling or option; what the plugins throw
+/// @param sensors further ones, on the clock and in the frame of the drive; may be empty
+/// @param settings from decided(), with the estimated noise among the options
+/// @throws UsageError for an unknown modeling or option; errors of the plugins
 [[nodiscard]] BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                      const FusionSettings& settings, const TypeRegistry& registry);
 

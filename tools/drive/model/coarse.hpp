@@ -5,10 +5,10 @@
 
 namespace waymark::drive {
 
-/// Keeps accepted fixes at least `fix_period_s` apart per receiver (less by a tenth, for jitter),
-/// and merges intervals between nodes without such a fix up to `node_period_s`, driving and
-/// standing ones apart. The mean twist misses the exact motion by v a T^3 / 12 across for a yaw
-/// acceleration a: 1 cm for 10 m/s, 1 rad/s^2 and a quarter of a second. The gate's counts stay
+/// Keeps accepted fixes at least `fix_period_s` apart per receiver (a tenth less, for jitter).
+/// Merges intervals between nodes without such a fix up to `node_period_s`, driving and standing
+/// ones separately. For a yaw acceleration a, the mean twist misses the exact motion by v a T^3 /
+/// 12 across: 1 cm for 10 m/s, 1 rad/s^2 and a quarter of a second. The counts of the gate stay
 /// those of the whole drive.
 [[nodiscard]] PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s = 7.5,
                                   double node_period_s = 0.25);

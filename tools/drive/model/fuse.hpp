@@ -1,18 +1,25 @@
-/// The main job as a component: a drive that was read (load_drive) becomes a graph, and the graph a minimum.
+/// The main job as a component. It turns a drive in memory (load_drive) into a graph, and finds
+/// its minimum.
 ///
 ///   const DriveFile file = load_drive_file("drive.yaml");
 ///   const PreparedDrive drive = load_drive(file.description, registry);
 ///   const FusedDrive fused = fuse(drive, file.settings, registry);
 ///   for (const StampedPose& pose : poses_at_fixes(fused.model.document)) ...
 ///
-/// The steps: decided() closes what the settings leave to the modeling; place_drive() judges the fixes and
-/// guesses all poses; estimate_noise() finds the noise parameters; build_graph() makes the graph; minimize()
-/// finds its minimum. `waymark run`, `convert`, causal predictions and the experiments all come this way.
+/// The steps are:
+/// 1. decided() completes the settings with the defaults of the modeling.
+/// 2. place_drive() judges the fixes and computes the initial guess.
+/// 3. estimate_noise() estimates the noise parameters.
+/// 4. build_graph() builds the graph.
+/// 5. minimize() finds its minimum.
 ///
-/// Ownership: results are values, and refer to nothing. Threads: the functions keep no state, and calls on
-/// different drives may run side by side, also with one registry; a Fusion serves one thread at a time.
-/// Errors: UsageError for settings that name what the registry does not have, InputError for a drive that
-/// cannot be fused; a minimum that is not reached is no error but MultiStartSummary::summary.termination.
+/// `waymark run`, `convert`, causal predictions and the experiments all use these steps.
+///
+/// Ownership: results are values and contain no references. Threads: the functions keep no state.
+/// Calls for different drives may run at the same time, also with one registry. A Fusion may only
+/// be used by one thread at a time. Errors: UsageError for settings with names that the registry
+/// does not have, InputError for a drive that cannot be fused. If the minimum is not reached, this
+/// is no error; MultiStartSummary::summary.termination reports it.
 #pragma once
 
 #include <list>
@@ -32,46 +39,46 @@
 
 namespace waymark::drive {
 
-/// A drive under one model of its errors, at its initial guess.
+/// A drive with one error model, at its initial guess.
 struct ModeledDrive {
-  FusionSettings settings;  ///< decided; the estimated noise is among the options
+  FusionSettings settings;  ///< from decided(), with the estimated noise among the options
   PlacedDrive placed;       ///< nodes, gate, initial guess
-  NoiseEstimate noise;      ///< no parameters if it is as stated
+  NoiseEstimate noise;      ///< without parameters if the noise is as stated
   std::vector<std::string> sensor_warnings;
   double distance_m = 0;              ///< by the odometry
   formats::GraphDocument document{};  ///< with provenance: provenance.hpp
 
-  /// What looks wrong about the logs, in sentences.
+  /// Returns sentences about suspicious facts in the logs.
   [[nodiscard]] std::vector<std::string> warnings() const;
 };
 
-/// The same at its minimum.
+/// A drive with one error model, at its minimum.
 struct FusedDrive {
-  /// the document holds the best values, and the covariances that were asked for
+  /// the document holds the best values, and the requested covariances
   ModeledDrive model;
   MultiStartSummary minimum;  ///< how it was found
 };
 
 /// Fuses a drive.
-/// @param drive  as load_drive or prepare_drive gives it; sensors among it take part
-/// @throws what the steps throw
+/// @param drive from load_drive or prepare_drive; its sensors are used
+/// @throws errors of the steps
 [[nodiscard]] FusedDrive fuse(const PreparedDrive& drive, const FusionSettings& settings,
                               const TypeRegistry& registry, const MinimizationWatch& watch = {});
 
-/// Fuses one drive in several ways. Ways that agree on gate and initial guess share them, and all
+/// Fuses one drive in several ways. Ways with the same gate and initial guess share these, and all
 /// share the nodes in time.
 class Fusion {
  public:
   /// Both must outlive the object.
   Fusion(const PreparedDrive& drive, const TypeRegistry& registry) : drive_(drive), registry_(registry) {}
 
-  /// The steps up to the graph. @throws what the steps throw
+  /// Does the steps up to the graph. @throws errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
-  /// All steps. @throws what the steps throw
+  /// Does all steps. @throws errors of the steps
   [[nodiscard]] FusedDrive fuse(const FusionSettings& settings, const MinimizationWatch& watch = {});
 
  private:
-  /// What placing depends on.
+  /// The settings that the placing depends on.
   struct Key {
     GateOptions gate;
     StartOptions initial_guess;
@@ -88,7 +95,7 @@ class Fusion {
   std::list<std::pair<Key, PlacedDrive>> placed_;
 };
 
-/// Finds the minimum of a modeled drive, and the covariances that its settings ask for.
+/// Finds the minimum of a modeled drive, and the covariances that its settings request.
 [[nodiscard]] FusedDrive minimized(ModeledDrive model, const TypeRegistry& registry,
                                    const MinimizationWatch& watch = {});
 

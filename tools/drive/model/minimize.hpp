@@ -1,4 +1,4 @@
-/// Minimises a graph as the settings say.
+/// Minimises a graph as a Minimization states.
 #pragma once
 
 #include <atomic>
@@ -12,39 +12,40 @@
 
 namespace waymark::drive {
 
-/// Who watches a minimisation, and who may end it.
+/// Observes a minimisation, and may end it.
 struct MinimizationWatch {
-  std::function<void(const IterationRecord&)> observer{};  ///< told of every step; empty: nobody
-  const std::atomic<bool>* cancel = nullptr;               ///< as OptimizerOptions::cancel
+  /// called for every step; empty: no observer
+  std::function<void(const IterationRecord&)> observer{};
+  const std::atomic<bool>* cancel = nullptr;  ///< as OptimizerOptions::cancel
 };
 
-/// A search around optimize(), to be run in its place.
+/// A search around optimize() that replaces it.
 using Minimizer = std::function<Summary(Graph&, Algorithm&, LinearSolver&, const OptimizerOptions&)>;
 
-/// Minimises from the start that the settings name; the graph holds the best values found. A search for
-/// outliers begins at the values at hand instead of the best start: chi2 over all edges says nothing about a
-/// start if some of them are false.
-/// @param search  instead of optimize(); empty: that one
-/// @throws UsageError for what the registry does not have; InputError if the start cannot be made; what
-/// optimize() throws
+/// Minimises from the initial guess that the settings choose. Afterwards the graph holds the best
+/// values found. A search for outliers begins at the present values and not at the best start,
+/// because chi2 over all edges cannot judge a start if some edges are false.
+/// @param search in place of optimize(); empty: use optimize()
+/// @throws UsageError for names that the registry does not have; InputError if the start cannot be
+/// computed; errors of optimize()
 MultiStartSummary minimize(Graph& graph, const Minimization& how, const TypeRegistry& registry,
                            const MinimizationWatch& watch = {}, const Minimizer& search = {});
 
-/// Whether start, algorithm, its options and solver exist. @throws UsageError
+/// Checks that start, algorithm, its options and solver exist. @throws UsageError
 void check_minimization(const Minimization& how, const TypeRegistry& registry);
 
-/// Name of the linear solver that the settings name.
+/// Returns the name of the linear solver that the settings choose.
 [[nodiscard]] std::string solver_name(const Minimization& how, const TypeRegistry& registry);
 
-/// Stopping rules and threads.
+/// Returns the stopping rules and threads.
 [[nodiscard]] OptimizerOptions optimizer_options(const Minimization& how,
                                                  const MinimizationWatch& watch = {});
 
-/// What is said of vertices that are not joined to the rest.
+/// Returns the note about vertices that are not joined to the rest.
 [[nodiscard]] std::string apart_note(std::size_t vertices);
 
 /// Fills document.covariances at the present values. Vertices that are not estimated get none.
-/// @param which  "none", "fixes" (vertices of fixes) or "all" (whatever is not fixed)
+/// @param which "none", "fixes" (vertices of fixes) or "all" (all vertices that are not fixed)
 /// @throws InputError if the graph does not determine them
 void add_covariances(formats::GraphDocument& document, const std::string& which);
 

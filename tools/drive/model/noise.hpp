@@ -33,17 +33,18 @@ struct NoiseEstimate {
   double seconds = 0;
 };
 
-/// Maximises prior times marginal likelihood over the options with a prior that the settings do not state.
-/// Works on fixes thinned to one in 7.5 s per receiver, for receivers smooth their output and white noise
-/// would be found too small, and on nodes four times a second; further sensors take no part.
-/// @param settings  decided
-/// @return no parameters where none is left to be estimated
+/// Maximises prior times marginal likelihood over the options with a prior that the settings do not
+/// state. Fixes are thinned to one in 7.5 s per receiver: receivers smooth their output, and the
+/// white noise would otherwise come out too small. Nodes are thinned to four per second. Further
+/// sensors are left out.
+/// @param settings from decided()
+/// @return no parameters if none is left to estimate
 /// @throws UsageError and InputError as the odometry model and the modeling do
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
                                            const TypeRegistry& registry);
 
-/// The settings with what was estimated as options of the odometry model and the modeling; what is
-/// stated stays.
+/// Returns the settings with the estimates as options of the odometry model and the modeling.
+/// Stated options are kept.
 [[nodiscard]] FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise);
 
 }  // namespace waymark::drive

@@ -1,4 +1,4 @@
-/// The poses of a fused document where its fixes were measured.
+/// The poses of a fused document at its fixes.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-/// What a drive's document says of how it came about.
+/// The provenance of a drive's document: inputs, settings, assumptions and warnings.
 #pragma once
 
 #include <string>
@@ -9,13 +9,14 @@
 
 namespace waymark::drive {
 
-/// Key and text, in order of writing: drive, input (name and fingerprint of each file), modeling,
-/// modeling_option, loss, noise, calibration, sensor, plugin, gate, start, assumed, warning.
+/// Returns key and text in the order of writing: drive, input (name and fingerprint of each
+/// file), modeling, modeling_option, loss, noise, calibration, sensor, plugin, gate, start,
+/// assumed, warning.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(const PreparedDrive& drive,
                                                                              const ModeledDrive& modeled,
                                                                              const TypeRegistry& registry);
 
-/// "12 corrupt records were left out"; empty if there were none.
+/// Returns "12 corrupt records were left out"; empty if there were none.
 [[nodiscard]] std::string corrupt_warning(const PrepareReport& report);
 
 }  // namespace waymark::drive

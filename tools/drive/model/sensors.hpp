@@ -1,4 +1,4 @@
-/// The further sensors' part of a drive's graph.
+/// Adds the further sensors of a drive to its graph.
 #pragma once
 
 #include <span>
@@ -10,11 +10,11 @@
 
 namespace waymark::drive {
 
-/// Lets every sensor add its vertices and edges.
-/// @param fixes    accepted ones
-/// @param antenna_m  GNSS antenna in the body frame
-/// @return warnings: sensors none of whose readings lies within the drive
-/// @throws InputError what a model throws, with the sensor's place in the drive.yaml
+/// Calls every sensor to add its vertices and edges.
+/// @param fixes accepted ones
+/// @param antenna_m GNSS antenna in the body frame
+/// @return warnings: sensors without a reading within the drive
+/// @throws InputError from a model, with the place of the sensor in the drive.yaml
 [[nodiscard]] std::vector<std::string> add_sensors(std::span<const PreparedSensor> sensors,
                                                    const DriveNodes& nodes, std::span<const Fix> fixes,
                                                    const Eigen::Vector2d& antenna_m,

@@ -15,7 +15,7 @@
 namespace waymark::drive {
 
 struct GateOptions {
-  std::optional<bool> enabled;  ///< empty: whoever asks decides; on, where nobody does
+  std::optional<bool> enabled;  ///< empty: the caller decides; otherwise it is on
   /// 1.5 degrees: chord angle of GNSS minus that of odometry, > 0
   double max_angle_rad = 0.026179938779914945;
   double max_displacement_m = 15;  ///< difference of the displacement vectors, > 0

@@ -21,8 +21,8 @@ enum class StartMethod {
 
 struct StartOptions {
   StartMethod method = StartMethod::anchored;
-  /// Heading of the first pose: the start is turned about that pose to have it. Empty: as
-  /// it comes out.
+  /// Heading of the first pose. The initial guess is turned about that pose to have it.
+  /// Empty: no turn.
   std::optional<double> first_heading_rad{};
 
   friend bool operator==(const StartOptions&, const StartOptions&) = default;
@@ -59,7 +59,7 @@ struct Start {
 [[nodiscard]] Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes,
                                    const Eigen::Vector2d& antenna_m, double standstill_mps);
 
-/// The start that the options ask for.
+/// Returns the initial guess that the options choose.
 [[nodiscard]] Start make_start(const Timeline& timeline, std::span<const Fix> fixes,
                                const Eigen::Vector2d& antenna_m, double standstill_mps,
                                const StartOptions& options);

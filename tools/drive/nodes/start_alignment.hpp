@@ -56,8 +56,8 @@ struct Knots {
 /// Returns poses from (0, 0): exact arcs with the lengths of the intervals, along given (unwrapped)
 /// headings of all nodes.
 [[nodiscard]] std::optional<double> standstill_bias(const Timeline& timeline, double standstill_mps);
-/// Poses from (0, 0): the intervals' lengths along given (unwrapped) headings of all
-/// nodes, exact arcs.
+/// Returns poses from (0, 0): exact arcs with the lengths of the intervals, along given (unwrapped)
+/// headings of all nodes.
 [[nodiscard]] std::vector<Eigen::Vector3d> integrate_along(const Timeline& timeline,
                                                            std::span<const double> headings,
                                                            double standstill_mps);

@@ -1,5 +1,5 @@
-/// The folder that `waymark run` and `waymark evaluate` write and `waymark compare` reads: the name
-/// of every file in it.
+/// The names of all files in the folder that `waymark run` and `waymark evaluate` write and
+/// `waymark compare` reads.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace waymark::evaluation {
 
-/// The forms in which a trajectory is written; maps only if the frame is known.
+/// The formats of a trajectory. Those for maps are written only if the frame is known.
 inline constexpr std::array<std::string_view, 5> kTrajectoryForms = {"csv", "tum", "geojson", "kml", "gpx"};
 
 class ResultFolder {
  public:
-  /// Page of a single result, and of the comparison of several.
+  /// The page of a single result, or of the comparison of several.
   static constexpr const char* kReport = "report";
-  /// Page that `waymark compare` writes.
+  /// The page that `waymark compare` writes.
   static constexpr const char* kComparison = "comparison";
 
   explicit ResultFolder(std::string path) : path_(std::move(path)) {}
@@ -39,20 +39,21 @@ class ResultFolder {
     return file(label + ".fused.graph");
   }
   [[nodiscard]] std::string epochs(const std::string& label) const { return file(label + ".epochs.csv"); }
-  /// @param form  of kTrajectoryForms
+  /// @param form one of kTrajectoryForms
   [[nodiscard]] std::string trajectory(const std::string& label, std::string_view form) const {
     return file(label + "." + std::string(form));
   }
   ///@}
 
-  /// A page by its name. @param name  kReport or a label
+  /// Returns a page by its name. @param name kReport or a label
   [[nodiscard]] std::string page(const std::string& name) const { return file(name + ".html"); }
-  /// The page of one result among several. Of a single one it is the report.
+  /// Returns the name of the page of one of several results. The page of a single result
+  /// is the report.
   [[nodiscard]] static std::string page_name(const std::string& label, std::size_t results) {
     return results == 1 ? kReport : label;
   }
 
-  /// Every file that may be written for results of these labels, figures apart.
+  /// Returns every file that may be written for results with these labels, except figures.
   [[nodiscard]] std::vector<std::string> files(std::span<const std::string> labels) const;
 
  private:

@@ -1,5 +1,5 @@
-/// summary.json: how each result of a run was minimised, and what was estimated beside the poses.
-/// Written by `waymark run`, read by `waymark compare`; keys: tools/program/README.md.
+/// summary.json: how each result of a run was minimised, and the estimates besides the poses.
+/// `waymark run` writes it, and `waymark compare` reads it. tools/program/README.md lists the keys.
 #pragma once
 
 #include <map>
@@ -15,7 +15,8 @@
 
 namespace waymark::evaluation {
 
-/// A minimisation as JSON: termination, chi2, sizes, times, the starts that were tried, every step.
+/// Returns a minimisation as JSON: termination, chi2, sizes, times, the starts that were
+/// tried, every step.
 [[nodiscard]] nlohmann::ordered_json summary_json(const MultiStartSummary& result);
 
 /// One result of a run.
@@ -26,10 +27,10 @@ struct RunSummary {
   const nlohmann::ordered_json& noise;  ///< the parameters that were estimated
 };
 
-/// What summary.json holds: minimisation, states and noise by label.
+/// Returns the content of summary.json: minimisation, states and noise by label.
 [[nodiscard]] nlohmann::ordered_json run_summary_json(const std::vector<RunSummary>& runs);
 
-/// How the minimisation of a run ended, as summary.json tells it.
+/// How the minimisation of a run ended, as in summary.json.
 struct RunEnding {
   bool converged = false;
   std::string message;
@@ -37,13 +38,14 @@ struct RunEnding {
   double seconds = kUndefined;
   double initial_chi2 = kUndefined;
   double final_chi2 = kUndefined;
-  std::vector<double> chi2;  ///< at the start and after every accepted step; empty: not known
+  /// at the initial guess and after every accepted step; empty: not known
+  std::vector<double> chi2;
 };
 
-/// The same from memory.
+/// Returns the same from memory.
 [[nodiscard]] RunEnding run_ending(const MultiStartSummary& result);
 
-/// Endings by label. @param file  its name, for messages
+/// Reads the endings by label. @param file its name, for messages
 /// @throws InputError for text that is no summary.json
 [[nodiscard]] std::map<std::string, RunEnding> read_run_summary(std::string_view content,
                                                                 const std::string& file);

@@ -26,7 +26,7 @@ bool at_least_zero(double value) {
 
 using drive::DriveFile;
 
-/// An option whose value changes what the drive.yaml says.
+/// Adds an option whose value changes the content of the drive.yaml.
 template <typename Value>
 CLI::Option* add_edit(CLI::App& command, DriveChoice& choice, const std::string& name,
                       const std::string& text, void (*apply)(DriveFile&, const Value&)) {
@@ -36,7 +36,7 @@ CLI::Option* add_edit(CLI::App& command, DriveChoice& choice, const std::string&
   return command.add_option_function<Value>(name, take, text);
 }
 
-/// An option that may be given several times, with one value each.
+/// Makes an option repeatable, with one value each time.
 CLI::Option* repeated(CLI::Option* option) {
   return option->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }

@@ -1,4 +1,4 @@
-/// The table of what a drive is like: `inspect DRIVE.yaml` and `simulate` print it.
+/// The table of a drive's statistics. `inspect DRIVE.yaml` and `simulate` print it.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 namespace waymark::program {
 
 /// Reads the logs of a drive and prints the table, or the JSON document waymark-drive.
-/// @throws InputError, UsageError for a drive.yaml or logs that are wrong
+/// @throws InputError, UsageError for a wrong drive.yaml or wrong logs
 void print_drive_statistics(const std::string& path, const CommonOptions& common, const Console& console);
 
 }  // namespace waymark::program

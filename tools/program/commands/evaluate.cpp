@@ -51,10 +51,11 @@ std::vector<evaluation::StateReport> states_at(const formats::GraphDocument& doc
   }
 }
 
-/// What the graphs of a command are evaluated with.
+/// The data for the evaluation of all graphs of a command.
 struct EvaluationJob {
   const EvaluateOptions& options;
-  const std::optional<drive::DriveFile>& truth_file;  ///< empty: the truth is none, or a TUM file
+  /// empty: there is no truth, or it is a TUM file
+  const std::optional<drive::DriveFile>& truth_file;
   const TypeRegistry& registry;
   const Console& console;
 };
@@ -101,7 +102,7 @@ evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std
   return evaluated;
 }
 
-/// The drive.yaml that names the truth, if one does.
+/// Returns the drive.yaml that names the truth, if there is one.
 std::optional<drive::DriveFile> read_truth_file(const EvaluateOptions& options) {
   if (!drive::is_drive_file(options.truth)) return std::nullopt;
   return drive::load_drive_file(options.truth, options.data_folder);

@@ -17,7 +17,8 @@
 namespace waymark::program {
 namespace {
 
-/// A drive.yaml stands alone: it names its logs, and says how to read them.
+/// Inspects a drive.yaml. It must be the only argument, because it names its logs and how
+/// they are read.
 ExitCode inspect_drive(const InspectCommand& command, const std::string& path, const Console& console) {
   if (command.logs.size() > 1) throw UsageError(path + ": it names its own logs; inspect it alone");
   if (command.format != "auto" || !command.dbc.empty())

@@ -37,8 +37,8 @@ struct Subject {
   std::string group{};  ///< the preset of which it is a draw, if draws are pooled
 };
 
-/// The drive of a drive.yaml without its further sensors: the settings say what is done, the same
-/// for every drive.
+/// Returns the drive of a drive.yaml without its further sensors: the settings define the rest, the
+/// same for every drive.
 drive::DriveDescription read_drive(const std::string& path) {
   drive::DriveDescription description = drive::load_drive_file(path).description;
   description.sensors.clear();
@@ -153,7 +153,7 @@ std::vector<int> chosen_datasets(const ReproduceOptions& options) {
   return datasets;
 }
 
-/// Written as raw logs: simulated drives come in by the door of real ones.
+/// Writes a drive as raw logs, so that simulated drives are read like real ones.
 drive::DriveDescription write_simulated(const simulation::SimulationPreset& preset, std::uint64_t seed,
                                         const std::string& folder, StepProgress& progress) {
   stop_if_interrupted();

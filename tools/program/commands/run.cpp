@@ -39,7 +39,7 @@ struct ModelingRun {
   std::vector<std::string> files;
 };
 
-/// What the modelings of a run share.
+/// The data that all modelings of a run share.
 struct RunOfDrive {
   const RunOptions& options;
   const LoadedDrive& loaded;
@@ -81,7 +81,8 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
   return causal;
 }
 
-/// Evaluates a document with the covariances at its fixes; it keeps those that were asked for.
+/// Evaluates a document with the covariances at its fixes. Afterwards the document keeps the
+/// requested ones.
 evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, formats::GraphDocument& document,
                                         const Summary& summary, const drive::FusionSettings& settings) {
   run.console.progress(settings.modeling + ": covariances");
@@ -119,7 +120,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   const Summary& summary = result.result.summary;
   document.provenance.emplace_back("optimized", describe_optimization(result.result));
   if (!summary.converged()) document.provenance.emplace_back("warning", no_minimum_warning(summary));
-  write(run.folder.fused_graph(modeling));  // whatever comes after, the minimum is kept
+  write(run.folder.fused_graph(modeling));  // the minimum is saved before anything else can fail
   const std::size_t known = document.provenance.size();
   result.states = states_of_minimum(document, summary, console);
   result.evaluation = {modeling, evaluate_minimum(run, document, summary, settings)};
@@ -196,7 +197,7 @@ std::string describe_runs(const RunOfDrive& run, const std::vector<ModelingRun>&
   return text;
 }
 
-/// What is printed of a run: its modelings, the metrics, the files.
+/// Returns the printed text of a run: its modelings, the metrics, the files.
 std::string run_text(const RunOfDrive& run, const std::vector<ModelingRun>& runs,
                      const std::vector<evaluation::LabelledEvaluation>& evaluations,
                      const std::vector<std::string>& common) {

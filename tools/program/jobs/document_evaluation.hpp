@@ -1,4 +1,4 @@
-/// A document judged at its fixes.
+/// Evaluates a document at its fixes.
 #pragma once
 
 #include <string>
@@ -19,13 +19,16 @@ namespace waymark::program {
 
 [[nodiscard]] evaluation::Prediction as_prediction(std::string label, drive::PosesAtWithheld at);
 
-/// The truth that a drive.yaml names, in the document's frame; no other log of it is read.
-/// @throws InputError for a description without truth, a document without a frame, an unusable log
+/// Returns the truth that a drive.yaml names, in the frame of the document. No other log
+/// of it is read.
+/// @throws InputError for a description without truth, a document without a frame, and an
+/// unusable log
 [[nodiscard]] std::vector<TruthPose> truth_for(const formats::GraphDocument& document,
                                                const drive::DriveDescription& description,
                                                const TypeRegistry& registry);
 
-/// Truth from a TUM file in the document's frame. @throws InputError for a file that cannot be read
+/// Returns the truth of a TUM file, in the frame of the document. @throws InputError for a file
+/// that cannot be read
 [[nodiscard]] std::vector<TruthPose> truth_from_tum(const std::string& path);
 
 }  // namespace waymark::program

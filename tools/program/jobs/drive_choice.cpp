@@ -14,7 +14,7 @@
 namespace waymark::program {
 namespace {
 
-/// The loss as the drive.yaml or the command line names it.
+/// Checks the loss that the drive.yaml or the command line names.
 void check_loss(const drive::DriveFile& file, const TypeRegistry& registry) {
   const auto place = file.places.of.find("modeling.loss");
   if (place == file.places.of.end())
@@ -46,8 +46,8 @@ void check_odometry_model(const drive::FusionSettings& settings, const drive::Dr
   }
 }
 
-/// @throws InputError with its place for a state that neither the odometry model nor one of the modelings
-/// knows
+/// @throws InputError with its place for a state that neither the odometry model nor a
+/// modeling knows
 void check_calibration(const drive::DriveFile& file, const std::vector<std::string>& modelings,
                        const TypeRegistry& registry) {
   const std::string& odometry_model = file.settings.odometry_model;
@@ -98,7 +98,8 @@ std::vector<std::string> chosen_modelings(const drive::DriveFile& file, const Dr
   return once;
 }
 
-/// The settings of one modeling: options of the drive.yaml are those of the modeling that it names.
+/// Returns the settings of one modeling. Options in the drive.yaml belong to the modeling
+/// that it names.
 drive::FusionSettings settings_of(const std::string& modeling, const drive::DriveFile& file,
                                   const Options& given, const TypeRegistry& registry) {
   drive::FusionSettings settings = file.settings;

@@ -1,4 +1,4 @@
-/// What the command line says of a drive, over its drive.yaml.
+/// The choices of the command line for a drive. They override its drive.yaml.
 #pragma once
 
 #include <functional>
@@ -10,22 +10,22 @@
 
 namespace waymark::program {
 
-/// Changes what a drive.yaml says.
+/// Changes the content of a drive.yaml.
 using DriveEdit = std::function<void(drive::DriveFile&)>;
 
 struct DriveChoice {
-  std::string data_folder;  ///< of the logs; empty: the drive.yaml's own
+  std::string data_folder;  ///< folder of the logs; empty: that of the drive.yaml
   /// empty: that of the drive.yaml; "all": every registered one
   std::vector<std::string> modelings;
-  std::vector<std::string> modeling_options;  ///< NAME=VALUE; each modeling takes those that it has
+  std::vector<std::string> modeling_options;  ///< NAME=VALUE; each modeling uses those that it has
   bool sync = false;                          ///< estimate the delay of the odometry's stamps, and correct it
-  std::vector<DriveEdit> edits;               ///< of all else, to be made in this order
+  std::vector<DriveEdit> edits;               ///< for all other choices, applied in this order
 };
 
-/// The drive.yaml with the edits made. @throws InputError for the file, UsageError for an edit
+/// Returns the edited drive.yaml. @throws InputError for the file, UsageError for an edit
 [[nodiscard]] drive::DriveFile read_drive_file(const std::string& path, const DriveChoice& choice);
 
-/// The settings of every modeling that is chosen, each once; what is wrong with one of them shows here.
+/// Returns the settings of every chosen modeling, each once. Errors in them are found here.
 /// @throws UsageError, and InputError with the place if the drive.yaml states it
 [[nodiscard]] std::vector<drive::FusionSettings> chosen_settings(const drive::DriveFile& file,
                                                                  const DriveChoice& choice,
@@ -34,7 +34,8 @@ struct DriveChoice {
 /// Reads "60/240". @throws UsageError
 [[nodiscard]] drive::OutagePattern parse_outage(const std::string& text);
 
-/// Makes "on", "off", or NAME=VALUE pairs the states to estimate, pairs over those that the settings name.
+/// Sets the states to estimate from "on", "off", or NAME=VALUE pairs; pairs are added to those of
+/// the settings.
 /// @throws UsageError
 void set_calibration(const std::vector<std::string>& words, drive::FusionSettings& settings);
 

@@ -15,7 +15,8 @@ void tell(const drive::PrepareReport& report, const Console& console) {
   for (const std::string& example : report.corrupt_examples) console.tell("  " + example);
 }
 
-/// Squared errors let biased fixes bend a scale; an error model of its own or a loss does not.
+/// Tells whether biased fixes may bend the speed scale. They can with squared errors; a complete
+/// error model or a loss prevents it.
 bool scale_is_bent(const drive::FusionSettings& settings, const TypeRegistry& registry) {
   const auto scale = settings.calibration->find("speed_scale");
   const bool calibrated = scale != settings.calibration->end() && scale->second != "off";

@@ -1,5 +1,5 @@
-/// The main job up to the graph, as the commands use it: drive.yaml to a modeled drive, told on
-/// the console.
+/// The main job up to the graph, for the commands. It turns a drive.yaml into a modeled drive, and
+/// reports on the console.
 #pragma once
 
 #include <string>
@@ -11,19 +11,19 @@
 
 namespace waymark::program {
 
-/// A drive that was read, and how it is to be fused.
+/// A drive in memory, and the settings for its fusion.
 struct LoadedDrive {
   drive::PreparedDrive drive;
-  std::vector<drive::FusionSettings> settings;  ///< of each modeling
+  std::vector<drive::FusionSettings> settings;  ///< one for each modeling
   std::vector<std::string> files;               ///< that were read: drive.yaml and logs
 };
 
-/// Reads the logs of a drive; what was assumed or left out is told on the console.
+/// Reads the logs of a drive. Assumptions and omissions are reported on the console.
 [[nodiscard]] LoadedDrive load_drive_for(const drive::DriveFile& file, const DriveChoice& choice,
                                          const TypeRegistry& registry, const Console& console);
 
-/// The drive under one modeling; what is odd about it is told on the console.
-/// @param fusion  of the drive
+/// Returns the drive with one modeling. Oddities are reported on the console.
+/// @param fusion of the drive
 [[nodiscard]] drive::ModeledDrive model_loaded(drive::Fusion& fusion, const drive::FusionSettings& settings,
                                                const TypeRegistry& registry, const Console& console);
 

@@ -1,4 +1,4 @@
-/// A drive and its error model in words and as JSON, for the terminal and for reports.
+/// Describes a drive and its error model in words and as JSON, for the terminal and for reports.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace waymark::program {
 /// Describes the distance by the odometry, and its samples.
 [[nodiscard]] std::string odometry_in_words(const drive::PreparedDrive& drive);
 
-/// What of the logs did not go in.
+/// Describes which data of the logs were left out.
 [[nodiscard]] std::string left_out(const drive::PreparedDrive& drive);
 
 /// Returns a paragraph about the input: samples, fixes, and omissions.
@@ -23,7 +23,7 @@ namespace waymark::program {
 /// parameters that the drive does not show.
 [[nodiscard]] std::string describe_model(const drive::ModeledDrive& modeled, const text::TextLook& look = {});
 
-/// The estimated noise, a list.
+/// Returns the estimated noise as a list.
 [[nodiscard]] nlohmann::ordered_json noise_json(const drive::NoiseEstimate& noise);
 
 }  // namespace waymark::program

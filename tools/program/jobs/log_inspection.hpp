@@ -18,7 +18,7 @@ struct InspectCommand {
   bool force = false;  ///< of init
 };
 
-/// --format, --dbc and the common ones.
+/// Adds --format, --dbc and the common options.
 void add_inspection_options(CLI::App& command, InspectCommand& options);
 
 /// @throws InputError, UsageError as inspect_logs

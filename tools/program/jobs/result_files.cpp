@@ -12,7 +12,7 @@
 namespace waymark::program {
 namespace {
 
-/// Writes the report and its figures; returns the page's name.
+/// Writes the report and its figures. Returns the name of the page.
 std::string write_report(const DocumentResult& request, const std::vector<std::string>& files,
                          const evaluation::ResultFolder& folder, const std::string& page_name,
                          const Console& console) {

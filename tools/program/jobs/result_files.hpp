@@ -1,5 +1,5 @@
-/// What `run` and `evaluate` write of fused documents: for each its trajectory, epochs and report,
-/// for all of them metrics.json and a comparison.
+/// The files that `run` and `evaluate` write: trajectory, epochs and report for each fused
+/// document, and metrics.json and a comparison for all of them.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@
 
 namespace waymark::program {
 
-/// What is told of one document.
+/// The data of one document.
 struct DocumentResult {
   std::string drive;                       ///< name of the drive
   const formats::GraphDocument& document;  ///< at its minimum
@@ -29,19 +29,20 @@ struct DocumentResult {
 };
 
 /// Writes trajectory, epochs and report with its figures.
-/// @param results  in the folder: the report of a single one is called so, of several each has its label
-/// @return the files, those written before first, the report last; figures are too many to be told
+/// @param results number of results in the folder. A single report has the name of the report;
+/// several have their labels.
+/// @return the files: earlier ones first, the report last, without figures, because there are many
 std::vector<std::string> write_result(const DocumentResult& result, const evaluation::ResultFolder& folder,
                                       std::size_t results, const Console& console);
 
-/// One of the results that the folder holds.
+/// One of the results in the folder.
 struct ComparedResult {
   const evaluation::LabelledEvaluation& evaluated;
   const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
 };
 
 /// Writes the comparison if there are several results, and metrics.json.
-/// @param metrics  content of metrics.json
+/// @param metrics content of metrics.json
 /// @return the files
 std::vector<std::string> write_overview(const std::vector<ComparedResult>& results,
                                         const evaluation::ReportHeader& header, const std::string& metrics,

@@ -11,7 +11,7 @@
 namespace waymark::program {
 namespace {
 
-/// For maps; empty for a document whose frame is not known.
+/// Returns the projection for maps; empty for a document whose frame is not known.
 std::optional<drive::Projection> projection_of(const formats::GraphDocument& document) {
   if (!document.frame || document.frame->zone == 0) return std::nullopt;
   return std::optional<drive::Projection>(std::in_place, *document.frame);
@@ -28,7 +28,7 @@ std::vector<formats::FixPoint> fix_points(const formats::GraphDocument& document
   return points;
 }
 
-/// What is known of each vertex.
+/// The known data of each vertex.
 struct OfVertex {
   const Fix* fix = nullptr;
   const Eigen::MatrixXd* covariance = nullptr;

@@ -1,4 +1,4 @@
-/// The trajectory of a document as files.
+/// Writes the trajectory of a document into files.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace waymark::program {
 
-/// Writes the trajectory of all poses in the forms of kTrajectoryForms, for maps only if the frame
-/// is known; nothing for a document without poses. Returns the names.
+/// Writes the trajectory of all poses in the formats of kTrajectoryForms (those for maps only if
+/// the frame is known). Writes nothing for a document without poses. Returns the names.
 std::vector<std::string> write_trajectories(const formats::GraphDocument& document,
                                             const evaluation::ResultFolder& folder, const std::string& label);
 

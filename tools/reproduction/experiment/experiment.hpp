@@ -38,8 +38,9 @@ struct Experiment {
 /// Returns how many settings run on a drive, including those with withheld fixes.
 [[nodiscard]] std::size_t run_count(const Experiment& experiment, bool has_truth);
 
-/// Runs an experiment on a drive. @param dataset of the paper, or 0
-/// @param description  what it keeps out itself is not kept out here
+/// Runs an experiment on a drive.
+/// @param dataset number in the paper, or 0
+/// @param description fixes that it withholds itself are not withheld here
 [[nodiscard]] DriveResult run_experiment(const Experiment& experiment, int dataset,
                                          drive::DriveDescription description, const drive::DriveLogs& logs,
                                          const Laboratory& laboratory);

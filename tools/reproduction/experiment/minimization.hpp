@@ -16,7 +16,7 @@ struct Ending {
   bool converged = false;
   std::string message;     ///< why it ended, with the numbers
   int iterations = 0;      ///< accepted steps
-  int rejected_steps = 0;  ///< steps tried in vain
+  int rejected_steps = 0;  ///< rejected steps
   double initial_chi2 = 0;
   double chi2 = 0;
 };
@@ -24,7 +24,7 @@ struct Ending {
 /// Returns the ending of a run with our stopping rule.
 [[nodiscard]] Ending describe(const Summary& summary);
 
-/// Minimises as a setting says; the graph holds the best values found. @param cancel as
+/// Minimises with a setting. Afterwards the graph holds the best values found. @param cancel as
 /// OptimizerOptions::cancel
 /// @throws what optimize() throws
 [[nodiscard]] Ending minimize(Graph& graph, const Setting& setting, const TypeRegistry& registry,

@@ -44,7 +44,7 @@ StudiedDrive::StudiedDrive(drive::DriveDescription description, const drive::Dri
 
 namespace {
 
-/// The drive under a setting, with the covariances of its fixes inflated where their residuals
+/// Returns the drive with a setting. The covariances of its fixes are inflated if their residuals
 /// are too large.
 drive::ModeledDrive inflated(const StudiedDrive& drive, const Setting& setting,
                              const evaluation::Evaluation& residuals, const TypeRegistry& registry) {

@@ -39,8 +39,9 @@ struct Outcome {
   Ending ending;
   std::size_t accepted = 0;  ///< accepted fixes
   std::size_t rejected = 0;
-  drive::NoiseEstimate noise;         ///< without parameters if the noise is as stated
-  evaluation::Evaluation evaluation;  ///< without its lists of epochs; empty if the setting is not evaluated
+  drive::NoiseEstimate noise;  ///< without parameters if the noise is as stated
+  /// without its lists of epochs; empty if the setting is not evaluated
+  evaluation::Evaluation evaluation;
   /// Distance from the lowest minimum found for the objective of the setting (compare_outcomes).
   /// Undefined without an objective.
   PoseDifference from_minimum;
@@ -53,10 +54,10 @@ struct Outcome {
 /// A drive with everything that its settings share.
 class StudiedDrive {
  public:
-  /// @param description  of a drive.yaml, without further sensors: the settings say what is done, the same for
-  ///                     every drive
-  /// @param logs         of it
-  /// @param registry     must outlive the object
+  /// @param description from a drive.yaml, without further sensors: the settings define the rest,
+  /// the same for every drive
+  /// @param logs logs of the drive
+  /// @param registry must outlive the object
   StudiedDrive(drive::DriveDescription description, const drive::DriveLogs& logs,
                const TypeRegistry& registry);
   StudiedDrive(const StudiedDrive&) = delete;
@@ -64,7 +65,7 @@ class StudiedDrive {
 
   [[nodiscard]] const drive::DriveDescription& description() const { return description_; }
   [[nodiscard]] const drive::PreparedDrive& drive() const { return drive_; }
-  /// The graph of a setting at its initial guess. @throws what Fusion::model throws
+  /// Returns the graph of a setting at its initial guess. @throws what Fusion::model throws
   [[nodiscard]] drive::ModeledDrive model(const Setting& setting) { return fusion_.model(setting.fusion); }
 
  private:

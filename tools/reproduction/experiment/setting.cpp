@@ -3,7 +3,7 @@
 namespace waymark::reproduction {
 namespace {
 
-/// The dogleg of g2o, and its rule to stop.
+/// Sets the dogleg of g2o, and its stopping rule.
 void use_g2o_dogleg(Setting& setting) {
   setting.fusion.minimization.options = {
       {"scaling", "none"}, {"radius", "absolute"}, {"initial_radius", "1e4"}};

@@ -49,8 +49,8 @@ struct Setting {
   bool evaluated = true;
 };
 
-/// A modeling with nothing left to it: the paper's gate, no calibration states, the
-/// noise as stated.
+/// Returns a setting without defaults from the modeling: the gate of the paper, no calibration
+/// states, the noise as stated.
 [[nodiscard]] Setting stated_setting(const std::string& name, const std::string& modeling);
 
 /// The modelings of the paper, in its order.

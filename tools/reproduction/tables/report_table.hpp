@@ -10,7 +10,7 @@ namespace waymark::reproduction {
 
 struct ReportTable {
   std::string file;   ///< name of its CSV without extension
-  std::string title;  ///< says what is simulated
+  std::string title;  ///< it names the simulated drives
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
   std::vector<std::string> notes;              ///< sentences below the table

@@ -93,7 +93,7 @@ class UbxFrameDecoder : public LogDecoder {
   [[nodiscard]] std::size_t number() const { return number_; }
   [[nodiscard]] std::uint64_t byte() const { return byte_; }
   [[nodiscard]] std::size_t count(std::uint16_t key) const;
-  /// Counts a corrupt record, described as "path:byte N: what" (N from 0).
+  /// Counts a corrupt record, with the message "path:byte N: what" (N from 0).
   void corrupt(std::uint64_t byte, const std::string& what);
   /// Adds a note that begins with the name of the log.
   void note(const std::string& text) { data_.notes.push_back(path_ + ": " + text); }

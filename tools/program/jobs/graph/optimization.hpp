@@ -13,28 +13,29 @@
 
 namespace waymark::program {
 
-/// Optimises; fills document.covariances as the settings ask for. Iterations are shown by the
-/// console. A result that is no minimum is said on stderr. @param search instead of optimize().
-/// @param work of which it is a part, shown beside the iterations. @throws InputError where the
-/// start asked for cannot be made
+/// Optimises, and fills document.covariances as the settings request. The console shows iterations.
+/// A result that is no minimum is reported on stderr.
+/// @param search in place of optimize()
+/// @param work name of the work that this is a part of, shown beside the iterations
+/// @throws InputError if the chosen start cannot be computed
 MultiStartSummary optimize_document(formats::GraphDocument& document, const drive::Minimization& how,
                                     const TypeRegistry& registry, const Console& console,
                                     const drive::Minimizer& search = {}, const std::string& work = {});
 
-/// Says what a minimisation noted, and that it reached no minimum if that is so.
+/// Prints the notes of a minimisation, and a warning if it reached no minimum.
 void tell_ending(const Summary& summary, const Console& console);
 
-/// What is said of a minimisation that reached no minimum.
+/// Returns the warning about a minimisation that reached no minimum.
 [[nodiscard]] std::string no_minimum_warning(const Summary& summary);
 
-/// Says a warning on the console, and in the document's provenance.
+/// Prints a warning on the console, and adds it to the provenance of the document.
 void warn(const std::string& warning, formats::GraphDocument& document, const Console& console);
 
 /// Returns the line about the optimisation for the header of the graph.
 [[nodiscard]] std::string describe_optimization(const MultiStartSummary& result);
 
-/// The estimated states of an optimised document: empty without a minimum; if their sigmas cannot
-/// be had, a warning is said.
+/// Returns the estimated states of an optimised document. Empty without a minimum. If their sigmas
+/// cannot be computed, there is a warning.
 [[nodiscard]] std::vector<evaluation::StateReport> states_of_minimum(formats::GraphDocument& document,
                                                                      const Summary& summary,
                                                                      const Console& console);
