@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "program/support/help.hpp"
 #include "program/support/material.hpp"
 #include "program/support/page_checks.hpp"
 #include "program/support/program.hpp"
@@ -18,13 +19,6 @@ bool has_ceres() {
   const bool has = contains(run({"doctor"}).out, "Ceres");
   if (!has) WARN("SKIPPED: this program was built without Ceres (WAYMARK_WITH_CERES)");
   return has;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
 }
 
 void check_cell(const Json& cell, int repetitions) {

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "program/support/help.hpp"
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
@@ -13,13 +14,6 @@ namespace {
 constexpr const char* kMixedGraph =
     "GRAPH 1\nVERTEX_SE2 7 0 0 0\nVERTEX_SE2 -2 0 0 0\nVERTEX_XY 9 0 0\nSTAMP -2 1149206567040000001\n"
     "EDGE_PRIOR_SE2 7 0 0 0 4 0 0 16 0 64\nEDGE_SE2 7 -2 0 0 0 2 0 0 4 0 64\nEDGE_SE2_XY 7 9 0 0 8 0 8\n";
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
 
 /// Fields of a line, an empty one at its end too.
 std::vector<std::string> fields_of(const std::string& line) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdlib>
 #include <regex>
-#include <sstream>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -12,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "program/support/help.hpp"
 #include "support/paths.hpp"
 
 namespace {
@@ -23,13 +23,6 @@ namespace {
   ::dup2(out, STDOUT_FILENO);
   ::dup2(err, STDERR_FILENO);
   execute(arguments);
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 std::string without_colours(const std::string& text) {
