@@ -1,4 +1,5 @@
-/// The edges of GNSS positions, and the time offset between GNSS and odometry as a state of the graph.
+/// The edges of GNSS positions, and the time offset between GNSS and odometry as a state
+/// of the graph.
 #pragma once
 
 #include <array>

@@ -89,10 +89,11 @@ struct LogData {
   SensorTable readings;  ///< columns as in LogRequest::readings; NaN: not in this row
   /// for logs whose stamps are those of the logger and that also hold GNSS time
   std::vector<ClockPair> clocks;
-  std::vector<std::string> notes;             ///< assumptions, one sentence each
-  std::size_t records = 0;                    ///< records that could hold a sample
-  std::size_t without_fix = 0;                ///< those that the receiver marks as without a fix
-  std::size_t corrupt = 0;                    ///< records that should hold a sample and are unusable
+  std::vector<std::string> notes;  ///< assumptions, one sentence each
+  std::size_t records = 0;         ///< records that could hold a sample
+  std::size_t without_fix = 0;     ///< those that the receiver marks as without a fix
+  /// records that should hold a sample and are unusable
+  std::size_t corrupt = 0;
   std::vector<std::string> corrupt_examples;  ///< the first few, "file:line:column: the error"
   /// number of messages of each kind: "GPRMC", "NAV-PVT"
   std::map<std::string, std::size_t> kinds;

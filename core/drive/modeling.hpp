@@ -56,7 +56,8 @@ class OdometryModel {
 
 /// The input of a GNSS modeling.
 struct GnssInput {
-  std::span<const Fix> fixes;        ///< only accepted ones; Fix::vertex names the pose at the epoch
+  /// only accepted ones; Fix::vertex names the pose at the epoch
+  std::span<const Fix> fixes;
   std::span<const Interval> motion;  ///< motion of the odometry at each fix
   Eigen::Vector2d antenna = {0, 0};  ///< antenna in the body frame, m
   /// robust loss of the edges that carry the information of the fixes
@@ -75,7 +76,8 @@ class GnssModeling {
 /// The input of a sensor model.
 struct SensorInput {
   DriveNodes nodes;
-  std::span<const Fix> fixes;        ///< only accepted ones, with course and speed of their receiver
+  /// only accepted ones, with course and speed of their receiver
+  std::span<const Fix> fixes;
   Eigen::Vector2d antenna = {0, 0};  ///< GNSS antenna in the body frame, m
   /// the log of the sensor in SI units; empty if the type has no columns
   const SensorTable& readings;

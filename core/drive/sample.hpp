@@ -79,7 +79,8 @@ struct Fix {
   std::optional<double> speed_mps;
   std::optional<double> speed_sigma_mps;
   double height_m = std::numeric_limits<double>::quiet_NaN();
-  double grid_scale = 1;     ///< grid metres per metre on the ground at this place (UTM point scale)
+  /// grid metres per metre on the ground at this place (UTM point scale)
+  double grid_scale = 1;
   int epoch = 0;             ///< running number of the fix in the drive
   int source = 0;            ///< index of the receiver
   std::int64_t vertex = -1;  ///< id of the pose vertex at this epoch; -1 before the graph is built

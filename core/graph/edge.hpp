@@ -2,10 +2,12 @@
 /// @code
 ///   struct EdgeRange {
 ///     static constexpr std::string_view kTag = "EDGE_RANGE";
-///     static constexpr std::string_view kForm = "range";  // form of the error, printed beside chi2
+///     static constexpr std::string_view kForm = "range";  // form of the error, for reports
 ///     static constexpr int kErrorDimension = 1;
 ///     using Vertices = VertexList<VertexSe2, VertexXy>;
-///     static constexpr auto fields() { return std::array{field<&EdgeRange::measured>("measured")}; }
+///     static constexpr auto fields() {
+///       return std::array{field<&EdgeRange::measured>("measured")};
+///     }
 ///     template <typename T>
 ///     Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose, const Vector2<T>& landmark) const;
 ///     double measured = 0;
@@ -70,7 +72,8 @@ struct EdgeType {
   std::string form;  ///< form of the error: "(t, theta)", "log", "position", ...
   int arity = 0;
   std::vector<std::string> vertex_tags;  ///< arity entries; empty for run-time arity
-  int error_dimension = 0;        ///< 0 for run-time arity: the sum of the tangent sizes of the vertices
+  /// 0 for run-time arity: the sum of the tangent sizes of the vertices
+  int error_dimension = 0;
   std::vector<FieldInfo> fields;  ///< without the information matrix, which every edge has
   bool relative = false;          ///< a common rigid motion does not change the error
   std::function<std::unique_ptr<EdgeBatchBase>()> make_batch;

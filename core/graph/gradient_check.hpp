@@ -25,7 +25,8 @@ struct NumericJacobian {
 struct GradientCheck {
   std::size_t edges = 0;   ///< edges that were checked
   std::size_t judged = 0;  ///< Jacobians that differences could check
-  /// |given - reference| / (1 + |reference|), the largest over all entries that differences can check
+  /// |given - reference| / (1 + |reference|): the largest over all entries that differences
+  /// can check
   double error = 0;
   std::size_t edge = 0;    ///< the edge with this error
   std::size_t vertex = 0;  ///< the vertex of the edge

@@ -8,9 +8,11 @@
 namespace waymark {
 
 /// Derive from it and add kTag, value_names() and, for a report with units, value_units():
-///   struct VertexClockBias : ScalarState { static constexpr std::string_view kTag = "VERTEX_CLOCK_BIAS"; ...
+///   struct VertexClockBias : ScalarState {
+///     static constexpr std::string_view kTag = "VERTEX_CLOCK_BIAS";
+///     ...
 ///   };
-/// An edge's error takes the number as a scalar T.
+/// Errors of edges take the number as a scalar T.
 struct ScalarState {
   static constexpr int kValueSize = 1;
   static constexpr int kTangentSize = 1;

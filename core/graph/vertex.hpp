@@ -24,8 +24,10 @@ using VertexIndex = std::int32_t;
 ///   V::value_names()   names of the numbers of a value, container of strings
 ///   V::Value<T>        the value in the form that errors of edges take, generic in the scalar
 ///   V::at<T>(const double* value, const T* delta) -> Value<T>: the value retracted by delta
-///   V::retract(double* value, const double* delta)            value := value [+] delta, normalised
-///   V::local(const double* from, const double* to, double* delta)    delta with from [+] delta == to
+///   V::retract(double* value, const double* delta)
+///                      value := value [+] delta, normalised
+///   V::local(const double* from, const double* to, double* delta)
+///                      delta with from [+] delta == to
 /// @endcode
 /// Invariants (tested for every registered type): retract by 0 is the identity on normalised
 /// values; local(v, v) = 0; local(v, retract(v, d)) = d for small d.

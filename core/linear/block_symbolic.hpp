@@ -56,8 +56,9 @@ struct Supernode {
   std::int64_t start = 0;     ///< first scalar column, in the order of BlockSymbolic::column
   std::int64_t panel = 0;     ///< begin of its numbers in the factor
   std::int64_t assembly = 0;  ///< place in the workspace where its update matrix is computed
-  std::int64_t update = 0;    ///< place in the workspace where the update matrix waits for the parent
-  std::int64_t vector = 0;    ///< begin of its update vector in the workspace of a solve
+  /// place in the workspace where the update matrix waits for the parent
+  std::int64_t update = 0;
+  std::int64_t vector = 0;  ///< begin of its update vector in the workspace of a solve
 
   /// Returns the distance between columns of the update matrix, rounded up to whole
   /// vector registers.
@@ -83,15 +84,16 @@ struct BlockSymbolic {
   std::vector<std::int64_t> outside;  ///< first scalar of each in the order of the pattern
   std::vector<Supernode> nodes;       ///< in postorder
   std::vector<int> rows;              ///< block rows below each supernode, ascending
-  std::vector<int> position;          ///< for each of them, its first row in the front of the parent
-  std::vector<BlockEntry> entries;    ///< of dense fronts
-  std::vector<ChainLink> links;       ///< of chains
-  std::vector<Subtree> subtrees;      ///< disjoint; a node in none of them comes after all of them
-  std::vector<int> top;               ///< these nodes, ascending
-  std::int64_t factor_size = 0;       ///< numbers in all panels
-  std::int64_t update_size = 0;       ///< numbers of workspace that a factorisation needs
-  std::int64_t vector_size = 0;       ///< numbers of workspace that a solve needs
-  int largest_front = 0;              ///< scalar rows of the largest front
+  /// for each of them, its first row in the front of the parent
+  std::vector<int> position;
+  std::vector<BlockEntry> entries;  ///< of dense fronts
+  std::vector<ChainLink> links;     ///< of chains
+  std::vector<Subtree> subtrees;    ///< disjoint; a node in none of them comes after all of them
+  std::vector<int> top;             ///< these nodes, ascending
+  std::int64_t factor_size = 0;     ///< numbers in all panels
+  std::int64_t update_size = 0;     ///< numbers of workspace that a factorisation needs
+  std::int64_t vector_size = 0;     ///< numbers of workspace that a solve needs
+  int largest_front = 0;            ///< scalar rows of the largest front
 };
 
 /// @throws std::length_error if the matrix has more than 2^32 - 1 numbers

@@ -14,7 +14,7 @@ namespace waymark {
 /// Convergence is declared if the values are stationary, or at a full (undamped, untruncated)
 /// Newton step d:
 ///   gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(1 + chi2)
-///   decrement  g^T H^-1 g <= decrement_tolerance (1 + chi2)      the full step promises no more than this
+///   decrement  g^T H^-1 g <= decrement_tolerance (1 + chi2)      the gain that the step promises
 ///   step       |d_i| <= step_tolerance (1 + |x|_max) for all i of the full step
 /// The first two tests do not depend on the units of the unknowns. g_i^2 / H_ii never exceeds the
 /// decrement, so the gradient test, at rounding level, is for an initial guess that already is a

@@ -40,7 +40,8 @@ struct GraduationOptions {
   TrustRule trusted = &is_odometry_edge;  ///< all others are candidates
   double factor = 1.4;                    ///< divisor of the stretch per round, > 1
   int inner_iterations = 2;               ///< steps per round, >= 1
-  double inlier_probability = 0.9999;     ///< probability of the quantile for the verdict, in (0, 1)
+  /// probability of the quantile for the verdict, in (0, 1)
+  double inlier_probability = 0.9999;
   /// for the last optimisation; observer and cancel token are used by all
   OptimizerOptions optimizer;
 

@@ -20,7 +20,7 @@ namespace waymark {
 ///   for (...) {
 ///     graph.add_vertex(...); graph.add_edge(...);       // at will between calls
 ///     optimizer.update();                               // a few steps from the present values
-///     optimizer.drop_prefix(*graph.find(oldest_id));    // everything before the oldest pose to keep
+///     optimizer.drop_prefix(*graph.find(oldest_id));    // everything before this pose
 ///   }
 ///
 /// Between calls the caller may append to the graph, set values, and fix new vertices. Only

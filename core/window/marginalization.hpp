@@ -10,7 +10,8 @@ namespace waymark {
 
 /// The result of marginalize_prefix.
 struct Marginalization {
-  Removal removal;         ///< old index -> new index, and the kept edges; Structure::remove needs it
+  /// old index -> new index, and the kept edges; Structure::remove needs it
+  Removal removal;
   std::size_t priors = 0;  ///< so many last edges of the batch EDGE_GAUSSIAN_PRIOR are new
   /// The part of chi2 that is in no edge any more: chi2 of the removed edges at their (quadratic)
   /// minimum. The old graph's chi2, minimised over the removed vertices, equals the new graph's

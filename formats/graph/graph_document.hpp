@@ -31,9 +31,10 @@ struct GraphDocument {
   TimeScale time_scale = TimeScale::gps;  ///< of all stamps
   /// key and text, in the order of writing
   std::vector<std::pair<std::string, std::string>> provenance;
-  Eigen::Vector2d antenna_m{0, 0};            ///< GNSS antenna in the body frame
-  Eigen::Vector2d truth_reference_m{0, 0};    ///< reference point of the truth, in the body frame
-  std::vector<Fix> fixes;                     ///< every fix of the drive, with the verdict of the gate
+  Eigen::Vector2d antenna_m{0, 0};          ///< GNSS antenna in the body frame
+  Eigen::Vector2d truth_reference_m{0, 0};  ///< reference point of the truth, in the body frame
+  /// every fix of the drive, with the verdict of the gate
+  std::vector<Fix> fixes;
   std::vector<VertexCovariance> covariances;  ///< for the vertices that were asked for
 };
 

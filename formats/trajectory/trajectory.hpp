@@ -25,8 +25,9 @@ struct TrajectoryPoint {
   std::optional<double> latitude_deg;              ///< WGS84
   std::optional<double> longitude_deg;
   std::optional<Eigen::Vector3d> sigma;  ///< of x, y [m], heading [rad]
-  std::string status;                    ///< status of the fix at this epoch ("accepted", ...); empty: no fix
-  std::string reason;                    ///< reason for that status
+  /// status of the fix at this epoch ("accepted", ...); empty: no fix
+  std::string status;
+  std::string reason;  ///< reason for that status
 };
 
 /// Returns comma-separated values (RFC 4180 with "\n" line ends) under one header line: stamp_ns,

@@ -14,10 +14,11 @@ namespace waymark::plugins::odometry {
 struct ProcessNoise {
   double longitudinal_per_m = 2e-3;  ///< m^2 per m
   double lateral_per_m = 5e-4;       ///< m^2 per m
-  double position_per_s = 1e-4;      ///< m^2 per s, both axes; the additive form of a floor per edge
-  double heading_per_m = 2.05e-7;    ///< rad^2 per m
-  double heading_per_s = 1.5e-6;     ///< rad^2 per s
-  double gap_factor = 100;           ///< factor on all of them in a gap of the odometry
+  /// m^2 per s, both axes; the additive form of a floor per edge
+  double position_per_s = 1e-4;
+  double heading_per_m = 2.05e-7;  ///< rad^2 per m
+  double heading_per_s = 1.5e-6;   ///< rad^2 per s
+  double gap_factor = 100;         ///< factor on all of them in a gap of the odometry
 };
 
 /// The noise of a standing vehicle.

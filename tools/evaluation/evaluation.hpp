@@ -99,9 +99,10 @@ struct Evaluation {
   std::optional<SystemMetrics> withheld_fixes;
   std::size_t outages = 0;                   ///< runs of withheld fixes over several epochs
   std::vector<WithheldMetrics> at_withheld;  ///< the fused poses ("fused") and each prediction
-  InnovationStatistics post_fit;             ///< accepted fixes: residuals after the fit, not innovations
-  InnovationStatistics gated;                ///< rejected fixes
-  InnovationStatistics prediction;           ///< withheld fixes: true innovations
+  /// accepted fixes: residuals after the fit, not innovations
+  InnovationStatistics post_fit;
+  InnovationStatistics gated;       ///< rejected fixes
+  InnovationStatistics prediction;  ///< withheld fixes: true innovations
   Frame frame;
   std::vector<EpochResult> epochs;  ///< one per fix
 

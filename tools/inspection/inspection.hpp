@@ -25,10 +25,12 @@ namespace waymark::inspection {
 struct LogClock {
   TimeScale scale = TimeScale::utc;
   bool names_its_own = false;  ///< the log contains dates, so the user need not state the clock
-  bool dated = true;           ///< stamps are dates; else they are seconds of a week or since some start
-  bool of_week = false;        ///< seconds of a GPS week
-  bool known = true;           ///< known from the format of the log or the name of the column; else assumed
-  std::string reason;          ///< "column 't_unix_s' counts Unix seconds"
+  /// stamps are dates; else they are seconds of a week or since some start
+  bool dated = true;
+  bool of_week = false;  ///< seconds of a GPS week
+  /// known from the format of the log or the name of the column; else assumed
+  bool known = true;
+  std::string reason;  ///< "column 't_unix_s' counts Unix seconds"
 };
 
 /// The result for one log.

@@ -11,7 +11,8 @@ namespace waymark::simulation {
 /// stop, both or nothing.
 struct RoadRecipe {
   std::string kind = "rural";  ///< a word for reports: highway, urban, rural
-  double share = 1;            ///< share of the duration of the drive, relative to the sum of all shares
+  /// share of the duration of the drive, relative to the sum of all shares
+  double share = 1;
 
   double cruise_min_mps = 14;  ///< the cruise speed of a leg is uniform in [min, max]
   double cruise_max_mps = 25;
@@ -90,7 +91,8 @@ struct TruthRecipe {
 struct SimulationRecipe {
   std::string name = "drive";
   double duration_s = 600;  ///< number of odometry samples / rate, exactly
-  double distance_m = 0;    ///< if not 0: the factor on all cruise speeds is chosen to give this distance
+  /// if not 0: the factor on all cruise speeds is chosen to give this distance
+  double distance_m = 0;
   std::vector<RoadRecipe> roads{};  ///< driven one after the other
   OdometryRecipe odometry{};
   GnssRecipe gnss{};

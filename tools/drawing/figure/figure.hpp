@@ -17,8 +17,9 @@ enum class Mark {
   points,  ///< at (x, y), with a bar from `low` to `high` on the y axis if these are given
   band,    ///< between `low` and `high` over x
   spans,   ///< over the whole height, between `low` and `high` on the x axis
-  bars,    ///< horizontal, from the axis to x in row y; `low` and `high` are the spread on the x axis
-  cells    ///< squares of side 1 with a corner at (x, y); `weight` in (0, 1] is the darkness
+  /// horizontal, from the axis to x in row y; `low` and `high` are the spread on the x axis
+  bars,
+  cells  ///< squares of side 1 with a corner at (x, y); `weight` in (0, 1] is the darkness
 };
 
 /// The role of a series. Each role has its own colour, dash pattern and marker (look.hpp). So a

@@ -57,7 +57,8 @@ struct Page {
 /// Returns every figure of a page, in order.
 [[nodiscard]] std::vector<const Figure*> figures_of(const Page& page);
 
-/// Writes FOLDER/NAME.html, and every figure as FOLDER/figures/NAME-ID.svg and .csv. Returns the files.
+/// Writes FOLDER/NAME.html, and every figure as FOLDER/figures/NAME-ID.svg and .csv. Returns the
+/// names of the files.
 /// @throws OutputError
 std::vector<std::string> write_page(const Page& page, const std::string& folder, const std::string& name);
 

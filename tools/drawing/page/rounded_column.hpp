@@ -14,8 +14,8 @@ struct RoundedColumn {
   std::vector<std::optional<std::int64_t>> differences{};  ///< empty if the number is not finite
 };
 
-/// Returns the step to which `rounded` rounds a column. It is a power of ten and at most 1e-7 of the
-/// extent of the column (a millimetre in ten kilometres). For whole numbers it is 1.
+/// Returns the step to which `rounded` rounds a column. It is a power of ten and at most 1e-7 of
+/// the extent of the column (a millimetre in ten kilometres). For whole numbers it is 1.
 [[nodiscard]] double rounding_step(const std::vector<double>& values);
 
 [[nodiscard]] RoundedColumn rounded(const std::vector<double>& values);

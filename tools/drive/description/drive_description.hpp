@@ -63,7 +63,8 @@ struct DriveDescription {
   std::vector<std::string> plugins;
 
   std::optional<TimeScale>
-      time_scale;            ///< scale of the drive; logs on others are converted. Empty: gps is assumed
+      /// scale of the drive; logs on others are converted. Empty: gps is assumed
+      time_scale;
   double speed_delay_s = 0;  ///< how late the stamps of the odometry's speed are; subtracted
   double yaw_rate_delay_s = 0;
   double gnss_delay_s = 0;       ///< how late the stamps of the receiver are; subtracted
@@ -74,8 +75,9 @@ struct DriveDescription {
 
   std::optional<int> utm_zone;  ///< signed: negative is south; empty: zone of the first good fix
   std::optional<Eigen::Vector2d>
-      utm_origin;                   ///< easting, northing of the local origin; empty: near the first fix
-  Eigen::Vector2d antenna_m{0, 0};  ///< GNSS antenna in the body frame (x forward, y left)
+      /// easting, northing of the local origin; empty: near the first fix
+      utm_origin;
+  Eigen::Vector2d antenna_m{0, 0};          ///< GNSS antenna in the body frame (x forward, y left)
   Eigen::Vector2d truth_reference_m{0, 0};  ///< reference point of the truth in the body frame
 
   int withhold_every = 0;  ///< every n-th fix is left out of the graph, for evaluation (0: none)

@@ -20,9 +20,10 @@ using std::numbers::pi;
 
 constexpr double kFalseEasting = 500'000;      // m
 constexpr double kFalseNorthing = 10'000'000;  // of the southern hemisphere, m
-constexpr double kWidestOffset = 30;           // degrees of longitude from the zone's central meridian
-constexpr double kFarthest = 5'000'000;        // m, an easting of about that offset or more
-constexpr double kOriginStep = 100;            // m
+// degrees of longitude from the zone's central meridian
+constexpr double kWidestOffset = 30;
+constexpr double kFarthest = 5'000'000;  // m, an easting of about that offset or more
+constexpr double kOriginStep = 100;      // m
 
 double central_meridian_deg(int zone) {
   return 6.0 * zone - 183;

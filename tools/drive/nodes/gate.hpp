@@ -19,9 +19,10 @@ struct GateOptions {
   /// 1.5 degrees: chord angle of GNSS minus that of odometry, > 0
   double max_angle_rad = 0.026179938779914945;
   double max_displacement_m = 15;  ///< difference of the displacement vectors, > 0
-  double chord_s = 1;              ///< approximate duration of chords, > 0; both limits are meant for it
-  double max_chord_s = 5;          ///< fixes further apart make no chord, >= chord_s
-  double min_chord_m = 1;          ///< a shorter chord (GNSS or odometry) has no direction, > 0
+  /// approximate duration of chords, > 0; both limits are meant for it
+  double chord_s = 1;
+  double max_chord_s = 5;  ///< fixes further apart make no chord, >= chord_s
+  double min_chord_m = 1;  ///< a shorter chord (GNSS or odometry) has no direction, > 0
 
   friend bool operator==(const GateOptions&, const GateOptions&) = default;
 };

@@ -21,9 +21,12 @@ struct StateReport {
   double last = 0;
   double smallest = 0;
   double largest = 0;
-  double sigma = 0;               ///< of the last value, from the marginal covariance; NaN if undetermined
-  double prior_sigma = 0;         ///< of the first value, before any measurement; NaN without a prior
-  bool observed = true;           ///< the drive has more information about the first value than its prior
+  /// of the last value, from the marginal covariance; NaN if undetermined
+  double sigma = 0;
+  /// of the first value, before any measurement; NaN without a prior
+  double prior_sigma = 0;
+  /// the drive has more information about the first value than its prior
+  bool observed = true;
   std::vector<Stamp> stamps;      ///< of the values of a wandering state; empty for a constant
   std::vector<double> wandering;  ///< one value per stamp
 };

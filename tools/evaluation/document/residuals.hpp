@@ -59,7 +59,8 @@ struct LargeResidual {
 
 /// One component of the whitened error of a type.
 struct ResidualComponent {
-  std::string name;             ///< "x", "y", "heading" if the form defines them, else its number from 1
+  /// "x", "y", "heading" if the form defines them, else its number from 1
+  std::string name;
   ScalarStatistics statistics;  ///< of w; count: edges with information on the component
 };
 

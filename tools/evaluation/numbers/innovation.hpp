@@ -14,8 +14,9 @@ namespace waymark::evaluation {
 /// The meaning of a residual "fix - predicted antenna position". It depends on the part of the fix
 /// in the graph.
 enum class ResidualKind {
-  post_fit,   ///< accepted fixes: the poses were fitted to them, so nu is too small on average
-  gated,      ///< rejected fixes: they were rejected for large residuals, so nu is too large on average
+  post_fit,  ///< accepted fixes: the poses were fitted to them, so nu is too small on average
+  /// rejected fixes: they were rejected for large residuals, so nu is too large on average
+  gated,
   prediction  ///< withheld fixes: true innovations; only their nu is chi2 distributed
 };
 
@@ -24,7 +25,8 @@ enum class ResidualKind {
 
 /// Statistics of nu = r^T S^-1 r over the fixes of one kind.
 struct InnovationStatistics {
-  static constexpr double kExpectedMean = 2;             ///< mean of chi2 with two degrees of freedom
+  /// mean of chi2 with two degrees of freedom
+  static constexpr double kExpectedMean = 2;
   static constexpr double kBound95 = 5.991464547107979;  ///< -2 ln 0.05: its 95 % quantile
   static constexpr double kExpectedInside = 0.95;        ///< of fraction_inside
 

@@ -38,14 +38,17 @@ struct FixSummary {
   std::size_t with_accuracy = 0;
   SigmaSummary east, north;
   bool accuracy_constant = false;  ///< all fixes have the same accuracy
-  bool axes_equal = false;         ///< both axes of every fix have the same sigma, and are uncorrelated
+  /// both axes of every fix have the same sigma, and are uncorrelated
+  bool axes_equal = false;
   std::size_t with_speed = 0, with_course = 0;
-  Range speed;               ///< m/s, measured by the receiver
-  Sighting zero;             ///< positions at latitude and longitude 0
-  Sighting far;              ///< more than 1000 km from the median position; amount: distance in m
-  Sighting frozen;           ///< stretches of at least five equal positions; amount: length of the first one
-  Sighting frozen_moving;    ///< such stretches while the receiver's own speed was above 1 m/s
-  std::size_t repeated = 0;  ///< fixes at the position of their predecessor
+  Range speed;    ///< m/s, measured by the receiver
+  Sighting zero;  ///< positions at latitude and longitude 0
+  Sighting far;   ///< more than 1000 km from the median position; amount: distance in m
+  /// stretches of at least five equal positions; amount: length of the first one
+  Sighting frozen;
+  /// such stretches while the receiver's own speed was above 1 m/s
+  Sighting frozen_moving;
+  std::size_t repeated = 0;            ///< fixes at the position of their predecessor
   std::size_t repeated_in_frozen = 0;  ///< those of them in such stretches
   std::size_t speed_comparisons = 0;
   /// median of (speed of the receiver) / (distance / time between fixes); NaN: not compared

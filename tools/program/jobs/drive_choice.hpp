@@ -18,8 +18,9 @@ struct DriveChoice {
   /// empty: that of the drive.yaml; "all": every registered one
   std::vector<std::string> modelings;
   std::vector<std::string> modeling_options;  ///< NAME=VALUE; each modeling uses those that it has
-  bool sync = false;                          ///< estimate the delay of the odometry's stamps, and correct it
-  std::vector<DriveEdit> edits;               ///< for all other choices, applied in this order
+  /// estimate the delay of the odometry's stamps, and correct it
+  bool sync = false;
+  std::vector<DriveEdit> edits;  ///< for all other choices, applied in this order
 };
 
 /// Returns the edited drive.yaml. @throws InputError for the file, UsageError for an edit

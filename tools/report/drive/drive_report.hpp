@@ -25,13 +25,15 @@ struct ReportedDrive {
   std::string label;                       ///< of the fusion: its modeling, or the name of the file
   const formats::GraphDocument& document;  ///< at its minimum
   const evaluation::Evaluation& evaluation;
-  const std::vector<TruthPose>& truth;                           ///< empty: none
-  const MultiStartSummary* optimization = nullptr;               ///< null: the graph was optimised elsewhere
+  const std::vector<TruthPose>& truth;  ///< empty: none
+  /// null: the graph was optimised elsewhere
+  const MultiStartSummary* optimization = nullptr;
   const std::vector<evaluation::StateReport>* states = nullptr;  ///< null: not computed
   const evaluation::GraphResiduals* residuals = nullptr;         ///< null: not computed
   const evaluation::Sparsity* sparsity = nullptr;                ///< null: not computed
   std::vector<std::pair<std::string, std::string>> went_in{};    ///< the inputs: heading, text
-  std::vector<std::string> files{};                              ///< files beside the report, relative to it
+  /// files beside the report, relative to it
+  std::vector<std::string> files{};
 
   Stamp start = start_of(document);
 

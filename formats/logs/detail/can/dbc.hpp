@@ -35,10 +35,11 @@ struct DbcSignal {
   SignalNumber number = SignalNumber::unsigned_integer;
   double factor = 1;
   double offset = 0;
-  bool multiplexes = false;                ///< its value selects other signals of the message
-  std::optional<std::size_t> multiplexer;  ///< index in the message of the signal that selects this one
-  std::vector<MultiplexerRange> when;      ///< the values that select this signal
-  std::size_t line = 0;                    ///< in the file, 1-based
+  bool multiplexes = false;  ///< its value selects other signals of the message
+  /// index in the message of the signal that selects this one
+  std::optional<std::size_t> multiplexer;
+  std::vector<MultiplexerRange> when;  ///< the values that select this signal
+  std::size_t line = 0;                ///< in the file, 1-based
   /// The error that prevents reading, "car.dbc:12:20: SG_ SPEED: ..."; empty if there is none. Real
   /// files have such signals in messages that nobody asks for.
   std::string trouble;

@@ -61,7 +61,8 @@ class PositionStream {
   double range_error_m_;
   int source_;
   bool truth_;
-  std::size_t with_figures_ = 0;                          ///< those whose meaning a request may state
+  /// those whose meaning a request may state
+  std::size_t with_figures_ = 0;
   AccuracyMeaning meaning_ = AccuracyMeaning::automatic;  ///< their meaning
   bool usual_ = false;                                    ///< the meaning is the usual one
   std::size_t from_hdop_ = 0;

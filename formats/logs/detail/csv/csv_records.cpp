@@ -148,7 +148,8 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
     return kNoNumber;
   }
   const Quantity& quantity = *column->quantity;
-  const double scaled = column->factor * *given;  // the range is for the given angle, before any offset
+  // the range is for the given angle, before any offset
+  const double scaled = column->factor * *given;
   if (scaled < quantity.smallest || scaled > quantity.largest) {
     complain(*column, fmt::format("{} {} is outside {:.6g} .. {:.6g}", quote_field(field), column->unit,
                                   quantity.smallest / std::abs(column->factor),

@@ -13,7 +13,8 @@ inline constexpr std::size_t kNoField = 99;
 /// The places of the fields of a message: 0-based fields of its body.
 struct NovatelLayout {
   std::string_view name;
-  int gnss_rank;       ///< rank of its positions as fixes: the best kind so far is read; 0: no position
+  /// rank of its positions as fixes: the best kind so far is read; 0: no position
+  int gnss_rank;
   int truth_rank;      ///< rank of its positions as truth
   std::size_t fields;  ///< the body has at least so many
   std::size_t status;

@@ -79,7 +79,8 @@ struct UbxMotion {
 
 /// The state of a fix.
 struct UbxFixState {
-  int type = 0;     ///< 0 none, 1 dead reckoning, 2 2D, 3 3D, 4 GNSS and dead reckoning, 5 time only
+  /// 0 none, 1 dead reckoning, 2 2D, 3 3D, 4 GNSS and dead reckoning, 5 time only
+  int type = 0;
   bool ok = false;  ///< within the receiver's limits (gnssFixOK)
 
   [[nodiscard]] bool usable() const { return ok && type >= 1 && type <= 4; }

@@ -18,7 +18,8 @@ struct RobustChoice {
   std::vector<std::string> losses;   ///< NAME:SCALE, or TAG=NAME:SCALE
   std::string method = "none";       ///< none, gnc
   std::string trusted = "odometry";  ///< odometry, none, or a tag
-  std::string outliers;              ///< file for the edges that are found to be outliers; empty: none
+  /// file for the edges that are found to be outliers; empty: none
+  std::string outliers;
 };
 
 /// Adds --loss, --robust, --trusted and --outliers.
