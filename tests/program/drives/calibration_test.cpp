@@ -82,6 +82,32 @@ TEST_CASE(
                  "option 'gyro_bias' must be 'off' or 'constant' or 'random_walk', got 'sometimes'"));
 }
 
+TEST_CASE("options: a wrong one is told with its place in the drive.yaml, or as the command line has it") {
+  const std::string folder = fresh_folder();
+  const auto refused = [&](const std::string& lines, const std::vector<std::string>& extra, int code,
+                           const std::string& message) {
+    const std::string drive =
+        write_text(folder + "a.yaml", lines + "\nodometry: {file: o.csv}\ngnss: {file: g.csv}\n");
+    write_text(folder + "o.csv", "time,speed,yaw_rate\n0,1,0\n1,1,0\n");
+    write_text(folder + "g.csv", "time,latitude,longitude\n0,52,13\n1,52,13\n");
+    std::vector<std::string> arguments = {"convert", drive, "-o", folder + "out.graph"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const RunResult result = run(arguments);
+    INFO(result.err);
+    CHECK(result.code == code);
+    CHECK(contains(result.err, message));
+  };
+  const std::string g2 = "modeling: {name: g2, options: {identity_information: 0}}";
+  const std::string rule = "g2: option 'identity_information' must lie in [1, 1e12], got ";
+  refused(g2, {}, 3, folder + "a.yaml:1:54: " + rule + "0");
+  refused(g2, {"--modeling-option", "identity_information=nan"}, 2,
+          "error: g2: option 'identity_information' must be a number, got 'nan'");
+  refused("calibration: {time_offset_sigma: 200}", {"-m", "g1"}, 3,
+          folder + "a.yaml:1:34: g1: option 'time_offset_sigma' must lie in [1e-6, 100], got 200");
+  refused("calibration: {gyro_bias_sigma: 20}", {"-m", "g1"}, 3,
+          folder + "a.yaml:1:32: constant_twist: option 'gyro_bias_sigma' must lie in [1e-9, 10], got 20");
+}
+
 TEST_CASE("outages: the fixes of every period's end are kept out, and the pattern is checked") {
   const std::string folder = fresh_folder();
   REQUIRE(run({"convert", bundled_drive(), "-o", folder + "out.graph", "--outage", "10/30"}).code == 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -26,13 +27,28 @@ void check_loss(const drive::DriveFile& file, const TypeRegistry& registry) {
   }
 }
 
-/// Returns the place of an option of the odometry model.
-std::string place_of_option(const drive::Places& places, const std::string& option) {
-  for (const char* section : {"odometry.options.", "calibration."}) {
+/// Returns the place of an option, which stands under its type's own options or under `calibration`.
+/// Empty if it stands in neither.
+std::optional<std::string> place_of_option(const drive::Places& places, const std::string& options_of,
+                                           const std::string& option) {
+  for (const std::string& section : {options_of, std::string("calibration.")}) {
     const auto place = places.of.find(section + option);
     if (place != places.of.end()) return place->second;
   }
-  return places.at("odometry.model");
+  return std::nullopt;
+}
+
+/// @throws InputError for an option of the drive.yaml, with its place
+/// @throws OptionError for an option of the command line
+void check_modeling(const drive::FusionSettings& settings, const Options& given, const drive::Places& places,
+                    const TypeRegistry& registry) {
+  try {
+    (void)registry.make_gnss_modeling(settings.modeling, settings.modeling_options);
+  } catch (const OptionError& error) {
+    const auto place = place_of_option(places, "modeling.options.", error.option());
+    if (!place || given.contains(error.option())) throw;
+    throw InputError(*place + error.what());
+  }
 }
 
 void check_odometry_model(const drive::FusionSettings& settings, const drive::DriveFile& file,
@@ -40,7 +56,8 @@ void check_odometry_model(const drive::FusionSettings& settings, const drive::Dr
   try {
     (void)drive::make_odometry_model(settings, file.description.timeline.gap_noise_factor, registry);
   } catch (const OptionError& error) {
-    throw InputError(place_of_option(file.places, error.option()) + error.what());
+    const auto place = place_of_option(file.places, "odometry.options.", error.option());
+    throw InputError(place.value_or(file.places.at("odometry.model")) + error.what());
   } catch (const UsageError& error) {
     throw InputError(file.places.at("odometry.model") + error.what());
   }
@@ -161,8 +178,7 @@ std::vector<drive::FusionSettings> chosen_settings(const drive::DriveFile& file,
   std::vector<drive::FusionSettings> all;
   for (const std::string& modeling : modelings) {
     all.push_back(settings_of(modeling, file, given, registry));
-    const drive::FusionSettings decided = drive::decided(all.back(), registry);
-    (void)registry.make_gnss_modeling(modeling, decided.modeling_options);
+    check_modeling(drive::decided(all.back(), registry), given, file.places, registry);
   }
   check_options_are_used(modelings, given, registry);
   check_calibration(file, modelings, registry);
