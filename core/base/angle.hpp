@@ -4,7 +4,9 @@
 
 #include <numbers>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 inline constexpr double kDegree = std::numbers::pi / 180;
 

@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// The base of all errors that Waymark raises on purpose. An exception without this base is a
 /// defect (internal error).

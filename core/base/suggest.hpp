@@ -5,7 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// Returns the number of insertions, deletions, replacements and swaps of neighbours that turn `a`
 /// into `b` (optimal string alignment). Capital letters count as small ones. O(|a| |b|).

@@ -15,13 +15,16 @@
 /// every error that other unknowns absorb would seem too improbable by the factor 1/m, and the
 /// search would find heavy-tailed noise that is not there. Second-order terms are left out, because
 /// some edges keep them and others do not, so the result would jump.
+///
+/// Nothing is kept after a call; the graph may be read by others meanwhile.
 #pragma once
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/system/structure.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The terms at the present values of a graph, which should be its minimum.
 struct Evidence {
@@ -34,7 +37,8 @@ struct Evidence {
 };
 
 /// @param structure follows the graph; its builder has checked the gauge
-/// @param cholesky has analysed the pattern of the structure; it keeps the factor of H
+/// @param cholesky has analysed the pattern of the structure (StructuredSolver::analysed); it keeps
+/// the factor of H
 [[nodiscard]] Evidence evidence(const Graph& graph, const Structure& structure, BlockCholesky& cholesky);
 
 /// Computes the same and makes structure and factor itself. If nothing anchors the graph,

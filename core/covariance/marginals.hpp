@@ -1,4 +1,9 @@
 /// Marginal covariances at a minimum: blocks of H^-1 from a fresh undamped factor.
+///
+/// Marginals refers to the graph, which must outlive it and keep its values and edges meanwhile;
+/// the blocks that it returns are the caller's own. Threads: blocks() and joint() may not run side
+/// by side on one object. Precondition: vertices are indices of this graph; the values are a
+/// minimum, else the covariances say nothing about it.
 #pragma once
 
 #include <span>
@@ -8,12 +13,13 @@
 #include <Eigen/Core>
 
 #include <waymark/core/base/detail/large_array.hpp>
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/core/system/structure.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Square matrices of any sizes, stored in one array.
 class CovarianceBlocks {

@@ -1,7 +1,9 @@
 /// The metric frame of a graph: one UTM zone with a stored local origin.
 #pragma once
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// x = UTM easting - origin_easting and y = UTM northing - origin_northing, both in grid metres.
 /// The heading is in radians, counter-clockwise from grid east. `zone` 0 means a frame without a

@@ -2,6 +2,12 @@
 /// bytes of the log piece by piece and returns samples, so a log of any size needs little
 /// memory. It never guesses silently: its assumptions go into `notes`, and it counts unusable
 /// records in `corrupt`.
+///
+/// Ownership: a decoder belongs to the caller of open(), and so does the data that is moved out of
+/// it. Lifetime: a decoder may outlive its request and its reader's caller, not its reader; a piece
+/// given to take() need not outlive the call. Threads: a reader is stateless and may be used by any
+/// number of threads; a decoder by one at a time. Precondition: finish() is called once, after the
+/// last take().
 #pragma once
 
 #include <cstddef>
@@ -12,10 +18,11 @@
 #include <string_view>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/core/drive/stamp.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The kind of samples that is requested from a log.
 enum class StreamKind { odometry, gnss, truth, sensor };

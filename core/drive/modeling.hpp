@@ -1,5 +1,8 @@
 /// The interfaces through which a drive becomes a graph. Odometry intervals become edges; GNSS
 /// fixes and readings of further sensors become vertices and edges. Implementations are plugins.
+///
+/// Spans in inputs hold during build() only. A model is used by one thread at a time and may be
+/// used again; its factory's caller owns it.
 #pragma once
 
 #include <functional>
@@ -11,12 +14,13 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/core/graph/loss.hpp>
 #include <waymark/core/graph/vertex.hpp>
 #include <waymark/core/registry/options.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 class Graph;  // core/graph/graph.hpp
 

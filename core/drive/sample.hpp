@@ -1,6 +1,8 @@
 /// Time-stamped samples. Log readers deliver them; the drive tools and the GNSS modelings use them.
 /// They are plain structs, with units and frames in the names or beside them. Angles are radians
 /// unless a name says otherwise.
+///
+/// All of them own what they hold; copies share nothing.
 #pragma once
 
 #include <cmath>
@@ -13,9 +15,11 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/drive/stamp.hpp>
+#include <waymark/core/graph/vertex.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// One reading of the vehicle's odometry at the body point (default: rear axle).
 struct OdometrySample {
@@ -79,11 +83,10 @@ struct Fix {
   std::optional<double> speed_mps;
   std::optional<double> speed_sigma_mps;
   double height_m = std::numeric_limits<double>::quiet_NaN();
-  /// grid metres per metre on the ground at this place (UTM point scale)
-  double grid_scale = 1;
-  int epoch = 0;             ///< running number of the fix in the drive
-  int source = 0;            ///< index of the receiver
-  std::int64_t vertex = -1;  ///< id of the pose vertex at this epoch; -1 before the graph is built
+  double grid_scale = 1;  ///< grid metres per metre on the ground at this place (UTM point scale)
+  int epoch = 0;          ///< running number of the fix in the drive
+  int source = 0;         ///< index of the receiver
+  VertexId vertex{-1};    ///< the pose vertex at this epoch, -1 before the graph is built
 
   FixStatus status = FixStatus::accepted;
   std::string reason = "unjudged";  ///< one word, see tools/drive/nodes/gate.hpp

@@ -7,7 +7,9 @@
 #include <optional>
 #include <string_view>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// The scale of a stamp. `gps` counts seconds since 1980-01-06T00:00:00 without leap seconds;
 /// logs with seconds of week count from the start of the week. `utc` and `unix_time` count POSIX

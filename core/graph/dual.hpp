@@ -7,7 +7,9 @@
 
 #include <Eigen/Core>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 template <int N>
 struct Dual {

@@ -25,6 +25,9 @@
 ///   If both vertex types have carry() (vertex.hpp), J_0 is derived from J_1.
 /// - `void prepare();` is called once after the fields are set. It stores what depends only on the
 ///   measurement.
+///
+/// An edge is a plain value that a graph copies; error(), linearize() and prepare() must not keep
+/// state elsewhere, because several threads call them side by side.
 #pragma once
 
 #include <concepts>
@@ -37,10 +40,11 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/fields.hpp>
 #include <waymark/core/graph/vertex.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The vertex types that an edge joins, in the order of the arguments of its error. Their
 /// dimensions may differ.

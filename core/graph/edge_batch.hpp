@@ -1,7 +1,11 @@
 /// Edge batches: all edges of one type in one contiguous array. A pass needs one virtual
 /// call per type.
+///
+/// Batches belong to their graph (graph.hpp says how long references and spans hold). const
+/// functions may run side by side; precondition everywhere: an edge number is below size().
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -10,10 +14,11 @@
 #include <Eigen/Core>
 
 #include <waymark/core/base/detail/large_array.hpp>
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/edge.hpp>
 #include <waymark/core/graph/loss.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The place of the product of two Jacobians of an edge in the normal matrix: a column-major block
 /// at values[offset]. `stride` is the distance between columns. If it is negative, the first vertex
@@ -21,6 +26,13 @@ namespace waymark {
 struct BlockTarget {
   std::uint32_t offset = 0;
   std::int32_t stride = 0;
+};
+
+/// Names an edge of a graph: its batch and its place there. Holds until vertices are removed.
+struct EdgePlace {
+  std::size_t batch = 0;
+  std::size_t edge = 0;
+  friend auto operator<=>(const EdgePlace&, const EdgePlace&) = default;
 };
 
 /// Edges [first, last) of a batch.

@@ -34,8 +34,7 @@ Joined add_vertices(const TypeRegistry& registry, const EdgeType& type, const Ed
     }
     const std::vector<double> zero(static_cast<std::size_t>(vertex->tangent_size), 0.0);
     vertex->retract(value.data(), zero.data());  // this normalises the value
-    joined.vertices.push_back(
-        graph.add_vertex(*vertex, static_cast<VertexId>(joined.vertices.size()), value));
+    joined.vertices.push_back(graph.add_vertex(*vertex, VertexId(joined.vertices.size()), value));
     joined.tangent_size += zero.size();
     for (const double x : value) joined.reference.push_back(x + scenario.field * unit(random));
   }

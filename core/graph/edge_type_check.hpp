@@ -6,10 +6,11 @@
 #include <span>
 #include <string>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/gradient_check.hpp>
 #include <waymark/core/registry/registry.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The ranges from which the numbers of a trial are drawn.
 struct EdgeScenario {

@@ -1,5 +1,7 @@
 /// The field list of a type is its schema. Parsing, writing, `waymark info`, checks and fuzzing are
 /// all based on it.
+///
+/// All of it is constant data.
 #pragma once
 
 #include <string>
@@ -8,7 +10,9 @@
 
 #include <Eigen/Core>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// A named group of numbers in an edge record, as `waymark info` and the TYPE line of a .graph
 /// file show it.
@@ -20,10 +24,12 @@ struct FieldInfo {
 };
 
 /// A field of the edge struct E, with access to its numbers.
+/// A field of the edge struct E: where its numbers are, for reading and for setting.
 template <typename E>
 struct Field {
   std::string_view name;
   int size;
+  const double* (*read)(const E& edge);
   double* (*data)(E& edge);
 };
 
@@ -40,16 +46,19 @@ struct MemberPointer<V E::*> {
 }  // namespace detail
 
 /// Makes a Field from a member that is a double or a fixed-size Eigen vector:
-/// field<&EdgeSe2::measured>("measured").
-template <auto Member>
+/// field<&EdgeSe2::measured>("measured"). Of a member that E inherits: field<&Base::change,
+/// E>("change").
+template <auto Member, typename E = typename detail::MemberPointer<decltype(Member)>::Class>
 [[nodiscard]] constexpr auto field(std::string_view name) {
-  using E = typename detail::MemberPointer<decltype(Member)>::Class;
   using V = typename detail::MemberPointer<decltype(Member)>::Value;
   if constexpr (std::is_same_v<V, double>) {
-    return Field<E>{name, 1, [](E& edge) -> double* { return &(edge.*Member); }};
+    return Field<E>{name, 1, [](const E& edge) -> const double* { return &(edge.*Member); },
+                    [](E& edge) -> double* { return &(edge.*Member); }};
   } else {
     static_assert(V::SizeAtCompileTime > 0, "a field is a double or a fixed-size Eigen vector");
-    return Field<E>{name, V::SizeAtCompileTime, [](E& edge) -> double* { return (edge.*Member).data(); }};
+    return Field<E>{name, V::SizeAtCompileTime,
+                    [](const E& edge) -> const double* { return (edge.*Member).data(); },
+                    [](E& edge) -> double* { return (edge.*Member).data(); }};
   }
 }
 

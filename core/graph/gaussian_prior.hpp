@@ -5,10 +5,11 @@
 
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/edge_batch.hpp>
 #include <waymark/core/graph/vertex.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The error over vertices x_1..x_k is e = [local(r_1, x_1); ...; local(r_k, x_k)] - d,
 /// stacked in order, with reference values r and offset d. In text, the fields are the values

@@ -128,7 +128,7 @@ std::string describe(const Graph& graph, std::size_t b, const GradientCheck& che
   std::snprintf(numbers, sizeof numbers, "given %.10g, differences of the error say %.10g", check.given,
                 check.reference);
   return graph.edge_type(b).tag + " number " + std::to_string(check.edge + 1) + ": Jacobian by vertex " +
-         std::to_string(check.vertex + 1) + " (" + type.tag + " " + std::to_string(graph.id(v)) + "), row " +
+         std::to_string(check.vertex + 1) + " (" + type.tag + " " + to_string(graph.id(v)) + "), row " +
          std::to_string(check.row) + ", column " + std::to_string(check.column) + column + ": " + numbers;
 }
 

@@ -1,12 +1,15 @@
 /// Compares the Jacobians of edges with derivatives that nobody wrote by hand.
+///
+/// Everything here works on copies and may run side by side.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// A Jacobian by differences of the error.
 struct NumericJacobian {

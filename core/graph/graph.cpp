@@ -18,7 +18,7 @@ VertexIndex VertexIds::find_in_map(VertexId id) const {
 }
 
 void VertexIds::insert(VertexId id, VertexIndex index) {
-  if (id >= 0 && id < kArrayLimit) {
+  if (in_array(id)) {
     const auto place = static_cast<std::size_t>(id);
     if (place >= array_.size()) array_.resize(std::max(place + 1, array_.size() * 2), -1);
     array_[place] = index;
@@ -28,7 +28,7 @@ void VertexIds::insert(VertexId id, VertexIndex index) {
 }
 
 void VertexIds::erase(VertexId id) {
-  if (id >= 0 && id < kArrayLimit) {
+  if (in_array(id)) {
     array_[static_cast<std::size_t>(id)] = -1;
   } else {
     map_.erase(id);
@@ -65,9 +65,9 @@ std::size_t Graph::register_type(const VertexType& type) {
 }
 
 VertexIndex Graph::add_vertex(const VertexType& type, VertexId id, std::span<const double> value) {
-  if (by_id_.find(id) >= 0) throw UsageError("vertex " + std::to_string(id) + " exists already");
+  if (by_id_.find(id) >= 0) throw UsageError("vertex " + to_string(id) + " exists already");
   if (value.size() != static_cast<std::size_t>(type.value_size)) {
-    throw UsageError(type.tag + " " + std::to_string(id) + ": expected " + std::to_string(type.value_size) +
+    throw UsageError(type.tag + " " + to_string(id) + ": expected " + std::to_string(type.value_size) +
                      " values, got " + std::to_string(value.size()));
   }
   const auto v = static_cast<VertexIndex>(ids_.size());
@@ -78,14 +78,15 @@ VertexIndex Graph::add_vertex(const VertexType& type, VertexId id, std::span<con
   fixed_.push_back(0);
   if (!stamps_.empty()) stamps_.push_back(kNoStamp);
   by_id_.insert(id, v);
-  if (id >= free_id_ && id < std::numeric_limits<VertexId>::max()) free_id_ = id + 1;
+  constexpr VertexId kLargest{std::numeric_limits<std::int64_t>::max()};
+  if (id >= free_id_ && id < kLargest) free_id_ = VertexId{to_number(id) + 1};
   ++structure_version_;
   return v;
 }
 
 void Graph::set_value(VertexIndex v, std::span<const double> value) {
   if (value.size() != static_cast<std::size_t>(vertex_type(v).value_size)) {
-    throw UsageError(vertex_type(v).tag + " " + std::to_string(id(v)) + ": wrong number of values");
+    throw UsageError(vertex_type(v).tag + " " + to_string(id(v)) + ": wrong number of values");
   }
   std::copy(value.begin(), value.end(), values_.begin() + offsets_[index(v)]);
 }
@@ -155,12 +156,16 @@ Removal Graph::remove_vertices(std::span<const char> gone) {
   return removal;
 }
 
-EdgeBatchBase& Graph::batch(const EdgeType& type) {
-  for (Batch& batch : batches_) {
-    if (batch.type.tag == type.tag) return *batch.edges;
+std::size_t Graph::batch_of(const EdgeType& type) {
+  for (std::size_t b = 0; b < batches_.size(); ++b) {
+    if (batches_[b].type.tag == type.tag) return b;
   }
   batches_.push_back({type, type.make_batch()});
-  return *batches_.back().edges;
+  return batches_.size() - 1;
+}
+
+EdgeBatchBase& Graph::batch(const EdgeType& type) {
+  return *batches_[batch_of(type)].edges;
 }
 
 std::size_t Graph::edge_count() const {
@@ -175,6 +180,12 @@ std::vector<const VertexType*> Graph::types_of(std::span<const VertexIndex> vert
   return types;
 }
 
+void Graph::check_type(VertexIndex v, std::string_view tag) const {
+  if (vertex_type(v).tag == tag) return;
+  throw UsageError("vertex " + to_string(id(v)) + " is a " + vertex_type(v).tag + ", not a " +
+                   std::string(tag));
+}
+
 void Graph::check_vertices(const EdgeType& type, std::span<const VertexIndex> vertices) const {
   const auto n = vertices.size();
   if (type.arity != EdgeType::kRuntimeArity && n != static_cast<std::size_t>(type.arity)) {
@@ -185,18 +196,17 @@ void Graph::check_vertices(const EdgeType& type, std::span<const VertexIndex> ve
     const VertexIndex v = vertices[k];
     if (v < 0 || index(v) >= ids_.size()) throw UsageError(type.tag + ": a vertex that is not in the graph");
     if (type.arity != EdgeType::kRuntimeArity && vertex_type(v).tag != type.vertex_tags[k]) {
-      throw UsageError(type.tag + ": vertex " + std::to_string(id(v)) + " is a " + vertex_type(v).tag +
+      throw UsageError(type.tag + ": vertex " + to_string(id(v)) + " is a " + vertex_type(v).tag +
                        ", expected a " + type.vertex_tags[k]);
     }
     for (std::size_t l = 0; l < k; ++l) {
-      if (vertices[l] == v)
-        throw UsageError(type.tag + ": vertex " + std::to_string(id(v)) + " is named twice");
+      if (vertices[l] == v) throw UsageError(type.tag + ": vertex " + to_string(id(v)) + " is named twice");
     }
   }
 }
 
-EdgeBatchBase& Graph::add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
-                               std::span<const double> fields, const Eigen::MatrixXd& information) {
+EdgePlace Graph::add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
+                          std::span<const double> fields, const Eigen::MatrixXd& information) {
   check_vertices(type, vertices);
   if (type.arity != EdgeType::kRuntimeArity) {
     if (fields.size() != static_cast<std::size_t>(type.field_size())) {
@@ -208,7 +218,8 @@ EdgeBatchBase& Graph::add_edge(const EdgeType& type, std::span<const VertexIndex
                        " x " + std::to_string(type.error_dimension));
     }
   }
-  EdgeBatchBase& target = batch(type);
+  const std::size_t place = batch_of(type);
+  EdgeBatchBase& target = *batches_[place].edges;
   constexpr std::size_t kFew = 4;  // most edges have two vertices, and their list needs no heap
   if (vertices.size() <= kFew) {
     std::array<const VertexType*, kFew> types{};
@@ -218,7 +229,7 @@ EdgeBatchBase& Graph::add_edge(const EdgeType& type, std::span<const VertexIndex
     target.append(vertices, types_of(vertices), fields, information);
   }
   ++structure_version_;
-  return target;
+  return {place, target.size() - 1};
 }
 
 double Graph::chi2() const {

@@ -3,6 +3,13 @@
 /// All values are in one flat array, so copying it is a snapshot. A vertex is identified by
 /// its index in insertion order. Nothing depends on hash or pointer order, so equal input
 /// gives equal bits.
+///
+/// Ownership: a graph owns its vertices and edges; a copy is deep and shares nothing. Lifetime: a
+/// span of values, a ValueView and a reference to a vertex type hold until a vertex is added or
+/// removed; a reference to a batch holds until the graph is copied onto, moved or destroyed;
+/// indices and EdgePlace hold until vertices are removed. Threads: any number may read one graph;
+/// who writes must be alone. Precondition of everything that takes a VertexIndex, an EdgePlace or a
+/// batch number: it is of this graph. Only add_edge() checks that.
 #pragma once
 
 #include <array>
@@ -13,20 +20,21 @@
 #include <unordered_map>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/drive/stamp.hpp>
 #include <waymark/core/graph/detail/typed_batch.hpp>
 #include <waymark/core/graph/edge_batch.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/core/graph/vertex.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Maps ids to indices. Ids from 0 up are looked up in an array, all others in a hash map (which is
 /// never iterated).
 class VertexIds {
  public:
   [[nodiscard]] VertexIndex find(VertexId id) const {  ///< -1: absent
-    if (id < 0 || id >= kArrayLimit) return find_in_map(id);
+    if (!in_array(id)) return find_in_map(id);
     const auto place = static_cast<std::size_t>(id);
     return place < array_.size() ? array_[place] : -1;
   }
@@ -34,7 +42,7 @@ class VertexIds {
   void erase(VertexId id);
 
  private:
-  static constexpr VertexId kArrayLimit = VertexId{1} << 24;
+  static bool in_array(VertexId id) { return id >= VertexId{0} && to_number(id) < (std::int64_t{1} << 24); }
   [[nodiscard]] VertexIndex find_in_map(VertexId id) const;
   std::vector<VertexIndex> array_;
   std::unordered_map<VertexId, VertexIndex> map_;
@@ -66,6 +74,11 @@ class Graph {
     static const VertexType type = make_vertex_type<V>();
     return add_vertex(type, id, value);
   }
+  /// The same from a value: add_vertex<VertexSe2>(VertexId{1}, pose).
+  template <Vertex V, std::same_as<VertexValue<V>> Value>
+  VertexIndex add_vertex(VertexId id, const Value& value) {
+    return add_vertex<V>(id, numbers_of_value<V>(value));
+  }
 
   [[nodiscard]] std::size_t vertex_count() const { return ids_.size(); }
   [[nodiscard]] std::optional<VertexIndex> find(VertexId id) const {
@@ -81,8 +94,22 @@ class Graph {
   [[nodiscard]] std::span<const double> value(VertexIndex v) const {
     return {values_.data() + offsets_[index(v)], static_cast<std::size_t>(vertex_type(v).value_size)};
   }
-  /// @throws UsageError for a wrong size
+  /// The value as the type has it: value<VertexSe2>(v) is a Pose2<double>.
+  /// @throws UsageError if the vertex is of another type
+  template <Vertex V>
+  [[nodiscard]] VertexValue<V> value(VertexIndex v) const {
+    check_type(v, V::kTag);
+    return value_from_numbers<V>(value(v).data());
+  }
+  /// Sets the numbers as they are. @throws UsageError for a wrong size.
   void set_value(VertexIndex v, std::span<const double> value);
+  /// Sets a value as the type has it; a heading is wrapped.
+  /// @throws UsageError if the vertex is of another type
+  template <Vertex V>
+  void set_value(VertexIndex v, const VertexValue<V>& value) {
+    check_type(v, V::kTag);
+    set_value(v, numbers_of_value<V>(value));
+  }
   /// A fixed vertex keeps its value during optimisation.
   void set_fixed(VertexIndex v, bool fixed);
   [[nodiscard]] bool fixed(VertexIndex v) const { return fixed_[index(v)] != 0; }
@@ -111,28 +138,39 @@ class Graph {
   [[nodiscard]] const EdgeType& edge_type(std::size_t b) const { return batches_[b].type; }
   [[nodiscard]] std::size_t edge_count() const;
 
-  /// Adds an edge by run-time type. It returns the batch, in which the edge is the last one.
+  /// Adds an edge by run-time type. Returns its name.
   /// @param fields see EdgeType::fields
-  /// @param information symmetric
+  /// @param information symmetric and positive semidefinite, which is not checked
   /// @throws UsageError for a wrong number or type of vertices, a vertex named twice,
   /// and wrong sizes
-  EdgeBatchBase& add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
-                          std::span<const double> fields, const Eigen::MatrixXd& information);
+  EdgePlace add_edge(const EdgeType& type, std::span<const VertexIndex> vertices,
+                     std::span<const double> fields, const Eigen::MatrixXd& information);
   template <Edge E>
-  EdgeBatchBase& add_edge(const E& edge, const typename EdgeBatch<E>::Indices& vertices,
-                          const typename EdgeBatch<E>::Information& information) {
+  EdgePlace add_edge(const E& edge, const typename EdgeBatch<E>::Indices& vertices,
+                     const typename EdgeBatch<E>::Information& information) {
     static const EdgeType type = make_edge_type<E>();
     // A batch with this tag may come from another library, so its own append is used.
-    EdgeBatchBase& target = batch(type);
+    const std::size_t place = batch_of(type);
+    EdgeBatchBase& target = *batches_[place].edges;
     check_vertices(type, vertices);
     if (auto* typed = dynamic_cast<EdgeBatch<E>*>(&target)) {
       typed->append(edge, vertices, information);
     } else {
-      append_untyped(target, E(edge), vertices, information);
+      append_untyped(target, edge, vertices, information);
     }
     ++structure_version_;
-    return target;
+    return {place, target.size() - 1};
   }
+  /// The same with a robust loss of its own; empty: none.
+  template <Edge E>
+  EdgePlace add_edge(const E& edge, const typename EdgeBatch<E>::Indices& vertices,
+                     const typename EdgeBatch<E>::Information& information, const std::optional<Loss>& loss) {
+    const EdgePlace added = add_edge(edge, vertices, information);
+    if (loss) set_loss(added, *loss);
+    return added;
+  }
+  /// Gives one edge a robust loss of its own.
+  void set_loss(EdgePlace edge, const Loss& loss) { batches_[edge.batch].edges->set_loss(edge.edge, loss); }
 
   /// Returns a number that changes if a vertex or an edge is added or removed, or if a vertex is
   /// fixed or freed.
@@ -148,15 +186,18 @@ class Graph {
   };
 
   static std::size_t index(VertexIndex v) { return static_cast<std::size_t>(v); }
+  /// The batch of a type, made when first asked for.
+  std::size_t batch_of(const EdgeType& type);
+  void check_type(VertexIndex v, std::string_view tag) const;
   void check_vertices(const EdgeType& type, std::span<const VertexIndex> vertices) const;
   std::size_t register_type(const VertexType& type);
 
   template <Edge E>
-  void append_untyped(EdgeBatchBase& target, E edge, std::span<const VertexIndex> vertices,
+  void append_untyped(EdgeBatchBase& target, const E& edge, std::span<const VertexIndex> vertices,
                       const typename EdgeBatch<E>::Information& information) {
     std::vector<double> fields;
     for (const auto& f : E::fields()) {
-      const double* data = f.data(edge);
+      const double* data = f.read(edge);
       fields.insert(fields.end(), data, data + f.size);
     }
     // The numbers are copied one by one, because g++ 12 warns for a 1 x 1 matrix that a packet
@@ -177,7 +218,7 @@ class Graph {
   std::vector<char> fixed_;
   std::vector<Stamp> stamps_;  // empty until the first one is set; kNoStamp if a vertex has none
   VertexIds by_id_;
-  VertexId free_id_ = 1;
+  VertexId free_id_{1};
   std::vector<Batch> batches_;
   std::uint64_t structure_version_ = 0;
 };

@@ -1,6 +1,9 @@
 #include <array>
 #include <cmath>
+#include <vector>
 
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/base/suggest.hpp>
 #include <waymark/core/graph/loss.hpp>
 
 namespace waymark {
@@ -58,6 +61,17 @@ std::span<const LossType> builtin_losses() {
       {"dcs", &dcs, "s if s <= Phi, else 4 Phi s / (Phi + s) - Phi"},
   }};
   return losses;
+}
+
+Loss builtin_loss(std::string_view name, double scale) {
+  std::vector<std::string_view> names;
+  for (const LossType& type : builtin_losses()) {
+    names.push_back(type.name);
+    if (type.name != name) continue;
+    if (!(scale > 0)) throw UsageError(type.name + ": the scale of a loss must be > 0");
+    return {type.name, type.evaluate, scale};
+  }
+  throw UsageError("unknown loss '" + std::string(name) + "'" + suggestion(name, names));
 }
 
 }  // namespace waymark

@@ -3,12 +3,17 @@
 ///
 /// Every weight is in [0, 1], and rho(s) = s for small s. A loss is a value: a name, a scale, a
 /// function pointer. A plugin registers its own LossType.
+///
+/// Losses are evaluated side by side by several threads: evaluate must be a pure function.
 #pragma once
 
 #include <span>
 #include <string>
+#include <string_view>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// rho and its first two derivatives with respect to s.
 struct LossValue {
@@ -45,5 +50,9 @@ struct Loss {
 
 /// Returns huber, cauchy, tukey, geman_mcclure, welsch and dcs.
 [[nodiscard]] std::span<const LossType> builtin_losses();
+
+/// builtin_loss("cauchy", 2): one of them. @throws UsageError for an unknown name or a scale that
+/// is not > 0
+[[nodiscard]] Loss builtin_loss(std::string_view name, double scale);
 
 }  // namespace waymark

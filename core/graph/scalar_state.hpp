@@ -3,9 +3,10 @@
 
 #include <array>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Derive from it and add kTag, value_names() and, for a report with units, value_units():
 ///   struct VertexClockBias : ScalarState {

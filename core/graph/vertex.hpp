@@ -1,7 +1,11 @@
 /// Vertices: the unknowns. A vertex type is a struct of static functions (concept Vertex). At run
 /// time it is represented by its VertexType, which is found by tag and never by address.
+///
+/// Types are stateless: their functions may be called from any number of threads, on any memory of
+/// the right size.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <string>
@@ -10,12 +14,23 @@
 
 #include <Eigen/Core>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
 
-/// The name of a vertex in a file; any int64.
-using VertexId = std::int64_t;
+namespace WAYMARK_EXPORT waymark {
+
+/// The name of a vertex in a file: any int64, written VertexId{7}. An id and an index do not
+/// convert into each other.
+enum class VertexId : std::int64_t {};
 /// The place of a vertex in its graph: 0, 1, 2, ... in insertion order.
 using VertexIndex = std::int32_t;
+
+/// The number of an id, for messages and files.
+[[nodiscard]] constexpr std::int64_t to_number(VertexId id) {
+  return static_cast<std::int64_t>(id);
+}
+[[nodiscard]] inline std::string to_string(VertexId id) {
+  return std::to_string(to_number(id));
+}
 
 /// The members of a vertex type V:
 /// @code
@@ -58,6 +73,36 @@ concept Vertex = requires(double* value, const double* constant) {
   V::retract(value, constant);
   V::local(constant, constant, value);
 };
+
+/// The value of a vertex of type V as errors and users see it: Pose2<double>, Eigen::Vector2d,
+/// double.
+template <Vertex V>
+using VertexValue = decltype(V::template at<double>(nullptr, nullptr));
+
+/// The value that lies in V::kValueSize numbers.
+template <Vertex V>
+[[nodiscard]] VertexValue<V> value_from_numbers(const double* numbers) {
+  constexpr std::array<double, V::kTangentSize> kZero{};
+  return V::template at<double>(numbers, kZero.data());
+}
+
+/// The numbers of a value, normalised as the retraction leaves them: a heading in (-pi, pi]. A
+/// value is a number, an Eigen vector, or a type whose vector() gives one.
+template <Vertex V>
+[[nodiscard]] std::array<double, V::kValueSize> numbers_of_value(const VertexValue<V>& value) {
+  std::array<double, V::kValueSize> numbers;
+  Eigen::Map<Eigen::Matrix<double, V::kValueSize, 1>> vector(numbers.data());
+  if constexpr (std::convertible_to<VertexValue<V>, double>) {
+    vector[0] = value;
+  } else if constexpr (requires { value.vector(); }) {
+    vector = value.vector();
+  } else {
+    vector = value;
+  }
+  constexpr std::array<double, V::kTangentSize> kZero{};
+  V::retract(numbers.data(), kZero.data());
+  return numbers;
+}
 
 /// A vertex type at run time.
 struct VertexType {

@@ -13,14 +13,17 @@
 #include <Eigen/Core>
 
 #include <waymark/core/base/detail/large_array.hpp>
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/linear/block_symbolic.hpp>
 #include <waymark/core/linear/detail/dense_kernels.hpp>
 #include <waymark/core/linear/linear_solver.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 class ThreadPool;
 
+/// One thread at a time; the factor is its own. What analyze() and factorize() are given need not
+/// outlive them.
 class BlockCholesky final : public LinearSolver {
  public:
   /// @param kernels must outlive this object; other kernels give other rounding

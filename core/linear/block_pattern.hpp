@@ -1,5 +1,7 @@
 /// The block pattern of the normal matrix and its numbers, in the form that linear solvers need: no
 /// graph, only blocks.
+///
+/// A plain value; solvers read it during analyze() only.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// The upper block triangle of a symmetric matrix, by block columns in elimination order,
 /// diagonal block last.

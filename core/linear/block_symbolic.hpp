@@ -1,13 +1,16 @@
 /// Symbolic analysis of the block Cholesky factorisation: elimination tree, supernodes, and the
 /// places of all numbers.
+///
+/// A plain value that keeps no reference to the pattern.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/linear/block_pattern.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The place of one block of the matrix in the panel of its supernode.
 struct BlockEntry {

@@ -1,5 +1,10 @@
 /// The interface of linear backends. They factorise a sparse symmetric positive definite matrix and
 /// solve with the factor.
+///
+/// Preconditions of a backend, kept by whoever calls it: analyze() before factorize(), a successful
+/// factorize() before solve(), spans of the sizes that the pattern says. Spans and the pattern need
+/// not outlive a call. A backend serves one thread at a time; several backends may work side by
+/// side.
 #pragma once
 
 #include <functional>
@@ -7,9 +12,10 @@
 #include <span>
 #include <string>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/linear/block_pattern.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 class ThreadPool;
 

@@ -1,5 +1,9 @@
 /// The interface of algorithms. They propose steps; the loop around them (optimizer.hpp) judges and
 /// applies the steps.
+///
+/// An algorithm belongs to whoever made it and keeps nothing that it is given beyond a call of
+/// propose(). It serves one optimisation at a time; several algorithms may work side by side. Order
+/// of calls: reset(), then propose() and, after each, accepted() or rejected() at most once.
 #pragma once
 
 #include <functional>
@@ -10,10 +14,11 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/linear/linear_solver.hpp>
 #include <waymark/core/registry/options.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 class NormalEquations;  // core/system/normal_equations.hpp
 

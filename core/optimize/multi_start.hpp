@@ -18,10 +18,11 @@
 #include <string>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/registry/registry.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// One initial guess that was tried.
 struct StartTrial {
@@ -39,6 +40,12 @@ struct MultiStartSummary {
   std::string start;
   std::vector<StartTrial> trials;
   double total_seconds = 0;
+
+  [[nodiscard]] bool converged() const { return summary.converged(); }
+  /// As Summary has them; in full also with the start, and with the time of all of them if there
+  /// were several.
+  [[nodiscard]] std::string brief() const { return summary.brief(); }
+  [[nodiscard]] std::string full() const;
 };
 
 /// Returns the largest chi2 at which a minimum is not suspicious: degrees of freedom plus six
@@ -48,6 +55,8 @@ struct MultiStartSummary {
 
 /// Optimises by the rule above. Afterwards the graph holds the best values found.
 /// options.max_iterations limits the sum over all runs, and the observer sees all of them.
+/// Ownership, threads and observer are those of optimize(). Each start needs one more copy of the
+/// graph's values.
 /// @throws as optimize, if no start avoids it
 MultiStartSummary optimize_from_best_start(Graph& graph, const RegistryTable<StartType>& starts,
                                            Algorithm& algorithm, LinearSolver& solver,

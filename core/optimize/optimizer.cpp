@@ -167,7 +167,7 @@ std::string Loop::singular_message() const {
   diagonal.minCoeff(&weakest);
   const VertexIndex v = equations_.vertex_of_unknown(weakest);
   return text("the normal equations are not positive definite; the weakest unknown belongs to ",
-              graph_.vertex_type(v).tag, " ", graph_.id(v), " (H_ii = ", diagonal[weakest],
+              graph_.vertex_type(v).tag, " ", to_string(graph_.id(v)), " (H_ii = ", diagonal[weakest],
               "): it lacks edges or information");
 }
 
@@ -307,10 +307,12 @@ Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const
   return Loop(graph, nullptr, algorithm, solver, options).run();
 }
 
-Summary optimize(Graph& graph, const Structure& structure, Algorithm& algorithm, LinearSolver& solver,
+Summary optimize(Graph& graph, StructuredSolver& solver, Algorithm& algorithm,
                  const OptimizerOptions& options) {
   options.check();
-  return Loop(graph, &structure, algorithm, solver, options).run();
+  if (!solver.structure().follows(graph))
+    throw UsageError("optimize: the structure does not follow the graph");
+  return Loop(graph, &solver.structure(), algorithm, solver.analysed(), options).run();
 }
 
 Algorithm::~Algorithm() = default;

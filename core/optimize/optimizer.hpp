@@ -1,15 +1,23 @@
-/// The optimisation loop: minimises chi2 over the free vertices of a graph.
+/// The optimisation loop: minimises chi2 over the free vertices of a graph. How to choose an
+/// algorithm, a solver and an initial guess is the business of <waymark/solvers/optimize.hpp>.
+///
+/// Nothing given to optimize() is kept after it returned. Threads: a call may run beside others
+/// that share none of its graph, algorithm and solver; it makes and ends threads of its own as
+/// asked by OptimizerOptions::threads. The observer is called from the calling thread and must not
+/// change the graph; an exception of it ends the run, and the graph then has the values that it
+/// came with.
 #pragma once
 
 #include <atomic>
 #include <functional>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/optimize/algorithm.hpp>
 #include <waymark/core/optimize/summary.hpp>
-#include <waymark/core/system/structure.hpp>
+#include <waymark/core/system/structured_solver.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Convergence is declared if the values are stationary, or at a full (undamped, untruncated)
 /// Newton step d:
@@ -32,7 +40,7 @@ struct OptimizerOptions {
   /// Checked before every step; true ends the run with the best values so far.
   const std::atomic<bool>* cancel = nullptr;
   /// Called after every proposed step.
-  std::function<void(const IterationRecord&)> observer;
+  std::function<void(const IterationRecord&)> observer = {};
 
   /// @throws UsageError that names field, value and rule
   void check() const;
@@ -43,10 +51,10 @@ struct OptimizerOptions {
 /// @throws UsageError for invalid options; InputError if the gauge is undetermined (see find_gauge)
 Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options);
 
-/// Minimises chi2 with a structure and a symbolic analysis that the caller keeps between calls.
-/// @param structure follows the graph; its builder has checked the gauge
-/// @param solver has analysed the present pattern of the structure
-Summary optimize(Graph& graph, const Structure& structure, Algorithm& algorithm, LinearSolver& solver,
+/// The same with a structure and a symbolic analysis that are kept between calls. The gauge is not
+/// looked at: what the structure does not hold must be determined.
+/// @throws UsageError for invalid options, and if the structure does not follow the graph
+Summary optimize(Graph& graph, StructuredSolver& solver, Algorithm& algorithm,
                  const OptimizerOptions& options);
 
 }  // namespace waymark

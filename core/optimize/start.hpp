@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The result of a start.
 struct InitialValues {

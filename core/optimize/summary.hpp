@@ -1,4 +1,5 @@
 /// The report of an optimisation: outcome, message, one record per iteration.
+/// It consists of plain values that refer to nothing.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// Why the loop ended. After the first four the result is a minimum.
 enum class Termination {
@@ -65,6 +68,10 @@ struct Summary {
   double total_seconds = 0;
 
   [[nodiscard]] bool converged() const { return is_converged(termination); }
+  /// One line: why it ended, chi2 before and after, iterations.
+  [[nodiscard]] std::string brief() const;
+  /// A line each, ended by a line break: why it ended, chi2, iterations, size, time.
+  [[nodiscard]] std::string full() const;
 };
 
 }  // namespace waymark

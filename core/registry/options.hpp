@@ -12,8 +12,9 @@
 #include <vector>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/base/export.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Maps option names to values as the user gave them.
 using Options = std::map<std::string, std::string>;

@@ -1,17 +1,23 @@
 /// The plugin boundary. Each plugin has one constant data symbol, which is read from its file
 /// before any of its code runs. plugins/README.md, "ABI and versions", explains the policy behind
 /// the numbers.
+///
+/// The host calls the entry function once for each registry, in one thread. Whatever it registers
+/// must stay valid until the process ends: function pointers, LogReader objects, captured data. An
+/// entry function may throw waymark::Error; the registry is then left as it was. A plugin must not
+/// keep the registry.
 #pragma once
 
 #include <cstdint>
 
 #include <Eigen/Core>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Raised if a type that crosses the boundary changes its layout or meaning.
 inline constexpr std::uint32_t kPluginAbi = 4;

@@ -1,12 +1,15 @@
 /// Loads plugins: built-in ones by their descriptor, modules by file name. Modules are
 /// never unloaded.
+///
+/// Threads: one at a time; loading changes the process.
 #pragma once
 
 #include <string>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/registry/plugin.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Checks a descriptor against this build and lets the plugin register its types under its name. If
 /// the registration throws, none of them is registered.

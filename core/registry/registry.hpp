@@ -1,5 +1,12 @@
 /// The registry of types. It is a value: explicit calls fill it, and it is passed to its users.
 /// There are no singletons and no static initialisers (linkers drop those from libraries).
+///
+/// Ownership: a registry owns its entries. Lifetime: pointers and references to entries hold until
+/// something is added to their table; what a factory makes belongs to the caller and does not refer
+/// to the registry. Code and data behind the entries of a module stay valid as long as the process,
+/// because modules are never unloaded. Threads: any number may read one registry, and factories may
+/// be called side by side; who adds must be alone. Precondition: vertex types are added before the
+/// edge types that join them are used.
 #pragma once
 
 #include <functional>
@@ -7,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/core/drive/modeling.hpp>
 #include <waymark/core/graph/detail/typed_batch.hpp>
@@ -17,7 +25,7 @@
 #include <waymark/core/optimize/algorithm.hpp>
 #include <waymark/core/optimize/start.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// A plugin whose types are in the registry.
 struct PluginRecord {

@@ -1,7 +1,9 @@
 /// The chi-square distribution. It tells how large a squared error may be and still be noise.
 #pragma once
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// Returns P(chi2 > x) with `freedom` >= 1 degrees of freedom, x >= 0. It uses the recurrence
 /// over the degrees of freedom from the closed forms for 1 and 2 (Abramowitz, Stegun, 26.4.4

@@ -1,22 +1,17 @@
 /// Single edges of a graph: the size of their errors, their agreement with the other edges, and the
 /// graph without some of them.
+///
+/// Preconditions: places are edges of the graph given with them. Nothing is kept after a call.
 #pragma once
 
-#include <compare>
 #include <span>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/linear/linear_solver.hpp>
 
-namespace waymark {
-
-/// An edge of a graph: its batch, and its place in the batch.
-struct EdgePlace {
-  std::size_t batch = 0;
-  std::size_t edge = 0;
-  friend auto operator<=>(const EdgePlace&, const EdgePlace&) = default;
-};
+namespace WAYMARK_EXPORT waymark {
 
 /// Returns e^T Omega e at the present values, without loss.
 [[nodiscard]] double squared_error(const Graph& graph, EdgePlace place);

@@ -279,6 +279,14 @@ GraduationResult Graduation::run() {
 
 }  // namespace
 
+namespace {
+
+bool follow_each_other(VertexId a, VertexId b) {
+  return to_number(a) + 1 == to_number(b) || to_number(b) + 1 == to_number(a);
+}
+
+}  // namespace
+
 bool is_odometry_edge(const Graph& graph, EdgePlace place) {
   if (graph.edge_type(place.batch).arity == EdgeType::kRuntimeArity) return true;
   const EdgeBatchBase& batch = graph.batch(place.batch);
@@ -290,7 +298,7 @@ bool is_odometry_edge(const Graph& graph, EdgePlace place) {
   const VertexType& type = graph.vertex_type(placed[0]);
   return type.tag == graph.vertex_type(placed[1]).tag &&
          batch.error_dimension(place.edge) >= type.tangent_size &&
-         (graph.id(placed[0]) + 1 == graph.id(placed[1]) || graph.id(placed[1]) + 1 == graph.id(placed[0]));
+         follow_each_other(graph.id(placed[0]), graph.id(placed[1]));
 }
 
 GraduationOptions::GraduationOptions() {

@@ -16,15 +16,18 @@
 /// quantile, and a kept edge beyond it goes. The best width depends on how accurate the stated
 /// noise is. So there are verdicts at stretch 16, 4 and 1 of the last width, and the one with the
 /// lowest cost counts.
+///
+/// Ownership and threads are those of optimize(); the trust rule is called from the calling thread.
 #pragma once
 
 #include <functional>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Tells whether an edge is never an outlier.
 using TrustRule = std::function<bool(const Graph&, EdgePlace)>;

@@ -96,7 +96,7 @@ int rank_of(const Eigen::Matrix3d& information) {
 
 [[noreturn]] void refuse(const Graph& graph, VertexIndex v, int rank) {
   throw InputError(
-      "vertex " + std::to_string(graph.id(v)) + " and what is joined to it are anchored in " +
+      "vertex " + to_string(graph.id(v)) + " and what is joined to it are anchored in " +
       std::to_string(rank) +
       " of 3 rigid motions only, so the solution is not determined (typical: a single GNSS fix, or fixes "
       "at one place); add fixes at another place, a heading, or FIX one vertex");
@@ -119,7 +119,7 @@ Gauge find_gauge(const Graph& graph) {
     if (rank == 1 || rank == 2) refuse(graph, first, rank);
     if (rank == 0) {
       gauge.held[at(first)] = 1;
-      gauge.messages.push_back("nothing anchors vertex " + std::to_string(graph.id(first)) + " and the " +
+      gauge.messages.push_back("nothing anchors vertex " + to_string(graph.id(first)) + " and the " +
                                std::to_string(components.count[c] - 1) +
                                " vertices joined to it: it is held at its present value");
     }

@@ -1,12 +1,15 @@
 /// The gauge of a graph: the rigid motions of its parts that the edges cannot observe.
+///
+/// The result is a value; it holds for the graph's values and edges as they were.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The vertices that are held so that the problem is determined, and the messages for the user.
 struct Gauge {

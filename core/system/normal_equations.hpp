@@ -10,11 +10,13 @@
 
 #include <waymark/core/base/detail/large_array.hpp>
 #include <waymark/core/base/detail/thread_pool.hpp>
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/system/structure.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
+/// Spans and references that it returns hold until the next linearize(). One thread at a time.
 class NormalEquations {
  public:
   /// Both must outlive this object. The structure must have been built for the graph.

@@ -352,6 +352,15 @@ void Structure::set_ranges(std::span<const std::vector<EdgeRange>> of_chunks, Sc
   }
 }
 
+bool Structure::follows(const Graph& graph) const {
+  if (column_of_.size() != graph.vertex_count() || scattered_edges_.size() != graph.batch_count())
+    return false;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    if (scattered_edges_[b] != graph.batch(b).size()) return false;
+  }
+  return true;
+}
+
 void Structure::add_slots(double* hessian, double* gradient) const {
   if (dense_size_ == 0) return;
   const std::int64_t dense_start = pattern_.dimension() - dense_size_;

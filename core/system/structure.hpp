@@ -7,12 +7,16 @@
 #include <string>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/edge_batch.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/linear/block_pattern.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
+/// Copyable; it owns all that it holds and keeps no reference to the graph. Spans and references
+/// that it returns hold until the next build(), extend() or remove(). Any number of threads may
+/// read one.
 class Structure {
  public:
   /// Computes the structure anew: order, pattern, scatter offsets.
@@ -37,6 +41,9 @@ class Structure {
   /// @param held as in build, for the vertices that stayed
   /// @throws UsageError if the structure had not followed the graph
   void remove(const Graph& graph, const Removal& removal, std::span<const char> held);
+
+  /// Whether it knows exactly the vertices and edges that the graph has now.
+  [[nodiscard]] bool follows(const Graph& graph) const;
 
   [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
   [[nodiscard]] const Scatter& scatter(std::size_t batch) const { return scatters_[batch]; }

@@ -11,35 +11,31 @@ IncrementalOptimizer::IncrementalOptimizer(Graph& graph, std::unique_ptr<Algorit
     : graph_(graph),
       algorithm_(std::move(algorithm)),
       solver_(std::move(solver)),
-      options_(std::move(options)) {
+      options_(std::move(options)),
+      kept_(*solver_) {
   options_.check();
 }
 
 void IncrementalOptimizer::follow() {
-  if (structure_.pattern().version > 0 && followed_version_ == graph_.structure_version()) return;
+  if (structure().pattern().version > 0 && followed_version_ == graph_.structure_version()) return;
   Gauge gauge = find_gauge(graph_);
   notes_ = std::move(gauge.messages);
   // If an old vertex becomes held, or is no longer held, its column changes. The structure then
   // starts over.
   const bool same =
-      structure_.pattern().version > 0 && std::equal(held_.begin(), held_.end(), gauge.held.begin());
+      structure().pattern().version > 0 && std::equal(held_.begin(), held_.end(), gauge.held.begin());
   held_ = std::move(gauge.held);
   if (same) {
-    structure_.extend(graph_, held_);
+    kept_.extend(graph_, held_);
   } else {
-    structure_.build(graph_, held_);
+    kept_.build(graph_, held_);
   }
   followed_version_ = graph_.structure_version();
 }
 
 Summary IncrementalOptimizer::update() {
   follow();
-  const BlockPattern& pattern = structure_.pattern();
-  if (pattern.version != analysed_version_ && pattern.dimension() > 0) {
-    solver_->analyze(pattern);
-    analysed_version_ = pattern.version;
-  }
-  Summary summary = optimize(graph_, structure_, *algorithm_, *solver_, options_);
+  Summary summary = optimize(graph_, kept_, *algorithm_, options_);
   summary.notes.insert(summary.notes.begin(), notes_.begin(), notes_.end());
   return summary;
 }
@@ -54,7 +50,7 @@ Marginalization IncrementalOptimizer::drop_prefix(VertexIndex count) {
       held[static_cast<std::size_t>(now)] = held_[v];
   }
   held_ = std::move(held);
-  structure_.remove(graph_, result.removal, held_);
+  kept_.remove(graph_, result.removal, held_);
   followed_version_ = graph_.structure_version();
   return result;
 }

@@ -6,13 +6,14 @@
 #include <memory>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/optimize/algorithm.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
-#include <waymark/core/system/structure.hpp>
+#include <waymark/core/system/structured_solver.hpp>
 #include <waymark/core/window/marginalization.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Keeps structure and solver between calls:
 ///
@@ -26,6 +27,10 @@ namespace waymark {
 /// Between calls the caller may append to the graph, set values, and fix new vertices. Only
 /// drop_prefix() may remove. The result of an update is that of optimize() from the same values, up
 /// to the rounding of another order of elimination.
+///
+/// It owns algorithm and solver, and refers to the graph. drop_prefix() renumbers vertices and
+/// edges: indices, EdgePlace and spans from before it are void, ids hold. One thread at a time for
+/// the optimizer and its graph.
 class IncrementalOptimizer {
  public:
   /// @param graph must outlive this object, at the same address
@@ -46,7 +51,7 @@ class IncrementalOptimizer {
   /// Returns chi2 of everything that was dropped so far and is in no edge any more.
   [[nodiscard]] double dropped_chi2() const { return dropped_chi2_; }
   /// Returns the structure as of the last call.
-  [[nodiscard]] const Structure& structure() const { return structure_; }
+  [[nodiscard]] const Structure& structure() const { return kept_.structure(); }
 
  private:
   void follow();
@@ -55,12 +60,10 @@ class IncrementalOptimizer {
   std::unique_ptr<Algorithm> algorithm_;
   std::unique_ptr<LinearSolver> solver_;
   OptimizerOptions options_;
-  Structure structure_;
+  StructuredSolver kept_;
   std::vector<char> held_;              // per vertex of the structure
   std::vector<std::string> notes_;      // about the gauge
   std::uint64_t followed_version_ = 0;  // of the graph
-  // version of the pattern; a computed pattern has version 1 or more
-  std::uint64_t analysed_version_ = 0;
   double dropped_chi2_ = 0;
 };
 

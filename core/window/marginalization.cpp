@@ -124,7 +124,7 @@ void Elimination::add_edge(const EdgeBatchBase& batch, const EdgeType& type, std
   }
   factor.rows.rightCols(1) = b;
   if (!factor.rows.allFinite()) {
-    throw InputError(type.tag + " at vertex " + std::to_string(graph_.id(named.front())) +
+    throw InputError(type.tag + " at vertex " + to_string(graph_.id(named.front())) +
                      ": error or derivative is not finite, so it cannot be marginalised");
   }
   constant_ += value.rho - b.squaredNorm();
@@ -175,7 +175,7 @@ void Elimination::check_determined(VertexIndex v, const Eigen::MatrixXd& triangl
     determined = values.minCoeff() > std::sqrt(kInformationResolution);
   }
   if (determined) return;
-  throw InputError("vertex " + std::to_string(graph_.id(v)) +
+  throw InputError("vertex " + to_string(graph_.id(v)) +
                    " cannot be marginalised: the edges that would go do not determine it, and it is joined "
                    "to none that stay; add a prior or a fix, FIX a vertex, or hold what find_gauge names");
 }

@@ -1,12 +1,15 @@
 /// Fixed lag: removes the oldest vertices of a graph, and keeps the information of their edges
 /// about the others as a prior.
+///
+/// The graph is the caller's and is changed; indices, EdgePlace and spans from before are void.
 #pragma once
 
 #include <span>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The result of marginalize_prefix.
 struct Marginalization {

@@ -1,5 +1,5 @@
-// A GNSS modeling: how fixes become vertices and edges. This one ties each fix to its pose by an edge on that
-// pose alone. It has the minimum of g1, whose edges begin at a fixed origin.
+// A GNSS modeling: how fixes become vertices and edges. This one ties each fix to its pose by an
+// edge on that pose alone. It has the minimum of g1, whose edges begin at a fixed origin.
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/g2o_edges.hpp>
@@ -17,8 +17,7 @@ class UnaryFixes final : public GnssModeling {
     if (!input.antenna.isZero(0)) throw UsageError("unary: this modeling has no antenna lever arm; use g1");
     for (const Fix& fix : input.fixes) {
       const Eigen::Matrix2d information = position_information(fix) / (sigma_factor_ * sigma_factor_);
-      attach_loss(graph.add_edge(EdgePriorSe2Xy{fix.position}, {pose_vertex(fix, graph)}, information),
-                  input);
+      graph.add_edge(EdgePriorSe2Xy{fix.position}, {pose_vertex(fix, graph)}, information, input.loss);
     }
   }
 
@@ -26,7 +25,8 @@ class UnaryFixes final : public GnssModeling {
   double sigma_factor_;
 };
 
-/// Options: name, default, unit, which values are allowed, and what it is. `waymark info` shows them.
+/// Options: name, default, unit, which values are allowed, and what it is. `waymark info` shows
+/// them.
 static std::vector<OptionInfo> options() {
   return {
       {"sigma_factor", "1", "", OptionRange{0.01, 100}, "what the sigmas of the fixes are multiplied by"}};

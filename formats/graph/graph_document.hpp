@@ -1,5 +1,9 @@
 /// A graph file in memory: the graph and the records that belong to it. formats/README.md specifies
 /// the text format.
+///
+/// A document owns everything in it; copies share nothing. Reading and writing keep no reference to
+/// text, registry or document after they return, and may run side by side on different documents.
+/// Precondition of writing: vertices in `covariances` are indices of `graph`.
 #pragma once
 
 #include <optional>
@@ -52,7 +56,7 @@ struct ReadReport {
 [[nodiscard]] std::string describe_schema(const EdgeType& type);
 
 /// Reads a .graph text (first line `GRAPH 1`) or a plain g2o SE(2) file (any other first line).
-/// graph_format.hpp and foreign_graph.hpp have the other formats. If a plain g2o file has no
+/// graph_format.hpp has the other formats. If a plain g2o file has no
 /// vertices, the registered start "odometry" makes them.
 /// @param name name of the file, for messages
 /// @param lenient skip and count wrong lines; otherwise the first one is an error

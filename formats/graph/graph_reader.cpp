@@ -135,9 +135,9 @@ class GraphReader {
 
   void read_vertex(LineScanner& line, const Tag& tag) {
     const VertexType& type = *tag.vertex;
-    const VertexId id = line.integer({tag.word, "id"});
+    const VertexId id{line.integer({tag.word, "id"})};
     if (document_.graph.find(id)) {
-      line.fail(join(tag.word, "vertex " + std::to_string(id) + " is defined a second time"));
+      line.fail(join(tag.word, "vertex " + to_string(id) + " is defined a second time"));
     }
     values_.clear();
     for (const std::string& name : type.value_names) values_.push_back(line.number({tag.word, name}));
@@ -187,7 +187,8 @@ class GraphReader {
     line.end(tag.word);
     check_matrix(line, tag.word);
     try {
-      last_batch_ = &document_.graph.add_edge(type, vertices_, values_, information_);
+      const EdgePlace added = document_.graph.add_edge(type, vertices_, values_, information_);
+      last_batch_ = &document_.graph.batch(added.batch);
     } catch (const UsageError& error) {
       line.fail(error.what());
     }
@@ -269,7 +270,7 @@ class GraphReader {
       const EdgeType* type = known_tag(tag).edge;
       if (type == nullptr || type->arity == EdgeType::kRuntimeArity) return;
       for (const std::string& vertex_tag : type->vertex_tags) {
-        named.emplace_back(line.integer({tag, "vertex"}), registry_.find_vertex(vertex_tag));
+        named.emplace_back(VertexId{line.integer({tag, "vertex"})}, registry_.find_vertex(vertex_tag));
       }
     });
     std::sort(named.begin(), named.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

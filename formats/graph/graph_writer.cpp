@@ -41,15 +41,15 @@ void write_header(const GraphDocument& document, TextBuilder& out) {
 
 void write_vertices(const Graph& graph, TextBuilder& out) {
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    out.word(graph.vertex_type(v).tag).integer(graph.id(v));
+    out.word(graph.vertex_type(v).tag).integer(to_number(graph.id(v)));
     for (const double value : graph.value(v)) out.number(value);
     out.end_line();
     if (const auto stamp = graph.stamp(v)) {
-      out.word("STAMP").integer(graph.id(v)).integer(stamp->nanoseconds).end_line();
+      out.word("STAMP").integer(to_number(graph.id(v))).integer(stamp->nanoseconds).end_line();
     }
   }
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    if (graph.fixed(v)) out.word("FIX").integer(graph.id(v)).end_line();
+    if (graph.fixed(v)) out.word("FIX").integer(to_number(graph.id(v))).end_line();
   }
 }
 
@@ -65,7 +65,7 @@ void write_edges(const Graph& graph, const EdgeType& type, const EdgeBatchBase& 
     out.word(type.tag);
     const auto vertices = batch.vertices(e);
     if (type.arity == EdgeType::kRuntimeArity) out.integer(static_cast<std::int64_t>(vertices.size()));
-    for (const VertexIndex v : vertices) out.integer(graph.id(v));
+    for (const VertexIndex v : vertices) out.integer(to_number(graph.id(v)));
     fields.clear();
     batch.fields(e, fields);
     for (const double value : fields) out.number(value);
@@ -80,7 +80,7 @@ void write_fix(const Fix& fix, TextBuilder& out) {
     value ? out.number(*value) : out.word("-");
   };
   const auto or_dash = [&](double value) { std::isfinite(value) ? out.number(value) : out.word("-"); };
-  out.word("GNSS").integer(fix.vertex).integer(fix.stamp.nanoseconds);
+  out.word("GNSS").integer(to_number(fix.vertex)).integer(fix.stamp.nanoseconds);
   out.number(fix.position[0]).number(fix.position[1]);
   out.number(fix.covariance(0, 0)).number(fix.covariance(0, 1)).number(fix.covariance(1, 1));
   or_dash(fix.height_m);
@@ -118,7 +118,7 @@ void write_graph(const GraphDocument& document, const TypeRegistry& registry, co
   }
   for (const Fix& fix : document.fixes) write_fix(fix, out);
   for (const VertexCovariance& block : document.covariances) {
-    out.word("COVARIANCE").integer(graph.id(block.vertex));
+    out.word("COVARIANCE").integer(to_number(graph.id(block.vertex)));
     write_upper_triangle(block.covariance, out);
     out.end_line();
   }

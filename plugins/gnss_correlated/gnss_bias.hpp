@@ -45,8 +45,7 @@ struct EdgeGnssMultipathDecay : EdgeGnssBiasDecay {
   static constexpr std::string_view kTag = "EDGE_GNSS_MULTIPATH_DECAY";
   using Vertices = VertexList<VertexGnssMultipath, VertexGnssMultipath>;
   static constexpr auto fields() {
-    return std::array{Field<EdgeGnssMultipathDecay>{
-        "decay", 1, [](EdgeGnssMultipathDecay& edge) -> double* { return &edge.decay; }}};
+    return std::array{field<&EdgeGnssBiasDecay::decay, EdgeGnssMultipathDecay>("decay")};
   }
 };
 

@@ -121,11 +121,10 @@ class GnssCorrelated final : public GnssModeling {
       edge.yaw_rate = input.motion[i].yaw_rate_radps;
       edge.scale = model_.multipath_m * Eigen::Vector3d(root(0, 0), root(0, 1), root(1, 1));
       const Eigen::Matrix2d information = peak * (model_.white_m * model_.white_m * root * root).inverse();
-      EdgeBatchBase& batch = graph.add_edge(edge,
-                                            {origin, pose_vertex(fix, graph), offset,
-                                             receiver.bias.at(fix.stamp), receiver.multipath.at(fix.stamp)},
-                                            0.5 * (information + information.transpose()));
-      if (loss) batch.set_loss(batch.size() - 1, *loss);
+      graph.add_edge(edge,
+                     {origin, pose_vertex(fix, graph), offset, receiver.bias.at(fix.stamp),
+                      receiver.multipath.at(fix.stamp)},
+                     0.5 * (information + information.transpose()), loss);
     }
   }
 

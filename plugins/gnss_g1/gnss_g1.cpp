@@ -21,9 +21,8 @@ class GnssG1 final : public GnssModeling {
       const Fix& fix = input.fixes[i];
       const std::array<VertexIndex, 2> vertices = {origin, pose_vertex(fix, graph)};
       if (literal_) {
-        attach_loss(graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, vertices,
-                                   pose_information(fix)),
-                    input);
+        graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, vertices, pose_information(fix),
+                       input.loss);
       } else {
         positions.add(i, fix.position, input.antenna, vertices);
       }

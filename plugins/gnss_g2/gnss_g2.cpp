@@ -36,9 +36,8 @@ class GnssG2 final : public GnssModeling {
       const Eigen::Vector2d place = begin_at_pose_ ? Eigen::Vector2d(start[0], start[1]) : fix.position;
       const VertexIndex node = graph.add_vertex<VertexSe2>(graph.free_id(), {place[0], place[1], start[2]});
       if (literal_) {
-        attach_loss(graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, {origin, node},
-                                   pose_information(fix)),
-                    input);
+        graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, {origin, node},
+                       pose_information(fix), input.loss);
         graph.add_edge(EdgeSe2Log{}, {node, pose}, identity);
       } else {
         positions.add(i, fix.position, {0, 0}, {origin, node}, input.antenna);

@@ -25,7 +25,7 @@ class GnssG3 final : public GnssModeling {
           graph.add_vertex<VertexSe2>(graph.free_id(), {fix.position[0], fix.position[1], 0});
       graph.set_fixed(node, true);
       if (literal_) {
-        attach_loss(graph.add_edge(EdgeSe2Log{}, {node, pose}, pose_information(fix)), input);
+        graph.add_edge(EdgeSe2Log{}, {node, pose}, pose_information(fix), input.loss);
       } else {
         positions.add(i, {0, 0}, input.antenna, {node, pose});
       }

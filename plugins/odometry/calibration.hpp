@@ -98,8 +98,7 @@ struct EdgeSpeedScaleWalk : EdgeGyroBiasWalk {
   static constexpr std::string_view kTag = "EDGE_SPEED_SCALE_WALK";
   using Vertices = VertexList<VertexSpeedScale, VertexSpeedScale>;
   static constexpr auto fields() {
-    return std::array{Field<EdgeSpeedScaleWalk>{
-        "change", 1, [](EdgeSpeedScaleWalk& edge) -> double* { return &edge.change; }}};
+    return std::array{field<&EdgeGyroBiasWalk::change, EdgeSpeedScaleWalk>("change")};
   }
 };
 

@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include <waymark/plugins/odometry/noise.hpp>
+#include <waymark/plugins/odometry/detail/noise.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::plugins::odometry {

@@ -7,9 +7,9 @@
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/plugins/odometry/calibration.hpp>
+#include <waymark/plugins/odometry/detail/noise.hpp>
+#include <waymark/plugins/odometry/detail/states.hpp>
 #include <waymark/plugins/odometry/edge_odometry.hpp>
-#include <waymark/plugins/odometry/noise.hpp>
-#include <waymark/plugins/odometry/states.hpp>
 
 namespace waymark::plugins::odometry {
 namespace {

@@ -1,4 +1,4 @@
-#include <waymark/plugins/odometry/states.hpp>
+#include <waymark/plugins/odometry/detail/states.hpp>
 
 namespace waymark::plugins::odometry {
 

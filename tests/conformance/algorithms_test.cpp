@@ -1,5 +1,5 @@
-// Every algorithm with every linear solver on small problems made in code: one minimum, verified by its
-// gradient.
+// Every algorithm with every linear solver on small problems made in code: one minimum, verified by
+// its gradient.
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -17,8 +17,8 @@ using namespace waymark_test;
 
 namespace {
 
-/// Runs all pairs from the same start; each must converge to a point where the gradient vanishes, and all to
-/// the same one.
+/// Runs all pairs from the same start; each must converge to a point where the gradient vanishes,
+/// and all to the same one.
 void check_all_pairs(const Graph& start) {
   const TypeRegistry registry = full_registry();
   OptimizerOptions options;
@@ -100,7 +100,8 @@ TEST_CASE("every algorithm with every solver: noise-free measurements are met ex
       INFO(algorithm.name << " with " << solver.name);
       Graph graph;
       for (int i = 0; i < 20; ++i) {
-        graph.add_vertex<VertexSe2>(i, {1.0 * i + 0.1 * std::sin(3.0 * i), 0.2 * std::cos(2.0 * i), 0.05});
+        graph.add_vertex<VertexSe2>(VertexId(i),
+                                    {1.0 * i + 0.1 * std::sin(3.0 * i), 0.2 * std::cos(2.0 * i), 0.05});
       }
       for (int i = 1; i < 20; ++i)
         graph.add_edge(EdgeSe2{{1, 0, 0.3}}, {i - 1, i}, pose_information(0.1, 0.1));

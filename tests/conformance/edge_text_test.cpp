@@ -32,7 +32,8 @@ std::vector<double> hard_numbers(std::size_t n, std::mt19937_64& random) {
   return result;
 }
 
-/// Positive semi-definite with entries that have no short decimal form; some axes without information.
+/// Positive semi-definite with entries that have no short decimal form; some axes without
+/// information.
 Eigen::MatrixXd hard_information(Eigen::Index n, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
   const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return unit(random); });
@@ -51,11 +52,11 @@ GraphDocument document_of_everything(const TypeRegistry& registry) {
   std::mt19937_64 random(21);
   GraphDocument document;
   Graph& graph = document.graph;
-  VertexId id = -5;
+  std::int64_t id = -5;
   for (int copy = 0; copy < 3; ++copy) {
     for (const auto& [type, origin] : registry.vertices()) {
-      const auto v =
-          graph.add_vertex(type, id, hard_numbers(static_cast<std::size_t>(type.value_size), random));
+      const auto v = graph.add_vertex(type, VertexId{id},
+                                      hard_numbers(static_cast<std::size_t>(type.value_size), random));
       id = id * 3 + 101;
       if (copy == 1) graph.set_fixed(v, true);
       if (copy == 2) graph.set_stamp(v, Stamp{static_cast<std::int64_t>(random() >> 2)});

@@ -1,4 +1,5 @@
-// Every registered edge type: its Jacobians against dual numbers and against differences, finite at extremes.
+// Every registered edge type: its Jacobians against dual numbers and against differences, finite at
+// extremes.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -142,7 +143,7 @@ TEST_CASE("Gaussian prior: it differentiates charts that are not linear, such as
   registry.add_vertex<waymark_test::VertexBodyPose>();
   Graph graph;
   const VertexIndex v =
-      graph.add_vertex(*registry.find_vertex("VERTEX_BODY_POSE"), 0, std::array{1.0, 2.0, 0.5});
+      graph.add_vertex(*registry.find_vertex("VERTEX_BODY_POSE"), VertexId{0}, std::array{1.0, 2.0, 0.5});
   const std::array<double, 6> fields = {0.8, 2.2, -0.4, 0.01, 0.02, 0.03};
   graph.add_edge(*registry.find_edge("EDGE_GAUSSIAN_PRIOR"), std::array{v}, fields,
                  Eigen::Matrix3d::Identity());

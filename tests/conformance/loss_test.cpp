@@ -1,5 +1,5 @@
-// Every registered loss: derivatives by differences, weights in [0, 1], continuity, the formulas of its
-// literature.
+// Every registered loss: derivatives by differences, weights in [0, 1], continuity, the formulas of
+// its literature.
 #include <cmath>
 #include <random>
 
@@ -124,7 +124,8 @@ TEST_CASE("losses: DCS is as its paper has it, continued without a jump") {
       const LossValue at = dcs.evaluate(s, phi);
       CHECK(at.rho == Approx(s <= phi ? s : 4 * phi * s / (phi + s) - phi));
       CHECK(at.weight == Approx(s <= phi ? 1 : std::pow(2 * phi / (phi + s), 2)));
-      // The weight is the square of the scaling of Agarwal et al. (2013): min(1, 2 phi / (phi + s)).
+      // The weight is the square of the scaling of Agarwal et al. (2013): min(1, 2 phi / (phi +
+      // s)).
       CHECK(std::sqrt(at.weight) == Approx(std::min(1.0, 2 * phi / (phi + s))));
     }
   }
@@ -183,7 +184,7 @@ std::vector<LossType> losses_and_a_foreign_one() {
 /// A Gaussian over one pose: its error is linear in the pose, so nothing but the loss bends chi2.
 Graph gaussian_over_a_pose(const Loss& loss, const Eigen::Vector3d& away) {
   Graph graph;
-  const VertexIndex v = graph.add_vertex<VertexSe2>(0, {away[0], away[1], away[2]});
+  const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId{0}, {away[0], away[1], away[2]});
   Eigen::Matrix3d information;
   information << 4, 1, 0.5, 1, 3, -0.4, 0.5, -0.4, 2;
   graph.add_edge(gaussian_prior_type(), std::vector<VertexIndex>{v}, std::vector<double>(6, 0.0),

@@ -1,5 +1,6 @@
-// Edge types that call themselves relative, carried Jacobians, prepare(): what the fast path of linearisation
-// relies on, and what it makes of every registered type, edge by edge against dense algebra.
+// Edge types that call themselves relative, carried Jacobians, prepare(): what the fast path of
+// linearisation relies on, and what it makes of every registered type, edge by edge against dense
+// algebra.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,8 +74,8 @@ struct EdgeBend {
   double measured = 0;
 };
 
-/// A distance: relative, carried, of error dimension 1, differentiated by dual numbers. Counts how often it
-/// was prepared since its fields were set.
+/// A distance: relative, carried, of error dimension 1, differentiated by dual numbers. Counts how
+/// often it was prepared since its fields were set.
 struct EdgeDistance {
   static constexpr std::string_view kTag = "EDGE_DISTANCE";
   static constexpr std::string_view kForm = "distance";
@@ -105,7 +106,8 @@ TypeRegistry registry_with_test_types() {
   return registry;
 }
 
-/// Three vertices for every place in the type's list, and edges of the type among them, in both directions.
+/// Three vertices for every place in the type's list, and edges of the type among them, in both
+/// directions.
 Graph edges_of_type(const TypeRegistry& registry, const EdgeType& type, double place, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -120,7 +122,7 @@ Graph edges_of_type(const TypeRegistry& registry, const EdgeType& type, double p
       std::vector<double> value;
       for (const std::string& name : vertex.value_names)
         value.push_back(name == "heading" ? std::numbers::pi * unit(random) : place + 5 * unit(random));
-      by_tag[tag].push_back(graph.add_vertex(vertex, static_cast<VertexId>(graph.vertex_count()), value));
+      by_tag[tag].push_back(graph.add_vertex(vertex, VertexId(graph.vertex_count()), value));
     }
   }
   for (int e = 0; e < 12; ++e) {
@@ -149,7 +151,8 @@ Graph edges_of_type(const TypeRegistry& registry, const EdgeType& type, double p
   return graph;
 }
 
-/// J_k T_k, T_k the motion of vertex k when the plane moves along x, along y, or turns about the origin.
+/// J_k T_k, T_k the motion of vertex k when the plane moves along x, along y, or turns about the
+/// origin.
 Eigen::MatrixXd moved(const Graph& graph, VertexIndex v, const Eigen::MatrixXd& jacobian) {
   const VertexType& type = graph.vertex_type(v);
   Eigen::MatrixXd columns(type.tangent_size, 3);
@@ -258,8 +261,8 @@ TEST_CASE(
     "edges: prepare is called once when an edge is appended, on every way, and a copy keeps its result") {
   const EdgeType type = make_edge_type<EdgeDistance>();
   Graph graph;
-  graph.add_vertex<VertexSe2>(0, {0, 0, 0});
-  graph.add_vertex<VertexSe2>(1, {3, 4, 0});
+  graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
+  graph.add_vertex<VertexSe2>(VertexId{1}, {3, 4, 0});
   const auto expect = [&](Graph& of, std::size_t edges) {
     REQUIRE(of.batch(0).size() == edges);
     CHECK(chi2_of<EdgeDistance>(of) == 0);  // |(3, 4)| - 5 for each

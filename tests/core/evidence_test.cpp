@@ -1,4 +1,5 @@
-// The marginal likelihood against dense linear algebra: where errors are linear, Laplace's method is exact.
+// The marginal likelihood against dense linear algebra: where errors are linear, Laplace's method
+// is exact.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -36,7 +37,7 @@ Graph make_graph(const Walk& walk, const Eigen::VectorXd& readings) {
   Graph graph;
   VertexIndex last = -1;
   for (int i = 0; i < kSteps; ++i) {
-    const VertexIndex bias = graph.add_vertex<VertexGyroBias>(i, {0});
+    const VertexIndex bias = graph.add_vertex<VertexGyroBias>(VertexId(i), {0});
     if (last < 0) {
       add_prior_about_zero(graph, bias, walk.prior_sigma);
     } else {
@@ -48,7 +49,8 @@ Graph make_graph(const Walk& walk, const Eigen::VectorXd& readings) {
   return graph;
 }
 
-/// The density of the readings themselves: normal, with the covariance of a walk plus that of the readings.
+/// The density of the readings themselves: normal, with the covariance of a walk plus that of the
+/// readings.
 double exact_negative_log(const Walk& walk, const Eigen::VectorXd& readings) {
   Eigen::MatrixXd covariance(kSteps, kSteps);
   for (int i = 0; i < kSteps; ++i) {
@@ -100,9 +102,9 @@ TEST_CASE("evidence: of linear errors it is the density of the readings, without
 
 TEST_CASE("evidence: an axis without information counts for nothing, H that is not definite for everything") {
   Graph graph;
-  const VertexIndex origin = graph.add_vertex<VertexSe2>(0, {0, 0, 0});
+  const VertexIndex origin = graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
   graph.set_fixed(origin, true);
-  const VertexIndex pose = graph.add_vertex<VertexSe2>(1, {0, 0, 0});
+  const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId{1}, {0, 0, 0});
   graph.add_edge(EdgeSe2{{1, 2, 0.1}}, {origin, pose}, Eigen::Vector3d(4, 9, 0).asDiagonal().toDenseMatrix());
   Structure structure;
   structure.build(graph, std::vector<char>(graph.vertex_count(), 0));
@@ -120,7 +122,7 @@ TEST_CASE("evidence: an axis without information counts for nothing, H that is n
 
 TEST_CASE("evidence: a robust edge counts by its weight, at most by what gives its density its mass") {
   Graph graph;
-  const VertexIndex bias = graph.add_vertex<VertexGyroBias>(0, {0});
+  const VertexIndex bias = graph.add_vertex<VertexGyroBias>(VertexId{0}, {0});
   add_prior_about_zero(graph, bias, 1);
   const std::vector<double> readings = {0.5, 1.5, 3, 8};
   for (const double reading : readings)

@@ -1,4 +1,5 @@
-// What anchors a graph: rank 0 is held and said, rank 1 and 2 are refused by name, rank 3 is left alone.
+// What anchors a graph: rank 0 is held and said, rank 1 and 2 are refused by name, rank 3 is left
+// alone.
 #include <algorithm>
 #include <array>
 
@@ -17,12 +18,12 @@ using Catch::Contains;
 namespace {
 
 /// A chain of poses 1 m apart with a bend, ids from first_id, at an offset.
-std::vector<VertexIndex> add_chain(Graph& graph, VertexId first_id, int poses,
-                                   Eigen::Vector2d offset = {0, 0}) {
+std::vector<VertexIndex> add_chain(Graph& graph, int first_id, int poses, Eigen::Vector2d offset = {0, 0}) {
   std::vector<VertexIndex> chain;
   for (int i = 0; i < poses; ++i) {
     const double turn = 0.1 * i;
-    chain.push_back(graph.add_vertex<VertexSe2>(first_id + i, {offset[0] + i, offset[1] + 0.2 * i, turn}));
+    chain.push_back(
+        graph.add_vertex<VertexSe2>(VertexId(first_id + i), {offset[0] + i, offset[1] + 0.2 * i, turn}));
     if (i == 0) continue;
     const auto from = graph.value(chain[static_cast<std::size_t>(i) - 1]);
     const auto to = graph.value(chain.back());
@@ -33,8 +34,8 @@ std::vector<VertexIndex> add_chain(Graph& graph, VertexId first_id, int poses,
   return chain;
 }
 
-VertexIndex add_fixed_origin(Graph& graph, VertexId id) {
-  const VertexIndex origin = graph.add_vertex<VertexSe2>(id, {0, 0, 0});
+VertexIndex add_fixed_origin(Graph& graph, int id) {
+  const VertexIndex origin = graph.add_vertex<VertexSe2>(VertexId{id}, {0, 0, 0});
   graph.set_fixed(origin, true);
   return origin;
 }
@@ -118,7 +119,7 @@ TEST_CASE("gauge rank 2: a parked car with many fixes at one place is refused") 
   const VertexIndex origin = add_fixed_origin(graph, 100);
   std::vector<VertexIndex> chain;
   for (int i = 0; i < 10; ++i) {
-    chain.push_back(graph.add_vertex<VertexSe2>(i, {5, 6, 1}));
+    chain.push_back(graph.add_vertex<VertexSe2>(VertexId(i), {5, 6, 1}));
     if (i > 0) {
       const auto a = static_cast<std::size_t>(i);
       graph.add_edge(EdgeSe2{}, {chain[a - 1], chain[a]}, 1e5 * Eigen::Matrix3d::Identity());
@@ -149,7 +150,7 @@ TEST_CASE("gauge: each component is judged by itself") {
   const auto second = add_chain(graph, 20, 6, {100, 50});
   const auto third = add_chain(graph, 40, 3);
   graph.add_edge(EdgePriorSe2{}, {third[1]}, Eigen::Matrix3d::Identity());
-  graph.add_vertex<VertexSe2>(60, {0, 0, 0});  // without edges: no unknown, nothing to hold
+  graph.add_vertex<VertexSe2>(VertexId{60}, {0, 0, 0});  // without edges: no unknown, nothing to hold
   const Gauge gauge = find_gauge(graph);
   CHECK(held_count(gauge) == 2);
   CHECK(gauge.held[static_cast<std::size_t>(first[0])] == 1);

@@ -1,5 +1,5 @@
-// Graduated non-convexity: false edges are found, good ones stay, and what remains is the optimum without
-// them.
+// Graduated non-convexity: false edges are found, good ones stay, and what remains is the optimum
+// without them.
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -200,7 +200,7 @@ TEST_CASE("graduation: where no edge is beyond its quantile nothing is done but 
 TEST_CASE("graduation: trusted are edges between consecutive free poses, or what the user says") {
   const TypeRegistry registry = full_registry();
   Graph graph;
-  for (int id : {0, 1, 2, 5}) graph.add_vertex<VertexSe2>(id, {double(id), 0, 0});
+  for (int id : {0, 1, 2, 5}) graph.add_vertex<VertexSe2>(VertexId{id}, {double(id), 0, 0});
   const Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
   graph.add_edge(EdgeSe2{}, {0, 1}, information);
   graph.add_edge(EdgeSe2{}, {2, 1}, information);

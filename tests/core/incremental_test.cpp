@@ -1,5 +1,5 @@
-// Fixed lag: a prefix goes and leaves a prior, structure and optimiser follow, and the window says what the
-// whole graph says.
+// Fixed lag: a prefix goes and leaves a prior, structure and optimiser follow, and the window says
+// what the whole graph says.
 #include <array>
 #include <numeric>
 
@@ -96,7 +96,7 @@ Graph linear_walk(int points) {
   std::normal_distribution<double> unit(0, 1);
   Graph graph;
   for (int i = 0; i < points; ++i) {
-    graph.add_vertex<VertexXy>(i, {1.0 * i, 0.3 * i});
+    graph.add_vertex<VertexXy>(VertexId(i), {1.0 * i, 0.3 * i});
     const Eigen::Matrix2d information{{4, 1}, {1, 3 + 0.1 * i}};
     if (i > 0) graph.add_edge(EdgeStep{{1 + 0.1 * unit(random), unit(random)}}, {i - 1, i}, information);
     if (i > 1) graph.add_edge(EdgeSmooth{}, {i - 2, i - 1, i}, 2 * information);
@@ -131,8 +131,8 @@ Drive gnss_drive(std::string_view modeling, int poses) {
   return drive;
 }
 
-/// Marginalises the first vertices of a graph at its minimum; what is left has the same minimum, chi2 and
-/// covariances.
+/// Marginalises the first vertices of a graph at its minimum; what is left has the same minimum,
+/// chi2 and covariances.
 void check_minimum_stays(Graph graph, std::initializer_list<VertexIndex> counts) {
   minimise(graph);
   const Graph whole = graph;
@@ -152,7 +152,7 @@ void check_minimum_stays(Graph graph, std::initializer_list<VertexIndex> counts)
   CHECK(graph.chi2() + constant == Approx(whole.chi2()).epsilon(1e-8));
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
     const VertexIndex before = *whole.find(graph.id(v));
-    INFO("vertex " << graph.id(v));
+    INFO("vertex " << to_string(graph.id(v)));
     CHECK((value_of(graph, graph.id(v)) - value_of(whole, graph.id(v))).norm() < 1e-7);
     const Eigen::MatrixXd& expected = covariances[static_cast<std::size_t>(before)];
     CHECK((covariance_of(graph, graph.id(v)) - expected).norm() <= 1e-8 * expected.norm());
@@ -186,15 +186,16 @@ TEST_CASE("incremental: a sliding window over a linear problem equals the batch 
   Graph window;
   IncrementalOptimizer optimizer = make_incremental(window);
   constexpr std::size_t kWindow = 8;
-  for (VertexId newest = 0; !replay.done(); ++newest) {
+  for (int newest = 0; !replay.done(); ++newest) {
     replay.append_to(window);
     batch_replay.append_to(batch);
     if (newest < 2) continue;  // a single point tells nothing of the gauge's turn
     INFO("newest point " << newest);
     REQUIRE(optimizer.update().converged());
     minimise(batch);
-    CHECK((value_of(window, newest) - value_of(batch, newest)).norm() < 1e-9);
-    CHECK(relative_difference(covariance_of(window, newest), covariance_of(batch, newest)) < 1e-9);
+    CHECK((value_of(window, VertexId{newest}) - value_of(batch, VertexId{newest})).norm() < 1e-9);
+    CHECK(relative_difference(covariance_of(window, VertexId{newest}),
+                              covariance_of(batch, VertexId{newest})) < 1e-9);
     CHECK(window.chi2() + optimizer.dropped_chi2() == Approx(batch.chi2()).epsilon(1e-9));
     if (window.vertex_count() > kWindow) {
       // The prior joins two points, and replaces the one before.
@@ -216,7 +217,8 @@ TEST_CASE("marginalisation: exact for linear problems wherever they stand, in on
   minimise(in_parts);
   CHECK(at_once.chi2() + constant == Approx(whole.chi2()).epsilon(1e-10));
   CHECK(in_parts.chi2() + constant_in_parts == Approx(whole.chi2()).epsilon(1e-10));
-  for (VertexId id = 20; id < 30; ++id) {
+  for (int number = 20; number < 30; ++number) {
+    const VertexId id{number};
     CHECK((value_of(at_once, id) - value_of(whole, id)).norm() < 1e-9);
     CHECK((value_of(in_parts, id) - value_of(whole, id)).norm() < 1e-9);
   }
@@ -240,9 +242,9 @@ TEST_CASE("marginalisation: robust weights and second-order terms at the optimum
 
 TEST_CASE("marginalisation: vertices of several sizes, and a dense state that stays though it came first") {
   Graph graph;
-  const VertexIndex scale = graph.add_vertex<VertexScale>(1000, {1.02});
+  const VertexIndex scale = graph.add_vertex<VertexScale>(VertexId{1000}, {1.02});
   for (int i = 0; i < 30; ++i) {
-    const VertexIndex pose = graph.add_vertex<VertexSe2>(i, {1.01 * i, 0.05 * i, 0.04 * i});
+    const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId(i), {1.01 * i, 0.05 * i, 0.04 * i});
     if (i > 0)
       graph.add_edge(EdgeScaledOdometry{1.0, 0.05}, {pose - 1, scale, pose}, pose_information(0.1, 0.02));
     if (i % 7 == 0)
@@ -272,7 +274,7 @@ TEST_CASE("marginalisation: what nothing anchors stays so, for as long as the wi
 TEST_CASE("marginalisation: parts that are not joined get priors of their own") {
   Graph graph;
   for (int part = 0; part < 2; ++part) {
-    for (int i = 0; i < 3; ++i) graph.add_vertex<VertexXy>(10 * part + i, {1.0 * i, 5.0 * part});
+    for (int i = 0; i < 3; ++i) graph.add_vertex<VertexXy>(VertexId(10 * part + i), {1.0 * i, 5.0 * part});
   }
   for (const int first : {0, 3}) {
     graph.add_edge(EdgePosition{{0, 0}}, {first}, Eigen::Matrix2d::Identity());
@@ -287,7 +289,7 @@ TEST_CASE("marginalisation: parts that are not joined get priors of their own") 
   SECTION("the second is cut") {
     CHECK(marginalize_prefix(graph, 5).priors == 1);
     CHECK(graph.vertex_count() == 1);
-    CHECK(graph.id(0) == 12);
+    CHECK(graph.id(0) == VertexId{12});
     // A position of variance 1 and two steps of variance 1.
     const EdgeBatchBase& priors = graph.batch(gaussian_prior_type());
     CHECK(relative_difference(priors.information(0), Eigen::Matrix2d(Eigen::Matrix2d::Identity() / 3)) <
@@ -319,12 +321,12 @@ TEST_CASE("marginalisation: a fixed origin stays while edges of the window need 
 }
 
 TEST_CASE("incremental: a window running along a drive stays close to the batch solution") {
-  // The drive's first 2 s come at once: a single fix leaves the heading undetermined. 16 s of drive in the
-  // window, two steps an update. Bound: a tenth of the batch solution's own standard deviation, for the last
-  // pose, which both know from the same measurements.
+  // The drive's first 2 s come at once: a single fix leaves the heading undetermined. 16 s of drive
+  // in the window, two steps an update. Bound: a tenth of the batch solution's own standard
+  // deviation, for the last pose, which both know from the same measurements.
   const std::string modeling = GENERATE("g1", "g2");
   constexpr int kPoses = 1500;
-  constexpr VertexId kWindow = 400;
+  constexpr std::int64_t kWindow = 400;
   const Drive drive = gnss_drive(modeling, kPoses);
   Graph batch = drive.graph;
   minimise(batch);
@@ -333,24 +335,25 @@ TEST_CASE("incremental: a window running along a drive stays close to the batch 
   OptimizerOptions options;
   options.max_iterations = 2;
   IncrementalOptimizer optimizer = make_incremental(window, options);
-  VertexId newest = 0;
+  std::int64_t newest = 0;
   while (!replay.done()) {
     const VertexIndex added = replay.append_to(window);
-    if (window.id(added) < kPoses && !window.fixed(added)) newest = window.id(added);
+    if (window.id(added) < VertexId{kPoses} && !window.fixed(added)) newest = to_number(window.id(added));
     if (newest < 50 || newest % 5 != 0) continue;
     const Summary summary = optimizer.update();
     REQUIRE((summary.converged() || summary.termination == Termination::max_iterations));
     if (newest >= kWindow) {
-      if (const auto oldest = window.find(newest - kWindow)) (void)optimizer.drop_prefix(*oldest);
+      if (const auto oldest = window.find(VertexId{newest - kWindow})) (void)optimizer.drop_prefix(*oldest);
     }
   }
   CHECK(window.vertex_count() < kWindow + 30);
   CHECK(optimizer.structure().ordering() != "amd");
   REQUIRE(optimizer.update().unknowns > 0);
-  const Eigen::Vector3d difference = value_of(window, kPoses - 1) - value_of(batch, kPoses - 1);
-  const Eigen::Matrix3d covariance = covariance_of(batch, kPoses - 1);
+  constexpr VertexId kNewest{kPoses - 1};
+  const Eigen::Vector3d difference = value_of(window, kNewest) - value_of(batch, kNewest);
+  const Eigen::Matrix3d covariance = covariance_of(batch, kNewest);
   CHECK(std::sqrt(difference.dot(covariance.ldlt().solve(difference))) < 0.1);
-  CHECK(relative_difference(covariance_of(window, kPoses - 1), covariance) < 0.05);
+  CHECK(relative_difference(covariance_of(window, kNewest), covariance) < 0.05);
 }
 
 TEST_CASE("incremental: appended, removed, appended: the structure equals one built anew") {
@@ -363,17 +366,17 @@ TEST_CASE("incremental: appended, removed, appended: the structure equals one bu
   const bool calibrated = seed % 3 == 0;
   const bool with_origin = seed % 2 == 0;
   const bool leaves = seed % 4 < 2;
-  VertexId next_id = 0;
+  int next_id = 0;
   if (with_origin) {
-    graph.add_vertex<VertexSe2>(next_id++, {0, 0, 0});
+    graph.add_vertex<VertexSe2>(VertexId{next_id++}, {0, 0, 0});
     graph.set_fixed(0, true);
   }
-  const VertexId scale = next_id;
-  if (calibrated) graph.add_vertex<VertexScale>(next_id++, {1.0});
+  const VertexId scale{next_id};
+  if (calibrated) graph.add_vertex<VertexScale>(VertexId{next_id++}, {1.0});
   std::vector<VertexId> poses;
   const auto append_pose = [&] {
     const double t = static_cast<double>(next_id);
-    const VertexIndex pose = graph.add_vertex<VertexSe2>(next_id, {t, std::sin(t), 0.1 * t});
+    const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId{next_id}, {t, std::sin(t), 0.1 * t});
     const auto last = poses.empty() ? std::nullopt : graph.find(poses.back());
     if (!last || below(15) == 0) {  // a component of its own
       graph.add_edge(EdgePriorSe2{{t, 0, 0}}, {pose}, information);
@@ -382,18 +385,18 @@ TEST_CASE("incremental: appended, removed, appended: the structure equals one bu
     } else {
       graph.add_edge(EdgeSe2{{1, 0, 0.1}}, {*last, pose}, information);
     }
-    poses.push_back(next_id++);
+    poses.push_back(VertexId{next_id++});
     if (with_origin && below(4) == 0) graph.add_edge(EdgeSe2Log{{t, 0, 0}}, {0, pose}, information);
     if (leaves && below(3) == 0) {
-      const VertexIndex node = graph.add_vertex<VertexSe2>(next_id++, {t, 0, 0});
+      const VertexIndex node = graph.add_vertex<VertexSe2>(VertexId{next_id++}, {t, 0, 0});
       graph.add_edge(EdgeSe2{}, {node, pose}, information);
       graph.add_edge(EdgePriorSe2{{t, 0, 0}}, {node}, information);
     }
     if (below(5) == 0) {
-      const VertexIndex landmark = graph.add_vertex<VertexXy>(next_id++, {t, 2});
+      const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{next_id++}, {t, 2});
       graph.add_edge(EdgeSe2Xy{{0, 2}}, {pose, landmark}, Eigen::Matrix2d::Identity());
     }
-    if (below(6) == 0) graph.add_vertex<VertexSe2>(next_id++, {0, 0, 0});  // without edges
+    if (below(6) == 0) graph.add_vertex<VertexSe2>(VertexId{next_id++}, {0, 0, 0});  // without edges
     const auto other = static_cast<VertexIndex>(below(graph.vertex_count()));
     if (other != pose && graph.vertex_type(other).tag == VertexXy::kTag)
       graph.add_edge(EdgeSe2Xy{{1, 2}}, {pose, other}, Eigen::Matrix2d::Identity());
@@ -463,7 +466,8 @@ TEST_CASE(
 
 TEST_CASE("incremental: ids, stamps, fixed marks and losses of what stays are as they were") {
   Graph graph;
-  const std::array<VertexId, 6> ids = {7, -3, 1LL << 40, 2, 1, 0};
+  const std::array<VertexId, 6> ids = {VertexId{7}, VertexId{-3}, VertexId{1LL << 40},
+                                       VertexId{2}, VertexId{1},  VertexId{0}};
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const auto v = graph.add_vertex<VertexXy>(ids[i], {1.0 * static_cast<double>(i), 2});
     if (i % 2 == 0) graph.set_stamp(v, Stamp{static_cast<std::int64_t>(100 + i)});
@@ -492,8 +496,8 @@ TEST_CASE("incremental: ids, stamps, fixed marks and losses of what stays are as
     if (old % 2 == 0) CHECK(graph.stamp(v)->nanoseconds == static_cast<std::int64_t>(100 + old));
     CHECK(graph.fixed(v) == (old == 5));
   }
-  CHECK(!graph.find(7).has_value());
-  CHECK(!graph.find(-3).has_value());
+  CHECK(!graph.find(VertexId{7}).has_value());
+  CHECK(!graph.find(VertexId{-3}).has_value());
   for (std::size_t e = 0; e < 3; ++e) {
     std::vector<double> fields;
     graph.batch(0).fields(e, fields);
@@ -507,13 +511,13 @@ TEST_CASE("incremental: ids, stamps, fixed marks and losses of what stays are as
     }
   }
   // An id that went may come again.
-  CHECK(graph.add_vertex<VertexXy>(7, {0, 0}) == 4);
-  CHECK(graph.find(7) == 4);
+  CHECK(graph.add_vertex<VertexXy>(VertexId{7}, {0, 0}) == 4);
+  CHECK(graph.find(VertexId{7}) == 4);
 }
 
 TEST_CASE("incremental: errors say what is wrong and leave the graph as it was") {
   Graph graph;
-  for (int i = 0; i < 4; ++i) graph.add_vertex<VertexSe2>(10 + i, {1.0 * i, 0, 0});
+  for (int i = 0; i < 4; ++i) graph.add_vertex<VertexSe2>(VertexId(10 + i), {1.0 * i, 0, 0});
   graph.add_edge(EdgeSe2{{1, 0, 0}}, {0, 1}, Eigen::Matrix3d::Identity());
   graph.add_edge(EdgeSe2{{1, 0, 0}}, {2, 3}, Eigen::Matrix3d::Identity());
   SECTION("a count beyond the graph") {
@@ -543,7 +547,7 @@ TEST_CASE("incremental: errors say what is wrong and leave the graph as it was")
   SECTION("a structure that is behind") {
     Structure structure;
     structure.build(graph, std::vector<char>(4, 0));
-    const VertexIndex late = graph.add_vertex<VertexSe2>(20, {4, 0, 0});
+    const VertexIndex late = graph.add_vertex<VertexSe2>(VertexId{20}, {4, 0, 0});
     graph.add_edge(EdgeSe2{{1, 0, 0}}, {3, late}, Eigen::Matrix3d::Identity());
     Graph copy = graph;
     const Marginalization result = marginalize_prefix(copy, 1);

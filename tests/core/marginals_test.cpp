@@ -1,4 +1,5 @@
-// Marginal covariances against the inverse of the dense H; Gaussian priors against what they stand for.
+// Marginal covariances against the inverse of the dense H; Gaussian priors against what they stand
+// for.
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -38,7 +39,8 @@ std::vector<VertexIndex> all_vertices(const Graph& graph) {
   return all;
 }
 
-/// The whole inverse of the dense H in the order of the vertices, zero where a vertex is no unknown.
+/// The whole inverse of the dense H in the order of the vertices, zero where a vertex is no
+/// unknown.
 Eigen::MatrixXd dense_covariance(const Graph& graph) {
   const DenseSystem system = assemble_dense(graph, find_gauge(graph).held);
   const Eigen::MatrixXd inverse = system.hessian.inverse();
@@ -71,7 +73,7 @@ void check_against_inverse(const Graph& graph, double tolerance = 1e-9) {
   CHECK(joint == joint.transpose());
   Eigen::Index row = 0;
   for (std::size_t v = 0; v < all.size(); ++v) {
-    INFO("vertex " << graph.id(all[v]));
+    INFO("vertex " << to_string(graph.id(all[v])));
     const int n = graph.vertex_type(all[v]).tangent_size;
     const Eigen::MatrixXd own = expected.block(row, row, n, n);
     CHECK((blocks[v] - own).norm() <= tolerance * own.norm());
@@ -82,11 +84,12 @@ void check_against_inverse(const Graph& graph, double tolerance = 1e-9) {
   }
 }
 
-/// Poses of 1 m on the x axis, all headings 0, with exact odometry. Nothing couples x to y and heading.
+/// Poses of 1 m on the x axis, all headings 0, with exact odometry. Nothing couples x to y and
+/// heading.
 Graph straight_line(int poses, double sigma_m, double sigma_rad) {
   Graph graph;
   for (int i = 0; i < poses; ++i) {
-    graph.add_vertex<VertexSe2>(i, {1.0 * i, 0, 0});
+    graph.add_vertex<VertexSe2>(VertexId(i), {1.0 * i, 0, 0});
     if (i > 0) graph.add_edge(EdgeSe2{{1, 0, 0}}, {i - 1, i}, pose_information(sigma_m, sigma_rad));
   }
   return graph;
@@ -110,7 +113,7 @@ TEST_CASE("marginals: fixed vertices and vertices without edges have covariance 
   Graph graph = noisy_circle(20);
   graph.set_fixed(3, true);
   graph.set_fixed(11, true);
-  graph.add_vertex<VertexSe2>(99, {1, 2, 3});
+  graph.add_vertex<VertexSe2>(VertexId{99}, {1, 2, 3});
   minimise(graph);
   check_against_inverse(graph);
 }
@@ -124,9 +127,9 @@ TEST_CASE("marginals: a drive with fixes") {
 
 TEST_CASE("marginals: a dense calibration state and mixed sizes") {
   Graph graph;
-  const VertexIndex scale = graph.add_vertex<VertexScale>(1000, {1});
+  const VertexIndex scale = graph.add_vertex<VertexScale>(VertexId{1000}, {1});
   for (int i = 0; i < 30; ++i) {
-    const VertexIndex pose = graph.add_vertex<VertexSe2>(i, {1.0 * i, 0, 0});
+    const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId(i), {1.0 * i, 0, 0});
     if (i > 0)
       graph.add_edge(EdgeScaledOdometry{1, 0.1}, {pose - 1, scale, pose}, pose_information(0.1, 0.02));
     if (i % 7 == 0) graph.add_edge(EdgePriorSe2{{0.9 * i, 0.1 * i, 0}}, {pose}, Eigen::Matrix3d::Identity());
@@ -157,7 +160,7 @@ TEST_CASE("marginals: every GNSS modeling") {
 TEST_CASE("marginals: landmarks, loops and a prior over vertices that are far apart") {
   Graph graph = noisy_circle(60);
   for (int k = 0; k < 6; ++k) {
-    const VertexIndex landmark = graph.add_vertex<VertexXy>(1000 + k, {1.0 * k, 2});
+    const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId(1000 + k), {1.0 * k, 2});
     for (int i = 7 * k; i < 7 * k + 15; ++i) {
       const auto pose = graph.value(i);
       const Pose2<double> body(pose[0], pose[1], pose[2]);
@@ -181,8 +184,8 @@ TEST_CASE("marginals: landmarks, loops and a prior over vertices that are far ap
 }
 
 TEST_CASE("marginals: a random walk has the covariance of a random walk") {
-  // Along the line cov(x_i, x_j) = s0^2 + min(i, j) s^2, for headings cov(a_i, a_j) = q0^2 + min(i, j) q^2.
-  // Across it y_j = y_0 + sum (a_i + w_i) over i < j.
+  // Along the line cov(x_i, x_j) = s0^2 + min(i, j) s^2, for headings cov(a_i, a_j) = q0^2 + min(i,
+  // j) q^2. Across it y_j = y_0 + sum (a_i + w_i) over i < j.
   const int n = 90;
   const double s = 0.05;
   const double q = 0.01;
@@ -230,7 +233,7 @@ TEST_CASE("marginals: what no edge couples has covariance zero exactly") {
 TEST_CASE("marginals: components apart and nodes beyond a fixed one have covariance zero with each other") {
   Graph graph = noisy_circle(30);
   for (int i = 0; i < 80; ++i) {  // a second component, not anchored: its first vertex is held
-    graph.add_vertex<VertexSe2>(100 + i, {0.5 * i, 3, 0.1});
+    graph.add_vertex<VertexSe2>(VertexId(100 + i), {0.5 * i, 3, 0.1});
     if (i > 0) graph.add_edge(EdgeSe2{{0.5, 0, 0.01}}, {29 + i, 30 + i}, pose_information(0.05, 0.01));
   }
   minimise(graph);
@@ -264,7 +267,7 @@ TEST_CASE("marginals: chosen vertices have the bits they have among all, in any 
 
 TEST_CASE("marginals: a graph without unknowns") {
   Graph graph;
-  graph.add_vertex<VertexSe2>(0, {1, 2, 3});
+  graph.add_vertex<VertexSe2>(VertexId{0}, {1, 2, 3});
   check_against_inverse(graph);
 }
 
@@ -277,10 +280,10 @@ TEST_CASE("marginals: robust weights count") {
 }
 
 TEST_CASE("marginals: the curvature of a robust loss counts") {
-  // At any values the covariance is that of the Laplace approximation: H = half the second derivative of
-  // chi2.
+  // At any values the covariance is that of the Laplace approximation: H = half the second
+  // derivative of chi2.
   Graph graph;
-  const VertexIndex v = graph.add_vertex<VertexSe2>(0, {0, 0, 0});
+  const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
   graph.add_edge(EdgePriorSe2{{0, 0, 0}}, {v}, pose_information(0.5, 0.1));
   const LossType* cauchy = registry().find_loss("cauchy");
   graph.batch(0).set_loss(Loss{cauchy->name, cauchy->evaluate, 2});
@@ -301,7 +304,7 @@ TEST_CASE("marginals: the curvature of a robust loss counts") {
 TEST_CASE("marginals: one prior gives its own covariance") {
   // With measured heading a, e_t = R(a)^T (p - z): the covariance in frame axes is R S R^T.
   Graph graph;
-  const VertexIndex v = graph.add_vertex<VertexSe2>(0, {1, 2, 0.6});
+  const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId{0}, {1, 2, 0.6});
   graph.add_edge(EdgePriorSe2{{1, 2, 0.6}}, {v}, Eigen::Vector3d(1 / 0.04, 1 / 0.25, 100).asDiagonal());
   Eigen::Matrix3d rotation;
   rotation << std::cos(0.6), -std::sin(0.6), 0, std::sin(0.6), std::cos(0.6), 0, 0, 0, 1;
@@ -312,7 +315,7 @@ TEST_CASE("marginals: one prior gives its own covariance") {
 
 TEST_CASE("marginals: what is not determined is an error") {
   Graph graph;
-  const VertexIndex v = graph.add_vertex<VertexScale>(0, {1});
+  const VertexIndex v = graph.add_vertex<VertexScale>(VertexId{0}, {1});
   graph.add_edge(EdgeSigmoid{}, {v}, Eigen::Matrix<double, 1, 1>::Zero());
   CHECK_THROWS_AS(marginal_covariances(graph, std::array{v}), InputError);
 }
@@ -339,22 +342,22 @@ TEST_CASE("Gaussian prior: equals the pose prior with its information turned int
 }
 
 TEST_CASE("Gaussian prior: left by marginalisation, it gives the rest of the graph the same step") {
-  // Eliminate pose 0 of a chain 0-1-2-3 with a prior on 0: S = H_bb - H_ba H_aa^-1 H_ab on pose 1, and offset
-  // d = -S^-1 (g_b - H_ba H_aa^-1 g_a).
+  // Eliminate pose 0 of a chain 0-1-2-3 with a prior on 0: S = H_bb - H_ba H_aa^-1 H_ab on pose 1,
+  // and offset d = -S^-1 (g_b - H_ba H_aa^-1 g_a).
   Graph whole;
-  for (int i = 0; i < 4; ++i) whole.add_vertex<VertexSe2>(i, {1.1 * i, 0.1 * i * i, 0.2 * i});
+  for (int i = 0; i < 4; ++i) whole.add_vertex<VertexSe2>(VertexId(i), {1.1 * i, 0.1 * i * i, 0.2 * i});
   whole.add_edge(EdgePriorSe2{{0.3, 0.1, 0.05}}, {0}, pose_information(0.3, 0.1));
   Graph rest;
   for (int i = 1; i < 4; ++i) {
     const auto value = whole.value(i);
-    rest.add_vertex<VertexSe2>(i, {value[0], value[1], value[2]});
+    rest.add_vertex<VertexSe2>(VertexId(i), {value[0], value[1], value[2]});
     whole.add_edge(EdgeSe2Log{{1, 0.1, 0.15}}, {i - 1, i}, pose_information(0.05, 0.02));
     if (i > 1) rest.add_edge(EdgeSe2Log{{1, 0.1, 0.15}}, {i - 2, i - 1}, pose_information(0.05, 0.02));
   }
   Graph head;  // what is marginalised: the prior and the edge 0-1
   for (int i = 0; i < 2; ++i) {
     const auto value = whole.value(i);
-    head.add_vertex<VertexSe2>(i, {value[0], value[1], value[2]});
+    head.add_vertex<VertexSe2>(VertexId(i), {value[0], value[1], value[2]});
   }
   head.add_edge(EdgePriorSe2{{0.3, 0.1, 0.05}}, {0}, pose_information(0.3, 0.1));
   head.add_edge(EdgeSe2Log{{1, 0.1, 0.15}}, {0, 1}, pose_information(0.05, 0.02));

@@ -1,5 +1,5 @@
-// The default configuration: where it begins, when it looks further, and that it survives starts that defeat
-// every algorithm.
+// The default configuration: where it begins, when it looks further, and that it survives starts
+// that defeat every algorithm.
 #include <catch2/catch.hpp>
 
 #include <waymark/core/optimize/multi_start.hpp>
@@ -178,7 +178,7 @@ TEST_CASE("default start: poses on one heap are no obstacle, an undetermined gra
   CHECK(result.summary.notes.front().find("start file could not be used: ") == 0);
 
   Graph one_fix = make_drive(registry, 100).graph;
-  const VertexIndex origin = one_fix.add_vertex<VertexSe2>(1000, {0, 0, 0});
+  const VertexIndex origin = one_fix.add_vertex<VertexSe2>(VertexId{1000}, {0, 0, 0});
   one_fix.set_fixed(origin, true);
   one_fix.add_edge(EdgeGnssPosition{{5, 6}, {0, 0}}, {origin, 4}, Eigen::Matrix2d::Identity());
   CHECK_THROWS_WITH(optimize_default(one_fix, registry), Catch::Contains("2 of 3 rigid motions"));

@@ -62,7 +62,7 @@ class FailingSolver final : public LinearSolver {
 /// One scalar unknown at x, e = x / sqrt(1 + x^2).
 Graph sigmoid_at(double x) {
   Graph graph;
-  const VertexIndex v = graph.add_vertex<VertexScale>(0, {x});
+  const VertexIndex v = graph.add_vertex<VertexScale>(VertexId{0}, {x});
   graph.add_edge(EdgeSigmoid{}, {v}, Eigen::Matrix<double, 1, 1>::Identity());
   return graph;
 }
@@ -93,10 +93,10 @@ TEST_CASE("optimizer: no step of a failed factorisation is applied") {
 
 TEST_CASE("optimizer: a singular problem is named with its vertex") {
   Graph graph;
-  const VertexIndex v = graph.add_vertex<VertexScale>(77, {0.5});
+  const VertexIndex v = graph.add_vertex<VertexScale>(VertexId{77}, {0.5});
   graph.add_edge(EdgeSigmoid{}, {v}, Eigen::Matrix<double, 1, 1>::Zero());
   // g = 0 is a minimum already: give it a gradient by a second vertex.
-  const VertexIndex w = graph.add_vertex<VertexScale>(78, {0.5});
+  const VertexIndex w = graph.add_vertex<VertexScale>(VertexId{78}, {0.5});
   graph.add_edge(EdgeSigmoid{}, {w}, Eigen::Matrix<double, 1, 1>::Identity());
   const Summary summary = run(graph, "gauss_newton");
   CHECK(summary.termination == Termination::singular);
@@ -118,7 +118,8 @@ TEST_CASE("optimizer: full steps that climb do not spoil the result") {
 }
 
 TEST_CASE("optimizer: a stationary point above the best values is no convergence") {
-  // The same steps go on to infinity, where the sigmoid is flat; returned is the start, which is no minimum.
+  // The same steps go on to infinity, where the sigmoid is flat; returned is the start, which is no
+  // minimum.
   Graph graph = sigmoid_at(2);
   const double start = graph.chi2();
   const Summary summary = run(graph, "gauss_newton");
@@ -258,7 +259,7 @@ TEST_CASE("optimizer: a step into values that are not finite is never kept") {
   for (const std::string& name : algorithm_names()) {
     INFO(name);
     Graph graph;
-    const VertexIndex v = graph.add_vertex<VertexScale>(0, {4});
+    const VertexIndex v = graph.add_vertex<VertexScale>(VertexId{0}, {4});
     graph.add_edge(EdgeRoot{0.2}, {v}, Eigen::Matrix<double, 1, 1>::Identity());
     const Summary summary = run(graph, name);
     CHECK(std::isfinite(graph.value(v)[0]));
@@ -284,7 +285,7 @@ TEST_CASE("optimizer: nothing to do is an outcome of its own") {
   }
   SECTION("vertices without edges") {
     Graph graph;
-    graph.add_vertex<VertexSe2>(0, {1, 2, 3});
+    graph.add_vertex<VertexSe2>(VertexId{0}, {1, 2, 3});
     CHECK(run(graph, "gauss_newton").termination == Termination::nothing_to_do);
   }
   SECTION("empty graph") {

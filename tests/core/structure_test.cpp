@@ -1,5 +1,5 @@
-// The block structure: pattern and scatter against dense assembly, growth against building anew, dense
-// columns last, the order of elimination.
+// The block structure: pattern and scatter against dense assembly, growth against building anew,
+// dense columns last, the order of elimination.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -44,13 +44,14 @@ std::vector<char> nobody(const Graph& graph) {
   return std::vector<char>(graph.vertex_count(), 0);
 }
 
-/// A chain whose odometry is scaled by one dense state; the state comes first, as calibration states do.
+/// A chain whose odometry is scaled by one dense state; the state comes first, as calibration
+/// states do.
 Graph calibrated_chain(int poses) {
   Graph graph;
-  const VertexIndex scale = graph.add_vertex<VertexScale>(1000, {1.02});
+  const VertexIndex scale = graph.add_vertex<VertexScale>(VertexId{1000}, {1.02});
   VertexIndex last = -1;
   for (int i = 0; i < poses; ++i) {
-    const VertexIndex pose = graph.add_vertex<VertexSe2>(i, {i * 1.01, 0.05 * i, 0.04 * i});
+    const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId(i), {i * 1.01, 0.05 * i, 0.04 * i});
     if (i > 0)
       graph.add_edge(EdgeScaledOdometry{1.0, 0.05}, {last, scale, pose}, pose_information(0.1, 0.02));
     last = pose;
@@ -74,15 +75,15 @@ TEST_CASE("structure: with fixed vertices, vertices without edges, two component
   Graph graph = noisy_circle(20);
   graph.set_fixed(7, true);
   graph.set_fixed(8, true);  // an edge between two fixed vertices
-  graph.add_vertex<VertexSe2>(500, {1, 2, 3});
-  const VertexIndex landmark = graph.add_vertex<VertexXy>(501, {4, 4});
-  const VertexIndex held_landmark = graph.add_vertex<VertexXy>(502, {5, 4});
+  graph.add_vertex<VertexSe2>(VertexId{500}, {1, 2, 3});
+  const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{501}, {4, 4});
+  const VertexIndex held_landmark = graph.add_vertex<VertexXy>(VertexId{502}, {5, 4});
   graph.set_fixed(held_landmark, true);
   graph.add_edge(EdgeSe2Xy{{1, 2}}, {3, landmark}, Eigen::Matrix2d::Identity());
   graph.add_edge(EdgeSe2Xy{{1, 1}}, {12, landmark}, Eigen::Matrix2d::Identity());
   graph.add_edge(EdgeSe2Xy{{1, 1}}, {12, held_landmark}, Eigen::Matrix2d::Identity());
-  const VertexIndex a = graph.add_vertex<VertexSe2>(600, {0, 0, 0});
-  const VertexIndex b = graph.add_vertex<VertexSe2>(601, {1, 0, 0});
+  const VertexIndex a = graph.add_vertex<VertexSe2>(VertexId{600}, {0, 0, 0});
+  const VertexIndex b = graph.add_vertex<VertexSe2>(VertexId{601}, {1, 0, 0});
   graph.add_edge(EdgeSe2Log{{1.1, 0.1, 0.1}}, {b, a}, Eigen::Matrix3d::Identity());
   std::vector<char> held = nobody(graph);
   held[static_cast<std::size_t>(a)] = 1;
@@ -94,13 +95,14 @@ TEST_CASE("structure: with fixed vertices, vertices without edges, two component
 }
 
 TEST_CASE("structure: held vertices smaller than their neighbours write nowhere else") {
-  // What concerns a held vertex is thrown away, in blocks as large as those of its largest neighbour: into a
-  // place that must hold them, or the sums of dense columns just behind it would be spoilt.
+  // What concerns a held vertex is thrown away, in blocks as large as those of its largest
+  // neighbour: into a place that must hold them, or the sums of dense columns just behind it would
+  // be spoilt.
   Graph graph = calibrated_chain(20);
   for (int i = 0; i < 20; i += 3) {
-    const VertexIndex point = graph.add_vertex<VertexXy>(2000 + i, {0.5 * i, 1});
+    const VertexIndex point = graph.add_vertex<VertexXy>(VertexId(2000 + i), {0.5 * i, 1});
     graph.set_fixed(point, true);
-    graph.add_edge(EdgeSe2Xy{{0.3, 0.7}}, {*graph.find(i), point}, Eigen::Matrix2d::Identity());
+    graph.add_edge(EdgeSe2Xy{{0.3, 0.7}}, {*graph.find(VertexId(i)), point}, Eigen::Matrix2d::Identity());
   }
   Structure structure;
   structure.build(graph, nobody(graph));
@@ -110,7 +112,7 @@ TEST_CASE("structure: held vertices smaller than their neighbours write nowhere 
   // The calibration state itself held: a block of 1 x 1 beside poses.
   Graph calibrated = calibrated_chain(20);
   calibrated.set_fixed(0, true);
-  const VertexIndex second = calibrated.add_vertex<VertexScale>(3000, {1});
+  const VertexIndex second = calibrated.add_vertex<VertexScale>(VertexId{3000}, {1});
   calibrated.add_edge(EdgeScaledOdometry{1.0, 0.05}, {1, second, 2}, Eigen::Matrix3d::Identity());
   structure.build(calibrated, nobody(calibrated));
   REQUIRE(structure.dense_columns() == 1);
@@ -154,9 +156,9 @@ TEST_CASE(
 
 TEST_CASE("structure: a pose that meets very many others counts as dense without being told") {
   Graph graph;
-  const VertexIndex hub = graph.add_vertex<VertexSe2>(0, {0, 0, 0});
+  const VertexIndex hub = graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
   for (int i = 1; i < 400; ++i) {
-    const VertexIndex pose = graph.add_vertex<VertexSe2>(i, {std::cos(i), std::sin(i), 0});
+    const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId(i), {std::cos(i), std::sin(i), 0});
     graph.add_edge(EdgeSe2{}, {hub, pose}, Eigen::Matrix3d::Identity());
   }
   Structure structure;
@@ -172,7 +174,7 @@ TEST_CASE("structure: extend after appending poses equals building anew") {
   structure.build(graph, nobody(graph));
   const auto version = structure.pattern().version;
   for (int i = 30; i < 45; ++i) {
-    const VertexIndex v = graph.add_vertex<VertexSe2>(i, {1.0 * i, 2, 0.1});
+    const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId(i), {1.0 * i, 2, 0.1});
     graph.add_edge(EdgeSe2{{1, 0, 0}}, {v - 1, v}, pose_information(0.1, 0.01));
     if (i % 4 == 0)
       graph.add_edge(EdgeSe2Log{{1, 2, 0}}, {v, 3}, pose_information(0.1, 0.01));  // a new batch
@@ -190,7 +192,7 @@ TEST_CASE("structure: extend keeps the old order and the old columns") {
   const BlockPattern before = structure.pattern();
   std::vector<int> columns;
   for (VertexIndex v = 0; v < 30; ++v) columns.push_back(structure.column_of(v));
-  const VertexIndex v = graph.add_vertex<VertexSe2>(30, {1, 2, 3});
+  const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId{30}, {1, 2, 3});
   graph.add_edge(EdgeSe2{}, {4, v}, Eigen::Matrix3d::Identity());
   structure.extend(graph, nobody(graph));
   for (VertexIndex old = 0; old < 30; ++old)
@@ -203,7 +205,7 @@ TEST_CASE("structure: extend keeps the old order and the old columns") {
 TEST_CASE(
     "structure: extend with a loop closure between old poses, and with a pose that had no edge before") {
   Graph graph = noisy_circle(30);
-  const VertexIndex loose = graph.add_vertex<VertexSe2>(30, {1, 2, 3});
+  const VertexIndex loose = graph.add_vertex<VertexSe2>(VertexId{30}, {1, 2, 3});
   Structure structure;
   structure.build(graph, nobody(graph));
   SECTION("closure") {
@@ -227,7 +229,7 @@ TEST_CASE("structure: extend past a fixed or held new vertex") {
   Graph graph = noisy_circle(30);
   Structure structure;
   structure.build(graph, nobody(graph));
-  const VertexIndex v = graph.add_vertex<VertexSe2>(30, {1, 2, 3});
+  const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId{30}, {1, 2, 3});
   graph.set_fixed(v, true);
   graph.add_edge(EdgeSe2{}, {v, 4}, Eigen::Matrix3d::Identity());
   structure.extend(graph, nobody(graph));
@@ -240,7 +242,7 @@ TEST_CASE("structure: extend a calibrated chain, the dense column stays last") {
   Structure structure;
   structure.build(graph, nobody(graph));
   for (int i = 0; i < 3; ++i) {
-    const VertexIndex v = graph.add_vertex<VertexSe2>(200 + i, {1, 2, 3});
+    const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId(200 + i), {1, 2, 3});
     graph.add_edge(EdgeScaledOdometry{1, 0}, {v - 1, 0, v}, Eigen::Matrix3d::Identity());
     structure.extend(graph, nobody(graph));
     CHECK(structure.column_of(0) == structure.pattern().columns() - 1);
@@ -253,9 +255,9 @@ TEST_CASE("structure: a dense state that comes with an extension goes last, too"
   Structure structure;
   structure.build(graph, nobody(graph));
   VertexIndex last = 29;
-  const VertexIndex scale = graph.add_vertex<VertexScale>(1000, {1});
+  const VertexIndex scale = graph.add_vertex<VertexScale>(VertexId{1000}, {1});
   for (int i = 0; i < 4; ++i) {
-    const VertexIndex v = graph.add_vertex<VertexSe2>(200 + i, {1, 2, 3});
+    const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId(200 + i), {1, 2, 3});
     graph.add_edge(EdgeScaledOdometry{1, 0}, {last, scale, v}, Eigen::Matrix3d::Identity());
     last = v;
   }
@@ -273,7 +275,7 @@ TEST_CASE("ordering: a chain keeps its natural order, a grid fills less under mi
   };
   Graph chain;
   for (int i = 0; i < 100; ++i) {
-    chain.add_vertex<VertexSe2>(i, {0, 0, 0});
+    chain.add_vertex<VertexSe2>(VertexId(i), {0, 0, 0});
     if (i > 0) chain.add_edge(EdgeSe2{}, {i - 1, i}, Eigen::Matrix3d::Identity());
   }
   CHECK(order(chain) == "natural");
@@ -281,8 +283,8 @@ TEST_CASE("ordering: a chain keeps its natural order, a grid fills less under mi
 }
 
 TEST_CASE("ordering: an order is a permutation, and its fill is that of elimination") {
-  // Upper triangles, column by column. A ring fills one block a column; a hub that is eliminated first joins
-  // all its neighbours; between dense columns nothing is counted.
+  // Upper triangles, column by column. A ring fills one block a column; a hub that is eliminated
+  // first joins all its neighbours; between dense columns nothing is counted.
   struct Pattern {
     std::vector<std::int64_t> begin{0};
     std::vector<int> rows;
@@ -320,11 +322,11 @@ TEST_CASE("ordering: an order is a permutation, and its fill is that of eliminat
 TEST_CASE("ordering: GNSS nodes of a drive are eliminated just before their poses") {
   Graph drive;
   for (int i = 0; i < 100; ++i) {
-    drive.add_vertex<VertexSe2>(i, {0, 0, 0});
+    drive.add_vertex<VertexSe2>(VertexId(i), {0, 0, 0});
     if (i > 0) drive.add_edge(EdgeSe2{}, {i - 1, i}, Eigen::Matrix3d::Identity());
   }
   for (int i = 0; i < 100; i += 10) {
-    const VertexIndex node = drive.add_vertex<VertexSe2>(1000 + i, {0, 0, 0});
+    const VertexIndex node = drive.add_vertex<VertexSe2>(VertexId(1000 + i), {0, 0, 0});
     drive.add_edge(EdgeSe2{}, {node, i}, Eigen::Matrix3d::Identity());
     drive.add_edge(EdgePriorSe2{}, {node}, Eigen::Matrix3d::Identity());
   }

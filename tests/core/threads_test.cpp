@@ -1,5 +1,5 @@
-// Results do not depend on the number of threads, nor on the run: whole optimisations of problems of several
-// chunks, compared bit by bit, with every registered solver.
+// Results do not depend on the number of threads, nor on the run: whole optimisations of problems
+// of several chunks, compared bit by bit, with every registered solver.
 #include <cstring>
 
 #include <catch2/catch.hpp>
@@ -37,21 +37,21 @@ Graph robust_grid(const TypeRegistry& registry) {
   return graph;
 }
 
-/// Fixed vertices in every chunk, points among them that are smaller than the poses beside them; one part
-/// floats, so that the gauge holds one of its poses.
+/// Fixed vertices in every chunk, points among them that are smaller than the poses beside them;
+/// one part floats, so that the gauge holds one of its poses.
 Graph grid_with_fixed(const TypeRegistry&) {
   Graph graph = grid_walk(kPoses, 90);
   for (int i = 5; i < kPoses; i += 500) graph.set_fixed(i, true);
   for (int i = 0; i < kPoses; i += 100) {
     const auto at = graph.value(i);
-    const VertexIndex point = graph.add_vertex<VertexXy>(100'000 + i, {at[0] + 1, at[1]});
+    const VertexIndex point = graph.add_vertex<VertexXy>(VertexId(100'000 + i), {at[0] + 1, at[1]});
     graph.set_fixed(point, i % 300 == 0);
     graph.add_edge(EdgeSe2Xy{{1, 0.1}}, {i, point}, Eigen::Matrix2d::Identity());
     graph.add_edge(EdgeSe2Xy{{1, -0.1}}, {i + 1, point}, Eigen::Matrix2d::Identity());
   }
   VertexIndex last = -1;
   for (int i = 0; i < 5000; ++i) {
-    const VertexIndex pose = graph.add_vertex<VertexSe2>(200'000 + i, {0.9 * i, 0.1, 0.0001 * i});
+    const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId(200'000 + i), {0.9 * i, 0.1, 0.0001 * i});
     if (last >= 0) graph.add_edge(EdgeSe2{{1, 0, 0.001}}, {last, pose}, pose_information(0.1, 0.02));
     last = pose;
   }

@@ -42,8 +42,8 @@ GraphDocument mixed_document() {
   GraphDocument document;
   Graph& graph = document.graph;
   for (int i = 0; i < 10; ++i) {
-    graph.add_vertex<VertexSe2>(i - 1, {10 * unit(random), 10 * unit(random), 3 * unit(random)});
-    graph.add_vertex<VertexXy>(100 + i, {10 * unit(random), 10 * unit(random)});
+    graph.add_vertex<VertexSe2>(VertexId(i - 1), {10 * unit(random), 10 * unit(random), 3 * unit(random)});
+    graph.add_vertex<VertexXy>(VertexId(100 + i), {10 * unit(random), 10 * unit(random)});
   }
   graph.set_fixed(0, true);
   const auto vector = [&] { return Eigen::Vector2d(2 * unit(random), 2 * unit(random)); };
@@ -70,8 +70,9 @@ Eigen::Isometry2d motion(double x, double y, double heading) {
   return result;
 }
 
-/// chi2 of a file as Ceres' example evaluates it: e = (R_a^T (p_b - p_a) - p_ab, wrapped yaw), weighed by the
-/// lower Cholesky factor of the information (pose_graph_2d.cc and pose_graph_2d_error_term.h).
+/// chi2 of a file as Ceres' example evaluates it: e = (R_a^T (p_b - p_a) - p_ab, wrapped yaw),
+/// weighed by the lower Cholesky factor of the information (pose_graph_2d.cc and
+/// pose_graph_2d_error_term.h).
 double chi2_of_example(const std::string& text) {
   std::map<int, Eigen::Vector3d> poses;
   std::istringstream in(text);
@@ -146,10 +147,12 @@ TEST_CASE("foreign graph: Ceres' example has the same chi2 by its own formula") 
   std::uniform_real_distribution<double> unit(-1, 1);
   GraphDocument document;
   Graph& graph = document.graph;
-  for (int i = 0; i < 6; ++i) graph.add_vertex<VertexSe2>(i, {unit(random), unit(random), 3 * unit(random)});
+  for (int i = 0; i < 6; ++i)
+    graph.add_vertex<VertexSe2>(VertexId(i), {unit(random), unit(random), 3 * unit(random)});
   graph.set_fixed(0, true);
   for (int i = 0; i < 5; ++i) {
-    // Isotropic positions at any heading, others at quarter turns: what stays diagonal when it is turned.
+    // Isotropic positions at any heading, others at quarter turns: what stays diagonal when it is
+    // turned.
     const double heading = i % 2 == 0 ? unit(random) : 0.5 * M_PI * i;
     const double other = i % 2 == 0 ? 4 : 25;
     graph.add_edge(EdgeSe2{{unit(random), unit(random), heading}}, {i, i + 1},
@@ -163,7 +166,7 @@ TEST_CASE("foreign graph: Ceres' example has the same chi2 by its own formula") 
 
 TEST_CASE("foreign graph: a profile takes the formats that its reader knows, no other") {
   GraphDocument document;
-  document.graph.add_vertex<VertexSe2>(0, {0, 0, 0});
+  document.graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
   const auto make = [&](const char* profile, GraphFormat format) {
     return ForeignGraph(document, "a", *find_profile(profile), format).changes().size();
   };

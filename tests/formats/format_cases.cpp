@@ -1,5 +1,6 @@
-// Every pair in cases/: NAME.graph or NAME.g2o is read; what comes out must be NAME.expected, byte by byte. A
-// new case needs the two files only (README.md). ctest runs each pair as a test of its own.
+// Every pair in cases/: NAME.graph or NAME.g2o is read; what comes out must be NAME.expected, byte
+// by byte. A new case needs the two files only (README.md). ctest runs each pair as a test of its
+// own.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -8,7 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/formats/graph/foreign_graph.hpp>
+#include <waymark/formats/graph/detail/foreign_graph.hpp>
 #include <waymark/formats/text/text_file.hpp>
 
 #include "formats/read_helpers.hpp"
@@ -32,7 +33,8 @@ GraphFormat input_format(const fs::path& input) {
   return has_part(input, "covariance") ? GraphFormat::covariance : GraphFormat::graph;
 }
 
-/// "X.to_g2o.graph": the file that a reader of that format or profile gets, and what is noted beside it.
+/// "X.to_g2o.graph": the file that a reader of that format or profile gets, and what is noted
+/// beside it.
 std::string written(const GraphDocument& document, const fs::path& input) {
   const auto write = [&](const Recipient& recipient, GraphFormat format) {
     const ForeignGraph foreign(document, input.filename().string(), recipient, format);
@@ -52,7 +54,8 @@ std::string written(const GraphDocument& document, const fs::path& input) {
   return write_graph(document, test_registry());
 }
 
-/// "X.lenient.graph" is read leniently; without a part that says otherwise the canonical .graph is written.
+/// "X.lenient.graph" is read leniently; without a part that says otherwise the canonical .graph is
+/// written.
 std::string outcome(const fs::path& input) {
   const std::string name = input.filename().string();
   try {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include <waymark/core/registry/registry.hpp>
-#include <waymark/formats/graph/foreign_graph.hpp>
+#include <waymark/formats/graph/detail/foreign_graph.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 
 /// Returns the types that the program knows: core, SE(2) and the built-in plugins.

@@ -45,7 +45,7 @@ TEST_CASE("round trip: numbers come back bit by bit") {
   for (const double x : {5701234.567, 0.1, 1.0 / 3, -0.0, 5e-324, 2.2250738585072009e-308, 1e300, -limit,
                          std::nextafter(1.0, 2.0), 123456789012345680.0}) {
     GraphDocument document;
-    document.graph.add_vertex<VertexSe2>(7, {x, -x, x / 3});
+    document.graph.add_vertex<VertexSe2>(VertexId{7}, {x, -x, x / 3});
     const auto back = read(write(document)).graph;
     INFO(x);
     CHECK(bits(back.value(0)[0]) == bits(x));
@@ -58,13 +58,13 @@ TEST_CASE("round trip: stamps and ids at the ends of their range come back") {
   GraphDocument document;
   const auto least = std::numeric_limits<std::int64_t>::min();
   const auto most = std::numeric_limits<std::int64_t>::max();
-  for (const VertexId id : {least, most, VertexId{-1}, VertexId{1} << 24}) {
-    document.graph.set_stamp(document.graph.add_vertex<VertexSe2>(id, {0, 0, 0}), Stamp{most});
+  for (const std::int64_t id : {least, most, std::int64_t{-1}, std::int64_t{1} << 24}) {
+    document.graph.set_stamp(document.graph.add_vertex<VertexSe2>(VertexId{id}, {0, 0, 0}), Stamp{most});
   }
   document.graph.set_stamp(1, Stamp{least + 1});  // least means "none"
   const auto back = read(write(document)).graph;
-  CHECK(back.id(0) == least);
-  CHECK(back.id(1) == most);
+  CHECK(back.id(0) == VertexId{least});
+  CHECK(back.id(1) == VertexId{most});
   CHECK(back.stamp(0)->nanoseconds == most);
   CHECK(back.stamp(1)->nanoseconds == least + 1);
 }
@@ -88,7 +88,8 @@ TEST_CASE("round trip: the example of the specification is read and holds every 
   const std::string example = specification_example();
   const GraphDocument document = read(example);
   CHECK(read(write(document)).graph.chi2() == document.graph.chi2());
-  // Found by a reader that was written from the specification alone, in another language; the page shows it.
+  // Found by a reader that was written from the specification alone, in another language; the page
+  // shows it.
   CHECK(document.graph.chi2() == Approx(108.95748175005596).epsilon(1e-12));
   for (const char* statement : {"GRAPH", "FRAME", "TIME", "PROVENANCE", "LEVER", "TYPE", "STAMP", "FIX",
                                 "LOSS", "GNSS", "COVARIANCE", "EDGE_GAUSSIAN_PRIOR"}) {
@@ -105,7 +106,7 @@ TEST_CASE("round trip: the example of the specification is read and holds every 
 TEST_CASE("round trip: text from outside cannot begin a new statement") {
   // Guards against a drive's name of two lines: the second was read as a tag.
   GraphDocument document;
-  document.graph.add_vertex<VertexSe2>(0, {0, 0, 0});
+  document.graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
   document.provenance = {{"drive", "first\nEDGE_SE2 second\r\n"}, {"empty", ""}};
   const auto back = read(write(document)).provenance;
   REQUIRE(back.size() == 2);
@@ -115,8 +116,8 @@ TEST_CASE("round trip: text from outside cannot begin a new statement") {
 
 TEST_CASE("round trip: a position edge written as EDGE_SE2 has the same chi2") {
   GraphDocument document;
-  const auto origin = document.graph.add_vertex<VertexSe2>(0, {3, -2, 0.7});
-  const auto pose = document.graph.add_vertex<VertexSe2>(1, {10, 20, -2.5});
+  const auto origin = document.graph.add_vertex<VertexSe2>(VertexId{0}, {3, -2, 0.7});
+  const auto pose = document.graph.add_vertex<VertexSe2>(VertexId{1}, {10, 20, -2.5});
   document.graph.set_fixed(origin, true);
   Eigen::Matrix2d omega;
   omega << 4, 1.5, 1.5, 9;
@@ -144,7 +145,8 @@ TEST_CASE("round trip: the standard g2o files come back exactly") {
 }
 
 TEST_CASE("round trip: a word in a message is short and harmless") {
-  // Guards against binary files that reprogram the terminal, and against invalid UTF-8 in JSON output.
+  // Guards against binary files that reprogram the terminal, and against invalid UTF-8 in JSON
+  // output.
   CHECK(quote_word("abc") == "'abc'");
   CHECK(quote_word("") == "the end of the line");
   CHECK(quote_word("\x1b[31m\xff") == "'\\x1b[31m\\xff'");

@@ -42,11 +42,12 @@ TEST_CASE("TORO: the six numbers are I_ff I_fs I_ss I_rr I_fr I_sr, and vertices
   std::vector<double> fields;
   graph.batch(0).fields(0, fields);
   CHECK(fields == std::vector<double>{1, 2, 0.5});
-  CHECK(graph.value(*graph.find(7))[1] == 5);
+  CHECK(graph.value(*graph.find(VertexId{7}))[1] == 5);
 }
 
 TEST_CASE("covariance: the same six numbers are the inverse") {
-  // GTSAM's readNoiseModel, NoiseFormatGRAPH: the matrix of v1 v2 v5, v2 v3 v6, v5 v6 v4 is a covariance.
+  // GTSAM's readNoiseModel, NoiseFormatGRAPH: the matrix of v1 v2 v5, v2 v3 v6, v5 v6 v4 is a
+  // covariance.
   const Eigen::Matrix3d covariance =
       (Eigen::Matrix3d() << 0.5, 0.1, 0.02, 0.1, 0.4, 0.03, 0.02, 0.03, 0.1).finished();
   const GraphDocument document =
@@ -97,7 +98,7 @@ TEST_CASE("TORO and covariance: files with edges only get their vertices, lenien
     CHECK(report.skipped == 1);
     CHECK(document.graph.vertex_count() == 3);
     CHECK(document.graph.chi2() < 1e-28);
-    CHECK(document.graph.value(*document.graph.find(5))[0] == Approx(1 + 2 * std::cos(1.5)));
+    CHECK(document.graph.value(*document.graph.find(VertexId{5}))[0] == Approx(1 + 2 * std::cos(1.5)));
   }
 }
 
@@ -120,6 +121,7 @@ TEST_CASE("fr079: chi2 is the same through every format, and another if TORO is 
   CHECK(chi2(GraphFormat::covariance, write_as(GraphFormat::covariance, document)) ==
         Approx(expected).epsilon(1e-9));
   CHECK(read(write(document)).graph.chi2() == expected);
-  // Nothing in the file tells the two apart, and nothing fails: hence the format is said, never guessed.
+  // Nothing in the file tells the two apart, and nothing fails: hence the format is said, never
+  // guessed.
   CHECK(chi2(GraphFormat::covariance, text) < 1e-3 * expected);
 }

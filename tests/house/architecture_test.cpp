@@ -1,5 +1,6 @@
-// The arrows of the house: core <- types_se2 <- plugins, core <- solvers, core <- formats, and those between the
-// libraries of tools; solvers/linear sees block patterns and numbers, never a graph.
+// The arrows of the house: core <- types_se2 <- plugins, core <- solvers, core <- formats, and
+// those between the libraries of tools; solvers/linear sees block patterns and numbers, never a
+// graph.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -21,7 +22,7 @@ using Rooms = std::set<std::string>;
 const std::map<std::string, Rooms> kArrows = {
     {"core", {}},
     {"types_se2", {"core"}},
-    {"solvers", {"core"}},
+    {"solvers", {"core", "types_se2"}},  // its front door knows the starts of the plane
     {"plugins", {"core", "types_se2"}},
     {"formats", {"core"}},
     {"tools/text", {"core", "formats"}},
@@ -36,6 +37,8 @@ const std::map<std::string, Rooms> kArrows = {
      {"core", "types_se2", "formats", "tools/text", "tools/drawing", "tools/drive", "tools/evaluation",
       "tools/report"}},
 };
+
+const std::string kVersion = "waymark/version.hpp";  // made by CMake, for everybody
 
 fs::path root() {
   return waymark_test::source_dir();
@@ -77,6 +80,12 @@ void for_each_include(const std::string& room, Visit visit) {
   });
 }
 
+std::string without(std::string text, const std::string& word) {
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at))
+    text.erase(at, word.size());
+  return text;
+}
+
 std::string text_of(const fs::path& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -88,7 +97,7 @@ TEST_CASE("house: each library includes only from the libraries that its arrows 
   for (const auto& [room, allowed] : kArrows) {
     for_each_include(room,
                      [&, &from = room, &targets = allowed](const fs::path& file, const std::string& include) {
-                       if (!include.starts_with("waymark/")) return;
+                       if (!include.starts_with("waymark/") || include == kVersion) return;
                        const std::string target = room_of(include.substr(8));
                        INFO(file << " includes " << include);
                        CHECK((target == from || targets.contains(target)));
@@ -125,7 +134,7 @@ TEST_CASE("house: the arrows run one way") {
 TEST_CASE("house: core knows Eigen and the standard library, nothing else") {
   for_each_include("core", [](const fs::path& file, const std::string& include) {
     INFO(file << " includes " << include);
-    const bool own = include.starts_with("waymark/core/");
+    const bool own = include.starts_with("waymark/core/") || include == kVersion;
     const bool eigen = include.starts_with("Eigen/");
     const bool standard = include.find('/') == std::string::npos && include.find('.') == std::string::npos;
     // Of the C library: the plugin loader and its look into files, advice on large arrays.
@@ -160,8 +169,9 @@ TEST_CASE("house: each library has a namespace of its own") {
     if (room == "formats" || room == "solvers" || room == "plugins") expected += "::" + room;
     if (room.starts_with("tools/")) expected += "::" + room.substr(6);
     for_each_source(room, [&](const fs::path& file) {
-      const std::string text = text_of(file);
+      const std::string text = without(text_of(file), "WAYMARK_EXPORT ");
       INFO(file);
+      if (file.stem() == "optimize" && room == "solvers") return;  // found by the namespace of its graph
       for (auto at = text.find("\nnamespace waymark"); at != std::string::npos;
            at = text.find("\nnamespace waymark", at + 1)) {
         const std::string found = text.substr(at + 1, expected.size());

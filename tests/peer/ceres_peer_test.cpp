@@ -1,5 +1,6 @@
-// The Ceres that `waymark bench --peer` measures solves the same problem: its first cost is our chi2 of the
-// start, its result our minimum. (ceres_test.cpp writes the errors anew; here they are ours, as measured.)
+// The Ceres that `waymark bench --peer` measures solves the same problem: its first cost is our
+// chi2 of the start, its result our minimum. (ceres_test.cpp writes the errors anew; here they are
+// ours, as measured.)
 #include <catch2/catch.hpp>
 
 #ifdef WAYMARK_HAVE_CERES
@@ -42,7 +43,7 @@ Graph graph_of_all_types() {
   graph.add_edge(EdgeSe2{{1.01, 0.1, 0.5}}, {3, 4}, no_heading);
   graph.add_edge(EdgeSe2Log{{2.0, 0.1, 0.26}}, {10, 12}, full);
   graph.add_edge(EdgePriorSe2{{8, 0.1, 1.6}}, {0}, full);
-  const VertexIndex landmark = graph.add_vertex<VertexXy>(1000, {1.0, 1.0});
+  const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{1000}, {1.0, 1.0});
   for (const VertexIndex pose : {5, 17, 30}) {
     graph.add_edge(EdgeSe2Xy{{2, 6}}, {pose, landmark}, Eigen::Matrix2d(full.topLeftCorner<2, 2>()));
     graph.add_edge(EdgeGnssPosition{{1, 2}, {0.5, -0.2}}, {0, pose},
@@ -75,7 +76,7 @@ TEST_CASE("peer: the measured Ceres has our robust losses") {
 
 TEST_CASE("peer: the measured Ceres takes unknown edge types the slow way and says so") {
   Graph graph = waymark_test::noisy_circle(20);
-  const VertexIndex scale = graph.add_vertex<waymark_test::VertexScale>(500, {1.0});
+  const VertexIndex scale = graph.add_vertex<waymark_test::VertexScale>(VertexId{500}, {1.0});
   for (VertexIndex i = 0; i < 10; ++i) {
     graph.add_edge(waymark_test::EdgeScaledOdometry{0.98, 0.31}, {i, scale, i + 1},
                    waymark_test::pose_information(0.05, 0.01));

@@ -1,5 +1,5 @@
-// Calibration states: gyro bias, speed scale and time offset come out of a drive as they went in, with sigmas
-// that say how far to trust them.
+// Calibration states: gyro bias, speed scale and time offset come out of a drive as they went in,
+// with sigmas that say how far to trust them.
 #include <cmath>
 #include <random>
 
@@ -44,8 +44,8 @@ double yaw_rate_at(double t) {
   return speed_at(t) == 0 ? 0 : 0.15 * std::sin(0.05 * t) + 0.1 * std::sin(0.31 * t);
 }
 
-/// A winding drive with stops of 20 s every 2 minutes, its noise as the odometry model assumes it; fixes at
-/// 1 Hz.
+/// A winding drive with stops of 20 s every 2 minutes, its noise as the odometry model assumes it;
+/// fixes at 1 Hz.
 struct Simulated {
   Graph graph;
   std::vector<Fix> fixes;
@@ -66,7 +66,8 @@ struct Simulated {
       const double yaw_rate = yaw_rate_at(t);
       stamps.push_back(Stamp{std::int64_t{i} * 100'000'000});
       truth.push_back(pose);
-      poses.push_back(graph.add_vertex<VertexSe2>(i + 1, {pose.position[0], pose.position[1], pose.heading}));
+      poses.push_back(
+          graph.add_vertex<VertexSe2>(VertexId(i + 1), {pose.position[0], pose.position[1], pose.heading}));
       Interval reading{speed / (1 + faults.scale), yaw_rate + faults.bias + faults.drift * t, kDt, false};
       reading.yaw_rate_radps += std::sqrt(kHeadingRate / kDt) * unit(random);
       if (speed > 0) reading.speed_mps += std::sqrt(kSpeedNoise * speed * kDt) / kDt * unit(random);
@@ -86,7 +87,7 @@ struct Simulated {
     fix.stamp = stamps.back();
     fix.position = then.position + kSigma * Eigen::Vector2d(unit(random), unit(random));
     fix.covariance = kSigma * kSigma * Eigen::Matrix2d::Identity();
-    fix.vertex = i + 1;
+    fix.vertex = VertexId(i + 1);
     fixes.push_back(fix);
     motion.push_back(moves);
   }
@@ -159,7 +160,8 @@ TEST_CASE(
 
 TEST_CASE(
     "calibration: a late fix of an antenna with a lever arm is the same in every modeling, also in turns") {
-  // Three poses of a turn; the node of G2 is the antenna, whose velocity has a part across the vehicle.
+  // Three poses of a turn; the node of G2 is the antenna, whose velocity has a part across the
+  // vehicle.
   const Eigen::Vector2d antenna(2, -0.5);
   const Interval turning{8, 0.6, kDt, false};
   std::vector<double> chi2;
@@ -168,10 +170,10 @@ TEST_CASE(
     std::vector<Fix> fixes;
     Pose2<double> pose(1, 2, 0.4);
     for (int i = 0; i < 3; ++i) {
-      graph.add_vertex<VertexSe2>(i + 1, {pose.position[0], pose.position[1], pose.heading});
+      graph.add_vertex<VertexSe2>(VertexId(i + 1), {pose.position[0], pose.position[1], pose.heading});
       Fix fix;
       fix.position = pose.position + Eigen::Vector2d(0.3 * i, -0.2);
-      fix.vertex = i + 1;
+      fix.vertex = VertexId(i + 1);
       fixes.push_back(fix);
       pose = compose(pose, se2_exp<double>(Eigen::Vector3d(8, 0, 0.6)));
     }
@@ -228,7 +230,7 @@ TEST_CASE("calibration: a standing gyro shows its bias to sqrt(q / T)") {
   std::vector<Stamp> stamps;
   std::vector<Interval> intervals;
   for (int i = 0; i <= 400; ++i) {  // 40 s at rest; a reading alternates about its bias
-    poses.push_back(graph.add_vertex<VertexSe2>(i + 1, {0, 0, 0}));
+    poses.push_back(graph.add_vertex<VertexSe2>(VertexId(i + 1), {0, 0, 0}));
     stamps.push_back(Stamp{std::int64_t{i} * 100'000'000});
     if (i < 400) intervals.push_back({0, 5e-3 + (i % 2 == 0 ? 1e-3 : -1e-3), kDt, false});
   }

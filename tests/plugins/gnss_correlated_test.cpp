@@ -23,11 +23,11 @@ struct BuiltFix {
 Graph graph_with(const Options& options, const std::optional<Loss>& loss = std::nullopt) {
   const TypeRegistry registry = waymark_test::full_registry();
   Graph graph;
-  const VertexIndex pose = graph.add_vertex<VertexSe2>(1, {0, 0, 0});
+  const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId{1}, {0, 0, 0});
   graph.set_stamp(pose, Stamp::from_seconds(1));
   Fix fix;
   fix.stamp = Stamp::from_seconds(1);
-  fix.vertex = 1;
+  fix.vertex = VertexId{1};
   fix.covariance = 4 * Eigen::Matrix2d::Identity();
   const std::vector<Fix> fixes{fix};
   const std::vector<Interval> motion(1);
@@ -56,7 +56,8 @@ TEST_CASE("correlated: tails are Student's t, or normal") {
   // The claimed accuracy is the median: the white sigma is 2 m.
   CHECK(gauss.information.isApprox(Eigen::Matrix2d::Identity() / 4));
   CHECK(gauss.loss == nullptr);
-  // -2 log of the density of Student's t with four degrees of freedom in the plane: 6 log(1 + q / 4).
+  // -2 log of the density of Student's t with four degrees of freedom in the plane: 6 log(1 + q /
+  // 4).
   REQUIRE(student.loss != nullptr);
   for (const double metres : {0.0, 0.5, 2.0, 10.0, 100.0}) {
     const double q = metres * metres / 4;

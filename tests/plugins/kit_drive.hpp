@@ -16,7 +16,7 @@
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/registry/options.hpp>
-#include <waymark/plugins/odometry/noise.hpp>
+#include <waymark/plugins/odometry/detail/noise.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 #include "support/registry.hpp"
@@ -136,7 +136,7 @@ inline waymark::Options odometry_options(const KitRecipe& recipe) {
     drive.stamps.push_back(kit_stamp(t));
     drive.truth.push_back(truth);
     drive.poses.push_back(drive.graph.add_vertex<VertexSe2>(
-        i, {start.position[0], start.position[1], wrap_angle(start.heading)}));
+        VertexId(i), {start.position[0], start.position[1], wrap_angle(start.heading)}));
     const int per_fix = static_cast<int>(std::lround(recipe.fix_period_s * kNodesPerSecond));
     if (i % per_fix == 0 && t <= recipe.last_fix_s) {
       Fix fix;
@@ -144,7 +144,7 @@ inline waymark::Options odometry_options(const KitRecipe& recipe) {
       fix.covariance = recipe.fix_sigma_m * recipe.fix_sigma_m * Eigen::Matrix2d::Identity();
       fix.position = truth.position + rotate(truth.heading, recipe.antenna_m);
       fix.position += Eigen::Vector2d(noise(recipe.fix_sigma_m), noise(recipe.fix_sigma_m));
-      fix.vertex = i;
+      fix.vertex = VertexId(i);
       drive.fixes.push_back(fix);
     }
     if (i + 1 == count) break;

@@ -1,5 +1,5 @@
-// The three GNSS modelings share one minimum under the decoupled error; the paper's literal error differs by
-// the factor (theta/2) / sin(theta/2).
+// The three GNSS modelings share one minimum under the decoupled error; the paper's literal error
+// differs by the factor (theta/2) / sin(theta/2).
 #include <array>
 #include <cmath>
 
@@ -72,8 +72,8 @@ TEST_CASE("modelings: G2 is G1 under the covariance of the fix plus that of the 
 }
 
 TEST_CASE("modelings: with a lever arm the heading of G2's nodes gives way by 1/W, too") {
-  // The node's heading turns the arm a: its slack of 1/W rad^2 adds |a|^2 / W across the arm, so the equality
-  // above holds to the order of |a|^2 / (W sigma^2) only.
+  // The node's heading turns the arm a: its slack of 1/W rad^2 adds |a|^2 / W across the arm, so
+  // the equality above holds to the order of |a|^2 / (W sigma^2) only.
   const Drive drive = make_drive(registry(), kPoses, kAntenna);
   Drive effective = drive;
   for (Fix& fix : effective.fixes) fix.covariance += 1e-6 * Eigen::Matrix2d::Identity();
@@ -86,8 +86,8 @@ TEST_CASE("modelings: with a lever arm the heading of G2's nodes gives way by 1/
 TEST_CASE("modelings: the fixes pull the drive towards the truth") {
   const Drive drive = make_drive(registry(), kPoses);
   const Optimum optimum = solve(drive, "g1");
-  // 2 numbers per fix against as good as 3 for the start: chi2 is near 2 (fixes) by statistics, sigma 2
-  // sqrt(n).
+  // 2 numbers per fix against as good as 3 for the start: chi2 is near 2 (fixes) by statistics,
+  // sigma 2 sqrt(n).
   const double fixes = static_cast<double>(drive.fixes.size());
   CHECK(optimum.chi2 < 2 * fixes + 5 * 2 * std::sqrt(fixes));
 }
@@ -150,14 +150,14 @@ TEST_CASE("modelings: wrong options and fixes without a pose are explained") {
   CHECK_THROWS_WITH(registry().make_gnss_modeling("g3", {{"error", "wrong"}}),
                     Contains("'decoupled' or 'literal'") && Contains("got 'wrong'"));
   Drive drive = make_drive(registry(), 100);
-  drive.fixes[1].vertex = 4711;
+  drive.fixes[1].vertex = VertexId{4711};
   CHECK_THROWS_AS(drive.add_fixes(registry(), "g1"), UsageError);
 }
 
 TEST_CASE("odometry model: a standing vehicle's measurement is the identity whatever the gyro says") {
   Graph graph;
-  const std::array<VertexIndex, 2> poses = {graph.add_vertex<VertexSe2>(0, {1, 2, 3}),
-                                            graph.add_vertex<VertexSe2>(1, {1, 2, 3})};
+  const std::array<VertexIndex, 2> poses = {graph.add_vertex<VertexSe2>(VertexId{0}, {1, 2, 3}),
+                                            graph.add_vertex<VertexSe2>(VertexId{1}, {1, 2, 3})};
   const Interval standing{0.02, 0.006, 0.04, false};
   registry()
       .make_odometry_model("constant_twist")

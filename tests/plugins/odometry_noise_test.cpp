@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include <waymark/plugins/odometry/noise.hpp>
+#include <waymark/plugins/odometry/detail/noise.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 #include "support/dense.hpp"
@@ -69,7 +69,8 @@ TEST_CASE(
   CHECK(all.motion.position[0] == Approx(1000));
   const double variance = all.covariance(0, 0) + all.covariance(1, 1);
   CHECK(std::sqrt(variance) == Approx(11.0).epsilon(0.02));
-  // Lateral variance through the heading: q L^3 / 3, with q the heading variance per metre at this speed.
+  // Lateral variance through the heading: q L^3 / 3, with q the heading variance per metre at this
+  // speed.
   const ProcessNoise noise;
   const double q = noise.heading_per_m + noise.heading_per_s / 10;
   CHECK(q * 1e9 / 3 > 0.9 * variance);

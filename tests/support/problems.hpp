@@ -48,7 +48,8 @@ inline Eigen::Vector3d noisy(const Eigen::Vector3d& z, double sigma_m, double si
   Pose2<double> start = truth[0];
   std::vector<Eigen::Vector3d> odometry;
   for (int i = 0; i < poses; ++i) {
-    graph.add_vertex<VertexSe2>(i, {start.position[0], start.position[1], wrap_angle(start.heading)});
+    graph.add_vertex<VertexSe2>(VertexId(i),
+                                {start.position[0], start.position[1], wrap_angle(start.heading)});
     if (i + 1 == poses) break;
     const auto a = static_cast<std::size_t>(i);
     odometry.push_back(noisy(between(truth[a], truth[a + 1]).vector(), 0.05, 0.01, random));
@@ -82,7 +83,7 @@ inline Eigen::Vector3d noisy(const Eigen::Vector3d& z, double sigma_m, double si
   for (int i = 0; i < poses; ++i) {
     truth.emplace_back(x, y, direction * 0.5 * std::numbers::pi);
     const Eigen::Vector3d start = noisy(truth.back().vector(), 0.1, 0.02, random);
-    graph.add_vertex<VertexSe2>(i, {start[0], start[1], start[2]});
+    graph.add_vertex<VertexSe2>(VertexId(i), {start[0], start[1], start[2]});
     const auto join = [&](int from) {
       const auto z = between(truth[static_cast<std::size_t>(from)], truth.back()).vector();
       graph.add_edge(EdgeSe2{noisy(z, 0.02, 0.005, random)}, {from, i}, information);
@@ -140,7 +141,7 @@ struct Drive {
   std::vector<VertexIndex> chain;
   for (int i = 0; i < poses; ++i) {
     chain.push_back(drive.graph.add_vertex<VertexSe2>(
-        i, {start.position[0], start.position[1], wrap_angle(start.heading)}));
+        VertexId(i), {start.position[0], start.position[1], wrap_angle(start.heading)}));
     if (i % kPerFix == 0) {
       Fix fix;
       fix.stamp = Stamp{std::int64_t{i} * 40'000'000};
@@ -150,7 +151,7 @@ struct Drive {
       const Eigen::Vector2d noise(a * u, 0.3 * u + std::sqrt(1.5 - 0.09) * unit(random));
       fix.position = truth.position + rotate(truth.heading, antenna_m) + noise;
       fix.epoch = i / kPerFix;
-      fix.vertex = i;
+      fix.vertex = VertexId(i);
       drive.fixes.push_back(fix);
     }
     if (i + 1 == poses) break;

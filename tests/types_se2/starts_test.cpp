@@ -1,5 +1,5 @@
-// Every registered start on graphs whose measurements are exact: whatever the values in the file, the start
-// is the solution itself, up to the motion that the edges cannot see.
+// Every registered start on graphs whose measurements are exact: whatever the values in the file,
+// the start is the solution itself, up to the motion that the edges cannot see.
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -52,7 +52,7 @@ template <typename EdgeType = EdgeSe2>
 Graph wild_track(const std::vector<Pose>& track) {
   Graph graph;
   std::mt19937_64 random(3);
-  for (std::size_t i = 0; i < track.size(); ++i) add_wild_pose(graph, static_cast<VertexId>(i), random);
+  for (std::size_t i = 0; i < track.size(); ++i) add_wild_pose(graph, VertexId(i), random);
   join_track<EdgeType>(graph, track);
   return graph;
 }
@@ -103,7 +103,7 @@ TEST_CASE("starts: an edge type of a plugin is followed without knowing it") {
   std::vector<VertexIndex> chain;
   std::vector<Interval> intervals;
   for (int i = 0; i < 200; ++i) {
-    add_wild_pose(graph, i, random);
+    add_wild_pose(graph, VertexId{i}, random);
     chain.push_back(i);
     if (i > 0) intervals.push_back({.speed_mps = 8, .yaw_rate_radps = 3.0 + 0.02 * i, .dt_s = 0.4});
   }
@@ -120,7 +120,7 @@ TEST_CASE("starts: points are placed from the poses that saw them") {
   const auto track = spiral(40);
   Graph graph = wild_track(track);
   const Eigen::Vector2d point(7, 9);
-  const VertexIndex landmark = graph.add_vertex<VertexXy>(1000, {-400, 500});
+  const VertexIndex landmark = graph.add_vertex<VertexXy>(VertexId{1000}, {-400, 500});
   for (const int from : {3, 20, 33}) {
     const Pose& pose = track[static_cast<std::size_t>(from)];
     const Eigen::Vector2d z = rotate_back(pose.heading, Eigen::Vector2d(point - pose.position));
@@ -137,7 +137,7 @@ TEST_CASE("starts: each part of a graph keeps the place of its first vertex") {
   const auto track = spiral(50);
   Graph graph = wild_track(track);
   std::mt19937_64 random(4);
-  for (VertexId id = 50; id < 100; ++id) add_wild_pose(graph, id, random);
+  for (int id = 50; id < 100; ++id) add_wild_pose(graph, VertexId{id}, random);
   join_track<EdgeSe2>(graph, track, 50);
   for (const std::string& name : start_names(registry)) {
     const Graph start = started(graph, registry, name);
@@ -173,7 +173,8 @@ TEST_CASE("starts: the linear start takes a prior on a pose for what it says") {
 }
 
 TEST_CASE("starts: the linear start finds a drive's headings from its fixes, under every modeling") {
-  // Far from the frame's origin, as in UTM; antenna off the axle; the values in the graph are nonsense.
+  // Far from the frame's origin, as in UTM; antenna off the axle; the values in the graph are
+  // nonsense.
   const TypeRegistry registry = full_registry();
   const Eigen::Vector2d far(670000, 5700000);
   const Eigen::Vector2d antenna(1.2, -0.4);
@@ -184,7 +185,7 @@ TEST_CASE("starts: the linear start finds a drive's headings from its fixes, und
     Fix fix;
     fix.position = track[i].position + rotate(track[i].heading, antenna);
     fix.covariance = Eigen::Matrix2d::Identity() * 4;
-    fix.vertex = static_cast<VertexId>(i);
+    fix.vertex = VertexId(i);
     fixes.push_back(fix);
   }
   const std::vector<Interval> standing(fixes.size());  // what a time offset would multiply
@@ -204,7 +205,7 @@ TEST_CASE("starts: the linear start finds a drive's headings from its fixes, und
 TEST_CASE("starts: what the edges do not determine is refused with a reason") {
   const TypeRegistry registry = full_registry();
   Graph lonely;
-  lonely.add_vertex<VertexSe2>(0, {1, 2, 3});
+  lonely.add_vertex<VertexSe2>(VertexId{0}, {1, 2, 3});
   for (const std::string name : {"odometry", "spanning_tree"}) {
     const InitialValues start = registry.make_start(name, lonely);
     CHECK(start.values.empty());
@@ -212,7 +213,7 @@ TEST_CASE("starts: what the edges do not determine is refused with a reason") {
   }
   // One fix places a chain and leaves it free to turn.
   Graph turning = wild_track(spiral(10));
-  const VertexIndex origin = turning.add_vertex<VertexSe2>(100, {0, 0, 0});
+  const VertexIndex origin = turning.add_vertex<VertexSe2>(VertexId{100}, {0, 0, 0});
   turning.set_fixed(origin, true);
   turning.add_edge(EdgeGnssPosition{{5, 6}, {0, 0}}, {origin, 4}, Eigen::Matrix2d::Identity());
   const InitialValues start = registry.make_start("linear", turning);

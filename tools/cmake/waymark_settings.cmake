@@ -19,6 +19,8 @@ foreach(room core types_se2 solvers plugins formats tools)
   file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${room}" "${WAYMARK_INCLUDE_DIR}/waymark/${room}" SYMBOLIC)
 endforeach()
 
+configure_file(tools/cmake/version.hpp.in "${WAYMARK_INCLUDE_DIR}/waymark/version.hpp" @ONLY)
+
 add_library(waymark_settings INTERFACE)
 target_include_directories(waymark_settings INTERFACE
   $<BUILD_INTERFACE:${WAYMARK_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

@@ -3,6 +3,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/tools/program/manual/option_text.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

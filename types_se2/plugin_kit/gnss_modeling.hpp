@@ -56,11 +56,6 @@ inline VertexIndex add_origin(Graph& graph) {
   return options.word("error") == "literal";
 }
 
-/// Gives the last edge of a batch the loss of the fixes, if they have one.
-inline void attach_loss(EdgeBatchBase& batch, const GnssInput& input) {
-  if (input.loss) batch.set_loss(batch.size() - 1, *input.loss);
-}
-
 /// Adds the position edges of fixes. If the time offset is to be estimated, one offset serves
 /// all of them.
 class PositionEdges {
@@ -83,14 +78,13 @@ class PositionEdges {
            const std::array<VertexIndex, 2>& vertices, const Eigen::Vector2d& place = {0, 0}) {
     const Eigen::Matrix2d information = position_information(input_.fixes[i]);
     if (offset_ < 0) {
-      attach_loss(graph_.add_edge(EdgeGnssPosition{measured, antenna}, vertices, information), input_);
+      graph_.add_edge(EdgeGnssPosition{measured, antenna}, vertices, information, input_.loss);
       return;
     }
     const double turn = input_.motion[i].yaw_rate_radps;
     const Eigen::Vector2d velocity(input_.motion[i].speed_mps - turn * place[1], turn * place[0]);
-    attach_loss(graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, velocity, turn},
-                                {vertices[0], vertices[1], offset_}, information),
-                input_);
+    graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, velocity, turn},
+                    {vertices[0], vertices[1], offset_}, information, input_.loss);
   }
 
  private:

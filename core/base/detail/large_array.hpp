@@ -15,7 +15,9 @@
 #include <sys/mman.h>
 #endif
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 template <typename T>
 struct LargeAllocator {

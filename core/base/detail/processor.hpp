@@ -1,7 +1,9 @@
 /// Features of this processor beyond the baseline of the build.
 #pragma once
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// Tells whether it has AVX2 and fused multiply-add.
 [[nodiscard]] bool has_fused_multiply();

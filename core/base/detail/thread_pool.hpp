@@ -9,7 +9,9 @@
 #include <thread>
 #include <vector>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 class ThreadPool {
  public:

@@ -5,7 +5,9 @@
 #include <type_traits>
 #include <utility>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// Calls body(i) for i = first ... last - 1, where i is an integral constant. With more than 16
 /// calls it is a plain loop.

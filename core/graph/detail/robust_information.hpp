@@ -15,9 +15,10 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/loss.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// The second-order term is left out if its factor is below this share of rho'.
 inline constexpr double kLeastCurvature = 0.4;

@@ -6,11 +6,12 @@
 
 #include <waymark/core/base/detail/processor.hpp>
 #include <waymark/core/base/detail/unrolled.hpp>
+#include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/detail/robust_information.hpp>
 #include <waymark/core/graph/dual.hpp>
 #include <waymark/core/graph/edge_batch.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// Error and Jacobian types of an edge of error dimension D.
 template <int D>
@@ -69,9 +70,8 @@ class EdgeBatch final : public EdgeBatchBase {
   void reserve(std::size_t edges) override { records_.reserve(edges); }
 
   void fields(std::size_t i, std::vector<double>& out) const override {
-    E edge = records_[i].edge;
     for (const auto& f : E::fields()) {
-      const double* data = f.data(edge);
+      const double* data = f.read(records_[i].edge);
       out.insert(out.end(), data, data + f.size);
     }
   }

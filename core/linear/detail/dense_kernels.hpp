@@ -5,7 +5,9 @@
 
 #include <span>
 
-namespace waymark {
+#include <waymark/core/base/export.hpp>
+
+namespace WAYMARK_EXPORT waymark {
 
 /// Lower triangles are input and output. Entries above diagonals are arbitrary.
 struct DenseKernels {

@@ -8,10 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include <waymark/core/base/export.hpp>
+
 namespace waymark {
 
-/// The bytes of a shared object for this processor.
-class ModuleFile {
+/// The bytes of a shared object for this processor. Shown for the tests.
+class WAYMARK_EXPORT ModuleFile {
  public:
   /// @throws UsageError if the file cannot be read or is no 64-bit shared object for this processor
   explicit ModuleFile(const std::string& path);

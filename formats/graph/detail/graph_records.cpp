@@ -41,9 +41,9 @@ bool is_positive_semidefinite(const Eigen::MatrixXd& information) {
 }
 
 VertexIndex read_vertex_id(LineScanner& line, const Graph& graph, std::string_view tag) {
-  const VertexId id = line.integer({tag, "vertex"});
+  const VertexId id{line.integer({tag, "vertex"})};
   const auto found = graph.find(id);
-  if (!found) line.fail(std::string(tag) + ": vertex " + std::to_string(id) + " is not defined");
+  if (!found) line.fail(std::string(tag) + ": vertex " + to_string(id) + " is not defined");
   return *found;
 }
 
@@ -74,7 +74,7 @@ Frame read_frame(LineScanner& line) {
 Fix read_fix(LineScanner& line) {
   constexpr std::string_view kTag = "GNSS";
   Fix fix;
-  fix.vertex = line.integer({kTag, "vertex"});
+  fix.vertex = VertexId{line.integer({kTag, "vertex"})};
   fix.stamp.nanoseconds = line.integer({kTag, "nanoseconds"});
   fix.position[0] = line.number({kTag, "x"});
   fix.position[1] = line.number({kTag, "y"});

@@ -103,7 +103,7 @@ void OwnStatements::read_loss(LineScanner& line, EdgeBatchBase* edge_above) {
 void OwnStatements::read_record(LineScanner& line) {
   Fix fix = read_fix(line);
   if (!document_.graph.find(fix.vertex)) {
-    line.fail("GNSS: vertex " + std::to_string(fix.vertex) + " is not defined");
+    line.fail("GNSS: vertex " + to_string(fix.vertex) + " is not defined");
   }
   document_.fixes.push_back(std::move(fix));
 }

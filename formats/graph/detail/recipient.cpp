@@ -23,10 +23,10 @@ constexpr std::array kToro = {GraphFormat::toro};
 constexpr std::array kCovariance = {GraphFormat::covariance};
 constexpr std::array kGtsam = {GraphFormat::g2o, GraphFormat::covariance, GraphFormat::toro};
 
-constexpr VertexId kMostInt = std::numeric_limits<std::int32_t>::max();
-constexpr VertexId kLeastInt = std::numeric_limits<std::int32_t>::min();
+constexpr VertexId kMostInt{std::numeric_limits<std::int32_t>::max()};
+constexpr VertexId kLeastInt{std::numeric_limits<std::int32_t>::min()};
 // The highest byte of a key is the letter of a GTSAM symbol.
-constexpr VertexId kMostKey = (VertexId{1} << 56) - 1;
+constexpr VertexId kMostKey{(std::int64_t{1} << 56) - 1};
 
 constexpr Recipient kAnyG2o = {
     .name = "g2o", .reader = "the g2o format", .formats = kG2o, .tags = kG2oTags, .fixing = Fixing::stated};
@@ -44,7 +44,7 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .formats = kG2o,
      .tags = kG2oTags,
      .fixing = Fixing::stated,
-     .least_id = 0,
+     .least_id = VertexId{0},
      .most_id = kMostInt,
      .applies_point_offset = false},
     // load2D of its dataset: keys are unsigned. It skips unknown tags, which include FIX and all
@@ -53,7 +53,7 @@ constexpr std::array<Recipient, 4> kProfiles = {{
      .reader = "GTSAM's load2D",
      .formats = kGtsam,
      .tags = kPoseTags,
-     .least_id = 0,
+     .least_id = VertexId{0},
      .most_id = kMostKey,
      .zero_information = false},
     // Its pose_graph_2d knows two tags and stops at any other. It holds the vertex with

@@ -28,8 +28,8 @@ struct Recipient {
   /// vertices and edges that it reads, as our own formats call them
   std::span<const std::string_view> tags;
   Fixing fixing = Fixing::none;
-  VertexId least_id = std::numeric_limits<VertexId>::min();
-  VertexId most_id = std::numeric_limits<VertexId>::max();
+  VertexId least_id{std::numeric_limits<std::int64_t>::min()};
+  VertexId most_id{std::numeric_limits<std::int64_t>::max()};
   bool zero_information = true;      ///< it understands an axis without information
   bool parallel_edges = true;        ///< it counts a second edge between the same two vertices
   bool separate_parts = true;        ///< one file may hold parts that no edge joins

@@ -28,7 +28,7 @@ Fix fix_at(int second, FixStatus status) {
   fix.covariance = 4 * Eigen::Matrix2d::Identity();
   fix.status = status;
   fix.epoch = second;
-  fix.vertex = second + 1;
+  fix.vertex = VertexId(second + 1);
   return fix;
 }
 
@@ -44,8 +44,8 @@ std::vector<Fix> fixes_of(const std::string& word) {
   return fixes;
 }
 
-/// Poses eastward on the x axis, a second apart; odometry edges whose gyro is off by `bias`, with that bias
-/// estimated where `calibrated`.
+/// Poses eastward on the x axis, a second apart; odometry edges whose gyro is off by `bias`, with
+/// that bias estimated where `calibrated`.
 GraphDocument straight_drive(const std::string& word, double bias, bool calibrated) {
   GraphDocument document;
   document.fixes = fixes_of(word);
@@ -55,8 +55,8 @@ GraphDocument straight_drive(const std::string& word, double bias, bool calibrat
     poses.push_back(graph.add_vertex<VertexSe2>(fix.vertex, {fix.position.x(), 0, 0}));
     graph.set_stamp(poses.back(), fix.stamp);
   }
-  const VertexIndex scale = graph.add_vertex<VertexSpeedScale>(1000, {0.1});
-  const VertexIndex gyro = graph.add_vertex<VertexGyroBias>(1001, {bias});
+  const VertexIndex scale = graph.add_vertex<VertexSpeedScale>(VertexId{1000}, {0.1});
+  const VertexIndex gyro = graph.add_vertex<VertexGyroBias>(VertexId{1001}, {bias});
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     if (calibrated) {
       EdgeSe2OdometryCalibrated edge;

@@ -26,7 +26,7 @@ namespace {
 /// One pose at the origin, one prior that says it was at -error.
 Graph one_prior(const Eigen::Vector3d& error, const Eigen::Matrix3d& information) {
   Graph graph;
-  graph.add_vertex<VertexSe2>(7, {0, 0, 0});
+  graph.add_vertex<VertexSe2>(VertexId{7}, {0, 0, 0});
   EdgePriorSe2 prior;
   prior.measured = -error;
   graph.add_edge(prior, {0}, information);
@@ -78,7 +78,7 @@ TEST_CASE("residuals: noise as stated is white with variance 1 in every componen
   constexpr int kEdges = 20000;
   for (int i = 0; i < kEdges; ++i) {  // the pose is the error: the prior says the origin
     const Eigen::Vector3d e = root * Eigen::Vector3d(unit(random), unit(random), unit(random));
-    graph.add_vertex<VertexSe2>(i, {e[0], e[1], e[2]});
+    graph.add_vertex<VertexSe2>(VertexId(i), {e[0], e[1], e[2]});
     graph.add_edge(EdgePriorSe2{}, {i}, information);
   }
   const TypeResiduals type = residuals_by_type(graph).types.front();
@@ -117,8 +117,9 @@ TEST_CASE("residuals: after a fit the rms is what redundancy leaves") {
   REQUIRE(summary.converged());
   const GraphResiduals residuals = residuals_by_type(graph);
   CHECK(residuals.components == 3 * graph.edge_count());
-  // The information of this problem states a correlation that its noise does not have, which changes the
-  // expected square by trace(Omega Sigma) / 3; it is 1 here, as the diagonal of Omega is that of the noise.
+  // The information of this problem states a correlation that its noise does not have, which
+  // changes the expected square by trace(Omega Sigma) / 3; it is 1 here, as the diagonal of Omega
+  // is that of the noise.
   const double rms = std::sqrt(residuals.squared / static_cast<double>(residuals.components));
   CHECK(rms == Approx(residuals.expected_rms(summary.unknowns)).epsilon(0.15));
   CHECK(residuals.chi2 == Approx(graph.chi2()).epsilon(1e-12));
@@ -127,14 +128,14 @@ TEST_CASE("residuals: after a fit the rms is what redundancy leaves") {
 TEST_CASE("residuals: shares, weights and the largest edges") {
   Graph graph;
   for (int i = 0; i < 4; ++i) {
-    graph.add_vertex<VertexSe2>(10 * i, {1.0 * i, 0, 0});
+    graph.add_vertex<VertexSe2>(VertexId(10 * i), {1.0 * i, 0, 0});
     if (i > 0) graph.set_stamp(i, Stamp{i});
   }
   const Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
   for (int i = 0; i < 3; ++i)
     graph.add_edge(EdgeSe2{{1.0 + i, 0, 0}}, {i, i + 1}, information);  // off by 0, 1 and 2
-  EdgeBatchBase& priors = graph.add_edge(EdgePriorSe2{{-4, 0, 0}}, {0}, information);
-  priors.set_loss(huber(2));  // rho(16) = 2 * 2 * 4 - 4 = 12, rho' = 2 / 4
+  const EdgePlace wrong = graph.add_edge(EdgePriorSe2{{-4, 0, 0}}, {0}, information);
+  graph.batch(wrong.batch).set_loss(huber(2));  // rho(16) = 2 * 2 * 4 - 4 = 12, rho' = 2 / 4
   const GraphResiduals residuals = residuals_by_type(graph, 2);
   REQUIRE(residuals.types.size() == 2);
   CHECK(residuals.squared == Approx(21));
@@ -148,7 +149,7 @@ TEST_CASE("residuals: shares, weights and the largest edges") {
   REQUIRE(odometry.largest.size() == 2);
   CHECK(odometry.largest[0].residual.edge == 2);
   CHECK(odometry.largest[0].residual.squared == Approx(4));
-  CHECK(odometry.largest[0].vertices == std::vector<VertexId>{20, 30});
+  CHECK(odometry.largest[0].vertices == std::vector{VertexId{20}, VertexId{30}});
   CHECK(odometry.largest[0].residual.stamp == Stamp{3});
   CHECK(odometry.largest[0].whitened[0] == Approx(-2));
   CHECK(odometry.largest[1].residual.edge == 1);
@@ -160,9 +161,9 @@ TEST_CASE("residuals: shares, weights and the largest edges") {
 
 TEST_CASE("residuals: measurements, steps of a state, and what was said beforehand") {
   Graph graph;
-  graph.add_vertex<VertexGnssBias>(0, {0, 0});
-  graph.add_vertex<VertexGnssBias>(1, {0.5, 0});
-  graph.add_vertex<VertexSe2>(2, {0, 0, 0});
+  graph.add_vertex<VertexGnssBias>(VertexId{0}, {0, 0});
+  graph.add_vertex<VertexGnssBias>(VertexId{1}, {0.5, 0});
+  graph.add_vertex<VertexSe2>(VertexId{2}, {0, 0, 0});
   graph.add_edge(gaussian_prior_type(), std::array<VertexIndex, 1>{0}, std::array{0.0, 0.0, 0.0, 0.0},
                  Eigen::MatrixXd::Identity(2, 2));
   graph.add_edge(gaussian_prior_type(), std::array<VertexIndex, 2>{0, 2},
@@ -170,7 +171,7 @@ TEST_CASE("residuals: measurements, steps of a state, and what was said beforeha
                  Eigen::MatrixXd::Identity(5, 5));
   graph.add_edge(EdgeGnssBiasDecay{}, {0, 1}, 4 * Eigen::Matrix2d::Identity());
   graph.add_edge(EdgePriorSe2{}, {2}, Eigen::Matrix3d::Identity());
-  graph.add_vertex<VertexGyroBias>(3, {0});
+  graph.add_vertex<VertexGyroBias>(VertexId{3}, {0});
   graph.add_edge(EdgeGyroAtRest{}, {3}, Eigen::Matrix<double, 1, 1>(1.0));
   const GraphResiduals residuals = residuals_by_type(graph);
   REQUIRE(residuals.types.size() == 4);

@@ -19,7 +19,7 @@ namespace {
 /// Poses joined by relative edges, the first tied to the frame, so that all are unknowns.
 Graph joined(int poses, const std::vector<std::pair<int, int>>& edges) {
   Graph graph;
-  for (int i = 0; i < poses; ++i) graph.add_vertex<VertexSe2>(i, {1.0 * i, 0, 0});
+  for (int i = 0; i < poses; ++i) graph.add_vertex<VertexSe2>(VertexId(i), {1.0 * i, 0, 0});
   const Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
   graph.add_edge(EdgePriorSe2{}, {0}, information);
   for (const auto& [from, to] : edges)
@@ -58,7 +58,8 @@ TEST_CASE("sparsity: a chain has no fill") {
 }
 
 TEST_CASE("sparsity: a ring fills one block per pose between its ends, in any order") {
-  // Eliminating a pose of a ring joins its two neighbours: a ring of n - 1 remains, until three are left.
+  // Eliminating a pose of a ring joins its two neighbours: a ring of n - 1 remains, until three are
+  // left.
   constexpr int kPoses = 40;
   auto edges = chain(kPoses);
   edges.emplace_back(0, kPoses - 1);
@@ -136,7 +137,7 @@ TEST_CASE("sparsity: the factor is as large as solvers say") {
 
 TEST_CASE("sparsity: held and fixed vertices are no unknowns") {
   Graph loose;
-  for (int i = 0; i < 3; ++i) loose.add_vertex<VertexSe2>(i, {1.0 * i, 0, 0});
+  for (int i = 0; i < 3; ++i) loose.add_vertex<VertexSe2>(VertexId(i), {1.0 * i, 0, 0});
   for (int i = 0; i < 2; ++i) loose.add_edge(EdgeSe2{{1, 0, 0}}, {i, i + 1}, Eigen::Matrix3d::Identity());
   CHECK(sparsity_of(loose).columns == 2);  // the first is held for the gauge
   loose.set_fixed(1, true);

@@ -55,7 +55,7 @@ TEST_CASE("benchmark: phases are those of the median run, ratios are paired run 
 
 TEST_CASE("benchmark: every run starts from a fresh copy, all contestants in turn") {
   Graph graph;
-  graph.add_vertex<VertexXy>(0, {1.0, 2.0});
+  graph.add_vertex<VertexXy>(VertexId{0}, {1.0, 2.0});
   std::string order;
   const auto contestant = [&](char name) {
     return Contestant{std::string(1, name), "", false, [&order, name](Graph& g) {

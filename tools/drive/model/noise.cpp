@@ -56,8 +56,8 @@ class Objective {
     OptimizerOptions options;
     options.decrement_tolerance = 1e-7;
     options.max_iterations = 60;
-    const Summary summary = optimize(graph, structure_, *algorithm_, cholesky_, options);
-    const double found = evidence(graph, structure_, cholesky_).negative_log();
+    const Summary summary = optimize(graph, kept_, *algorithm_, options);
+    const double found = evidence(graph, kept_.structure(), cholesky_).negative_log();
     if (summary.converged() && std::isfinite(found)) values_ = graph.values();
     double cost = found;
     for (const NoiseParameter& parameter : noise.parameters) {
@@ -78,16 +78,15 @@ class Objective {
       return;
     }
     if (evaluations_ > 1) return;
-    structure_.build(graph, find_gauge(graph).held);
-    cholesky_.analyze(structure_.pattern());
+    kept_.build(graph, find_gauge(graph).held);
   }
 
   PlacedDrive coarse_;
   const FusionSettings& settings_;
   const TypeRegistry& registry_;
   std::unique_ptr<Algorithm> algorithm_;
-  Structure structure_;
   BlockCholesky cholesky_;
+  StructuredSolver kept_{cholesky_};
   std::vector<double> values_;
   int evaluations_ = 0;
 };

@@ -38,7 +38,7 @@ struct PlacedDrive {
 
 /// Returns the vertex of a node.
 [[nodiscard]] inline VertexId vertex_of(std::size_t node) {
-  return static_cast<VertexId>(node) + 1;
+  return VertexId(node + 1);
 }
 
 /// Runs the gate and computes the initial guess.

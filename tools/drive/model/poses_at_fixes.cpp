@@ -82,13 +82,13 @@ std::vector<StampedPose> poses_at_fixes(const formats::GraphDocument& document) 
     const auto vertex = document.graph.find(fix.vertex);
     if (!vertex || document.graph.vertex_type(*vertex).tag != VertexSe2::kTag ||
         !document.graph.stamp(*vertex)) {
-      throw InputError("fix of epoch " + std::to_string(fix.epoch) + ": its vertex " +
-                       std::to_string(fix.vertex) + " is no pose with a stamp");
+      throw InputError("fix of epoch " + std::to_string(fix.epoch) + ": its vertex " + to_string(fix.vertex) +
+                       " is no pose with a stamp");
     }
     const Stamp stamp = *document.graph.stamp(*vertex);
     if (std::abs(seconds_between(fix.stamp, stamp)) > kLargestSnap) {
       throw InputError("fix of epoch " + std::to_string(fix.epoch) +
-                       ": its stamp is not that of its vertex " + std::to_string(fix.vertex));
+                       ": its stamp is not that of its vertex " + to_string(fix.vertex));
     }
     const auto value = document.graph.value(*vertex);
     poses.push_back({stamp, {value[0], value[1], value[2]}});

@@ -17,6 +17,7 @@
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

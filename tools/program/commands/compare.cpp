@@ -7,6 +7,7 @@
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/tools/report/comparison/comparison_page.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

@@ -9,6 +9,7 @@
 #include <waymark/tools/program/jobs/plugin_list.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

@@ -69,8 +69,8 @@ ExitCode optimize_file(const OptimizeOptions& options) {
     console.result(json_document("optimize", json), to_stdout);
   } else {
     const std::string outliers = graduated ? graduation_text(graduated->result) : "";
-    console.result(summary_text(result) + evaluation::states_text(states, console.look(to_stdout)) +
-                       outliers + "written     " + written + "\n",
+    console.result(result.full() + evaluation::states_text(states, console.look(to_stdout)) + outliers +
+                       "written     " + written + "\n",
                    to_stdout);
   }
   return exit_code(result.summary);

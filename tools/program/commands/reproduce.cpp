@@ -16,6 +16,7 @@
 #include <waymark/tools/reproduction/experiment/experiment.hpp>
 #include <waymark/tools/reproduction/page/reproduction_page.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

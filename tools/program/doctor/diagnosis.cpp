@@ -20,6 +20,7 @@
 #include <waymark/tools/program/doctor/self_test.hpp>
 #include <waymark/tools/program/jobs/plugin_list.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

@@ -57,8 +57,8 @@ KnownProblem known_problem() {
     const double away =
         // the initial guess is wrong by some decimetres and degrees
         i == 0 ? 0 : 0.3 * std::sin(1.7 * i);
-    problem.graph.add_vertex<VertexSe2>(
-        i, {pose.position[0] + away, pose.position[1] - away, wrap_angle(pose.heading + 0.2 * away)});
+    problem.graph.add_vertex<VertexSe2>(VertexId(i), {pose.position[0] + away, pose.position[1] - away,
+                                                      wrap_angle(pose.heading + 0.2 * away)});
   }
   problem.graph.set_fixed(0, true);
   for (int i = 0; i + 1 < kPoses; ++i) {

@@ -3,6 +3,7 @@
 #include <waymark/tools/drive/logs/sensor_logs.hpp>
 #include <waymark/tools/drive/logs/synchronise.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

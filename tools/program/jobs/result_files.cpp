@@ -8,6 +8,7 @@
 #include <waymark/tools/program/jobs/trajectory_files.hpp>
 #include <waymark/tools/report/comparison/comparison_page.hpp>
 #include <waymark/tools/report/drive/drive_report.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

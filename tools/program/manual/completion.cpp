@@ -13,6 +13,7 @@
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/manual/option_text.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

@@ -10,6 +10,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/program/command_line.hpp>
 #include <waymark/tools/program/manual/option_text.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {

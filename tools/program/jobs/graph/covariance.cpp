@@ -10,6 +10,7 @@
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/jobs/graph/covariance.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 namespace {
@@ -79,7 +80,7 @@ void write_csv(const formats::GraphDocument& document, const formats::TextSink& 
     fields.assign(columns.names().size(), "");
     auto place = columns.places(tag).begin();
     for_upper_triangle(block.covariance, [&](double number) { fields[*place++] = fmt::to_string(number); });
-    line = fmt::format("{},{},", document.graph.id(block.vertex), tag);
+    line = fmt::format("{},{},", to_number(document.graph.id(block.vertex)), tag);
     if (const auto stamp = document.graph.stamp(block.vertex)) line += fmt::to_string(stamp->nanoseconds);
     for (const std::string& field : fields) line += "," + field;
     sink(line + "\n");
@@ -104,7 +105,7 @@ Json held_json(const Graph& graph) {
   const Gauge gauge = find_gauge(graph);
   Json held = Json::array();
   for (std::size_t v = 0; v < gauge.held.size(); ++v) {
-    if (gauge.held[v] != 0) held.push_back(graph.id(static_cast<VertexIndex>(v)));
+    if (gauge.held[v] != 0) held.push_back(to_number(graph.id(static_cast<VertexIndex>(v))));
   }
   return {{"vertices", held}, {"notes", gauge.messages}};
 }
@@ -144,7 +145,7 @@ void write_json(const formats::GraphDocument& document, const Summary& summary,
   sink(text + ",\n  \"covariances\": [");
   const char* separator = "\n    ";
   for (const formats::VertexCovariance& block : document.covariances) {
-    Json line = {{"id", document.graph.id(block.vertex)},
+    Json line = {{"id", to_number(document.graph.id(block.vertex))},
                  {"tag", document.graph.vertex_type(block.vertex).tag}};
     if (const auto stamp = document.graph.stamp(block.vertex)) line["stamp_ns"] = stamp->nanoseconds;
     Json& numbers = line["upper_triangle"] = Json::array();

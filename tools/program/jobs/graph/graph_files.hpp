@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <waymark/formats/graph/foreign_graph.hpp>
+#include <waymark/formats/graph/detail/foreign_graph.hpp>
 #include <waymark/tools/program/terminal/console.hpp>
 
 namespace waymark::program {

@@ -3,6 +3,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/terminal/iteration_table.hpp>
+#include <waymark/version.hpp>
 
 namespace waymark::program {
 
@@ -71,24 +72,6 @@ void warn(const std::string& warning, formats::GraphDocument& document, const Co
 ExitCode exit_code(const Summary& summary) {
   if (summary.termination == Termination::interrupted) return kInterrupted;
   return summary.converged() ? kSuccess : kNotConverged;
-}
-
-std::string summary_text(const MultiStartSummary& result) {
-  const Summary& s = result.summary;
-  std::string text;
-  text += fmt::format("{}\n", s.message);
-  text += fmt::format("chi2        {:.10g} -> {:.10g}   (errors: {})\n", s.initial_chi2, s.final_chi2,
-                      s.error_forms);
-  text += fmt::format("iterations  {}   start {}, algorithm {}, solver {}, ordering {}\n", s.iterations,
-                      result.start, s.algorithm, s.solver, s.ordering);
-  text += fmt::format("size        {} vertices, {} edges, {} unknowns, {} numbers in the factor\n",
-                      s.vertices, s.edges, s.unknowns, s.factor_size);
-  text += fmt::format("time        {:.3f} s (structure {:.3f}, linearise {:.3f}, solve {:.3f})\n",
-                      s.total_seconds, s.structure_seconds, s.linearize_seconds, s.solve_seconds);
-  if (result.trials.size() > 1) {
-    text += fmt::format("all starts  {:.3f} s for {} of them\n", result.total_seconds, result.trials.size());
-  }
-  return text;
 }
 
 }  // namespace waymark::program

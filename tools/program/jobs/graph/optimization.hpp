@@ -46,7 +46,4 @@ void warn(const std::string& warning, formats::GraphDocument& document, const Co
 /// Converts "name=value" pairs to Options. @throws UsageError
 [[nodiscard]] Options parse_options(const std::vector<std::string>& pairs);
 
-/// Returns a few lines for the terminal.
-[[nodiscard]] std::string summary_text(const MultiStartSummary& result);
-
 }  // namespace waymark::program

@@ -55,8 +55,8 @@ void describe(const Graph& graph, EdgePlace place, formats::TextBuilder& lines,
   lines.word(type.tag);
   if (type.arity == EdgeType::kRuntimeArity) lines.integer(static_cast<std::int64_t>(vertices.size()));
   for (const VertexIndex v : vertices) {
-    lines.integer(graph.id(v));
-    ids.push_back(graph.id(v));
+    lines.integer(to_number(graph.id(v)));
+    ids.push_back(to_number(graph.id(v)));
   }
   std::vector<double> fields;
   batch.fields(place.edge, fields);

@@ -1,4 +1,4 @@
-#include <waymark/formats/graph/foreign_graph.hpp>
+#include <waymark/formats/graph/detail/foreign_graph.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +72,7 @@ std::string ForeignGraph::place(std::size_t batch, std::size_t edge) const {
   std::string text = graph_.edge_type(batch).tag;
   for (const VertexIndex v : graph_.batch(batch).vertices(edge)) {
     text += " ";
-    text += std::to_string(graph_.id(v));
+    text += to_string(graph_.id(v));
   }
   return text + " (number " + std::to_string(edge + 1) + ")";
 }
@@ -80,23 +80,23 @@ std::string ForeignGraph::place(std::size_t batch, std::size_t edge) const {
 void ForeignGraph::check_vertices() const {
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph_.vertex_count()); ++v) {
     const std::string& tag = graph_.vertex_type(v).tag;
-    if (!takes(tag)) refuse(tag + " " + std::to_string(graph_.id(v)), "has no such vertex", kHoldsAll);
+    if (!takes(tag)) refuse(tag + " " + to_string(graph_.id(v)), "has no such vertex", kHoldsAll);
   }
 }
 
 // Ids in range are kept. The others become the lowest free ids.
 void ForeignGraph::choose_ids() {
   ids_.resize(graph_.vertex_count());
-  VertexId next = std::max<VertexId>(recipient_.least_id, 0);
+  std::int64_t next = std::max<std::int64_t>(to_number(recipient_.least_id), 0);
   std::size_t changed = 0;
   std::string first;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(ids_.size()); ++v) {
     const VertexId id = graph_.id(v);
     ids_[at(v)] = id;
     if (id >= recipient_.least_id && id <= recipient_.most_id) continue;
-    while (graph_.find(next)) ++next;
-    if (changed++ == 0) first = "vertex " + std::to_string(id) + " is " + std::to_string(next) + " there";
-    ids_[at(v)] = next++;
+    while (graph_.find(VertexId{next})) ++next;
+    if (changed++ == 0) first = "vertex " + to_string(id) + " is " + std::to_string(next) + " there";
+    ids_[at(v)] = VertexId{next++};
   }
   if (changed == 0) return;
   if (changed > 1) first += ", and so on for " + std::to_string(changed - 1) + " more";
@@ -182,12 +182,12 @@ void ForeignGraph::check_fixing() {
   const auto lowest = std::min_element(ids_.begin(), ids_.end()) - ids_.begin();
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph_.vertex_count()); ++v) {
     if (!graph_.fixed(v)) continue;
-    const std::string fix = "FIX " + std::to_string(graph_.id(v));
+    const std::string fix = "FIX " + to_string(graph_.id(v));
     const auto [other, first] = fixed_in.emplace(parts.of(v), v);
     if (!first || !all_relative) {
       refuse(fix,
              "has no FIX" + (first ? std::string(", and the edges alone do not make up for it")
-                                   : ", and vertex " + std::to_string(graph_.id(other->second)) +
+                                   : ", and vertex " + to_string(graph_.id(other->second)) +
                                          ", fixed too, is joined to this one"),
              kFixRemedy);
     }
@@ -217,8 +217,8 @@ void ForeignGraph::check_parts() const {
   Parts parts(graph_);
   for (VertexIndex v = 1; v < static_cast<VertexIndex>(graph_.vertex_count()); ++v) {
     if (parts.of(v) == parts.of(0)) continue;
-    refuse("vertex " + std::to_string(graph_.id(v)),
-           "takes one connected graph, and no edges join this vertex to " + std::to_string(graph_.id(0)),
+    refuse("vertex " + to_string(graph_.id(v)),
+           "takes one connected graph, and no edges join this vertex to " + to_string(graph_.id(0)),
            "write the parts as files of their own");
   }
 }
@@ -243,7 +243,7 @@ std::string ForeignGraph::left_out() const {
 void ForeignGraph::write_edge(const ForeignEdge& edge, TextBuilder& out) const {
   const bool g2o = format_ == GraphFormat::g2o;
   out.word(g2o ? edge.tag : std::string_view("EDGE2"));
-  for (const VertexIndex v : edge.vertices) out.integer(ids_[at(v)]);
+  for (const VertexIndex v : edge.vertices) out.integer(to_number(ids_[at(v)]));
   if (has_offsets(edge.tag)) {
     offsets_.write_fields(edge.tag, edge.fields, out);
   } else {
@@ -266,12 +266,12 @@ void ForeignGraph::write(const TextSink& sink) const {
   offsets_.write(out);
   const bool g2o = format_ == GraphFormat::g2o;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph_.vertex_count()); ++v) {
-    out.word(g2o ? std::string_view(graph_.vertex_type(v).tag) : "VERTEX2").integer(ids_[at(v)]);
+    out.word(g2o ? std::string_view(graph_.vertex_type(v).tag) : "VERTEX2").integer(to_number(ids_[at(v)]));
     for (const double value : graph_.value(v)) out.number(value);
     out.end_line();
   }
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph_.vertex_count()); ++v) {
-    if (graph_.fixed(v) && recipient_.fixing == Fixing::stated) out.line("FIX", ids_[at(v)]);
+    if (graph_.fixed(v) && recipient_.fixing == Fixing::stated) out.line("FIX", to_number(ids_[at(v)]));
   }
   ForeignEdge said;
   for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
@@ -281,6 +281,12 @@ void ForeignGraph::write(const TextSink& sink) const {
     }
   }
   out.finish();
+}
+
+void write_graph_as(GraphFormat format, const GraphDocument& document, const std::string& name,
+                    const TextSink& sink) {
+  if (format == GraphFormat::graph) throw UsageError("write_graph_as: write_graph() writes our own format");
+  ForeignGraph(document, name, any_reader(format), format).write(sink);
 }
 
 }  // namespace waymark::formats
