@@ -1,5 +1,9 @@
 // What the installed tree must be, and which flags a plugin may not be built with.
 #include <filesystem>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
 
 #include <catch2/catch.hpp>
 
@@ -29,6 +33,26 @@ RunResult check_flags(const std::string& variable, const std::string& flags,
                                                      "/cmake/waymark/waymark_add_plugin.cmake)\n"
                                                      "waymark_check_plugin_flags(antenna)\n");
   return run({"-D" + variable + "=" + flags, "-DCMAKE_BUILD_TYPE=Release", "-P", script}, {.program = CMAKE});
+}
+
+/// The names in one list of tools/cmake/public_headers.cmake.
+std::set<std::string> header_list(const std::string& list) {
+  const std::string text = read_text(WAYMARK_SOURCE_DIR "/tools/cmake/public_headers.cmake");
+  const auto begin = text.find("set(" + list) + 4 + list.size();
+  std::istringstream words(text.substr(begin, text.find(')', begin) - begin));
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+/// Adds a header and all of ours that it includes.
+void add_with_includes(const std::string& folder, const std::string& header, std::set<std::string>& found) {
+  if (!found.insert(header).second) return;
+  std::istringstream lines(read_text(folder + header));
+  for (std::string line; std::getline(lines, line);) {
+    const std::string start = "#include <waymark/";
+    if (line.starts_with(start)) {
+      add_with_includes(folder, line.substr(start.size(), line.find('>') - start.size()), found);
+    }
+  }
 }
 
 }  // namespace
@@ -62,9 +86,41 @@ TEST_CASE("installed: the shared library has a version and a soname") {
   CHECK(contains(result.out, "soname: [" INSTALLED_SONAME "]"));
 }
 
-TEST_CASE("installed: only headers of rooms that are libraries") {
-  CHECK(names_in(kPrefix + "/include/waymark") ==
-        std::vector<std::string>{"core", "formats", "plugins", "solvers", "types_se2"});
+TEST_CASE("installed: the public headers, those that they must include, and no others") {
+  const std::set<std::string> promised = header_list("WAYMARK_PUBLIC_HEADERS");
+  const std::set<std::string> included = header_list("WAYMARK_INCLUDED_HEADERS");
+  REQUIRE(promised.size() > 50);
+  std::set<std::string> installed;
+  const std::string folder = kPrefix + "/include/waymark/";
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) installed.insert(fs::relative(entry.path(), folder));
+  }
+  std::set<std::string> listed = promised;
+  listed.insert(included.begin(), included.end());
+  listed.insert("version.hpp");
+  CHECK(installed == listed);
+
+  std::set<std::string> needed = {"version.hpp"};
+  for (const std::string& header : promised) add_with_includes(folder, header, needed);
+  CHECK(needed == listed);
+  for (const std::string& header : promised) {
+    INFO(header);
+    CHECK_FALSE(contains(header, "/detail/"));
+  }
+  for (const std::string& header : included) {
+    INFO(header);
+    CHECK(contains(header, "/detail/"));
+  }
+}
+
+TEST_CASE("installed: headers of the shared library show their names, nothing else does") {
+  for (const auto& entry : fs::recursive_directory_iterator(WAYMARK_SOURCE_DIR "/core")) {
+    if (entry.path().extension() != ".hpp" || entry.path().filename() == "export.hpp") continue;
+    const std::string header = fs::relative(entry.path(), WAYMARK_SOURCE_DIR);
+    INFO(header);
+    CHECK(contains(read_text(entry.path()), "\nnamespace WAYMARK_EXPORT waymark {") ==
+          fs::exists(kPrefix + "/include/waymark/" + header));
+  }
 }
 
 TEST_CASE(

@@ -2,7 +2,6 @@
 # and pkg-config files, plugin template), plugins (modules that are not built into the program).
 include(CMakePackageConfigHelpers)
 
-set(rooms core types_se2 solvers formats plugins)
 set(cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/waymark")
 set(plugin_libraries "")
 foreach(name ${WAYMARK_BUILTIN_NAMES})
@@ -18,7 +17,7 @@ file(RELATIVE_PATH bin_to_lib "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FU
 set_target_properties(waymark PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
 
 install(TARGETS waymark RUNTIME COMPONENT runtime)
-install(TARGETS waymark_core waymark_types_se2 waymark_solvers waymark_formats waymark_plugins ${plugin_libraries}
+install(TARGETS waymark_core waymark_types_se2 waymark_solvers waymark_formats waymark_drive waymark_plugins ${plugin_libraries}
                 waymark_settings EXPORT waymark_targets
   LIBRARY COMPONENT runtime NAMELINK_COMPONENT dev
   ARCHIVE COMPONENT dev)
@@ -26,14 +25,13 @@ foreach(name ${WAYMARK_MODULE_NAMES})
   install(TARGETS waymark_module_${name} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/waymark/plugins" COMPONENT plugins)
 endforeach()
 
-# Headers under the spelling of the build tree, <waymark/core/graph.hpp>.
-foreach(room ${rooms})
-  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/${room}/*.hpp")
-  foreach(header ${headers})
-    get_filename_component(folder "${header}" DIRECTORY)
-    install(FILES "${PROJECT_SOURCE_DIR}/${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/waymark/${folder}" COMPONENT dev)
-  endforeach()
+# Headers under the spelling of the build tree, <waymark/core/graph/graph.hpp>: those of the two lists and the version.
+include(public_headers)
+foreach(header ${WAYMARK_PUBLIC_HEADERS} ${WAYMARK_INCLUDED_HEADERS})
+  get_filename_component(folder "${header}" DIRECTORY)
+  install(FILES "${PROJECT_SOURCE_DIR}/${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/waymark/${folder}" COMPONENT dev)
 endforeach()
+install(FILES "${WAYMARK_INCLUDE_DIR}/waymark/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/waymark" COMPONENT dev)
 
 set(WAYMARK_PLUGIN_FOLDER "${CMAKE_INSTALL_LIBDIR}/waymark/plugins")
 configure_package_config_file(tools/cmake/waymark_config.cmake.in "${PROJECT_BINARY_DIR}/package/waymark-config.cmake"
@@ -43,6 +41,7 @@ install(EXPORT waymark_targets NAMESPACE waymark:: DESTINATION "${cmake_folder}"
 install(FILES
   "${PROJECT_BINARY_DIR}/package/waymark-config.cmake" "${PROJECT_BINARY_DIR}/package/waymark-config-version.cmake"
   tools/cmake/waymark_add_plugin.cmake tools/cmake/FindCholmod.cmake tools/cmake/FindCXSparse.cmake
+  tools/cmake/FindGeographicLib.cmake
   DESTINATION "${cmake_folder}" COMPONENT dev)
 
 # pkg-config: static libraries in link order, then what the backends need.
@@ -63,7 +62,9 @@ file(RELATIVE_PATH WAYMARK_PC_TO_PREFIX "/prefix/${pc_folder}" "/prefix")
 string(REGEX REPLACE "/$" "" WAYMARK_PC_TO_PREFIX "${WAYMARK_PC_TO_PREFIX}")
 configure_file(tools/cmake/waymark_core.pc.in "${PROJECT_BINARY_DIR}/package/waymark-core.pc" @ONLY)
 configure_file(tools/cmake/waymark.pc.in "${PROJECT_BINARY_DIR}/package/waymark.pc" @ONLY)
+configure_file(tools/cmake/waymark_drive.pc.in "${PROJECT_BINARY_DIR}/package/waymark-drive.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/package/waymark-core.pc" "${PROJECT_BINARY_DIR}/package/waymark.pc"
+              "${PROJECT_BINARY_DIR}/package/waymark-drive.pc"
   DESTINATION "${pc_folder}" COMPONENT dev)
 
-install(DIRECTORY examples/plugin_template examples/extensions DESTINATION "${CMAKE_INSTALL_DATADIR}/waymark" COMPONENT dev)
+install(DIRECTORY examples/plugin_template examples/extensions examples/programs DESTINATION "${CMAKE_INSTALL_DATADIR}/waymark" COMPONENT dev)
