@@ -26,7 +26,7 @@ int main() {
     const auto solver = registry.make_linear_solver(type.name);
     waymark::Graph graph = document.graph;
     const waymark::Summary summary = optimize(graph, *algorithm, *solver, {});
-    const auto pose = graph.value(*graph.find(VertexId{2}));
+    const auto pose = graph.value(*graph.find(waymark::VertexId{2}));
     std::printf("%s: %s: %.6f %.6f %.6f\n", type.name.c_str(), summary.message.c_str(), pose[0], pose[1],
                 pose[2]);
     if (!summary.converged() || std::hypot(pose[0] - 6, pose[1], pose[2]) > 1e-6) return 1;
