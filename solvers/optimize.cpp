@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-/// From the values at hand, or from those of one start.
+/// Optimises from the present values, or from those of one start.
 MultiStartSummary optimize_from(const std::string& start, Graph& graph, const TypeRegistry& registry,
                                 Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& limits) {
   InitialValues made;

@@ -1,15 +1,16 @@
-/// The front door of the library: the minimum of a graph by one call, as the program finds it.
+/// The front door of the library: finds the minimum of a graph in one call, as the program does.
 /// @code
 ///   Graph graph;
 ///   graph.add_vertex<VertexSe2>(VertexId{1}, {0, 0, 0});
 ///   ...
 ///   const MultiStartSummary summary = optimize(graph);
 ///   show(summary.brief());
-/// @endcode Who wants to hold algorithm and solver in hand calls optimize() of
+/// @endcode
+/// A caller with its own algorithm and solver uses optimize() of
 /// <waymark/core/optimize/optimizer.hpp>.
 ///
-/// Ownership, threads and observer are those of that function. Every call has its own registry,
-/// algorithm and solver, so calls on different graphs may run side by side.
+/// Ownership, threads and observer are those of optimize() there. Every call has its own registry,
+/// algorithm and solver, so calls for different graphs may run at the same time.
 #pragma once
 
 #include <string>
@@ -19,26 +20,27 @@
 
 namespace waymark {
 
-/// How optimize() goes about it. Every default is the program's.
+/// The settings of optimize(). Every default is that of the program.
 struct Optimization {
-  /// "auto": from the graph's own values, and from others if their minimum is implausible
-  /// (multi_start.hpp); "file": from the graph's own values; or the name of a registered start:
-  /// "odometry", "spanning_tree", "linear".
+  /// "auto": begin at the values of the graph, and at others if their minimum is implausible
+  /// (multi_start.hpp). "file": begin at the values of the graph. Otherwise it is the name of a
+  /// registered start: "odometry", "spanning_tree", "linear".
   std::string start = "auto";
   std::string algorithm = "dogleg";
   Options algorithm_options = {};
-  std::string solver = "auto";   ///< "auto": the one registered first, which was the fastest measured
+  /// "auto": the first one registered, which is the fastest in measurements
+  std::string solver = "auto";
   OptimizerOptions limits = {};  ///< stopping rules, threads, observer, cancel token
 };
 
-/// Minimises chi2 with the solvers and starts that come with the library; on return the graph holds
-/// the best values found.
+/// Minimises chi2 with the solvers and starts of the library. Afterwards the graph holds the best
+/// values found.
 /// @throws UsageError for a name or option that does not exist; InputError if the gauge is
-/// undetermined
-///         (find_gauge), or if the start asked for cannot be made
+/// undetermined (find_gauge), or if the chosen start cannot be computed
 MultiStartSummary optimize(Graph& graph, const Optimization& how = {});
 
-/// The same with the solvers, algorithms and starts of a registry, those of plugins among them.
+/// Does the same with the solvers, algorithms and starts of a registry, which may come
+/// from plugins.
 MultiStartSummary optimize(Graph& graph, const TypeRegistry& registry, const Optimization& how = {});
 
 }  // namespace waymark

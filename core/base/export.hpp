@@ -1,4 +1,4 @@
-/// The one mark of what the shared library shows: namespaces of public headers bear it, everything
+/// The export macro of the shared library. Namespaces of public headers have it; everything
 /// else is hidden.
 #pragma once
 

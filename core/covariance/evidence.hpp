@@ -16,7 +16,7 @@
 /// search would find heavy-tailed noise that is not there. Second-order terms are left out, because
 /// some edges keep them and others do not, so the result would jump.
 ///
-/// Nothing is kept after a call; the graph may be read by others meanwhile.
+/// The functions keep nothing after a call. Other threads may read the graph meanwhile.
 #pragma once
 
 #include <waymark/core/base/export.hpp>

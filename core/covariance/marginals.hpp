@@ -1,9 +1,9 @@
 /// Marginal covariances at a minimum: blocks of H^-1 from a fresh undamped factor.
 ///
-/// Marginals refers to the graph, which must outlive it and keep its values and edges meanwhile;
-/// the blocks that it returns are the caller's own. Threads: blocks() and joint() may not run side
-/// by side on one object. Precondition: vertices are indices of this graph; the values are a
-/// minimum, else the covariances say nothing about it.
+/// Marginals refers to the graph, which must outlive it; its values and edges must not change
+/// meanwhile. The returned blocks belong to the caller. Threads: blocks() and joint() must not run
+/// at the same time on one object. Preconditions: vertices are indices of this graph. The values
+/// are a minimum, because covariances mean nothing elsewhere.
 #pragma once
 
 #include <span>

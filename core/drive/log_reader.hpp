@@ -3,11 +3,11 @@
 /// memory. It never guesses silently: its assumptions go into `notes`, and it counts unusable
 /// records in `corrupt`.
 ///
-/// Ownership: a decoder belongs to the caller of open(), and so does the data that is moved out of
-/// it. Lifetime: a decoder may outlive its request and its reader's caller, not its reader; a piece
-/// given to take() need not outlive the call. Threads: a reader is stateless and may be used by any
-/// number of threads; a decoder by one at a time. Precondition: finish() is called once, after the
-/// last take().
+/// Ownership: a decoder belongs to the caller of open(), and so does data that is moved out of it.
+/// Lifetime: a decoder may outlive its request, but not its reader. A piece given to take() is used
+/// only during the call. Threads: a reader has no state, so any number of threads may use it; a
+/// decoder may only be used by one thread at a time. Precondition: finish() is called once, after
+/// the last take().
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 /// The interfaces through which a drive becomes a graph. Odometry intervals become edges; GNSS
 /// fixes and readings of further sensors become vertices and edges. Implementations are plugins.
 ///
-/// Spans in inputs hold during build() only. A model is used by one thread at a time and may be
-/// used again; its factory's caller owns it.
+/// Spans in inputs are valid only during build(). One thread at a time may use a model, and it may
+/// be used again. It belongs to the caller of its factory.
 #pragma once
 
 #include <functional>

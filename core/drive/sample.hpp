@@ -2,7 +2,7 @@
 /// They are plain structs, with units and frames in the names or beside them. Angles are radians
 /// unless a name says otherwise.
 ///
-/// All of them own what they hold; copies share nothing.
+/// They own their data; copies share nothing.
 #pragma once
 
 #include <cmath>
@@ -86,7 +86,7 @@ struct Fix {
   double grid_scale = 1;  ///< grid metres per metre on the ground at this place (UTM point scale)
   int epoch = 0;          ///< running number of the fix in the drive
   int source = 0;         ///< index of the receiver
-  VertexId vertex{-1};    ///< the pose vertex at this epoch, -1 before the graph is built
+  VertexId vertex{-1};    ///< pose vertex at this epoch; -1 before the graph is built
 
   FixStatus status = FixStatus::accepted;
   std::string reason = "unjudged";  ///< one word, see tools/drive/nodes/gate.hpp

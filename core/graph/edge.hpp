@@ -26,8 +26,8 @@
 /// - `void prepare();` is called once after the fields are set. It stores what depends only on the
 ///   measurement.
 ///
-/// An edge is a plain value that a graph copies; error(), linearize() and prepare() must not keep
-/// state elsewhere, because several threads call them side by side.
+/// An edge is a plain value that a graph copies. error(), linearize() and prepare() must not keep
+/// state elsewhere, because several threads call them at the same time.
 #pragma once
 
 #include <concepts>

@@ -1,8 +1,9 @@
 /// Edge batches: all edges of one type in one contiguous array. A pass needs one virtual
 /// call per type.
 ///
-/// Batches belong to their graph (graph.hpp says how long references and spans hold). const
-/// functions may run side by side; precondition everywhere: an edge number is below size().
+/// Batches belong to their graph; graph.hpp says how long references and spans are valid. Several
+/// threads may call const functions at the same time. Precondition of all functions: an edge number
+/// is below size().
 #pragma once
 
 #include <compare>
@@ -28,7 +29,8 @@ struct BlockTarget {
   std::int32_t stride = 0;
 };
 
-/// Names an edge of a graph: its batch and its place there. Holds until vertices are removed.
+/// Names an edge of a graph: its batch and its place in the batch. It is valid until vertices
+/// are removed.
 struct EdgePlace {
   std::size_t batch = 0;
   std::size_t edge = 0;

@@ -1,7 +1,7 @@
 /// The field list of a type is its schema. Parsing, writing, `waymark info`, checks and fuzzing are
 /// all based on it.
 ///
-/// All of it is constant data.
+/// All data here are constant.
 #pragma once
 
 #include <string>
@@ -23,8 +23,7 @@ struct FieldInfo {
   friend bool operator==(const FieldInfo&, const FieldInfo&) = default;
 };
 
-/// A field of the edge struct E, with access to its numbers.
-/// A field of the edge struct E: where its numbers are, for reading and for setting.
+/// A field of the edge struct E, with functions that read and set its numbers.
 template <typename E>
 struct Field {
   std::string_view name;
@@ -46,7 +45,7 @@ struct MemberPointer<V E::*> {
 }  // namespace detail
 
 /// Makes a Field from a member that is a double or a fixed-size Eigen vector:
-/// field<&EdgeSe2::measured>("measured"). Of a member that E inherits: field<&Base::change,
+/// field<&EdgeSe2::measured>("measured"). For a member that E inherits, it is field<&Base::change,
 /// E>("change").
 template <auto Member, typename E = typename detail::MemberPointer<decltype(Member)>::Class>
 [[nodiscard]] constexpr auto field(std::string_view name) {

@@ -1,6 +1,6 @@
 /// Compares the Jacobians of edges with derivatives that nobody wrote by hand.
 ///
-/// Everything here works on copies and may run side by side.
+/// All functions work on copies, so several threads may call them.
 #pragma once
 
 #include <optional>

@@ -5,11 +5,11 @@
 /// gives equal bits.
 ///
 /// Ownership: a graph owns its vertices and edges; a copy is deep and shares nothing. Lifetime: a
-/// span of values, a ValueView and a reference to a vertex type hold until a vertex is added or
-/// removed; a reference to a batch holds until the graph is copied onto, moved or destroyed;
-/// indices and EdgePlace hold until vertices are removed. Threads: any number may read one graph;
-/// who writes must be alone. Precondition of everything that takes a VertexIndex, an EdgePlace or a
-/// batch number: it is of this graph. Only add_edge() checks that.
+/// span of values, a ValueView and a reference to a vertex type are valid until a vertex is added
+/// or removed. A reference to a batch is valid until the graph is assigned, moved or destroyed.
+/// Indices and EdgePlace are valid until vertices are removed. Threads: any number may read a
+/// graph; a thread that writes must be the only one. Precondition: every VertexIndex, EdgePlace or
+/// batch number belongs to this graph. Only add_edge() checks this.
 #pragma once
 
 #include <array>
@@ -74,7 +74,7 @@ class Graph {
     static const VertexType type = make_vertex_type<V>();
     return add_vertex(type, id, value);
   }
-  /// The same from a value: add_vertex<VertexSe2>(VertexId{1}, pose).
+  /// Adds a vertex with a value of its type: add_vertex<VertexSe2>(VertexId{1}, pose).
   template <Vertex V, std::same_as<VertexValue<V>> Value>
   VertexIndex add_vertex(VertexId id, const Value& value) {
     return add_vertex<V>(id, numbers_of_value<V>(value));
@@ -94,16 +94,16 @@ class Graph {
   [[nodiscard]] std::span<const double> value(VertexIndex v) const {
     return {values_.data() + offsets_[index(v)], static_cast<std::size_t>(vertex_type(v).value_size)};
   }
-  /// The value as the type has it: value<VertexSe2>(v) is a Pose2<double>.
+  /// Returns the value in the form of its type: value<VertexSe2>(v) is a Pose2<double>.
   /// @throws UsageError if the vertex is of another type
   template <Vertex V>
   [[nodiscard]] VertexValue<V> value(VertexIndex v) const {
     check_type(v, V::kTag);
     return value_from_numbers<V>(value(v).data());
   }
-  /// Sets the numbers as they are. @throws UsageError for a wrong size.
+  /// Sets the numbers as they are. @throws UsageError for a wrong size
   void set_value(VertexIndex v, std::span<const double> value);
-  /// Sets a value as the type has it; a heading is wrapped.
+  /// Sets a value in the form of its type. A heading is wrapped.
   /// @throws UsageError if the vertex is of another type
   template <Vertex V>
   void set_value(VertexIndex v, const VertexValue<V>& value) {
@@ -138,7 +138,7 @@ class Graph {
   [[nodiscard]] const EdgeType& edge_type(std::size_t b) const { return batches_[b].type; }
   [[nodiscard]] std::size_t edge_count() const;
 
-  /// Adds an edge by run-time type. Returns its name.
+  /// Adds an edge by run-time type and returns its place.
   /// @param fields see EdgeType::fields
   /// @param information symmetric and positive semidefinite, which is not checked
   /// @throws UsageError for a wrong number or type of vertices, a vertex named twice,
@@ -161,7 +161,7 @@ class Graph {
     ++structure_version_;
     return {place, target.size() - 1};
   }
-  /// The same with a robust loss of its own; empty: none.
+  /// Adds an edge with its own robust loss; empty: none.
   template <Edge E>
   EdgePlace add_edge(const E& edge, const typename EdgeBatch<E>::Indices& vertices,
                      const typename EdgeBatch<E>::Information& information, const std::optional<Loss>& loss) {
@@ -169,7 +169,7 @@ class Graph {
     if (loss) set_loss(added, *loss);
     return added;
   }
-  /// Gives one edge a robust loss of its own.
+  /// Sets the robust loss of a single edge.
   void set_loss(EdgePlace edge, const Loss& loss) { batches_[edge.batch].edges->set_loss(edge.edge, loss); }
 
   /// Returns a number that changes if a vertex or an edge is added or removed, or if a vertex is
@@ -186,7 +186,7 @@ class Graph {
   };
 
   static std::size_t index(VertexIndex v) { return static_cast<std::size_t>(v); }
-  /// The batch of a type, made when first asked for.
+  /// Returns the number of the batch of a type, and creates the batch at the first call.
   std::size_t batch_of(const EdgeType& type);
   void check_type(VertexIndex v, std::string_view tag) const;
   void check_vertices(const EdgeType& type, std::span<const VertexIndex> vertices) const;

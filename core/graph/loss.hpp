@@ -4,7 +4,7 @@
 /// Every weight is in [0, 1], and rho(s) = s for small s. A loss is a value: a name, a scale, a
 /// function pointer. A plugin registers its own LossType.
 ///
-/// Losses are evaluated side by side by several threads: evaluate must be a pure function.
+/// Several threads evaluate losses at the same time, so evaluate must be a pure function.
 #pragma once
 
 #include <span>
@@ -51,8 +51,8 @@ struct Loss {
 /// Returns huber, cauchy, tukey, geman_mcclure, welsch and dcs.
 [[nodiscard]] std::span<const LossType> builtin_losses();
 
-/// builtin_loss("cauchy", 2): one of them. @throws UsageError for an unknown name or a scale that
-/// is not > 0
+/// Returns a built-in loss: builtin_loss("cauchy", 2). @throws UsageError for an unknown name or a
+/// scale that is not > 0
 [[nodiscard]] Loss builtin_loss(std::string_view name, double scale);
 
 }  // namespace waymark

@@ -1,7 +1,7 @@
 /// Vertices: the unknowns. A vertex type is a struct of static functions (concept Vertex). At run
 /// time it is represented by its VertexType, which is found by tag and never by address.
 ///
-/// Types are stateless: their functions may be called from any number of threads, on any memory of
+/// Types have no state. Any number of threads may call their functions, on any memory of
 /// the right size.
 #pragma once
 
@@ -18,13 +18,13 @@
 
 namespace WAYMARK_EXPORT waymark {
 
-/// The name of a vertex in a file: any int64, written VertexId{7}. An id and an index do not
-/// convert into each other.
+/// The name of a vertex in a file: any int64, written VertexId{7}. Ids and indices do not convert
+/// into each other.
 enum class VertexId : std::int64_t {};
 /// The place of a vertex in its graph: 0, 1, 2, ... in insertion order.
 using VertexIndex = std::int32_t;
 
-/// The number of an id, for messages and files.
+/// Returns the number of an id, for messages and files.
 [[nodiscard]] constexpr std::int64_t to_number(VertexId id) {
   return static_cast<std::int64_t>(id);
 }
@@ -74,20 +74,21 @@ concept Vertex = requires(double* value, const double* constant) {
   V::local(constant, constant, value);
 };
 
-/// The value of a vertex of type V as errors and users see it: Pose2<double>, Eigen::Vector2d,
-/// double.
+/// The value of a vertex of type V in the form that errors and users get: Pose2<double>,
+/// Eigen::Vector2d, double.
 template <Vertex V>
 using VertexValue = decltype(V::template at<double>(nullptr, nullptr));
 
-/// The value that lies in V::kValueSize numbers.
+/// Returns the value for V::kValueSize numbers.
 template <Vertex V>
 [[nodiscard]] VertexValue<V> value_from_numbers(const double* numbers) {
   constexpr std::array<double, V::kTangentSize> kZero{};
   return V::template at<double>(numbers, kZero.data());
 }
 
-/// The numbers of a value, normalised as the retraction leaves them: a heading in (-pi, pi]. A
-/// value is a number, an Eigen vector, or a type whose vector() gives one.
+/// Returns the numbers of a value, normalised like the result of the retraction: a heading is in
+/// (-pi, pi]. A value is a number, an Eigen vector, or a type with a function vector() that
+/// returns one.
 template <Vertex V>
 [[nodiscard]] std::array<double, V::kValueSize> numbers_of_value(const VertexValue<V>& value) {
   std::array<double, V::kValueSize> numbers;

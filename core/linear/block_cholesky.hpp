@@ -22,8 +22,8 @@ namespace WAYMARK_EXPORT waymark {
 
 class ThreadPool;
 
-/// One thread at a time; the factor is its own. What analyze() and factorize() are given need not
-/// outlive them.
+/// It owns its factor, and keeps no reference to the arguments of analyze() and factorize(). One
+/// thread at a time may use it.
 class BlockCholesky final : public LinearSolver {
  public:
   /// @param kernels must outlive this object; other kernels give other rounding

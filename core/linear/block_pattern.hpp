@@ -1,7 +1,7 @@
 /// The block pattern of the normal matrix and its numbers, in the form that linear solvers need: no
 /// graph, only blocks.
 ///
-/// A plain value; solvers read it during analyze() only.
+/// It is a plain value. Solvers read it only during analyze().
 #pragma once
 
 #include <cstdint>

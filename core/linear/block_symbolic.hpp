@@ -1,7 +1,7 @@
 /// Symbolic analysis of the block Cholesky factorisation: elimination tree, supernodes, and the
 /// places of all numbers.
 ///
-/// A plain value that keeps no reference to the pattern.
+/// It is a plain value without a reference to the pattern.
 #pragma once
 
 #include <cstdint>

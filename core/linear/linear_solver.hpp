@@ -1,10 +1,10 @@
 /// The interface of linear backends. They factorise a sparse symmetric positive definite matrix and
 /// solve with the factor.
 ///
-/// Preconditions of a backend, kept by whoever calls it: analyze() before factorize(), a successful
-/// factorize() before solve(), spans of the sizes that the pattern says. Spans and the pattern need
-/// not outlive a call. A backend serves one thread at a time; several backends may work side by
-/// side.
+/// Preconditions, which the caller of a backend ensures: analyze() comes before factorize(), a
+/// successful factorize() before solve(), and spans have the sizes of the pattern. Spans and the
+/// pattern are used only during a call. One thread at a time may use a backend; several backends
+/// may run at the same time.
 #pragma once
 
 #include <functional>

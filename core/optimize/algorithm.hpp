@@ -1,9 +1,10 @@
 /// The interface of algorithms. They propose steps; the loop around them (optimizer.hpp) judges and
 /// applies the steps.
 ///
-/// An algorithm belongs to whoever made it and keeps nothing that it is given beyond a call of
-/// propose(). It serves one optimisation at a time; several algorithms may work side by side. Order
-/// of calls: reset(), then propose() and, after each, accepted() or rejected() at most once.
+/// An algorithm belongs to the caller that created it. It keeps no arguments after a call of
+/// propose(). It serves one optimisation at a time; several algorithms may run at the same
+/// time. Order of calls: reset(), then propose(), and after each propose() at most one
+/// accepted() or rejected().
 #pragma once
 
 #include <functional>

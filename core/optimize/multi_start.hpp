@@ -42,7 +42,7 @@ struct MultiStartSummary {
   double total_seconds = 0;
 
   [[nodiscard]] bool converged() const { return summary.converged(); }
-  /// As Summary has them; in full also with the start, and with the time of all of them if there
+  /// Text as from Summary. The full text also has the start, and the time of all starts if there
   /// were several.
   [[nodiscard]] std::string brief() const { return summary.brief(); }
   [[nodiscard]] std::string full() const;

@@ -1,11 +1,10 @@
-/// The optimisation loop: minimises chi2 over the free vertices of a graph. How to choose an
-/// algorithm, a solver and an initial guess is the business of <waymark/solvers/optimize.hpp>.
+/// The optimisation loop: minimises chi2 over the free vertices of a graph.
+/// <waymark/solvers/optimize.hpp> chooses an algorithm, a solver and an initial guess.
 ///
-/// Nothing given to optimize() is kept after it returned. Threads: a call may run beside others
-/// that share none of its graph, algorithm and solver; it makes and ends threads of its own as
-/// asked by OptimizerOptions::threads. The observer is called from the calling thread and must not
-/// change the graph; an exception of it ends the run, and the graph then has the values that it
-/// came with.
+/// optimize() keeps no argument after it returns. Threads: several calls may run at the same time
+/// if they share no graph, algorithm or solver. A call starts and ends its own threads
+/// (OptimizerOptions::threads). The calling thread calls the observer, which must not change the
+/// graph. If the observer throws, the run ends and the graph has its original values.
 #pragma once
 
 #include <atomic>
@@ -51,8 +50,8 @@ struct OptimizerOptions {
 /// @throws UsageError for invalid options; InputError if the gauge is undetermined (see find_gauge)
 Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options);
 
-/// The same with a structure and a symbolic analysis that are kept between calls. The gauge is not
-/// looked at: what the structure does not hold must be determined.
+/// Minimises chi2 with a structure and a symbolic analysis that the caller keeps between calls. The
+/// gauge is not examined: everything that the structure does not hold must be determined.
 /// @throws UsageError for invalid options, and if the structure does not follow the graph
 Summary optimize(Graph& graph, StructuredSolver& solver, Algorithm& algorithm,
                  const OptimizerOptions& options);

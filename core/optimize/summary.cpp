@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-/// A number of the text; the locale does not matter.
+/// Returns a number as text, in any locale.
 std::string number_text(double value, std::chars_format format, int precision) {
   std::array<char, 400> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value, format, precision).ptr;

@@ -68,9 +68,10 @@ struct Summary {
   double total_seconds = 0;
 
   [[nodiscard]] bool converged() const { return is_converged(termination); }
-  /// One line: why it ended, chi2 before and after, iterations.
+  /// Returns one line: why the run ended, chi2 before and after, iterations.
   [[nodiscard]] std::string brief() const;
-  /// A line each, ended by a line break: why it ended, chi2, iterations, size, time.
+  /// Returns lines with a line break at their ends: why the run ended, chi2,
+  /// iterations, size, time.
   [[nodiscard]] std::string full() const;
 };
 

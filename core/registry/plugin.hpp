@@ -2,10 +2,10 @@
 /// before any of its code runs. plugins/README.md, "ABI and versions", explains the policy behind
 /// the numbers.
 ///
-/// The host calls the entry function once for each registry, in one thread. Whatever it registers
-/// must stay valid until the process ends: function pointers, LogReader objects, captured data. An
-/// entry function may throw waymark::Error; the registry is then left as it was. A plugin must not
-/// keep the registry.
+/// The host calls the entry function once for each registry, in one thread. Everything that it
+/// registers must stay valid until the process ends: function pointers, LogReader objects, captured
+/// data. An entry function may throw waymark::Error; the registry then stays as it was. A plugin
+/// must not keep a reference to the registry.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 /// Loads plugins: built-in ones by their descriptor, modules by file name. Modules are
 /// never unloaded.
 ///
-/// Threads: one at a time; loading changes the process.
+/// Only one thread at a time may load plugins, because loading changes the process.
 #pragma once
 
 #include <string>

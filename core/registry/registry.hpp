@@ -1,12 +1,12 @@
 /// The registry of types. It is a value: explicit calls fill it, and it is passed to its users.
 /// There are no singletons and no static initialisers (linkers drop those from libraries).
 ///
-/// Ownership: a registry owns its entries. Lifetime: pointers and references to entries hold until
-/// something is added to their table; what a factory makes belongs to the caller and does not refer
-/// to the registry. Code and data behind the entries of a module stay valid as long as the process,
-/// because modules are never unloaded. Threads: any number may read one registry, and factories may
-/// be called side by side; who adds must be alone. Precondition: vertex types are added before the
-/// edge types that join them are used.
+/// Ownership: a registry owns its entries. Lifetime: pointers and references to entries are valid
+/// until an entry is added to their table. The product of a factory belongs to the caller and does
+/// not refer to the registry. Code and data of a module stay valid as long as the process, because
+/// modules are never unloaded. Threads: any number may read a registry, and may call factories at
+/// the same time; a thread that adds entries must be the only one. Precondition: vertex types are
+/// added before edge types that join them are used.
 #pragma once
 
 #include <functional>

@@ -1,7 +1,8 @@
 /// Single edges of a graph: the size of their errors, their agreement with the other edges, and the
 /// graph without some of them.
 ///
-/// Preconditions: places are edges of the graph given with them. Nothing is kept after a call.
+/// Precondition: places belong to the graph of the same call. The functions keep nothing
+/// after a call.
 #pragma once
 
 #include <span>

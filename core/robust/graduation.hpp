@@ -17,7 +17,7 @@
 /// noise is. So there are verdicts at stretch 16, 4 and 1 of the last width, and the one with the
 /// lowest cost counts.
 ///
-/// Ownership and threads are those of optimize(); the trust rule is called from the calling thread.
+/// Ownership and threads are those of optimize(). The calling thread calls the trust rule.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
 /// The gauge of a graph: the rigid motions of its parts that the edges cannot observe.
 ///
-/// The result is a value; it holds for the graph's values and edges as they were.
+/// The result is a value. It is valid for the values and edges that the graph had.
 #pragma once
 
 #include <string>

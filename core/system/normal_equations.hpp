@@ -16,7 +16,8 @@
 
 namespace WAYMARK_EXPORT waymark {
 
-/// Spans and references that it returns hold until the next linearize(). One thread at a time.
+/// Returned spans and references are valid until the next linearize(). One thread at a
+/// time may use it.
 class NormalEquations {
  public:
   /// Both must outlive this object. The structure must have been built for the graph.

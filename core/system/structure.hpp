@@ -14,9 +14,9 @@
 
 namespace WAYMARK_EXPORT waymark {
 
-/// Copyable; it owns all that it holds and keeps no reference to the graph. Spans and references
-/// that it returns hold until the next build(), extend() or remove(). Any number of threads may
-/// read one.
+/// It can be copied, owns all its data, and keeps no reference to the graph. Returned spans
+/// and references are valid until the next build(), extend() or remove(). Any number of
+/// threads may read it.
 class Structure {
  public:
   /// Computes the structure anew: order, pattern, scatter offsets.
@@ -42,7 +42,7 @@ class Structure {
   /// @throws UsageError if the structure had not followed the graph
   void remove(const Graph& graph, const Removal& removal, std::span<const char> held);
 
-  /// Whether it knows exactly the vertices and edges that the graph has now.
+  /// Tells whether it knows exactly the present vertices and edges of the graph.
   [[nodiscard]] bool follows(const Graph& graph) const;
 
   [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }

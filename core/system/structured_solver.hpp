@@ -1,4 +1,4 @@
-/// A linear solver together with the structure that it works on, kept between optimisations.
+/// A linear solver and the structure that it works on, kept between optimisations.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace WAYMARK_EXPORT waymark {
 
-/// Sees to it that the solver has analysed the pattern that the structure has now, and never
-/// analyses one twice. The solver must outlive this object, and nobody else may call its analyze().
-/// One thread at a time.
+/// Ensures that the solver has analysed the present pattern of the structure, and never analyses a
+/// pattern twice. The solver must outlive this object, and no other code may call its analyze().
+/// One thread at a time may use it.
 class StructuredSolver {
  public:
   explicit StructuredSolver(LinearSolver& solver) : solver_(solver) {}
 
-  /// As the functions of Structure.
+  /// These do what the functions of Structure do.
   void build(const Graph& graph, std::span<const char> held) { structure_.build(graph, held); }
   void extend(const Graph& graph, std::span<const char> held) { structure_.extend(graph, held); }
   void remove(const Graph& graph, const Removal& removal, std::span<const char> held) {
@@ -25,7 +25,7 @@ class StructuredSolver {
   }
 
   [[nodiscard]] const Structure& structure() const { return structure_; }
-  /// The solver, ready to factorise the structure's present pattern.
+  /// Returns the solver, ready to factorise the present pattern.
   [[nodiscard]] LinearSolver& analysed();
 
  private:

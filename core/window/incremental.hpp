@@ -29,8 +29,8 @@ namespace WAYMARK_EXPORT waymark {
 /// to the rounding of another order of elimination.
 ///
 /// It owns algorithm and solver, and refers to the graph. drop_prefix() renumbers vertices and
-/// edges: indices, EdgePlace and spans from before it are void, ids hold. One thread at a time for
-/// the optimizer and its graph.
+/// edges: earlier indices, EdgePlace and spans become invalid, but ids stay valid. One thread at a
+/// time may use the optimizer and its graph.
 class IncrementalOptimizer {
  public:
   /// @param graph must outlive this object, at the same address

@@ -1,7 +1,8 @@
 /// Fixed lag: removes the oldest vertices of a graph, and keeps the information of their edges
 /// about the others as a prior.
 ///
-/// The graph is the caller's and is changed; indices, EdgePlace and spans from before are void.
+/// The graph belongs to the caller and is changed. Earlier indices, EdgePlace and spans
+/// become invalid.
 #pragma once
 
 #include <span>

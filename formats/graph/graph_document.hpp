@@ -1,8 +1,8 @@
 /// A graph file in memory: the graph and the records that belong to it. formats/README.md specifies
 /// the text format.
 ///
-/// A document owns everything in it; copies share nothing. Reading and writing keep no reference to
-/// text, registry or document after they return, and may run side by side on different documents.
+/// A document owns all its data; copies share nothing. After reading and writing, no reference to
+/// text, registry or document is kept. Several threads may read and write different documents.
 /// Precondition of writing: vertices in `covariances` are indices of `graph`.
 #pragma once
 

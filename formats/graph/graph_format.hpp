@@ -39,8 +39,8 @@ inline constexpr std::array<std::string_view, 4> kGraphFormats = {"graph", "g2o"
                                           const TypeRegistry& registry, bool lenient = false,
                                           ReadReport* report = nullptr);
 
-/// Writes a graph in a format that is not our own, for any reader of it. What is said otherwise
-/// there keeps chi2; records that the format has no place for (frame, stamps) are left out.
+/// Writes a graph in a format that is not our own, for any reader of it. Rewritten edges keep chi2.
+/// Records without a place in the format (frame, stamps) are left out.
 /// @param name of the graph, for messages
 /// @throws InputError for a vertex, edge or loss that the format cannot hold; UsageError for
 /// `graph`

@@ -27,8 +27,8 @@ void check_loss(const drive::DriveFile& file, const TypeRegistry& registry) {
   }
 }
 
-/// Returns the place of an option, which stands under its type's own options or under `calibration`.
-/// Empty if it stands in neither.
+/// Returns the place of an option. It is among the options of its type or in `calibration`. Empty
+/// if it is in neither.
 std::optional<std::string> place_of_option(const drive::Places& places, const std::string& options_of,
                                            const std::string& option) {
   for (const std::string& section : {options_of, std::string("calibration.")}) {
