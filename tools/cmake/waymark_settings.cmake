@@ -60,6 +60,8 @@ add_library(waymark_precompiled OBJECT "${PROJECT_BINARY_DIR}/precompiled.cpp")
 target_link_libraries(waymark_precompiled PRIVATE waymark_settings Eigen3::Eigen)
 target_precompile_headers(waymark_precompiled PRIVATE <Eigen/Core> <algorithm> <array> <functional> <map> <memory>
   <optional> <span> <string> <string_view> <variant> <vector>)
+# As the shared library is compiled: else it would show every template of these headers that it uses.
+set_target_properties(waymark_precompiled PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 
 # waymark_not_merged(FILES...): a build that merges sources (CMAKE_UNITY_BUILD) compiles these one by one: their inner loops
 # are compiled for several processors, and that code must not depend on its neighbours.
