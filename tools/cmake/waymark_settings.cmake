@@ -4,6 +4,9 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+# One visibility for all, as they share a precompiled header: what a library shows says WAYMARK_EXPORT.
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
@@ -60,8 +63,6 @@ add_library(waymark_precompiled OBJECT "${PROJECT_BINARY_DIR}/precompiled.cpp")
 target_link_libraries(waymark_precompiled PRIVATE waymark_settings Eigen3::Eigen)
 target_precompile_headers(waymark_precompiled PRIVATE <Eigen/Core> <algorithm> <array> <functional> <map> <memory>
   <optional> <span> <string> <string_view> <variant> <vector>)
-# As the shared library is compiled: else it would show every template of these headers that it uses.
-set_target_properties(waymark_precompiled PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 
 # waymark_not_merged(FILES...): a build that merges sources (CMAKE_UNITY_BUILD) compiles these one by one: their inner loops
 # are compiled for several processors, and that code must not depend on its neighbours.

@@ -187,7 +187,10 @@ drawing::PageTable largest_residuals(const evaluation::GraphResiduals& residuals
     const std::size_t most = std::min(type.largest.size(), kMostListed);
     for (const evaluation::LargeResidual& large : std::span(type.largest).first(most)) {
       std::string vertices;
-      for (const VertexId id : large.vertices) vertices += (vertices.empty() ? "" : " ") + to_string(id);
+      for (const VertexId id : large.vertices) {
+        if (!vertices.empty()) vertices += " ";
+        vertices += to_string(id);
+      }
       const evaluation::EdgeResidual& edge = large.residual;
       table.rows.push_back({type.tag, fmt::to_string(edge.edge),
                             edge.stamp ? fmt::format("{:.2f}", seconds(*edge.stamp)) : "", vertices,
