@@ -37,7 +37,7 @@ RunResult check_flags(const std::string& variable, const std::string& flags,
 
 /// The names in one list of tools/cmake/public_headers.cmake.
 std::set<std::string> header_list(const std::string& list) {
-  const std::string text = read_text(WAYMARK_SOURCE_DIR "/tools/cmake/public_headers.cmake");
+  const std::string text = read_text(waymark_test::source_dir() + "/tools/cmake/public_headers.cmake");
   const auto begin = text.find("set(" + list) + 4 + list.size();
   std::istringstream words(text.substr(begin, text.find(')', begin) - begin));
   return {std::istream_iterator<std::string>(words), {}};
@@ -114,9 +114,9 @@ TEST_CASE("installed: the public headers, those that they must include, and no o
 }
 
 TEST_CASE("installed: headers of the shared library show their names, nothing else does") {
-  for (const auto& entry : fs::recursive_directory_iterator(WAYMARK_SOURCE_DIR "/core")) {
+  for (const auto& entry : fs::recursive_directory_iterator(waymark_test::source_dir() + "/core")) {
     if (entry.path().extension() != ".hpp" || entry.path().filename() == "export.hpp") continue;
-    const std::string header = fs::relative(entry.path(), WAYMARK_SOURCE_DIR);
+    const std::string header = fs::relative(entry.path(), waymark_test::source_dir());
     INFO(header);
     CHECK(contains(read_text(entry.path()), "\nnamespace WAYMARK_EXPORT waymark {") ==
           fs::exists(kPrefix + "/include/waymark/" + header));
