@@ -99,12 +99,12 @@ TEST_CASE("doctor: broken plugins in a folder are named with reason and remedy, 
   CHECK(plugins.at("folders").back().at("problem") == "No such file or directory");
   CHECK(plugins.at("loaded").back().at("name") == "sample");
   CHECK(plugins.at("loaded").back().at("version") == "1.2.3");
-  CHECK(plugins.at("loaded").back().at("abi") == 3);
+  CHECK(plugins.at("loaded").back().at("abi") == 4);
   CHECK(plugins.at("loaded").back().at("brings") == Json::array({"EDGE_SAMPLE"}));
   REQUIRE(plugins.at("left_out").size() == 2);
   CHECK(plugins.at("left_out")[0].at("file") == folder + "old.so");
   CHECK(contains(plugins.at("left_out")[0].at("problem"),
-                 "plugin ABI number differs (plugin 2, waymark 3); build the plugin again"));
+                 "plugin ABI number differs (plugin 3, waymark 4); build the plugin again"));
   CHECK(contains(plugins.at("left_out")[1].at("problem"), "text.so: is no shared object for this machine"));
   const RunResult text = run({"doctor"});
   CHECK(contains(text.out, "warning: plugin left out: " + folder + "old.so"));
