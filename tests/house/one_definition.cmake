@@ -18,7 +18,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanit
     COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_BINARY_DIR}/one_definition"
       --build-generator "${CMAKE_GENERATOR}" --build-target waymark --build-noclean --build-options
       -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_BUILD_TYPE=None -DCMAKE_UNITY_BUILD=ON
-      -DCMAKE_CXX_FLAGS=-O0\ -flto\ -w\ -Wodr -DCMAKE_EXE_LINKER_FLAGS=-Werror=odr -DCMAKE_SHARED_LINKER_FLAGS=-Werror=odr
+      -DCMAKE_CXX_FLAGS=-O0\ -flto=auto\ -w\ -Wodr -DCMAKE_EXE_LINKER_FLAGS=-Werror=odr -DCMAKE_SHARED_LINKER_FLAGS=-Werror=odr
       -DWAYMARK_BUILD_TESTS=OFF -DWAYMARK_BUILD_BENCHMARKS=OFF -DWAYMARK_BUILD_EXAMPLES=OFF)
-  set_tests_properties("house: no type is defined twice among the objects of the program" PROPERTIES TIMEOUT 900)
+  set_tests_properties("house: no type is defined twice among the objects of the program" PROPERTIES TIMEOUT 2700)
 endif()
