@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <waymark/tools/benchmark/benchmark_report.hpp>
+#include <waymark/tools/text/json_number.hpp>
 
 namespace waymark::benchmark {
 namespace {
@@ -18,24 +19,8 @@ std::string number(const std::optional<double>& value) {
   return value ? number(*value) : "";
 }
 
-/// Quotes a field as RFC 4180 requires.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-std::string joined_row(std::vector<std::string> fields) {
-  for (std::string& field : fields) field = csv_field(field);
-  return fmt::format("{}\n", fmt::join(fields, ","));
-}
-
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 Json number_or_null(const std::optional<double>& value) {
-  return value ? number_or_null(*value) : Json(nullptr);
+  return value ? text::number_or_null(*value) : Json(nullptr);
 }
 
 Json cell_json(const CellSummary& c) {
@@ -67,47 +52,74 @@ Json cell_json(const CellSummary& c) {
   return json;
 }
 
+constexpr const char* kCsvColumns[] = {"file",
+                                       "vertices",
+                                       "edges",
+                                       "start",
+                                       "algorithm",
+                                       "solver",
+                                       "peer",
+                                       "repetitions",
+                                       "iterations",
+                                       "converged",
+                                       "median_s",
+                                       "min_s",
+                                       "max_s",
+                                       "structure_s",
+                                       "linearize_s",
+                                       "solve_s",
+                                       "rest_s",
+                                       "setup_s",
+                                       "memory_before_mb",
+                                       "memory_peak_mb",
+                                       "initial_chi2",
+                                       "chi2",
+                                       "optimum",
+                                       "optimum_listed",
+                                       "optimality",
+                                       "peer_ratios",
+                                       "message"};
+
+text::Row csv_row(const FileSummary& file, const CellSummary& c) {
+  std::vector<std::string> ratios;
+  for (const auto& [peer, ratio] : c.peer_ratios) ratios.push_back(fmt::format("{}={}", peer, ratio));
+  return {file.file,
+          std::to_string(file.vertices),
+          std::to_string(file.edges),
+          c.start,
+          c.name,
+          c.solver,
+          c.peer ? "1" : "0",
+          std::to_string(c.run_seconds.size()),
+          std::to_string(c.iterations),
+          c.converged ? "1" : "0",
+          number(c.seconds.median),
+          number(c.seconds.least),
+          number(c.seconds.largest),
+          number(c.structure_seconds),
+          number(c.linearize_seconds),
+          number(c.solve_seconds),
+          number(c.rest_seconds),
+          number(c.setup_seconds.median),
+          number(c.memory_before_mb),
+          number(c.memory_peak_mb),
+          number(c.initial_chi2),
+          number(c.final_chi2),
+          number(file.optimum),
+          file.optimum_listed ? "1" : "0",
+          std::string(to_string(c.optimality)),
+          fmt::format("{}", fmt::join(ratios, ";")),
+          c.message};
+}
+
 }  // namespace
 
 std::string benchmark_csv(const std::vector<FileSummary>& files) {
-  std::string text =
-      "file,vertices,edges,start,algorithm,solver,peer,repetitions,iterations,converged,median_s,min_s,max_s,"
-      "structure_s,linearize_s,solve_s,rest_s,setup_s,memory_before_mb,memory_peak_mb,initial_chi2,chi2,"
-      "optimum,optimum_listed,optimality,peer_ratios,message\n";
+  text::Table table{.columns = {std::begin(kCsvColumns), std::end(kCsvColumns)}};
   for (const FileSummary& file : files) {
-    for (const CellSummary& c : file.cells) {
-      std::vector<std::string> ratios;
-      for (const auto& [peer, ratio] : c.peer_ratios) ratios.push_back(fmt::format("{}={}", peer, ratio));
-      text += joined_row({file.file,
-                          std::to_string(file.vertices),
-                          std::to_string(file.edges),
-                          c.start,
-                          c.name,
-                          c.solver,
-                          c.peer ? "1" : "0",
-                          std::to_string(c.run_seconds.size()),
-                          std::to_string(c.iterations),
-                          c.converged ? "1" : "0",
-                          number(c.seconds.median),
-                          number(c.seconds.least),
-                          number(c.seconds.largest),
-                          number(c.structure_seconds),
-                          number(c.linearize_seconds),
-                          number(c.solve_seconds),
-                          number(c.rest_seconds),
-                          number(c.setup_seconds.median),
-                          number(c.memory_before_mb),
-                          number(c.memory_peak_mb),
-                          number(c.initial_chi2),
-                          number(c.final_chi2),
-                          number(file.optimum),
-                          file.optimum_listed ? "1" : "0",
-                          std::string(to_string(c.optimality)),
-                          fmt::format("{}", fmt::join(ratios, ";")),
-                          c.message});
-    }
+    for (const CellSummary& cell : file.cells) table.rows.push_back(csv_row(file, cell));
   }
-  return text;
+  return text::table_csv(table);
 }
 
 std::string benchmark_json(const std::vector<FileSummary>& files, const BenchmarkHeader& header) {

@@ -10,7 +10,7 @@
 #include <waymark/tools/benchmark/known_optima.hpp>
 #include <waymark/tools/benchmark/measure.hpp>
 #include <waymark/tools/benchmark/statistics.hpp>
-#include <waymark/tools/text/text_look.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::benchmark {
 
@@ -65,14 +65,9 @@ using BenchmarkHeader = std::vector<std::pair<std::string, std::string>>;
 /// cell with it.
 void judge_cells(FileSummary& file, const KnownOptima& known);
 
-/// The cells of a file as text.
-struct FileTable {
-  std::string title;  ///< the file, its size, its optimum
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;  ///< one per cell
-  std::vector<std::string> notes;              ///< remarks about single cells, each sentence once
-};
-[[nodiscard]] FileTable file_table(const FileSummary& file);
+/// Returns the cells of a file, one per row. The title names the file, its size and its optimum;
+/// the notes are remarks about single cells, each sentence once.
+[[nodiscard]] text::Table file_table(const FileSummary& file);
 
 /// Returns the tables for the terminal, one per file. Remarks about single cells follow each table.
 [[nodiscard]] std::string benchmark_table(const std::vector<FileSummary>& files,

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <waymark/tools/benchmark/benchmark_report.hpp>
-#include <waymark/tools/text/text_table.hpp>
 
 namespace waymark::benchmark {
 namespace {
@@ -58,32 +57,32 @@ std::vector<std::string> remarks_of(const FileSummary& file) {
 
 }  // namespace
 
-FileTable file_table(const FileSummary& file) {
+text::Table file_table(const FileSummary& file) {
   const std::vector<std::string> peers = peers_of(file);
-  std::vector<std::string> heading = {"start",          "algorithm",  "solver",   "iterations",
-                                      "median [ms]",    "min [ms]",   "max [ms]", "structure [ms]",
-                                      "linearise [ms]", "solve [ms]", "rest [ms]"};
+  text::Row heading = {"start",          "algorithm",  "solver",   "iterations",
+                       "median [ms]",    "min [ms]",   "max [ms]", "structure [ms]",
+                       "linearise [ms]", "solve [ms]", "rest [ms]"};
   if (!peers.empty()) heading.emplace_back("setup [ms]");
   heading.insert(heading.end(), {"before [MB]", "peak [MB]", "chi2", "optimum"});
   for (const std::string& peer : peers) heading.push_back(peer + "/this");
-  FileTable table{
+  text::Table table{
       fmt::format("{}: {} vertices, {} edges; optimum {:.9g} ({})", file.file, file.vertices, file.edges,
                   file.optimum, file.optimum_listed ? "listed" : "lowest chi2 of this run, none is listed"),
       std::move(heading),
       {},
       remarks_of(file)};
   for (const CellSummary& c : file.cells) {
-    std::vector<std::string> row = {c.start,
-                                    c.name,
-                                    c.solver,
-                                    std::to_string(c.iterations) + (c.converged ? "" : "!"),
-                                    milliseconds(c.seconds.median),
-                                    milliseconds(c.seconds.least),
-                                    milliseconds(c.seconds.largest),
-                                    milliseconds(c.structure_seconds),
-                                    milliseconds(c.linearize_seconds),
-                                    milliseconds(c.solve_seconds),
-                                    milliseconds(c.rest_seconds)};
+    text::Row row = {c.start,
+                     c.name,
+                     c.solver,
+                     std::to_string(c.iterations) + (c.converged ? "" : "!"),
+                     milliseconds(c.seconds.median),
+                     milliseconds(c.seconds.least),
+                     milliseconds(c.seconds.largest),
+                     milliseconds(c.structure_seconds),
+                     milliseconds(c.linearize_seconds),
+                     milliseconds(c.solve_seconds),
+                     milliseconds(c.rest_seconds)};
     if (!peers.empty()) row.push_back(c.peer ? milliseconds(c.setup_seconds.median) : "");
     row.push_back(megabytes(c.memory_before_mb));
     row.push_back(megabytes(c.memory_peak_mb));
@@ -98,11 +97,10 @@ FileTable file_table(const FileSummary& file) {
 std::string benchmark_table(const std::vector<FileSummary>& files, const text::TextLook& look) {
   std::string text;
   for (const FileSummary& file : files) {
-    const FileTable of_file = file_table(file);
-    text::TextTable table(of_file.columns);
-    for (const auto& row : of_file.rows) table.add(row);
-    text.append(text.empty() ? "" : "\n").append(of_file.title).append("\n").append(table.text(look));
-    for (const std::string& remark : of_file.notes) text.append(remark).append("\n");
+    const text::Table table = file_table(file);
+    text.append(text.empty() ? "" : "\n").append(table.title).append("\n");
+    text.append(text::aligned_columns(table, look));
+    for (const std::string& remark : table.notes) text.append(remark).append("\n");
   }
   return text;
 }

@@ -5,7 +5,7 @@
 
 #include <waymark/tools/inspection/inspection.hpp>
 #include <waymark/tools/text/json_number.hpp>
-#include <waymark/tools/text/text_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::inspection {
 namespace {
@@ -45,14 +45,8 @@ class Text {
   void line(const std::string& label, const std::string& value) {
     text_ += fmt::format("  {:<14} {}\n", harmless(label), harmless(value));
   }
-  void table(const text::TextTable& rows) {
-    const std::string lines = rows.text(look_);
-    std::size_t begin = 0;
-    while (begin < lines.size()) {
-      const std::size_t end = lines.find('\n', begin);
-      text_ += std::string(kTableIndent, ' ') + lines.substr(begin, end - begin) + "\n";
-      begin = end + 1;
-    }
+  void table(const text::Table& table) {
+    text_ += text::indented(text::table_text(table, look_), kTableIndent);
   }
   /// Prints one sentence per line.
   void list(const std::string& label, const std::vector<std::string>& sentences) {
@@ -129,15 +123,15 @@ void add_fixes(Text& text, const LogInspection& log) {
 void add_odometry(Text& text, const LogInspection& log) {
   const OdometrySummary& odometry = *log.odometry;
   text.line("odometry", fmt::format("{} rows", odometry.stamps.count()));
-  text::TextTable table(
-      {"channel", "values", "rate", "unit", "smallest", "largest", "gaps", "longest gap [s]"});
+  text::Table table{
+      .columns = {"channel", "values", "rate", "unit", "smallest", "largest", "gaps", "longest gap [s]"}};
   for (const ChannelSummary& channel : odometry.channels) {
     const auto gaps = channel.stamps.longest_gaps();
-    table.add({harmless(channel.name), std::to_string(channel.range.count),
-               rate_text(rate_of(channel.stamps)), harmless(channel.unit),
-               fmt::format("{:.5g}", channel.range.smallest), fmt::format("{:.5g}", channel.range.largest),
-               std::to_string(channel.stamps.gaps()),
-               gaps.empty() ? "-" : fmt::format("{:.3g}", gaps[0].seconds)});
+    table.rows.push_back({harmless(channel.name), std::to_string(channel.range.count),
+                          rate_text(rate_of(channel.stamps)), harmless(channel.unit),
+                          fmt::format("{:.5g}", channel.range.smallest),
+                          fmt::format("{:.5g}", channel.range.largest), std::to_string(channel.stamps.gaps()),
+                          gaps.empty() ? "-" : fmt::format("{:.3g}", gaps[0].seconds)});
   }
   text.table(table);
 }
@@ -153,8 +147,8 @@ std::string proposal_text(const ColumnProposal& proposal) {
 }
 
 void add_columns(Text& text, const std::vector<ColumnSummary>& columns, bool of_bus) {
-  text::TextTable table({of_bus ? "signal" : "column", "values", of_bus ? "rate" : "empty", "smallest",
-                         "largest", "unit", "proposed as"});
+  text::Table table{.columns = {of_bus ? "signal" : "column", "values", of_bus ? "rate" : "empty", "smallest",
+                                "largest", "unit", "proposed as"}};
   for (const ColumnSummary& column : columns) {
     const Range& range = column.range;
     const auto bound = [&](double value) { return range.count == 0 ? "-" : fmt::format("{:.10g}", value); };
@@ -162,9 +156,10 @@ void add_columns(Text& text, const std::vector<ColumnSummary>& columns, bool of_
     if (range.count == 0 && column.words > 0) proposal += " (words)";
     if (!of_bus && column.rate_hz > 0 && !column.proposal.quantity.empty())
       proposal += ", " + rate_text(column.rate_hz);
-    table.add({harmless(column.name), std::to_string(column.values),
-               of_bus ? rate_text(column.rate_hz) : std::to_string(column.empty), bound(range.smallest),
-               bound(range.largest), harmless(column.unit), harmless(proposal)});
+    table.rows.push_back({harmless(column.name), std::to_string(column.values),
+                          of_bus ? rate_text(column.rate_hz) : std::to_string(column.empty),
+                          bound(range.smallest), bound(range.largest), harmless(column.unit),
+                          harmless(proposal)});
   }
   text.table(table);
 }
@@ -173,17 +168,17 @@ void add_ids(Text& text, const LogInspection& log) {
   text.line("frames", fmt::format("{} on {}", log.can->frames, log.can->interfaces));
   if (!log.companions.contains("dbc"))
     text.line("", "without a DBC (--dbc FILE) the signals in them are unknown");
-  text::TextTable table({"id", "frames", "rate", "length"});
+  text::Table table{.columns = {"id", "frames", "rate", "length"}};
   std::size_t rest = 0;
   for (std::size_t i = 0; i < log.can->ids.size(); ++i) {
     const ColumnSummary& id = log.can->ids[i];
     if (i < kMostRows)
-      table.add({harmless(id.name), std::to_string(id.values), rate_text(id.rate_hz), id.detail});
+      table.rows.push_back({harmless(id.name), std::to_string(id.values), rate_text(id.rate_hz), id.detail});
     else
       rest += id.values;
   }
   if (rest > 0)
-    table.add({fmt::format("{} more ids", log.can->ids.size() - kMostRows), std::to_string(rest)});
+    table.rows.push_back({fmt::format("{} more ids", log.can->ids.size() - kMostRows), std::to_string(rest)});
   text.table(table);
   if (log.can->signals.empty()) return;
   add_columns(text, log.can->signals, true);
@@ -192,14 +187,14 @@ void add_ids(Text& text, const LogInspection& log) {
 void add_kinds(Text& text, const LogInspection& log) {
   if (log.kinds.empty() || log.can) return;
   const double seconds = log.span() == nullptr ? 0 : log.span()->span_s();
-  text::TextTable table({"message", "count", "rate"});
+  text::Table table{.columns = {"message", "count", "rate"}};
   std::size_t rows = 0;
   for (const auto& [kind, count] : log.kinds) {
     if (++rows > kMostRows) continue;
-    table.add({harmless(kind), std::to_string(count),
-               seconds > 0 ? rate_text(static_cast<double>(count) / seconds) : "-"});
+    table.rows.push_back({harmless(kind), std::to_string(count),
+                          seconds > 0 ? rate_text(static_cast<double>(count) / seconds) : "-"});
   }
-  if (rows > kMostRows) table.add({fmt::format("{} more kinds", rows - kMostRows)});
+  if (rows > kMostRows) table.rows.push_back({fmt::format("{} more kinds", rows - kMostRows)});
   text.line("messages", fmt::format("{} kind{}", log.kinds.size(), log.kinds.size() == 1 ? "" : "s"));
   text.table(table);
 }

@@ -1,7 +1,3 @@
-#include <cmath>
-
-#include <fmt/format.h>
-
 #include <waymark/tools/report/metric_columns.hpp>
 
 namespace waymark::report {
@@ -17,10 +13,6 @@ const std::vector<PositionColumn>& position_columns() {
       {"CEP50", "cep50", "Radius that holds 50 % of the epochs", &evaluation::PositionMetrics::cep50_m},
       {"CEP95", "cep95", "Radius that holds 95 % of the epochs", &evaluation::PositionMetrics::cep95_m}};
   return columns;
-}
-
-std::string decimals(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
 }
 
 }  // namespace waymark::report

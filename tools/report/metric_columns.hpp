@@ -17,7 +17,4 @@ struct PositionColumn {
 };
 [[nodiscard]] const std::vector<PositionColumn>& position_columns();
 
-/// Returns "-" if the value is undefined.
-[[nodiscard]] std::string decimals(double value, int digits);
-
 }  // namespace waymark::report

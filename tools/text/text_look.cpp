@@ -86,4 +86,15 @@ std::string fitted(std::string_view text, std::size_t columns) {
   return columns < kCut.size() ? std::string(columns, '.') : start.append(kCut);
 }
 
+std::string indented(std::string_view lines, std::size_t spaces) {
+  std::string out;
+  while (!lines.empty()) {
+    const std::size_t size = std::min(lines.find('\n'), lines.size() - 1) + 1;
+    if (lines.front() != '\n') out.append(spaces, ' ');
+    out.append(lines.substr(0, size));
+    lines.remove_prefix(size);
+  }
+  return out;
+}
+
 }  // namespace waymark::text

@@ -27,4 +27,7 @@ enum class Tone { heading, dim, better, worse, warning, error };
 /// terminals become '?'.
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t columns);
 
+/// Returns the lines, each that is not empty behind so many spaces.
+[[nodiscard]] std::string indented(std::string_view lines, std::size_t spaces);
+
 }  // namespace waymark::text

@@ -45,10 +45,12 @@ TEST_CASE("page: what is put into a page cannot leave its place") {
   figure.series[0].name = kHostile;
   figure.series[0].note.assign(200, 0);
   figure.series[0].notes = {kHostile};
-  page.sections.push_back({"s",
-                           kHostile,
-                           {Paragraph{kHostile}, PageTable{kHostile, {kHostile}, {{kHostile}}, {kHostile}},
-                            figure, PageLink{kHostile, kHostile}}});
+  page.sections.push_back(
+      {"s",
+       kHostile,
+       {Paragraph{kHostile},
+        text::Table{.title = kHostile, .columns = {kHostile}, .rows = {{kHostile}}, .notes = {kHostile}},
+        figure, PageLink{kHostile, kHostile}}});
   const std::string html = page_html(page);
   CHECK(count(html, "</script>") == 2);  // the data's and the script's own
   CHECK(count(html, "<img") == 0);
@@ -77,7 +79,8 @@ TEST_CASE("page: equal columns of numbers are in a page once") {
 }
 
 TEST_CASE("page: columns of numbers stand to the right in tables, words to the left") {
-  const PageTable table{"", {"name", "value [m]"}, {{"a", "1.5"}, {"b", "-"}, {"c", "+3.2"}}};
+  const text::Table table{.columns = {"name", "value [m]"},
+                          .rows = {{"a", "1.5"}, {"b", "-"}, {"c", "+3.2"}}};
   const std::string html = page_html(
       {.title = "t", .subtitle = "", .summary = "", .sections = {{"s", "S", {table}}}, .footer = ""});
   CHECK(count(html, "<td class=\"number\">1.5</td>") == 1);

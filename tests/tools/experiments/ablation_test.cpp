@@ -148,7 +148,7 @@ TEST_CASE("ablation: pooled means count every drive once, with the standard erro
   drives[0].outcomes = {judged(kDefaultModel, 3, 1, 1), judged("ours_g1", 5, 40, 0.1)};
   drives[1].group = "urban";
   drives[1].outcomes = {judged(kDefaultModel, 4, 3, 0.9)};
-  const ReportTable table = consistency_report(drives, "").tables.front();
+  const text::Table table = consistency_report(drives, "").tables.front();
   const std::vector<std::string>& together = table.rows.at(4);
   CHECK(together == std::vector<std::string>{"together", "default", "2", "2", "2.00", "1.00", "95.0", "5.0",
                                              "3.54"});  // sqrt((9 + 16) / 2)
@@ -169,7 +169,7 @@ TEST_CASE("ablation: a drive of the ablation is judged by truth, or by the fixes
   outcome.evaluation.at_withheld.back().at_fixes.rmse_m = 7;
   without.withheld.push_back({"outages", {outcome}});
   const ReproductionReport report = ablation_report({with_truth, without}, "");
-  const ReportTable& errors = report.tables.front();
+  const text::Table& errors = report.tables.front();
   CHECK(errors.columns[1] == "A");
   CHECK(errors.columns[2] == "B: outages");
   CHECK(errors.rows[0] == std::vector<std::string>{"default", "2.00", "7.00", "0.0", "-50.0"});

@@ -50,8 +50,8 @@ std::vector<DriveResult> drives_as_printed() {
   return drives;
 }
 
-const ReportTable& table_named(const std::vector<ReportTable>& tables, const std::string& file) {
-  for (const ReportTable& table : tables) {
+const text::Table& table_named(const std::vector<text::Table>& tables, const std::string& file) {
+  for (const text::Table& table : tables) {
     if (table.file == file) return table;
   }
   throw std::runtime_error("no table " + file);
@@ -148,12 +148,12 @@ TEST_CASE("reproduction: the lowest chi2 of an objective is its minimum, and dis
 
 TEST_CASE(
     "reproduction: the six tables have the paper's figures beside ours, averages and improvements below") {
-  const std::vector<ReportTable> tables = paper_tables(drives_as_printed());
+  const std::vector<text::Table> tables = paper_tables(drives_as_printed());
   REQUIRE(tables.size() == 7);  // the paper's six, and the default model
-  for (const ReportTable& table : tables) {
+  for (const text::Table& table : tables) {
     for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
   }
-  const ReportTable& g2 = table_named(tables, "table_4_g2");
+  const text::Table& g2 = table_named(tables, "table_4_g2");
   REQUIRE(g2.rows.size() == 10);
   CHECK(g2.columns[1] == "Max paper");
   CHECK(g2.columns[10] == "Max ours");
@@ -164,7 +164,8 @@ TEST_CASE(
   }
   CHECK(g2.rows[8][1] == "7.170");
   CHECK(g2.rows[9][1] == "69.528");
-  CHECK_THAT(table_text(table_named(tables, "table_3_g1")), Contains("-10.11 %") && Contains("-7.364 %"));
+  CHECK_THAT(text::table_text(table_named(tables, "table_3_g1")),
+             Contains("-10.11 %") && Contains("-7.364 %"));
   CHECK(table_named(tables, "table_1_dataset_overview").rows[0][8] == "25.00");
 }
 
@@ -204,7 +205,7 @@ TEST_CASE(
     model.evaluation.truth->consistency->coverage = 0.95;
     drive.outcomes.push_back(model);
   }
-  const ReportTable table = table_named(paper_tables(drives), "table_7_default_model");
+  const text::Table table = table_named(paper_tables(drives), "table_7_default_model");
   REQUIRE(table.rows.size() == 10);
   CHECK(table.rows[9][7] == "90.000");  // a tenth of what raw GNSS has
   CHECK(table.rows[9][8] == "0.000");
@@ -216,19 +217,6 @@ TEST_CASE(
   CHECK(found[7].evidence[1].holds == true);
   CHECK(found[8].evidence[1].holds == true);
   CHECK(found[8].evidence[0].holds == false);  // nothing shows it
-}
-
-TEST_CASE("reproduction: report tables are escaped for CSV and Markdown") {
-  ReportTable table;
-  table.title = "T";
-  table.columns = {"a", "b"};
-  table.rows = {{"x,y", "say \"z\""}, {"p|q", "1"}};
-  table.notes = {"note"};
-  CHECK(table_csv(table) == "a,b\n\"x,y\",\"say \"\"z\"\"\"\np|q,1\n");
-  CHECK(table_markdown(table) ==
-        "## T\n\n| a | b |\n|---|---:|\n| x,y | say \"z\" |\n| p\\|q | 1 |\n\n- note\n");
-  CHECK(cell(std::nan(""), 2) == "-");
-  CHECK(cell(-0.125, 2) == "-0.12");
 }
 
 TEST_CASE("reproduction: a report without any drive has nothing to say and does not fail") {

@@ -29,17 +29,16 @@ std::vector<const CellSummary*> ranking(const FileSummary& file) {
   return cells;
 }
 
-drawing::PageTable winners_table(const Files& files, const ContestantNames& names) {
-  drawing::PageTable table{
+text::Table winners_table(const Files& files, const ContestantNames& names) {
+  text::Table table{
       .title = "Who was fastest where",
-      .columns = {"file", "vertices", "edges", "fastest", "median [ms]", "next", "its time / the fastest"},
-      .rows = {}};
+      .columns = {"file", "vertices", "edges", "fastest", "median [ms]", "next", "its time / the fastest"}};
   table.notes = {
       "By median time, of the results that converged and reached the optimum. Ratios near 1 mean little "
       "where the brackets of the times overlap."};
   for (const FileSummary& file : files) {
     const auto ranked = ranking(file);
-    std::vector<std::string> row{file.file, std::to_string(file.vertices), std::to_string(file.edges)};
+    text::Row row{file.file, std::to_string(file.vertices), std::to_string(file.edges)};
     row.push_back(ranked.empty() ? "none" : names.name_of(*ranked[0]));
     row.push_back(ranked.empty() ? "-" : fmt::format("{:.1f}", 1e3 * ranked[0]->seconds.median));
     row.push_back(ranked.size() < 2 ? "-" : names.name_of(*ranked[1]));
@@ -86,10 +85,9 @@ std::string convergence_sentence(const Files& files) {
 }
 
 /// Lists the results that do not count, and why.
-drawing::PageTable missed_table(const Files& files, const ContestantNames& names) {
-  drawing::PageTable table{.title = "Not converged, or above the optimum",
-                           .columns = {"file", "contestant", "ended", "chi2 / optimum - 1", "message"},
-                           .rows = {}};
+text::Table missed_table(const Files& files, const ContestantNames& names) {
+  text::Table table{.title = "Not converged, or above the optimum",
+                    .columns = {"file", "contestant", "ended", "chi2 / optimum - 1", "message"}};
   for (const FileSummary& file : files) {
     for (const CellSummary& cell : file.cells) {
       if (counts(cell)) continue;
@@ -106,9 +104,8 @@ void add_figures(std::vector<drawing::Figure> figures, drawing::Section& section
   for (drawing::Figure& figure : figures) section.blocks.emplace_back(std::move(figure));
 }
 
-drawing::PageTable header_table(const BenchmarkHeader& header) {
-  drawing::PageTable table{
-      .title = "What was asked for, and on what it ran", .columns = {"", ""}, .rows = {}};
+text::Table header_table(const BenchmarkHeader& header) {
+  text::Table table{.title = "What was asked for, and on what it ran", .columns = {"", ""}};
   for (const auto& [key, text] : header) table.rows.push_back({key, text});
   return table;
 }
@@ -119,10 +116,7 @@ drawing::Section tables_section(const Files& files) {
       "! behind the iterations: the run did not converge; the reason is below the table. Phases are "
       "those of the median run, in ms. MB are resident memory, 1e6 bytes. A ratio above 1: faster than "
       "the peer."});
-  for (const FileSummary& file : files) {
-    FileTable table = file_table(file);
-    section.blocks.emplace_back(drawing::PageTable{table.title, table.columns, table.rows, table.notes});
-  }
+  for (const FileSummary& file : files) section.blocks.emplace_back(file_table(file));
   return section;
 }
 
@@ -150,7 +144,7 @@ drawing::Page benchmark_page(const Files& files, const BenchmarkHeader& header) 
   add_figures(size_figures(files, names), times);
   add_figures(ratio_figures(files, names), times);
   drawing::Section results{"results", "Results", {}};
-  drawing::PageTable missed = missed_table(files, names);
+  text::Table missed = missed_table(files, names);
   if (!missed.rows.empty()) results.blocks.emplace_back(std::move(missed));
   add_figures(excess_figures(files, names), results);
   add_figures(iteration_figures(files, names), results);

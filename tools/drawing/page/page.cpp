@@ -25,7 +25,7 @@ bool is_number(const std::string& cell) {
 }
 
 /// A column is one of numbers if every cell that is not empty is a number.
-std::vector<bool> number_columns(const PageTable& table) {
+std::vector<bool> number_columns(const text::Table& table) {
   std::vector<bool> numbers(table.columns.size(), !table.rows.empty());
   for (const auto& row : table.rows) {
     for (std::size_t c = 0; c < std::min(row.size(), numbers.size()); ++c)
@@ -34,7 +34,7 @@ std::vector<bool> number_columns(const PageTable& table) {
   return numbers;
 }
 
-std::string html(const PageTable& table) {
+std::string html(const text::Table& table) {
   const std::vector<bool> numbers = number_columns(table);
   const auto kind = [&](std::size_t c) {
     return c < numbers.size() && numbers[c] ? " class=\"number\"" : "";

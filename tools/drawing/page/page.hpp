@@ -6,18 +6,12 @@
 #include <vector>
 
 #include <waymark/tools/drawing/figure/figure.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::drawing {
 
 struct Paragraph {
   std::string text;
-};
-
-struct PageTable {
-  std::string title;
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;  ///< each as long as `columns`
-  std::vector<std::string> notes{};            ///< sentences below the table
 };
 
 /// Figures that are side by side if there is room.
@@ -31,7 +25,7 @@ struct PageLink {
   std::string text;
 };
 
-using PageBlock = std::variant<Paragraph, PageTable, Figure, FigureRow, PageLink>;
+using PageBlock = std::variant<Paragraph, text::Table, Figure, FigureRow, PageLink>;
 
 struct Section {
   std::string id;  ///< [a-z0-9-]

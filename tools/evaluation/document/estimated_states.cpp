@@ -10,7 +10,7 @@
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/tools/text/json_number.hpp>
-#include <waymark/tools/text/text_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::evaluation {
 namespace {
@@ -121,14 +121,15 @@ std::vector<StateReport> report_states(const formats::GraphDocument& document) {
 
 std::string states_text(const std::vector<StateReport>& states, const text::TextLook& look) {
   if (states.empty()) return {};
-  text::TextTable table(
-      {"estimated state", "unit", "values", "first", "last", "smallest", "largest", "sigma", "prior", ""});
+  text::Table table{.columns = {"estimated state", "unit", "values", "first", "last", "smallest", "largest",
+                                "sigma", "prior", ""}};
   for (const StateReport& s : states) {
     const auto number = [](double x) { return std::isnan(x) ? "-" : fmt::format("{:.4g}", x); };
-    table.add({s.name, s.unit, fmt::to_string(s.values), number(s.first), number(s.last), number(s.smallest),
-               number(s.largest), number(s.sigma), number(s.prior_sigma), s.observed ? "" : "not observed"});
+    table.rows.push_back({s.name, s.unit, fmt::to_string(s.values), number(s.first), number(s.last),
+                          number(s.smallest), number(s.largest), number(s.sigma), number(s.prior_sigma),
+                          s.observed ? "" : "not observed"});
   }
-  return table.text(look);
+  return text::table_text(table, look);
 }
 
 nlohmann::ordered_json states_json(const std::vector<StateReport>& states) {

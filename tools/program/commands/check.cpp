@@ -12,7 +12,7 @@
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
-#include <waymark/tools/text/text_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 namespace {
@@ -55,22 +55,22 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
   json["notes"] = nlohmann::ordered_json::array();
   std::string text = fmt::format("{}: {} vertices, {} edges, {} GNSS records\n", options.input,
                                  graph.vertex_count(), graph.edge_count(), document.fixes.size());
-  text::TextTable table({"edge type", "edges", "chi2", "error", "Jacobians off by"});
+  text::Table table{.columns = {"edge type", "edges", "chi2", "error", "Jacobians off by"}};
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     stop_if_interrupted();
     console.progress("derivatives of " + graph.edge_type(b).tag);
     const GradientCheck gradients = check_gradients(graph, b, kCheckedEdges);
     const EdgeType& type = graph.edge_type(b);
-    table.add({type.tag, std::to_string(graph.batch(b).size()),
-               fmt::format("{:.8g}", graph.batch(b).chi2(graph.view())), type.form,
-               fmt::format("{:.1e}", gradients.error)});
+    table.rows.push_back({type.tag, std::to_string(graph.batch(b).size()),
+                          fmt::format("{:.8g}", graph.batch(b).chi2(graph.view())), type.form,
+                          fmt::format("{:.1e}", gradients.error)});
     json["edges"].push_back({{"type", type.tag},
                              {"count", graph.batch(b).size()},
                              {"chi2", graph.batch(b).chi2(graph.view())},
                              {"jacobian_error", gradients.error}});
     if (gradients.error > kGradientTolerance) problems.push_back(describe(graph, b, gradients));
   }
-  if (!table.empty()) text += table.text(console.look());
+  if (!table.rows.empty()) text += text::table_text(table, console.look());
   console.progress("factorising");
   try {
     (void)marginal_covariances(graph, {});  // this factorises without damping

@@ -1,12 +1,12 @@
 #include <waymark/tools/program/doctor/doctor.hpp>
 
-#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 namespace {
@@ -27,21 +27,8 @@ std::string line(const std::string& label, const std::string& value) {
   return fmt::format("{:<12}{}\n", label, value);
 }
 
-/// Returns a table of words. Each column is as wide as its longest word.
-std::string columns(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    std::string cells = " ";
-    for (std::size_t c = 0; c < row.size(); ++c) cells += fmt::format(" {:<{}} ", row[c], widths[c]);
-    cells.erase(cells.find_last_not_of(' ') + 1);
-    text += cells + "\n";
-  }
-  return text;
+std::string listed(const text::Table& table) {
+  return text::indented(text::table_text(table), 2);
 }
 
 std::string program_text(const Json& json) {
@@ -62,44 +49,44 @@ std::string program_text(const Json& json) {
 }
 
 std::string libraries_text(const Json& json) {
-  std::vector<std::vector<std::string>> rows = {{"library", "version", "use", "licence"}};
+  text::Table table{.columns = {"library", "version", "use", "licence"}, .words = true};
   for (const Json& l : json["libraries"])
-    rows.push_back(
+    table.rows.push_back(
         {string_of(l, "name"), string_of(l, "version"), string_of(l, "use"), string_of(l, "licence")});
-  return "\nbuilt in\n" + columns(rows);
+  return "\nbuilt in\n" + listed(table);
 }
 
 std::string self_test_text(const Json& test) {
-  std::vector<std::vector<std::string>> rows;
+  text::Table table{.words = true};
   for (const char* kind : {"solvers", "algorithms"}) {
     for (const Json& entry : test[kind]) {
       const std::string origin = string_of(entry, "origin");
-      rows.push_back({std::string(kind, std::string_view(kind).size() - 1),
-                      string_of(entry, "name") + (origin == "waymark" ? "" : " [" + origin + "]"),
-                      entry["works"].get<bool>() ? "works" : "FAILED: " + string_of(entry, "problem")});
+      table.rows.push_back({std::string(kind, std::string_view(kind).size() - 1),
+                            string_of(entry, "name") + (origin == "waymark" ? "" : " [" + origin + "]"),
+                            entry["works"].get<bool>() ? "works" : "FAILED: " + string_of(entry, "problem")});
     }
   }
   return fmt::format("\nself-test: a graph whose minimum is known, chi2 {:.10g}\n",
                      test["minimum"].get<double>()) +
-         columns(rows);
+         listed(table);
 }
 
 std::string plugins_text(const Json& plugins) {
   std::string text = "\nplugin folders, in the order in which they are searched\n";
-  std::vector<std::vector<std::string>> rows;
+  text::Table folders{.words = true};
   for (const Json& folder : plugins["folders"]) {
-    const std::string problem = string_of(folder, "problem");
-    rows.push_back({string_of(folder, "path"), string_of(folder, "from"), problem.empty() ? "" : problem});
+    folders.rows.push_back(
+        {string_of(folder, "path"), string_of(folder, "from"), string_of(folder, "problem")});
   }
-  text += columns(rows);
+  text += listed(folders);
   if (string_of(plugins, "value").empty())
     text += "  " + string_of(plugins, "variable") + " is not set; it may name more, separated by ':'\n";
   text += "\nplugins: version, ABI, place, what they bring\n";
-  rows.clear();
+  text::Table loaded{.words = true};
   for (const Json& plugin : plugins["loaded"])
-    rows.push_back({string_of(plugin, "name"), string_of(plugin, "version"), plugin["abi"].dump(),
-                    string_of(plugin, "place"), words(plugin["brings"], " ")});
-  text += columns(rows);
+    loaded.rows.push_back({string_of(plugin, "name"), string_of(plugin, "version"), plugin["abi"].dump(),
+                           string_of(plugin, "place"), words(plugin["brings"], " ")});
+  text += listed(loaded);
   for (const Json& module : plugins["left_out"]) text += "  left out: " + string_of(module, "problem") + "\n";
   return text;
 }

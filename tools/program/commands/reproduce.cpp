@@ -121,9 +121,8 @@ std::vector<std::string> write_report(const reproduction::ReproductionReport& re
   for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   write(capitals + ".md", reproduction::report_markdown(report));
   write(report.name + ".json", json);
-  for (const reproduction::ReportTable& table : report.tables)
-    write(table.file + ".csv", reproduction::table_csv(table));
-  write(report.runs.file + ".csv", reproduction::table_csv(report.runs));
+  for (const text::Table& table : report.tables) write(table.file + ".csv", text::table_csv(table));
+  write(report.runs.file + ".csv", text::table_csv(report.runs));
   return files;
 }
 

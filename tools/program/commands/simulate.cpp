@@ -11,7 +11,7 @@
 #include <waymark/tools/program/commands/drive_statistics.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
-#include <waymark/tools/text/text_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 namespace {
@@ -26,17 +26,18 @@ struct SimulateOptions {
 };
 
 ExitCode list_presets(const Console& console) {
-  text::TextTable table({"preset", "seed", "duration [s]", "description"});
+  text::Table table{.columns = {"preset", "seed", "duration [s]", "description"}};
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const simulation::SimulationPreset& preset : simulation::simulation_presets()) {
-    table.add({preset.name, std::to_string(preset.default_seed),
-               fmt::format("{:g}", preset.recipe.duration_s), preset.description});
+    table.rows.push_back({preset.name, std::to_string(preset.default_seed),
+                          fmt::format("{:g}", preset.recipe.duration_s), preset.description});
     json.push_back({{"name", preset.name},
                     {"default_seed", preset.default_seed},
                     {"duration_s", preset.recipe.duration_s},
                     {"description", preset.description}});
   }
-  console.result(console.json() ? json_document("presets", {{"presets", json}}) : table.text(console.look()));
+  console.result(console.json() ? json_document("presets", {{"presets", json}})
+                                : text::table_text(table, console.look()));
   return kSuccess;
 }
 

@@ -9,7 +9,7 @@
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
-#include <waymark/tools/text/text_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 namespace {
@@ -42,7 +42,7 @@ nlohmann::ordered_json json_of(const drive::SyncReport& report,
   return json;
 }
 
-text::TextTable::Row row_of(const std::string& quantity, const drive::ClockOffset& offset) {
+text::Row row_of(const std::string& quantity, const drive::ClockOffset& offset) {
   return {quantity,
           fmt::format("{:.3f}", offset.late_s),
           fmt::format("{:.3f}", offset.sigma_s),
@@ -53,10 +53,11 @@ text::TextTable::Row row_of(const std::string& quantity, const drive::ClockOffse
 
 std::string table_of(const drive::SyncReport& report, const drive::DriveDescription& drive,
                      const text::TextLook& look) {
-  text::TextTable table({"odometry's", "late by [s]", "sigma [s]", "correlation", "samples", "against"});
-  if (report.speed) table.add(row_of("speed", *report.speed));
-  if (report.yaw_rate) table.add(row_of("yaw rate", *report.yaw_rate));
-  std::string text = table.empty() ? "" : table.text(look);
+  text::Table table{
+      .columns = {"odometry's", "late by [s]", "sigma [s]", "correlation", "samples", "against"}};
+  if (report.speed) table.rows.push_back(row_of("speed", *report.speed));
+  if (report.yaw_rate) table.rows.push_back(row_of("yaw rate", *report.yaw_rate));
+  std::string text = table.rows.empty() ? "" : text::table_text(table, look);
   if (!report.speed) text += "speed: no offset found (too little driving, or no correlation beyond chance)\n";
   if (!report.yaw_rate)
     text += "yaw rate: no offset found (too few turns, or no correlation beyond chance)\n";

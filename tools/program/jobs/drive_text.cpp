@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <waymark/tools/text/text_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 namespace {
@@ -34,15 +34,16 @@ std::string describe_model(const drive::ModeledDrive& modeled, const text::TextL
     text += fmt::format("gate        off: all {} fixes are used\n", gate.accepted);
   }
   if (modeled.noise.parameters.empty()) return text;
-  text::TextTable table({"estimated noise", "unit", "value", "68 % between", "and", "known before"});
+  text::Table table{.columns = {"estimated noise", "unit", "value", "68 % between", "and", "known before"}};
   for (const drive::NoiseParameter& p : modeled.noise.parameters) {
     const bool linear = p.prior.linear;
     const auto moved = [&](double by) { return linear ? p.value + by : p.value * std::exp(by); };
-    table.add({p.option, p.unit, fmt::format("{:.3g}", p.value), fmt::format("{:.3g}", moved(-p.deviation)),
-               fmt::format("{:.3g}", moved(p.deviation)),
-               p.observed() ? fmt::format("{:.3g}", p.prior.mean) : "not observed"});
+    table.rows.push_back({p.option, p.unit, fmt::format("{:.3g}", p.value),
+                          fmt::format("{:.3g}", moved(-p.deviation)),
+                          fmt::format("{:.3g}", moved(p.deviation)),
+                          p.observed() ? fmt::format("{:.3g}", p.prior.mean) : "not observed"});
   }
-  return text + table.text(look);
+  return text + text::table_text(table, look);
 }
 
 std::string left_out(const drive::PreparedDrive& drive) {

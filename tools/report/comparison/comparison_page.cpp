@@ -14,7 +14,7 @@ namespace {
 using Groups = std::vector<DriveGroup>;
 using Runs = std::vector<ComparedRun>;
 
-void add_table(drawing::PageTable table, drawing::Section& section) {
+void add_table(text::Table table, drawing::Section& section) {
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
 }
 
@@ -139,7 +139,7 @@ drawing::Section ending_section(const Runs& runs) {
 
 drawing::Section differences_section(const Runs& runs, const Groups& groups) {
   drawing::Section section{"differences", "What differs", {}};
-  drawing::PageTable differences = provenance_differences(runs);
+  text::Table differences = provenance_differences(runs);
   if (differences.rows.empty())
     section.blocks.emplace_back(drawing::Paragraph{"Program, inputs and options are the same in all runs."});
   add_table(std::move(differences), section);

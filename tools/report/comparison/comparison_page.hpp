@@ -19,6 +19,6 @@ namespace waymark::report {
 [[nodiscard]] drawing::Page comparison_page(const std::vector<ComparedRun>& runs, const std::string& version);
 
 /// Returns the provenance that differs between runs: a row for each key, a column for each run.
-[[nodiscard]] drawing::PageTable provenance_differences(const std::vector<ComparedRun>& runs);
+[[nodiscard]] text::Table provenance_differences(const std::vector<ComparedRun>& runs);
 
 }  // namespace waymark::report

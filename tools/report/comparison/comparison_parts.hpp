@@ -31,13 +31,13 @@ struct SystemRow {
 /// reckoning").
 [[nodiscard]] std::vector<SystemRow> rows_at_withheld(const DriveGroup& group);
 
-[[nodiscard]] drawing::PageTable error_table(const std::vector<DriveGroup>& groups);
-[[nodiscard]] drawing::PageTable improvement_table(const std::vector<DriveGroup>& groups);
-[[nodiscard]] drawing::PageTable track_table(const std::vector<DriveGroup>& groups);
-[[nodiscard]] drawing::PageTable withheld_error_table(const std::vector<DriveGroup>& groups);
-[[nodiscard]] drawing::PageTable stated_error_table(const std::vector<DriveGroup>& groups);
-[[nodiscard]] drawing::PageTable fixes_table(const std::vector<DriveGroup>& groups);
-[[nodiscard]] drawing::PageTable ending_table(const std::vector<ComparedRun>& runs);
+[[nodiscard]] text::Table error_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] text::Table improvement_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] text::Table track_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] text::Table withheld_error_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] text::Table stated_error_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] text::Table fixes_table(const std::vector<DriveGroup>& groups);
+[[nodiscard]] text::Table ending_table(const std::vector<ComparedRun>& runs);
 
 /// Returns a bar figure for each metric, with a row for each system.
 [[nodiscard]] std::vector<drawing::Figure> error_bars(const std::vector<DriveGroup>& groups);

@@ -13,7 +13,7 @@ namespace waymark::report {
 namespace {
 
 using Groups = std::vector<DriveGroup>;
-using Row = std::vector<std::string>;
+using text::Row;
 
 bool same(const evaluation::PositionMetrics& a, const evaluation::PositionMetrics& b) {
   return a.count == b.count && a.rmse_m == b.rmse_m && a.max_m == b.max_m && a.accuracy_m == b.accuracy_m;
@@ -21,8 +21,8 @@ bool same(const evaluation::PositionMetrics& a, const evaluation::PositionMetric
 
 /// Returns a table whose first columns are the drive (if there are several) and the
 /// name of the row.
-drawing::PageTable table_with(const Groups& groups, const std::string& title, Row columns) {
-  drawing::PageTable table{.title = title, .columns = {}, .rows = {}};
+text::Table table_with(const Groups& groups, const std::string& title, Row columns) {
+  text::Table table{.title = title};
   if (groups.size() > 1) table.columns.emplace_back("drive");
   table.columns.emplace_back("run");
   table.columns.insert(table.columns.end(), columns.begin(), columns.end());
@@ -30,7 +30,7 @@ drawing::PageTable table_with(const Groups& groups, const std::string& title, Ro
 }
 
 void add_row(const Groups& groups, const DriveGroup& group, const std::string& label, const Row& cells,
-             drawing::PageTable& table) {
+             text::Table& table) {
   Row row;
   if (groups.size() > 1) row.push_back(group.drive);
   row.push_back(label);
@@ -59,18 +59,18 @@ std::string best_in(const SystemRow& row, const std::vector<SystemRow>& rows) {
   return names;
 }
 
-drawing::PageTable position_table(const Groups& groups, const std::string& title,
-                                  std::vector<SystemRow> (*rows_of)(const DriveGroup&)) {
+text::Table position_table(const Groups& groups, const std::string& title,
+                           std::vector<SystemRow> (*rows_of)(const DriveGroup&)) {
   Row columns{"n"};
   for (const PositionColumn& column : position_columns()) columns.push_back(column.name + " [m]");
   columns.emplace_back("best in");
-  drawing::PageTable table = table_with(groups, title, columns);
+  text::Table table = table_with(groups, title, columns);
   for (const DriveGroup& group : groups) {
     const std::vector<SystemRow> rows = rows_of(group);
     for (const SystemRow& row : rows) {
       Row cells{counted(row.metrics.position.count)};
       for (const PositionColumn& column : position_columns())
-        cells.push_back(decimals(row.metrics.position.*column.value, 3));
+        cells.push_back(text::decimals(row.metrics.position.*column.value, 3));
       cells.push_back(best_in(row, rows));
       add_row(groups, group, row.label, cells, table);
     }
@@ -127,20 +127,20 @@ std::vector<SystemRow> rows_at_withheld(const DriveGroup& group) {
   return rows;
 }
 
-drawing::PageTable error_table(const Groups& groups) {
+text::Table error_table(const Groups& groups) {
   return position_table(groups, "Position errors against truth", rows_against_truth);
 }
 
-drawing::PageTable withheld_error_table(const Groups& groups) {
-  drawing::PageTable table = position_table(groups, "Errors at withheld fixes", rows_at_withheld);
+text::Table withheld_error_table(const Groups& groups) {
+  text::Table table = position_table(groups, "Errors at withheld fixes", rows_at_withheld);
   table.notes = {"The withheld fixes' own errors are in these numbers."};
   return table;
 }
 
-drawing::PageTable improvement_table(const Groups& groups) {
+text::Table improvement_table(const Groups& groups) {
   Row columns;
   for (const PositionColumn& column : position_columns()) columns.push_back(column.name + " [%]");
-  drawing::PageTable table = table_with(groups, "Improvement over raw GNSS", columns);
+  text::Table table = table_with(groups, "Improvement over raw GNSS", columns);
   table.notes = {"100 (1 - fused / raw) at the same epochs. Negative: worse than raw."};
   for (const DriveGroup& group : groups) {
     for (const ComparedRun* run : group.runs) {
@@ -149,34 +149,35 @@ drawing::PageTable improvement_table(const Groups& groups) {
       Row cells;
       for (const double percent : {i.max_percent, i.accuracy_percent, i.precision_percent, i.rmse_percent,
                                    i.median_percent, i.cep50_percent, i.cep95_percent})
-        cells.push_back(decimals(percent, 1));
+        cells.push_back(text::decimals(percent, 1));
       add_row(groups, group, run->label, cells, table);
     }
   }
   return table;
 }
 
-drawing::PageTable track_table(const Groups& groups) {
-  drawing::PageTable table = table_with(
+text::Table track_table(const Groups& groups) {
+  text::Table table = table_with(
       groups, "Along and across the direction of travel, and heading",
       {"n", "along mean [m]", "rms [m]", "across mean [m]", "rms [m]", "heading rms [deg]", "max [deg]"});
   for (const DriveGroup& group : groups) {
     for (const SystemRow& row : rows_against_truth(group)) {
       const evaluation::SystemMetrics& m = row.metrics;
       add_row(groups, group, row.label,
-              {counted(m.track.along.count), decimals(m.track.along.mean, 3), decimals(m.track.along.rms, 3),
-               decimals(m.track.cross.mean, 3), decimals(m.track.cross.rms, 3),
-               decimals(degrees(m.heading.rms), 3), decimals(degrees(m.heading.max_abs), 3)},
+              {counted(m.track.along.count), text::decimals(m.track.along.mean, 3),
+               text::decimals(m.track.along.rms, 3), text::decimals(m.track.cross.mean, 3),
+               text::decimals(m.track.cross.rms, 3), text::decimals(degrees(m.heading.rms), 3),
+               text::decimals(degrees(m.heading.max_abs), 3)},
               table);
     }
   }
   return table;
 }
 
-drawing::PageTable stated_error_table(const Groups& groups) {
-  drawing::PageTable table = table_with(groups, "Stated against actual errors",
-                                        {"n", "effective n", "mean NEES", "honest NEES", "inside 95 % [%]",
-                                         "honest share [%]", "actual / stated", "stated errors are"});
+text::Table stated_error_table(const Groups& groups) {
+  text::Table table = table_with(groups, "Stated against actual errors",
+                                 {"n", "effective n", "mean NEES", "honest NEES", "inside 95 % [%]",
+                                  "honest share [%]", "actual / stated", "stated errors are"});
   table.notes = {
       "Honest: a mean NEES of 2, 95 % inside, actual / stated 1. The intervals are where an honest "
       "covariance leaves the numbers on 95 of 100 drives. Stated errors are called honest where the mean "
@@ -187,20 +188,20 @@ drawing::PageTable stated_error_table(const Groups& groups) {
       if (!run->evaluation.truth || !run->evaluation.truth->consistency) continue;
       const evaluation::ConsistencyStatistics& s = *run->evaluation.truth->consistency;
       const auto interval = [](const evaluation::Interval95& i, double unit, int digits) {
-        return decimals(unit * i.low, digits) + " to " + decimals(unit * i.high, digits);
+        return text::decimals(unit * i.low, digits) + " to " + text::decimals(unit * i.high, digits);
       };
       add_row(groups, group, run->label,
-              {counted(s.count), decimals(s.effective_samples, 1), decimals(s.nees_mean, 2),
-               interval(s.nees_mean_honest, 1, 2), decimals(100 * s.coverage, 1),
-               interval(s.coverage_honest, 100, 0), decimals(s.median_error_ratio, 2), honesty(s)},
+              {counted(s.count), text::decimals(s.effective_samples, 1), text::decimals(s.nees_mean, 2),
+               interval(s.nees_mean_honest, 1, 2), text::decimals(100 * s.coverage, 1),
+               interval(s.coverage_honest, 100, 0), text::decimals(s.median_error_ratio, 2), honesty(s)},
               table);
     }
   }
   return table;
 }
 
-drawing::PageTable fixes_table(const Groups& groups) {
-  drawing::PageTable table =
+text::Table fixes_table(const Groups& groups) {
+  text::Table table =
       table_with(groups, "Fixes", {"fixes", "accepted", "rejected", "rejected [%]", "withheld"});
   for (const DriveGroup& group : groups) {
     for (const ComparedRun* run : group.runs) {
@@ -208,7 +209,7 @@ drawing::PageTable fixes_table(const Groups& groups) {
       const double share =
           100 * static_cast<double>(e.rejected) / static_cast<double>(e.accepted + e.rejected);
       add_row(groups, group, run->label,
-              {counted(e.fixes()), counted(e.accepted), counted(e.rejected), decimals(share, 2),
+              {counted(e.fixes()), counted(e.accepted), counted(e.rejected), text::decimals(share, 2),
                counted(e.withheld)},
               table);
     }
@@ -216,25 +217,24 @@ drawing::PageTable fixes_table(const Groups& groups) {
   return table;
 }
 
-drawing::PageTable ending_table(const std::vector<ComparedRun>& runs) {
-  drawing::PageTable table{
+text::Table ending_table(const std::vector<ComparedRun>& runs) {
+  text::Table table{
       .title = "How the minimisations ended",
-      .columns = {"run", "ended", "iterations", "time [s]", "chi2 at the start", "chi2 at the end"},
-      .rows = {}};
+      .columns = {"run", "ended", "iterations", "time [s]", "chi2 at the start", "chi2 at the end"}};
   table.notes = {"chi2 of different modelings is not comparable: their graphs differ."};
   for (const ComparedRun& run : runs) {
     if (!run.ending) continue;
     const evaluation::RunEnding& e = *run.ending;
     table.rows.push_back({run.label, e.converged ? "converged" : "NOT CONVERGED", counted(e.iterations),
-                          decimals(e.seconds, 3), fmt::format("{:.6g}", e.initial_chi2),
+                          text::decimals(e.seconds, 3), fmt::format("{:.6g}", e.initial_chi2),
                           fmt::format("{:.6g}", e.final_chi2)});
     if (!e.converged) table.notes.push_back(run.label + ": " + e.message);
   }
   return table;
 }
 
-drawing::PageTable provenance_differences(const std::vector<ComparedRun>& runs) {
-  drawing::PageTable table{.title = "What was done differently", .columns = {"entry"}, .rows = {}};
+text::Table provenance_differences(const std::vector<ComparedRun>& runs) {
+  text::Table table{.title = "What was done differently", .columns = {"entry"}};
   std::map<std::string, Row> entries;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     table.columns.push_back(runs[r].label);

@@ -20,8 +20,8 @@ std::string describe_consistency(const evaluation::ConsistencyStatistics& stated
       stated.effective_samples, stated.median_error_ratio);
 }
 
-drawing::PageTable provenance(const ReportedDrive& drive) {
-  drawing::PageTable table{"Where it comes from", {"", ""}, {}};
+text::Table provenance(const ReportedDrive& drive) {
+  text::Table table{.title = "Where it comes from", .columns = {"", ""}};
   for (const auto& [key, text] : drive.document.provenance) {
     if (key != "assumed" && key != "warning") table.rows.push_back({key, text});
   }

@@ -14,31 +14,30 @@ namespace waymark::report {
 namespace {
 
 /// Returns the heading of a table of metrics.
-std::vector<std::string> metrics_heading() {
-  std::vector<std::string> heading = {"", "epochs"};
+text::Row metrics_heading() {
+  text::Row heading = {"", "epochs"};
   for (const PositionColumn& column : position_columns()) heading.push_back(column.name + " [m]");
   return heading;
 }
 
-std::vector<std::string> metrics_row(const std::string& name, const evaluation::PositionMetrics& m) {
-  std::vector<std::string> row = {name, fmt::to_string(m.count)};
-  for (const PositionColumn& column : position_columns()) row.push_back(decimals(m.*column.value, 3));
+text::Row metrics_row(const std::string& name, const evaluation::PositionMetrics& m) {
+  text::Row row = {name, fmt::to_string(m.count)};
+  for (const PositionColumn& column : position_columns()) row.push_back(text::decimals(m.*column.value, 3));
   return row;
 }
 
-std::vector<std::string> improvement_row(const evaluation::PositionMetrics& raw,
-                                         const evaluation::PositionMetrics& fused) {
-  std::vector<std::string> row = {"better than raw by [%]", ""};
+text::Row improvement_row(const evaluation::PositionMetrics& raw, const evaluation::PositionMetrics& fused) {
+  text::Row row = {"better than raw by [%]", ""};
   for (const PositionColumn& column : position_columns()) {
     const double percent = evaluation::improvement_percent(raw.*column.value, fused.*column.value);
-    row.push_back((percent > 0 ? "+" : "") + decimals(percent, 1));
+    row.push_back((percent > 0 ? "+" : "") + text::decimals(percent, 1));
   }
   return row;
 }
 
-drawing::PageTable truth_table(const ReportedDrive& drive) {
+text::Table truth_table(const ReportedDrive& drive) {
   const evaluation::TruthEvaluation& truth = *drive.evaluation.truth;
-  drawing::PageTable table{"Against truth", metrics_heading(), {}};
+  text::Table table{.title = "Against truth", .columns = metrics_heading()};
   table.rows = {metrics_row("raw GNSS", truth.gnss.position),
                 metrics_row("raw GNSS, accepted fixes only", truth.gnss_accepted.position),
                 metrics_row("fused", truth.fused.position)};
@@ -50,9 +49,9 @@ drawing::PageTable truth_table(const ReportedDrive& drive) {
   return table;
 }
 
-drawing::PageTable withheld_table(const evaluation::Evaluation& evaluation) {
-  drawing::PageTable table{
-      "At withheld fixes", metrics_heading(), {}, {"The noise of the fixes is in these numbers."}};
+text::Table withheld_table(const evaluation::Evaluation& evaluation) {
+  text::Table table{.title = "At withheld fixes", .columns = metrics_heading()};
+  table.notes = {"The noise of the fixes is in these numbers."};
   for (const evaluation::WithheldMetrics& way : evaluation.at_withheld) {
     table.rows.push_back(metrics_row(way.label, way.at_fixes));
     if (way.at_ends.count > 0)
@@ -130,8 +129,8 @@ std::string outcome(const ReportedDrive& drive) {
 }
 
 /// Lists inputs, assumptions, rejected fixes and results.
-drawing::PageTable account(const ReportedDrive& drive) {
-  drawing::PageTable table{"", {"", ""}, {}};
+text::Table account(const ReportedDrive& drive) {
+  text::Table table{.columns = {"", ""}};
   for (const std::string& warning : stated(drive, "warning")) table.rows.push_back({"WARNING", warning});
   table.rows.push_back({"went in", describe_input(drive)});
   for (const std::string& log : stated(drive, "input")) table.rows.push_back({"log", log});
@@ -198,17 +197,17 @@ drawing::Section summary_section(const ReportedDrive& drive) {
   return section;
 }
 
-drawing::PageTable track_table(const evaluation::TruthEvaluation& truth) {
+text::Table track_table(const evaluation::TruthEvaluation& truth) {
   constexpr double kDegrees = 180 / std::numbers::pi;
-  drawing::PageTable table{
-      "Along and across track, and heading",
-      {"", "along: mean [m]", "rms [m]", "across: mean [m]", "rms [m]", "heading: mean [deg]", "rms [deg]"},
-      {}};
+  text::Table table{.title = "Along and across track, and heading",
+                    .columns = {"", "along: mean [m]", "rms [m]", "across: mean [m]", "rms [m]",
+                                "heading: mean [deg]", "rms [deg]"}};
+  const auto number = [](double value) { return text::decimals(value, 3); };
   for (const auto& [name, system] : {std::pair{"raw GNSS", &truth.gnss}, std::pair{"fused", &truth.fused}}) {
-    table.rows.push_back({name, decimals(system->track.along.mean, 3), decimals(system->track.along.rms, 3),
-                          decimals(system->track.cross.mean, 3), decimals(system->track.cross.rms, 3),
-                          decimals(system->heading.mean * kDegrees, 3),
-                          decimals(system->heading.rms * kDegrees, 3)});
+    const evaluation::TrackMetrics& track = system->track;
+    table.rows.push_back({name, number(track.along.mean), number(track.along.rms), number(track.cross.mean),
+                          number(track.cross.rms), number(system->heading.mean * kDegrees),
+                          number(system->heading.rms * kDegrees)});
   }
   return table;
 }

@@ -14,6 +14,6 @@ void summarise(const ReportedDrive& drive, drawing::Page& page);
 [[nodiscard]] drawing::Section summary_section(const ReportedDrive& drive);
 
 /// Returns the errors along and across the direction of travel, and of the heading.
-[[nodiscard]] drawing::PageTable track_table(const evaluation::TruthEvaluation& truth);
+[[nodiscard]] text::Table track_table(const evaluation::TruthEvaluation& truth);
 
 }  // namespace waymark::report

@@ -157,11 +157,10 @@ drawing::Figure residual_figure(const evaluation::GraphResiduals& residuals) {
   return figure;
 }
 
-drawing::PageTable residual_table(const evaluation::GraphResiduals& residuals) {
-  drawing::PageTable table{"Residuals by edge type",
-                           {"edge type", "role", "edges", "share of chi2 [%]", "component", "mean [sigma]",
-                            "rms [sigma]", "largest [sigma]"},
-                           {}};
+text::Table residual_table(const evaluation::GraphResiduals& residuals) {
+  text::Table table{.title = "Residuals by edge type",
+                    .columns = {"edge type", "role", "edges", "share of chi2 [%]", "component",
+                                "mean [sigma]", "rms [sigma]", "largest [sigma]"}};
   for (const evaluation::TypeResiduals& type : residuals.types) {
     for (std::size_t k = 0; k < type.components.size(); ++k) {
       const evaluation::ScalarStatistics& s = type.components[k].statistics;
@@ -176,12 +175,11 @@ drawing::PageTable residual_table(const evaluation::GraphResiduals& residuals) {
   return table;
 }
 
-drawing::PageTable largest_residuals(const evaluation::GraphResiduals& residuals,
-                                     const std::function<double(Stamp)>& seconds) {
-  drawing::PageTable table{
-      "The largest edges of each type",
-      {"edge type", "edge", "time [s]", "vertices", "squared norm", "weight", "whitened [sigma]"},
-      {}};
+text::Table largest_residuals(const evaluation::GraphResiduals& residuals,
+                              const std::function<double(Stamp)>& seconds) {
+  text::Table table{
+      .title = "The largest edges of each type",
+      .columns = {"edge type", "edge", "time [s]", "vertices", "squared norm", "weight", "whitened [sigma]"}};
   for (const evaluation::TypeResiduals& type : residuals.types) {
     if (type.role != evaluation::EdgeRole::measurement) continue;
     const std::size_t most = std::min(type.largest.size(), kMostListed);
@@ -201,12 +199,12 @@ drawing::PageTable largest_residuals(const evaluation::GraphResiduals& residuals
   return table;
 }
 
-drawing::PageTable state_table(const std::vector<evaluation::StateReport>& states) {
-  drawing::PageTable table{
-      "Estimated with the poses",
-      {"state", "unit", "values", "first", "last", "smallest", "largest", "sigma", "sigma before", ""},
-      {},
-      {"sigma: of the last value, from the marginal covariance; before: of the first value, by its prior."}};
+text::Table state_table(const std::vector<evaluation::StateReport>& states) {
+  text::Table table{.title = "Estimated with the poses",
+                    .columns = {"state", "unit", "values", "first", "last", "smallest", "largest", "sigma",
+                                "sigma before", ""}};
+  table.notes = {
+      "sigma: of the last value, from the marginal covariance; before: of the first value, by its prior."};
   for (const evaluation::StateReport& s : states) {
     table.rows.push_back({s.name, s.unit, fmt::to_string(s.values), drawing::readable(s.first),
                           drawing::readable(s.last), drawing::readable(s.smallest),

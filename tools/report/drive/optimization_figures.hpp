@@ -21,12 +21,12 @@ namespace waymark::report {
 /// mean that the noise is as stated.
 [[nodiscard]] drawing::Figure residual_figure(const evaluation::GraphResiduals& residuals);
 /// Returns their numbers for each component.
-[[nodiscard]] drawing::PageTable residual_table(const evaluation::GraphResiduals& residuals);
+[[nodiscard]] text::Table residual_table(const evaluation::GraphResiduals& residuals);
 /// Returns the largest edges of each type. @param seconds since the start of the drive
-[[nodiscard]] drawing::PageTable largest_residuals(const evaluation::GraphResiduals& residuals,
-                                                   const std::function<double(Stamp)>& seconds);
+[[nodiscard]] text::Table largest_residuals(const evaluation::GraphResiduals& residuals,
+                                            const std::function<double(Stamp)>& seconds);
 
-[[nodiscard]] drawing::PageTable state_table(const std::vector<evaluation::StateReport>& states);
+[[nodiscard]] text::Table state_table(const std::vector<evaluation::StateReport>& states);
 /// Shows each state that wanders over time. `time` is the extent of the drive in seconds.
 [[nodiscard]] std::vector<drawing::Figure> state_figures(const std::vector<evaluation::StateReport>& states,
                                                          const std::function<double(Stamp)>& seconds,

@@ -120,16 +120,17 @@ using Drives = std::vector<DriveResult>;
 
 /// Returns a table with a line for each ablation and a column for each drive.
 template <typename Value>
-ReportTable table_of(const Drives& drives, const std::string& file, const std::string& title, int digits,
+text::Table table_of(const Drives& drives, const std::string& file, const std::string& title, int digits,
                      Value value) {
-  ReportTable table;
+  text::Table table;
   table.file = file;
   table.title = title;
   table.columns = {"switched"};
   for (const DriveResult& drive : drives) table.columns.push_back(column_label(drive));
   for (const Ablation& ablation : ablations()) {
-    std::vector<std::string> row{ablation.title};
-    for (const DriveResult& drive : drives) row.push_back(cell(value(drive, ablation.setting.name), digits));
+    text::Row row{ablation.title};
+    for (const DriveResult& drive : drives)
+      row.push_back(text::decimals(value(drive, ablation.setting.name), digits));
     table.rows.push_back(row);
   }
   return table;
@@ -143,17 +144,17 @@ std::vector<double> rms_errors(const Drives& drives, const std::string& setting)
 
 /// Adds changes against the default, and for the alternatives also against the reference
 /// of the field.
-void add_changes(const Drives& drives, ReportTable& table) {
+void add_changes(const Drives& drives, text::Table& table) {
   table.columns.emplace_back("change %, mean");
   table.columns.emplace_back("against g1 with gate %, mean");
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const std::vector<double> errors = rms_errors(drives, ablations()[i].setting.name);
     for (const std::string& reference : {std::string(kDefaultModel), std::string(kWhiteReference)})
-      table.rows[i].push_back(cell(mean_change_percent(errors, rms_errors(drives, reference)), 1));
+      table.rows[i].push_back(text::decimals(mean_change_percent(errors, rms_errors(drives, reference)), 1));
   }
 }
 
-void note_failures(const Drives& drives, ReportTable& table) {
+void note_failures(const Drives& drives, text::Table& table) {
   for (const DriveResult& drive : drives) {
     for (const Outcome& outcome : judged(drive)) {
       if (!outcome.failure.empty())
@@ -165,8 +166,8 @@ void note_failures(const Drives& drives, ReportTable& table) {
   }
 }
 
-ReportTable error_table(const Drives& drives) {
-  ReportTable table = table_of(drives, "ablation_error", "RMS errors, m", 2,
+text::Table error_table(const Drives& drives) {
+  text::Table table = table_of(drives, "ablation_error", "RMS errors, m", 2,
                                [](const DriveResult& drive, const std::string& setting) {
                                  return judged_errors(drive, setting).rmse_m;
                                });

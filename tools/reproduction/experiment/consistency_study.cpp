@@ -41,8 +41,8 @@ const char* model_name(const Setting& setting) {
   return setting.name == kDefaultModel ? "default" : "white noise with gate";
 }
 
-ReportTable pooled_table(const Drives& drives) {
-  ReportTable table;
+text::Table pooled_table(const Drives& drives) {
+  text::Table table;
   table.file = "consistency";
   table.title = "Stated against actual errors, pooled over simulated drives";
   table.columns = {"preset",    "model",          "drives",        "judged",
@@ -57,9 +57,10 @@ ReportTable pooled_table(const Drives& drives) {
       const PooledMean nees = pooled_mean(of.nees);
       const PooledMean coverage = pooled_mean(of.coverage_percent);
       table.rows.push_back({group, model_name(setting), std::to_string(of.drives),
-                            std::to_string(of.nees.size()), cell(nees.mean, 2), cell(nees.standard_error, 2),
-                            cell(coverage.mean, 1), cell(coverage.standard_error, 1),
-                            cell(std::sqrt(pooled_mean(of.squared_error).mean), 2)});
+                            std::to_string(of.nees.size()), text::decimals(nees.mean, 2),
+                            text::decimals(nees.standard_error, 2), text::decimals(coverage.mean, 1),
+                            text::decimals(coverage.standard_error, 1),
+                            text::decimals(std::sqrt(pooled_mean(of.squared_error).mean), 2)});
     }
   }
   table.notes = {
@@ -76,8 +77,8 @@ ReportTable pooled_table(const Drives& drives) {
   return table;
 }
 
-ReportTable drive_table(const Drives& drives) {
-  ReportTable table;
+text::Table drive_table(const Drives& drives) {
+  text::Table table;
   table.file = "consistency_drives";
   table.title = "Each of the simulated drives";
   table.columns = {"drive", "RMSE raw"};
@@ -88,13 +89,13 @@ ReportTable drive_table(const Drives& drives) {
   for (const DriveResult& drive : drives) {
     const auto rmse = [&](const std::string& system) {
       const auto metrics = metrics_of(drive, system);
-      return cell(metrics ? metrics->rmse_m : evaluation::kUndefined, 2);
+      return text::decimals(metrics ? metrics->rmse_m : evaluation::kUndefined, 2);
     };
-    std::vector<std::string> row{drive.name, rmse("gnss")};
+    text::Row row{drive.name, rmse("gnss")};
     for (const Setting& setting : consistency_settings()) {
       const auto stated = consistency_of(drive, setting.name);
-      row.push_back(cell(stated ? stated->nees_mean : evaluation::kUndefined, 2));
-      row.push_back(cell(stated ? 100 * stated->coverage : evaluation::kUndefined, 0));
+      row.push_back(text::decimals(stated ? stated->nees_mean : evaluation::kUndefined, 2));
+      row.push_back(text::decimals(stated ? 100 * stated->coverage : evaluation::kUndefined, 0));
       row.push_back(rmse(setting.name));
     }
     table.rows.push_back(row);

@@ -25,9 +25,8 @@ std::string spaced(const std::string& source) {
 }
 
 drawing::Section findings_section(const std::vector<Finding>& findings) {
-  drawing::PageTable table{.title = "What the paper found, and what these drives say",
-                           .columns = {"finding", "source", "verdict", "figures"},
-                           .rows = {}};
+  text::Table table{.title = "What the paper found, and what these drives say",
+                    .columns = {"finding", "source", "verdict", "figures"}};
   for (const Finding& finding : findings) {
     std::string statement = finding.statement;
     for (const Evidence& evidence : finding.evidence) {
@@ -107,8 +106,7 @@ std::string summary_of_ablation(const Drives& drives) {
 
 drawing::Section tables_section(const ReproductionReport& report) {
   drawing::Section section{"tables", "Tables", {}};
-  for (const ReportTable& table : report.tables)
-    section.blocks.emplace_back(drawing::PageTable{table.title, table.columns, table.rows, table.notes});
+  for (const text::Table& table : report.tables) section.blocks.emplace_back(table);
   return section;
 }
 

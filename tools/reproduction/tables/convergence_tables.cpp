@@ -81,15 +81,15 @@ Reached count_common_minimum(const Drives& drives, const std::string& setting) {
   return count(drives, setting, is_common_minimum);
 }
 
-ReportTable cause_table(const Drives& drives) {
-  ReportTable table;
+text::Table cause_table(const Drives& drives) {
+  text::Table table;
   table.file = "convergence_literal";
   table.title = "The paper's literal settings: where they end, and with one cause at a time taken away";
   table.columns = {"Drive", "modeling", "literal"};
   for (const Cause& cause : causes()) table.columns.push_back(cause.title);
   const auto add_row = [&](const std::string& label, const std::string& modeling, const auto& cell_of) {
     const std::string name = "paper_" + modeling;
-    std::vector<std::string> row{label, modeling, cell_of(name)};
+    text::Row row{label, modeling, cell_of(name)};
     for (const Cause& cause : causes()) row.push_back(cell_of(name + "/" + cause.name));
     table.rows.push_back(row);
   };
@@ -120,8 +120,8 @@ ReportTable cause_table(const Drives& drives) {
   return table;
 }
 
-ReportTable common_minimum_table(const Drives& drives) {
-  ReportTable table;
+text::Table common_minimum_table(const Drives& drives) {
+  text::Table table;
   table.file = "convergence_ours";
   table.title = "Our settings: in how many drives the common minimum is reached, and in how many steps";
   table.columns = {"start", "modeling"};
@@ -131,7 +131,7 @@ ReportTable common_minimum_table(const Drives& drives) {
   for (const std::string start : kConvergenceStarts) {
     std::vector<Reached> totals(std::size(kConvergenceAlgorithms));
     for (const std::string modeling : kModelings) {
-      std::vector<std::string> row{start, modeling};
+      text::Row row{start, modeling};
       for (std::size_t a = 0; a < totals.size(); ++a) {
         const std::string name = "ours_" + modeling + "/" + start + "/" + kConvergenceAlgorithms[a];
         const Reached count = count_common_minimum(drives, name);
@@ -146,7 +146,7 @@ ReportTable common_minimum_table(const Drives& drives) {
       }
       table.rows.push_back(row);
     }
-    std::vector<std::string> row{start, "together"};
+    text::Row row{start, "together"};
     for (const Reached& total : totals) row.push_back(reached_text(total));
     table.rows.push_back(row);
   }
@@ -166,8 +166,8 @@ ReportTable common_minimum_table(const Drives& drives) {
   return table;
 }
 
-ReportTable run_table(const Drives& drives) {
-  ReportTable table;
+text::Table run_table(const Drives& drives) {
+  text::Table table;
   table.file = "runs";
   table.title = "Every run";
   table.columns = {"drive", "setting",      "steps",          "rejected_steps",   "initial_chi2",

@@ -6,11 +6,11 @@ namespace waymark::reproduction {
 namespace {
 
 using Drives = std::vector<DriveResult>;
-using Row = std::vector<std::string>;
+using text::Row;
 
 void add_position(const evaluation::PositionMetrics& m, Row& row) {
   for (const double value : {m.max_m, m.accuracy_m, m.precision_m, m.rmse_m, m.cep95_m})
-    row.push_back(cell(value, 2));
+    row.push_back(text::decimals(value, 2));
 }
 
 const char* reached_word(const Outcome& outcome) {
@@ -20,12 +20,13 @@ const char* reached_word(const Outcome& outcome) {
 
 void add_consistency(const std::optional<evaluation::ConsistencyStatistics>& stated, Row& row) {
   if (!stated) return row.resize(row.size() + 3, "-");
-  row.push_back(cell(stated->nees_mean, 1));
-  row.push_back(cell(stated->nees_mean_honest.low, 1) + " to " + cell(stated->nees_mean_honest.high, 1));
-  row.push_back(cell(100 * stated->coverage, 0));
+  row.push_back(text::decimals(stated->nees_mean, 1));
+  row.push_back(text::decimals(stated->nees_mean_honest.low, 1) + " to " +
+                text::decimals(stated->nees_mean_honest.high, 1));
+  row.push_back(text::decimals(100 * stated->coverage, 0));
 }
 
-Row failed_row(const DriveResult& drive, const Outcome& outcome, std::size_t cells, ReportTable& table) {
+Row failed_row(const DriveResult& drive, const Outcome& outcome, std::size_t cells, text::Table& table) {
   Row row{labelled(drive), outcome.setting.name};
   row.resize(cells, "-");
   table.notes.push_back(labelled(drive) + ", " + outcome.setting.name + ": " + outcome.failure);
@@ -34,23 +35,24 @@ Row failed_row(const DriveResult& drive, const Outcome& outcome, std::size_t cel
 
 }  // namespace
 
-ReportTable overview_table(const Drives& drives) {
-  ReportTable table;
+text::Table overview_table(const Drives& drives) {
+  text::Table table;
   table.file = "drives_overview";
   table.title = "The drives";
   table.columns = {"Drive", "s", "km", "fixes", "odometry", "rejected %"};
   for (const DriveResult& drive : drives) {
     const Outcome* gated = find_outcome(drive.outcomes, "ours_g2");
     const bool known = gated != nullptr && gated->failure.empty();
-    table.rows.push_back({labelled(drive), cell(drive.duration_s, 0), cell(drive.distance_m / 1000, 2),
-                          std::to_string(drive.fixes), std::to_string(drive.odometry_samples),
-                          cell(known ? gated->rejected_percent() : evaluation::kUndefined, 1)});
+    table.rows.push_back({labelled(drive), text::decimals(drive.duration_s, 0),
+                          text::decimals(drive.distance_m / 1000, 2), std::to_string(drive.fixes),
+                          std::to_string(drive.odometry_samples),
+                          text::decimals(known ? gated->rejected_percent() : evaluation::kUndefined, 1)});
   }
   return table;
 }
 
-ReportTable truth_table(const Drives& drives) {
-  ReportTable table;
+text::Table truth_table(const Drives& drives) {
+  text::Table table;
   table.file = "drives_truth";
   table.title = "Drives with truth: errors in metres";
   table.columns = {"Drive",      "system",          "Max",  "Acc",         "Prec",         "RMSE", "CEP95",
@@ -74,7 +76,7 @@ ReportTable truth_table(const Drives& drives) {
       }
       Row fused{labelled(drive), outcome.setting.name};
       add_position(outcome.evaluation.truth->fused.position, fused);
-      fused.push_back(cell(outcome.rejected_percent(), 1));
+      fused.push_back(text::decimals(outcome.rejected_percent(), 1));
       fused.push_back(reached_word(outcome));
       add_consistency(outcome.evaluation.truth->consistency, fused);
       table.rows.push_back(fused);
@@ -95,12 +97,13 @@ const evaluation::WithheldMetrics* find_prediction(const Outcome& outcome, const
 void add_withheld(const evaluation::WithheldMetrics& withheld, Row& row) {
   const evaluation::PositionMetrics& m = withheld.at_fixes;
   row.push_back(std::to_string(m.count));
-  for (const double value : {m.median_m, m.rmse_m, m.max_m, m.cep95_m}) row.push_back(cell(value, 2));
+  for (const double value : {m.median_m, m.rmse_m, m.max_m, m.cep95_m})
+    row.push_back(text::decimals(value, 2));
 }
 
 /// Adds the result of odometry alone in the outages. It begins at the last fix before each outage,
 /// with the same fused poses for all systems.
-void add_dead_reckoning(const DriveResult& drive, const WithheldResult& way, ReportTable& table) {
+void add_dead_reckoning(const DriveResult& drive, const WithheldResult& way, text::Table& table) {
   const Outcome* from = find_outcome(way.outcomes, "ours_g2");
   const evaluation::WithheldMetrics* reckoned =
       from != nullptr ? find_prediction(*from, "dead reckoning") : nullptr;
@@ -113,8 +116,8 @@ void add_dead_reckoning(const DriveResult& drive, const WithheldResult& way, Rep
 
 }  // namespace
 
-ReportTable withheld_table(const Drives& drives) {
-  ReportTable table;
+text::Table withheld_table(const Drives& drives) {
+  text::Table table;
   table.file = "drives_withheld";
   table.title = "Drives without truth: errors at fixes that were kept out of the graph, in metres";
   table.columns = {"Drive", "kept out", "system", "fixes",          "median",

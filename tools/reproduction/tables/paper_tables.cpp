@@ -8,17 +8,18 @@
 namespace waymark::reproduction {
 namespace {
 
-using Row = std::vector<std::string>;
+using text::Row;
 using Drives = std::vector<DriveResult>;
 
 void add_triple(const std::optional<PaperMetrics>& metrics, int digits, Row& row) {
   const PaperMetrics m =
       metrics.value_or(PaperMetrics{evaluation::kUndefined, evaluation::kUndefined, evaluation::kUndefined});
-  for (const double value : {m.max_m, m.accuracy_m, m.precision_m}) row.push_back(cell(value, digits));
+  for (const double value : {m.max_m, m.accuracy_m, m.precision_m})
+    row.push_back(text::decimals(value, digits));
 }
 
-ReportTable paper_overview_table(const Drives& drives) {
-  ReportTable table;
+text::Table paper_overview_table(const Drives& drives) {
+  text::Table table;
   table.file = "table_1_dataset_overview";
   table.title = "Table 1: dataset overview, the paper's drives and the simulated ones";
   table.columns = {"Dataset",  "km paper",         "km",         "fixes paper", "fixes", "odometry paper",
@@ -28,16 +29,17 @@ ReportTable paper_overview_table(const Drives& drives) {
     const Outcome* gated = find_outcome(drive.outcomes, "ours_g2");
     const double rejected =
         gated != nullptr && gated->failure.empty() ? gated->rejected_percent() : evaluation::kUndefined;
-    table.rows.push_back({drive.label(), cell(paper.distance_km, 0), cell(drive.distance_m / 1000, 2),
-                          std::to_string(paper.gnss_points), std::to_string(drive.fixes),
-                          std::to_string(paper.odometry_points), std::to_string(drive.odometry_samples),
-                          cell(paper.rejected_percent, 2), cell(rejected, 2), paper.environment});
+    table.rows.push_back({drive.label(), text::decimals(paper.distance_km, 0),
+                          text::decimals(drive.distance_m / 1000, 2), std::to_string(paper.gnss_points),
+                          std::to_string(drive.fixes), std::to_string(paper.odometry_points),
+                          std::to_string(drive.odometry_samples), text::decimals(paper.rejected_percent, 2),
+                          text::decimals(rejected, 2), paper.environment});
   }
   return table;
 }
 
-ReportTable gnss_table(const Drives& drives) {
-  ReportTable table;
+text::Table gnss_table(const Drives& drives) {
+  text::Table table;
   table.file = "table_2_gnss";
   table.title = "Table 2: raw GNSS in metres, the paper's receiver and the simulated one";
   table.columns = {"Dataset", "Max paper", "Acc paper", "Prec paper", "Max", "Acc", "Prec"};
@@ -57,7 +59,7 @@ ReportTable gnss_table(const Drives& drives) {
 }
 
 /// Adds "The paper prints 18.391 ..." if its average is not that of its rows.
-void note_paper_average(const MetricsColumn& paper, const std::string& system, ReportTable& table) {
+void note_paper_average(const MetricsColumn& paper, const std::string& system, text::Table& table) {
   const auto printed = paper_metrics(0, system);
   const bool all = paper.of_drive.size() == paper_drives().size();
   if (!printed || !paper.average || !all) return;
@@ -71,7 +73,7 @@ void note_paper_average(const MetricsColumn& paper, const std::string& system, R
                   printed->max_m, printed->accuracy_m, printed->precision_m));
 }
 
-void note_endings(const Drives& drives, const std::string& setting, ReportTable& table) {
+void note_endings(const Drives& drives, const std::string& setting, text::Table& table) {
   std::string missed;
   for (const DriveResult& drive : drives) {
     const Outcome* outcome = find_outcome(drive.outcomes, setting);
@@ -88,9 +90,9 @@ void note_endings(const Drives& drives, const std::string& setting, ReportTable&
         "{} did not reach its minimum in drives {}: what is shown is where it stopped.", setting, missed));
 }
 
-ReportTable result_table(const Drives& drives, int number, const std::string& system,
+text::Table result_table(const Drives& drives, int number, const std::string& system,
                          const std::string& title) {
-  ReportTable table;
+  text::Table table;
   table.file = fmt::format("table_{}_{}", number, system);
   table.title = fmt::format("Table {}: {} in metres", number, title);
   table.columns = {"Dataset"};
@@ -136,13 +138,13 @@ ReportTable result_table(const Drives& drives, int number, const std::string& sy
 void add_honesty(const DriveResult* drive, Row& row) {
   for (const std::string& setting : {std::string("ours_g2"), std::string(kDefaultModel)}) {
     const auto stated = drive != nullptr ? consistency_of(*drive, setting) : std::nullopt;
-    row.push_back(cell(stated ? stated->nees_mean : evaluation::kUndefined, 1));
-    row.push_back(cell(stated ? 100 * stated->coverage : evaluation::kUndefined, 0));
+    row.push_back(text::decimals(stated ? stated->nees_mean : evaluation::kUndefined, 1));
+    row.push_back(text::decimals(stated ? 100 * stated->coverage : evaluation::kUndefined, 0));
   }
 }
 
-ReportTable default_model_table(const Drives& drives) {
-  ReportTable table;
+text::Table default_model_table(const Drives& drives) {
+  text::Table table;
   table.file = "table_7_default_model";
   table.title = "Table 7, beyond the paper: the default model beside G2 with rejection, in metres";
   table.columns = {"Dataset"};
@@ -185,7 +187,7 @@ ReportTable default_model_table(const Drives& drives) {
 
 }  // namespace
 
-std::vector<ReportTable> paper_tables(const Drives& drives) {
+std::vector<text::Table> paper_tables(const Drives& drives) {
   Drives of_paper;
   for (const DriveResult& drive : drives) {
     if (drive.dataset > 0) of_paper.push_back(drive);

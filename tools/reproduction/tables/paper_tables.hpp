@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <waymark/tools/reproduction/experiment/drive_result.hpp>
-#include <waymark/tools/reproduction/tables/report_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::reproduction {
 
@@ -13,6 +13,6 @@ namespace waymark::reproduction {
 /// results have three triples of columns: the figures of the paper, its settings on these drives,
 /// our settings on these drives. Averages and improvements below them are computed as in the paper.
 /// Drives that are not in the paper are left out.
-[[nodiscard]] std::vector<ReportTable> paper_tables(const std::vector<DriveResult>& drives);
+[[nodiscard]] std::vector<text::Table> paper_tables(const std::vector<DriveResult>& drives);
 
 }  // namespace waymark::reproduction

@@ -23,7 +23,7 @@ ReproductionReport make_report(const std::vector<DriveResult>& drives, const std
   report.tables = paper_tables(drives);
   const std::vector<DriveResult> others = other_drives(drives);
   if (!others.empty()) {
-    for (ReportTable& table :
+    for (text::Table& table :
          std::vector{overview_table(others), truth_table(others), withheld_table(others)}) {
       if (!table.rows.empty()) report.tables.push_back(std::move(table));
     }
@@ -38,7 +38,7 @@ ReproductionReport make_report(const std::vector<DriveResult>& drives, const std
 std::string report_text(const ReproductionReport& report, const text::TextLook& look) {
   std::string text = report.introduction;
   text += "\n";
-  for (const ReportTable& table : report.tables) text.append("\n").append(table_text(table, look));
+  for (const text::Table& table : report.tables) text.append("\n").append(text::table_text(table, look));
   if (!report.findings.empty())
     text.append("\nWhat the paper found, and what these drives say\n").append(findings_text(report.findings));
   return text;
@@ -50,7 +50,7 @@ std::string report_markdown(const ReproductionReport& report) {
   if (!report.findings.empty())
     text.append("\n## What the paper found, and what these drives say\n\n")
         .append(findings_text(report.findings));
-  for (const ReportTable& table : report.tables) text.append("\n").append(table_markdown(table));
+  for (const text::Table& table : report.tables) text.append("\n").append(text::table_markdown(table));
   return text;
 }
 

@@ -6,7 +6,7 @@
 
 #include <waymark/tools/reproduction/experiment/drive_result.hpp>
 #include <waymark/tools/reproduction/tables/findings.hpp>
-#include <waymark/tools/reproduction/tables/report_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::reproduction {
 
@@ -14,9 +14,9 @@ struct ReproductionReport {
   std::string name = "reproduction";  ///< for its files and, after "waymark-", for its schema
   std::string title = "The paper's experiment, reproduced";
   std::string introduction;  ///< a paragraph: program, version, what is simulated
-  std::vector<ReportTable> tables;
+  std::vector<text::Table> tables;
   std::vector<Finding> findings;
-  ReportTable runs;  ///< every run; only in files
+  text::Table runs;  ///< every run; only in files
 };
 
 /// Returns the tables for which the drives have data: the six of the paper, convergence, and those

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/graph/edge_type_check.hpp>
-#include <waymark/tools/text/text_table.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 namespace {
@@ -28,12 +28,12 @@ DerivativeReport check_derivatives(const TypeRegistry& registry, const text::Tex
   DerivativeReport report;
   report.text = "Jacobians against differences of the error\n";
   report.json = nlohmann::ordered_json::array();
-  text::TextTable table({"edge type", "from", "trials", "off by", ""});
+  text::Table table{.columns = {"edge type", "from", "trials", "off by", ""}};
   for (const auto& [type, origin] : registry.edges()) {
     const EdgeTypeCheck check = check_edge_type(registry, type);
-    table.add({type.tag, origin, std::to_string(check.trials), fmt::format("{:.1e}", check.worst.error),
-               check.sound() ? "" : "WRONG"});
-    if (!check.sound()) table.paint(4, text::Tone::error);
+    table.rows.push_back({type.tag, origin, std::to_string(check.trials),
+                          fmt::format("{:.1e}", check.worst.error), check.sound() ? "" : "WRONG"});
+    if (!check.sound()) table.tones[{table.rows.size() - 1, 4}] = text::Tone::error;
     report.json.push_back({{"type", type.tag},
                            {"origin", origin},
                            {"trials", check.trials},
@@ -42,7 +42,7 @@ DerivativeReport check_derivatives(const TypeRegistry& registry, const text::Tex
                            {"sound", check.sound()}});
     if (!check.sound()) report.problems.push_back(problem_of(check, type.tag, origin));
   }
-  if (!table.empty()) report.text += table.text(look);
+  if (!table.rows.empty()) report.text += text::table_text(table, look);
   return report;
 }
 
