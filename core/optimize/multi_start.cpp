@@ -19,7 +19,7 @@ constexpr double kSameMinimum = 1e-6;  // relative difference of chi2
 constexpr double kSuspicious = 6;      // standard deviations above the degrees of freedom
 // loops per free vertex; from here on a start costs less than a step
 constexpr double kLoopShare = 0.02;
-constexpr const char* kFile = "file";
+constexpr const char* kFile = kFileStart.data();
 
 struct Size {
   std::int64_t unknowns = 0;   ///< scalar

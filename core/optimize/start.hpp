@@ -4,12 +4,17 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 
 namespace WAYMARK_EXPORT waymark {
+
+/// Names beside those of the registered starts.
+inline constexpr std::string_view kFileStart = "file";  ///< the values that came with the graph
+inline constexpr std::string_view kAutoStart = "auto";  ///< the best one (multi_start.hpp)
 
 /// The result of a start.
 struct InitialValues {

@@ -2,7 +2,8 @@
 // that defeat every algorithm.
 #include <catch2/catch.hpp>
 
-#include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/optimize/named_start.hpp>
 
 #include "support/problems.hpp"
 #include "support/registry.hpp"
@@ -191,4 +192,50 @@ TEST_CASE("default start: without registered starts the values given are all the
                                                             *registry.make_linear_solver("eigen"), {});
   CHECK(result.start == "file");
   CHECK(result.summary.converged());
+}
+
+TEST_CASE("named start: each name begins where it says, with a search in place of the optimizer too") {
+  const TypeRegistry registry = full_registry();
+  const auto algorithm = registry.make_algorithm("dogleg");
+  const auto solver = registry.make_linear_solver("eigen");
+  const Graph given = noisy_circle(60);
+  const double given_chi2 = given.chi2();
+  std::vector<double> begun_at;
+  const Minimizer search = [&](Graph& graph, Algorithm&, LinearSolver&, const OptimizerOptions&) {
+    begun_at.push_back(graph.chi2());
+    return Summary();
+  };
+  const auto from = [&](std::string_view start, const Minimizer& with) {
+    Graph graph = noisy_circle(60);
+    return optimize_from(start, graph, registry, *algorithm, *solver, {}, with);
+  };
+  CHECK(from(kFileStart, {}).start == "file");
+  CHECK(from(kFileStart, {}).summary.initial_chi2 == Approx(given_chi2));
+  CHECK(from("linear", {}).start == "linear");
+  CHECK(from("linear", {}).summary.initial_chi2 < 0.5 * given_chi2);
+  CHECK(from(kAutoStart, {}).trials.size() == 1);
+  // chi2 of all edges is no judge of a search for outliers: it begins at the values of the graph.
+  CHECK(from(kAutoStart, search).start == "file");
+  CHECK(from("linear", search).start == "linear");
+  REQUIRE(begun_at.size() == 2);
+  CHECK(begun_at[0] == Approx(given_chi2));
+  CHECK(begun_at[1] < 0.5 * given_chi2);
+  CHECK_THROWS_WITH(from("nowhere", {}),
+                    "unknown start 'nowhere'; there are: auto, file, linear, spanning_tree, odometry");
+}
+
+TEST_CASE("named start: one that cannot be computed is refused, parts that are apart are noted") {
+  const TypeRegistry registry = full_registry();
+  const auto algorithm = registry.make_algorithm("dogleg");
+  const auto solver = registry.make_linear_solver("eigen");
+  Graph lonely;
+  lonely.add_vertex<VertexSe2>(VertexId{0}, {1, 2, 3});
+  CHECK_THROWS_AS(optimize_from("odometry", lonely, registry, *algorithm, *solver, {}), InputError);
+  Graph parts = noisy_circle(20);
+  for (int i = 0; i < 3; ++i) parts.add_vertex<VertexSe2>(VertexId(100 + i), {0, 0, 0});
+  for (VertexIndex v = 20; v < 22; ++v)
+    parts.add_edge(EdgeSe2{{1, 0, 0}}, {v, v + 1}, pose_information(0.1, 0.1));
+  const MultiStartSummary result = optimize_from("odometry", parts, registry, *algorithm, *solver, {});
+  CHECK(result.summary.converged());
+  CHECK_THAT(result.summary.notes.back(), Catch::StartsWith("3 vertices are not joined"));
 }

@@ -1,48 +1,12 @@
 #include <waymark/tools/drive/model/minimize.hpp>
 
 #include <algorithm>
-#include <string_view>
-#include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include <waymark/core/base/error.hpp>
-#include <waymark/core/base/suggest.hpp>
 #include <waymark/core/covariance/marginals.hpp>
 
 namespace waymark::drive {
 namespace {
-
-constexpr std::string_view kAutoStart = "auto";
-constexpr std::string_view kFileStart = "file";
-
-void check_start(const std::string& start, const TypeRegistry& registry) {
-  std::vector<std::string_view> names = {kAutoStart, kFileStart};
-  for (const auto& [type, origin] : registry.starts()) names.push_back(type.name);
-  if (std::find(names.begin(), names.end(), start) != names.end()) return;
-  throw UsageError("unknown start '" + start + "'" + suggestion(start, names));
-}
-
-MultiStartSummary minimize_from(const std::string& start, Graph& graph, const TypeRegistry& registry,
-                                Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options,
-                                const Minimizer& search) {
-  if (start == kAutoStart && !search)
-    return optimize_from_best_start(graph, registry.starts(), algorithm, solver, options);
-  InitialValues made;
-  if (start != kFileStart && start != kAutoStart) {
-    made = registry.make_start(start, graph);
-    if (made.values.empty()) throw InputError("start " + start + " cannot be made: " + made.note);
-    graph.set_values(std::move(made.values));
-  }
-  MultiStartSummary result;
-  result.summary =
-      search ? search(graph, algorithm, solver, options) : optimize(graph, algorithm, solver, options);
-  result.start = start == kAutoStart ? kFileStart : start;
-  result.total_seconds = result.summary.total_seconds;
-  if (made.apart > 0) result.summary.notes.push_back(apart_note(made.apart));
-  return result;
-}
 
 std::vector<VertexIndex> wanted_vertices(const formats::GraphDocument& document, const std::string& which) {
   std::vector<VertexIndex> vertices;
@@ -88,16 +52,9 @@ MultiStartSummary minimize(Graph& graph, const Minimization& how, const TypeRegi
   const auto algorithm = registry.make_algorithm(how.algorithm, how.options);
   const auto solver = registry.make_linear_solver(solver_name(how, registry));
   MultiStartSummary result =
-      minimize_from(how.start, graph, registry, *algorithm, *solver, optimizer_options(how, watch), search);
+      optimize_from(how.start, graph, registry, *algorithm, *solver, optimizer_options(how, watch), search);
   result.summary.algorithm = how.algorithm;
   return result;
-}
-
-std::string apart_note(std::size_t vertices) {
-  return fmt::format(
-      "{} vertices are not joined to the first one by relative edges; each part begins at its own "
-      "first vertex",
-      vertices);
 }
 
 void add_covariances(formats::GraphDocument& document, const std::string& which) {

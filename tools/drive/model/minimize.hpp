@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include <waymark/core/optimize/multi_start.hpp>
+#include <waymark/core/optimize/named_start.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
@@ -19,13 +19,9 @@ struct MinimizationWatch {
   const std::atomic<bool>* cancel = nullptr;  ///< as OptimizerOptions::cancel
 };
 
-/// A search around optimize() that replaces it.
-using Minimizer = std::function<Summary(Graph&, Algorithm&, LinearSolver&, const OptimizerOptions&)>;
-
-/// Minimises from the initial guess that the settings choose. Afterwards the graph holds the best
-/// values found. A search for outliers begins at the present values and not at the best start,
-/// because chi2 over all edges cannot judge a start if some edges are false.
-/// @param search in place of optimize(); empty: use optimize()
+/// Minimises from the initial guess that the settings choose (named_start.hpp). Afterwards the graph
+/// holds the best values found.
+/// @param search as for optimize_from
 /// @throws UsageError for names that the registry does not have; InputError if the start cannot be
 /// computed; errors of optimize()
 MultiStartSummary minimize(Graph& graph, const Minimization& how, const TypeRegistry& registry,
@@ -40,9 +36,6 @@ void check_minimization(const Minimization& how, const TypeRegistry& registry);
 /// Returns the stopping rules and threads.
 [[nodiscard]] OptimizerOptions optimizer_options(const Minimization& how,
                                                  const MinimizationWatch& watch = {});
-
-/// Returns the note about vertices that are not joined to the rest.
-[[nodiscard]] std::string apart_note(std::size_t vertices);
 
 /// Fills document.covariances at the present values. Vertices that are not estimated get none.
 /// @param which "none", "fixes" (vertices of fixes) or "all" (all vertices that are not fixed)

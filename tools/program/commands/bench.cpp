@@ -48,7 +48,7 @@ Names all_names(const RegistryTable<Type>& table) {
 
 /// @throws UsageError for an unknown name.
 void check_bench_start(const std::string& name, const TypeRegistry& registry) {
-  std::vector<std::string_view> known{"file"};
+  std::vector<std::string_view> known{kFileStart};
   for (const auto& [start, origin] : registry.starts()) known.push_back(start.name);
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
   throw UsageError("unknown start '" + name + "'" + suggestion(name, known));
@@ -102,13 +102,13 @@ LoadedGraph load(const std::string& path, const std::string& format, const TypeR
 /// Puts the values of a start into the graph. @throws InputError if it cannot be computed
 void apply_start(const std::string& name, LoadedGraph& loaded, const TypeRegistry& registry,
                  const Console& console) {
-  if (name == "file") return;
+  if (name == kFileStart) return;
   InitialValues start = registry.make_start(name, loaded.graph);
   if (start.values.empty()) {
     throw InputError(loaded.name + ": start " + name + " cannot be made: " + start.note);
   }
   loaded.graph.set_values(std::move(start.values));
-  if (start.apart > 0) console.note(loaded.name + ", start " + name + ": " + drive::apart_note(start.apart));
+  if (start.apart > 0) console.note(loaded.name + ", start " + name + ": " + apart_note(start.apart));
 }
 
 /// Returns the starts that differ for this file. A file without vertices has no values of its own.
@@ -117,7 +117,7 @@ Names starts_of(const LoadedGraph& loaded, const Names& asked, const Console& co
   const bool both = std::find(asked.begin(), asked.end(), "odometry") != asked.end();
   if (loaded.edges_only) {
     console.note(loaded.name + " has edges only: its start 'file' is the odometry chain");
-    if (both) starts.erase(std::remove(starts.begin(), starts.end(), "file"), starts.end());
+    if (both) starts.erase(std::remove(starts.begin(), starts.end(), kFileStart), starts.end());
   }
   return starts;
 }

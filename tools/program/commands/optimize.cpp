@@ -40,9 +40,9 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   stop_if_interrupted();
 
   std::optional<Graduated> graduated;
-  const drive::Minimizer minimizer = options.robust.method == "gnc"
-                                         ? graduating_minimizer(options.robust, registry, graduated)
-                                         : drive::Minimizer();
+  const Minimizer minimizer = options.robust.method == "gnc"
+                                  ? graduating_minimizer(options.robust, registry, graduated)
+                                  : Minimizer();
   const MultiStartSummary result =
       optimize_document(document, options.minimization, registry, console, minimizer);
   document.provenance.emplace_back("optimized", describe_optimization(result));

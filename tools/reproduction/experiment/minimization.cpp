@@ -64,8 +64,8 @@ Ending minimize(Graph& graph, const Setting& setting, const TypeRegistry& regist
   if (setting.stopping == StoppingRule::full_steps)
     return describe(drive::minimize(graph, how, registry, {.cancel = cancel}).summary);
   GainRule rule(cancel);
-  const drive::Minimizer search = [](Graph& of, Algorithm& algorithm, LinearSolver& solver,
-                                     OptimizerOptions options) {
+  const Minimizer search = [](Graph& of, Algorithm& algorithm, LinearSolver& solver,
+                              OptimizerOptions options) {
     options.max_iterations = kGainIterations * kGainAttempts;
     options.decrement_tolerance = 1e-300;  // only the rule of g2o ends the run
     options.gradient_tolerance = 0;

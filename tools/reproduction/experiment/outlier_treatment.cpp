@@ -11,8 +11,8 @@ namespace waymark::reproduction {
 Graduated graduate_fixes(Graph& graph, const Setting& setting, const TypeRegistry& registry,
                          const std::atomic<bool>* cancel) {
   Graduated graduated;
-  const drive::Minimizer search = [&graduated](Graph& of, Algorithm& algorithm, LinearSolver& solver,
-                                               const OptimizerOptions& rules) {
+  const Minimizer search = [&graduated](Graph& of, Algorithm& algorithm, LinearSolver& solver,
+                                        const OptimizerOptions& rules) {
     GraduationOptions options;
     options.trusted = [](const Graph& in, EdgePlace place) {
       return in.edge_type(place.batch).form != "position";

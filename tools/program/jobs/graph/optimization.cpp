@@ -31,7 +31,7 @@ void tell_ending(const Summary& summary, const Console& console) {
 
 MultiStartSummary optimize_document(formats::GraphDocument& document, const drive::Minimization& how,
                                     const TypeRegistry& registry, const Console& console,
-                                    const drive::Minimizer& search, const std::string& work) {
+                                    const Minimizer& search, const std::string& work) {
   IterationTable iterations(console, work);
   const drive::MinimizationWatch watch{
       .observer = [&](const IterationRecord& record) { iterations.add(record); }, .cancel = &interrupted};

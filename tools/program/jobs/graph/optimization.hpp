@@ -20,7 +20,7 @@ namespace waymark::program {
 /// @throws InputError if the chosen start cannot be computed
 MultiStartSummary optimize_document(formats::GraphDocument& document, const drive::Minimization& how,
                                     const TypeRegistry& registry, const Console& console,
-                                    const drive::Minimizer& search = {}, const std::string& work = {});
+                                    const Minimizer& search = {}, const std::string& work = {});
 
 /// Prints the notes of a minimisation, and a warning if it reached no minimum.
 void tell_ending(const Summary& summary, const Console& console);

@@ -128,8 +128,8 @@ void attach_losses(Graph& graph, const RobustChoice& choice, const TypeRegistry&
   }
 }
 
-drive::Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
-                                      std::optional<Graduated>& found) {
+Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
+                               std::optional<Graduated>& found) {
   GraduationOptions options;
   if (!choice.losses.empty()) options.loss = parse_loss(choice.losses.front(), registry).loss;
   options.trusted = trust_rule(choice);

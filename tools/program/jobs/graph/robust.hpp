@@ -42,8 +42,8 @@ struct Graduated {
 
 /// Returns a minimiser for optimize_document that finds outliers and removes them from the graph.
 /// @param found filled when the minimiser has run; it must outlive the minimiser
-[[nodiscard]] drive::Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
-                                                    std::optional<Graduated>& found);
+[[nodiscard]] Minimizer graduating_minimizer(const RobustChoice& choice, const TypeRegistry& registry,
+                                             std::optional<Graduated>& found);
 
 /// Returns one line for the terminal.
 [[nodiscard]] std::string graduation_text(const GraduationResult& result);
