@@ -156,6 +156,7 @@ TEST_CASE("convert: our own format says where it comes from, lenient reading say
   CHECK(result.code == 0);
   CHECK(contains(result.err, "warning: 1 lines were skipped"));
   CHECK(contains(result.err, "note: the file has edges only"));
+  CHECK(contains(read_text(folder + "a.graph"), "PROVENANCE warning 1 lines were skipped\n"));
   CHECK(contains(read_text(folder + "a.graph"), "PROVENANCE converted waymark "));
   CHECK(contains(read_text(folder + "a.graph"), " from a.g2o fnv1a64:"));
 }

@@ -70,7 +70,10 @@ TEST_CASE("drive: a run that does not converge: exit 4, files and message") {
   CHECK(result.code == 4);
   CHECK(contains(result.out, "NOT CONVERGED in 1 iterations"));
   CHECK(contains(result.err, "warning: no minimum was reached: not converged after 1 iterations"));
-  CHECK(exists(folder + "results/g1.fused.graph"));
+  const std::string warning = "no minimum was reached: not converged after 1 iterations";
+  CHECK(contains(read_text(folder + "results/g1.fused.graph"), "PROVENANCE warning " + warning));
+  CHECK(contains(read_text(folder + "results/metrics.json"), warning));
+  CHECK(contains(read_text(folder + "results/report.html"), warning));
 }
 
 TEST_CASE("drive: logs that cannot be used are bad input with a reason") {

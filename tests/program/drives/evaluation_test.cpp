@@ -126,6 +126,36 @@ TEST_CASE("evaluation: the last outage of a drive is predicted causally as the w
         Approx(predictions["fused"]["at_fixes"]["rmse_m"].get<double>()).epsilon(1e-6));
 }
 
+TEST_CASE("evaluation: an outage without a causal prediction is named in every file with provenance") {
+  // One fix before the first outage does not determine a heading.
+  const std::string folder = fresh_folder();
+  const RunResult result = run({"run", write_drive(folder, {.seconds = 8}), "-m", "g1", "--out", folder + "r",
+                                "--outage", "1/2", "--causal"});
+  INFO(result.err);
+  CHECK(result.code == 0);
+  const std::string warning = "no causal prediction for the outage that ends with epoch 1: ";
+  CHECK(contains(result.err, "warning: " + warning));
+  CHECK(contains(read_text(folder + "r/g1.fused.graph"), "PROVENANCE warning " + warning));
+  CHECK(contains(read_text(folder + "r/metrics.json"), warning));
+  CHECK(contains(read_text(folder + "r/report.html"), warning));
+}
+
+TEST_CASE("evaluation: a graph without normal equations has no matrices, and report and metrics say so") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"run", write_drive(folder), "-m", "g1", "--out", folder + "r", "-q"}).code == 0);
+  // A pose whose place alone is measured: nothing determines its heading.
+  const std::string graph = write_text(folder + "lone.graph", read_text(folder + "r/g1.fused.graph") +
+                                                                  "VERTEX_SE2 900000 0 0 0\n"
+                                                                  "EDGE_PRIOR_SE2_XY 900000 0 0 1 0 1\n");
+  const RunResult result = run({"evaluate", graph, "--out", folder + "e"});
+  INFO(result.err);
+  CHECK(result.code == 0);
+  const std::string warning = "the report has no matrices: ";
+  CHECK(contains(result.err, "warning: " + warning));
+  CHECK(contains(read_text(folder + "e/metrics.json"), warning));
+  CHECK(contains(read_text(folder + "e/report.html"), warning));
+}
+
 TEST_CASE("evaluation: causal predictions without outages are refused") {
   const std::string folder = fresh_folder();
   const RunResult refused = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r", "--causal"});

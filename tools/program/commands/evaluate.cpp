@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
@@ -81,17 +82,21 @@ formats::GraphDocument read_fused(const std::string& input, const EvaluationJob&
 evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std::string& input,
                                              const std::string& label, evaluation::ReportHeader& header) {
   const Console& console = job.console;
-  const formats::GraphDocument document = read_fused(input, job);
+  formats::GraphDocument document = read_fused(input, job);
   const std::vector<TruthPose> truth = truth_of(document, job);
   evaluation::LabelledEvaluation evaluated{label, evaluate_document(document, truth)};
+  const bool reports = !job.options.folder.empty();
+  std::optional<evaluation::Sparsity> sparsity;
+  if (reports) sparsity = sparsity_for_report(document, console);
   add_provenance(document, label, header);
-  if (job.options.folder.empty()) return evaluated;
+  if (!reports) return evaluated;
   const std::vector<std::string> files =
       write_result({.drive = header.drive,
                     .document = document,
                     .evaluated = evaluated,
                     .truth = truth,
-                    .states = states_at(document)},
+                    .states = states_at(document),
+                    .sparsity = std::move(sparsity)},
                    evaluation::ResultFolder(job.options.folder), job.options.inputs.size(), console);
   for (std::size_t i = 0; i + 1 < files.size(); ++i) console.detail("written " + files[i]);
   if (job.options.inputs.size() == 1) {

@@ -45,7 +45,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
                                   : Minimizer();
   const MultiStartSummary result =
       optimize_document(document, options.minimization, registry, console, minimizer);
-  document.provenance.emplace_back("optimized", describe_optimization(result));
+  record_optimization(result, document);
   if (graduated) {
     document.provenance.emplace_back(
         "outliers", std::to_string(graduated->result.outliers.size()) + " edges left out by gnc");
@@ -53,6 +53,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
       formats::write_file_atomically(options.robust.outliers, graduated->outlier_lines);
     }
   }
+  const std::vector<evaluation::StateReport> states = states_of_minimum(document, result.summary, console);
   const bool to_stdout = is_stdout(options.output) || is_stdout(options.robust.outliers);
   write_graph_file(options.output, options.format, document, options.input, registry);
   std::string written = options.output;
@@ -61,7 +62,6 @@ ExitCode optimize_file(const OptimizeOptions& options) {
     write_covariances(options.covariance_file, document, result.summary);
     written += " " + options.covariance_file;
   }
-  const std::vector<evaluation::StateReport> states = states_of_minimum(document, result.summary, console);
   if (options.common.json) {
     nlohmann::ordered_json json = evaluation::summary_json(result);
     json["states"] = evaluation::states_json(states);

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -48,9 +50,18 @@ struct RunOfDrive {
   const Console& console;
 };
 
+/// Warns if the minimisation for a causal prediction reached no minimum.
+void judge_causal(const Summary& summary, const std::string& outage, formats::GraphDocument& document,
+                  const Console& console) {
+  for (const std::string& note : summary.notes) console.note(note);
+  if (!summary.converged())
+    warn("causal prediction for " + outage + ": " + no_minimum_warning(summary), document, console);
+}
+
 /// Predicts the withheld fixes with data up to the end of each outage only: the same settings on
-/// the drive so far.
-evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSettings settings) {
+/// the drive so far. Warnings go to the document of the whole drive.
+evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSettings settings,
+                                        formats::GraphDocument& document) {
   settings.minimization.covariances = "fixes";
   const auto runs = drive::withheld_runs(run.loaded.drive.fixes);
   const auto outages = std::count_if(runs.begin(), runs.end(), [](const auto& of) { return of.begin > 0; });
@@ -58,6 +69,7 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
   const drive::FuseDrive fuse =
       [&](const drive::PreparedDrive& known) -> std::optional<formats::GraphDocument> {
     if (interrupted) return std::nullopt;
+    const std::string outage = fmt::format("the outage that ends with epoch {}", known.fixes.back().epoch);
     progress.next(
         fmt::format("{}: causal, outage {} of {}", settings.modeling, progress.step() + 1, outages));
     try {
@@ -67,17 +79,16 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
                       {.observer = [&](const IterationRecord& record) { iterations.add(record); },
                        .cancel = &interrupted});
       run.console.end_progress();
-      tell_ending(fused.minimum.summary, run.console);
       if (fused.minimum.summary.termination == Termination::interrupted) return std::nullopt;
+      judge_causal(fused.minimum.summary, outage, document, run.console);
       return std::move(fused.model.document);
     } catch (const InputError& error) {
-      run.console.warning(fmt::format("nothing is known causally of the outage that ends with epoch {}: {}",
-                                      known.fixes.back().epoch, error.what()));
+      warn(fmt::format("no causal prediction for {}: {}", outage, error.what()), document, run.console);
       return std::nullopt;
     }
   };
   evaluation::Prediction causal = as_prediction("causal", drive::causal_at_withheld(run.loaded.drive, fuse));
-  if (interrupted) run.console.warning("interrupted: the causal predictions end early");
+  if (interrupted) warn("interrupted: the causal predictions end early", document, run.console);
   return causal;
 }
 
@@ -95,7 +106,7 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, formats::GraphDoc
     }
   }
   std::vector<evaluation::Prediction> further;
-  if (run.options.causal) further.push_back(predict_causally(run, settings));
+  if (run.options.causal) further.push_back(predict_causally(run, settings, document));
   evaluation::Evaluation evaluation = evaluate_document(document, run.loaded.drive.truth, further);
   run.console.end_progress();
   document.covariances = asked_for;
@@ -118,14 +129,14 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   console.detail("optimising " + modeling);
   result.result = optimize_document(document, settings.minimization, run.registry, console, {}, modeling);
   const Summary& summary = result.result.summary;
-  document.provenance.emplace_back("optimized", describe_optimization(result.result));
-  if (!summary.converged()) document.provenance.emplace_back("warning", no_minimum_warning(summary));
+  record_optimization(result.result, document);
   write(run.folder.fused_graph(modeling));  // the minimum is saved before anything else can fail
   const std::size_t known = document.provenance.size();
   result.states = states_of_minimum(document, summary, console);
   result.evaluation = {modeling, evaluate_minimum(run, document, summary, settings)};
   for (const std::string& doubt : doubts_of_result(result.states, result.noise, result.evaluation.evaluation))
     warn(doubt, document, console);
+  std::optional<evaluation::Sparsity> sparsity = sparsity_for_report(document, console);
   if (document.provenance.size() > known) write(run.folder.fused_graph(modeling));
   add_provenance(document, modeling, header);
   result.files = write_result({.drive = header.drive,
@@ -134,6 +145,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
                                .truth = run.loaded.drive.truth,
                                .optimization = &result.result,
                                .states = result.states,
+                               .sparsity = std::move(sparsity),
                                .went_in = {{"odometry", odometry_in_words(run.loaded.drive)},
                                            {"left out", left_out(run.loaded.drive)}},
                                .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)}},

@@ -1,9 +1,9 @@
 #include <filesystem>
-#include <optional>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/epochs_csv.hpp>
+#include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/result_files.hpp>
 #include <waymark/tools/program/jobs/trajectory_files.hpp>
 #include <waymark/tools/report/comparison/comparison_page.hpp>
@@ -19,13 +19,6 @@ std::string write_report(const DocumentResult& request, const std::vector<std::s
                          const Console& console) {
   console.progress("writing report " + page_name + ".html");
   const evaluation::GraphResiduals residuals = evaluation::residuals_by_type(request.document.graph);
-  std::optional<evaluation::Sparsity> sparsity;
-  try {
-    sparsity = evaluation::sparsity_of(request.document.graph);
-    // an undetermined graph has residuals, but no normal equations to show
-  } catch (const InputError& error) {
-    console.warning("the report has no matrices: " + std::string(error.what()));
-  }
   report::ReportedDrive drive{.name = request.drive,
                               .label = request.evaluated.label,
                               .document = request.document,
@@ -34,7 +27,7 @@ std::string write_report(const DocumentResult& request, const std::vector<std::s
                               .optimization = request.optimization,
                               .states = &request.states,
                               .residuals = &residuals,
-                              .sparsity = sparsity ? &*sparsity : nullptr};
+                              .sparsity = request.sparsity ? &*request.sparsity : nullptr};
   drive.went_in = request.went_in;
   for (const std::string& file : files)
     drive.files.push_back(std::filesystem::path(file).filename().string());
@@ -65,6 +58,17 @@ std::string write_comparison(const std::vector<ComparedResult>& results,
 }
 
 }  // namespace
+
+std::optional<evaluation::Sparsity> sparsity_for_report(formats::GraphDocument& document,
+                                                        const Console& console) {
+  console.progress("matrices of the report");
+  try {
+    return evaluation::sparsity_of(document.graph);
+  } catch (const InputError& error) {
+    warn("the report has no matrices: " + std::string(error.what()), document, console);
+    return std::nullopt;
+  }
+}
 
 std::vector<std::string> write_result(const DocumentResult& result, const evaluation::ResultFolder& folder,
                                       std::size_t results, const Console& console) {

@@ -2,6 +2,7 @@
 /// document, and metrics.json and a comparison for all of them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include <waymark/core/optimize/multi_start.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/evaluation/document/estimated_states.hpp>
+#include <waymark/tools/evaluation/document/sparsity.hpp>
 #include <waymark/tools/evaluation/output/report.hpp>
 #include <waymark/tools/evaluation/output/result_folder.hpp>
 #include <waymark/tools/program/terminal/console.hpp>
@@ -23,10 +25,17 @@ struct DocumentResult {
   const std::vector<TruthPose>& truth;
   const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
   std::vector<evaluation::StateReport> states{};
+  std::optional<evaluation::Sparsity> sparsity{};  ///< from sparsity_for_report
   /// Inputs from the logs: heading and text.
   std::vector<std::pair<std::string, std::string>> went_in{};
   std::vector<std::string> files{};  ///< written before, to be linked; paths
 };
+
+/// Returns the pattern of the matrices for the report. An undetermined graph has residuals, but no
+/// normal equations to show: the result is empty, and the document gets a warning. Call it before
+/// the provenance of the document is written anywhere.
+[[nodiscard]] std::optional<evaluation::Sparsity> sparsity_for_report(formats::GraphDocument& document,
+                                                                      const Console& console);
 
 /// Writes trajectory, epochs and report with its figures.
 /// @param results number of results in the folder. A single report has the name of the report;

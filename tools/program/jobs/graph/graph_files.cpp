@@ -70,7 +70,9 @@ formats::GraphDocument read_graph_file(const std::string& text, const std::strin
                                                            name, registry, lenient, &report);
   console.end_progress();
   if (report.skipped > 0) {
-    console.warning(std::to_string(report.skipped) + " lines were skipped; the first ones:");
+    const std::string skipped = std::to_string(report.skipped) + " lines were skipped";
+    document.provenance.emplace_back("warning", skipped);
+    console.warning(skipped + "; the first ones:");
     for (const std::string& example : report.examples) console.tell("  " + example);
   }
   if (report.edges_only) console.note("the file has edges only; started along the odometry chain");

@@ -24,11 +24,6 @@ std::string no_minimum_warning(const Summary& summary) {
          (summary.termination == Termination::interrupted ? "; the best state so far is kept" : "");
 }
 
-void tell_ending(const Summary& summary, const Console& console) {
-  for (const std::string& note : summary.notes) console.note(note);
-  if (!summary.converged()) console.warning(no_minimum_warning(summary));
-}
-
 MultiStartSummary optimize_document(formats::GraphDocument& document, const drive::Minimization& how,
                                     const TypeRegistry& registry, const Console& console,
                                     const Minimizer& search, const std::string& work) {
@@ -37,7 +32,8 @@ MultiStartSummary optimize_document(formats::GraphDocument& document, const driv
       .observer = [&](const IterationRecord& record) { iterations.add(record); }, .cancel = &interrupted};
   MultiStartSummary result = drive::minimize(document.graph, how, registry, watch, search);
   console.end_progress();
-  tell_ending(result.summary, console);
+  for (const std::string& note : result.summary.notes) console.note(note);
+  if (!result.summary.converged()) console.warning(no_minimum_warning(result.summary));
   document.covariances.clear();
   if (result.summary.converged()) {
     if (how.covariances != "none") console.progress(work + (work.empty() ? "" : "  ") + "covariances");
@@ -58,10 +54,12 @@ std::vector<evaluation::StateReport> states_of_minimum(formats::GraphDocument& d
   }
 }
 
-std::string describe_optimization(const MultiStartSummary& result) {
+void record_optimization(const MultiStartSummary& result, formats::GraphDocument& document) {
   const Summary& summary = result.summary;
-  return fmt::format("waymark {} algorithm {} start {} solver {} {}", WAYMARK_VERSION, summary.algorithm,
-                     result.start, summary.solver, to_string(summary.termination));
+  document.provenance.emplace_back("optimized", fmt::format("waymark {} algorithm {} start {} solver {} {}",
+                                                            WAYMARK_VERSION, summary.algorithm, result.start,
+                                                            summary.solver, to_string(summary.termination)));
+  if (!summary.converged()) document.provenance.emplace_back("warning", no_minimum_warning(summary));
 }
 
 void warn(const std::string& warning, formats::GraphDocument& document, const Console& console) {

@@ -22,17 +22,15 @@ MultiStartSummary optimize_document(formats::GraphDocument& document, const driv
                                     const TypeRegistry& registry, const Console& console,
                                     const Minimizer& search = {}, const std::string& work = {});
 
-/// Prints the notes of a minimisation, and a warning if it reached no minimum.
-void tell_ending(const Summary& summary, const Console& console);
-
 /// Returns the warning about a minimisation that reached no minimum.
 [[nodiscard]] std::string no_minimum_warning(const Summary& summary);
 
 /// Prints a warning on the console, and adds it to the provenance of the document.
 void warn(const std::string& warning, formats::GraphDocument& document, const Console& console);
 
-/// Returns the line about the optimisation for the header of the graph.
-[[nodiscard]] std::string describe_optimization(const MultiStartSummary& result);
+/// Adds the optimisation to the provenance of the document, and the warning if it reached no
+/// minimum.
+void record_optimization(const MultiStartSummary& result, formats::GraphDocument& document);
 
 /// Returns the estimated states of an optimised document. Empty without a minimum. If their sigmas
 /// cannot be computed, there is a warning.
