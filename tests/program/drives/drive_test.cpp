@@ -4,6 +4,7 @@
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
+#include "support/paths.hpp"
 
 namespace {
 
@@ -74,6 +75,23 @@ TEST_CASE("drive: a run that does not converge: exit 4, files and message") {
   CHECK(contains(read_text(folder + "results/g1.fused.graph"), "PROVENANCE warning " + warning));
   CHECK(contains(read_text(folder + "results/metrics.json"), warning));
   CHECK(contains(read_text(folder + "results/report.html"), warning));
+}
+
+TEST_CASE("drive: a drive.yaml from a pipe finds its logs by --data, and says where it looked otherwise") {
+  const std::string folder = fresh_folder();
+  write_drive(folder);
+  const auto piped = [&](const std::string& options) {
+    return run(
+        {"-c", "\"$0\" run <(cat drive.yaml) -m g1 --out out " + options, waymark_test::program_path()},
+        {.folder = folder, .program = "/bin/bash"});
+  };
+  const RunResult result = piped("--data .");
+  INFO(result.err);
+  CHECK(result.code == 0);
+  CHECK(exists(folder + "out/g1.fused.graph"));
+  const RunResult lost = piped("");  // names are relative to the folder of the pipe
+  CHECK(lost.code == 3);
+  CHECK(contains(lost.err, "/dev/fd/odometry.csv: cannot read"));
 }
 
 TEST_CASE("drive: logs that cannot be used are bad input with a reason") {

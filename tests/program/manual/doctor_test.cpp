@@ -146,6 +146,20 @@ TEST_CASE("doctor: drives and graphs are read with the plugins that they need") 
   CHECK(run({"doctor", folder + "broken.yaml"}).code == 3);
 }
 
+TEST_CASE("doctor: a drive and a graph from a pipe are read once, with the drive's plugins") {
+  const std::string folder = fresh_folder();
+  const std::string drive = write_drive(folder);
+  write_text(drive, "folder: " + folder + "\nplugins: [" + module_file("sound") + "]\n" + read_text(drive));
+  write_text(folder + "a.graph", "GRAPH 1\nVERTEX_SE2 0 1 2 0\nEDGE_SAMPLE 0 3 4 1 0 1\n");
+  const RunResult result =
+      run({"-c", "\"$0\" doctor <(cat drive.yaml) <(cat a.graph)", waymark_test::program_path()},
+          {.folder = folder, .program = "/bin/bash"});
+  INFO(result.out << result.err);
+  CHECK(result.code == 0);
+  CHECK(contains(result.out, ": 3 logs, all there"));
+  CHECK(contains(result.out, ": 1 vertices, 1 edges"));
+}
+
 TEST_CASE("doctor: a solver that does not reach the minimum is named, and the exit code is 1") {
   const RunResult result = run({"doctor", "--plugin", module_file("broken_solver")});
   INFO(result.out);

@@ -32,6 +32,12 @@ bool is_drive_file(std::string_view path) {
   return path.ends_with(".yaml") || path.ends_with(".yml");
 }
 
+bool is_drive_text(std::string_view path, std::string_view text) {
+  if (std::filesystem::path(path).has_extension()) return is_drive_file(path);
+  constexpr std::string_view kLine = "\nodometry:";
+  return text.starts_with(kLine.substr(1)) || text.find(kLine) != std::string_view::npos;
+}
+
 bool is_plugin_file(std::string_view plugin) {
   const std::filesystem::path path(plugin);
   return path.has_parent_path() || path.has_extension();

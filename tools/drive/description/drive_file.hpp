@@ -32,6 +32,9 @@ struct DriveFile {
 /// Tells whether a file is a drive, by its name (.yaml or .yml). A graph or truth file never has
 /// such a name, whatever its format.
 [[nodiscard]] bool is_drive_file(std::string_view path);
+/// Tells the same of a file that was read. A name without extension, such as that of a pipe, says
+/// nothing; the text then is a drive if a line begins with `odometry:`, which every drive states.
+[[nodiscard]] bool is_drive_text(std::string_view path, std::string_view text);
 /// Tells whether a plugin is named by its file. A word without folder and extension is looked up by
 /// the caller that loads it.
 [[nodiscard]] bool is_plugin_file(std::string_view plugin);

@@ -12,10 +12,9 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/linear/detail/dense_kernels.hpp>
 #include <waymark/core/registry/plugin.hpp>
-#include <waymark/formats/graph/graph_format.hpp>
 #include <waymark/formats/text/text_file.hpp>
-#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/program/doctor/doctor.hpp>
+#include <waymark/tools/program/doctor/input_files.hpp>
 #include <waymark/tools/program/doctor/libraries.hpp>
 #include <waymark/tools/program/doctor/self_test.hpp>
 #include <waymark/tools/program/jobs/plugin_list.hpp>
@@ -124,44 +123,18 @@ Json plugin_search_json(const PluginSearch& search, Diagnosis& diagnosis) {
           {"left_out", left_out}};
 }
 
-/// Describes the content of a file in a few words. @throws InputError, UsageError
-std::string read_input(const std::string& path, const TypeRegistry& registry) {
-  if (!drive::is_drive_file(path)) {
-    const formats::GraphDocument document =
-        formats::read_graph(formats::read_text_file(path), path, registry);
-    return fmt::format("{} vertices, {} edges, every tag is known", document.graph.vertex_count(),
-                       document.graph.edge_count());
-  }
-  const drive::DriveFile file = drive::load_drive_file(path);
-  const drive::DriveDescription& drive = file.description;
-  std::vector<drive::LogConfig> logs = drive.odometry;
-  logs.insert(logs.end(), drive.gnss.begin(), drive.gnss.end());
-  if (drive.truth) logs.push_back(*drive.truth);
-  for (const drive::SensorConfig& sensor : drive.sensors) {
-    if (sensor.log) logs.push_back(*sensor.log);
-  }
-  for (const drive::LogConfig& log : logs) {
-    std::error_code unknown;
-    if (!std::filesystem::exists(log.file, unknown))
-      throw InputError(log.place + log.file + ": there is no such log");
-  }
-  (void)registry.gnss_modeling(file.settings.modeling);
-  return fmt::format("{} logs, all there (not read: `waymark inspect` does); modeling {}", logs.size(),
-                     file.settings.modeling);
-}
-
-Json inputs_json(const std::vector<std::string>& inputs, const TypeRegistry& registry, Diagnosis& diagnosis) {
+Json inputs_json(const std::vector<ReadInput>& inputs, const TypeRegistry& registry, Diagnosis& diagnosis) {
   Json json = Json::array();
-  for (const std::string& path : inputs) {
+  for (const ReadInput& input : inputs) {
     std::string holds;
     std::string problem;
     try {
-      holds = read_input(path, registry);
+      holds = describe_input(input, registry);
     } catch (const Error& error) {
       problem = error.what();
       worsen(diagnosis, kInputError, problem);
     }
-    json.push_back({{"file", path}, {"holds", holds}, {"problem", problem}});
+    json.push_back({{"file", input.path}, {"holds", holds}, {"problem", problem}});
   }
   return json;
 }
@@ -206,25 +179,9 @@ Json terminal_json() {
           {"utf8", locale.find("UTF-8") != std::string::npos || locale.find("utf8") != std::string::npos}};
 }
 
-/// Returns --plugin and the plugins of the drives. A drive.yaml that cannot be read is reported
-/// later, when it is examined.
-std::vector<std::string> wanted_plugins(const CommonOptions& options,
-                                        const std::vector<std::string>& inputs) {
-  std::vector<std::string> wanted = options.plugins;
-  for (const std::string& path : inputs) {
-    if (!drive::is_drive_file(path)) continue;
-    try {
-      const std::vector<std::string> plugins = drive::load_drive_file(path).description.plugins;
-      wanted.insert(wanted.end(), plugins.begin(), plugins.end());
-    } catch (const Error&) {
-    }
-  }
-  return wanted;
-}
-
 }  // namespace
 
-Diagnosis diagnose(const CommonOptions& options, const std::vector<std::string>& inputs) {
+Diagnosis diagnose(const CommonOptions& options, const std::vector<std::string>& paths) {
   Diagnosis diagnosis;
   Json& json = diagnosis.json;
   json = {{"schema", "waymark-doctor"}, {"version", 1}, {"program_version", WAYMARK_VERSION}};
@@ -235,7 +192,10 @@ Diagnosis diagnose(const CommonOptions& options, const std::vector<std::string>&
   const std::vector<Library> libraries = built_in_libraries();
   json["licence"] = licence_json(libraries);
   json["libraries"] = libraries_json(libraries);
-  const PluginSearch search = search_plugins(wanted_plugins(options, inputs));
+  const std::vector<ReadInput> inputs = read_inputs(paths);
+  std::vector<std::string> wanted = options.plugins;
+  for (std::string& plugin : plugins_of(inputs)) wanted.push_back(std::move(plugin));
+  const PluginSearch search = search_plugins(wanted);
   const TypeRegistry& registry = search.registry;
   json["self_test"] = {{"minimum", known_problem().minimum}};
   json["self_test"]["solvers"] =

@@ -20,8 +20,8 @@ struct Diagnosis {
 
 /// Examines the program, its plugins, the present folder and the terminal. It does not throw for
 /// problems that it finds.
-/// @param inputs drive.yaml and graph files, read with all plugins
-[[nodiscard]] Diagnosis diagnose(const CommonOptions& options, const std::vector<std::string>& inputs);
+/// @param paths drive.yaml and graph files, each read once, with all plugins
+[[nodiscard]] Diagnosis diagnose(const CommonOptions& options, const std::vector<std::string>& paths);
 
 /// Returns the text for people.
 [[nodiscard]] std::string diagnosis_text(const nlohmann::ordered_json& json);
