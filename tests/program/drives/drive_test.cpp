@@ -147,7 +147,36 @@ TEST_CASE("drive: truth that does not overlap the drive is bad input") {
   const RunResult result = run({"evaluate", folder + "a.graph", "--truth", folder + "truth.tum"});
   INFO(result.out << result.err);
   CHECK(result.code == 3);
-  CHECK(contains(result.err, "truth does not overlap the drive in time: truth spans 5000.000000000 .. 5001"));
+  CHECK(contains(result.err,
+                 "truth.tum: the truth does not overlap the trajectory: trajectory from "
+                 "1000.000000000 s to 1040.000000000 s, truth from 5000.000000000 s to "
+                 "5001.000000000 s on the scale 'gps'; its stamps are seconds on the scale"));
+  write_drive(folder, {.truth_shift_s = 86'400});
+  const RunResult apart = run({"evaluate", folder + "a.graph", "--truth", folder + "drive.yaml"});
+  CHECK(apart.code == 3);
+  CHECK(contains(apart.err, "drive.yaml:4:"));  // the entry of the truth
+  CHECK(contains(apart.err, "truth from 87400.000000000 s to 87440.000000000 s"));
+  CHECK(contains(apart.err, "check 'time: {scale, week, offset}' of the truth, and whether the graph"));
+}
+
+TEST_CASE("drive: truth of a part of the trajectory is a warning with its share, in the report too") {
+  const std::string folder = fresh_folder();
+  const std::string drive = write_drive(folder, {.truth_shift_s = 10});
+  REQUIRE(run({"convert", drive, "-m", "g1", "-o", folder + "a.graph", "-q"}).code == 0);
+  const RunResult result = run({"evaluate", folder + "a.graph", "--truth", drive, "--out", folder + "e"});
+  INFO(result.err);
+  CHECK(result.code == 0);
+  // Fixes at 1000 .. 1040 s, truth from 1010 s: 31 of 41.
+  const std::string warning =
+      "the truth covers 75.6 % of the trajectory's fixes: trajectory from 1000.000000000 s to "
+      "1040.000000000 s, truth from 1010.000000000 s to 1050.000000000 s";
+  CHECK(contains(result.err, "warning: " + folder + "drive.yaml:4:"));
+  CHECK(contains(result.err, warning));
+  CHECK(contains(read_text(folder + "e/metrics.json"), warning));
+  CHECK(contains(read_text(folder + "e/report.html"), "the truth covers 75.6 %"));
+  // A second or so at the ends is nothing to be said.
+  write_drive(folder);
+  CHECK_FALSE(contains(run({"evaluate", folder + "a.graph", "--truth", drive}).err, "warning"));
 }
 
 TEST_CASE("drive: truth comes from a drive.yaml or a TUM file, with the same result") {

@@ -8,6 +8,7 @@
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/jobs/result_files.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -66,6 +67,19 @@ std::vector<TruthPose> truth_of(const formats::GraphDocument& document, const Ev
   return job.options.truth.empty() ? std::vector<TruthPose>() : truth_from_tum(job.options.truth);
 }
 
+/// Warns of truth that covers a part of the trajectory only. @throws InputError if it covers none
+void judge_coverage(const std::vector<TruthPose>& truth, formats::GraphDocument& document,
+                    const EvaluationJob& job) {
+  std::string place = job.options.truth + ": ";
+  std::string remedy = "its stamps are seconds on the scale of the graph";
+  if (job.truth_file && job.truth_file->description.truth) {
+    place = job.truth_file->description.truth->place;
+    remedy = "check 'time: {scale, week, offset}' of the truth, and whether the graph is of this drive";
+  }
+  const std::string warning = partial_truth_warning(document, truth, place, remedy);
+  if (!warning.empty()) warn(warning, document, job.console);
+}
+
 formats::GraphDocument read_fused(const std::string& input, const EvaluationJob& job) {
   job.console.progress("evaluating " + input);
   formats::GraphDocument document = formats::read_graph(formats::read_text_file(input), input, job.registry);
@@ -84,6 +98,7 @@ evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std
   const Console& console = job.console;
   formats::GraphDocument document = read_fused(input, job);
   const std::vector<TruthPose> truth = truth_of(document, job);
+  judge_coverage(truth, document, job);
   evaluation::LabelledEvaluation evaluated{label, evaluate_document(document, truth)};
   const bool reports = !job.options.folder.empty();
   std::optional<evaluation::Sparsity> sparsity;

@@ -3,13 +3,23 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/formats/trajectory/trajectory.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
 
 namespace waymark::program {
+namespace {
+
+std::string spanned(Stamp first, Stamp last) {
+  return fmt::format("from {} s to {} s", formats::decimal_seconds(first), formats::decimal_seconds(last));
+}
+
+}  // namespace
 
 evaluation::Prediction as_prediction(std::string label, drive::PosesAtWithheld at) {
   return {.label = std::move(label),
@@ -53,6 +63,28 @@ std::vector<TruthPose> truth_from_tum(const std::string& path) {
   std::stable_sort(truth.begin(), truth.end(),
                    [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
   return truth;
+}
+
+std::string partial_truth_warning(const formats::GraphDocument& document, const std::vector<TruthPose>& truth,
+                                  const std::string& place, const std::string& remedy) {
+  if (truth.empty() || document.fixes.empty()) return {};
+  constexpr double kMostOutside = 0.01;
+  const auto [first, last] =
+      std::minmax_element(document.fixes.begin(), document.fixes.end(),
+                          [](const Fix& a, const Fix& b) { return a.stamp < b.stamp; });
+  const auto within = std::count_if(document.fixes.begin(), document.fixes.end(), [&](const Fix& fix) {
+    return fix.stamp >= truth.front().stamp && fix.stamp <= truth.back().stamp;
+  });
+  const double share = static_cast<double>(within) / static_cast<double>(document.fixes.size());
+  if (share >= 1 - kMostOutside) return {};
+  const std::string spans =
+      fmt::format("trajectory {}, truth {} on the scale '{}'", spanned(first->stamp, last->stamp),
+                  spanned(truth.front().stamp, truth.back().stamp), to_string(document.time_scale));
+  if (within == 0)
+    throw InputError(
+        fmt::format("{}the truth does not overlap the trajectory: {}; {}", place, spans, remedy));
+  return fmt::format("{}the truth covers {:.1f} % of the trajectory's fixes: {}; the others are not judged",
+                     place, 100 * share, spans);
 }
 
 }  // namespace waymark::program

@@ -31,4 +31,13 @@ namespace waymark::program {
 /// that cannot be read
 [[nodiscard]] std::vector<TruthPose> truth_from_tum(const std::string& path);
 
+/// Returns a warning with the share of the fixes that lie within the time of the truth. Empty if
+/// at most 1 % of them lie outside: logs rarely begin and end together.
+/// @param place of the truth, for messages: "drive.yaml:12:5: " or "truth.tum: "
+/// @param remedy what to check
+/// @throws InputError if no fix lies within the time of the truth; it is always a wrong clock
+[[nodiscard]] std::string partial_truth_warning(const formats::GraphDocument& document,
+                                                const std::vector<TruthPose>& truth, const std::string& place,
+                                                const std::string& remedy);
+
 }  // namespace waymark::program
