@@ -2,13 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/drive/stamp.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
+#include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 
@@ -70,6 +75,17 @@ void put_on_scale(Samples&& samples, const DriveLogs::Log& log, TimeScale scale,
   }
 }
 
+/// Appends the samples of one log on the scale of the drive, and its counts.
+template <typename Sample>
+void append_log(const std::vector<Sample>& from, const DriveLogs::Log& log, TimeScale scale,
+                std::vector<Sample>& to, StreamReport& stream, PrepareReport& report) {
+  const std::size_t before = to.size();
+  to.insert(to.end(), from.begin(), from.end());
+  put_on_scale(std::span(to).subspan(before), log, scale,
+               [](Sample& sample) -> Stamp& { return sample.stamp; });
+  add_log_report(log.data, stream, report);
+}
+
 /// Fills used, median_interval_s and gaps.
 /// @param gap_s longer intervals are gaps; 0: 2.5 median intervals
 template <typename Sample>
@@ -84,6 +100,29 @@ void describe_stream(const std::vector<Sample>& samples, double gap_s, StreamRep
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     if (intervals[i] > limit) report.gaps.push_back({samples[i].stamp, intervals[i]});
   }
+}
+
+/// Returns "from 12.5 s to 80.25 s".
+template <typename Sample>
+std::string span_text(const std::vector<Sample>& samples) {
+  return fmt::format("from {} s to {} s", formats::decimal_seconds(samples.front().stamp),
+                     formats::decimal_seconds(samples.back().stamp));
+}
+
+/// Tells whether two samples are at the same geodetic place; unknown heights are equal.
+bool same_place(const auto& a, const auto& b) {
+  const bool unknown = std::isnan(a.height_m) && std::isnan(b.height_m);
+  return a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg &&
+         (a.height_m == b.height_m || unknown);
+}
+
+bool finite_place(const auto& sample) {
+  return std::isfinite(sample.latitude_deg) && std::isfinite(sample.longitude_deg);
+}
+
+/// Returns seconds as whole nanoseconds, rounded.
+inline std::int64_t nanoseconds(double seconds) {
+  return std::llround(seconds * 1e9);
 }
 
 }  // namespace waymark::drive

@@ -1,0 +1,117 @@
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/logs/clock_sync.hpp>
+#include <waymark/tools/drive/logs/prepare_steps.hpp>
+#include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/logs/velocity.hpp>
+
+namespace waymark::drive {
+namespace {
+
+/// Keeps, for each source, the fix nearest to each whole multiple of the period; the earlier of two
+/// equally near ones.
+void thin(std::vector<GeodeticFix>& fixes, std::int64_t period) {
+  struct Nearest {
+    std::size_t index = 0;
+    std::int64_t distance = 0;
+  };
+  std::map<std::pair<int, std::int64_t>, Nearest> nearest;  // by source and multiple
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const std::int64_t stamp = fixes[i].stamp.nanoseconds;
+    std::int64_t remainder = stamp % period;
+    if (remainder < 0) remainder += period;
+    const bool up = 2 * remainder >= period;
+    const std::int64_t multiple = (stamp - remainder) / period + (up ? 1 : 0);
+    const std::int64_t distance = up ? period - remainder : remainder;
+    const auto [place, is_new] = nearest.try_emplace({fixes[i].source, multiple}, Nearest{i, distance});
+    if (!is_new && distance < place->second.distance) place->second = {i, distance};
+  }
+  std::vector<char> keep(fixes.size(), 0);
+  for (const auto& [key, best] : nearest) keep[best.index] = 1;
+  std::size_t index = 0;
+  std::erase_if(fixes, [&](const GeodeticFix&) { return keep[index++] == 0; });
+}
+
+/// Reports what the messages of a log reveal about its stamps.
+void report_clock(const DriveLogs::Log& log, PrepareReport& report) {
+  const std::optional<ClockReport> clock = clock_of(log);
+  if (!clock) return;
+  report.clocks.push_back(*clock);
+  report.notes.push_back(fmt::format(
+      "{}: its stamps are {:.3f} s ahead of the GNSS time in {} messages (median, deviations {:.3f} s), "
+      "with the stated 'time: {{offset: ...}}' added",
+      log.file, clock->ahead_s, clock->messages, clock->spread_s));
+}
+
+void add_logged_velocity(const DriveLogs::Log& log, TimeScale scale, std::span<GeodeticFix> fixes,
+                         PrepareReport& report) {
+  SensorTable readings = log.data.readings;
+  put_on_scale(readings.stamps, log, scale, [](Stamp& stamp) -> Stamp& { return stamp; });
+  add_log_report(log.data, report.sensor, report);
+  const std::size_t given = add_velocity(readings, fixes);
+  report.notes.push_back(
+      fmt::format("{}: {} of {} fixes have their speed or course from it", log.file, given, fixes.size()));
+}
+
+/// Removes fixes at 0/0. Receivers without a fix write zeros, and nobody drives in the
+/// Gulf of Guinea.
+void leave_out_null_island(std::vector<GeodeticFix>& fixes, PrepareReport& report) {
+  const std::size_t left_out = std::erase_if(
+      fixes, [](const GeodeticFix& fix) { return fix.latitude_deg == 0 && fix.longitude_deg == 0; });
+  if (left_out > 0)
+    report.notes.push_back(fmt::format(
+        "{} fixes at latitude 0, longitude 0 are left out: receivers write that without a fix", left_out));
+}
+
+}  // namespace
+
+std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescription& description,
+                                       const std::vector<OdometrySample>& odometry, PrepareReport& report) {
+  std::vector<GeodeticFix> fixes;
+  for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
+    const DriveLogs::Log& log = logs.gnss[i];
+    const std::size_t before = fixes.size();
+    append_log(log.data.fixes, log, description.scale(), fixes, report.gnss, report);
+    if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)
+      add_logged_velocity(logs.velocity[i], description.scale(), std::span(fixes).subspan(before), report);
+    report_clock(log, report);
+  }
+  leave_out_null_island(fixes, report);
+  clean_stream(
+      fixes, report.gnss, [](const GeodeticFix& f) { return finite_place(f) && f.covariance_en.allFinite(); },
+      [](const GeodeticFix& a, const GeodeticFix& b) { return a.source == b.source; },
+      [](const GeodeticFix& a, const GeodeticFix& b) {
+        return same_place(a, b) && a.covariance_en == b.covariance_en && a.course_rad == b.course_rad &&
+               a.speed_mps == b.speed_mps;
+      });
+  if (fixes.empty())
+    throw InputError(fmt::format("{}: the GNSS logs hold no usable fix; a drive without a fix has no place",
+                                 logs.gnss.empty() ? description.path : logs.gnss.front().file));
+  for (GeodeticFix& fix : fixes) fix.stamp.nanoseconds -= nanoseconds(description.gnss_delay_s);
+
+  const std::string gnss_span = span_text(fixes);
+  const std::size_t before = fixes.size();
+  std::erase_if(fixes, [&](const GeodeticFix& fix) {
+    return fix.stamp < odometry.front().stamp || fix.stamp > odometry.back().stamp;
+  });
+  report.fixes_outside_odometry = before - fixes.size();
+  if (fixes.empty())
+    throw InputError(
+        fmt::format("{}: no fix lies within the odometry: odometry {}, fixes {} on the scale '{}'; check "
+                    "'time: {{scale, week, offset}}' of both logs and 'time: {{from, to}}'",
+                    description.path, span_text(odometry), gnss_span, to_string(description.scale())));
+  const std::size_t within = fixes.size();
+  if (description.gnss_period_s > 0) thin(fixes, nanoseconds(description.gnss_period_s));
+  report.fixes_thinned = within - fixes.size();
+  describe_stream(fixes, 0, report.gnss);
+  return fixes;
+}
+
+}  // namespace waymark::drive
