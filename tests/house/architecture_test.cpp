@@ -80,6 +80,19 @@ void for_each_include(const std::string& room, Visit visit) {
   });
 }
 
+std::string joined(const Rooms& rooms) {
+  std::string text;
+  for (const std::string& room : rooms) text += (text.empty() ? "" : ", ") + room;
+  return text.empty() ? "no other" : text;
+}
+
+/// All arrows, as CONTRIBUTING.md lists them.
+std::string table_of_arrows() {
+  std::string table = "| Library | Includes from |\n|---|---|\n";
+  for (const auto& [room, allowed] : kArrows) table += "| " + room + " | " + joined(allowed) + " |\n";
+  return table + "| tools/program | all |\n";
+}
+
 std::string without(std::string text, const std::string& word) {
   for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at))
     text.erase(at, word.size());
@@ -95,14 +108,19 @@ std::string text_of(const fs::path& file) {
 
 TEST_CASE("house: each library includes only from the libraries that its arrows point to") {
   for (const auto& [room, allowed] : kArrows) {
-    for_each_include(room,
-                     [&, &from = room, &targets = allowed](const fs::path& file, const std::string& include) {
-                       if (!include.starts_with("waymark/") || include == kVersion) return;
-                       const std::string target = room_of(include.substr(8));
-                       INFO(file << " includes " << include);
-                       CHECK((target == from || targets.contains(target)));
-                     });
+    for_each_include(
+        room, [&, &from = room, &targets = allowed](const fs::path& file, const std::string& include) {
+          if (!include.starts_with("waymark/") || include == kVersion) return;
+          const std::string target = room_of(include.substr(8));
+          INFO(file << " includes " << include << "; " << from << " includes from: " << joined(targets));
+          CHECK((target == from || targets.contains(target)));
+        });
   }
+}
+
+TEST_CASE("house: CONTRIBUTING.md lists the arrows that are tested") {
+  INFO("it must hold this table:\n" << table_of_arrows());
+  CHECK(text_of(root() / "CONTRIBUTING.md").find("\n\n" + table_of_arrows() + "\n") != std::string::npos);
 }
 
 TEST_CASE("house: every library of tools has its arrows, and only the program sees all of them") {
