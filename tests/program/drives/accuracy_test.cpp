@@ -22,8 +22,9 @@ struct NeesRange {
 constexpr NeesRange kWithinAFactorOfTwo{1, 4};
 
 /// Largest values allowed (0: no goal), and what the covariances must show. A drive of a few minutes has as
-/// much to say as one to three independent errors, so consistent covariances may well hold all of it: the
-/// coverage has no bound from above, the mean NEES has.
+/// much to say as one to three independent errors, so consistent covariances may well hold all of it: here
+/// the mean NEES is bounded from above and below, the coverage from below only. coverage_test.cpp bounds the
+/// coverage from both sides, over many drives.
 struct Goal {
   const char* drive;
   double max_m;

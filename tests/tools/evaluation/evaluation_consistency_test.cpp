@@ -78,6 +78,18 @@ TEST_CASE("consistency: a covariance too small by four gives NEES 8 and half the
   CHECK_FALSE(holds(s.coverage_honest, s.coverage));
 }
 
+TEST_CASE("consistency: a covariance too large by nine is no more consistent than one too small") {
+  constexpr int kEpochs = 4000;
+  const Errors errors = autoregressive(kEpochs, 0, 6);
+  const ConsistencyStatistics s =
+      consistency_statistics(seconds(kEpochs), errors, same(errors.size(), 9 * Eigen::Matrix2d::Identity()));
+  CHECK(s.nees_mean == Approx(2.0 / 9).epsilon(0.07));
+  CHECK(s.median_error_ratio == Approx(1.0 / 3).epsilon(0.05));
+  CHECK(s.coverage == 1);  // P(chi2 / 9 > -2 ln 0.05) = 0.05^9
+  CHECK_FALSE(holds(s.nees_mean_honest, s.nees_mean));
+  CHECK_FALSE(holds(s.coverage_honest, s.coverage));
+}
+
 TEST_CASE("consistency: autoregressive errors are worth n (1 - rho) / (1 + rho) samples") {
   constexpr int kEpochs = 20000;
   for (const double rho : {0.5, 0.8, 0.95}) {

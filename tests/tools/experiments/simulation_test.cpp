@@ -11,25 +11,18 @@
 #include <waymark/tools/simulation/simulation.hpp>
 #include <waymark/tools/simulation/statistics.hpp>
 
+#include "tools/experiments/simulated.hpp"
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::simulation;
 using std::numbers::pi;
+using waymark_test::prepared;
+using waymark_test::straight_road;
 
 namespace {
 
 constexpr double kDegree = pi / 180;
-
-/// One straight road without end, driven at 20 m/s.
-RoadRecipe straight_road() {
-  RoadRecipe road;
-  road.cruise_min_mps = road.cruise_max_mps = 20;
-  road.speed_wander = 0;
-  road.bend_sigma_deg = 0;
-  road.corner_probability = 0;
-  road.stop_probability = 0;
-  return road;
-}
 
 OdometryRecipe perfect_odometry() {
   OdometryRecipe odometry;
@@ -44,17 +37,6 @@ SimulationRecipe straight_drive(double duration_s, const OdometryRecipe& odometr
   recipe.roads = {straight_road()};
   recipe.odometry = odometry;
   return recipe;
-}
-
-/// As if the drive had been written and read.
-PreparedDrive prepared(const SimulatedDrive& simulated) {
-  PreparedDrive drive;
-  drive.frame = simulated.frame;
-  const Projection projection(simulated.frame);
-  drive.odometry = simulated.odometry;
-  for (const SimulatedFix& fix : simulated.fixes) drive.fixes.push_back(projection.project(fix.fix));
-  for (const GeodeticTruth& truth : simulated.truth) drive.truth.push_back(projection.project(truth));
-  return drive;
 }
 
 DriveStatistics statistics_of(const SimulatedDrive& simulated) {
