@@ -1,9 +1,6 @@
 // The published pose graphs: every algorithm with every solver reaches the best optimum known (anchors: the
 // best of g2o, Ceres and GTSAM, (t, theta) form). They are not part of the project: skipped where absent.
-#include <fstream>
-#include <iostream>
 #include <optional>
-#include <sstream>
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
@@ -12,10 +9,11 @@
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
+#include <waymark/formats/text/text_file.hpp>
 
 #include "support/dense.hpp"
-#include "support/paths.hpp"
 #include "support/registry.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -26,16 +24,11 @@ namespace {
 std::optional<Graph> load(const std::string& name, const TypeRegistry& registry,
                           bool odometry_start = false) {
   const bool toro = name.ends_with("_toro");
-  const auto path = shared_data_dir() / "graphs" / (name + (toro ? ".graph" : ".g2o"));
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    std::cout << "SKIPPED: " << path.filename().string() << " is not in the shared data\n";
-    return std::nullopt;
-  }
-  std::ostringstream text;
-  text << file.rdbuf();
+  const auto path = shared_data("graphs/" + name + (toro ? ".graph" : ".g2o"));
+  if (!path) return std::nullopt;
   Graph graph =
-      read_graph_as(toro ? GraphFormat::toro : GraphFormat::graph, text.str(), name, registry).graph;
+      read_graph_as(toro ? GraphFormat::toro : GraphFormat::graph, read_text_file(*path), name, registry)
+          .graph;
   if (odometry_start) graph.set_values(registry.make_start("odometry", graph).values);
   return graph;
 }

@@ -1,11 +1,11 @@
 // tools/packaging/check_abi.sh: what a next version of a library may change, and what it may not.
 #include <filesystem>
-#include <iostream>
 
 #include <catch2/catch.hpp>
 
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace {
 
@@ -33,7 +33,7 @@ RunResult check_abi(const std::string& before, const std::string& after) {
 
 bool no_abidiff() {
   if (fs::exists("/usr/bin/abidiff")) return false;
-  std::cout << "SKIPPED: no abidiff (Debian package abigail-tools)\n";
+  waymark_test::skip("no abidiff (Debian package abigail-tools)");
   return true;
 }
 

@@ -2,7 +2,6 @@
 // without them.
 #include <cmath>
 #include <fstream>
-#include <iostream>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -13,9 +12,9 @@
 #include <waymark/core/robust/graduation.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 
-#include "support/paths.hpp"
 #include "support/problems.hpp"
 #include "support/registry.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -39,13 +38,11 @@ std::string one_blank(const std::string& line) {
 
 /// A file of the shared data with its .outliers. False: not there.
 bool load(const std::string& name, const TypeRegistry& registry, Spoiled& spoiled) {
-  const auto folder = shared_data_dir() / "graphs";
-  std::ifstream file(folder / (name + ".g2o"));
-  std::ifstream outlier_file(folder / (name + ".g2o.outliers"));
-  if (!file || !outlier_file) {
-    std::cout << "SKIPPED: " << name << " is not in the shared data\n";
-    return false;
-  }
+  const auto graph_path = shared_data("graphs/" + name + ".g2o");
+  const auto outlier_path = shared_data("graphs/" + name + ".g2o.outliers");
+  if (!graph_path || !outlier_path) return false;
+  std::ifstream file(*graph_path);
+  std::ifstream outlier_file(*outlier_path);
   std::set<std::string> false_lines;
   for (std::string line; std::getline(outlier_file, line);) {
     if (!line.empty()) false_lines.insert(one_blank(line));

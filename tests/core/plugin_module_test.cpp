@@ -15,6 +15,7 @@
 
 #include "support/paths.hpp"
 #include "support/registry.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark_test;
@@ -49,7 +50,7 @@ Attempt attempt(const std::string& file, TypeRegistry& registry) {
 
 bool is_built(const std::string& name) {
   if (std::filesystem::exists(module_file(name))) return true;
-  WARN("SKIPPED: module " << name << " is not built on this processor or with this compiler");
+  waymark_test::skip("module " + name + " is not built on this processor or with this compiler");
   return false;
 }
 

@@ -1,15 +1,13 @@
 // TORO's order of the six numbers, as information and as GTSAM's covariance, and what is refused.
-#include <fstream>
-#include <iostream>
-#include <sstream>
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/text_file.hpp>
 
 #include "formats/read_helpers.hpp"
-#include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -103,14 +101,9 @@ TEST_CASE("TORO and covariance: files with edges only get their vertices, lenien
 }
 
 TEST_CASE("fr079: chi2 is the same through every format, and another if TORO is taken for covariance") {
-  std::ifstream file(waymark_test::shared_data_dir() / "graphs" / "fr079_toro.graph");
-  if (!file) {
-    std::cout << "SKIPPED: fr079_toro.graph is not in the shared data\n";
-    return;
-  }
-  std::ostringstream stream;
-  stream << file.rdbuf();
-  const std::string text = stream.str();
+  const auto file = waymark_test::shared_data("graphs/fr079_toro.graph");
+  if (!file) return;
+  const std::string text = read_text_file(*file);
   const GraphDocument document = read_as_toro(text);
   REQUIRE(document.graph.vertex_count() == 989);
   REQUIRE(document.graph.edge_count() == 1217);

@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <iostream>
 #include <numbers>
 #include <string>
 
@@ -11,7 +10,7 @@
 #include <waymark/formats/text/text_file.hpp>
 
 #include "logs/log_pieces.hpp"
-#include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -202,12 +201,9 @@ TEST_CASE("gpx: it is known by its root element") {
 }
 
 TEST_CASE("gpx: a real track, its points in order and within its bounds") {
-  const auto path = waymark_test::shared_data_dir() / "logs" / "gpx" / "gpsbabel_datalog.gpx";
-  if (!std::filesystem::exists(path)) {
-    std::cout << "SKIPPED: " << path.string() << " is absent\n";
-    return;
-  }
-  const std::string text = read_text_file(path.string());
+  const auto path = waymark_test::shared_data("logs/gpx/gpsbabel_datalog.gpx");
+  if (!path) return;
+  const std::string text = read_text_file(*path);
   std::size_t points = 0;
   for (std::size_t at = text.find("<trkpt"); at != std::string::npos; at = text.find("<trkpt", at + 1))
     ++points;

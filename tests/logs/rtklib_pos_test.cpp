@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <iostream>
 #include <numbers>
 #include <string>
 
@@ -11,7 +10,7 @@
 #include <waymark/formats/text/text_file.hpp>
 
 #include "logs/log_pieces.hpp"
-#include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -256,14 +255,10 @@ TEST_CASE("rtklib_pos: it is known by the line that names its columns") {
 }
 
 TEST_CASE("rtklib_pos: the real solution of Nagoya agrees with the table made from it") {
-  const auto folder = waymark_test::shared_data_dir();
-  const auto solution = folder / "logs" / "pos" / "taroz_rover_1Hz_spp.pos";
-  const auto table = folder / "drives" / "nagoya" / "gnss.csv";
-  if (!std::filesystem::exists(solution) || !std::filesystem::exists(table)) {
-    std::cout << "SKIPPED: " << solution.string() << " or " << table.string() << " is absent\n";
-    return;
-  }
-  const std::string text = read_text_file(solution.string());
+  const auto solution = waymark_test::shared_data("logs/pos/taroz_rover_1Hz_spp.pos");
+  const auto table = waymark_test::shared_data("drives/nagoya/gnss.csv");
+  if (!solution || !table) return;
+  const std::string text = read_text_file(*solution);
   const LogData fixes = read(text);
   LogRequest columns;
   columns.gps_week = 2323;
@@ -274,7 +269,7 @@ TEST_CASE("rtklib_pos: the real solution of Nagoya agrees with the table made fr
                      {"sigma_east", {"sde_m", "", ""}},
                      {"sigma_north", {"sdn_m", "", ""}},
                      {"covariance_en_signed_root", {"sdne_m", "", ""}}};
-  const LogData expected = CsvLogReader().read(read_text_file(table.string()), "gnss.csv", columns);
+  const LogData expected = CsvLogReader().read(read_text_file(*table), "gnss.csv", columns);
   REQUIRE(fixes.fixes.size() == 1107);
   REQUIRE(expected.fixes.size() == 1107);
   CHECK(fixes.corrupt == 0);

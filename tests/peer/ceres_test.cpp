@@ -3,22 +3,19 @@
 // Ceres' headers define a CHECK of their own.)
 #include <catch2/catch.hpp>
 
+#include "support/skip.hpp"
+
 #ifndef WAYMARK_HAVE_CERES
 
-#include <iostream>
-
 TEST_CASE("peer: Ceres ends at the same minima") {
-  std::cout << "SKIPPED: Ceres was not found when this was built (package libceres-dev)\n";
+  waymark_test::skip("Ceres was not found when this was built (package libceres-dev)");
 }
 
 #else
 
 #include <cmath>
-#include <fstream>
-#include <iostream>
 #include <numbers>
 #include <optional>
-#include <sstream>
 
 #include <ceres/ceres.h>
 #include <Eigen/Cholesky>
@@ -26,8 +23,8 @@ TEST_CASE("peer: Ceres ends at the same minima") {
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
+#include <waymark/formats/text/text_file.hpp>
 
-#include "support/paths.hpp"
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
@@ -185,16 +182,11 @@ void check_same_minimum(Graph graph, std::optional<double> figure = {}) {
   REQUIRE(graph.chi2() == Approx(peer).epsilon(1e-9));
 }
 
-/// A file of the shared data, or nothing, which is then said.
+/// Returns a file of the shared data; nothing if the case is skipped, because the file is missing.
 std::optional<std::string> load(const std::string& name) {
-  std::ifstream file(waymark_test::shared_data_dir() / "graphs" / name);
-  if (!file) {
-    std::cout << "SKIPPED: " << name << " is not in the shared data\n";
-    return std::nullopt;
-  }
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  const auto path = waymark_test::shared_data("graphs/" + name);
+  if (!path) return std::nullopt;
+  return read_text_file(*path);
 }
 
 void check_file(const char* name) {

@@ -10,8 +10,8 @@
 
 namespace waymark_test {
 
-/// Large drives and benchmark graphs. They may be missing; a test then prints "SKIPPED: reason"
-/// and returns.
+/// Large drives and benchmark graphs. They may be missing: a case asks shared_data (support/skip.hpp)
+/// for a file, and skips itself.
 [[nodiscard]] std::filesystem::path shared_data_dir();
 
 /// The drives, graphs and descriptions that come with the repository.

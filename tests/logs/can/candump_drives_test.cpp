@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <iostream>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -16,7 +14,7 @@
 #include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/formats/text/text_file.hpp>
 
-#include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -24,14 +22,6 @@ using namespace waymark::formats;
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-/// A file of the shared data; empty, with a line that says so, where it is absent.
-std::string shared_file(const std::string& name) {
-  const auto path = waymark_test::shared_data_dir() / name;
-  if (std::filesystem::exists(path)) return path.string();
-  std::cout << "SKIPPED: " << path.string() << " is absent\n";
-  return {};
-}
 
 LogRequest request_with(const std::string& dbc_text, StreamKind stream) {
   LogRequest request;
@@ -72,7 +62,9 @@ double number(const std::string& text) {
   return std::strtod(text.c_str(), nullptr);
 }
 
-const std::string kAarhus = "drives/aarhus_horsens/";
+constexpr const char* kAarhus = "drives/aarhus_horsens";
+constexpr const char* kCandump = "/candump.log.gz";
+constexpr const char* kDbc = "/canmod-gps.dbc";
 
 LogRequest aarhus_fixes(const std::string& dbc) {
   LogRequest request = request_with(read_text_file(dbc), StreamKind::gnss);
@@ -90,11 +82,11 @@ LogRequest aarhus_fixes(const std::string& dbc) {
 }  // namespace
 
 TEST_CASE("candump: the fixes of Aarhus are those of its table, digit by digit") {
-  const std::string log = shared_file(kAarhus + "candump.log.gz");
-  if (log.empty()) return;
-  const auto rows = drive_table(shared_file(kAarhus + "gnss.csv"));
-  LogRequest request = aarhus_fixes(shared_file(kAarhus + "canmod-gps.dbc"));
-  const LogData all = read_log_file(CandumpReader(), log, request);
+  const auto drive = waymark_test::shared_data(kAarhus);
+  if (!drive) return;
+  const auto rows = drive_table(*drive + "/gnss.csv");
+  LogRequest request = aarhus_fixes(*drive + kDbc);
+  const LogData all = read_log_file(CandumpReader(), *drive + kCandump, request);
   REQUIRE(all.fixes.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const GeodeticFix& fix = all.fixes[i];
@@ -104,7 +96,7 @@ TEST_CASE("candump: the fixes of Aarhus are those of its table, digit by digit")
     REQUIRE(std::sqrt(fix.covariance_en(0, 0)) == number(rows[i][3]));
   }
   request.columns["valid"] = {"PositionValid", "", ""};
-  const LogData valid = read_log_file(CandumpReader(), log, request);
+  const LogData valid = read_log_file(CandumpReader(), *drive + kCandump, request);
   std::vector<Stamp> expected;
   for (const auto& row : rows) {
     if (row[4] == "1") expected.push_back(*stamp_from_decimal_seconds(row[0]));
@@ -115,11 +107,10 @@ TEST_CASE("candump: the fixes of Aarhus are those of its table, digit by digit")
 }
 
 TEST_CASE("candump: speed and course of Aarhus come from the frames behind the position's") {
-  const std::string log = shared_file(kAarhus + "candump.log.gz");
-  if (log.empty()) return;
-  const auto rows = drive_table(shared_file(kAarhus + "gnss_speed_heading.csv"));
-  const LogData data =
-      read_log_file(CandumpReader(), log, aarhus_fixes(shared_file(kAarhus + "canmod-gps.dbc")));
+  const auto drive = waymark_test::shared_data(kAarhus);
+  if (!drive) return;
+  const auto rows = drive_table(*drive + "/gnss_speed_heading.csv");
+  const LogData data = read_log_file(CandumpReader(), *drive + kCandump, aarhus_fixes(*drive + kDbc));
   REQUIRE(data.fixes.size() == rows.size());
   int other_headings = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -133,9 +124,9 @@ TEST_CASE("candump: speed and course of Aarhus come from the frames behind the p
 }
 
 TEST_CASE("candump: the logger of Aarhus is 4.40 s ahead of GNSS time") {
-  const std::string log = shared_file(kAarhus + "candump.log.gz");
-  if (log.empty()) return;
-  LogData data = read_log_file(CandumpReader(), log, aarhus_fixes(shared_file(kAarhus + "canmod-gps.dbc")));
+  const auto drive = waymark_test::shared_data(kAarhus);
+  if (!drive) return;
+  LogData data = read_log_file(CandumpReader(), *drive + kCandump, aarhus_fixes(*drive + kDbc));
   REQUIRE(data.clocks.size() == 2272);
   const auto middle = data.clocks.begin() + 1136;
   const auto ahead = [](const ClockPair& pair) { return seconds_between(pair.told, pair.logged); };
@@ -145,16 +136,15 @@ TEST_CASE("candump: the logger of Aarhus is 4.40 s ahead of GNSS time") {
 }
 
 TEST_CASE("candump: the gyro of Aarhus, a quarter of a million rows") {
-  const std::string log = shared_file(kAarhus + "candump.log.gz");
-  if (log.empty()) return;
-  const auto rows = drive_table(shared_file(kAarhus + "imu.csv.gz"));
-  LogRequest request =
-      request_with(read_text_file(shared_file(kAarhus + "canmod-gps.dbc")), StreamKind::sensor);
+  const auto drive = waymark_test::shared_data(kAarhus);
+  if (!drive) return;
+  const auto rows = drive_table(*drive + "/imu.csv.gz");
+  LogRequest request = request_with(read_text_file(*drive + kDbc), StreamKind::sensor);
   request.readings = {
       {"x", "rad/s", "ccw", true, ""}, {"y", "rad/s", "ccw", true, ""}, {"z", "rad/s", "ccw", true, ""}};
   request.columns = {
       {"x", {"AngularRateX", "", ""}}, {"y", {"AngularRateY", "", ""}}, {"z", {"AngularRateZ", "", ""}}};
-  const LogData data = read_log_file(CandumpReader(), log, request);
+  const LogData data = read_log_file(CandumpReader(), *drive + kCandump, request);
   REQUIRE(data.readings.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     REQUIRE(data.readings.stamps[i] == *stamp_from_decimal_seconds(rows[i][0]));
@@ -164,9 +154,9 @@ TEST_CASE("candump: the gyro of Aarhus, a quarter of a million rows") {
 }
 
 TEST_CASE("candump: the OBD speed of Aarhus by a multiplexed DBC of six lines") {
-  const std::string log = shared_file(kAarhus + "candump.log.gz");
-  if (log.empty()) return;
-  const auto rows = drive_table(shared_file(kAarhus + "obd_speed.csv"));
+  const auto drive = waymark_test::shared_data(kAarhus);
+  if (!drive) return;
+  const auto rows = drive_table(*drive + "/obd_speed.csv");
   // Answers to OBD service 01: length, 41, the parameter's number, its value.
   const std::string dbc =
       "BO_ 2024 OBD2: 8 ECU\n"
@@ -177,7 +167,7 @@ TEST_CASE("candump: the OBD speed of Aarhus by a multiplexed DBC of six lines") 
       "SG_MUL_VAL_ 2024 VehicleSpeed Parameter 13-13;\n";
   LogRequest request = request_with(dbc, StreamKind::odometry);
   request.columns = {{"speed", {"VehicleSpeed", "", ""}}};
-  const LogData data = read_log_file(CandumpReader(), log, request);
+  const LogData data = read_log_file(CandumpReader(), *drive + kCandump, request);
   REQUIRE(data.readings.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     REQUIRE(data.readings.stamps[i] == *stamp_from_decimal_seconds(rows[i][0]));
@@ -186,10 +176,9 @@ TEST_CASE("candump: the OBD speed of Aarhus by a multiplexed DBC of six lines") 
 }
 
 TEST_CASE("candump: wheels and yaw rate of a RAV4 are those of one car that drives") {
-  const std::string log = shared_file("logs/can/rav4_2019_first_seconds.candump.log");
-  if (log.empty()) return;
-  LogRequest request =
-      request_with(read_text_file(shared_file("logs/can/toyota_rav4_2019.dbc")), StreamKind::sensor);
+  const auto logs = waymark_test::shared_data("logs/can");
+  if (!logs) return;
+  LogRequest request = request_with(read_text_file(*logs + "/toyota_rav4_2019.dbc"), StreamKind::sensor);
   const std::vector<std::string> wheels{"FL", "FR", "RL", "RR"};
   for (const std::string& wheel : wheels) {
     request.readings.push_back({wheel, "m/s", "", false, ""});
@@ -197,7 +186,8 @@ TEST_CASE("candump: wheels and yaw rate of a RAV4 are those of one car that driv
   }
   request.readings.push_back({"yaw_rate", "rad/s", "ccw", false, ""});
   request.columns["yaw_rate"] = {"can0:KINEMATICS.YAW_RATE", "", ""};
-  const LogData data = read_log_file(CandumpReader(), log, request);
+  const LogData data =
+      read_log_file(CandumpReader(), *logs + "/rav4_2019_first_seconds.candump.log", request);
   REQUIRE(data.corrupt == 0);
   std::vector<double> spreads;  // between the four wheels
   int speeds = 0;
@@ -236,10 +226,10 @@ TEST_CASE("candump: wheels and yaw rate of a RAV4 are those of one car that driv
 TEST_CASE("candump: real logs are recognised") {
   for (const char* name :
        {"drives/aarhus_horsens/candump.log.gz", "logs/can/rav4_2019_first_seconds.candump.log"}) {
-    const std::string log = shared_file(name);
-    if (log.empty()) continue;
+    const auto log = waymark_test::shared_data(name);
+    if (!log) continue;
     static const CandumpReader reader;
     const std::vector<LogReaderType> readers{{"candump", "", &reader}};
-    CHECK(recognise_log(log, readers).why.certainty == 1);
+    CHECK(recognise_log(*log, readers).why.certainty == 1);
   }
 }

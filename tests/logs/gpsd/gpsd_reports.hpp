@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <iostream>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -14,7 +13,7 @@
 #include <waymark/formats/text/text_file.hpp>
 
 #include "logs/log_pieces.hpp"
-#include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace waymark_test::gpsd_samples {
 
@@ -36,12 +35,11 @@ inline constexpr const char* kFix =
     R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45.280Z","lat":46.5,"lon":7.5,"altHAE":1391.3,)"
     R"("epx":4,"epy":6,"eph":10,"track":90,"epd":20,"speed":5,"eps":3})";
 
-/// Returns the log in the shared data. If it is missing, prints a line and returns an empty text.
+/// Returns the text of a log in the shared data; empty if the case is skipped, because the log is
+/// missing.
 inline std::string shared_log(const std::string& name) {
-  const auto path = waymark_test::shared_data_dir() / "logs" / "gpsd" / name;
-  if (std::filesystem::exists(path)) return read_text_file(path.string());
-  std::cout << "SKIPPED: " << path.string() << " is absent\n";
-  return {};
+  const auto path = waymark_test::shared_data("logs/gpsd/" + name);
+  return path ? read_text_file(*path) : "";
 }
 
 }  // namespace waymark_test::gpsd_samples

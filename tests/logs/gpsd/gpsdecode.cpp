@@ -5,11 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <iostream>
 #include <numbers>
 #include <sstream>
 
 #include <waymark/formats/text/iso8601.hpp>
+
+#include "support/skip.hpp"
 
 namespace waymark_test {
 namespace {
@@ -68,16 +69,16 @@ std::vector<json> gpsd_objects(const std::string& text) {
 
 std::optional<std::vector<json>> run_gpsdecode(const std::filesystem::path& log) {
   if (!std::filesystem::exists(log)) {
-    std::cout << "SKIPPED: " << log.string() << " is absent\n";
+    skip(log.string() + " is absent");
     return std::nullopt;
   }
   if (std::system("command -v gpsdecode > /dev/null") != 0) {
-    std::cout << "SKIPPED: gpsdecode is absent (Debian package gpsd-clients)\n";
+    skip("gpsdecode is absent (Debian package gpsd-clients)");
     return std::nullopt;
   }
   std::FILE* pipe = ::popen(("gpsdecode -j < '" + log.string() + "' 2> /dev/null").c_str(), "r");
   if (pipe == nullptr) {
-    std::cout << "SKIPPED: gpsdecode cannot be run\n";
+    skip("gpsdecode cannot be run");
     return std::nullopt;
   }
   std::string text;

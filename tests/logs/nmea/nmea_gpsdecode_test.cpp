@@ -11,12 +11,11 @@
 
 #include <catch2/catch.hpp>
 
-#include <iostream>
-
 #include <waymark/formats/logs/detail/nmea/nmea.hpp>
 #include <waymark/formats/text/text_file.hpp>
 
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -81,13 +80,10 @@ TEST_CASE("gpsdecode: NMEA fixes agree to its rounding") {
 }
 
 TEST_CASE("gpsdecode: gpsd's own regression output of a recording agrees with its NMEA fixes") {
-  const auto output = shared_data_dir() / "logs" / "gpsd" / "gpsd_neo-m8n.log.chk";
-  if (!std::filesystem::exists(output)) {
-    std::cout << "SKIPPED: " << output.string() << " is absent\n";
-    return;
-  }
-  const Comparison comparison = compare_with_gpsd(nmea_fixes(nmea_log("gpsd_neo-m8n.log")),
-                                                  gpsd_objects(read_text_file(output.string())));
+  const auto output = waymark_test::shared_data("logs/gpsd/gpsd_neo-m8n.log.chk");
+  if (!output) return;
+  const Comparison comparison =
+      compare_with_gpsd(nmea_fixes(nmea_log("gpsd_neo-m8n.log")), gpsd_objects(read_text_file(*output)));
   CHECK(comparison.matched == 22);
   CHECK(comparison.theirs == 22);
   CHECK(comparison.other_dates == 22);  // 2034 for 2015

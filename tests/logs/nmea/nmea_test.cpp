@@ -2,6 +2,8 @@
 
 #include "logs/nmea/nmea_sentences.hpp"
 
+#include "support/skip.hpp"
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test::nmea_samples;
@@ -179,12 +181,9 @@ TEST_CASE("nmea: a log may serve as truth, without an accuracy") {
 }
 
 TEST_CASE("nmea: the Petuelring tunnel") {
-  const auto path = waymark_test::shared_data_dir() / "logs" / "nmea" / "genivi_munich_Petuelring_2009.nmea";
-  if (!std::filesystem::exists(path)) {
-    std::cout << "SKIPPED: " << path.string() << " is absent\n";
-    return;
-  }
-  const LogData data = read(read_text_file(path.string()));
+  const auto path = waymark_test::shared_data("logs/nmea/genivi_munich_Petuelring_2009.nmea");
+  if (!path) return;
+  const LogData data = read(read_text_file(*path));
   // awk counts: 1867 epochs, 20 with status V, 19 with quality 1 and no satellite; one HDOP is "0NaN".
   CHECK(data.fixes.size() == 1867 - 20 - 19);
   CHECK(data.without_fix == 39);

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <iostream>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -18,6 +16,7 @@
 
 #include "logs/gpsd/gpsdecode.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -162,13 +161,10 @@ TEST_CASE("ubx: a real log of NAV-HPPOSLLH agrees with gpsdecode") {
 
 TEST_CASE("ubx: real HNR-PVT agrees with what gpsd 3.25 made of it") {
   const std::string name = "gpsd_ublox-neo-m8l.log";
-  const std::string reference = log_path("gpsd", name + ".chk");
-  if (!std::filesystem::exists(log_path("ubx", name)) || !std::filesystem::exists(reference)) {
-    std::cout << "SKIPPED: " << reference << " is absent\n";
-    return;
-  }
+  const auto reference = waymark_test::shared_data("logs/gpsd/" + name + ".chk");
+  if (!reference) return;
   const LogData data = read_fixes(name, "HNR-PVT");
   CHECK(data.fixes.size() == 189);
-  check_agreement(compare(data.fixes, reports_of(waymark_test::gpsd_objects(read_text_file(reference)))),
+  check_agreement(compare(data.fixes, reports_of(waymark_test::gpsd_objects(read_text_file(*reference)))),
                   1e-6, 1e-9);
 }

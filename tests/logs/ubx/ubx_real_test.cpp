@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <string>
 
 #include <waymark/formats/logs/channels.hpp>
@@ -14,23 +13,14 @@
 #include <waymark/formats/text/text_file.hpp>
 
 #include "logs/log_pieces.hpp"
-#include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
 
 namespace {
 
-std::filesystem::path folder() {
-  return waymark_test::shared_data_dir() / "logs" / "ubx";
-}
-
-/// False, with a line that says so, where the logs are absent.
-bool logs_are_there() {
-  if (std::filesystem::exists(folder())) return true;
-  std::cout << "SKIPPED: " << folder().string() << " is absent\n";
-  return false;
-}
+constexpr const char* kLogs = "logs/ubx";
 
 LogRequest sensor_request() {
   LogRequest request;
@@ -42,9 +32,10 @@ LogRequest sensor_request() {
 }  // namespace
 
 TEST_CASE("ubx: real logs give the same in pieces of any length") {
-  if (!logs_are_there()) return;
+  const auto logs = waymark_test::shared_data(kLogs);
+  if (!logs) return;
   std::string all;
-  for (const auto& entry : std::filesystem::directory_iterator(folder())) {
+  for (const auto& entry : std::filesystem::directory_iterator(*logs)) {
     const std::string bytes = read_text_file(entry.path().string());
     INFO(entry.path().string());
     all += bytes;
@@ -62,21 +53,23 @@ TEST_CASE("ubx: real logs give the same in pieces of any length") {
 }
 
 TEST_CASE("ubx: real logs are known for UBX even where NMEA is mixed in") {
-  if (!logs_are_there()) return;
+  const auto logs = waymark_test::shared_data(kLogs);
+  if (!logs) return;
   for (const char* name : {"gpsd_navisys-gr8013.log", "gpsd_ublox-glo.log", "gpsd_ublox-neo-m8l.log",
                            "gpsd_ublox-neo-m8u-hnr.log", "gpsd_ublox-zed-f9p-hp.log",
                            "pyubx2_pygpsdata-MIXED.log", "swiftnav_nav_pvt_fix_type.ubx"}) {
-    const Recognised recognised = recognise_log((folder() / name).string(), builtin_log_readers());
+    const Recognised recognised = recognise_log(*logs + "/" + name, builtin_log_readers());
     CHECK(recognised.reader.name == "ubx");
     CHECK(recognised.why.certainty == 1);
   }
-  for (const auto& entry : std::filesystem::directory_iterator(folder()))
+  for (const auto& entry : std::filesystem::directory_iterator(*logs))
     CHECK(UbxReader().recognise(read_text_file(entry.path().string())).certainty > 0.25);
 }
 
 TEST_CASE("ubx: a real log of a vehicle's sensors") {
-  if (!logs_are_there()) return;
-  const std::string bytes = read_text_file((folder() / "gpsd_ublox-neo-m8l.log").string());
+  const auto logs = waymark_test::shared_data(kLogs);
+  if (!logs) return;
+  const std::string bytes = read_text_file(*logs + "/gpsd_ublox-neo-m8l.log");
   const LogData data = UbxReader().read(bytes, "log.ubx", sensor_request());
   CHECK(data.records == 612);
   CHECK(data.corrupt == 0);
@@ -104,8 +97,9 @@ TEST_CASE("ubx: a real log of a vehicle's sensors") {
 }
 
 TEST_CASE("ubx: real single messages of ESF-MEAS") {
-  if (!logs_are_there()) return;
-  const std::string bytes = read_text_file((folder() / "swiftnav_esf_meas.ubx").string());
+  const auto logs = waymark_test::shared_data(kLogs);
+  if (!logs) return;
+  const std::string bytes = read_text_file(*logs + "/swiftnav_esf_meas.ubx");
   LogRequest request = sensor_request();
   request.gps_week = 2000;  // the log's only navigation message, NAV-STATUS, tells none
   const LogData data = UbxReader().read(bytes, "log.ubx", request);

@@ -1,6 +1,5 @@
 // What the defaults must reach on real drives: one set of them for all. The figures are goals, set before the
 // model was written; the program measures itself against the drives' own truth.
-#include <filesystem>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -8,6 +7,7 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using Json = nlohmann::json;
 
@@ -38,13 +38,10 @@ struct Goal {
 /// Metrics of the default modeling, or null where the drive's logs are absent.
 Json metrics_of(const std::string& name, const std::vector<std::string>& options) {
   const std::string yaml = waymark_test::source_dir() + "/examples/drives/" + name + ".yaml";
-  const std::filesystem::path logs = waymark_test::shared_data_dir() / "drives" / name;
-  if (!std::filesystem::exists(logs)) {
-    WARN("SKIPPED: " << logs.string() << " is absent");
-    return {};
-  }
+  const auto logs = waymark_test::shared_data("drives/" + name);
+  if (!logs) return {};
   const std::string folder = fresh_folder();
-  std::vector<std::string> arguments = {"run", yaml, "--data", logs.string(), "--out", folder + "r", "-q"};
+  std::vector<std::string> arguments = {"run", yaml, "--data", *logs, "--out", folder + "r", "-q"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   REQUIRE(run(arguments).code == 0);
   return Json::parse(read_text(folder + "r/metrics.json"))["evaluations"][0];

@@ -1,13 +1,11 @@
 // Graph files to other formats and programs, as a user does it: what is said, refused, written.
-#include <filesystem>
-#include <iostream>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
-#include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace {
 
@@ -174,16 +172,12 @@ TEST_CASE("convert: optimize, check and bench read what they are told to, optimi
 }
 
 TEST_CASE("convert: fr079 read as TORO and optimised in three formats has one minimum") {
-  const auto file = waymark_test::shared_data_dir() / "graphs" / "fr079_toro.graph";
-  if (!std::filesystem::exists(file)) {
-    std::cout << "SKIPPED: fr079_toro.graph is not in the shared data\n";
-    return;
-  }
+  const auto file = waymark_test::shared_data("graphs/fr079_toro.graph");
+  if (!file) return;
   const std::string folder = fresh_folder();
   for (const char* format : {"g2o", "toro", "covariance"}) {
     const std::string out = folder + format;
-    REQUIRE(run({"convert", file.string(), "--input-format", "toro", "-o", out, "--format", format}).code ==
-            0);
+    REQUIRE(run({"convert", *file, "--input-format", "toro", "-o", out, "--format", format}).code == 0);
     const RunResult result = run({"optimize", out, "--input-format", format, "-o", "/dev/null", "--json"});
     INFO(result.err);
     REQUIRE(result.code == 0);

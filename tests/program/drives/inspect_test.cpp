@@ -3,26 +3,17 @@
 #include <catch2/catch.hpp>
 
 #include <filesystem>
-#include <iostream>
 #include <regex>
 
 #include <nlohmann/json.hpp>
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
-#include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using Json = nlohmann::json;
 
 namespace {
-
-/// A file of the shared data; empty, with a line that says so, where it is absent.
-std::string shared_file(const std::string& name) {
-  const auto path = waymark_test::shared_data_dir() / name;
-  if (std::filesystem::exists(path)) return path.string();
-  std::cout << "SKIPPED: " << path.string() << " is absent\n";
-  return {};
-}
 
 /// Logs of 40 s on a circle of 200 m at 10 m/s.
 std::string drive_folder() {
@@ -136,10 +127,10 @@ TEST_CASE("inspect: inspect and init refuse what they cannot read, with exit cod
 }
 
 TEST_CASE("inspect: of Aarhus's CAN log names the logger's clock and proposes its signals") {
-  const std::string log = shared_file("drives/aarhus_horsens/candump.log.gz");
-  if (log.empty()) return;
+  const auto drive = waymark_test::shared_data("drives/aarhus_horsens");
+  if (!drive) return;
   const RunResult result =
-      run({"inspect", log, "--dbc", shared_file("drives/aarhus_horsens/canmod-gps.dbc"), "--json"});
+      run({"inspect", *drive + "/candump.log.gz", "--dbc", *drive + "/canmod-gps.dbc", "--json"});
   INFO(result.err);
   REQUIRE(result.code == 0);
   const Json json = Json::parse(result.out).at("logs").at(0);
@@ -150,14 +141,14 @@ TEST_CASE("inspect: of Aarhus's CAN log names the logger's clock and proposes it
 }
 
 TEST_CASE("inspect: finds Munich's frozen receiver and gpsd's date of another age") {
-  const std::string munich = shared_file("logs/nmea/genivi_munich_Petuelring_2009.nmea");
-  if (munich.empty()) return;
-  const RunResult nmea = run({"inspect", munich});
+  const auto logs = waymark_test::shared_data("logs");
+  if (!logs) return;
+  const RunResult nmea = run({"inspect", *logs + "/nmea/genivi_munich_Petuelring_2009.nmea"});
   CHECK(contains(nmea.out,
                  "the position stands still for 5 fixes or more while the receiver's speed is above 1 m/s"));
-  const RunResult gpsd = run({"inspect", shared_file("logs/gpsd/gpsd_neo-m8n.log.chk")});
+  const RunResult gpsd = run({"inspect", *logs + "/gpsd/gpsd_neo-m8n.log.chk"});
   CHECK(contains(gpsd.out, "a receiver that is off by 1024 weeks would mean 2015-03-18T17:19:26.000Z"));
-  const RunResult nofix = run({"inspect", shared_file("logs/gpsd/gpsd_bu303-nofix.log.chk")});
+  const RunResult nofix = run({"inspect", *logs + "/gpsd/gpsd_bu303-nofix.log.chk"});
   CHECK(nofix.code == 0);
   CHECK(contains(nofix.out, "the receiver has no fix in 7 of 7 records"));
 }
@@ -166,11 +157,13 @@ TEST_CASE("inspect: init makes drives that run of raw logs: Potsdamer Platz, Nag
   const std::string bundled = bundled_drive();
   const std::string folder = bundled.substr(0, bundled.rfind('/') + 1);
   check_runs({folder + "odometry_50hz.csv", folder + "gnss_5hz.csv", folder + "truth_5hz.csv"}, 800, 900);
-  const std::string nagoya = shared_file("drives/nagoya/odometry_imitated_25hz.csv");
-  if (nagoya.empty()) return;
-  check_runs({nagoya, shared_file("logs/pos/taroz_rover_1Hz_spp.pos")}, 4300, 4500);
-  const std::string aarhus = "drives/aarhus_horsens/";
-  check_runs({shared_file(aarhus + "candump.log.gz"), shared_file(aarhus + "canmod-gps.dbc"),
-              shared_file(aarhus + "obd_speed.csv"), shared_file(aarhus + "imu.csv.gz")},
-             40e3, 42e3);
+  const auto drives = waymark_test::shared_data("drives");
+  const auto logs = waymark_test::shared_data("logs");
+  if (!drives || !logs) return;
+  check_runs({*drives + "/nagoya/odometry_imitated_25hz.csv", *logs + "/pos/taroz_rover_1Hz_spp.pos"}, 4300,
+             4500);
+  const std::string aarhus = *drives + "/aarhus_horsens/";
+  check_runs(
+      {aarhus + "candump.log.gz", aarhus + "canmod-gps.dbc", aarhus + "obd_speed.csv", aarhus + "imu.csv.gz"},
+      40e3, 42e3);
 }

@@ -2,24 +2,18 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include <iostream>
 #include <sstream>
 
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace {
 
 using Json = nlohmann::json;
 
-std::string aarhus() {
-  return (waymark_test::shared_data_dir() / "drives" / "aarhus_horsens").string();
-}
-
-bool aarhus_is_absent() {
-  if (std::filesystem::exists(aarhus())) return false;
-  std::cout << "SKIPPED: " << aarhus() << " is absent\n";
-  return true;
+std::optional<std::string> aarhus() {
+  return waymark_test::shared_data("drives/aarhus_horsens");
 }
 
 std::string example(const std::string& name) {
@@ -54,7 +48,8 @@ const std::string kExtracted =
 }  // namespace
 
 TEST_CASE("raw logs: Aarhus from CAN frames is Aarhus from the table extracted of them, to the last digit") {
-  if (aarhus_is_absent()) return;
+  const auto logs = aarhus();
+  if (!logs) return;
   const std::string folder = fresh_folder();
   const std::string raw = example("aarhus_horsens_raw.yaml");
   write_text(folder + "raw.yaml", raw);
@@ -62,7 +57,7 @@ TEST_CASE("raw logs: Aarhus from CAN frames is Aarhus from the table extracted o
   write_text(folder + "extracted.yaml", raw.substr(0, raw.find("gnss:\n")) + kExtracted);
   for (const char* name : {"raw", "auto", "extracted"}) {
     const RunResult result = run(
-        {"convert", folder + name + ".yaml", "--data", aarhus(), "-m", "g1", "-o", folder + name + ".graph"});
+        {"convert", folder + name + ".yaml", "--data", *logs, "-m", "g1", "-o", folder + name + ".graph"});
     INFO(result.err);
     REQUIRE(result.code == 0);
   }
@@ -73,12 +68,13 @@ TEST_CASE("raw logs: Aarhus from CAN frames is Aarhus from the table extracted o
 }
 
 TEST_CASE("raw logs: Aarhus is as good from its raw logs as from odometry combined by others") {
-  if (aarhus_is_absent()) return;
+  const auto logs = aarhus();
+  if (!logs) return;
   const std::string folder = fresh_folder();
   write_text(folder + "raw.yaml", example("aarhus_horsens_raw.yaml"));
   write_text(folder + "combined.yaml", example("aarhus_horsens.yaml"));
   for (const char* name : {"raw", "combined"})
-    REQUIRE(run({"run", folder + name + ".yaml", "--data", aarhus(), "-q", "-o", folder + name}).code == 0);
+    REQUIRE(run({"run", folder + name + ".yaml", "--data", *logs, "-q", "-o", folder + name}).code == 0);
   const auto rmse = [&](const std::string& name) {
     const Json metrics = Json::parse(read_text(folder + name + "/metrics.json"));
     return metrics["evaluations"][0]["withheld_fixes"]["position"]["rmse_m"].get<double>();
@@ -88,13 +84,14 @@ TEST_CASE("raw logs: Aarhus is as good from its raw logs as from odometry combin
 
 TEST_CASE(
     "raw logs: sync tells the logger's clock from the frames and the lag of the fixes from the motion") {
-  if (aarhus_is_absent()) return;
+  const auto logs = aarhus();
+  if (!logs) return;
   const std::string folder = fresh_folder();
   std::string unaligned = example("aarhus_horsens_raw.yaml");
   for (int i = 0; i < 3; ++i) unaligned = replaced(unaligned, ", offset: -4.40}", "}");
   unaligned = replaced(unaligned, "delay: 0.3", "delay: 0");
   write_text(folder + "unaligned.yaml", unaligned);
-  const RunResult result = run({"sync", folder + "unaligned.yaml", "--data", aarhus(), "--json"});
+  const RunResult result = run({"sync", folder + "unaligned.yaml", "--data", *logs, "--json"});
   INFO(result.err);
   REQUIRE(result.code == 0);
   const Json json = Json::parse(result.out);
@@ -104,13 +101,13 @@ TEST_CASE(
   CHECK(json["speed"]["sigma_s"].get<double>() < 0.05);
   CHECK(json["speed"]["correlation"].get<double>() > 0.998);
 
-  const RunResult table = run({"sync", folder + "unaligned.yaml", "--data", aarhus()});
+  const RunResult table = run({"sync", folder + "unaligned.yaml", "--data", *logs});
   CHECK(contains(table.out, "its stamps are 4.398 s ahead of the GNSS time in its 2272 messages"));
   CHECK(contains(table.out, "speed_delay: -0.3"));
 
   // Applied: all clocks are GNSS time then.
   const RunResult applied =
-      run({"convert", folder + "unaligned.yaml", "--data", aarhus(), "--sync", "-o", folder + "a.graph"});
+      run({"convert", folder + "unaligned.yaml", "--data", *logs, "--sync", "-o", folder + "a.graph"});
   REQUIRE(applied.code == 0);
   CHECK(contains(applied.err, "the stamps were 4.398 s ahead of the GNSS time it tells; applied"));
   CHECK(contains(applied.err, "the odometry's speed was late by 4.0"));

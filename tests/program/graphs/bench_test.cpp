@@ -9,6 +9,7 @@
 #include "program/support/page_checks.hpp"
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using Json = nlohmann::json;
 
@@ -17,7 +18,7 @@ namespace {
 /// Whether this program was built with Ceres; says so where it was not.
 bool has_ceres() {
   const bool has = contains(run({"doctor"}).out, "Ceres");
-  if (!has) WARN("SKIPPED: this program was built without Ceres (WAYMARK_WITH_CERES)");
+  if (!has) waymark_test::skip("this program was built without Ceres (WAYMARK_WITH_CERES)");
   return has;
 }
 
@@ -279,7 +280,7 @@ TEST_CASE("bench: refuses wrong words and files before it measures") {
 
 TEST_CASE("bench: a peer that is not built in is named with the remedy") {
   if (contains(run({"doctor"}).out, "Ceres")) {
-    WARN("SKIPPED: this program was built with Ceres");
+    waymark_test::skip("this program was built with Ceres");
     return;
   }
   const std::string input = write_text(fresh_folder() + "a.graph", square_graph());

@@ -14,6 +14,7 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace {
 
@@ -25,7 +26,7 @@ std::string extension(const std::string& name) {
 
 bool are_built() {
   if (std::filesystem::exists(extension("step_halving"))) return true;
-  WARN("SKIPPED: the examples are not built");
+  waymark_test::skip("the examples are not built");
   return false;
 }
 

@@ -8,6 +8,8 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
+#include "support/skip.hpp"
+
 TEST_CASE("optimize: a graph is optimised, and the optimum is read again") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph());
@@ -87,7 +89,7 @@ TEST_CASE("optimize: files that cannot be read say why") {
 
 TEST_CASE("optimize: a file without permission to read says so") {
   if (::geteuid() == 0) {
-    WARN("SKIPPED: root may read everything");
+    waymark_test::skip("root may read everything");
     return;
   }
   const std::string input = write_text(fresh_folder() + "a.graph", square_graph());

@@ -8,6 +8,7 @@
 #include "program/support/help.hpp"
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace {
 
@@ -50,7 +51,7 @@ Words man_options(const std::string& command) {
 
 bool has_bash() {
   if (exists("/bin/bash")) return true;
-  WARN("SKIPPED: no /bin/bash");
+  waymark_test::skip("no /bin/bash");
   return false;
 }
 
@@ -120,7 +121,7 @@ TEST_CASE("manual: the man pages have every section, and groff formats them with
   const std::vector<std::string> pages = names_in(folder + "man");
   CHECK(pages.size() == subcommands().size() + 1);
   const bool has_groff = exists("/usr/bin/groff");
-  if (!has_groff) WARN("SKIPPED: no groff (package groff-base)");
+  if (!has_groff) waymark_test::skip("no groff (package groff-base)");
   for (const std::string& page : pages) {
     INFO(page);
     const std::string text = read_text(folder + "man/" + page);

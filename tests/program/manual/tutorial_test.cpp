@@ -9,7 +9,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -19,6 +18,7 @@
 #include "program/support/program.hpp"
 #include "support/markdown.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace {
 
@@ -157,11 +157,7 @@ TEST_CASE("tutorial: what it shows of the bundled drive is what its commands pri
 }
 
 TEST_CASE("tutorial: what it shows of the raw logs of Aarhus is what its commands print") {
-  const fs::path logs = waymark_test::shared_data_dir() / "drives/aarhus_horsens";
-  if (!fs::exists(logs)) {
-    std::cout << "SKIPPED: " << logs << " is absent\n";
-    return;
-  }
+  if (!waymark_test::shared_data("drives/aarhus_horsens")) return;
   Reader reader;
   const std::vector<FencedBlock> part = part_of_tutorial("aarhus_horsens");
   REQUIRE_FALSE(part.empty());

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <iostream>
 #include <random>
 
 #include <waymark/formats/logs/log_readers.hpp>
@@ -10,6 +9,7 @@
 #include <waymark/tools/drive/logs/clock_sync.hpp>
 
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 using namespace waymark;
 using namespace waymark::formats;
@@ -139,14 +139,10 @@ TEST_CASE("sync: a logger's clock is told by the GNSS time in its messages") {
 }
 
 TEST_CASE("sync: Aarhus' fixes lag the speed of its OBD by 0.4 s") {
-  const auto data = waymark_test::shared_data_dir() / "drives" / "aarhus_horsens";
-  if (!std::filesystem::exists(data)) {
-    std::cout << "SKIPPED: " << data << " is absent\n";
-    return;
-  }
+  const auto data = waymark_test::shared_data("drives/aarhus_horsens");
+  if (!data) return;
   DriveDescription description =
-      load_drive_file(waymark_test::source_dir() + "/examples/drives/aarhus_horsens.yaml", data.string())
-          .description;
+      load_drive_file(waymark_test::source_dir() + "/examples/drives/aarhus_horsens.yaml", *data).description;
   description.gnss_delay_s = 0;
   TypeRegistry registry;
   register_log_readers(registry);

@@ -10,6 +10,8 @@
 #include <waymark/tools/benchmark/process_memory.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
+#include "support/skip.hpp"
+
 using namespace waymark;
 using namespace waymark::benchmark;
 
@@ -77,7 +79,7 @@ TEST_CASE("benchmark: every run starts from a fresh copy, all contestants in tur
 TEST_CASE("benchmark: the peak of memory begins anew and sees what was taken and given back") {
   const auto before = restart_peak_memory();
   if (!before) {
-    WARN("SKIPPED: /proc does not let the peak begin anew here");
+    waymark_test::skip("/proc does not let the peak begin anew here");
     return;
   }
   {
