@@ -28,11 +28,6 @@ namespace {
 
 enum class Problem { drive, grid };
 
-const TypeRegistry& registry() {
-  static const TypeRegistry value = waymark_test::full_registry();
-  return value;
-}
-
 /// A G1 drive with a fix every 25 poses, or a grid pose graph; made once per size.
 const Graph& problem(Problem kind, std::int64_t poses) {
   static std::map<std::pair<Problem, std::int64_t>, Graph> made;
@@ -40,8 +35,8 @@ const Graph& problem(Problem kind, std::int64_t poses) {
   if (!fresh) return place->second;
   const int count = static_cast<int>(poses);
   if (kind == Problem::drive) {
-    waymark_test::Drive drive = waymark_test::make_drive(registry(), count);
-    drive.add_fixes(registry(), "g1");
+    waymark_test::Drive drive = waymark_test::make_drive(waymark_test::registry(), count);
+    drive.add_fixes(waymark_test::registry(), "g1");
     place->second = std::move(drive.graph);
   } else {
     place->second = waymark_test::grid_walk(count, static_cast<int>(std::sqrt(static_cast<double>(count))));
@@ -52,8 +47,8 @@ const Graph& problem(Problem kind, std::int64_t poses) {
 void read(benchmark::State& state, Problem kind) {
   GraphDocument document;
   document.graph = problem(kind, state.range(0));
-  const std::string text = write_graph(document, registry());
-  for (auto _ : state) benchmark::DoNotOptimize(read_graph(text, "bench.graph", registry()));
+  const std::string text = write_graph(document, waymark_test::registry());
+  for (auto _ : state) benchmark::DoNotOptimize(read_graph(text, "bench.graph", waymark_test::registry()));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
 }
 
@@ -61,7 +56,7 @@ void read(benchmark::State& state, Problem kind) {
 void read_strtod(benchmark::State& state, Problem kind) {
   GraphDocument document;
   document.graph = problem(kind, state.range(0));
-  const std::string text = write_graph(document, registry());
+  const std::string text = write_graph(document, waymark_test::registry());
   for (auto _ : state) {
     double sum = 0;
     for (const char* place = text.c_str(); *place != '\0';) {
@@ -86,7 +81,8 @@ void write(benchmark::State& state, Problem kind) {
   std::size_t size = 0;
   for (auto _ : state) {
     size = 0;
-    write_graph(document, registry(), [&size](std::string_view piece) { size += piece.size(); });
+    write_graph(document, waymark_test::registry(),
+                [&size](std::string_view piece) { size += piece.size(); });
   }
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(size));
 }
@@ -116,8 +112,8 @@ void window(benchmark::State& state, Problem kind, const std::string& how) {
   waymark_test::Replay replay(source, order);
   Graph graph;
   const auto make = [&] {
-    return IncrementalOptimizer(graph, registry().make_algorithm("gauss_newton"),
-                                registry().make_linear_solver("block_cholesky"), options);
+    return IncrementalOptimizer(graph, waymark_test::registry().make_algorithm("gauss_newton"),
+                                waymark_test::registry().make_linear_solver("block_cholesky"), options);
   };
   std::optional<IncrementalOptimizer> optimizer(make());
   while (static_cast<VertexIndex>(graph.vertex_count()) <= last) replay.append_to(graph);

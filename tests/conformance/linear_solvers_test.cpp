@@ -15,11 +15,6 @@ using namespace waymark_test;
 
 namespace {
 
-Eigen::VectorXd right_side(Eigen::Index n) {
-  return Eigen::VectorXd::NullaryExpr(n,
-                                      [](Eigen::Index i) { return std::sin(1.0 + static_cast<double>(i)); });
-}
-
 Eigen::VectorXd solve(LinearSolver& solver, const Eigen::VectorXd& b) {
   Eigen::VectorXd x = b;  // the same memory for both is allowed
   const std::span<double> view(x.data(), static_cast<std::size_t>(x.size()));

@@ -17,11 +17,6 @@ using namespace waymark;
 
 namespace {
 
-const TypeRegistry& loss_registry() {
-  static const TypeRegistry value = waymark_test::full_registry();
-  return value;
-}
-
 const std::vector<double> kScales = {0.3, 1, 2.5, 10};
 
 /// Squared errors around and far from every threshold that a loss of this scale may have.
@@ -34,19 +29,19 @@ std::vector<double> squares(double scale) {
 }
 
 LossType find(const std::string& name) {
-  return *loss_registry().find_loss(name);
+  return *waymark_test::registry().find_loss(name);
 }
 
 }  // namespace
 
 TEST_CASE("losses: the losses that the house names are registered") {
   for (const char* name : {"huber", "cauchy", "tukey", "geman_mcclure", "welsch", "dcs"}) {
-    CHECK(loss_registry().find_loss(name) != nullptr);
+    CHECK(waymark_test::registry().find_loss(name) != nullptr);
   }
 }
 
 TEST_CASE("every loss: weight is rho' and curvature is rho''") {
-  for (const auto& [loss, origin] : loss_registry().losses()) {
+  for (const auto& [loss, origin] : waymark_test::registry().losses()) {
     for (const double scale : kScales) {
       for (const double s : squares(scale)) {
         INFO(loss.name << " scale " << scale << " s " << s);
@@ -65,7 +60,7 @@ TEST_CASE("every loss: weight is rho' and curvature is rho''") {
 
 TEST_CASE(
     "every loss: weights lie in 0 to 1 and never grow, rho starts at 0 with slope 1 and never exceeds s") {
-  for (const auto& [loss, origin] : loss_registry().losses()) {
+  for (const auto& [loss, origin] : waymark_test::registry().losses()) {
     for (const double scale : kScales) {
       INFO(loss.name << " scale " << scale);
       CHECK(loss.evaluate(0, scale).rho == 0);
@@ -87,7 +82,7 @@ TEST_CASE(
 }
 
 TEST_CASE("every loss: it is continuous with a continuous weight at scale and scale squared") {
-  for (const auto& [loss, origin] : loss_registry().losses()) {
+  for (const auto& [loss, origin] : waymark_test::registry().losses()) {
     for (const double scale : kScales) {
       for (const double threshold : {scale, scale * scale}) {
         INFO(loss.name << " scale " << scale);
@@ -132,7 +127,7 @@ TEST_CASE("losses: DCS is as its paper has it, continued without a jump") {
 }
 
 TEST_CASE("every loss: g of the normal equations is half the derivative of the robust chi2") {
-  for (const auto& [type, origin] : loss_registry().losses()) {
+  for (const auto& [type, origin] : waymark_test::registry().losses()) {
     INFO(type.name);
     Graph graph = waymark_test::noisy_circle(12);
     graph.batch(0).set_loss(Loss{type.name, type.evaluate, 1.7});
@@ -176,7 +171,7 @@ LossValue pseudo_huber(double s, double k) {
 /// The registered losses and one that is not.
 std::vector<LossType> losses_and_a_foreign_one() {
   std::vector<LossType> result;
-  for (const auto& [loss, origin] : loss_registry().losses()) result.push_back(loss);
+  for (const auto& [loss, origin] : waymark_test::registry().losses()) result.push_back(loss);
   result.push_back({"pseudo_huber", &pseudo_huber, ""});
   return result;
 }

@@ -41,19 +41,25 @@ Summary run(Graph& graph, const AlgorithmType& algorithm, const LinearSolverType
                   *solver.make(), options);
 }
 
+/// Runs every algorithm with every solver from this graph. @param check is given each minimum
+template <typename Check>
+void for_each_minimum(const Graph& start, const TypeRegistry& registry, const Check& check) {
+  for (const auto& [algorithm, algorithm_origin] : registry.algorithms()) {
+    for (const auto& [solver, solver_origin] : registry.linear_solvers()) {
+      Graph graph = start;
+      const Summary summary = run(graph, algorithm, solver);
+      INFO(algorithm.name << " with " << solver.name << ": " << summary.message);
+      CHECK(summary.converged());
+      check(summary.final_chi2);
+    }
+  }
+}
+
 void check_optimum(const std::string& name, double optimum, bool odometry_start = false) {
   const TypeRegistry registry = full_registry();
   const auto start = load(name, registry, odometry_start);
   if (!start) return;
-  for (const auto& [algorithm, algorithm_origin] : registry.algorithms()) {
-    for (const auto& [solver, solver_origin] : registry.linear_solvers()) {
-      Graph graph = *start;
-      const Summary summary = run(graph, algorithm, solver);
-      INFO(algorithm.name << " with " << solver.name << ": " << summary.message);
-      CHECK(summary.converged());
-      CHECK(summary.final_chi2 == Approx(optimum).epsilon(1e-6));
-    }
-  }
+  for_each_minimum(*start, registry, [&](double chi2) { CHECK(chi2 == Approx(optimum).epsilon(1e-6)); });
 }
 
 /// Whether the values are a true local minimum of chi2: no gradient, and a positive definite Hessian that
@@ -110,16 +116,10 @@ TEST_CASE("standard graphs: ring and manhattanOlson3500, one minimum for all") {
     const auto start = load(name, registry);
     if (!start) return;
     double common = -1;
-    for (const auto& [algorithm, algorithm_origin] : registry.algorithms()) {
-      for (const auto& [solver, solver_origin] : registry.linear_solvers()) {
-        Graph graph = *start;
-        const Summary summary = run(graph, algorithm, solver);
-        INFO(algorithm.name << " with " << solver.name << ": " << summary.message);
-        CHECK(summary.converged());
-        if (common < 0) common = summary.final_chi2;
-        CHECK(summary.final_chi2 == Approx(common).epsilon(1e-6));
-      }
-    }
+    for_each_minimum(*start, registry, [&](double chi2) {
+      if (common < 0) common = chi2;
+      CHECK(chi2 == Approx(common).epsilon(1e-6));
+    });
   }
 }
 

@@ -12,11 +12,6 @@ using namespace waymark;
 
 namespace {
 
-const TypeRegistry& registry() {
-  static const TypeRegistry value = waymark_test::full_registry();
-  return value;
-}
-
 using Numbers = std::vector<double>;
 
 Numbers retract(const VertexType& type, Numbers value, const Numbers& delta) {
@@ -58,7 +53,7 @@ std::vector<Numbers> sample_values(const VertexType& type) {
 }  // namespace
 
 TEST_CASE("every vertex type: retraction by zero is the identity, to the bit") {
-  for (const auto& [type, origin] : registry().vertices()) {
+  for (const auto& [type, origin] : waymark_test::registry().vertices()) {
     INFO(type.tag);
     const Numbers zero(static_cast<std::size_t>(type.tangent_size), 0.0);
     for (const Numbers& value : sample_values(type)) CHECK(retract(type, value, zero) == value);
@@ -66,7 +61,7 @@ TEST_CASE("every vertex type: retraction by zero is the identity, to the bit") {
 }
 
 TEST_CASE("every vertex type: local(v, v) is zero") {
-  for (const auto& [type, origin] : registry().vertices()) {
+  for (const auto& [type, origin] : waymark_test::registry().vertices()) {
     INFO(type.tag);
     const Numbers zero(static_cast<std::size_t>(type.tangent_size), 0.0);
     for (const Numbers& value : sample_values(type)) CHECK(local(type, value, value) == zero);
@@ -76,7 +71,7 @@ TEST_CASE("every vertex type: local(v, v) is zero") {
 TEST_CASE("every vertex type: local inverts retract, also across the wrap") {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
-  for (const auto& [type, origin] : registry().vertices()) {
+  for (const auto& [type, origin] : waymark_test::registry().vertices()) {
     INFO(type.tag);
     for (const Numbers& value : sample_values(type)) {
       for (const double size : {1e-9, 1e-3, 1.0, 3.0}) {
@@ -90,7 +85,7 @@ TEST_CASE("every vertex type: local inverts retract, also across the wrap") {
 }
 
 TEST_CASE("every vertex type: retract inverts local between any two values") {
-  for (const auto& [type, origin] : registry().vertices()) {
+  for (const auto& [type, origin] : waymark_test::registry().vertices()) {
     INFO(type.tag);
     const std::vector<Numbers> values = sample_values(type);
     const Numbers zero(static_cast<std::size_t>(type.tangent_size), 0.0);
@@ -108,7 +103,7 @@ TEST_CASE("every vertex type: retract inverts local between any two values") {
 }
 
 TEST_CASE("every vertex type: as many names as numbers, and a tag without blanks") {
-  for (const auto& [type, origin] : registry().vertices()) {
+  for (const auto& [type, origin] : waymark_test::registry().vertices()) {
     INFO(type.tag);
     CHECK(type.value_names.size() == static_cast<std::size_t>(type.value_size));
     CHECK(type.tag.find_first_of(" \t#") == std::string::npos);
@@ -117,7 +112,7 @@ TEST_CASE("every vertex type: as many names as numbers, and a tag without blanks
 }
 
 TEST_CASE("VERTEX_SE2: its heading stays within half a turn") {
-  const VertexType& type = *registry().find_vertex("VERTEX_SE2");
+  const VertexType& type = *waymark_test::registry().find_vertex("VERTEX_SE2");
   constexpr double kPi = std::numbers::pi;
   for (double heading = -30; heading < 30; heading += 0.37) {
     const Numbers value = retract(type, {1, 2, 0}, {0, 0, heading});
@@ -131,7 +126,7 @@ TEST_CASE("VERTEX_SE2: its heading stays within half a turn") {
 
 TEST_CASE("every vertex type: its rigid motion is the derivative of moving its place") {
   // A turn by a about the centre takes the place p to c + R(a)(p - c); the columns are scaled by 1/extent.
-  for (const auto& [type, origin] : registry().vertices()) {
+  for (const auto& [type, origin] : waymark_test::registry().vertices()) {
     INFO(type.tag);
     if (type.rigid_motion == nullptr) continue;
     const Eigen::Vector2d centre(4, -3);

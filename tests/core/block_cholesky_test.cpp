@@ -21,11 +21,6 @@ using namespace waymark_test;
 
 namespace {
 
-Eigen::VectorXd right_side(Eigen::Index n) {
-  return Eigen::VectorXd::NullaryExpr(n,
-                                      [](Eigen::Index i) { return std::sin(1.0 + static_cast<double>(i)); });
-}
-
 Eigen::VectorXd solve(LinearSolver& solver, const Eigen::VectorXd& b) {
   Eigen::VectorXd x = Eigen::VectorXd::Constant(b.size(), std::nan(""));
   const auto n = static_cast<std::size_t>(b.size());

@@ -127,6 +127,26 @@ void check_file(const std::string& name, double least) {
   CHECK(score.chi2_error < 1e-6);
 }
 
+/// Graduates with each of the losses, at scale 1.
+void check_losses(const Spoiled& spoiled, const std::string& name, const TypeRegistry& registry,
+                  const std::vector<LossType>& types) {
+  for (const LossType& type : types) {
+    GraduationOptions options;
+    options.loss = Loss{type.name, type.evaluate, 1};
+    const Score score = graduate_and_score(spoiled, name, registry, options);
+    INFO(type.name);
+    CHECK(score.precision == 1);
+    CHECK(score.recall == 1);
+    CHECK(score.chi2_error < 1e-6);
+  }
+}
+
+std::vector<LossType> losses_of(const TypeRegistry& registry) {
+  std::vector<LossType> types;
+  for (const auto& [type, origin] : registry.losses()) types.push_back(type);
+  return types;
+}
+
 }  // namespace
 
 TEST_CASE("graduation: intel with 100 random false closures") {
@@ -144,38 +164,21 @@ TEST_CASE("graduation: ring with 20 random false closures") {
 
 TEST_CASE("graduation: every registered loss finds the false closures of a walk, and so does a foreign one") {
   const TypeRegistry registry = full_registry();
-  std::vector<LossType> types = {{"welsch_like",
-                                  [](double s, double c) {
-                                    const double w = std::exp(-s / (c * c));
-                                    return LossValue{-c * c * std::expm1(-s / (c * c)), w, -w / (c * c)};
-                                  },
-                                  ""}};
-  for (const auto& [type, origin] : registry.losses()) types.push_back(type);
-  const Spoiled spoiled = spoiled_walk(30, false, 3);
-  for (const LossType& type : types) {
-    GraduationOptions options;
-    options.loss = Loss{type.name, type.evaluate, 1};
-    const Score score = graduate_and_score(spoiled, "walk, 30 random", registry, options);
-    INFO(type.name);
-    CHECK(score.precision == 1);
-    CHECK(score.recall == 1);
-    CHECK(score.chi2_error < 1e-6);
-  }
+  std::vector<LossType> types = losses_of(registry);
+  types.push_back({"welsch_like",
+                   [](double s, double c) {
+                     const double w = std::exp(-s / (c * c));
+                     return LossValue{-c * c * std::expm1(-s / (c * c)), w, -w / (c * c)};
+                   },
+                   ""});
+  check_losses(spoiled_walk(30, false, 3), "walk, 30 random", registry, types);
 }
 
 TEST_CASE("graduation: every registered loss finds the false closures of ring") {
   const TypeRegistry registry = full_registry();
   Spoiled spoiled;
   if (!load("ring_random_20", registry, spoiled)) return;
-  for (const auto& [type, origin] : registry.losses()) {
-    GraduationOptions options;
-    options.loss = Loss{type.name, type.evaluate, 1};
-    const Score score = graduate_and_score(spoiled, "ring_random_20", registry, options);
-    INFO(type.name);
-    CHECK(score.precision == 1);
-    CHECK(score.recall == 1);
-    CHECK(score.chi2_error < 1e-6);
-  }
+  check_losses(spoiled, "ring_random_20", registry, losses_of(registry));
 }
 
 TEST_CASE("graduation: false closures in groups that agree among themselves are found") {

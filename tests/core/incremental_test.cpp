@@ -24,11 +24,6 @@ using namespace waymark_test;
 
 namespace {
 
-const TypeRegistry& registry() {
-  static const TypeRegistry value = full_registry();
-  return value;
-}
-
 /// p_b - p_a = measured: linear.
 struct EdgeStep {
   static constexpr std::string_view kTag = "EDGE_STEP";

@@ -23,11 +23,6 @@ using namespace waymark_test;
 
 namespace {
 
-const TypeRegistry& registry() {
-  static const TypeRegistry value = full_registry();
-  return value;
-}
-
 void minimise(Graph& graph) {
   REQUIRE(optimize(graph, *registry().make_algorithm("dogleg"), *registry().make_linear_solver("eigen"), {})
               .converged());

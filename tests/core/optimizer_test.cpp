@@ -19,11 +19,6 @@ using Catch::Contains;
 
 namespace {
 
-const TypeRegistry& registry() {
-  static const TypeRegistry value = full_registry();
-  return value;
-}
-
 std::vector<std::string> algorithm_names() {
   std::vector<std::string> names;
   for (const auto& [type, origin] : registry().algorithms()) names.push_back(type.name);

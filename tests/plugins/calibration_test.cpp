@@ -19,11 +19,6 @@ using Catch::Contains;
 
 namespace {
 
-const TypeRegistry& registry() {
-  static const TypeRegistry value = full_registry();
-  return value;
-}
-
 /// What is wrong with the sensors of a simulated drive.
 struct Faults {
   double bias = 0;    ///< rad/s at the start

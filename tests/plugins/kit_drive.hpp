@@ -23,11 +23,6 @@
 
 namespace waymark_test {
 
-inline const waymark::TypeRegistry& kit_registry() {
-  static const waymark::TypeRegistry value = full_registry();
-  return value;
-}
-
 /// Nodes are at 10 Hz, fixes at every full second.
 struct KitRecipe {
   int seconds = 60;
@@ -54,11 +49,11 @@ struct KitDrive {
   [[nodiscard]] waymark::DriveNodes nodes() const { return {stamps, poses, intervals}; }
   void add_sensor(const std::string& name, const waymark::SensorTable& readings,
                   const waymark::Options& options = {}) {
-    kit_registry().make_sensor_model(name, options)->build({nodes(), fixes, antenna_m, readings}, graph);
+    registry().make_sensor_model(name, options)->build({nodes(), fixes, antenna_m, readings}, graph);
   }
   void add_fixes() {
     const std::vector<waymark::Interval> motion(fixes.size(), intervals.front());
-    kit_registry().make_gnss_modeling("g1", {})->build({fixes, motion, antenna_m}, graph);
+    registry().make_gnss_modeling("g1", {})->build({fixes, motion, antenna_m}, graph);
   }
 };
 
@@ -71,7 +66,7 @@ inline waymark::Stamp kit_stamp(double seconds) {
 /// A log with named columns. Values that a row does not give are NaN.
 class Readings {
  public:
-  explicit Readings(const std::string& sensor) : columns_(kit_registry().sensor_model(sensor).columns) {
+  explicit Readings(const std::string& sensor) : columns_(registry().sensor_model(sensor).columns) {
     table_.columns = columns_.size();
   }
   void add(waymark::Stamp stamp, const std::map<std::string, double>& row) {
@@ -156,7 +151,7 @@ inline waymark::Options odometry_options(const KitRecipe& recipe) {
     start = compose(start, se2_exp<double>(Eigen::Vector3d(reading.speed_mps * kDt, 0, motion[1] * kDt)));
     drive.intervals.push_back(reading);
   }
-  kit_registry()
+  registry()
       .make_odometry_model("constant_twist", odometry_options(recipe))
       ->build(drive.nodes(), drive.graph);
   drive.add_fixes();
@@ -192,8 +187,8 @@ struct Solution {
   using namespace waymark;
   OptimizerOptions tight;
   tight.decrement_tolerance = 1e-10;
-  const Summary summary = optimize(drive.graph, *kit_registry().make_algorithm("dogleg"),
-                                   *kit_registry().make_linear_solver("block_cholesky"), tight);
+  const Summary summary = optimize(drive.graph, *registry().make_algorithm("dogleg"),
+                                   *registry().make_linear_solver("block_cholesky"), tight);
   INFO(summary.message);
   REQUIRE(summary.converged());
   Solution solution;

@@ -138,8 +138,8 @@ TEST_CASE("heading: rows that make no sense are named, those outside the drive o
   outside.add(kit_stamp(8), {{"heading", 0}});
   drive.add_sensor("heading", outside.table());
   CHECK(edges_of(drive.graph, "EDGE_HEADING") == 0);
-  CHECK_THROWS_WITH(kit_registry().make_sensor_model("heading", {{"offset", "maybe"}}),
+  CHECK_THROWS_WITH(registry().make_sensor_model("heading", {{"offset", "maybe"}}),
                     "heading: option 'offset' must be 'off' or 'constant', got 'maybe'");
-  CHECK_THROWS_WITH(kit_registry().make_sensor_model("heading", {{"mounting", "3"}}),
+  CHECK_THROWS_WITH(registry().make_sensor_model("heading", {{"mounting", "3"}}),
                     Contains("heading: unknown option 'mounting'; did you mean 'mount_deg'?"));
 }

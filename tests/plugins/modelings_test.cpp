@@ -22,11 +22,6 @@ namespace {
 constexpr int kPoses = 1500;
 const Eigen::Vector2d kAntenna(1.2, -0.4);
 
-const TypeRegistry& registry() {
-  static const TypeRegistry value = full_registry();
-  return value;
-}
-
 /// The optimum of a modeling: chi2 with the poses of the drive.
 struct Optimum {
   double chi2 = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <set>
@@ -86,6 +87,12 @@ using Pairs = std::set<std::pair<int, int>>;
     if (a != b) pairs.insert({std::min(a, b), std::max(a, b)});
   }
   return pairs;
+}
+
+/// Returns a right side without pattern.
+[[nodiscard]] inline Eigen::VectorXd right_side(Eigen::Index n) {
+  return Eigen::VectorXd::NullaryExpr(n,
+                                      [](Eigen::Index i) { return std::sin(1.0 + static_cast<double>(i)); });
 }
 
 }  // namespace waymark_test

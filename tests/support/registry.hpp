@@ -28,4 +28,10 @@ namespace waymark_test {
   return registry;
 }
 
+/// Returns full_registry(), made once for all cases that only read it.
+[[nodiscard]] inline const waymark::TypeRegistry& registry() {
+  static const waymark::TypeRegistry value = full_registry();
+  return value;
+}
+
 }  // namespace waymark_test

@@ -92,10 +92,7 @@ TEST_CASE("options: a wrong one is told with its place in the drive.yaml, or as 
     write_text(folder + "g.csv", "time,latitude,longitude\n0,52,13\n1,52,13\n");
     std::vector<std::string> arguments = {"convert", drive, "-o", folder + "out.graph"};
     arguments.insert(arguments.end(), extra.begin(), extra.end());
-    const RunResult result = run(arguments);
-    INFO(result.err);
-    CHECK(result.code == code);
-    CHECK(contains(result.err, message));
+    check_refused(run(arguments), code, message);
   };
   const std::string g2 = "modeling: {name: g2, options: {identity_information: 0}}";
   const std::string rule = "g2: option 'identity_information' must lie in [1, 1e12], got ";
@@ -126,9 +123,8 @@ TEST_CASE("outages: the fixes of every period's end are kept out, and the patter
   }
   CHECK(withheld >= 50);  // ten in each of five periods
   for (const char* wrong : {"60", "60/60", "0/10", "60/x", "/"}) {
-    const RunResult refused = run({"convert", bundled_drive(), "-o", folder + "no.graph", "--outage", wrong});
-    CHECK(refused.code == 2);
-    CHECK(contains(refused.err, "--outage: expected LENGTH/EVERY in seconds with 0 < LENGTH < EVERY"));
+    check_refused(run({"convert", bundled_drive(), "-o", folder + "no.graph", "--outage", wrong}), 2,
+                  "--outage: expected LENGTH/EVERY in seconds with 0 < LENGTH < EVERY");
   }
 }
 

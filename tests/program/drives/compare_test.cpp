@@ -208,14 +208,9 @@ TEST_CASE("compare: refuses what is no run, with place and remedy") {
       {{"none", "./none/", "-o", "out"}, 2, "./none/: is named twice"},
       {{"none", "-o", "out"}, 3, "none/metrics.json: has no evaluation in it"},
   };
-  for (const Case& c : cases) {
-    std::vector<std::string> arguments = {"compare"};
-    arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());
-    const RunResult result = run(arguments, {.folder = folder});
-    INFO(c.message << "\n" << result.err);
-    CHECK(result.code == c.code);
-    CHECK(contains(result.err, c.message));
-    CHECK(result.out.empty());
+  for (Case c : cases) {
+    c.arguments.insert(c.arguments.begin(), "compare");
+    check_refused(run(c.arguments, {.folder = folder}), c.code, c.message);
     CHECK_FALSE(exists(folder + "out"));
   }
 }

@@ -106,24 +106,21 @@ TEST_CASE("inspect: init without logs writes a template, and -o - goes to the st
 
 TEST_CASE("inspect: inspect and init refuse what they cannot read, with exit code and remedy") {
   const std::string folder = drive_folder();
-  const auto check = [](const std::vector<std::string>& arguments, int code, const std::string& message) {
-    const RunResult result = run(arguments);
-    INFO(result.err);
-    CHECK(result.code == code);
-    CHECK(contains(result.err, message));
-    CHECK(result.out.empty());
-  };
-  check({"inspect"}, 2, "logs is required");
-  check({"inspect", folder + "a.yaml", folder + "gnss.csv"}, 2, "a.yaml: it names its own logs");
-  check({"inspect", folder + "a.yaml", "--dbc", "car.dbc"}, 2, "belong to logs, not to a drive.yaml");
-  check({"inspect", folder + "nothing.csv"}, 3, "nothing.csv: cannot read: No such file or directory");
-  check({"inspect", write_text(folder + "empty", "")}, 3, "the log is empty");
-  check({"inspect", write_text(folder + "rubbish", std::string(5000, '\1'))}, 3, "format is not recognised");
-  check({"inspect", folder + "gnss.csv", "--format", "cvs"}, 2,
-        "unknown log format 'cvs'; did you mean 'csv'?");
-  check({"inspect", write_text(folder + "car.dbc", "BO_ 1 A: 8 X\n")}, 2, "name a log beside it");
-  check({"init", folder + "gnss.csv"}, 2, "-o is required");
-  check({"init", folder + "gnss.csv", "-o", folder + "no/drive.yaml"}, 5, "no/drive.yaml");
+  check_refused(run({"inspect"}), 2, "logs is required");
+  check_refused(run({"inspect", folder + "a.yaml", folder + "gnss.csv"}), 2, "a.yaml: it names its own logs");
+  check_refused(run({"inspect", folder + "a.yaml", "--dbc", "car.dbc"}), 2,
+                "belong to logs, not to a drive.yaml");
+  check_refused(run({"inspect", folder + "nothing.csv"}), 3,
+                "nothing.csv: cannot read: No such file or directory");
+  check_refused(run({"inspect", write_text(folder + "empty", "")}), 3, "the log is empty");
+  check_refused(run({"inspect", write_text(folder + "rubbish", std::string(5000, '\1'))}), 3,
+                "format is not recognised");
+  check_refused(run({"inspect", folder + "gnss.csv", "--format", "cvs"}), 2,
+                "unknown log format 'cvs'; did you mean 'csv'?");
+  check_refused(run({"inspect", write_text(folder + "car.dbc", "BO_ 1 A: 8 X\n")}), 2,
+                "name a log beside it");
+  check_refused(run({"init", folder + "gnss.csv"}), 2, "-o is required");
+  check_refused(run({"init", folder + "gnss.csv", "-o", folder + "no/drive.yaml"}), 5, "no/drive.yaml");
 }
 
 TEST_CASE("inspect: of Aarhus's CAN log names the logger's clock and proposes its signals") {

@@ -169,10 +169,7 @@ TEST_CASE("extensions: what a modeling cannot do, and options it does not have, 
     std::string yaml = read_text(drive);
     yaml.replace(yaml.find(line), line.size(), instead);
     write_text(drive, yaml);
-    const RunResult result = run_with("unary_fixes", {"convert", drive, "-o", folder + "out.graph"});
-    INFO(result.err);
-    CHECK(result.code == code);
-    CHECK(contains(result.err, message));
+    check_refused(run_with("unary_fixes", {"convert", drive, "-o", folder + "out.graph"}), code, message);
     CHECK_FALSE(exists(folder + "out.graph"));
   };
   refused("{file: gnss.csv,", "{file: gnss.csv, antenna: [1, 0],", 2, "no antenna lever arm; use g1");

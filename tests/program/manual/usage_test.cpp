@@ -77,12 +77,7 @@ TEST_CASE("usage: wrong words on the command line are usage errors that name the
       {{"convert", drive, "-o", out, "-m", "all"}, "convert writes one graph: name one modeling"},
   };
   for (const Case& c : cases) {
-    const RunResult result = run(c.arguments);
-    INFO(c.message << "\n" << result.err);
-    CHECK(result.code == 2);
-    CHECK(contains(result.err, "waymark: error: "));
-    CHECK(contains(result.err, c.message));
-    CHECK(result.out.empty());
+    check_refused(run(c.arguments), 2, c.message);
     CHECK_FALSE(exists(out));
   }
 }

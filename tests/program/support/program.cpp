@@ -15,6 +15,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <catch2/catch.hpp>
+
 #include "support/paths.hpp"
 
 namespace {
@@ -113,6 +115,14 @@ RunResult run(std::vector<std::string> arguments, const RunOptions& options) {
   ::waitpid(child, &status, 0);
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
   return result;
+}
+
+void check_refused(const RunResult& result, int code, const std::string& message) {
+  INFO(message << "\n" << result.err);
+  CHECK(result.code == code);
+  CHECK(contains(result.err, "waymark: error: "));
+  CHECK(contains(result.err, message));
+  CHECK(result.out.empty());
 }
 
 std::string fresh_folder() {

@@ -24,6 +24,9 @@ struct RunResult {
 /// Runs the program with the arguments and waits for it. A run of more than a minute is killed.
 [[nodiscard]] RunResult run(std::vector<std::string> arguments, const RunOptions& options = {});
 
+/// Checks that the program refused: with this exit code, this text in its message, and no result.
+void check_refused(const RunResult& result, int code, const std::string& message);
+
 /// Called in a child process after its streams are set: becomes the program, or ends with 127.
 [[noreturn]] void execute(std::vector<std::string>& arguments);
 /// Appends the text that is ready. @return false at the end of the stream (a terminal whose other

@@ -70,11 +70,6 @@ PreparedDrive make_drive(const Truth& truth, std::uint64_t seed) {
   return drive;
 }
 
-const TypeRegistry& registry() {
-  static const TypeRegistry value = full_registry();
-  return value;
-}
-
 /// The default modeling with what else the odometry has of noise stated.
 FusionSettings complete_settings(const Options& modeling_options = {}) {
   FusionSettings settings;
