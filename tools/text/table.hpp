@@ -24,9 +24,6 @@ struct Table {
   std::map<std::pair<std::size_t, std::size_t>, Tone> tones{};  ///< of cells, by row and column
 };
 
-/// Returns the cell of a number: "-" if the number is undefined.
-[[nodiscard]] std::string decimals(double value, int digits);
-
 /// Tells whether a column has more numbers than words. The first column names the rows, so it is
 /// one of words.
 [[nodiscard]] bool has_numbers(const Table& table, std::size_t column);

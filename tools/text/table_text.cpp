@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
 
 #include <waymark/tools/text/table.hpp>
 
@@ -77,10 +74,6 @@ std::string part(const Table& table, const std::vector<Column>& columns, const T
 }
 
 }  // namespace
-
-std::string decimals(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
-}
 
 bool has_numbers(const Table& table, std::size_t column) {
   if (table.words || column == 0) return false;

@@ -87,3 +87,14 @@ TEST_CASE("page: columns of numbers stand to the right in tables, words to the l
   CHECK(count(html, "<td>a</td>") == 1);
   CHECK(count(html, "<th scope=\"col\" class=\"number\">value [m]</th>") == 1);
 }
+
+TEST_CASE("page: wide figures stand below each other, narrow ones in pairs") {
+  std::vector<Figure> figures(4, line_figure("a"));
+  for (const std::size_t narrow : {0, 1, 3}) figures[narrow].width = 430;
+  Section section;
+  add_figures(figures, section);
+  REQUIRE(section.blocks.size() == 3);
+  CHECK(std::get<FigureRow>(section.blocks[0]).figures.size() == 2);
+  CHECK(std::get<Figure>(section.blocks[1]).width == Figure().width);
+  CHECK(std::get<FigureRow>(section.blocks[2]).figures.size() == 1);
+}

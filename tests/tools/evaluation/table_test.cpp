@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/tools/text/number_text.hpp>
 #include <waymark/tools/text/table.hpp>
 
 using namespace waymark;

@@ -100,10 +100,6 @@ text::Table missed_table(const Files& files, const ContestantNames& names) {
   return table;
 }
 
-void add_figures(std::vector<drawing::Figure> figures, drawing::Section& section) {
-  for (drawing::Figure& figure : figures) section.blocks.emplace_back(std::move(figure));
-}
-
 text::Table header_table(const BenchmarkHeader& header) {
   text::Table table{.title = "What was asked for, and on what it ran", .columns = {"", ""}};
   for (const auto& [key, text] : header) table.rows.push_back({key, text});
@@ -140,15 +136,15 @@ drawing::Page benchmark_page(const Files& files, const BenchmarkHeader& header) 
   page.summary = winners_sentence(files, names) + convergence_sentence(files);
   page.footer = "Made by waymark " + text_of(header, "waymark") + ".";
   drawing::Section times{"times", "Times", {winners_table(files, names)}};
-  add_figures(time_figures(files, names), times);
-  add_figures(size_figures(files, names), times);
-  add_figures(ratio_figures(files, names), times);
+  drawing::add_figures(time_figures(files, names), times);
+  drawing::add_figures(size_figures(files, names), times);
+  drawing::add_figures(ratio_figures(files, names), times);
   drawing::Section results{"results", "Results", {}};
   text::Table missed = missed_table(files, names);
   if (!missed.rows.empty()) results.blocks.emplace_back(std::move(missed));
-  add_figures(excess_figures(files, names), results);
-  add_figures(iteration_figures(files, names), results);
-  add_figures(memory_figures(files, names), results);
+  drawing::add_figures(excess_figures(files, names), results);
+  drawing::add_figures(iteration_figures(files, names), results);
+  drawing::add_figures(memory_figures(files, names), results);
   drawing::Section conditions{"conditions", "Conditions", {header_table(header)}};
   page.sections = {std::move(times), std::move(results), tables_section(files), std::move(conditions)};
   return page;

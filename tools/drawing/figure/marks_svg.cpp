@@ -9,6 +9,7 @@
 #include <waymark/tools/drawing/figure/marks_svg.hpp>
 #include <waymark/tools/drawing/figure/markup.hpp>
 #include <waymark/tools/drawing/figure/thinning.hpp>
+#include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::drawing {
 namespace {
@@ -115,7 +116,7 @@ std::string bars(const Figure& figure, std::size_t index, const View& view) {
     if (height >= 8) {
       end = behind_points(figure, view, series.y[i] + place.offset, place.height, end);
       values += fmt::format("<text class=\"value\" data-series=\"{}\" x=\"{}\" y=\"{}\">{}</text>", index,
-                            px(std::max(end, origin) + 5), px(y + 4), escaped(readable(series.x[i])));
+                            px(std::max(end, origin) + 5), px(y + 4), escaped(text::readable(series.x[i])));
     }
   }
   std::string svg = path(series, index, boxes, "bars");

@@ -16,8 +16,4 @@ std::string px(double value) {
   return fmt::format("{:g}", tenths == 0 ? 0.0 : tenths / 10);  // no minus zero
 }
 
-std::string readable(double value) {
-  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
-}
-
 }  // namespace waymark::drawing

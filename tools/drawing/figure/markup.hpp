@@ -15,7 +15,4 @@ namespace waymark::drawing {
 /// finite becomes 0.
 [[nodiscard]] std::string px(double value);
 
-/// Returns a number for readers: four significant digits, or "-" if it is not finite.
-[[nodiscard]] std::string readable(double value);
-
 }  // namespace waymark::drawing

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -106,6 +107,17 @@ std::string body(const Page& page) {
 }
 
 }  // namespace
+
+void add_figures(std::vector<Figure> figures, Section& section) {
+  FigureRow row;
+  for (Figure& figure : figures) {
+    const bool narrow = figure.width < Figure().width;
+    if (!narrow) section.blocks.emplace_back(std::move(figure));
+    if (narrow) row.figures.push_back(std::move(figure));
+    if (row.figures.size() == 2) section.blocks.emplace_back(std::exchange(row, {}));
+  }
+  if (!row.figures.empty()) section.blocks.emplace_back(std::move(row));
+}
 
 std::vector<const Figure*> figures_of(const Page& page) {
   std::vector<const Figure*> figures;

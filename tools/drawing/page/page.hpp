@@ -48,6 +48,9 @@ struct Page {
 /// The drawings are complete without the script; the script moves them and shows values.
 [[nodiscard]] std::string page_html(const Page& page);
 
+/// Adds figures: wide ones below each other, narrow ones in pairs.
+void add_figures(std::vector<Figure> figures, Section& section);
+
 /// Returns every figure of a page, in order.
 [[nodiscard]] std::vector<const Figure*> figures_of(const Page& page);
 

@@ -10,6 +10,7 @@
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/tools/text/json_number.hpp>
+#include <waymark/tools/text/number_text.hpp>
 #include <waymark/tools/text/table.hpp>
 
 namespace waymark::evaluation {
@@ -124,9 +125,9 @@ std::string states_text(const std::vector<StateReport>& states, const text::Text
   text::Table table{.columns = {"estimated state", "unit", "values", "first", "last", "smallest", "largest",
                                 "sigma", "prior", ""}};
   for (const StateReport& s : states) {
-    const auto number = [](double x) { return std::isnan(x) ? "-" : fmt::format("{:.4g}", x); };
-    table.rows.push_back({s.name, s.unit, fmt::to_string(s.values), number(s.first), number(s.last),
-                          number(s.smallest), number(s.largest), number(s.sigma), number(s.prior_sigma),
+    table.rows.push_back({s.name, s.unit, fmt::to_string(s.values), text::readable(s.first),
+                          text::readable(s.last), text::readable(s.smallest), text::readable(s.largest),
+                          text::readable(s.sigma), text::readable(s.prior_sigma),
                           s.observed ? "" : "not observed"});
   }
   return text::table_text(table, look);

@@ -6,6 +6,12 @@ namespace {
 
 constexpr int kVersion = 1;
 
+std::pair<double, double> two_numbers(const text::JsonPlace& json) {
+  const std::vector<text::JsonPlace> items = json.items();
+  if (items.size() != 2) json.expected("two numbers");
+  return {items[0].number(), items[1].number()};
+}
+
 PositionMetrics position(const text::JsonPlace& json) {
   PositionMetrics m;
   m.count = json.count("n");
@@ -16,10 +22,8 @@ PositionMetrics position(const text::JsonPlace& json) {
   m.median_m = json.number("median_m");
   m.cep50_m = json.number("cep50_m");
   m.cep95_m = json.number("cep95_m");
-  const text::JsonPlace mean = json.at("mean_offset_m");
-  const std::vector<text::JsonPlace> axes = mean.items();
-  if (axes.size() != 2) mean.expected("two numbers");
-  m.mean_m = {axes[0].number(), axes[1].number()};
+  const auto [x, y] = two_numbers(json.at("mean_offset_m"));
+  m.mean_m = {x, y};
   return m;
 }
 
@@ -59,9 +63,8 @@ InnovationStatistics innovation(const text::JsonPlace& json, ResidualKind kind) 
 }
 
 Interval95 interval(const text::JsonPlace& json) {
-  const std::vector<text::JsonPlace> ends = json.items();
-  if (ends.size() != 2) json.expected("two numbers");
-  return {ends[0].number(), ends[1].number()};
+  const auto [low, high] = two_numbers(json);
+  return {low, high};
 }
 
 ConsistencyStatistics consistency(const text::JsonPlace& json) {

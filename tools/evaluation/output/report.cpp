@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <waymark/tools/text/number_text.hpp>
 #include <waymark/tools/text/table.hpp>
 
 namespace waymark::evaluation {

@@ -1,7 +1,5 @@
 #include <waymark/tools/program/commands/drive_statistics.hpp>
 
-#include <cmath>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -10,32 +8,29 @@
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/tools/simulation/statistics.hpp>
+#include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::program {
 namespace {
-
-/// NaN: undefined, or there is no truth to define it.
-std::string number(double value, int decimals) {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
-}
 
 std::string statistics_text(const std::string& name, const simulation::DriveStatistics& s) {
   std::string text = name + "\n";
   const auto line = [&text](const std::string& label, const std::string& value) {
     text += fmt::format("  {:<34} {}\n", label, value);
   };
-  line("duration", number(s.duration_s, 2) + " s");
-  line("distance", number(s.distance_m / 1000, 3) + " km");
+  line("duration", text::decimals(s.duration_s, 2) + " s");
+  line("distance", text::decimals(s.distance_m / 1000, 3) + " km");
   line("odometry points", std::to_string(s.odometry_points));
   line("fixes", fmt::format("{}, {} epochs missing", s.fixes, s.missing_epochs));
-  line("raw fixes Max / Acc / Prec", number(s.gnss.max_m, 3) + " / " + number(s.gnss.accuracy_m, 3) + " / " +
-                                         number(s.gnss.precision_m, 3) + " m");
+  line("raw fixes Max / Acc / Prec", text::decimals(s.gnss.max_m, 3) + " / " +
+                                         text::decimals(s.gnss.accuracy_m, 3) + " / " +
+                                         text::decimals(s.gnss.precision_m, 3) + " m");
   line("rejected by the gate", fmt::format("{} ({:.2f} %)", s.rejected, s.rejected_percent));
   for (std::size_t i = 0; i < s.autocorrelation.size(); ++i)
     line(fmt::format("autocorrelation of the error, {} s", evaluation::kAutocorrelationLags[i]),
-         number(s.autocorrelation[i], 3));
-  line("odometry drift over 1 km", number(s.drift_percent, 3) + " %");
-  line("yaw drift", number(s.yaw_drift_deg_per_minute, 3) + " deg/min");
+         text::decimals(s.autocorrelation[i], 3));
+  line("odometry drift over 1 km", text::decimals(s.drift_percent, 3) + " %");
+  line("yaw drift", text::decimals(s.yaw_drift_deg_per_minute, 3) + " deg/min");
   return text;
 }
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -16,21 +15,6 @@ using Runs = std::vector<ComparedRun>;
 
 void add_table(text::Table table, drawing::Section& section) {
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
-}
-
-/// Adds narrow figures in pairs, and wide ones below each other.
-void add_figures(std::vector<drawing::Figure> figures, drawing::Section& section) {
-  if (figures.empty()) return;
-  if (figures.front().width >= drawing::Figure().width) {
-    for (drawing::Figure& figure : figures) section.blocks.emplace_back(std::move(figure));
-    return;
-  }
-  for (std::size_t i = 0; i < figures.size(); i += 2) {
-    drawing::FigureRow row;
-    for (std::size_t k = i; k < std::min(i + 2, figures.size()); ++k)
-      row.figures.push_back(std::move(figures[k]));
-    section.blocks.emplace_back(std::move(row));
-  }
 }
 
 /// Returns the run with the smallest RMSE of these rows; null if there is none.
@@ -100,18 +84,18 @@ drawing::Section errors_section(const Groups& groups) {
         "The runs are of several drives. Errors are comparable within a drive only: each has fixes of its "
         "own."});
   add_table(error_table(groups), section);
-  add_figures(error_bars(groups), section);
+  drawing::add_figures(error_bars(groups), section);
   add_table(improvement_table(groups), section);
   add_table(track_table(groups), section);
   add_table(withheld_error_table(groups), section);
-  add_figures(withheld_bars(groups), section);
+  drawing::add_figures(withheld_bars(groups), section);
   return section;
 }
 
 drawing::Section course_section(const Groups& groups) {
   drawing::Section section{"course", "Distribution and course", {}};
-  add_figures(distribution_figures(groups), section);
-  add_figures(course_figures(groups), section);
+  drawing::add_figures(distribution_figures(groups), section);
+  drawing::add_figures(course_figures(groups), section);
   return section;
 }
 
@@ -125,15 +109,15 @@ drawing::Section honesty_section(const Groups& groups) {
     }
   }
   add_table(stated_error_table(groups), section);
-  add_figures(honesty_figures("stated", rows), section);
+  drawing::add_figures(honesty_figures("stated", rows), section);
   return section;
 }
 
 drawing::Section ending_section(const Runs& runs) {
   drawing::Section section{"convergence", "Convergence", {}};
   add_table(ending_table(runs), section);
-  add_figures(ending_figures(runs), section);
-  add_figures(chi2_figures(runs), section);
+  drawing::add_figures(ending_figures(runs), section);
+  drawing::add_figures(chi2_figures(runs), section);
   return section;
 }
 

@@ -8,6 +8,7 @@
 #include <waymark/tools/report/comparison/comparison_page.hpp>
 #include <waymark/tools/report/comparison/comparison_parts.hpp>
 #include <waymark/tools/report/honesty_figures.hpp>
+#include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::report {
 namespace {

@@ -32,13 +32,13 @@ drawing::Section error_section(const ReportedDrive& drive) {
   drawing::Section section{"errors", "Errors", {}};
   if (drive.evaluation.truth) {
     section.blocks.emplace_back(error_tiles(drive));
-    for (drawing::Figure& figure : errors_over_time(drive)) section.blocks.emplace_back(std::move(figure));
+    drawing::add_figures(errors_over_time(drive), section);
     section.blocks.emplace_back(track_table(*drive.evaluation.truth));
     section.blocks.emplace_back(error_distribution(drive));
     section.blocks.emplace_back(autocorrelation_figure(drive));
   } else {
     section.blocks.emplace_back(fix_residuals_over_time(drive));
-    for (drawing::Figure& figure : errors_over_time(drive)) section.blocks.emplace_back(std::move(figure));
+    drawing::add_figures(errors_over_time(drive), section);
   }
   return section;
 }
@@ -47,11 +47,7 @@ void add_consistency(const ReportedDrive& drive, drawing::Page& page) {
   if (!drive.evaluation.truth || !drive.evaluation.truth->consistency) return;
   drawing::Section section{"consistency", "Stated against actual errors", {}};
   section.blocks.emplace_back(drawing::Paragraph{describe_consistency(*drive.evaluation.truth->consistency)});
-  std::vector<drawing::Figure> figures = consistency_figures(drive);
-  if (figures.size() == 3) {
-    section.blocks.emplace_back(drawing::FigureRow{{std::move(figures[0]), std::move(figures[1])}});
-    section.blocks.emplace_back(std::move(figures[2]));
-  }
+  drawing::add_figures(consistency_figures(drive), section);
   page.sections.push_back(std::move(section));
 }
 
@@ -60,8 +56,7 @@ void add_states(const ReportedDrive& drive, drawing::Page& page) {
   const auto seconds = [&](Stamp stamp) { return drive.seconds(stamp); };
   drawing::Section section{"calibration", "Calibration", {}};
   section.blocks.emplace_back(state_table(*drive.states));
-  for (drawing::Figure& figure : state_figures(*drive.states, seconds, epochs_extent(drive)))
-    section.blocks.emplace_back(std::move(figure));
+  drawing::add_figures(state_figures(*drive.states, seconds, epochs_extent(drive)), section);
   page.sections.push_back(std::move(section));
 }
 

@@ -8,6 +8,7 @@
 #include <waymark/tools/report/drive/drive_figures.hpp>
 #include <waymark/tools/report/drive/drive_summary.hpp>
 #include <waymark/tools/report/metric_columns.hpp>
+#include <waymark/tools/text/number_text.hpp>
 #include <waymark/types_se2/stamped_pose.hpp>
 
 namespace waymark::report {

@@ -8,6 +8,7 @@
 #include <waymark/tools/drawing/figure/look.hpp>
 #include <waymark/tools/drawing/figure/markup.hpp>
 #include <waymark/tools/report/drive/optimization_figures.hpp>
+#include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::report {
 namespace {
@@ -48,7 +49,7 @@ drawing::Series quantiles(const evaluation::TypeResiduals& type, drawing::Look l
 
 std::string joined_numbers(const std::vector<double>& numbers) {
   std::string text;
-  for (const double number : numbers) text += (text.empty() ? "" : ", ") + drawing::readable(number);
+  for (const double number : numbers) text += (text.empty() ? "" : ", ") + text::readable(number);
   return text;
 }
 
@@ -168,8 +169,8 @@ text::Table residual_table(const evaluation::GraphResiduals& residuals) {
       table.rows.push_back({first ? type.tag : "", first ? to_string(type.role) : "",
                             first ? fmt::to_string(type.edges.size()) : "",
                             first ? fmt::format("{:.1f}", 100 * type.chi2_share) : "",
-                            type.components[k].name, drawing::readable(s.mean), drawing::readable(s.rms),
-                            drawing::readable(s.max_abs)});
+                            type.components[k].name, text::readable(s.mean), text::readable(s.rms),
+                            text::readable(s.max_abs)});
     }
   }
   return table;
@@ -192,7 +193,7 @@ text::Table largest_residuals(const evaluation::GraphResiduals& residuals,
       const evaluation::EdgeResidual& edge = large.residual;
       table.rows.push_back({type.tag, fmt::to_string(edge.edge),
                             edge.stamp ? fmt::format("{:.2f}", seconds(*edge.stamp)) : "", vertices,
-                            drawing::readable(edge.squared), drawing::readable(edge.weight),
+                            text::readable(edge.squared), text::readable(edge.weight),
                             joined_numbers(large.whitened)});
     }
   }
@@ -206,10 +207,10 @@ text::Table state_table(const std::vector<evaluation::StateReport>& states) {
   table.notes = {
       "sigma: of the last value, from the marginal covariance; before: of the first value, by its prior."};
   for (const evaluation::StateReport& s : states) {
-    table.rows.push_back({s.name, s.unit, fmt::to_string(s.values), drawing::readable(s.first),
-                          drawing::readable(s.last), drawing::readable(s.smallest),
-                          drawing::readable(s.largest), drawing::readable(s.sigma),
-                          drawing::readable(s.prior_sigma), s.observed ? "" : "not observed by this drive"});
+    table.rows.push_back({s.name, s.unit, fmt::to_string(s.values), text::readable(s.first),
+                          text::readable(s.last), text::readable(s.smallest), text::readable(s.largest),
+                          text::readable(s.sigma), text::readable(s.prior_sigma),
+                          s.observed ? "" : "not observed by this drive"});
   }
   return table;
 }
@@ -225,7 +226,7 @@ std::vector<drawing::Figure> state_figures(const std::vector<evaluation::StateRe
     const std::string unit = state.unit == "1" ? "" : state.unit;
     figure.description =
         fmt::format("Estimated with the poses: {} values. Sigma of the last: {}{}{}.", state.values,
-                    drawing::readable(state.sigma), unit.empty() ? "" : " ", unit);
+                    text::readable(state.sigma), unit.empty() ? "" : " ", unit);
     figure.x = {.title = "time since start", .unit = "s", .low = time.low, .high = time.high};
     figure.y = {.title = state.name, .unit = unit};
     figure.motion = drawing::Motion::x;

@@ -1,9 +1,8 @@
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include <waymark/tools/reproduction/experiment/ablation.hpp>
 #include <waymark/tools/reproduction/tables/convergence_tables.hpp>
+#include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::reproduction {
 namespace {

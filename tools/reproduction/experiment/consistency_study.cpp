@@ -5,6 +5,7 @@
 
 #include <waymark/tools/reproduction/experiment/consistency_study.hpp>
 #include <waymark/tools/reproduction/tables/convergence_tables.hpp>
+#include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::reproduction {
 namespace {

@@ -1,5 +1,3 @@
-#include <utility>
-
 #include <fmt/format.h>
 
 #include <waymark/tools/reproduction/experiment/ablation.hpp>
@@ -110,17 +108,6 @@ drawing::Section tables_section(const ReproductionReport& report) {
   return section;
 }
 
-void add_figures(std::vector<drawing::Figure> figures, drawing::Section& section) {
-  drawing::FigureRow row;
-  for (drawing::Figure& figure : figures) {
-    const bool narrow = figure.width < drawing::Figure().width;
-    if (!narrow) section.blocks.emplace_back(std::move(figure));
-    if (narrow) row.figures.push_back(std::move(figure));
-    if (row.figures.size() == 2) section.blocks.emplace_back(std::exchange(row, {}));
-  }
-  if (!row.figures.empty()) section.blocks.emplace_back(std::move(row));
-}
-
 /// Returns the figures of the main results. The name of a report decides which they are.
 std::vector<drawing::Section> figure_sections(const ReproductionReport& report, const Drives& drives) {
   std::vector<drawing::Section> sections;
@@ -128,7 +115,7 @@ std::vector<drawing::Section> figure_sections(const ReproductionReport& report, 
                        std::vector<drawing::Figure> figures) {
     if (figures.empty()) return;
     sections.push_back({id, title, {}});
-    add_figures(std::move(figures), sections.back());
+    drawing::add_figures(std::move(figures), sections.back());
   };
   if (report.name == "ablation") {
     add("settings", "Settings", ablation_figures(drives));

@@ -1,6 +1,5 @@
-#include <fmt/format.h>
-
 #include <waymark/tools/reproduction/tables/drive_tables.hpp>
+#include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::reproduction {
 namespace {

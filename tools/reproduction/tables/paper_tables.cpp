@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <waymark/tools/reproduction/tables/paper_tables.hpp>
+#include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::reproduction {
 namespace {
