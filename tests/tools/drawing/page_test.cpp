@@ -79,11 +79,12 @@ TEST_CASE("page: equal columns of numbers are in a page once") {
 }
 
 TEST_CASE("page: columns of numbers stand to the right in tables, words to the left") {
-  const text::Table table{.columns = {"name", "value [m]"},
-                          .rows = {{"a", "1.5"}, {"b", "-"}, {"c", "+3.2"}}};
+  const text::Table table{.columns = {"name", "value [m]", "iterations"},
+                          .rows = {{"a", "1.5", "4"}, {"b", "-", "50!"}, {"c", "+3.2", "7"}}};
   const std::string html = page_html(
       {.title = "t", .subtitle = "", .summary = "", .sections = {{"s", "S", {table}}}, .footer = ""});
   CHECK(count(html, "<td class=\"number\">1.5</td>") == 1);
+  CHECK(count(html, "<td class=\"number\">50!</td>") == 1);
   CHECK(count(html, "<td>a</td>") == 1);
   CHECK(count(html, "<th scope=\"col\" class=\"number\">value [m]</th>") == 1);
 }

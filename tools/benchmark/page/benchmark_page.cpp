@@ -101,7 +101,7 @@ text::Table missed_table(const Files& files, const ContestantNames& names) {
 }
 
 text::Table header_table(const BenchmarkHeader& header) {
-  text::Table table{.title = "What was asked for, and on what it ran", .columns = {"", ""}};
+  text::Table table{.title = "What was asked for, and on what it ran", .columns = {"", ""}, .words = true};
   for (const auto& [key, text] : header) table.rows.push_back({key, text});
   return table;
 }

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,22 +20,9 @@ struct Overloaded : Functions... {
 template <typename... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
-bool is_number(const std::string& cell) {
-  return !cell.empty() && cell.find_first_not_of("0123456789.+-e% ") == std::string::npos;
-}
-
-/// A column is one of numbers if every cell that is not empty is a number.
-std::vector<bool> number_columns(const text::Table& table) {
-  std::vector<bool> numbers(table.columns.size(), !table.rows.empty());
-  for (const auto& row : table.rows) {
-    for (std::size_t c = 0; c < std::min(row.size(), numbers.size()); ++c)
-      numbers[c] = numbers[c] && (row[c].empty() || is_number(row[c]));
-  }
-  return numbers;
-}
-
 std::string html(const text::Table& table) {
-  const std::vector<bool> numbers = number_columns(table);
+  std::vector<bool> numbers;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) numbers.push_back(text::has_numbers(table, c));
   const auto kind = [&](std::size_t c) {
     return c < numbers.size() && numbers[c] ? " class=\"number\"" : "";
   };

@@ -235,7 +235,7 @@ text::Table ending_table(const std::vector<ComparedRun>& runs) {
 }
 
 text::Table provenance_differences(const std::vector<ComparedRun>& runs) {
-  text::Table table{.title = "What was done differently", .columns = {"entry"}};
+  text::Table table{.title = "What was done differently", .columns = {"entry"}, .words = true};
   std::map<std::string, Row> entries;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     table.columns.push_back(runs[r].label);

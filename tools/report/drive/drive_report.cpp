@@ -21,7 +21,7 @@ std::string describe_consistency(const evaluation::ConsistencyStatistics& stated
 }
 
 text::Table provenance(const ReportedDrive& drive) {
-  text::Table table{.title = "Where it comes from", .columns = {"", ""}};
+  text::Table table{.title = "Where it comes from", .columns = {"", ""}, .words = true};
   for (const auto& [key, text] : drive.document.provenance) {
     if (key != "assumed" && key != "warning") table.rows.push_back({key, text});
   }

@@ -131,7 +131,7 @@ std::string outcome(const ReportedDrive& drive) {
 
 /// Lists inputs, assumptions, rejected fixes and results.
 text::Table account(const ReportedDrive& drive) {
-  text::Table table{.columns = {"", ""}};
+  text::Table table{.columns = {"", ""}, .words = true};
   for (const std::string& warning : stated(drive, "warning")) table.rows.push_back({"WARNING", warning});
   table.rows.push_back({"went in", describe_input(drive)});
   for (const std::string& log : stated(drive, "input")) table.rows.push_back({"log", log});
