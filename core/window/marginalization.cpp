@@ -248,8 +248,8 @@ void check(const Graph& graph, VertexIndex count, std::span<const char> held) {
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     if (graph.edge_type(b).tag == GaussianPriorBatch::kTag && graph.batch(b).batch_loss() != nullptr) {
       throw UsageError(
-          "marginalize_prefix: the loss of all EDGE_GAUSSIAN_PRIOR would change what marginalisation leaves; "
-          "give it to single edges");
+          "marginalize_prefix: the batch EDGE_GAUSSIAN_PRIOR has a loss, which would change the new "
+          "prior; give the loss to single edges");
     }
   }
 }

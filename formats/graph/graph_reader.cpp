@@ -248,8 +248,8 @@ class GraphReader {
                 std::string(to_string(format_)) + " has VERTEX2 and EDGE2");
     }
     if (is_one_of(tag, kOwnTags)) {
-      line.fail(join(tag, is_waymark_ ? "stands in the first line only"
-                                      : "is known in files only whose first line is 'GRAPH 1'"));
+      line.fail(join(tag, is_waymark_ ? "is only allowed in the first line"
+                                      : "is only allowed in files whose first line is 'GRAPH 1'"));
     }
     if (is_one_of(tag, kToroTags)) {
       line.fail("tag " + quote_word(tag) +

@@ -100,7 +100,8 @@ std::vector<OptionInfo> options() {
       {"lateral_variance_per_m", "5e-4", "m^2/m", OptionRange{1e-9, 1}, "variance across the way"},
       {"position_variance_per_s", "1e-4", "m^2/s", OptionRange{1e-9, 1},
        "variance of the position by time, both axes"},
-      {"heading_variance_per_m", "2.05e-7", "rad^2/m", OptionRange{0, 1}, "variance of the heading by way"},
+      {"heading_variance_per_m", "2.05e-7", "rad^2/m", OptionRange{0, 1},
+       "heading variance per metre driven"},
       {"heading_variance_per_s", "1.5e-6", "rad^2/s", OptionRange{1e-12, 1},
        "variance of the heading by time", NoisePrior{4e-6, 1.4}},
       {kGapFactor, "100", "", OptionRange{1, 1e6}, "factor on all of them across a gap of the odometry"},
@@ -114,7 +115,7 @@ std::vector<OptionInfo> options() {
        "per edge, so that information is at least 1e5"},
   };
   for (const OptionInfo& option :
-       state_options("gyro_bias", "rad/s", "0.01", "2e-6", "what the gyro reads while nothing turns"))
+       state_options("gyro_bias", "rad/s", "0.01", "2e-6", "reading of the gyro at rest"))
     all.push_back(option);
   for (const OptionInfo& option :
        state_options("speed_scale", "1", "0.01", "2e-4", "part of the speed that the odometry does not show"))

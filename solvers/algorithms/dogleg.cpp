@@ -166,7 +166,7 @@ AlgorithmType dogleg() {
        "'newton': counted in lengths of the first Newton step, bound to the steps' lengths; 'absolute': a "
        "number by itself, halved by every poor or failed step (g2o)"},
       {"initial_radius", "1", "", OptionRange{1e-6, 1e12},
-       "first trust radius, in what 'radius' says; g2o has 1e4"}};
+       "initial trust radius, in the unit of 'radius'; g2o uses 1e4"}};
   return {
       "dogleg", "Powell's dogleg in the norm scaled by diag(H)^(1/2)", options,
       [](const CheckedOptions& checked) {

@@ -98,9 +98,8 @@ void judge_accuracy(const FixSummary& fixes, std::vector<std::string>& sentences
                                     fixes.east.median, fixes.with_accuracy));
   else if (fixes.axes_equal)
     sentences.emplace_back(
-        "east and north have the same accuracy in every fix: a radius, not a figure of each axis (what it "
-        "means: "
-        "'meaning' under 'accuracy')");
+        "east and north have the same accuracy in every fix, so it is a radius and no sigma per "
+        "axis; state its 'meaning' under 'accuracy'");
   if (fixes.east.median < 0.02)
     sentences.push_back(fmt::format("half of the fixes claim a sigma below {:.3g} m, which only RTK reaches",
                                     std::max(fixes.east.median, 1e-3)));
@@ -120,13 +119,13 @@ void judge_speed(const FixSummary& fixes, std::vector<std::string>& sentences) {
   for (const SpeedUnit& unit : kMistakenUnits) {
     if (std::abs(fixes.speed_factor / unit.factor - 1) > 0.06) continue;
     sentences.push_back(
-        fmt::format("the receiver's speed is {:.3g} times what its positions show (median of {}): {}",
+        fmt::format("the receiver's speed is {:.3g} times the speed of its positions (median of {}): {}",
                     fixes.speed_factor, fixes.speed_comparisons, unit.text));
     return;
   }
   if (fixes.speed_factor > 1.4 || fixes.speed_factor < 1 / 1.4)
     sentences.push_back(
-        fmt::format("the receiver's speed is {:.3g} times what its positions show (median of {})",
+        fmt::format("the receiver's speed is {:.3g} times the speed of its positions (median of {})",
                     fixes.speed_factor, fixes.speed_comparisons));
 }
 

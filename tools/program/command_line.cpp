@@ -71,7 +71,7 @@ std::vector<Surrounding> environment_variables() {
       {"WAYMARK_PLUGIN_PATH",
        "Folders of plugins, separated by ':'. Their modules are loaded, and --plugin NAME is looked up in "
        "them."},
-      {"NO_COLOR", "Set to anything, it turns colours off. Without a terminal there are none anyway."}};
+      {"NO_COLOR", "Any value turns colours off. Output that is not a terminal has no colours."}};
 }
 
 std::vector<Surrounding> known_files() {

@@ -10,9 +10,9 @@ std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
       .id = prefix + "-nees",
       .title = "Mean NEES",
       .description =
-          "Squared error in units of the stated covariance, averaged; 2 is honest. A bracket is where "
-          "an honest covariance leaves the mean on 95 of 100 drives. A bar that ends right of it: "
-          "the stated errors are too small; left of it: too large.",
+          "Squared error in units of the stated covariance, averaged; 2 is consistent. With "
+          "consistent covariances the means of 95 of 100 drives lie in the bracket. If a bar ends "
+          "right of it, the stated errors are too small; left of it, too large.",
       .x = {.title = "mean NEES", .unit = "", .logarithmic = true},
       .y = {.title = "run", .unit = ""},
       .series = {}};
@@ -20,8 +20,8 @@ std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
       .id = prefix + "-coverage",
       .title = "Coverage of the stated 95 % regions",
       .description =
-          "Share of the epochs whose stated region holds the truth. A bracket is where an honest "
-          "covariance leaves the share on 95 of 100 drives.",
+          "Share of the epochs whose stated region holds the truth. With consistent covariances the "
+          "shares of 95 of 100 drives lie in the bracket.",
       .x = {.title = "epochs with the truth inside", .unit = "%", .low = 0},
       .y = {.title = "run", .unit = ""},
       .series = {}};
@@ -44,10 +44,10 @@ std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
   }
   const std::size_t count = nees.y.categories.size();
   if (count == 0) return {};
-  nees.series = {nees_bars,
-                 drawing::line_across("honest: 2", evaluation::ConsistencyStatistics::kExpectedMean, count)};
+  nees.series = {nees_bars, drawing::line_across("consistent: 2",
+                                                 evaluation::ConsistencyStatistics::kExpectedMean, count)};
   coverage.series = {coverage_bars,
-                     drawing::line_across("honest: 95 %",
+                     drawing::line_across("consistent: 95 %",
                                           100 * evaluation::ConsistencyStatistics::kExpectedCoverage, count)};
   drawing::fit_bars(nees);
   drawing::fit_bars(coverage);

@@ -5,8 +5,9 @@ namespace waymark::report {
 const std::vector<PositionColumn>& position_columns() {
   static const std::vector<PositionColumn> columns = {
       {"Max", "max", "Largest distance from the truth", &evaluation::PositionMetrics::max_m},
-      {"Acc", "acc", "Length of the mean offset: what stays", &evaluation::PositionMetrics::accuracy_m},
-      {"Prec", "prec", "Deviation about the mean offset: what scatters",
+      {"Acc", "acc", "Length of the mean offset: the systematic part",
+       &evaluation::PositionMetrics::accuracy_m},
+      {"Prec", "prec", "Deviation about the mean offset: the random part",
        &evaluation::PositionMetrics::precision_m},
       {"RMSE", "rmse", "Root of the mean squared distance", &evaluation::PositionMetrics::rmse_m},
       {"median", "median", "Median distance", &evaluation::PositionMetrics::median_m},

@@ -90,7 +90,7 @@ void OwnStatements::read_stamp(LineScanner& line) {
 }
 
 void OwnStatements::read_loss(LineScanner& line, EdgeBatchBase* edge_above) {
-  if (edge_above == nullptr) line.fail("LOSS: no edge stands above it");
+  if (edge_above == nullptr) line.fail("LOSS: there is no edge above this line");
   const std::string_view name = line.word();
   const LossType* type = registry_.find_loss(name);
   if (type == nullptr) line.fail("LOSS: unknown loss " + quote_word(name));

@@ -66,8 +66,9 @@ TEST_CASE("candump: a signal that the DBC spoils is refused where it is asked fo
       "them");
   request.columns["speed"] = from("T", "m/s");
   CHECK(read("(1.0) can0 001#05\n", request).notes.front() ==
-        "car.log: 1 signals of the DBC cannot be read (none is asked for); first: car.dbc:2:10: SG_ S: start "
-        "1 and length 8 do not fit into the 1 bytes of M; correct one of them");
+        "car.log: 1 signals of the DBC are unreadable (no column uses them); the first: "
+        "car.dbc:2:10: SG_ S: start 1 and length 8 do not fit into the 1 bytes of M; correct "
+        "one of them");
 }
 
 TEST_CASE("candump: signals behind a frame's reach are refused") {

@@ -36,8 +36,8 @@ TEST_CASE("gpsd: equal epx and epy throughout are remarked upon") {
   const LogData data =
       read(R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,"epx":3,"epy":3})");
   CHECK(data.notes.back() ==
-        "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms "
-        "reads better: sigma would be 2.12 m on average instead of 1.5 m");
+        "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 reports u-blox' hAcc unchanged; "
+        "read it with 'drms': sigma would be 2.12 m on average instead of 1.5 m");
 }
 
 TEST_CASE("gpsd: a GST object of the same time gives the accuracy, before its TPV or after it") {
@@ -79,8 +79,8 @@ TEST_CASE("gpsd: version and values tell the dialect") {
         "log.json: epx and epy of gpsd before 3.11 are the 3-D accuracy / sqrt(2), a rough 1sigma: sigma "
         "would be 10 m on average instead of 5 m");
   const std::string raw =
-      "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms "
-      "reads better: sigma would be 7.07 m on average instead of 5 m";
+      "log.json: epx equals epy throughout: gpsd 3.11 to 3.18 reports u-blox' hAcc unchanged; read "
+      "it with 'drms': sigma would be 7.07 m on average instead of 5 m";
   CHECK(note("3.17", equal) == raw);
   CHECK(note("", equal) == raw);
   const std::string since_3_19 =

@@ -107,9 +107,9 @@ TEST_CASE("ubx: sensor tags are placed on GNSS time where a navigation message f
   for (std::size_t row = 0; row < 200; ++row)
     CHECK(data.readings.stamps[row].nanoseconds == kUtc + (static_cast<std::int64_t>(row) - 9) * 100'000'000);
   CHECK(data.notes.at(0) ==
-        "log.ubx: the calibrated time tags of ESF-MEAS were placed on GNSS time by the order of the messages "
-        "(drift over the log 0.000 s); they come out too early by what navigation messages lag behind: "
-        "hundredths of a second with HNR-PVT, up to half a second without");
+        "log.ubx: the calibrated time tags of ESF-MEAS were placed on GNSS time by the order of the "
+        "messages (drift over the log 0.000 s); they are too early by the delay of the navigation "
+        "messages: hundredths of a second with HNR-PVT, up to half a second without");
 }
 
 TEST_CASE("ubx: sensor rows come out in order of their tags") {

@@ -60,7 +60,7 @@ TEST_CASE("slips: a speed in km/h is named at 5 Hz too, and in the report") {
   const RunResult result = run({"run", drive, "-o", folder + "out"});
   CHECK(contains(result.err, "times that of the fixes"));
   CHECK(contains(result.err, "(3.6: km/h read as m/s)"));
-  CHECK(contains(result.err, "warning: speed_scale came out as"));
+  CHECK(contains(result.err, "warning: the estimate of speed_scale is"));
   CHECK(contains(result.err, "times as far from the truth as raw GNSS"));
   const std::string report = read_text(folder + "out/report.html");
   CHECK(contains(report, "(3.6: km/h read as m/s)"));
@@ -90,7 +90,7 @@ TEST_CASE(
   const std::string late = drive_with(folder, [](double t, double v, double w) { return line(t + 2, v, w); });
   const RunResult moved = run({"convert", late, "--sync", "-o", folder + "late.graph"});
   CHECK(contains(moved.err, "the odometry's speed was late by"));
-  CHECK(contains(moved.err, "the yaw rate stands in the log of the speed and is moved with it"));
+  CHECK(contains(moved.err, "yaw rate and speed are in one log; both are moved together"));
   const RunResult sound = run({"convert", drive_with(folder, line), "--sync", "-o", folder + "sound.graph"});
   CHECK(contains(sound.err, "within three sigmas, so not applied"));
   CHECK_FALSE(contains(sound.err, "; applied"));

@@ -138,7 +138,7 @@ TEST_CASE("parts: the axis of a gyro is stated, with its sign") {
   CHECK_THROWS_MATCHES(
       assemble_odometry(parts, how, 0.5), InputError,
       Message(
-          "odometry: no log gives 'gyro_y', which 'gyro: {axis: y}' asks for; the logs give: gyro_x, speed"));
+          "odometry: no log has a channel 'gyro_y' for 'gyro: {axis: y}'; channels found: gyro_x, speed"));
   how.gyro_axis = "gravity";
   CHECK_THROWS_MATCHES(
       assemble_odometry(parts, how, 0.5), InputError,
@@ -206,12 +206,12 @@ TEST_CASE("parts: what cannot be put together is said") {
           "odometry: both speed.csv and speed.csv give 'speed'; leave it out of the columns of one of them"));
   const std::vector<OdometryPart> half{part("speed", 10, 0, 10, constant(5))};
   CHECK_THROWS_MATCHES(assemble_odometry(half, {}, 0.5), InputError,
-                       Message("odometry: nothing gives the yaw rate; the logs give: speed"));
+                       Message("odometry: no log has a channel for the yaw rate; channels found: speed"));
   OdometryAssembly how;
   how.speed_from = "distance";
-  CHECK_THROWS_MATCHES(
-      assemble_odometry(half, how, 0.5), InputError,
-      Message("odometry: nothing gives the speed from 'distance', as stated; the logs give: speed"));
+  CHECK_THROWS_MATCHES(assemble_odometry(half, how, 0.5), InputError,
+                       Message("odometry: no log has a channel for the speed from 'distance', as "
+                               "stated; channels found: speed"));
   const std::vector<OdometryPart> apart{part("speed", 10, 0, 10, constant(5)),
                                         part("yaw_rate", 10, 20, 30, constant(0))};
   CHECK_THROWS_MATCHES(assemble_odometry(apart, {}, 0.5), InputError,

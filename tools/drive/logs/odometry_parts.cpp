@@ -135,7 +135,7 @@ class Assembler {
                        1 / median_interval_s(*series)));
       return std::move(*series);
     }
-    throw InputError(fmt::format("odometry: nothing gives the {}{}; the logs give: {}", what,
+    throw InputError(fmt::format("odometry: no log has a channel for the {}{}; channels found: {}", what,
                                  stated.empty() ? "" : fmt::format(" from '{}', as stated", stated),
                                  present()));
   }
@@ -221,9 +221,10 @@ class Assembler {
     if (how_.gyro_axis == "gravity") return along_gravity(axes);
     const TimeSeries* axis = axes[static_cast<std::size_t>(how_.gyro_axis.back() - 'x')];
     if (axis == nullptr)
-      throw InputError(fmt::format(
-          "odometry: no log gives 'gyro_{}', which 'gyro: {{axis: {}}}' asks for; the logs give: {}",
-          how_.gyro_axis.back(), how_.gyro_axis, present()));
+      throw InputError(
+          fmt::format("odometry: no log has a channel 'gyro_{}' for 'gyro: {{axis: "
+                      "{}}}'; channels found: {}",
+                      how_.gyro_axis.back(), how_.gyro_axis, present()));
     TimeSeries rate = *axis;
     if (how_.gyro_axis.front() == '-') {
       for (double& value : rate.values) value = -value;
@@ -240,7 +241,7 @@ class Assembler {
       if (axes[i] == nullptr || forces[i] == nullptr)
         throw InputError(fmt::format(
             "odometry: 'gyro: {{axis: gravity}}' needs gyro_x, _y, _z and acceleration_x, _y, _z; "
-            "the logs give: {}",
+            "channels found: {}",
             present()));
     }
     const Eigen::Vector3d up = upward(forces);

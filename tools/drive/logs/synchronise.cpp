@@ -35,7 +35,7 @@ void synchronise(DriveLogs& logs, DriveDescription& description) {
   // A log has one clock, so one half of it must not be moved alone.
   if (description.odometry.size() == 1 && speed_moved && !report.yaw_rate) {
     description.yaw_rate_delay_s += report.speed->late_s;
-    notes.emplace_back("sync: the yaw rate stands in the log of the speed and is moved with it");
+    notes.emplace_back("sync: yaw rate and speed are in one log; both are moved together");
   }
   logs.notes.insert(logs.notes.end(), notes.begin(), notes.end());
 }

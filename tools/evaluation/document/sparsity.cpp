@@ -130,7 +130,7 @@ double Sparsity::fill_ratio() const {
 }
 
 Sparsity sparsity_of(const Graph& graph, std::size_t most_cells) {
-  if (most_cells == 0) throw UsageError("sparsity: a raster of no cells shows nothing");
+  if (most_cells == 0) throw UsageError("sparsity: a raster needs at least one cell");
   Structure structure;
   structure.build(graph, find_gauge(graph).held);
   const BlockPattern& pattern = structure.pattern();

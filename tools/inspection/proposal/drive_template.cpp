@@ -11,8 +11,8 @@ std::string drive_template() {
 # folder: logs                     # where relative log names are looked up; default: beside this file
 # time:
 #   scale: gps                     # gps | utc | unix: the drive's own scale; logs on others are converted
-#   from: 10                       # use the odometry from so many seconds after its first stamp ...
-#   to: 70                         # ... to so many
+#   from: 10                       # use the odometry from this many seconds after its first stamp ...
+#   to: 70                         # ... to this many
 # frame:
 #   utm_zone: 33N                  # default: zone of the first fix
 #   origin: [389600, 5818400]      # easting, northing; default: first fix, rounded to 100 m

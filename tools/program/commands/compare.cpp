@@ -87,8 +87,9 @@ void add_compare(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "compare",
       "One report of several runs: modelings, settings, drives\n\n"
-      "Reads the folders that 'run' and 'evaluate' wrote. Their errors stand beside each other and beside "
-      "raw GNSS, with what was done differently. Errors are comparable within one drive.");
+      "Reads the folders that 'run' and 'evaluate' wrote. The report shows their errors beside each "
+      "other and beside raw GNSS, and the settings that differ. Errors are comparable "
+      "only within one drive.");
   const auto options = std::make_shared<CompareOptions>();
   command->add_option("runs", options->folders, "Folders that `run -o` or `evaluate -o` wrote")
       ->required()

@@ -153,9 +153,10 @@ void add_convert(CLI::App& app, Action& action) {
   auto* command =
       app.add_subcommand("convert",
                          "Raw logs to a graph file, or a graph file to another format\n\n"
-                         "From a drive.yaml it reads the logs, puts them on one clock and into one frame, "
-                         "judges the fixes and writes the graph. A graph file is written in another format; "
-                         "what would move the minimum there is refused, what is left out is counted.");
+                         "For a drive.yaml it reads the logs, puts them on one clock and into one "
+                         "frame, checks the fixes and writes the graph. A graph file is written in "
+                         "another format. It is refused if its minimum would move in that format. "
+                         "Statements that the format lacks are left out and counted.");
   const auto options = std::make_shared<ConvertOptions>();
   command
       ->add_option("input", options->input,

@@ -146,21 +146,20 @@ std::string diagnosis_text(const Json& json) {
 void add_doctor(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "doctor",
-      "What was built in, and whether it works here\n\n"
-      "Names version, compiler, processor, libraries with their licences and the licence that results, "
-      "plugins and where they are searched, those that cannot be loaded with the reason. Every solver and "
-      "algorithm has to reach the known minimum of a small graph; a file is written to the present folder "
-      "and "
-      "taken away again. Drives and graphs that are named are looked at with all plugins.");
+      "Show how the program was built and test it here\n\n"
+      "Prints version, compiler, processor, libraries with their licences, the licence of the "
+      "program, and plugins with the folders that are searched. A plugin that cannot be loaded is "
+      "listed with the reason. Every solver and algorithm must reach the known minimum of a small "
+      "graph. A file is written to the current folder and removed again. Drives and graphs that are "
+      "named are checked with all plugins.");
   const auto options = std::make_shared<DoctorOptions>();
-  command->add_option("inputs", options->inputs, "Drives and graphs that should work here")
-      ->type_name("DRIVE.yaml|GRAPH");
+  command->add_option("inputs", options->inputs, "Drives and graphs to check")->type_name("DRIVE.yaml|GRAPH");
   add_common_options(*command, options->common);
   command->footer(
-      "The exit code is 1 where a solver or an algorithm fails, 3 where a plugin that was asked for cannot "
-      "be "
-      "loaded or an input cannot be read, 5 where the folder cannot be written to.\n"
-      "Example:\n  waymark doctor\n  waymark doctor --plugin ./my_sensor.so drive.yaml");
+      "The exit code is 1 if a solver or an algorithm fails, 3 if a requested plugin cannot be "
+      "loaded or an input cannot be read, 5 if the folder cannot be written to.\n"
+      "Example:\n  waymark doctor\n"
+      "  waymark doctor --plugin ./my_sensor.so drive.yaml");
   command->callback([options, &action] { action = [options] { return examine(*options); }; });
 }
 

@@ -83,11 +83,11 @@ void add_drive_options(CLI::App& command, DriveChoice& choice) {
   repeated(command.add_option("--modeling-option", choice.modeling_options,
                               "Option of the modeling, see 'waymark info'"))
       ->type_name("NAME=VALUE");
-  add_edit<double>(command, choice, "--from", "Begin so many seconds after the first odometry sample",
+  add_edit<double>(command, choice, "--from", "Begin N seconds after the first odometry sample",
                    [](DriveFile& file, const double& s) { file.description.from_s = s; })
       ->type_name("SECONDS")
       ->check(rule("must be a number of seconds, at least 0", at_least_zero));
-  add_edit<double>(command, choice, "--to", "End so many seconds after the first odometry sample",
+  add_edit<double>(command, choice, "--to", "End N seconds after the first odometry sample",
                    [](DriveFile& file, const double& s) { file.description.to_s = s; })
       ->type_name("SECONDS")
       ->check(rule("must be a number of seconds, at least 0", at_least_zero));
@@ -166,7 +166,7 @@ void add_stopping_options(CLI::App& command, drive::Minimization& minimization) 
                   "Threads to work with; the result is the same for any number")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  command.add_option("--max-iterations", minimization.max_iterations, "Give up after so many steps")
+  command.add_option("--max-iterations", minimization.max_iterations, "Stop after N steps")
       ->check(rule("must be at least 0", at_least_zero))
       ->capture_default_str();
   command

@@ -178,7 +178,8 @@ void add_info(CLI::App& app, Action& action) {
       "Everything that a name on the command line or in a drive.yaml can stand for, plugins included, with "
       "options and defaults.");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_flag("--plugins", options->plugins, "Only the plugins: where each is from and what it brings");
+  command->add_flag("--plugins", options->plugins,
+                    "List only the plugins: the file of each and the names that it registers");
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark info --plugins --plugin ./my_sensor.so");
   command->callback([options, &action] {

@@ -82,9 +82,9 @@ void add_optimize(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "optimize",
       "Minimise chi2 of a graph\n\n"
-      "Reads a graph, finds the poses that explain its edges best and writes the graph with them. It says "
-      "whether a minimum was reached. A graph without a fixed vertex or a prior has its first vertex held; "
-      "that is said, not written.");
+      "Reads a graph, finds the poses with the smallest chi2 and writes the graph with them. It "
+      "reports whether a minimum was reached. If the graph has neither a fixed vertex nor a prior, "
+      "the first vertex is held. A note says so; the file that is written gets no FIX.");
   const auto options = std::make_shared<OptimizeOptions>();
   command->add_option("graph", options->input, "Graph file: .graph, g2o, or as --input-format says")
       ->required()
@@ -97,8 +97,9 @@ void add_optimize(CLI::App& app, Action& action) {
   options->minimization.start = "auto";
   command
       ->add_option("--start", options->minimization.start,
-                   "Where to begin: 'file' (its values), a start that `waymark info` lists, or 'auto': what "
-                   "promises most, and others where the minimum found is implausible")
+                   "Initial guess: 'file' (the values of the file), one that `waymark info` lists, "
+                   "or 'auto': the most promising one, and others if the minimum "
+                   "found is implausible")
       ->type_name("START|file|auto")
       ->capture_default_str();
   command->add_flag("--lenient", options->lenient, "Skip and count wrong lines");

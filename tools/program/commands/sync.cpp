@@ -63,8 +63,8 @@ std::string table_of(const drive::SyncReport& report, const drive::DriveDescript
     text += "yaw rate: no offset found (too few turns, or no correlation beyond chance)\n";
   if (!report.speed && !report.yaw_rate) return text;
   text +=
-      "Late: stamped later than the GNSS says; negative: early.\n\nTo apply it: --sync of run and convert, "
-      "or in the drive.yaml under 'odometry':\n";
+      "Positive: the stamps are later than GNSS time. Negative: earlier.\n\n"
+      "To apply it: --sync of run and convert, or in the drive.yaml under 'odometry':\n";
   if (report.speed)
     text += fmt::format("  speed_delay: {:.3f}\n", drive.speed_delay_s + report.speed->late_s);
   if (report.yaw_rate)
@@ -110,7 +110,7 @@ void add_sync(CLI::App& app, Action& action) {
   command->add_option("drive", options->input, "drive.yaml")->required()->type_name("DRIVE.yaml");
   command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own")
       ->type_name("DIR");
-  command->add_option("--largest", options->options.largest_s, "Offsets are looked for up to so many seconds")
+  command->add_option("--largest", options->options.largest_s, "Largest offset to look for, in seconds")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();

@@ -166,8 +166,7 @@ drive::DriveFile read_drive_file(const std::string& path, const DriveChoice& cho
   const drive::DriveDescription& drive = file.description;
   const bool edited = drive.from_s != from_s || drive.to_s != to_s;
   if (edited && drive.from_s && drive.to_s && *drive.from_s >= *drive.to_s)
-    throw UsageError(
-        fmt::format("--from {} and --to {} leave nothing between them", *drive.from_s, *drive.to_s));
+    throw UsageError(fmt::format("--from {} must be less than --to {}", *drive.from_s, *drive.to_s));
   return file;
 }
 

@@ -18,7 +18,7 @@ void doubt_states(const std::vector<evaluation::StateReport>& states, std::vecto
     const double farthest = std::max(std::abs(state.smallest), std::abs(state.largest));
     if (!(state.prior_sigma > 0) || !(farthest > kStateSigmas * state.prior_sigma)) continue;
     const double value = std::abs(state.smallest) > std::abs(state.largest) ? state.smallest : state.largest;
-    doubts.push_back(fmt::format("{} came out as {:.3g}{}, {:.0f} times what is usual ({:.3g}): {}",
+    doubts.push_back(fmt::format("the estimate of {} is {:.3g}{}, {:.0f} times its usual value ({:.3g}): {}",
                                  state.name, value, state.unit == "1" ? "" : " " + state.unit,
                                  farthest / state.prior_sigma, state.prior_sigma, kCause));
   }
@@ -29,7 +29,7 @@ void doubt_noise(const drive::NoiseEstimate& noise, std::vector<std::string>& do
     if (parameter.prior.linear || !(parameter.value > 0) || !(parameter.prior.mean > 0)) continue;
     const double factor = parameter.value / parameter.prior.mean;
     if (!(std::log(factor) > kNoiseDeviations * parameter.prior.deviation)) continue;
-    doubts.push_back(fmt::format("{} {} came out as {:.3g} {}, {:.0f} times what is usual: {}",
+    doubts.push_back(fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value: {}",
                                  parameter.owner, parameter.option, parameter.value, parameter.unit, factor,
                                  kCause));
   }

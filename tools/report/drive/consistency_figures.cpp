@@ -36,8 +36,9 @@ drawing::Figure sigma_figure(const drawing::Series& points) {
   figure.id = "sigma-error";
   figure.title = "Stated sigma against actual error";
   figure.description =
-      "Stated sigma (root mean square of both axes) of each fused position and its distance from the truth. "
-      "An honest sigma leaves 39 % of the points below the first line and 95 % below the second.";
+      "Stated sigma (root mean square of both axes) of each fused position and its distance from "
+      "the truth. With consistent sigmas 39 % of the points are below the first line and "
+      "95 % below the second.";
   figure.x = {.title = "stated sigma", .unit = "m", .low = 0};
   figure.y = {.title = "position error", .unit = "m", .low = 0};
   figure.width = 430;
@@ -76,7 +77,7 @@ drawing::Figure coverage_figure(const std::vector<double>& nees) {
   found.x.push_back(100);
   found.y.push_back(100);
   figure.series = {std::move(found),
-                   {.name = "honest",
+                   {.name = "consistent",
                     .mark = drawing::Mark::line,
                     .look = drawing::Look::reference,
                     .x = {0, 100},
@@ -87,8 +88,8 @@ drawing::Figure coverage_figure(const std::vector<double>& nees) {
 drawing::Figure nees_figure(const ReportedDrive& drive) {
   drawing::Figure figure =
       time_figure(drive, "nees", "NEES over time",
-                  "Squared error in units of the stated covariance: 2 on average and below 5.99 "
-                  "at 95 % of the epochs where the covariance is honest.",
+                  "Squared error in units of the stated covariance: 2 on average and below 5.99 at "
+                  "95 % of the epochs if the covariances are consistent.",
                   {.title = "NEES", .low = 0});
   figure.series.push_back(
       over_time(drive, "fused", drawing::Look::fused, [](const evaluation::EpochResult& e) {

@@ -171,8 +171,9 @@ drawing::Figure autocorrelation_figure(const ReportedDrive& drive) {
   figure.id = "autocorrelation";
   figure.title = "Autocorrelation of the error";
   figure.description =
-      "Of the errors about their mean, both axes together. 1: the same error still, 0: forgotten. Errors "
-      "that last make many fixes worth few, which white noise in a graph denies.";
+      "Autocorrelation of the errors about their mean, both axes together. 1: the error has not "
+      "changed after this time. 0: it is independent of the earlier one. If errors last, many fixes "
+      "hold the information of few; a graph with white noise ignores that.";
   figure.x = {.title = "lag", .unit = "s", .low = 0};
   figure.y = {.title = "autocorrelation", .unit = "", .high = 1};
   figure.motion = drawing::Motion::x;

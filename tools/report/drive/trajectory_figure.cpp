@@ -125,10 +125,10 @@ drawing::Figure trajectory_figure(const ReportedDrive& drive) {
   drawing::Figure figure;
   figure.id = "trajectory";
   figure.title = "Trajectory";
-  figure.description =
-      "Fused poses of the body point, raw fixes of the antenna with what became of them" +
-      std::string(drive.truth.empty() ? "" : ", and the truth") +
-      ". Grid metres of the drive's UTM frame, grid north up. Point at a fix to read its verdict.";
+  figure.description = "Fused poses of the body point, raw fixes of the antenna with their verdicts" +
+                       std::string(drive.truth.empty() ? "" : ", and the truth") +
+                       ". The axes are grid metres of the drive's UTM frame, grid north is up. "
+                       "Point at a fix to read its verdict.";
   figure.x = {.title = "east", .unit = "m"};
   figure.y = {.title = "north", .unit = "m"};
   figure.motion = drawing::Motion::map;

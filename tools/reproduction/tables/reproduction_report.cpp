@@ -40,7 +40,7 @@ std::string report_text(const ReproductionReport& report, const text::TextLook& 
   text += "\n";
   for (const text::Table& table : report.tables) text.append("\n").append(text::table_text(table, look));
   if (!report.findings.empty())
-    text.append("\nWhat the paper found, and what these drives say\n").append(findings_text(report.findings));
+    text.append("\nFindings of the paper, checked on these drives\n").append(findings_text(report.findings));
   return text;
 }
 
@@ -48,7 +48,7 @@ std::string report_markdown(const ReproductionReport& report) {
   std::string text = "# " + report.title + "\n\n";
   text.append(report.introduction).append("\n");
   if (!report.findings.empty())
-    text.append("\n## What the paper found, and what these drives say\n\n")
+    text.append("\n## Findings of the paper, checked on these drives\n\n")
         .append(findings_text(report.findings));
   for (const text::Table& table : report.tables) text.append("\n").append(text::table_markdown(table));
   return text;

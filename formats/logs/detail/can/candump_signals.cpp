@@ -56,8 +56,10 @@ void note_troubles(const Dbc& dbc, const std::string& place, std::vector<std::st
     }
   }
   if (count > 0)
-    notes.push_back(fmt::format("{}{} signals of the DBC cannot be read (none is asked for); first: {}",
-                                place, count, first));
+    notes.push_back(
+        fmt::format("{}{} signals of the DBC are unreadable (no column uses "
+                    "them); the first: {}",
+                    place, count, first));
 }
 
 class Binder {

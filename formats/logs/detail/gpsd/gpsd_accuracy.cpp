@@ -114,8 +114,8 @@ std::string GpsdAccuracy::dialect(const std::string& release) const {
   const bool all_equal = per_axis_equal_ == per_axis_;
   if (all_equal && (!version || *version < kDilutionSince))
     return fmt::format(
-        "epx equals epy throughout: gpsd 3.11 to 3.18 passes u-blox' raw hAcc on so, which drms reads "
-        "better: sigma would be {:.3g} m on average instead of {:.3g} m",
+        "epx equals epy throughout: gpsd 3.11 to 3.18 reports u-blox' hAcc unchanged; read it with "
+        "'drms': sigma would be {:.3g} m on average instead of {:.3g} m",
         sigma_factor(AccuracyMeaning::drms) * figure, read);
   if (per_axis_with_radial_ > 0 && (!version || *version >= kDilutionSince))
     return fmt::format(

@@ -242,8 +242,8 @@ void UbxSensorDecoder::end() {
   if (meetings > 0)
     note(fmt::format(
         "the {} of ESF-MEAS were placed on GNSS time by the order of the messages (drift over the "
-        "log {:.3f} s); they come out too early by what navigation messages lag behind: "
-        "hundredths of a second with HNR-PVT, up to half a second without",
+        "log {:.3f} s); they are too early by the delay of the navigation messages: hundredths of a "
+        "second with HNR-PVT, up to half a second without",
         *calibrated_ ? "calibrated time tags" : "time tags", static_cast<double>(clock_.drift_ns()) * 1e-9));
   if (clock_.jumps() > 0)
     note(fmt::format("the sensors' clock jumped or began anew {} times", clock_.jumps()));

@@ -15,10 +15,11 @@ std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const
   }
   if (check.not_finite == 0) {
     return fmt::format(
-        "{} of {}: differences of the error say nothing in any trial; is it smooth, and computed in double?",
+        "{} of {}: no trial has usable differences of the error; make the error smooth "
+        "and compute it in double",
         tag, origin);
   }
-  return fmt::format("{} of {}: error or Jacobian is no number in {} of {} trials; let the error stay finite",
+  return fmt::format("{} of {}: error or Jacobian is not finite in {} of {} trials; keep the error finite",
                      tag, origin, check.not_finite, check.trials);
 }
 

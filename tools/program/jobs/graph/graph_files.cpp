@@ -41,9 +41,8 @@ void add_output_format(CLI::App& command, OutputFormat& output, bool with_profil
       ->check(one_of("format", format_names()));
   if (!with_profile) return;
   command
-      .add_option(
-          "--profile", output.profile,
-          "Write what this program's reader understands, and refuse what would move the minimum there")
+      .add_option("--profile", output.profile,
+                  "Write for the reader of this program; refuse a graph whose minimum would move there")
       ->check(one_of("profile", profile_names()));
 }
 

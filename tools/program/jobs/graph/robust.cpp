@@ -88,8 +88,8 @@ void add_robust_options(CLI::App& command, RobustChoice& choice) {
       ->capture_default_str();
   command
       .add_option("--trusted", choice.trusted,
-                  "Edges that get no loss and are no outliers: odometry (between consecutive ids), none, or "
-                  "those of a TAG")
+                  "Edges that have no loss and are never outliers: odometry (between consecutive "
+                  "ids), none, or all edges of a TAG")
       ->type_name("odometry|none|TAG")
       ->capture_default_str();
   command
