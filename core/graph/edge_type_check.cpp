@@ -26,7 +26,7 @@ Joined add_vertices(const TypeRegistry& registry, const EdgeType& type, const Ed
     const VertexType* vertex = registry.find_vertex(tag);
     if (vertex == nullptr)
       throw UsageError(type.tag + ": joins " + tag +
-                       ", which is not registered; load the plugin that brings it");
+                       ", which is not registered; load the plugin that defines it");
     std::vector<double> value;
     for (const std::string& name : vertex->value_names) {
       value.push_back(name == "heading" ? scenario.heading + scenario.spread * unit(random)

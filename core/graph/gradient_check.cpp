@@ -125,7 +125,7 @@ std::string describe(const Graph& graph, std::size_t b, const GradientCheck& che
   const std::string column =
       named ? " (" + type.value_names[static_cast<std::size_t>(check.column)] + ")" : std::string();
   char numbers[120];
-  std::snprintf(numbers, sizeof numbers, "given %.10g, differences of the error say %.10g", check.given,
+  std::snprintf(numbers, sizeof numbers, "given %.10g, differences of the error give %.10g", check.given,
                 check.reference);
   return graph.edge_type(b).tag + " number " + std::to_string(check.edge + 1) + ": Jacobian by vertex " +
          std::to_string(check.vertex + 1) + " (" + type.tag + " " + to_string(graph.id(v)) + "), row " +

@@ -48,7 +48,7 @@ inline constexpr double kGradientTolerance = 1e-5;
 [[nodiscard]] GradientCheck check_gradients(const Graph& graph, std::size_t batch, std::size_t most);
 
 /// Returns "EDGE_X number 3: Jacobian by vertex 2 (VERTEX_SE2 17), row 0, column 2 (heading): given
-/// 1.5, differences of the error say 0.5".
+/// 1.5, differences of the error give 0.5".
 [[nodiscard]] std::string describe(const Graph& graph, std::size_t batch, const GradientCheck& check);
 
 }  // namespace waymark

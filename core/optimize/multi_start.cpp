@@ -109,7 +109,7 @@ class MultiStart {
 std::vector<double> MultiStart::make(const StartType& start) {
   graph_.set_values(file_values_);
   InitialValues made = start.make(graph_);
-  if (made.values.empty()) notes_.push_back("start " + start.name + " could not be made: " + made.note);
+  if (made.values.empty()) notes_.push_back("initial guess " + start.name + " cannot be made: " + made.note);
   return std::move(made.values);
 }
 
@@ -131,7 +131,7 @@ void MultiStart::try_from(const std::string& start, const std::vector<double>& v
     // The gauge is judged at these values. If, for example, all poses are at one place, they seem
     // to say nothing about their headings.
     if (!refusal_) refusal_ = std::current_exception();
-    notes_.push_back("start " + start + " could not be used: " + error.what());
+    notes_.push_back("initial guess " + start + " cannot be used: " + error.what());
     return;
   }
   iterations_ += summary.iterations;
@@ -215,7 +215,7 @@ void MultiStart::describe() {
   notes.insert(notes.end(), notes_.begin(), notes_.end());
   if (result_.trials.size() == 1) {
     if (result_.start == kFile) return;
-    std::string note = "started from " + result_.start;
+    std::string note = "initial guess " + result_.start;
     if (!refusal_) {  // otherwise chi2 at these values was not computed
       note += ": chi2 " + number("%.6g", result_.summary.initial_chi2) + " there, " +
               number("%.6g", file_chi2_) + " at the values given";
@@ -224,7 +224,7 @@ void MultiStart::describe() {
     return;
   }
   std::string note =
-      "the first start ended at no minimum or at one of implausible chi2, so others were tried:";
+      "the first initial guess led to no minimum, or to one of implausible chi2, so others were tried:";
   for (const StartTrial& trial : result_.trials) {
     note += " " + trial.start + " (chi2 " + number("%.6g", trial.initial_chi2) + " -> " +
             number("%.6g", trial.final_chi2) + " in " + std::to_string(trial.iterations) + ")";

@@ -251,7 +251,7 @@ Summary Loop::run() {
   best_.reserve(values_.size());  // not inside an iteration; untouched pages use no memory yet
   chi2_ = best_chi2_ = summary_.initial_chi2 = linearize(values_);
   if (!std::isfinite(chi2_)) {
-    finish(Termination::non_finite, "chi2 is not finite at the start");
+    finish(Termination::non_finite, "chi2 of the initial guess is not finite");
   } else if (summary_.unknowns == 0) {
     finish(Termination::nothing_to_do, "nothing to do: every vertex is fixed, held or without edges");
   }
@@ -270,8 +270,8 @@ Summary Loop::run() {
   // Full steps that went uphill may end at a minimum above earlier values. The values that are then
   // returned are no minimum.
   if (summary_.converged() && chi2_ - best_chi2_ > options_.decrement_tolerance * (1 + best_chi2_)) {
-    finish(Termination::stalled, text("the steps ended at a stationary point of chi2 ", chi2_,
-                                      ", above the lowest on the way, ", best_chi2_, ", which is kept"));
+    finish(Termination::stalled, text("the steps ended at a stationary point with chi2 ", chi2_,
+                                      "; the lowest chi2 on the way, ", best_chi2_, ", is kept"));
   }
   // Damping hides an undetermined unknown. If no minimum was reached, the message names it.
   const bool gave_up =

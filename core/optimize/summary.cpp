@@ -26,7 +26,7 @@ std::string full_text(const Summary& s, const std::string& start) {
   text += "chi2        " + chi2_text(s.initial_chi2) + " -> " + chi2_text(s.final_chi2) +
           "   (errors: " + s.error_forms + ")\n";
   text += "iterations  " + std::to_string(s.iterations) + "   " +
-          (start.empty() ? "" : "start " + start + ", ") +
+          (start.empty() ? "" : "initial guess " + start + ", ") +
           (s.algorithm.empty() ? "" : "algorithm " + s.algorithm + ", ") + "solver " + s.solver +
           ", ordering " + s.ordering + "\n";
   text += "size        " + std::to_string(s.vertices) + " vertices, " + std::to_string(s.edges) + " edges, " +
@@ -52,8 +52,8 @@ std::string Summary::full() const {
 std::string MultiStartSummary::full() const {
   std::string text = full_text(summary, start);
   if (trials.size() > 1) {
-    text += "all starts  " + seconds_text(total_seconds) + " s for " + std::to_string(trials.size()) +
-            " of them\n";
+    text += "guesses     " + seconds_text(total_seconds) + " s for " + std::to_string(trials.size()) +
+            " initial guesses\n";
   }
   return text;
 }

@@ -56,7 +56,8 @@ template <typename Values>
 const auto& declared(const Values& values, const std::string& owner, std::string_view name) {
   const auto found = values.find(name);
   if (found == values.end())
-    throw std::logic_error(owner + ": option '" + std::string(name) + "' is not declared as it is read");
+    throw std::logic_error(owner + ": option '" + std::string(name) +
+                           "' is not declared with the type that is read");
   return found->second;
 }
 

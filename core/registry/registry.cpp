@@ -79,13 +79,13 @@ void TypeRegistry::add_log_reader(LogReaderType type) {
   add(log_readers_, std::move(type), origin_, "log reader");
 }
 void TypeRegistry::add_start(StartType type) {
-  add(starts_, std::move(type), origin_, "start");
+  add(starts_, std::move(type), origin_, "initial guess");
 }
 
 void TypeRegistry::add_plugin(PluginRecord plugin) {
   for (const PluginRecord& other : plugins_) {
     if (other.name != plugin.name) continue;
-    throw UsageError("plugin '" + plugin.name + "' (" + plugin.place + ") is already there (" + other.place +
+    throw UsageError("plugin '" + plugin.name + "' (" + plugin.place + ") is already loaded (" + other.place +
                      "); load only one of them, or rename it in its WAYMARK_PLUGIN line");
   }
   plugins_.push_back(std::move(plugin));
@@ -109,7 +109,7 @@ std::unique_ptr<LinearSolver> TypeRegistry::make_linear_solver(std::string_view 
   return require(linear_solvers_, name, "linear solver").make();
 }
 InitialValues TypeRegistry::make_start(std::string_view name, const Graph& graph) const {
-  return require(starts_, name, "start").make(graph);
+  return require(starts_, name, "initial guess").make(graph);
 }
 std::unique_ptr<Algorithm> TypeRegistry::make_algorithm(std::string_view name, const Options& options) const {
   return make(require(algorithms_, name, "algorithm"), options);

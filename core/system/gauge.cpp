@@ -96,10 +96,10 @@ int rank_of(const Eigen::Matrix3d& information) {
 
 [[noreturn]] void refuse(const Graph& graph, VertexIndex v, int rank) {
   throw InputError(
-      "vertex " + to_string(graph.id(v)) + " and what is joined to it are anchored in " +
+      "vertex " + to_string(graph.id(v)) + " and the vertices joined to it are anchored in only " +
       std::to_string(rank) +
-      " of 3 rigid motions only, so the solution is not determined (typical: a single GNSS fix, or fixes "
-      "at one place); add fixes at another place, a heading, or FIX one vertex");
+      " of 3 rigid motions, so the solution is not determined (typical: a single GNSS fix, or fixes "
+      "at one place); add fixes at another place or a heading, or FIX one vertex");
 }
 
 }  // namespace

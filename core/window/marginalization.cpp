@@ -176,8 +176,9 @@ void Elimination::check_determined(VertexIndex v, const Eigen::MatrixXd& triangl
   }
   if (determined) return;
   throw InputError("vertex " + to_string(graph_.id(v)) +
-                   " cannot be marginalised: the edges that would go do not determine it, and it is joined "
-                   "to none that stay; add a prior or a fix, FIX a vertex, or hold what find_gauge names");
+                   " cannot be marginalised: the edges that would be removed do not determine it, "
+                   "and no edge joins it to a vertex that stays; add a prior or a fix, FIX a "
+                   "vertex, or hold the vertices that find_gauge names");
 }
 
 // Eliminates v by QR of all rows that contain it. The rows with R_vv determine v, and vanish at the

@@ -156,21 +156,26 @@ class GnssCorrelated final : public GnssModeling {
 
 std::vector<OptionInfo> options() {
   return {
-      {"white_sigma", "1.5", "m", OptionRange{1e-3, 1e3}, "scale of the part that is new in every fix",
+      {"white_sigma", "1.5", "m", OptionRange{1e-3, 1e3}, "scale of the error that is new in every fix",
        NoisePrior{1.5, 1}},
       {"tails", "student", "", OptionWords{"student", "normal"},
-       "of that part: 'student', Student's t of four degrees of freedom, or 'normal'"},
-      {"multipath_sigma", "4", "m", OptionRange{1e-3, 1e3}, "of the part that lasts for seconds",
+       "distribution of the error that is new in every fix: 'student', Student's t of four degrees "
+       "of freedom, or 'normal'"},
+      {"multipath_sigma", "4", "m", OptionRange{1e-3, 1e3}, "sigma of the error that lasts for seconds",
        NoisePrior{4, 0.6}},
-      {"multipath_time", "40", "s", OptionRange{1, 1e4}, "its correlation time", NoisePrior{40, 0.5}},
-      {"bias_floor", "1.5", "m", OptionRange{1e-3, 1e3}, "of the part that lasts for minutes, at least"},
-      {"bias_share", "0.7", "", OptionRange{0, 10}, "of multipath_sigma that is added to it"},
-      {"bias_time", "2000", "s", OptionRange{1, 1e6}, "its correlation time"},
+      {"multipath_time", "40", "s", OptionRange{1, 1e4}, "correlation time of the multipath error",
+       NoisePrior{40, 0.5}},
+      {"bias_floor", "1.5", "m", OptionRange{1e-3, 1e3},
+       "smallest sigma of the error that lasts for minutes"},
+      {"bias_share", "0.7", "", OptionRange{0, 10},
+       "share of multipath_sigma that is added to bias_floor in quadrature"},
+      {"bias_time", "2000", "s", OptionRange{1, 1e6}, "correlation time of the bias"},
       {"accuracy_exponent", "0.5", "", OptionRange{0, 1},
-       "how much the claimed accuracies count: 0 not, 1 as claimed", NoisePrior{0.5, 0.3, true}},
+       "weight of the claimed accuracies: 0 ignores them, 1 takes them as they are",
+       NoisePrior{0.5, 0.3, true}},
       {"time_offset", "off", "", OptionWords{"off", "constant"},
-       "how late the fixes are against the odometry: 'off', or estimated 'constant'"},
-      {"time_offset_sigma", "0.3", "s", OptionRange{1e-6, 100}, "sigma of its prior about 0"},
+       "delay of the fixes against the odometry: 'off', or 'constant' (estimated)"},
+      {"time_offset_sigma", "0.3", "s", OptionRange{1e-6, 100}, "sigma of the prior of time_offset about 0"},
   };
 }
 

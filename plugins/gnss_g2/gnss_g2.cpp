@@ -56,10 +56,10 @@ class GnssG2 final : public GnssModeling {
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = gnss_options();
   all.push_back({"identity_information", "1e6", "1/m^2, 1/rad^2", OptionRange{1, 1e12},
-                 "of the (virtual) identity edges"});
+                 "information of the (virtual) identity edges"});
   all.push_back(
       {"nodes_begin", "fix", "", OptionWords{"fix", "pose"},
-       "where the free nodes begin: at the 'fix', or at the 'pose' of the vehicle; the minimum is the same"});
+       "initial guess of the free nodes: the 'fix', or the 'pose' of the vehicle; the minimum is the same"});
   return all;
 }
 

@@ -18,12 +18,12 @@ constexpr double kLongestWay_s = 0.5;
 
 std::vector<OptionInfo> options() {
   const OptionWords on_or_off = {"on", "off"};
-  return {
-      {"course", "on", "", on_or_off, "use the course: 'on' or 'off'"},
-      {"speed", "on", "", on_or_off, "use the Doppler speed: 'on' or 'off'"},
-      {"min_speed", "3", "m/s", OptionRange{0.1, 100}, "below this |speed| of the odometry neither is used"},
-      {"course_sigma_deg", "2", "deg", OptionRange{1e-3, 180}, "sigma of courses that come without"},
-      {"speed_sigma", "0.2", "m/s", OptionRange{1e-4, 100}, "sigma of speeds that come without"}};
+  return {{"course", "on", "", on_or_off, "use the course: 'on' or 'off'"},
+          {"speed", "on", "", on_or_off, "use the Doppler speed: 'on' or 'off'"},
+          {"min_speed", "3", "m/s", OptionRange{0.1, 100},
+           "below this |speed| of the odometry neither course nor speed is used"},
+          {"course_sigma_deg", "2", "deg", OptionRange{1e-3, 180}, "sigma of courses that state none"},
+          {"speed_sigma", "0.2", "m/s", OptionRange{1e-4, 100}, "sigma of speeds that state none"}};
 }
 
 class GnssVelocity final : public SensorModel {

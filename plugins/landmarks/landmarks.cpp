@@ -16,21 +16,21 @@ constexpr double kDegree = std::numbers::pi / 180;
 enum Column : std::size_t { kId, kX, kY, kRange, kBearing, kSigma, kSigmaBearing, kMapX, kMapY };
 
 std::vector<SensorColumn> columns() {
-  return {{"id", "1", "", true, "which landmark: a whole number"},
+  return {{"id", "1", "", true, "id of the landmark, a whole number"},
           {"x", "m", "", false, "seen from the sensor: forward"},
           {"y", "m", "", false, "to the left"},
           {"range", "m", "", false, "distance, instead of x and y"},
           {"bearing", "rad", "ccw", false, "direction from straight ahead, with range"},
           {"sigma", "m", "", false, "standard deviation of x and y, or of the range"},
           {"sigma_bearing", "rad", "", false, "standard deviation of the bearing"},
-          {"map_x", "m", "", false, "where the landmark is known to be, in the frame: x"},
+          {"map_x", "m", "", false, "known position of the landmark in the frame: x"},
           {"map_y", "m", "", false, "y"}};
 }
 
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = {
       {"sigma", "0.2", "m", OptionRange{1e-6, 1e4},
-       "sigma of x and y, or of the range, where the row gives none"},
+       "sigma of x and y, or of the range, if the row states none"},
       {"sigma_bearing_deg", "0.5", "deg", OptionRange{1e-4, 180}, "sigma of bearings that state none"}};
   for (const OptionInfo& option : mount_options()) all.push_back(option);
   return all;

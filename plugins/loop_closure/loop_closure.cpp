@@ -24,9 +24,9 @@ std::vector<SensorColumn> columns() {
 
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = {
-      {"sigma", "0.1", "m", OptionRange{1e-6, 1e4}, "sigma of x and y where the row gives none"},
+      {"sigma", "0.1", "m", OptionRange{1e-6, 1e4}, "sigma of x and y if the row states none"},
       {"sigma_heading_deg", "0.5", "deg", OptionRange{1e-4, 180},
-       "sigma of the heading where the row gives none"}};
+       "sigma of the heading if the row states none"}};
   for (const OptionInfo& option : mount_options()) all.push_back(option);
   return all;
 }

@@ -93,34 +93,39 @@ constexpr const char* kGapFactor = "gap_noise_factor";
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = {
       {"noise", "process", "", OptionWords{"process", "paper"},
-       "'process': additive process noise; 'paper': 1.1 % per edge, at least 1e-5 m^2 and 1e-6 rad^2, gaps "
-       "alike"},
+       "noise model: 'process', additive process noise; 'paper', 1.1 % per edge, at least 1e-5 m^2 "
+       "and 1e-6 rad^2, also across gaps"},
       {"longitudinal_variance_per_m", "2e-3", "m^2/m", OptionRange{1e-9, 1},
-       "variance of the distance driven", NoisePrior{2e-3, 0.8}},
-      {"lateral_variance_per_m", "5e-4", "m^2/m", OptionRange{1e-9, 1}, "variance across the way"},
+       "variance along the way per metre driven", NoisePrior{2e-3, 0.8}},
+      {"lateral_variance_per_m", "5e-4", "m^2/m", OptionRange{1e-9, 1},
+       "variance across the way per metre driven"},
       {"position_variance_per_s", "1e-4", "m^2/s", OptionRange{1e-9, 1},
-       "variance of the position by time, both axes"},
+       "variance of each axis of the position per second"},
       {"heading_variance_per_m", "2.05e-7", "rad^2/m", OptionRange{0, 1},
        "heading variance per metre driven"},
-      {"heading_variance_per_s", "1.5e-6", "rad^2/s", OptionRange{1e-12, 1},
-       "variance of the heading by time", NoisePrior{4e-6, 1.4}},
-      {kGapFactor, "100", "", OptionRange{1, 1e6}, "factor on all of them across a gap of the odometry"},
+      {"heading_variance_per_s", "1.5e-6", "rad^2/s", OptionRange{1e-12, 1}, "heading variance per second",
+       NoisePrior{4e-6, 1.4}},
+      {kGapFactor, "100", "", OptionRange{1, 1e6},
+       "factor on the process noise across a gap of the odometry"},
       {"standstill_speed", "0.05", "m/s", OptionRange{0, 1}, "below this |speed| the vehicle stands"},
-      {"standstill_position_variance_per_s", "1e-5", "m^2/s", OptionRange{1e-9, 1}, "of a standing vehicle"},
+      {"standstill_position_variance_per_s", "1e-5", "m^2/s", OptionRange{1e-9, 1},
+       "position variance per second at rest"},
       {"standstill_heading_variance_per_s", "1e-6", "rad^2/s", OptionRange{1e-12, 1},
-       "of a standing vehicle"},
+       "heading variance per second at rest"},
       {"gyro_at_rest_variance_per_s", "1.5e-6", "rad^2/s", OptionRange{1e-12, 1},
-       "of the turn that a standing gyro reads"},
+       "variance of the turn that the gyro reads at rest"},
       {"standstill_largest_variance", "1e-5", "m^2, rad^2", OptionRange{1e-9, 1},
-       "per edge, so that information is at least 1e5"},
+       "largest variance of an edge at rest, so that its information is at least 1e5"},
   };
   for (const OptionInfo& option :
        state_options("gyro_bias", "rad/s", "0.01", "2e-6", "reading of the gyro at rest"))
     all.push_back(option);
-  for (const OptionInfo& option :
-       state_options("speed_scale", "1", "0.01", "2e-4", "part of the speed that the odometry does not show"))
+  for (const OptionInfo& option : state_options("speed_scale", "1", "0.01", "2e-4",
+                                                "scale error of the speed, true speed = (1 "
+                                                "+ scale) reading"))
     all.push_back(option);
-  all.push_back({"calibration_period", "10", "s", OptionRange{0.1, 1e4}, "of the values of a random walk"});
+  all.push_back(
+      {"calibration_period", "10", "s", OptionRange{0.1, 1e4}, "time between two values of a random walk"});
   return all;
 }
 

@@ -160,11 +160,12 @@ class Dogleg final : public Algorithm {
 AlgorithmType dogleg() {
   const std::vector<OptionInfo> options = {
       {"scaling", "hessian", "", OptionWords{"hessian", "none"},
-       "norm of the trust region: 'hessian' scales by diag(H)^(1/2), 'none' adds metres and radians as they "
-       "are (g2o)"},
+       "norm of the trust region: 'hessian' scales by diag(H)^(1/2), 'none' mixes metres and "
+       "radians without scaling (g2o)"},
       {"radius", "newton", "", OptionWords{"newton", "absolute"},
-       "'newton': counted in lengths of the first Newton step, bound to the steps' lengths; 'absolute': a "
-       "number by itself, halved by every poor or failed step (g2o)"},
+       "unit of the trust radius: 'newton', the length of the first Newton step, and the radius "
+       "follows the lengths of the steps; 'absolute', the norm itself, and every poor or failed "
+       "step halves the radius (g2o)"},
       {"initial_radius", "1", "", OptionRange{1e-6, 1e12},
        "initial trust radius, in the unit of 'radius'; g2o uses 1e4"}};
   return {

@@ -118,9 +118,9 @@ class LevenbergMarquardt final : public Algorithm {
 AlgorithmType levenberg_marquardt() {
   const std::vector<OptionInfo> options = {
       {"initial_damping", "1e-8", "", OptionRange{1e-12, 1e6},
-       "first damping factor, relative to the scaling"},
+       "initial damping factor, relative to the scaling"},
       {"scaling", "marquardt", "", OptionWords{"marquardt", "identity"},
-       "what the damping multiplies: 'marquardt' diag(H), 'identity' the identity"}};
+       "matrix that the damping factor multiplies: 'marquardt', diag(H); 'identity', the identity matrix"}};
   return {"levenberg_marquardt", "damped Gauss-Newton steps, damping by Nielsen's rule", options,
           [](const CheckedOptions& checked) {
             return std::make_unique<LevenbergMarquardt>(LevenbergMarquardtOptions{

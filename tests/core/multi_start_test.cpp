@@ -176,7 +176,7 @@ TEST_CASE("default start: poses on one heap are no obstacle, an undetermined gra
   CHECK(result.start == "linear");
   CHECK(result.summary.final_chi2 == Approx(optimum).epsilon(1e-9));
   CHECK(heap.chi2() == Approx(optimum).epsilon(1e-9));
-  CHECK(result.summary.notes.front().find("start file could not be used: ") == 0);
+  CHECK(result.summary.notes.front().find("initial guess file cannot be used: ") == 0);
 
   Graph one_fix = make_drive(registry, 100).graph;
   const VertexIndex origin = one_fix.add_vertex<VertexSe2>(VertexId{1000}, {0, 0, 0});

@@ -137,7 +137,7 @@ TEST_CASE("modules: a wrong Jacobian of a plugin is reported with the entry, bot
   CHECK_FALSE(check.sound());
   CHECK_THAT(describe(check.graph, 0, check.worst),
              Contains("EDGE_SAMPLE") && Contains("vertex 1 (VERTEX_SE2") && Contains("row 1, column 1 (y)") &&
-                 Contains("given -1, differences of the error say 1"));
+                 Contains("given -1, differences of the error give 1"));
 }
 
 TEST_CASE("modules: a folder or a pipe of a plugin's name is refused without being read") {

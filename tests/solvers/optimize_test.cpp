@@ -60,8 +60,8 @@ TEST_CASE("front door: a summary prints itself briefly and in full") {
         "size        2 vertices, 1 edges, 3 unknowns, 6 numbers in the factor\n"
         "time        0.013 s (structure 0.000, linearise 0.000, solve 0.000)\n");
   MultiStartSummary several{.summary = summary, .start = "linear", .trials = {{}, {}}, .total_seconds = 1};
-  CHECK_THAT(several.full(), Contains("iterations  1   start linear, solver"));
-  CHECK_THAT(several.full(), Contains("all starts  1.000 s for 2 of them\n"));
+  CHECK_THAT(several.full(), Contains("iterations  1   initial guess linear, solver"));
+  CHECK_THAT(several.full(), Contains("guesses     1.000 s for 2 initial guesses\n"));
 }
 
 TEST_CASE("front door: a kept structure that does not follow the graph is refused") {

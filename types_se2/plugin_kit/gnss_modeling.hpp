@@ -46,11 +46,13 @@ inline VertexIndex add_origin(Graph& graph) {
 /// Returns the options that all modelings share: the form of the error of a fix, and whether its
 /// time offset is estimated.
 [[nodiscard]] inline std::vector<OptionInfo> gnss_options() {
-  return {{"error", "decoupled", "", OptionWords{"decoupled", "literal"},
-           "'decoupled': p - z in frame axes; 'literal': the paper's log with heading 0"},
-          {"time_offset", "off", "", OptionWords{"off", "constant"},
-           "how late the fixes are against the odometry: 'off', or estimated 'constant'"},
-          {"time_offset_sigma", "0.3", "s", OptionRange{1e-6, 100}, "sigma of its prior about 0"}};
+  return {
+      {"error", "decoupled", "", OptionWords{"decoupled", "literal"},
+       "error of a fix: 'decoupled', p - z in frame axes; 'literal', the paper's "
+       "logarithm with heading 0"},
+      {"time_offset", "off", "", OptionWords{"off", "constant"},
+       "delay of the fixes against the odometry: 'off', or 'constant' (estimated)"},
+      {"time_offset_sigma", "0.3", "s", OptionRange{1e-6, 100}, "sigma of the prior of time_offset about 0"}};
 }
 [[nodiscard]] inline bool is_literal(const CheckedOptions& options) {
   return options.word("error") == "literal";

@@ -248,8 +248,7 @@ class LinearStart {
 }  // namespace
 
 StartType linear_start() {
-  return {"linear",
-          "headings from a linear system (anchored by positions where there are any), then positions",
+  return {"linear", "headings from a linear system (anchored by positions, if there are any), then positions",
           [](const Graph& graph) { return LinearStart(graph).make(); }};
 }
 

@@ -249,7 +249,7 @@ TEST_CASE("bench: refuses wrong words and files before it measures") {
       {{"a.graph", "-a", "dogleg,newton"}, 2, "unknown algorithm 'newton'; there are: "},
       {{"a.graph", "--start", "middle"},
        2,
-       "unknown start 'middle'; there are: file, linear, spanning_tree, odometry"},
+       "unknown initial guess 'middle'; there are: file, linear, spanning_tree, odometry"},
       {{"a.graph", "--peer", "g2o"}, 2, "unknown peer 'g2o'; there are: ceres, ceres_dogleg"},
       {{"a.graph", "--repeat", "0"}, 2, "--repeat: must be at least 1, got 0"},
       {{"a.graph", "--tolerance", "0"}, 2, "--tolerance: must be above 0, got 0"},

@@ -169,13 +169,14 @@ TEST_CASE("optimize: the start is chosen, and what was chosen is said") {
   CHECK(nlohmann::json::parse(as_is.out).at("initial_chi2") > 1);
   const RunResult unknown = run({"optimize", input, "-o", folder + "c.graph", "--start", "best"});
   CHECK(unknown.code == 2);
-  CHECK(unknown.err ==
-        "waymark: error: unknown start 'best'; there are: auto, file, linear, spanning_tree, odometry\n");
+  CHECK(
+      unknown.err ==
+      "waymark: error: unknown initial guess 'best'; there are: auto, file, linear, spanning_tree, odometry\n");
   const std::string alone = write_text(folder + "alone.g2o", "VERTEX_SE2 0 0 0 0\n");
   const RunResult none = run({"optimize", alone, "-o", folder + "c.graph", "--start", "odometry"});
   CHECK(none.code == 3);
-  CHECK(
-      contains(none.err, "start odometry cannot be made: no edge gives the motion from one pose to another"));
+  CHECK(contains(none.err,
+                 "initial guess odometry cannot be made: no edge gives the motion from one pose to another"));
   CHECK_FALSE(exists(folder + "c.graph"));
 }
 

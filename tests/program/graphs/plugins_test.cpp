@@ -79,7 +79,7 @@ TEST_CASE("plugins: one that is asked for comes before the installed one of its 
   CHECK(result.code == 0);
   CHECK(contains(result.out, "sample 1.2.3, " + module_file("sound")));
   CHECK(contains(result.err,
-                 "warning: plugin left out: plugin 'sample' (" + folder + "sound.so) is already there"));
+                 "warning: plugin left out: plugin 'sample' (" + folder + "sound.so) is already loaded"));
 }
 
 TEST_CASE("plugins: a drive.yaml names its plugins, beside itself or by name") {
@@ -126,9 +126,9 @@ TEST_CASE("derivatives: every registered type is checked without a graph, and a 
   const RunResult wrong = run({"check", "--derivatives", "--plugin", module_file("wrong_jacobian")});
   CHECK(wrong.code == 3);
   CHECK(contains(wrong.out, "problem: EDGE_SAMPLE of sample, scenario"));
-  CHECK(contains(
-      wrong.out,
-      "Jacobian by vertex 1 (VERTEX_SE2 0), row 1, column 1 (y): given -1, differences of the error say 1"));
+  CHECK(contains(wrong.out,
+                 "Jacobian by vertex 1 (VERTEX_SE2 0), row 1, column 1 (y): given -1, differences "
+                 "of the error give 1"));
   // The same entry, in a graph.
   const std::string graph = write_text(fresh_folder() + "a.graph",
                                        "GRAPH 1\nVERTEX_SE2 7 1 2 0\nEDGE_SAMPLE 7 3 4 1 0 1\n"
