@@ -253,11 +253,11 @@ class GraphReader {
     }
     if (is_one_of(tag, kToroTags)) {
       line.fail("tag " + quote_word(tag) +
-                " of TORO or GTSAM, which are not guessed (order and meaning of their numbers differ); a "
-                "TORO file is read with --input-format toro, GTSAM's covariances with --input-format "
-                "covariance");
+                " is of TORO or GTSAM, which differ in the order and meaning of the numbers; name "
+                "the format: --input-format toro, or --input-format covariance for GTSAM");
     }
-    if (tag == kOffsetTag) line.fail(join(tag, "a .graph file has the offsets in its edges"));
+    if (tag == kOffsetTag)
+      line.fail(join(tag, "a .graph file has the offsets in its edges; remove this line"));
     line.fail("unknown tag " + quote_word(tag) + "; if a plugin defines it, load it with --plugin");
   }
 

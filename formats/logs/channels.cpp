@@ -23,7 +23,7 @@ const std::vector<SensorColumn>& odometry_channels() {
       {"acceleration_x", "m/s^2", "", false, "specific force along the sensor's x axis"},
       {"acceleration_y", "m/s^2", "", false, "specific force along the sensor's y axis"},
       {"acceleration_z", "m/s^2", "", false, "specific force along the sensor's z axis"},
-      {"reverse", "1", "", false, "not 0: driving backwards"},
+      {"reverse", "1", "", false, "not 0 if the vehicle drives backwards"},
   };
   return channels;
 }

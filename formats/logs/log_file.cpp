@@ -74,11 +74,11 @@ class LogFile {
     std::string_view message = ::gzerror(file_, &code);
     if (code == Z_ERRNO) fail_read(path_, errno);
     if (code == Z_BUF_ERROR) {
-      trouble_ = "the compressed file breaks off; what came before is used";
+      trouble_ = "the compressed file is cut off; the part before is used";
     } else if (code != Z_OK && code != Z_STREAM_END) {
       if (message.starts_with("<fd:"))
         message.remove_prefix(std::min(message.find(": ") + 2, message.size()));
-      trouble_ = fmt::format("the compressed file is damaged ({}); what came before is used", message);
+      trouble_ = fmt::format("the compressed file is damaged ({}); the part before is used", message);
     }
   }
 
@@ -106,12 +106,12 @@ constexpr std::array<ForeignFormat, 5> kForeign{{
 std::string what_it_may_be(std::string_view head) {
   for (const ForeignFormat& format : kForeign) {
     if (head.starts_with(format.begins))
-      return fmt::format("it is {}, which is not read here; {}", format.name, format.remedy);
+      return fmt::format("it is {}, which is not supported; {}", format.name, format.remedy);
   }
   if (head.substr(0, 100).find("RINEX VERSION") != std::string_view::npos)
-    return "it is a RINEX file of raw observations, which is not read here; RTKLIB's rnx2rtkp computes "
-           "positions from it";
-  return "state its 'format'; `waymark info` lists those there are";
+    return "it is a RINEX file of raw observations, which is not supported; RTKLIB's rnx2rtkp "
+           "computes positions from it";
+  return "state its 'format'; `waymark info` lists all formats";
 }
 
 /// Returns the file itself. For a folder it returns the files inside, in order of name.

@@ -244,12 +244,13 @@ TEST_CASE("csv: a fix without accuracy takes the stated default, or is corrupt")
   REQUIRE(data.fixes.size() == 3);
   CHECK(data.fixes[0].covariance_en(0, 0) == 25);
   CHECK(data.fixes[1].covariance_en(1, 1) == 25);
-  CHECK(data.notes.back() == "log.csv: 2 fixes give no accuracy, the stated default sigma of 5 m is used");
+  CHECK(data.notes.back() == "log.csv: 2 fixes have no accuracy; the stated default sigma of 5 m is used");
 
   const LogData strict = read(text, gnss(0));
   CHECK(strict.fixes.size() == 1);
   CHECK(strict.corrupt == 2);
-  CHECK(strict.corrupt_examples[0] == "log.csv:2:8: accuracy: no accuracy is given: state 'default_sigma'");
+  CHECK(strict.corrupt_examples[0] ==
+        "log.csv:2:8: accuracy: the log has no accuracy: state 'default_sigma'");
 
   CHECK_THROWS_MATCHES(
       read("time,latitude,longitude\n1,50,8\n", gnss(0)), InputError,

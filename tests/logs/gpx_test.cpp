@@ -69,7 +69,7 @@ TEST_CASE("gpx: a track point of 1.0") {
   CHECK(data.notes ==
         std::vector<std::string>{
             "run.gpx: heights are elevations as GPX has them, as a rule above the geoid",
-            "run.gpx: 1 fixes give HDOP only, which is multiplied with the stated range error of 5 m"});
+            "run.gpx: 1 fixes have only HDOP, which is multiplied by the stated range error of 5 m"});
 }
 
 TEST_CASE("gpx: speed and course of 1.1 stand in extensions, under any prefix") {
@@ -102,16 +102,16 @@ TEST_CASE("gpx: points of routes and waypoints are counted, not read") {
   CHECK(data.records == 1);
   CHECK(data.corrupt == 0);
   CHECK(data.kinds == std::map<std::string, std::size_t>{{"rtept", 2}, {"trkpt", 1}, {"wpt", 1}});
-  CHECK(data.notes.at(0) == "run.gpx: 2 route points and 1 waypoints are passed over: they record no drive");
+  CHECK(data.notes.at(0) == "run.gpx: 2 route points and 1 waypoints were skipped: they record no drive");
 }
 
 TEST_CASE("gpx: accuracy is HDOP times a stated error, else the stated default, else missing") {
   LogRequest request;
   CHECK(first_complaint(kOpen + kPoint + kClose, request) ==
-        "run.gpx:4:1: trkpt: no accuracy but HDOP is given: state 'range_error' to multiply it with, or "
-        "'default_sigma'");
+        "run.gpx:4:1: trkpt: the log has no accuracy but HDOP: state 'range_error', which is "
+        "multiplied by HDOP, or 'default_sigma'");
   CHECK(first_complaint(kOpen + replaced(kPoint, "<hdop>0.8</hdop>", "") + kClose, request) ==
-        "run.gpx:4:1: trkpt: no accuracy is given: state 'default_sigma'");
+        "run.gpx:4:1: trkpt: the log has no accuracy: state 'default_sigma'");
   request.default_sigma_m = 3;
   CHECK(decode(kOpen + kPoint + kClose, request).fixes.at(0).covariance_en(1, 1) == 9);
   request.default_sigma_m = 0;
@@ -139,13 +139,13 @@ TEST_CASE("gpx: of malformed XML the points before the place are used") {
   CHECK(data.records == 3);
   CHECK(data.corrupt_examples ==
         std::vector<std::string>{
-            "run.gpx:6:39: the XML is not well-formed: mismatched tag; what came before is used"});
+            "run.gpx:6:39: the XML is not well-formed: mismatched tag; the part before is used"});
   CHECK(decode(kOpen + kPoint).corrupt_examples ==
         std::vector<std::string>{
-            "run.gpx:5:1: the XML is not well-formed: no element found; what came before is used"});
+            "run.gpx:5:1: the XML is not well-formed: no element found; the part before is used"});
   CHECK_THROWS_MATCHES(GpxReader().read("", "run.gpx", {}), InputError,
-                       Message("run.gpx: none of 1 records could be used; first: run.gpx:1:1: the XML is not "
-                               "well-formed: no element found; what came before is used"));
+                       Message("run.gpx: none of 1 records could be used; first: run.gpx:1:1: the "
+                               "XML is not well-formed: no element found; the part before is used"));
   CHECK_THROWS_MATCHES(decode("<kml><trkpt/></kml>"), InputError,
                        Message("run.gpx: the root element is 'kml', expected 'gpx'"));
 }
@@ -156,20 +156,20 @@ TEST_CASE("gpx: a document that is built to exhaust memory ends the reading") {
       "\"&lol;&lol;\">]><gpx>&lol2;</gpx>";
   CHECK(
       first_complaint(bomb) ==
-      "run.gpx:1:37: a document type declaration, which could define endless text; what came before is used");
+      "run.gpx:1:37: a document type declaration, which could define endless text; the part before is used");
   std::string deep = kOpen + kPoint;
   for (int i = 0; i < 100; ++i) deep += "<a>";
   CHECK(decode(deep).fixes.size() == 1);
   CHECK(first_complaint(deep) ==
-        "run.gpx:5:184: elements are nested more than 64 deep; what came before is used");
+        "run.gpx:5:184: elements are nested more than 64 deep; the part before is used");
   CHECK(first_complaint(kOpen + kPoint + "<name x=\"" + std::string(3'000'000, 'x')) ==
-        "run.gpx:5:1: a tag of more than 1 MiB; what came before is used");
+        "run.gpx:5:1: a tag of more than 1 MiB; the part before is used");
   std::string names = kOpen + kPoint;
   for (int i = 0; i < 1100; ++i) names += "<n" + std::to_string(i) + "/>\n";
   CHECK(decode(names).fixes.size() == 1);
   // trk, trkseg, version, creator and xmlns are names of theirs too.
   CHECK(first_complaint(names).ends_with(
-      ":1: more than 1000 different names that GPX does not have; what came before is used"));
+      ":1: more than 1000 different names that GPX does not have; the part before is used"));
   // A long text is no number, and is not kept.
   const std::string text = kOpen + replaced(kPoint, "12.5", std::string(5'000'000, '1')) + kPoint + kClose;
   CHECK(decode(text).fixes.size() == 1);

@@ -275,7 +275,7 @@ TEST_CASE("hostile: the text of a line that is too long") {
   decoder->take(std::string((1U << 20U) + 1, '7'));
   decoder->finish();
   CHECK(decoder->data().corrupt_examples ==
-        std::vector<std::string>{"run.pos:2:1: a line of more than 1 MiB, which no record of a log is"});
+        std::vector<std::string>{"run.pos:2:1: a line of more than 1 MiB is no record of a log"});
 }
 
 TEST_CASE("hostile: lines may end with CR LF, LF or, but for a complaint, CR") {

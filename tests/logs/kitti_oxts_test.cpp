@@ -105,10 +105,10 @@ TEST_CASE("kitti_oxts by specification: before the unit has locked there is no f
 TEST_CASE("kitti_oxts: every record has its time stamp") {
   CHECK_THROWS_MATCHES(
       read(kFirst, request_of(StreamKind::gnss)), InputError,
-      Message("oxts/data: 1 records, but oxts/timestamps.txt has 2 time stamps; each record needs its own"));
+      Message("oxts/data: 1 records, but oxts/timestamps.txt has 2 time stamps; each record needs one"));
   CHECK_THROWS_MATCHES(
       read(kFirst + kFirst + kFirst, request_of(StreamKind::gnss)), InputError,
-      Message("oxts/data: 3 records, but oxts/timestamps.txt has 2 time stamps; each record needs its own"));
+      Message("oxts/data: 3 records, but oxts/timestamps.txt has 2 time stamps; each record needs one"));
   CHECK_THROWS_MATCHES(
       read(kFirst, request_of(StreamKind::gnss, "2011-09-26 13:02:25.9\n13:02\n")), InputError,
       Message("oxts/timestamps.txt:2:1: expected a time stamp like 2011-09-26 13:02:25.964389445, "
@@ -122,7 +122,7 @@ TEST_CASE("kitti_oxts: what is wrong with a record is said with its place, and t
   CHECK(first_complaint(replaced(kCounting, "6 7 8", "6 7 800"), StreamKind::odometry) ==
         "oxts/data:2:17: vf: 800 is outside -150 .. 150");
   CHECK(first_complaint(replaced(kCounting, "-0.5 2 0.1", "-0.5 0 0.1"), StreamKind::gnss) ==
-        "oxts/data:2:62: no accuracy is given: state 'default_sigma'");
+        "oxts/data:2:62: the log has no accuracy: state 'default_sigma'");
   const LogData data = read("1 2 3\n" + kFirst, request_of(StreamKind::odometry));
   CHECK(data.odometry.at(0).stamp.nanoseconds == 1'317'042'146'074'389'445);
 }

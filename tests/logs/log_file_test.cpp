@@ -86,7 +86,7 @@ TEST_CASE("log files: a compressed log that is cut gives what came before, and o
   const LogData data = read(path);
   CHECK(data.fixes.size() > 1000);
   CHECK(data.fixes.size() < 5000);
-  CHECK(data.corrupt_examples.at(0) == path + ": the compressed file breaks off; what came before is used");
+  CHECK(data.corrupt_examples.at(0) == path + ": the compressed file is cut off; the part before is used");
   CHECK(data.corrupt >= 1);
 }
 
@@ -101,17 +101,17 @@ TEST_CASE("log files: a damaged compressed log gives what came before, and says 
   const std::string first = data.corrupt_examples.at(0);
   CHECK(first.rfind(path + ": the compressed file is damaged (", 0) == 0);
   CHECK(first.find("<fd:") == std::string::npos);
-  CHECK(first.substr(first.size() - 27) == "); what came before is used");
+  CHECK(first.ends_with("); the part before is used"));
 }
 
 TEST_CASE("log files: a compressed log of which nothing is left") {
   const std::string head = content_of(gzip_of("head.gz", nmea_log(100))).substr(0, 14);
   const std::string path = file_with("nothing.gz", head);
   CHECK_THROWS_MATCHES(recognise_log(path, builtin_log_readers()), InputError,
-                       Message(path + ": the compressed file breaks off; what came before is used"));
+                       Message(path + ": the compressed file is cut off; the part before is used"));
   CHECK_THROWS_MATCHES(read(path), InputError,
                        Message(path + ": none of 1 records could be used; first: " + path +
-                               ": the compressed file breaks off; what came before is used"));
+                               ": the compressed file is cut off; the part before is used"));
 }
 
 TEST_CASE("log files: what cannot be read is named with the system's reason") {
@@ -147,24 +147,24 @@ TEST_CASE("log files: a format that is not read is named with what converts it")
   const std::string start = ": the log's format is not recognised: ";
   CHECK(refusal("") == ": the log is empty");
   CHECK(refusal("MDF     4.10") ==
-        start + "it is an MF4 (ASAM MDF) file, which is not read here; asammdf writes CSV from it");
+        start + "it is an MF4 (ASAM MDF) file, which is not supported; asammdf writes CSV from it");
   CHECK(refusal("LOGG\x90") ==
         start +
-            "it is a Vector BLF file, which is not read here; `python3 -m can.logconvert` "
-            "writes a candump log from it");
+            "it is a Vector BLF file, which is not supported; `python3 -m can.logconvert` writes a "
+            "candump log from it");
   CHECK(refusal("#ROSBAG V2.0\n") ==
         start +
-            "it is a ROS 1 bag, which is not read here; `rostopic echo -p -b FILE "
+            "it is a ROS 1 bag, which is not supported; `rostopic echo -p -b FILE "
             "/topic` writes CSV from it");
   CHECK(refusal("\x89MCAP0\r\n") ==
-        start + "it is an MCAP file, which is not read here; export its topics as CSV");
-  CHECK(refusal("PK\x03\x04") == start + "it is a zip archive, which is not read here; unpack it first");
+        start + "it is an MCAP file, which is not supported; export its topics as CSV");
+  CHECK(refusal("PK\x03\x04") == start + "it is a zip archive, which is not supported; unpack it first");
   CHECK(refusal("     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n") ==
         start +
-            "it is a RINEX file of raw observations, which is not read here; RTKLIB's rnx2rtkp computes "
-            "positions from it");
+            "it is a RINEX file of raw observations, which is not supported; RTKLIB's rnx2rtkp "
+            "computes positions from it");
   CHECK(refusal("nothing that anyone knows\n") ==
-        start + "state its 'format'; `waymark info` lists those there are");
+        start + "state its 'format'; `waymark info` lists all formats");
 }
 
 TEST_CASE("log files: two readers that are equally sure are both named") {

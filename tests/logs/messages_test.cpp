@@ -85,7 +85,7 @@ TEST_CASE("csv messages: no column for the time in a table without a header") {
 
 TEST_CASE("csv messages: a convention for a quantity that has none") {
   CHECK(complaint("csv", "time,v\n", odometry({{"speed", {"v", "", "cw"}}})) ==
-        "run.log: speed has no convention to choose");
+        "run.log: speed has no convention; leave it out");
 }
 
 TEST_CASE("csv messages: an unknown convention") {

@@ -161,8 +161,8 @@ TEST_CASE("novatel by specification: the velocity of a position's time may stand
   CHECK(data.records == 4);
   CHECK(data.kinds == std::map<std::string, std::size_t>{{"BESTPOSA", 4}, {"BESTVELA", 3}});
   CHECK(data.notes.at(1) ==
-        "run.log: BESTVEL states latencies up to 0.15 s: its speeds and courses are older than their fixes "
-        "by that");
+        "run.log: BESTVEL states latencies up to 0.15 s: its speeds and courses are up to that much "
+        "older than their fixes");
 }
 
 TEST_CASE("novatel by specification: the best kind of position is read, from its first message on") {
@@ -185,11 +185,10 @@ TEST_CASE("novatel by specification: without a solution or a time there is no fi
   CHECK(data.fixes.size() == 1);
   CHECK(data.without_fix == 3);
   CHECK(data.corrupt == 0);
-  CHECK(data.notes ==
-        std::vector<std::string>{
-            "run.log: positions by type: 1 SINGLE",
-            "run.log: 1 positions of a receiver that does not know the time yet were passed over",
-            "run.log: 3 of 4 records are marked as without a fix"});
+  CHECK(data.notes == std::vector<std::string>{
+                          "run.log: positions by type: 1 SINGLE",
+                          "run.log: 1 positions of a receiver that does not know the time yet were skipped",
+                          "run.log: 3 of 4 records are marked as without a fix"});
 }
 
 TEST_CASE("novatel: what else stands in the log is passed over and counted") {
@@ -200,7 +199,7 @@ TEST_CASE("novatel: what else stands in the log is passed over and counted") {
   CHECK(data.notes ==
         std::vector<std::string>{"run.log: 1 lines are abbreviated ASCII (`<BESTPOS`), which has no checksum "
                                  "and is not read; let the receiver log BESTPOSA",
-                                 "run.log: 1 lines that are no NovAtel messages were passed over",
+                                 "run.log: 1 lines that are no NovAtel messages were skipped",
                                  "run.log: positions by type: 1 L1_FLOAT, 1 SINGLE",
                                  "run.log: positions of datum 'USER' are taken as WGS84"});
   CHECK_THROWS_MATCHES(
@@ -230,7 +229,7 @@ TEST_CASE("novatel: what is wrong with a message is said with its place") {
   CHECK(first_complaint(bestpos("700000", kBody)) ==
         "run.log:1:1: BESTPOSA: expected a GPS week and its seconds, got '1803' '700000'");
   CHECK(first_complaint(bestpos("10", replaced(kBody, ",3,2,4", ",0,0,0"))) ==
-        "run.log:1:106: BESTPOSA: no accuracy is given: state 'default_sigma'");
+        "run.log:1:106: BESTPOSA: the log has no accuracy: state 'default_sigma'");
   CHECK(first_complaint(bestvel("10", "SOL_COMPUTED,DOPPLER_VELOCITY,0.150,0.000,-5,90,0,0")) ==
         "run.log:1:105: BESTVELA: horizontal speed: -5 is outside 0 .. 1000");
 }

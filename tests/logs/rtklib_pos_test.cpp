@@ -143,9 +143,8 @@ TEST_CASE("rtklib_pos: baselines are added to the reference position of the head
 
   CHECK_THROWS_MATCHES(
       read(kBaseline + "2323 553950 0 0 0 1 9 1 2 3 1.2 0 0 0.0 0.0\n"), InputError,
-      Message(
-          "run.pos: baselines (e/n/u) without the place that they start from: no '% ref pos' line in degrees "
-          "stands above them; let RTKLIB write latitude, longitude and height"));
+      Message("run.pos: the baselines (e/n/u) have no reference position: there is no '% ref pos' "
+              "line in degrees above them; let RTKLIB write latitude, longitude and height"));
 }
 
 TEST_CASE("rtklib_pos: a solution without fix is counted, heights above the geoid are noted") {
@@ -165,19 +164,19 @@ TEST_CASE("rtklib_pos: without a header the default layout is assumed and said")
   const LogData data = read(kFix);
   CHECK(data.fixes.at(0).stamp.nanoseconds == kStart);
   CHECK(data.notes.at(1) ==
-        "run.pos: no header names the columns: latitude, longitude (degrees), height, Q, ns, deviations, on "
-        "GPST, are assumed");
+        "run.pos: no header names the columns; assumed are latitude, longitude (degrees), height, "
+        "Q, ns and deviations, on GPST");
 }
 
 TEST_CASE("rtklib_pos: no accuracy takes the stated default, truth needs none") {
   const std::string text =
       "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n2323 553950.0 35.1 136.8 40.2 1 9\n";
-  CHECK(first_complaint(text) == "run.pos:2:1: no accuracy is given: state 'default_sigma'");
+  CHECK(first_complaint(text) == "run.pos:2:1: the log has no accuracy: state 'default_sigma'");
   LogRequest request;
   request.default_sigma_m = 3;
   const LogData data = read(text, request);
   CHECK(data.fixes.at(0).covariance_en == 9 * Eigen::Matrix2d::Identity());
-  CHECK(data.notes.back() == "run.pos: 1 fixes give no accuracy, the stated default sigma of 3 m is used");
+  CHECK(data.notes.back() == "run.pos: 1 fixes have no accuracy; the stated default sigma of 3 m is used");
   request.stream = StreamKind::truth;
   request.default_sigma_m = 0;
   CHECK(read(text, request).truth.at(0).latitude_deg == 35.1);

@@ -40,13 +40,12 @@ std::optional<Refusal> say_for_example(ForeignEdge& edge) {
   const double rounding = kRounding * diagonal.maxCoeff();
   if ((turned - diagonal).cwiseAbs().maxCoeff() > rounding) {
     return Refusal{
-        "weighs an error by L where the information is L L^T, so that edges with axes that are "
-        "correlated, as seen from the first pose, would have another minimum",
-        "for a reader that weighs by L^T write --format g2o"};
+        "weighs an error by L if the information is L L^T: an edge whose axes are correlated, as "
+        "seen from the first pose, would have another minimum",
+        "write --format g2o for readers that weigh by L^T"};
   }
   if (!(diagonal(0, 0) > 0 && diagonal(1, 1) > 0)) {
-    return Refusal{"cannot factorise the information of an edge that has none on x or y",
-                   "write --format g2o"};
+    return Refusal{"cannot factorise an information matrix that is zero in x or y", "write --format g2o"};
   }
   // If turning changed only the last digits, the numbers stay as they were.
   const bool same = (diagonal - edge.information).cwiseAbs().maxCoeff() <= rounding;

@@ -99,7 +99,7 @@ void ForeignGraph::choose_ids() {
     ids_[at(v)] = VertexId{next++};
   }
   if (changed == 0) return;
-  if (changed > 1) first += ", and so on for " + std::to_string(changed - 1) + " more";
+  if (changed > 1) first += ", and " + std::to_string(changed - 1) + " more";
   changes_.push_back(first + ": " + std::string(recipient_.reader) + " does not take such ids");
 }
 
@@ -156,8 +156,7 @@ void ForeignGraph::express(std::size_t batch, std::size_t edge, ForeignEdge& out
   }
   const bool zero = !(out.information.diagonal().minCoeff() > 0);
   if (zero && !recipient_.zero_information) {
-    refuse(place(batch, edge),
-           "throws out a matrix with a zero on its diagonal (an axis without information)",
+    refuse(place(batch, edge), "discards a matrix with a zero on its diagonal (an axis without information)",
            "write --profile g2o");
   }
   if (format_ == GraphFormat::covariance) {
@@ -186,14 +185,14 @@ void ForeignGraph::check_fixing() {
     const auto [other, first] = fixed_in.emplace(parts.of(v), v);
     if (!first || !all_relative) {
       refuse(fix,
-             "has no FIX" + (first ? std::string(", and the edges alone do not make up for it")
+             "has no FIX" + (first ? std::string(", and the edges alone do not determine the place")
                                    : ", and vertex " + to_string(graph_.id(other->second)) +
                                          ", fixed too, is joined to this one"),
              kFixRemedy);
     }
     if (recipient_.fixing == Fixing::lowest_id && v == lowest) continue;  // as the reader does
     changes_.push_back(fix + " is left out: " + std::string(recipient_.reader) +
-                       " has none; chi2 and shape of the minimum are the same, its place may be another");
+                       " has none; chi2 and shape of the minimum stay the same, its place may differ");
   }
 }
 
@@ -207,8 +206,8 @@ void ForeignGraph::check_parallel_edges() const {
         other->second = place(b, e);
         continue;
       }
-      refuse(place(b, e), "drops a second edge between two vertices, and " + other->second + " stands before",
-             "write --format toro for other readers of such files");
+      refuse(place(b, e), "drops the second edge between two vertices, and " + other->second + " comes first",
+             "write --format toro for readers that keep both");
     }
   }
 }
@@ -219,7 +218,7 @@ void ForeignGraph::check_parts() const {
     if (parts.of(v) == parts.of(0)) continue;
     refuse("vertex " + to_string(graph_.id(v)),
            "takes one connected graph, and no edges join this vertex to " + to_string(graph_.id(0)),
-           "write the parts as files of their own");
+           "write each part into a file of its own");
   }
 }
 

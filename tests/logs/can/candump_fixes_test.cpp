@@ -90,12 +90,14 @@ TEST_CASE("candump: accuracies per axis with their covariance") {
 TEST_CASE("candump: a fix without accuracy takes the stated default or is corrupt") {
   LogRequest request = fixes();
   CHECK_THROWS_MATCHES(read(position("1.0", 1, 1, 0), request), InputError,
-                       Message("car.log: none of 1 records could be used; first: car.log:1:1: no accuracy is "
-                               "given: state 'default_sigma'"));
+                       Message("car.log: none of 1 records could be used; first: car.log:1:1: the "
+                               "log has no accuracy: state 'default_sigma'"));
   request.default_sigma_m = 3;
   const LogData data = read(position("1.0", 1, 1, 0), request);
   CHECK(data.fixes.at(0).covariance_en(0, 0) == 9);
-  CHECK(data.notes.end()[-4] == "car.log: 1 fixes give no accuracy, the stated default sigma of 3 m is used");
+  CHECK(data.notes.end()[-4] ==
+        "car.log: 1 fixes have no accuracy; the stated default sigma of "
+        "3 m is used");
   request.default_sigma_m = 0;
   request.columns.erase("accuracy");
   check_refused(
@@ -109,8 +111,7 @@ TEST_CASE("candump: what receivers send for not available is no value") {
   CHECK_FALSE(data.fixes.at(0).course_rad);
   CHECK_FALSE(data.fixes.at(0).speed_mps);
   CHECK(data.notes.end()[-3] ==
-        "car.log: course: 1 values of signal Heading are outside its range or no numbers, and count as not "
-        "given");
+        "car.log: course: 1 values of signal Heading are outside its range or not finite; they are ignored");
   CHECK_THROWS_MATCHES(
       read(position("1.0", 91'000'000, 1), fixes()), InputError,
       Message("car.log: none of 1 records could be used; first: car.log:1:1: latitude: the signal "
@@ -144,6 +145,6 @@ TEST_CASE("candump: the receiver's clock beside the logger's") {
   const LogData none = read(position("1.0", 1, 1) + "(1.1) can0 025#000000\n", request);
   CHECK(none.clocks.empty());  // 0: the receiver does not know the time yet
   CHECK(none.notes.end()[-4] ==
-        "car.log: gnss_time: 1 values of signal COUNT are outside its range or no numbers, and count as not "
-        "given");
+        "car.log: gnss_time: 1 values of signal COUNT are outside its range or not finite; "
+        "they are ignored");
 }

@@ -36,10 +36,9 @@ TEST_CASE("candump: a column that does not fit the DBC is told with what does") 
   refused(from("MOTON.YAW_RATE"), "yaw_rate: car.dbc has no message 'MOTON'; did you mean 'MOTION'?");
   refused(from("STEERING.YAW_RATE"),
           "yaw_rate: signal YAW_RATE is without a unit in the DBC; state 'unit' for it: rad/s, deg/s");
-  refused(
-      from("FL"),
-      "yaw_rate: signal FL is in 'kph' by the DBC, which is no unit known for yaw_rate; state 'unit' for it: "
-      "rad/s, deg/s");
+  refused(from("FL"),
+          "yaw_rate: signal FL is in 'kph' by the DBC, which is not a unit of yaw_rate; state "
+          "'unit' for it: rad/s, deg/s");
   refused(from("MOTION.YAW_RATE", "degs"),
           "unknown unit 'degs' for yaw_rate; did you mean 'deg/s'?; known: rad/s, deg/s");
   check_refused(request_of(StreamKind::odometry, {{"yawrate", from("FL")}}),
@@ -52,8 +51,8 @@ TEST_CASE("candump: a column that does not fit the DBC is told with what does") 
   CHECK_THROWS_MATCHES(CandumpReader().open("car.log", without_channels), UsageError,
                        Message("a CAN log gives odometry in channels: LogRequest::readings must name them"));
   check_refused(request_of(StreamKind::gnss, {{"time", from("Epoch")}}),
-                "frames of a candump log are stamped by the logger, no signal can be their 'time'; map the "
-                "receiver's clock as gnss_time, then the logger's offset is known");
+                "frames of a candump log are stamped by the logger, so no signal can be their "
+                "'time'; map the receiver's clock as gnss_time, which gives the logger's offset");
 }
 
 TEST_CASE("candump: a signal that the DBC spoils is refused where it is asked for, else noted") {
@@ -76,8 +75,8 @@ TEST_CASE("candump: signals behind a frame's reach are refused") {
   request.companions["dbc"] = {"car.dbc", "BO_ 1 LONG: 100 X\n SG_ S : 512|8@1+ (1,0) [0|0] \"\" X\n"};
   check_refused(
       request,
-      "speed: LONG.S lies behind the first 64 bytes, so in a message of several frames (a transport "
-      "protocol), which is not read here");
+      "speed: LONG.S is behind the first 64 bytes, so its message takes several frames (a transport "
+      "protocol), which are not read");
 }
 
 TEST_CASE("candump: a log without a wanted frame says what was looked for") {
@@ -85,14 +84,14 @@ TEST_CASE("candump: a log without a wanted frame says what was looked for") {
                             request_of(StreamKind::odometry,
                                        {{"speed", from("can0:FL")}, {"yaw_rate", from("MOTION.YAW_RATE")}})),
                        InputError,
-                       Message("car.log: no frame holds a wanted signal (WHEELS (id AA) on can0, MOTION (id "
-                               "24)); there are can0 (1 frames), can1 (1 frames)"));
+                       Message("car.log: no frame holds a signal that is needed (WHEELS (id AA) on "
+                               "can0, MOTION (id 24)); the log has can0 (1 frames), can1 (1 frames)"));
   CHECK_THROWS_MATCHES(read("", fixes()), InputError, Message("car.log: the log holds no records"));
 }
 
 TEST_CASE("candump: Vector ASC logs are refused with the remedy") {
   CHECK_THROWS_MATCHES(
       read("date Mon Jul 26 04:40:55.012 am 2021\nbase hex  timestamps absolute\n", fixes()), InputError,
-      Message("car.log: this is a Vector ASC log, which is not read here; `asc2log < car.log > candump.log` "
+      Message("car.log: this is a Vector ASC log, which is not supported; `asc2log < car.log > candump.log` "
               "(can-utils) writes a candump log from it"));
 }

@@ -58,8 +58,8 @@ TEST_CASE("candump: interfaces are told apart where asked for") {
   const LogData all = read(text, request_of(StreamKind::odometry, {{"speed", from("FL")}}));
   CHECK(all.readings.size() == 3);
   CHECK(all.notes.back() ==
-        "car.log: speed: WHEELS comes on can0 (1 frames), can1 (2 frames), all are read; 'can0:WHEELS.FL' "
-        "chooses one");
+        "car.log: speed: WHEELS is on several interfaces (can0 (1 frames), can1 (2 frames)); all "
+        "are read, 'can0:WHEELS.FL' chooses one");
 }
 
 TEST_CASE("candump: what is corrupt is told with its place, and the run goes on") {

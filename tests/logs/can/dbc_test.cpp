@@ -179,11 +179,11 @@ TEST_CASE("dbc: what is wrong is told with its place") {
   check("BO_ 170 WHEELS 8", "1:16: BO_ WHEELS: expected ':', got '8'");
   check("BO_ 170 WHEELS: 9999 X", "1:5: BO_ WHEELS: a length of 9999 bytes is more than a message can have");
   check("BO_ 2048 WHEELS: 8 X",
-        "1:5: BO_ WHEELS: no frame can have the id 2048: standard ids are at most 2047; to extended ones "
-        "2147483648 is added");
-  check(head + "BO_ 170 OTHER: 8 X", "2:5: BO_ OTHER: the id 170 is that of WHEELS in line 1 already");
+        "1:5: BO_ WHEELS: no frame can have the id 2048: standard ids are at most 2047; an extended "
+        "id is written with 2147483648 added");
+  check(head + "BO_ 170 OTHER: 8 X", "2:5: BO_ OTHER: the id 170 is already used by WHEELS in line 1");
   check(head + "BO_ 171 WHEELS: 8 X",
-        "2:5: BO_ WHEELS: the name is that of the message in line 1 already; rename one");
+        "2:5: BO_ WHEELS: the name is already used by the message in line 1; rename one");
   check("SG_ S : 0|8@1+ (1,0) [0|0] \"\" X", "1:5: SG_: a signal before the first message (BO_)");
   check(head + " SG_ S : 0;8@1+ (1,0) [0|0] \"\" X",
         "2:11: SG_ S: expected '|', got ';8@1+ (1,0) [0|0] \"\"'");
@@ -219,9 +219,9 @@ TEST_CASE("dbc: a signal that cannot be read spoils only itself") {
   check(head + " SG_ S : 56|9@0+ (1,0) [0|0] \"\" X",
         "2:10: SG_ S: start 56 and length 9 do not fit into the 8 bytes of WHEELS; correct one of them");
   check(head + " SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\n SG_ S : 8|8@1+ (1,0) [0|0] \"\" X",
-        "3:6: SG_ S: WHEELS has a signal of this name in line 2 already");
+        "3:6: SG_ S: WHEELS already has a signal of this name in line 2");
   check(head + " SG_ S m3 : 0|8@1+ (1,0) [0|0] \"\" X",
-        "2:1: SG_ S: it is multiplexed, but WHEELS has no multiplexer (M)");
+        "2:1: SG_ S: the signal is multiplexed, but WHEELS has no multiplexer (M)");
   check(head +
             " SG_ A M : 0|8@1+ (1,0) [0|0] \"\" X\n SG_ B m1M : 8|8@1+ (1,0) [0|0] \"\" X\n"
             " SG_ C m2 : 16|8@1+ (1,0) [0|0] \"\" X\n",

@@ -27,7 +27,7 @@ TEST_CASE("gpsd: a report without accuracy takes the stated default, or is corru
   const LogData strict = read(text, request);
   CHECK(strict.fixes.size() == 1);
   CHECK(strict.corrupt_examples ==
-        std::vector<std::string>{"log.json:2:1: TPV: no accuracy is given: state 'default_sigma'"});
+        std::vector<std::string>{"log.json:2:1: TPV: the log has no accuracy: state 'default_sigma'"});
   request.default_sigma_m = 7;
   CHECK(read(text, request).fixes.at(1).covariance_en(1, 1) == 49);
 }
@@ -84,10 +84,9 @@ TEST_CASE("gpsd: version and values tell the dialect") {
   CHECK(note("3.17", equal) == raw);
   CHECK(note("", equal) == raw);
   const std::string since_3_19 =
-      "log.json: epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of "
-      "precision; eph is the receiver's own accuracy where it states one, which drms reads: sigma would be "
-      "1.41 m on average "
-      "instead of 3.5 m";
+      "log.json: epx and epy come from the dilution of precision (gpsd since 3.19); eph is the "
+      "receiver's own accuracy, if it states one; read it with 'drms': sigma would be 1.41 m on "
+      "average instead of 3.5 m";
   CHECK(note("3.22", dilution) == since_3_19);
   CHECK(note("3.20.1~dev", dilution) == since_3_19);
   CHECK(note("unknown", dilution) == since_3_19);

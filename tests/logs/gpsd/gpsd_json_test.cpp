@@ -23,10 +23,9 @@ TEST_CASE("gpsd: one report") {
   CHECK(data.notes ==
         std::vector<std::string>{
             "log.json: gpsd of unknown version: 1 fixes with epx and epy read as 95 (not stated)",
-            "log.json: epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of "
-            "precision; eph is the receiver's own accuracy where it states one, which drms reads: sigma "
-            "would be 7.07 m on average "
-            "instead of 2.5 m"});
+            "log.json: epx and epy come from the dilution of precision (gpsd since 3.19); eph is "
+            "the receiver's own accuracy, if it states one; read it with 'drms': sigma would be "
+            "7.07 m on average instead of 2.5 m"});
 }
 
 TEST_CASE("gpsd: stamps come out on the scale asked for") {
@@ -59,7 +58,7 @@ TEST_CASE("gpsd: only the first device is read") {
   const LogData data = read(one + "\n" + two + "\n");
   REQUIRE(data.fixes.size() == 1);
   CHECK(data.fixes[0].latitude_deg == 1);
-  CHECK(data.notes.back() == "log.json: 1 reports of other devices than '/dev/a' were passed over");
+  CHECK(data.notes.back() == "log.json: 1 reports of other devices than '/dev/a' were skipped");
 }
 
 TEST_CASE("gpsd: what is no fix, what is no JSON and what is corrupt are told apart") {
@@ -86,12 +85,12 @@ TEST_CASE("gpsd: what is no fix, what is no JSON and what is corrupt are told ap
   CHECK(data.corrupt_examples[4] == "log.json:11:1: TPV: 'lat' 91 is outside -90 .. 90");
   CHECK(data.notes ==
         std::vector<std::string>{"log.json: gpsd 3.22: 1 fixes with epx and epy read as 95 (not stated)",
-                                 "log.json: epx and epy beside eph, as gpsd writes them since 3.19, come "
-                                 "from the dilution of precision; eph is the receiver's own accuracy where "
-                                 "it states one, which drms reads: sigma would "
-                                 "be 7.07 m on average instead of 2.5 m",
-                                 "log.json: 2 lines that are no JSON objects were passed over",
-                                 "log.json: 1 fixes without a time were passed over",
+                                 "log.json: epx and epy come from the dilution of precision (gpsd "
+                                 "since 3.19); eph is the receiver's own accuracy, if it states "
+                                 "one; read it with 'drms': sigma would be 7.07 m "
+                                 "on average instead of 2.5 m",
+                                 "log.json: 2 lines that are no JSON objects were skipped",
+                                 "log.json: 1 fixes without a time were skipped",
                                  "log.json: 1 of 9 records are marked as without a fix"});
 }
 

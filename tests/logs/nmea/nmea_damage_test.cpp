@@ -15,7 +15,7 @@ TEST_CASE("nmea: damaged sentences are named") {
         "log.nmea:2:2: GPGGA: wrong checksum: the sentence states 4B, its characters give 4C");
   CHECK(read(rmc("000000") + "noise $GPGGA,0000" + gga("000001")).corrupt == 0);  // taken for a comment
   CHECK(complaint("$GPGGA,000001,4810.8509,N\r\n") ==
-        "log.nmea:2:2: GPGGA: the sentence breaks off before its checksum");
+        "log.nmea:2:2: GPGGA: the sentence ends before its checksum");
   const auto field = [](const std::string& body) { return complaint(line(body)); };
   CHECK(field("GPGGA,000001,4810.8509,N,01133.9095,E,1,04,0NaN,500,M,46,M,,") ==
         "log.nmea:2:45: GPGGA: expected a number for the HDOP, got '0NaN'");
@@ -54,7 +54,7 @@ TEST_CASE("nmea: checksums that are nowhere are not missed") {
   const auto bare = [](std::string text) { return text.substr(0, text.find('*')) + "\n"; };
   const LogData data = read(bare(rmc("000001")) + bare(rmc("000002")));
   CHECK(data.fixes.size() == 2);
-  CHECK(noted(data, "2 sentences have no checksum and are believed"));
+  CHECK(noted(data, "2 sentences have no checksum and are used"));
 }
 
 TEST_CASE("nmea: what is no sentence is passed over") {
@@ -65,9 +65,9 @@ TEST_CASE("nmea: what is no sentence is passed over") {
   const LogData data = read(text);
   CHECK(data.fixes.size() == 3);
   CHECK(data.corrupt_examples ==
-        std::vector<std::string>{"log.nmea:9:2: GPRMC: the sentence breaks off before its checksum"});
-  CHECK(noted(data, "6 lines that hold no NMEA sentence were passed over"));
-  CHECK(noted(data, "1 sentences of kinds that are not read are damaged (wrong checksum or none)"));
+        std::vector<std::string>{"log.nmea:9:2: GPRMC: the sentence ends before its checksum"});
+  CHECK(noted(data, "6 lines that hold no NMEA sentence were skipped"));
+  CHECK(noted(data, "1 sentences of unused kinds are damaged (wrong checksum or none)"));
   CHECK(data.kinds.at("PMTK001") == 1);
 }
 

@@ -86,10 +86,10 @@ TEST_CASE("nmea: which accuracy a fix gets") {
   CHECK(read(with_gst, request).fixes[0].covariance_en(1, 1) == 9);
   CHECK(read(with_hdop, request).fixes[0].covariance_en == Eigen::Matrix2d::Identity() * 100);  // 2.5 x 4 m
   CHECK(noted(read(with_hdop, request),
-              "1 fixes give HDOP only, which is multiplied with the stated range error of 4 m"));
+              "1 fixes have only HDOP, which is multiplied by the stated range error of 4 m"));
   CHECK(read(rmc("000001"), request).fixes[0].covariance_en(0, 0) == 100);
   CHECK(noted(read(rmc("000001"), request),
-              "1 fixes give no accuracy, the stated default sigma of 10 m is used"));
+              "1 fixes have no accuracy; the stated default sigma of 10 m is used"));
   request.accuracy = AccuracyMeaning::percent95;
   CHECK(read(with_gst, request).fixes[0].covariance_en(0, 0) == 4);
   CHECK(read(with_gst, request).notes.front() ==
@@ -97,8 +97,8 @@ TEST_CASE("nmea: which accuracy a fix gets") {
   request.default_sigma_m = 0;
   CHECK_THROWS_MATCHES(
       read(rmc("000001"), request), InputError,
-      Message("log.nmea: none of 1 records could be used; first: log.nmea:1:1: no accuracy is "
-              "given: state 'default_sigma'"));
+      Message("log.nmea: none of 1 records could be used; first: log.nmea:1:1: the log has no "
+              "accuracy: state 'default_sigma'"));
 }
 
 TEST_CASE("nmea: the error ellipse of GST gives the correlation, whatever its scale") {
@@ -121,7 +121,7 @@ TEST_CASE("nmea: the error ellipse of GST gives the correlation, whatever its sc
   const Eigen::Matrix2d contradicted = covariance("317.719,3.872,88.209", "317.563,10.659");
   CHECK(contradicted(0, 1) == 0);
   CHECK(noted(read(rmc("000001") + line("GPGST,000001,9,317.719,3.872,88.209,317.563,10.659,5")),
-              "1 error ellipses of another shape than the errors beside them were left aside"));
+              "1 error ellipses contradict the errors beside them and were ignored"));
 }
 
 TEST_CASE("nmea: what is no fix") {
@@ -143,7 +143,7 @@ TEST_CASE("nmea: what is no fix") {
       line("GPGGA,,,,,,0,,,,M,,M,,") + line("GPGLL,,,,,,V,N") + line("GPRMC,,V,,,,,,,,,,N");
   CHECK(read(untimed + untimed + rmc("000001")).without_fix == 2);
   CHECK(noted(read(line("GPGGA,,4810.8509,N,01133.9095,E,1,04,,,M,,M,,") + rmc("000001")),
-              "1 fixes without a time of day were passed over"));
+              "1 fixes without a time of day were skipped"));
 }
 
 TEST_CASE("nmea: a fix from no satellite is none, where the receiver counts them") {
@@ -152,7 +152,7 @@ TEST_CASE("nmea: a fix from no satellite is none, where the receiver counts them
   };
   const LogData data = read(rmc("000001") + gga("000001") + without_satellites("000002", "1"));
   CHECK(data.fixes.size() == 1);
-  CHECK(noted(data, "1 fixes rest on no satellite and count as records without a fix"));
+  CHECK(noted(data, "1 fixes use no satellite and count as records without a fix"));
   CHECK(read(rmc("000001") + without_satellites("000001", "1")).fixes.size() == 1);
   const LogData reckoned = read(rmc("000001") + gga("000001") + without_satellites("000002", "6"));
   CHECK(reckoned.fixes.size() == 2);

@@ -12,7 +12,7 @@ TEST_CASE("ubx: what is corrupt is told with its place") {
   CHECK(decode(pvt_frame(nav_pvt().u32(0, 604'800'000))).corrupt_examples ==
         Notes{"log.ubx:byte 0: iTOW 604800000 ms lies beyond the end of a week"});
   CHECK(decode("junk" + ubx_frame(0x0107, std::string(83, 'x'))).corrupt_examples ==
-        Notes{"log.ubx:byte 4: NAV-PVT: 83 bytes, where the message has at least 84"});
+        Notes{"log.ubx:byte 4: NAV-PVT: 83 bytes, but the message has at least 84"});
   CHECK(decode(ubx_frame(0x0107, "")).corrupt == 0);  // a poll
 
   std::string wrong = pvt_frame(nav_pvt());
@@ -23,7 +23,7 @@ TEST_CASE("ubx: what is corrupt is told with its place") {
   CHECK(data.fixes[0].line == 1);
   CHECK(data.records == 2);
   CHECK(data.corrupt_examples == Notes{"log.ubx:byte 13: NAV-PVT: the checksum is wrong"});
-  CHECK(has_note(data, "113 bytes that belong to no UBX frame were passed over"));
+  CHECK(has_note(data, "113 bytes that belong to no UBX frame were skipped"));
 
   const LogData cut = read(good + good.substr(0, 50));
   CHECK(cut.fixes.size() == 1);
@@ -41,8 +41,8 @@ TEST_CASE("ubx: a corrupt length swallows no frames") {
     CHECK(data.corrupt == 1);
     CHECK(data.corrupt_examples.at(0).starts_with("log.ubx:byte 0: NAV-PVT: "));
     if (length > 8192)
-      CHECK(data.corrupt_examples[0] == "log.ubx:byte 0: NAV-PVT: a length of " + std::to_string(length) +
-                                            " bytes, which no message has");
+      CHECK(data.corrupt_examples[0] ==
+            "log.ubx:byte 0: NAV-PVT: no message has a length of " + std::to_string(length) + " bytes");
   }
   // Sync bytes by chance in other binary data are no record: no class of the protocol follows.
   const LogData data = read(std::string("\xB5\xB5\x62\x77\x07\x02\x00", 7) + good + "\xB5");

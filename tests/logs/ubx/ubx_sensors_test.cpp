@@ -145,9 +145,9 @@ TEST_CASE("ubx: a sensors' clock that begins anew is placed anew") {
   CHECK(data.readings.at(4, 0) == 104);
   CHECK(data.readings.at(5, 0) == 104);  // counter from 104 to 5: begun anew
   CHECK(data.readings.at(9, 0) == 108);
-  CHECK(data.notes.at(1) == "log.ubx: the sensors' clock jumped or began anew 1 times");
+  CHECK(data.notes.at(1) == "log.ubx: the sensors' clock jumped or restarted 1 times");
   CHECK(data.notes.at(2) ==
-        "log.ubx: tick counters went back 1 times and are taken to have begun anew without a motion");
+        "log.ubx: tick counters went back 1 times; each time a restart without motion is assumed");
 }
 
 TEST_CASE("ubx: tick counters run on over their end, and back while the direction bit says backwards") {
@@ -170,7 +170,7 @@ TEST_CASE("ubx: messages to the receiver are not read twice") {
   const LogData data = decode(log, channels({"wheel_ticks"}));
   CHECK(data.readings.size() == 3);
   CHECK(data.notes.at(1) ==
-        "log.ubx: 3 ESF-MEAS without a calibrated time tag (messages to the receiver) were passed over");
+        "log.ubx: 3 ESF-MEAS without a calibrated time tag (messages to the receiver) were skipped");
   const LogData alone = decode(plain_esf_meas(500, 10, 7) + pvt(0), channels({"wheel_ticks"}));
   REQUIRE(alone.readings.size() == 1);
   CHECK(alone.readings.stamps[0].nanoseconds == kGps);
@@ -188,7 +188,7 @@ TEST_CASE("ubx: corrupt and unplaceable measurements") {
         std::vector<std::string>{
             "log.ubx:byte 0: ESF-MEAS: 12 bytes cannot hold 1 measurements and a calibrated time tag"});
   CHECK(decode(ubx_frame(0x1002, "1234567"), channels({"wheel_ticks"})).corrupt_examples ==
-        std::vector<std::string>{"log.ubx:byte 0: ESF-MEAS: 7 bytes, where the message has at least 8"});
+        std::vector<std::string>{"log.ubx:byte 0: ESF-MEAS: 7 bytes, but the message has at least 8"});
 
   const std::string undated = esf_meas(1000, {{10, 1}}) + esf_meas(1100, {{10, 1}}) +
                               ubx_frame(0x0103, UbxBytes(16).u32(0, kItowMs).bytes());
@@ -197,8 +197,8 @@ TEST_CASE("ubx: corrupt and unplaceable measurements") {
   CHECK(data.corrupt == 2);
   CHECK(data.corrupt_examples ==
         std::vector<std::string>{
-            "log.ubx: 2 ESF-MEAS messages come without a navigation message that tells the "
-            "GPS week; state 'gps_week' if there are some that tell the time of week"});
+            "log.ubx: no navigation message gives a GPS week for 2 ESF-MEAS messages; state "
+            "'gps_week' if navigation messages give the time of week"});
   request.gps_week = 2268;
   CHECK(decode(undated, request).readings.stamps.at(1).nanoseconds == kGps);
 }

@@ -54,7 +54,7 @@ TEST_CASE("ubx, by the specification: the covariance of NAV-COV has axes north, 
       cov.f32(20, wrong);
       const LogData data = read(pvt_frame(nav_pvt()) + ubx_frame(0x0136, cov.bytes()));
       CHECK(data.fixes.at(0).covariance_en(0, 0) == Approx(2));
-      CHECK(has_note(data, "1 covariances of NAV-COV are not positive definite and were passed over"));
+      CHECK(has_note(data, "1 covariances of NAV-COV are not positive definite and were skipped"));
     }
   }
 }
@@ -119,7 +119,7 @@ TEST_CASE("ubx, by the specification: older receivers: NAV-POSLLH, NAV-VELNED an
     const LogData good = read(ubx_frame(0x0102, plain.bytes()) + ubx_frame(0x0103, status.bytes()) + time);
     CHECK(good.fixes.at(0).stamp.nanoseconds == kGps - 3);
     const LogData stateless = read(ubx_frame(0x0102, plain.bytes()) + time);
-    CHECK(has_note(stateless, "1 positions come without a word on the fix and are taken as fixes"));
+    CHECK(has_note(stateless, "1 positions do not state whether there is a fix and are taken as fixes"));
   }
   SECTION("NAV-TIMEUTC tells the date") {
     UbxBytes utc(20);
@@ -157,12 +157,12 @@ TEST_CASE("ubx: a position without accuracy takes the stated default, or is corr
   for (const std::int64_t none : {0LL, 0xFFFFFFFFLL}) {
     const std::string log = pvt_frame(nav_pvt().u32(40, none));
     CHECK(decode(log).corrupt_examples ==
-          Notes{"log.ubx:byte 0: no accuracy is given: state 'default_sigma'"});
+          Notes{"log.ubx:byte 0: the log has no accuracy: state 'default_sigma'"});
     LogRequest request;
     request.default_sigma_m = 7;
     const LogData data = read(log, request);
     CHECK(data.fixes.at(0).covariance_en(1, 1) == 49);
-    CHECK(has_note(data, "1 fixes give no accuracy, the stated default sigma of 7 m is used"));
+    CHECK(has_note(data, "1 fixes have no accuracy; the stated default sigma of 7 m is used"));
   }
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("ubx, by the specification: HNR-PVT is read where it is asked for, and
   const LogData navigation = read(log);
   CHECK(navigation.fixes.size() == 1);
   CHECK(has_note(navigation,
-                 "1 positions of HNR-PVT, dead-reckoned between the navigation epochs, were passed over "
+                 "1 positions of HNR-PVT, dead-reckoned between the navigation epochs, were skipped "
                  "('position: HNR-PVT' among the columns reads them instead)"));
   LogRequest request;
   request.columns["position"] = {"HNR-PVT", "", ""};
@@ -203,10 +203,8 @@ TEST_CASE("ubx, by the specification: HNR-PVT is read where it is asked for, and
   CHECK(data.fixes[0].covariance_en(0, 0) == Approx(4.5));
   CHECK(*data.fixes[0].speed_mps == 1.5);
   CHECK(*data.fixes[0].course_rad == Approx(std::numbers::pi / 4));
-  CHECK(
-      has_note(data,
-               "1 positions of HNR-PVT: dead-reckoned on from the last GNSS epoch, so their errors are those "
-               "of that epoch and no new ones"));
+  CHECK(has_note(data,
+                 "1 positions of HNR-PVT are dead-reckoned from the last GNSS epoch and share its error"));
   request.stream = StreamKind::truth;
   CHECK(*read(log, request).truth.at(0).heading_rad == Approx(std::numbers::pi / 2));
 }

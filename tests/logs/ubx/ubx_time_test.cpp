@@ -34,13 +34,13 @@ TEST_CASE("ubx: without a week a position is corrupt, unless one is stated") {
   const std::string log = ubx_frame(0x0102, UbxBytes(28).u32(0, kItowMs).u32(20, 600).bytes());
   CHECK_THROWS_MATCHES(
       read(log), InputError,
-      Message("log.ubx: none of 1 records could be used; first: log.ubx:byte 0: neither a valid "
-              "date nor a GPS week has come yet; state 'gps_week' to use the positions before"));
+      Message("log.ubx: none of 1 records could be used; first: log.ubx:byte 0: there is no valid "
+              "date and no GPS week yet; state 'gps_week' to use this position"));
   LogRequest request;
   request.gps_week = 2268;
   const LogData data = read(log, request);
   CHECK(data.fixes.at(0).stamp.nanoseconds == kGps);
-  CHECK(has_note(data, "the first epochs tell no GPS week, the stated week 2268 is used"));
+  CHECK(has_note(data, "the first epochs state no GPS week; the stated week 2268 is used"));
 }
 
 TEST_CASE("ubx: a date whose seconds are not resolved takes those of iTOW") {
@@ -48,12 +48,11 @@ TEST_CASE("ubx: a date whose seconds are not resolved takes those of iTOW") {
   pvt.u8(11, 0x03).u8(10, 14);  // 16 leap seconds assumed: two seconds late
   const LogData data = read(pvt_frame(pvt));
   CHECK(data.fixes.at(0).stamp.nanoseconds == kGps - 250);
-  CHECK(has_note(data,
-                 "1 dates are not fully resolved and differ from iTOW by whole seconds; iTOW is followed"));
+  CHECK(has_note(data, "1 dates are not fully resolved and differ from iTOW by whole seconds; iTOW is used"));
   pvt.u8(11, 0x07);
   const LogData resolved = read(pvt_frame(pvt));
   CHECK(resolved.fixes.at(0).stamp.nanoseconds == kGps - 250 + 2'000'000'000);
-  CHECK(has_note(resolved, "1 dates differ from iTOW by a second or more; the dates are followed"));
+  CHECK(has_note(resolved, "1 dates differ from iTOW by a second or more; the dates are used"));
 }
 
 TEST_CASE("ubx: the leap second of 2016 is an instant of its own on the GPS scale") {

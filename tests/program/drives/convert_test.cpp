@@ -61,9 +61,10 @@ TEST_CASE("convert: a profile writes what its reader takes, and counts what it l
   CHECK(gtsam.code == 0);
   CHECK(gtsam.err ==
         "note: vertex -1 is 0 there: GTSAM's load2D does not take such ids\n"
-        "note: FIX -1 is left out: GTSAM's load2D has none; chi2 and shape of the minimum are the same, its "
-        "place may be another\n"
-        "note: left out, as GTSAM's load2D has no place for it: frame, stamps (1), covariances (1)\n");
+        "note: FIX -1 is left out: GTSAM's load2D has none; chi2 and shape of the minimum stay the "
+        "same, its place may differ\n"
+        "note: left out, as GTSAM's load2D has no place for it: frame, stamps "
+        "(1), covariances (1)\n");
   CHECK(read_text(folder + "gtsam.g2o") ==
         "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 3 1 0 0\nEDGE_SE2 0 3 1 0 0 4 0 0 4 0 9\n");
   const RunResult ceres = run({"convert", graph, "-o", folder + "ceres.g2o", "--profile", "ceres"});
@@ -101,7 +102,7 @@ TEST_CASE(
        "EDGE_SE2 0 1 (number 2): GTSAM's load2D has no robust losses"},
       {"FIX 0 1\nEDGE_SE2 0 1 1 0 0 4 0 0 4 0 9\n", "gtsam",
        "FIX 1: GTSAM's load2D has no FIX, and vertex 0, fixed too, is joined to this one; free the vertex"},
-      {"EDGE_SE2 0 1 1 0 0 4 1 0 4 0 9\n", "ceres", "for a reader that weighs by L^T write --format g2o"},
+      {"EDGE_SE2 0 1 1 0 0 4 1 0 4 0 9\n", "ceres", "write --format g2o for readers that weigh by L^T"},
       {"EDGE_PRIOR_SE2 0 1 0 0 4 1 0 4 0 9\n", "ceres", "EDGE_PRIOR_SE2 0 (number 1): Ceres' pose_graph_2d"},
       {"EDGE_SE2 0 1 1 0 0 4 0 0 4 0 9\nEDGE_SE2 0 1 1 0 0 4 0 0 4 0 9\n", "toro",
        "EDGE_SE2 0 1 (number 2): TORO drops a second edge between two vertices"}};

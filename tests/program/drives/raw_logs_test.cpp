@@ -126,16 +126,15 @@ TEST_CASE("raw logs: a folder and a compressed file are logs, a log of another k
     return result.err;
   };
   CHECK(contains(error_of("a.mf4", "MDF     4.10"),
-                 "a.mf4: the log's format is not recognised: it is an MF4 (ASAM MDF) file, which is not read "
-                 "here; asammdf "
-                 "writes CSV from it"));
+                 "a.mf4: the log's format is not recognised: it is an MF4 (ASAM MDF) file, which is "
+                 "not supported; asammdf writes CSV from it"));
   CHECK(contains(
       error_of("a.obs", "     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"),
-      "it is a RINEX file of raw observations, which is not read here; RTKLIB's rnx2rtkp computes positions "
-      "from it"));
+      "it is a RINEX file of raw observations, which is not supported; RTKLIB's "
+      "rnx2rtkp computes positions from it"));
   CHECK(contains(
       error_of("a.txt", "Dear diary,\ntoday we drove to Horsens.\n"),
-      "a.txt: the log's format is not recognised: state its 'format'; `waymark info` lists those there are"));
+      "a.txt: the log's format is not recognised: state its 'format'; `waymark info` lists all formats"));
   CHECK(contains(error_of("absent.log", ""), "absent.log: cannot read: No such file or directory"));
   CHECK(
       contains(error_of("empty.log", "\n").substr(0, 4000), "empty.log: the log's format is not recognised"));

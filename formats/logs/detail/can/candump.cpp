@@ -188,8 +188,8 @@ std::optional<Stamp> CandumpDecoder::stamp_of(std::string_view text) const {
 void CandumpDecoder::refuse_asc(std::string_view line) const {
   if (!line.starts_with("date ") && !line.starts_with("base hex") && !line.starts_with("base dec")) return;
   throw InputError(
-      fmt::format("{}: this is a Vector ASC log, which is not read here; `asc2log < {} > candump.log` "
-                  "(can-utils) writes a candump log from it",
+      fmt::format("{}: this is a Vector ASC log, which is not supported; `asc2log < {} > "
+                  "candump.log` (can-utils) writes a candump log from it",
                   path(), path()));
 }
 
@@ -198,7 +198,7 @@ void CandumpDecoder::end() {
   for (std::size_t i = 0; i < bound_.size(); ++i) {
     if (outside_[i] == 0) continue;
     const Quantity& quantity = quantities_[bound_[i].quantity];
-    note(fmt::format("{}: {} values of signal {} are outside its range or no numbers, and count as not given",
+    note(fmt::format("{}: {} values of signal {} are outside its range or not finite; they are ignored",
                      quantity.name, outside_[i],
                      dbc_.messages[bound_[i].message].signals[bound_[i].signal].name));
   }
@@ -236,9 +236,9 @@ void CandumpDecoder::note_interfaces() {
     const auto sources = std::count_if(use.by_interface.begin(), use.by_interface.end(),
                                        [](std::size_t count) { return count > 0; });
     if (sources > 1 && bound.interface.empty())
-      note(fmt::format("{}: {} comes on {}, all are read; '{}:{}.{}' chooses one", quantity, message.name,
-                       interfaces_.summary(use.by_interface), interfaces_.name(first), message.name,
-                       message.signals[bound.signal].name));
+      note(fmt::format("{}: {} is on several interfaces ({}); all are read, '{}:{}.{}' chooses one", quantity,
+                       message.name, interfaces_.summary(use.by_interface), interfaces_.name(first),
+                       message.name, message.signals[bound.signal].name));
   }
 }
 
@@ -249,8 +249,8 @@ void CandumpDecoder::refuse_silence() const {
     const std::string message = described(bound);
     if (wanted.find(message) == std::string::npos) wanted += (wanted.empty() ? "" : ", ") + message;
   }
-  throw InputError(fmt::format("{}: no frame holds a wanted signal ({}); there are {}", path(), wanted,
-                               interfaces_.summary()));
+  throw InputError(fmt::format("{}: no frame holds a signal that is needed ({}); the log has {}", path(),
+                               wanted, interfaces_.summary()));
 }
 
 }  // namespace

@@ -88,8 +88,8 @@ void Binder::check_request(const std::vector<Quantity>& quantities) const {
     const Quantity* quantity = find_quantity(quantities, name);
     if (quantity == nullptr && name == "time")
       fail(
-          "frames of a candump log are stamped by the logger, no signal can be their 'time'; map the "
-          "receiver's clock as gnss_time, then the logger's offset is known");
+          "frames of a candump log are stamped by the logger, so no signal can be their 'time'; map "
+          "the receiver's clock as gnss_time, which gives the logger's offset");
     if (quantity == nullptr)
       fail(fmt::format("'{}' is no quantity of the {} stream{}", name, to_string(request_.stream),
                        suggestion(name, known)));
@@ -104,7 +104,7 @@ void Binder::check_request(const std::vector<Quantity>& quantities) const {
   if (missing.empty()) return;
   const std::vector<std::string> likely = likely_signals(dbc_, request_.stream);
   fail(fmt::format("no signal for {}: state 'columns: {{{}: SIGNAL}}'; {}", missing, missing,
-                   likely.empty() ? fmt::format("{} has no signal that sounds like it", dbc_.path)
+                   likely.empty() ? fmt::format("no name of a signal in {} suggests it", dbc_.path)
                                   : fmt::format("{} has {}", dbc_.path, listed(likely))));
 }
 
@@ -116,8 +116,8 @@ BoundSignal Binder::bind(const Quantity& quantity, const ColumnRequest& wanted) 
   if (!signal.trouble.empty()) fail(fmt::format("{}: {}", quantity.name, signal.trouble));
   if (signal.bytes_needed() > kMostFrameBytes)
     fail(fmt::format(
-        "{}: {}.{} lies behind the first 64 bytes, so in a message of several frames (a transport "
-        "protocol), which is not read here",
+        "{}: {}.{} is behind the first 64 bytes, so its message takes several frames (a transport "
+        "protocol), which are not read",
         quantity.name, message.name, signal.name));
   const Unit& unit = unit_of(quantity, wanted, signal);
   const Convention& convention = *find_convention(quantity, wanted.convention);
@@ -193,7 +193,7 @@ const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wante
   }
   fail(fmt::format("{}: signal {} is {}; state 'unit' for it: {}", quantity.name, signal.name,
                    signal.unit.empty() ? "without a unit in the DBC"
-                                       : fmt::format("in '{}' by the DBC, which is no unit known for {}",
+                                       : fmt::format("in '{}' by the DBC, which is not a unit of {}",
                                                      signal.unit, quantity.name),
                    joined(units)));
 }

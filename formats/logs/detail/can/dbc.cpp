@@ -150,18 +150,18 @@ void DbcParser::read_message(DbcTokens& tokens, std::size_t number) {
   const std::uint32_t most = (message.id & kExtendedFrame) != 0 ? 0x9FFF'FFFFU : 0x7FFU;
   if (message.id > most)
     tokens.fail(
-        fmt::format("no frame can have the id {}: standard ids are at most 2047; to extended ones "
-                    "2147483648 is added",
+        fmt::format("no frame can have the id {}: standard ids are at most 2047; an extended id is "
+                    "written with 2147483648 added",
                     message.id));
   if (message.size > kMostBytes)
     tokens.fail(fmt::format("a length of {} bytes is more than a message can have", message.size));
   const auto [same, fresh] = by_id_.emplace(message.id, dbc_.messages.size());
   if (!fresh)
-    tokens.fail(fmt::format("the id {} is that of {} in line {} already", message.id,
+    tokens.fail(fmt::format("the id {} is already used by {} in line {}", message.id,
                             dbc_.messages[same->second].name, dbc_.messages[same->second].line));
   const auto [namesake, new_name] = by_name_.emplace(message.name, dbc_.messages.size());
   if (!new_name)
-    tokens.fail(fmt::format("the name is that of the message in line {} already; rename one",
+    tokens.fail(fmt::format("the name is already used by the message in line {}; rename one",
                             dbc_.messages[namesake->second].line));
   dbc_.messages.push_back(std::move(message));
 }
@@ -176,7 +176,7 @@ void DbcParser::read_signal(DbcTokens& tokens, std::size_t number) {
   tokens.set_object("SG_ " + signal.name);
   DbcSignal* same = signal_named(dbc_.messages.back(), signal.name);
   if (same != nullptr)
-    same->trouble = tokens.complaint(fmt::format("{} has a signal of this name in line {} already",
+    same->trouble = tokens.complaint(fmt::format("{} already has a signal of this name in line {}",
                                                  dbc_.messages.back().name, same->line));
   if (!tokens.accept(':')) {
     read_multiplexing(tokens, signal);

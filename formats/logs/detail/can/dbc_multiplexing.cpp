@@ -35,7 +35,8 @@ void resolve_multiplexing(DbcMessage& message, const std::string& path) {
     // In extended multiplexing, "m3M" usually depends on the only "M". The file must state the
     // multiplexer of a plain "m3".
     if (roots.empty()) {
-      signal.trouble = fmt::format("{}it is multiplexed, but {} has no multiplexer (M)", place, message.name);
+      signal.trouble =
+          fmt::format("{}the signal is multiplexed, but {} has no multiplexer (M)", place, message.name);
     } else if (roots.size() > 1 || (multiplexers > 1 && !signal.multiplexes)) {
       signal.trouble =
           fmt::format("{}{} has several multiplexers: a line SG_MUL_VAL_ must say which one is meant", place,

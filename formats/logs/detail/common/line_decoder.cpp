@@ -41,7 +41,7 @@ void LineDecoder::give(std::string_view line) {
   ++number_;
   if (too_long_ || line.size() > kLongestLine) {
     ++data_.records;
-    corrupt(number_, 1, "a line of more than 1 MiB, which no record of a log is");
+    corrupt(number_, 1, "a line of more than 1 MiB is no record of a log");
     return;
   }
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);

@@ -63,9 +63,10 @@ const char* PositionStream::stand_in(GeodeticFix& fix, double hdop) {
   } else if (sigma > 0) {
     ++defaulted_;
   } else if (hdop > 0) {
-    return "no accuracy but HDOP is given: state 'range_error' to multiply it with, or 'default_sigma'";
+    return "the log has no accuracy but HDOP: state 'range_error', which is multiplied by "
+           "HDOP, or 'default_sigma'";
   } else {
-    return "no accuracy is given: state 'default_sigma'";
+    return "the log has no accuracy: state 'default_sigma'";
   }
   fix.covariance_en = sigma * sigma * Eigen::Matrix2d::Identity();
   return nullptr;
@@ -95,10 +96,10 @@ void PositionStream::finish(LogData& data) const {
     note(fmt::format("{} fixes with {} read as {}{}", with_figures_, figures_, to_string(meaning_),
                      usual_ ? " (not stated)" : ""));
   if (from_hdop_ > 0)
-    note(fmt::format("{} fixes give HDOP only, which is multiplied with the stated range error of {} m",
+    note(fmt::format("{} fixes have only HDOP, which is multiplied by the stated range error of {} m",
                      from_hdop_, range_error_m_));
   if (defaulted_ > 0)
-    note(fmt::format("{} fixes give no accuracy, the stated default sigma of {} m is used", defaulted_,
+    note(fmt::format("{} fixes have no accuracy; the stated default sigma of {} m is used", defaulted_,
                      default_sigma_m_));
   if (data.without_fix > 0)
     note(fmt::format("{} of {} records are marked as without a fix", data.without_fix, data.records));

@@ -99,7 +99,7 @@ Quantity sensor_quantity(const SensorColumn& column) {
     return {column.name, column.name, column.required, kind.units, kind.conventions, -kInfinity, kInfinity};
   }
   throw UsageError("sensor column '" + column.name + "': no unit '" + column.unit + "' of sense '" +
-                   column.sense + "'; SensorColumn in core/drive/sample.hpp lists those there are");
+                   column.sense + "'; SensorColumn in core/drive/sample.hpp lists all");
 }
 
 /// Returns the channels of a stream; none is required. A channel that the stream has as its own

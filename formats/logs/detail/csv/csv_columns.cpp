@@ -69,7 +69,7 @@ std::string column_request_error(const Quantity& quantity, const ColumnRequest& 
                        did_you_mean(request.unit, known), joined(known));
   }
   if (find_convention(quantity, request.convention) != nullptr) return {};
-  if (quantity.conventions.empty()) return fmt::format("{} has no convention to choose", quantity.name);
+  if (quantity.conventions.empty()) return fmt::format("{} has no convention; leave it out", quantity.name);
   const std::vector<std::string_view> known = names_of(quantity.conventions);
   return fmt::format("unknown convention '{}' for {}{}; known: {}", request.convention, quantity.name,
                      did_you_mean(request.convention, known), joined(known));

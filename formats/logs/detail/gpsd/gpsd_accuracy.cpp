@@ -119,9 +119,8 @@ std::string GpsdAccuracy::dialect(const std::string& release) const {
         sigma_factor(AccuracyMeaning::drms) * figure, read);
   if (per_axis_with_radial_ > 0 && (!version || *version >= kDilutionSince))
     return fmt::format(
-        "epx and epy beside eph, as gpsd writes them since 3.19, come from the dilution of precision; eph is "
-        "the receiver's own accuracy where it states one, which drms reads: sigma would be {:.3g} m on "
-        "average "
+        "epx and epy come from the dilution of precision (gpsd since 3.19); eph is the receiver's "
+        "own accuracy, if it states one; read it with 'drms': sigma would be {:.3g} m on average "
         "instead of {:.3g} m",
         sigma_factor(AccuracyMeaning::drms) * radial_sum_m_ / static_cast<double>(per_axis_with_radial_),
         read);

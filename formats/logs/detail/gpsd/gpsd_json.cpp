@@ -205,14 +205,14 @@ void GpsdDecoder::add_notes() {
   if (counts_.above_sea_level > 0)
     note(fmt::format("{} heights are above mean sea level (no altHAE)", counts_.above_sea_level));
   if (counts_.not_json > 0)
-    note(fmt::format("{} lines that are no JSON objects were passed over", counts_.not_json));
+    note(fmt::format("{} lines that are no JSON objects were skipped", counts_.not_json));
   if (counts_.without_time > 0)
-    note(fmt::format("{} fixes without a time were passed over", counts_.without_time));
+    note(fmt::format("{} fixes without a time were skipped", counts_.without_time));
   if (counts_.dead_reckoning > 0)
     note(fmt::format("{} fixes are dead reckoning of the receiver, not measured", counts_.dead_reckoning));
   if (counts_.simulated > 0) note(fmt::format("{} fixes are marked as simulated", counts_.simulated));
   if (counts_.other_devices > 0)
-    note(fmt::format("{} reports of other devices than {} were passed over", counts_.other_devices,
+    note(fmt::format("{} reports of other devices than {} were skipped", counts_.other_devices,
                      quote_field(device_)));
   positions_.finish(data_);
 }

@@ -225,7 +225,7 @@ void GpxDecoder::finish() {
   XmlStream::finish();
   if (!trouble().empty()) {
     ++data_.records;
-    add_corrupt(data_, path_, trouble_line(), trouble_column(), trouble() + "; what came before is used");
+    add_corrupt(data_, path_, trouble_line(), trouble_column(), trouble() + "; the part before is used");
   }
   const auto count = [&](const char* kind, std::size_t points) {
     if (points > 0) data_.kinds[kind] = points;
@@ -235,7 +235,7 @@ void GpxDecoder::finish() {
   count("wpt", waypoints_);
   const auto note = [&](const std::string& text) { data_.notes.push_back(path_ + ": " + text); };
   if (route_points_ + waypoints_ > 0)
-    note(fmt::format("{} route points and {} waypoints are passed over: they record no drive", route_points_,
+    note(fmt::format("{} route points and {} waypoints were skipped: they record no drive", route_points_,
                      waypoints_));
   if (any_height_) note("heights are elevations as GPX has them, as a rule above the geoid");
   positions_.finish(data_);

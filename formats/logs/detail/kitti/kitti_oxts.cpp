@@ -177,8 +177,8 @@ void OxtsDecoder::complain(std::size_t field, const std::string& what) {
 
 void OxtsDecoder::end() {
   if (data_.records != stamps_.size())
-    throw InputError(fmt::format("{}: {} records, but {} has {} time stamps; each record needs its own",
-                                 path(), data_.records, stamps_path_, stamps_.size()));
+    throw InputError(fmt::format("{}: {} records, but {} has {} time stamps; each record needs one", path(),
+                                 data_.records, stamps_path_, stamps_.size()));
   for (std::size_t status = 0; status < statuses_.size(); ++status) {
     if (statuses_[status] > 0) data_.kinds[fmt::format("navstat {}", status)] = statuses_[status];
   }

@@ -116,7 +116,7 @@ bool NmeaDecoder::is_whole(const NmeaSentence& sentence, NmeaKind kind, std::siz
   ++data_.records;
   corrupt(number, column,
           sentence.checksum == NmeaChecksum::none
-              ? fmt::format("{}: the sentence breaks off before its checksum", sentence.address)
+              ? fmt::format("{}: the sentence ends before its checksum", sentence.address)
               : fmt::format("{}: wrong checksum: the sentence states {:02X}, its characters give {:02X}",
                             sentence.address, sentence.expected, sentence.found));
   return false;

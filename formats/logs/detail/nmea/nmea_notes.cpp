@@ -26,7 +26,7 @@ void note_dates(const NmeaCounts& counts, const LogRequest& request, std::vector
     notes.push_back(
         fmt::format("{} fixes in a leap second are stamped as one second later", counts.leap_seconds));
   if (counts.without_time > 0)
-    notes.push_back(fmt::format("{} fixes without a time of day were passed over", counts.without_time));
+    notes.push_back(fmt::format("{} fixes without a time of day were skipped", counts.without_time));
 }
 
 void note_accuracy(const NmeaCounts& counts, const LogRequest& request, std::vector<std::string>& notes) {
@@ -36,14 +36,13 @@ void note_accuracy(const NmeaCounts& counts, const LogRequest& request, std::vec
         request.accuracy == AccuracyMeaning::automatic ? "1sigma" : to_string(request.accuracy),
         counts.from_ellipse));
   if (counts.ellipse_disagrees > 0)
-    notes.push_back(
-        fmt::format("{} error ellipses of another shape than the errors beside them were left aside",
-                    counts.ellipse_disagrees));
+    notes.push_back(fmt::format("{} error ellipses contradict the errors beside them and were ignored",
+                                counts.ellipse_disagrees));
 }
 
 void note_quality(const NmeaCounts& counts, std::vector<std::string>& notes) {
   if (counts.without_satellites > 0)
-    notes.push_back(fmt::format("{} fixes rest on no satellite and count as records without a fix",
+    notes.push_back(fmt::format("{} fixes use no satellite and count as records without a fix",
                                 counts.without_satellites));
   if (counts.dead_reckoning > 0)
     notes.push_back(
@@ -60,14 +59,13 @@ void note_quality(const NmeaCounts& counts, std::vector<std::string>& notes) {
                                 kMinute * std::pow(10, -static_cast<double>(counts.decimals)),
                                 counts.decimals));
   if (counts.without_checksum > 0)
-    notes.push_back(fmt::format("{} sentences have no checksum and are believed", counts.without_checksum));
+    notes.push_back(fmt::format("{} sentences have no checksum and are used", counts.without_checksum));
   if (counts.other_wrong_checksums > 0)
-    notes.push_back(
-        fmt::format("{} sentences of kinds that are not read are damaged (wrong checksum or none)",
-                    counts.other_wrong_checksums));
+    notes.push_back(fmt::format("{} sentences of unused kinds are damaged (wrong checksum or none)",
+                                counts.other_wrong_checksums));
   if (counts.not_sentences > 0)
     notes.push_back(
-        fmt::format("{} lines that hold no NMEA sentence were passed over", counts.not_sentences));
+        fmt::format("{} lines that hold no NMEA sentence were skipped", counts.not_sentences));
 }
 
 }  // namespace

@@ -250,18 +250,19 @@ void NovatelDecoder::end() {
     note(what);
   }
   if (other_lines_ > 0)
-    note(fmt::format("{} lines that are no NovAtel messages were passed over", other_lines_));
+    note(fmt::format("{} lines that are no NovAtel messages were skipped", other_lines_));
   std::string types;
   for (const auto& [name, count] : types_.counts())
     types += fmt::format("{}{} {}", types.empty() ? "" : ", ", count, name);
   if (!types.empty()) note("positions by type: " + types);
   if (largest_latency_s_ > 0)
-    note(fmt::format(
-        "BESTVEL states latencies up to {} s: its speeds and courses are older than their fixes by that",
-        largest_latency_s_));
+    note(
+        fmt::format("BESTVEL states latencies up to {} s: its speeds and courses are up to that "
+                    "much older than their fixes",
+                    largest_latency_s_));
   if (!datum_.empty()) note(fmt::format("positions of datum {} are taken as WGS84", datum_));
   if (without_time_ > 0)
-    note(fmt::format("{} positions of a receiver that does not know the time yet were passed over",
+    note(fmt::format("{} positions of a receiver that does not know the time yet were skipped",
                      without_time_));
   positions_.finish(data_);
 }

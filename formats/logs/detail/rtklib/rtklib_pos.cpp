@@ -175,8 +175,8 @@ GeodeticPlace RtklibDecoder::place() {
   const bool baseline = header_.layout == RtklibLayout::baseline;
   if (baseline && !header_.reference)
     throw InputError(
-        fmt::format("{}: baselines (e/n/u) without the place that they start from: no '% ref pos' line in "
-                    "degrees stands above them; let RTKLIB write latitude, longitude and height",
+        fmt::format("{}: the baselines (e/n/u) have no reference position: there is no '% ref pos' "
+                    "line in degrees above them; let RTKLIB write latitude, longitude and height",
                     path()));
   const Eigen::Vector3d given(number(2, baseline ? "e-baseline" : "x-ecef"),
                               number(3, baseline ? "n-baseline" : "y-ecef"),
@@ -274,8 +274,8 @@ void RtklibDecoder::end() {
   if (!shares.empty()) note("solutions by quality: " + shares);
   if (any_without_names_)
     note(
-        "no header names the columns: latitude, longitude (degrees), height, Q, ns, deviations, on GPST, are "
-        "assumed");
+        "no header names the columns; assumed are latitude, longitude (degrees), height, Q, ns and "
+        "deviations, on GPST");
   if (any_above_geoid_) note("heights are above the geoid ('geodetic' in the header)");
   positions_.finish(data_);
 }

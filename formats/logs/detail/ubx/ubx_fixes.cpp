@@ -54,7 +54,7 @@ void UbxFixDecoder::take_frame(const UbxFrame& frame) {
   if (frame.payload.empty()) return;  // a request for the message, in a log of both directions
   if (frame.payload.size() < least) {
     ++data_.records;
-    corrupt(byte(), fmt::format("{}: {} bytes, where the message has at least {}", ubx_name(frame.key),
+    corrupt(byte(), fmt::format("{}: {} bytes, but the message has at least {}", ubx_name(frame.key),
                                 frame.payload.size(), least));
     return;
   }
@@ -140,8 +140,7 @@ void UbxFixDecoder::end_epoch() {
   }
   if (!gps)
     return corrupt(epoch.byte,
-                   "neither a valid date nor a GPS week has come yet; state 'gps_week' to use the "
-                   "positions before");
+                   "there is no valid date and no GPS week yet; state 'gps_week' to use this position");
   const UbxPlace& place = epoch.precise    ? *epoch.precise
                           : epoch.solution ? epoch.solution->place
                                            : *epoch.plain;
@@ -217,17 +216,15 @@ void UbxFixDecoder::end() {
 void UbxFixDecoder::note_positions() {
   const std::size_t used = counts_.precise + counts_.solution + counts_.plain;
   if (used > 0 && high_rate_) {
-    note(
-        fmt::format("{} positions of HNR-PVT: dead-reckoned on from the last GNSS epoch, so their errors are "
-                    "those of that epoch and no new ones",
-                    used));
+    note(fmt::format("{} positions of HNR-PVT are dead-reckoned from the last GNSS epoch and share its error",
+                     used));
   } else if (used > 0) {
     note(fmt::format("positions: {} of NAV-HPPOSLLH, {} of NAV-PVT, {} of NAV-POSLLH", counts_.precise,
                      counts_.solution, counts_.plain));
   }
   if (!high_rate_ && UbxFrameDecoder::count(ubx::kHnrPvt) > 0)
     note(
-        fmt::format("{} positions of HNR-PVT, dead-reckoned between the navigation epochs, were passed over "
+        fmt::format("{} positions of HNR-PVT, dead-reckoned between the navigation epochs, were skipped "
                     "('position: HNR-PVT' among the columns reads them instead)",
                     UbxFrameDecoder::count(ubx::kHnrPvt)));
   if (counts_.dead_reckoned + counts_.combined > 0)
@@ -237,27 +234,26 @@ void UbxFixDecoder::note_positions() {
     note(fmt::format("{} positions with carrier phases fixed, {} with carrier phases as floats",
                      counts_.carrier_fixed, counts_.carrier_float));
   if (counts_.stateless > 0)
-    note(
-        fmt::format("{} positions come without a word on the fix and are taken as fixes", counts_.stateless));
+    note(fmt::format("{} positions do not state whether there is a fix and are taken as fixes",
+                     counts_.stateless));
   if (counts_.repeated > 0)
     note(fmt::format("{} epochs repeat the iTOW of the one before", counts_.repeated));
   if (counts_.covariance > 0)
     note(fmt::format("{} fixes with the covariance of NAV-COV", counts_.covariance));
   if (counts_.bad_covariance > 0)
-    note(fmt::format("{} covariances of NAV-COV are not positive definite and were passed over",
+    note(fmt::format("{} covariances of NAV-COV are not positive definite and were skipped",
                      counts_.bad_covariance));
 }
 
 void UbxFixDecoder::note_time() {
   if (time_.seconds_from_itow() > 0)
-    note(
-        fmt::format("{} dates are not fully resolved and differ from iTOW by whole seconds; iTOW is followed",
-                    time_.seconds_from_itow()));
+    note(fmt::format("{} dates are not fully resolved and differ from iTOW by whole seconds; iTOW is used",
+                     time_.seconds_from_itow()));
   if (time_.disagreements() > 0)
-    note(fmt::format("{} dates differ from iTOW by a second or more; the dates are followed",
+    note(fmt::format("{} dates differ from iTOW by a second or more; the dates are used",
                      time_.disagreements()));
   if (time_.used_stated_week())
-    note(fmt::format("the first epochs tell no GPS week, the stated week {} is used", request().gps_week));
+    note(fmt::format("the first epochs state no GPS week; the stated week {} is used", request().gps_week));
   if (time_.continued() > 0)
     note(fmt::format("{} epochs without a valid date or week: the week is that of the epochs before",
                      time_.continued()));

@@ -144,7 +144,7 @@ void UbxFrameDecoder::finish() {
   scan(begun_, true);
   begun_.clear();
   end();
-  if (strange_ > 0) note(fmt::format("{} bytes that belong to no UBX frame were passed over", strange_));
+  if (strange_ > 0) note(fmt::format("{} bytes that belong to no UBX frame were skipped", strange_));
   for (unsigned key = 0; key < 1U << 16U; ++key) {
     if (!counts_[key >> 8U]) {  // the class has not occurred yet
       key |= 0xFFU;
@@ -212,7 +212,7 @@ void UbxFrameDecoder::give_broken(const UbxFound& found, std::string_view bytes)
   }
   ++data_.records;
   const std::size_t length = byte_at(rest, 4) | byte_at(rest, 5) << 8U;
-  corrupt(place, length > kLongestUbxPayload ? fmt::format("{}: a length of {} bytes, which no message has",
+  corrupt(place, length > kLongestUbxPayload ? fmt::format("{}: no message has a length of {} bytes",
                                                            ubx_name(found.frame.key), length)
                                              : ubx_name(found.frame.key) + ": the checksum is wrong");
 }

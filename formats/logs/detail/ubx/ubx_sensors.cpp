@@ -117,7 +117,7 @@ void UbxSensorDecoder::take_frame(const UbxFrame& frame) {
   if (frame.payload.size() < least) {
     if (!measurements) return;
     ++data_.records;
-    return corrupt(byte(), fmt::format("ESF-MEAS: {} bytes, where the message has at least {}",
+    return corrupt(byte(), fmt::format("ESF-MEAS: {} bytes, but the message has at least {}",
                                        frame.payload.size(), least));
   }
   const UbxPayload payload(frame.payload);
@@ -235,8 +235,8 @@ void UbxSensorDecoder::end() {
   if (undated_ > 0) {
     data_.corrupt += undated_;
     data_.corrupt_examples.push_back(fmt::format(
-        "{}: {} ESF-MEAS messages come without a navigation message that tells the GPS week; state "
-        "'gps_week' if there are some that tell the time of week",
+        "{}: no navigation message gives a GPS week for {} ESF-MEAS messages; state 'gps_week' if "
+        "navigation messages give the time of week",
         path(), undated_));
   }
   if (meetings > 0)
@@ -246,18 +246,18 @@ void UbxSensorDecoder::end() {
         "second with HNR-PVT, up to half a second without",
         *calibrated_ ? "calibrated time tags" : "time tags", static_cast<double>(clock_.drift_ns()) * 1e-9));
   if (clock_.jumps() > 0)
-    note(fmt::format("the sensors' clock jumped or began anew {} times", clock_.jumps()));
+    note(fmt::format("the sensors' clock jumped or restarted {} times", clock_.jumps()));
   if (other_clock_ > 0)
-    note(fmt::format("{} ESF-MEAS {} were passed over", other_clock_,
+    note(fmt::format("{} ESF-MEAS {} were skipped", other_clock_,
                      *calibrated_ ? "without a calibrated time tag (messages to the receiver)"
                                   : "with a calibrated time tag"));
   std::size_t restarts = 0;
   for (const UbxTicks& ticks : ticks_) restarts += ticks.restarts();
   if (restarts > 0)
-    note(fmt::format("tick counters went back {} times and are taken to have begun anew without a motion",
+    note(fmt::format("tick counters went back {} times; each time a restart without motion is assumed",
                      restarts));
   if (time_.used_stated_week())
-    note(fmt::format("the first epochs tell no GPS week, the stated week {} is used", request().gps_week));
+    note(fmt::format("the first epochs state no GPS week; the stated week {} is used", request().gps_week));
 }
 
 }  // namespace waymark::formats
