@@ -16,7 +16,7 @@ enum Column : std::size_t { kHeading, kSigma };
 
 std::vector<SensorColumn> columns() {
   return {{"heading", "rad", "ccw_from_east", true, "direction in which the sensor points"},
-          {"sigma", "rad", "", false, "its standard deviation"}};
+          {"sigma", "rad", "", false, "standard deviation of the direction"}};
 }
 
 std::vector<OptionInfo> options() {

@@ -17,14 +17,14 @@ enum Column : std::size_t { kId, kX, kY, kRange, kBearing, kSigma, kSigmaBearing
 
 std::vector<SensorColumn> columns() {
   return {{"id", "1", "", true, "id of the landmark, a whole number"},
-          {"x", "m", "", false, "seen from the sensor: forward"},
-          {"y", "m", "", false, "to the left"},
-          {"range", "m", "", false, "distance, instead of x and y"},
+          {"x", "m", "", false, "position seen from the sensor, forward"},
+          {"y", "m", "", false, "position seen from the sensor, to the left"},
+          {"range", "m", "", false, "distance from the sensor, instead of x and y"},
           {"bearing", "rad", "ccw", false, "direction from straight ahead, with range"},
           {"sigma", "m", "", false, "standard deviation of x and y, or of the range"},
           {"sigma_bearing", "rad", "", false, "standard deviation of the bearing"},
           {"map_x", "m", "", false, "known position of the landmark in the frame: x"},
-          {"map_y", "m", "", false, "y"}};
+          {"map_y", "m", "", false, "known position of the landmark in the frame: y"}};
 }
 
 std::vector<OptionInfo> options() {

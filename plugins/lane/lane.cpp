@@ -12,11 +12,11 @@ namespace {
 enum Column : std::size_t { kOffset, kAx, kAy, kBx, kBy, kSigma };
 
 std::vector<SensorColumn> columns() {
-  return {{"offset", "m", "", true, "how far the vehicle is to the left of the line from a to b"},
-          {"ax", "m", "", true, "a point of the line in the frame: x"},
-          {"ay", "m", "", true, "y"},
-          {"bx", "m", "", true, "another point, in the direction of the line: x"},
-          {"by", "m", "", true, "y"},
+  return {{"offset", "m", "", true, "distance of the vehicle to the left of the line from a to b"},
+          {"ax", "m", "", true, "point a of the line in the frame: x"},
+          {"ay", "m", "", true, "point a: y"},
+          {"bx", "m", "", true, "point b, from a in the direction of the line: x"},
+          {"by", "m", "", true, "point b: y"},
           {"sigma", "m", "", false, "standard deviation of the offset"}};
 }
 
@@ -24,7 +24,8 @@ std::vector<OptionInfo> options() {
   return {{"sigma", "0.2", "m", OptionRange{1e-6, 1e4}, "sigma of offsets that state none"},
           {"lever_x", "0", "m", OptionRange{-100, 100},
            "the vehicle's measured point in the body frame, forward"},
-          {"lever_y", "0", "m", OptionRange{-100, 100}, "to the left"}};
+          {"lever_y", "0", "m", OptionRange{-100, 100},
+           "the vehicle's measured point in the body frame, to the left"}};
 }
 
 class Lane final : public SensorModel {

@@ -14,9 +14,9 @@ constexpr double kDegree = std::numbers::pi / 180;
 enum Column : std::size_t { kDt, kX, kY, kHeading, kSigma, kSigmaHeading };
 
 std::vector<SensorColumn> columns() {
-  return {{"dt", "s", "", true, "time of the second pose minus that of the first; may be negative"},
-          {"x", "m", "", true, "second pose seen from the first: forward"},
-          {"y", "m", "", true, "to the left"},
+  return {{"dt", "s", "", true, "time of the second pose minus time of the first; may be negative"},
+          {"x", "m", "", true, "second pose seen from the first, forward"},
+          {"y", "m", "", true, "second pose seen from the first, to the left"},
           {"heading", "rad", "ccw", true, "turn from the first to the second"},
           {"sigma", "m", "", false, "standard deviation of x and of y"},
           {"sigma_heading", "rad", "", false, "standard deviation of the heading"}};

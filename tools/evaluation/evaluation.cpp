@@ -16,8 +16,8 @@ void check(const EvaluationInput& input) {
   if (input.fused.size() != n)
     throw UsageError(fmt::format("evaluate: {} fused poses for {} fixes", input.fused.size(), n));
   if (!input.when_measured.empty() && input.when_measured.size() != n)
-    throw UsageError(
-        fmt::format("evaluate: {} poses when measured for {} fixes", input.when_measured.size(), n));
+    throw UsageError(fmt::format("evaluate: {} poses at the times of measurement for {} fixes",
+                                 input.when_measured.size(), n));
   if (!input.position_covariances.empty() && input.position_covariances.size() != n)
     throw UsageError(
         fmt::format("evaluate: {} covariances for {} poses", input.position_covariances.size(), n));

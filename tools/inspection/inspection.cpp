@@ -270,7 +270,7 @@ void read_streams(LogInspection& log, const LogReader& reader, const InspectionO
   if (!again.fixes || again.fixes->fixes == 0) return;
   again.clock.known = false;
   again.clock.reason =
-      "the log tells only the time of day; the date shown is made up, state 'date' under 'time'";
+      "the log has only the time of day; the date shown is invented, state 'date' under 'time'";
   again.clock.names_its_own = false;
   log = std::move(again);
 }

@@ -26,7 +26,7 @@ LogClock clock_of_column(const ColumnSummary* time, Stamp now) {
     return {TimeScale::unix_time, false, false, false, false, "no column of times is known"};
   const std::string column = fmt::format("column '{}'", time->name);
   if (time->proposal.unit == "iso8601")
-    return {TimeScale::utc, true, true, false, true, column + " holds dates (UTC where they name no zone)"};
+    return {TimeScale::utc, true, true, false, true, column + " holds dates (UTC if they name no zone)"};
   const std::vector<std::string> words = words_of(time->name);
   const auto says = [&](std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
@@ -37,13 +37,13 @@ LogClock clock_of_column(const ColumnSummary* time, Stamp now) {
   if (says("sow") || says("tow") || says("itow") || says("week"))
     return {TimeScale::gps, false, false, true, true, column + " counts seconds of a GPS week"};
   if (first < 0.3e9 || (first < kEarliestUnix && !says("gps")))
-    return {
-        TimeScale::unix_time,
-        false,
-        false,
-        false,
-        false,
-        fmt::format("{} counts from {:.6g}: no date; seconds since some start, or of a week", column, first)};
+    return {TimeScale::unix_time,
+            false,
+            false,
+            false,
+            false,
+            fmt::format("{} counts from {:.6g}: no date; seconds since an unknown start, or of a week",
+                        column, first)};
   if (says("unix") || says("posix") || says("epoch"))
     return {
         says("gps") || says("gnss") ? TimeScale::utc : TimeScale::unix_time,
@@ -55,17 +55,17 @@ LogClock clock_of_column(const ColumnSummary* time, Stamp now) {
   if (says("gps") && last <= gps_now)
     return {TimeScale::gps, false, true, false, true, column + " counts GPS seconds since 1980"};
   if (says("gps"))
-    return {
-        TimeScale::utc,
-        false,
-        true,
-        false,
-        false,
-        column + " says GPS, but its numbers are Unix seconds (as GPS seconds they would lie in the future)"};
+    return {TimeScale::utc,
+            false,
+            true,
+            false,
+            false,
+            column +
+                " is named GPS, but its numbers are Unix seconds (as GPS seconds they would "
+                "be in the future)"};
   if (says("utc"))
     return {TimeScale::utc, false, true, false, true, column + " counts UTC seconds since 1970"};
-  return {
-      TimeScale::unix_time, false, true, false, false, column + " holds numbers like those of Unix seconds"};
+  return {TimeScale::unix_time, false, true, false, false, column + " holds numbers like Unix seconds"};
 }
 
 Stamp on_scale(Stamp stamp, TimeScale from, TimeScale to) {

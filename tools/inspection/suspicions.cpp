@@ -35,7 +35,7 @@ void judge_clock(const StampSeries& stamps, const LogInspection& log, const std:
     sentences.push_back(fmt::format("the clock of the {} goes backwards {}, first {} by {:.6g} s", what,
                                     times(back.count), place(back, clock), back.amount));
   if (const Sighting& twice = stamps.duplicates(); twice.count > 0)
-    sentences.push_back(fmt::format("stamps of the {} are the same as the one before {}, first {}", what,
+    sentences.push_back(fmt::format("a stamp of the {} equals the one before {}, first {}", what,
                                     times(twice.count), place(twice, clock)));
   if (const Sighting& jump = stamps.jumps(); jump.count > 0)
     sentences.push_back(fmt::format("the clock of the {} jumps by more than an hour {}, first {} by {:.6g} s",
@@ -53,7 +53,7 @@ void judge_date(const LogInspection& log, Stamp now, std::vector<std::string>& s
   const double other = first + (first < kYear2000 ? kRollover : -kRollover);
   if (other >= kYear2000 && other <= latest) {
     const LogClock utc;
-    sentence += fmt::format(": a receiver that is off by 1024 weeks would mean {}",
+    sentence += fmt::format(": if the receiver is wrong by 1024 weeks, the date is {}",
                             date_text(Stamp::from_seconds(other), utc));
   }
   sentences.push_back(sentence);
@@ -70,24 +70,23 @@ void judge_places(const FixSummary& fixes, const LogClock& clock, std::vector<st
   const bool never_elsewhere = fixes.repeated == fixes.repeated_in_frozen;
   if (fixes.frozen_moving.count > 0) {
     sentences.push_back(fmt::format(
-        "the position stands still for 5 fixes or more while the receiver's speed is above 1 m/s {}, first "
-        "{} "
-        "for {:.0f} fixes",
+        "the position is constant for 5 fixes or more although the receiver's speed is above 1 m/s "
+        "{}, first {} for {:.0f} fixes",
         times(fixes.frozen_moving.count), place(fixes.frozen_moving, clock), fixes.frozen_moving.amount));
   } else if (fixes.frozen.count > 0 && never_elsewhere && fixes.with_speed == 0 &&
              4 * fixes.repeated < fixes.fixes) {
     sentences.push_back(
-        fmt::format("the position is the same for 5 fixes or more {}, first {} for {:.0f} fixes, and changes "
-                    "with every fix "
-                    "elsewhere: a receiver that repeats its last position, or a vehicle that stands",
+        fmt::format("the position is constant for 5 fixes or more {}, first {} for {:.0f} fixes, "
+                    "and changes with every other fix: the receiver repeats its last position, or "
+                    "the vehicle stands",
                     times(fixes.frozen.count), place(fixes.frozen, clock), fixes.frozen.amount));
   }
   if (fixes.height.count > 0 && (fixes.height.largest > kHighest || fixes.height.smallest < kLowest))
-    sentences.push_back(fmt::format("heights reach from {:.1f} to {:.1f} m, which no road does",
+    sentences.push_back(fmt::format("heights reach from {:.1f} to {:.1f} m, beyond all roads",
                                     fixes.height.smallest, fixes.height.largest));
   if (fixes.resolution_m >= 1)
     sentences.push_back(
-        fmt::format("positions are written in steps of {:.2g} m (to the north): their digits are cut",
+        fmt::format("positions are written in steps of {:.2g} m (to the north): they have too few digits",
                     fixes.resolution_m));
 }
 
@@ -132,12 +131,12 @@ void judge_speed(const FixSummary& fixes, std::vector<std::string>& sentences) {
 void judge_odometry(const OdometrySummary& odometry, std::vector<std::string>& sentences) {
   if (odometry.yaw_rate_driving > 1)
     sentences.push_back(fmt::format(
-        "{} exceeds {:.3g} rad/s ({:.3g} deg/s) in 5 % of the drive: it looks like deg/s read as rad/s",
+        "{} exceeds {:.3g} rad/s ({:.3g} deg/s) in 5 % of the drive: probably deg/s are read as rad/s",
         odometry.yaw_channel, odometry.yaw_rate_driving, odometry.yaw_rate_driving * 57.29578));
   for (const ChannelSummary& channel : odometry.channels) {
     if (channel.name == "speed" && channel.percent95 > 75)
       sentences.push_back(fmt::format(
-          "speed exceeds {:.3g} m/s in 5 % of the drive: it looks like km/h read as m/s", channel.percent95));
+          "speed exceeds {:.3g} m/s in 5 % of the drive: probably km/h are read as m/s", channel.percent95));
   }
 }
 
@@ -180,7 +179,7 @@ std::string suspicion_between(const LogInspection& log, const LogInspection& oth
   const StampSeries* b = other.span();
   if (a == nullptr || b == nullptr) return {};
   if (log.clock.dated != other.clock.dated)
-    return fmt::format("its stamps cannot be compared with those of {}: only one of both has dates",
+    return fmt::format("its stamps cannot be compared with the stamps of {}: only one of the logs has dates",
                        other.path);
   const auto seconds = [](Stamp stamp, const LogClock& clock) {
     return (clock.dated ? on_scale(stamp, clock.scale, TimeScale::utc) : stamp).seconds();
@@ -198,7 +197,7 @@ std::string suspicion_between(const LogInspection& log, const LogInspection& oth
   if (near(kGpsEpoch))
     sentence += " (315964800 s lie between the GPS epoch of 1980 and the Unix epoch of 1970)";
   else if (near(kRollover))
-    sentence += " (1024 weeks, after which GPS weeks begin anew, are 619315200 s)";
+    sentence += " (GPS weeks restart after 1024 weeks, which are 619315200 s)";
   else if (std::abs(std::abs(start) - kLeapSeconds) < 2)
     sentence += " (GPS time is 18 s ahead of UTC since 2017)";
   return sentence;

@@ -10,12 +10,10 @@ namespace {
 
 constexpr const char* kDescription =
     "Waymark: fuses odometry with GNSS, optimises pose graphs\n\n"
-    "A drive.yaml names the logs of a drive. 'waymark init' writes one for the logs at hand, 'waymark run' "
-    "does "
-    "the whole job with it: it reads the logs, builds a pose graph, finds its minimum and compares the "
-    "result "
-    "with truth. Each step is a subcommand of its own as well, and graphs of other programs are read and "
-    "written.";
+    "A drive.yaml names the logs of a drive. 'waymark init' writes one for given logs. 'waymark "
+    "run' does the whole job: it reads the logs, builds a pose graph, finds its minimum and "
+    "compares the result with truth. Each step is also a subcommand. Graphs of other "
+    "programs are read and written.";
 
 /// Returns the exit codes as a sentence, and an example.
 std::string footer() {
@@ -25,7 +23,9 @@ std::string footer() {
     codes += " " + std::to_string(code) + " " + meaning;
   }
   return codes +
-         ".\n'waymark help SUBCOMMAND' explains a subcommand; 'waymark doctor' says what was built in.\n"
+         ".\n"
+         "'waymark help SUBCOMMAND' explains a subcommand; 'waymark doctor' shows how "
+         "the program was built.\n"
          "Example:\n  waymark run drive.yaml --out results --modeling all";
 }
 

@@ -48,9 +48,10 @@ std::optional<ReadingPlace> find_place(const DriveNodes& nodes, Stamp moment) {
 }
 
 std::vector<OptionInfo> mount_options() {
-  return {{"mount_x", "0", "m", OptionRange{-100, 100}, "the sensor in the body frame, forward"},
-          {"mount_y", "0", "m", OptionRange{-100, 100}, "to the left"},
-          {"mount_deg", "0", "deg", OptionRange{-360, 360}, "its heading in the body frame"}};
+  return {
+      {"mount_x", "0", "m", OptionRange{-100, 100}, "position of the sensor in the body frame, forward"},
+      {"mount_y", "0", "m", OptionRange{-100, 100}, "position of the sensor in the body frame, to the left"},
+      {"mount_deg", "0", "deg", OptionRange{-360, 360}, "heading of the sensor in the body frame"}};
 }
 
 Pose2<double> read_mount(const CheckedOptions& options) {

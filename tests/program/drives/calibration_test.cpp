@@ -75,9 +75,9 @@ TEST_CASE(
   CHECK(contains(states("calibration: on\n", {}), "VERTEX_TIME_OFFSET"));
   CHECK_FALSE(contains(states("calibration: on\n", {"--calibrate", "off"}), "VERTEX_TIME_OFFSET"));
   CHECK(contains(states("calibration: {gyro_bias: constant}\n", {}), "VERTEX_GYRO_BIAS"));
-  CHECK(contains(
-      states("calibration: {gyro_scale: constant}\n", {}),
-      "calibration: neither odometry model 'constant_twist' nor the GNSS modeling knows 'gyro_scale'"));
+  CHECK(contains(states("calibration: {gyro_scale: constant}\n", {}),
+                 "calibration: neither the odometry model 'constant_twist' nor the GNSS modeling "
+                 "has an option 'gyro_scale'"));
   CHECK(contains(states("calibration: {gyro_bias: sometimes}\n", {}),
                  "option 'gyro_bias' must be 'off' or 'constant' or 'random_walk', got 'sometimes'"));
 }

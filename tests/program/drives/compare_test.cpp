@@ -163,7 +163,7 @@ TEST_CASE("compare: says that drives are mixed, and takes runs without truth") {
   CHECK(contains(result.err, "note: the runs are of 2 drives"));
   const std::string html = read_text(folder + "out/comparison.html");
   CHECK(page_flaws(html) == std::vector<std::string>{});
-  CHECK(contains(html, "Errors are comparable within a drive only"));
+  CHECK(contains(html, "Errors are comparable only within one drive"));
 
   const RunResult blind = run({"compare", folder + "two", "-o", folder + "blind"});
   CHECK(blind.code == 0);

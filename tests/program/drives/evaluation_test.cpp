@@ -160,7 +160,7 @@ TEST_CASE("evaluation: causal predictions without outages are refused") {
   const std::string folder = fresh_folder();
   const RunResult refused = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r", "--causal"});
   CHECK(refused.code == 2);
-  CHECK(contains(refused.err, "--causal: there are no outages to be predicted; name them with --outage"));
+  CHECK(contains(refused.err, "--causal: there are no outages to predict; name them with --outage"));
   CHECK_FALSE(exists(folder + "r"));
 }
 

@@ -161,7 +161,7 @@ TEST_CASE("reproduce: refuses what it cannot do before any work") {
   CHECK(run({"reproduce", bundled_drive(), folder + "missing.yaml", "-o", out}).code == 3);
   const RunResult drawn = run({"reproduce", bundled_drive(), "-o", out, "--consistency", "4"});
   CHECK(drawn.code == 2);
-  CHECK(contains(drawn.err, "--consistency draws its own drives"));
+  CHECK(contains(drawn.err, "--consistency simulates its own drives"));
   CHECK(run({"reproduce", "-o", out, "--consistency", "0"}).code == 2);
   CHECK(run({"reproduce", "-o", out, "--consistency", "4", "--ablation"}).code == 2);
   CHECK_FALSE(exists(out));

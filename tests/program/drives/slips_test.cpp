@@ -58,7 +58,7 @@ TEST_CASE("slips: a speed in km/h is named at 5 Hz too, and in the report") {
   const std::string drive =
       drive_with(folder, [](double t, double v, double w) { return line(t, 3.6 * v, w); });
   const RunResult result = run({"run", drive, "-o", folder + "out"});
-  CHECK(contains(result.err, "times that of the fixes"));
+  CHECK(contains(result.err, "times the distance of the fixes"));
   CHECK(contains(result.err, "(3.6: km/h read as m/s)"));
   CHECK(contains(result.err, "warning: the estimate of speed_scale is"));
   CHECK(contains(result.err, "times as far from the truth as raw GNSS"));
@@ -80,7 +80,8 @@ TEST_CASE("slips: a hole in the odometry is told with its place and length") {
     return t > 126700 && t < 126730 ? std::string() : line(t, v, w);
   });
   const RunResult result = run({"convert", drive, "-o", folder + "a.graph"});
-  CHECK(contains(result.err, "the odometry is silent for more than 0.5 s in 1 place, the longest 30.0 s"));
+  CHECK(contains(result.err,
+                 "the odometry has no samples for more than 0.5 s in 1 place, the longest for 30.0 s"));
 }
 
 TEST_CASE(
@@ -107,7 +108,7 @@ TEST_CASE("slips: no command overwrites what it reads, and simulate no drive tha
   }
   const RunResult simulated = run({"simulate", "--preset", "urban", "--duration", "60", "-o", folder});
   CHECK(simulated.code == 2);
-  CHECK(contains(simulated.err, "drive.yaml: is there and was not made by simulate"));
+  CHECK(contains(simulated.err, "drive.yaml: exists and was not written by simulate"));
   CHECK(read_text(folder + "gnss.csv") == log);
   const std::vector<std::string> again = {"simulate", "--preset", "urban",        "--duration",
                                           "60",       "-o",       folder + "made"};

@@ -79,7 +79,7 @@ TEST_CASE("bench: starts a file without vertices along its odometry, once") {
   write_text(folder + "edges.g2o", "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n");
   const RunResult result =
       run({"bench", folder + "edges.g2o", "--start", "file,odometry", "--repeat", "1", "--json"});
-  CHECK(contains(result.err, "edges.g2o has edges only: its start 'file' is the odometry chain"));
+  CHECK(contains(result.err, "edges.g2o has edges only: its initial guess 'file' is the odometry chain"));
   const Json cells = Json::parse(result.out).at("files").at(0).at("cells");
   REQUIRE(cells.size() == 1);
   CHECK(cells.at(0).at("start") == "odometry");

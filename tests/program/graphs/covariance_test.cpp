@@ -149,7 +149,8 @@ TEST_CASE("covariance: a table that cannot be written is refused before the work
   CHECK(refuse("all", "b.txt").err ==
         "waymark: error: --covariance-file: the name must end in .csv or .json, got 'b.txt'\n");
   CHECK(refuse("none", "b.csv").err ==
-        "waymark: error: --covariance-file: say which covariances: --covariance fixes or --covariance all\n");
+        "waymark: error: --covariance-file: choose the covariances: --covariance fixes or "
+        "--covariance all\n");
   CHECK(refuse("all", "none/b.csv").code == 5);
   CHECK(names_in(folder) == std::vector<std::string>{"a.graph"});
 }

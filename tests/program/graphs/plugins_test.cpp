@@ -50,7 +50,7 @@ TEST_CASE("plugins: a module that does not fit is a usage error with reason and 
     check_refused(result, 2, reason);
     CHECK(contains(result.err, "waymark: error: " + module_file(name) + ": "));
   }
-  CHECK(contains(run({"info", "--plugin", "nobody"}).err, "no plugin 'nobody': looked for nobody.so in"));
+  CHECK(contains(run({"info", "--plugin", "nobody"}).err, "no plugin 'nobody': searched for nobody.so in"));
 }
 
 TEST_CASE("plugins: folders of WAYMARK_PLUGIN_PATH are searched for names, and their plugins are loaded") {

@@ -92,7 +92,7 @@ TEST_CASE("robust: wrong losses, tags and combinations are refused before anythi
       {{"--loss", "EDGE_SE3=huber:1"}, "--loss: unknown edge type 'EDGE_SE3'; did you mean 'EDGE_SE2'?"},
       {{"--robust", "gnc", "--loss", "EDGE_SE2=huber:1"}, "--robust gnc takes one loss for all edges"},
       {{"--trusted", "EDGE_SE3"}, "--trusted: unknown edge type 'EDGE_SE3'"},
-      {{"--outliers", "x"}, "--outliers: no outliers are looked for without --robust gnc"},
+      {{"--outliers", "x"}, "--outliers needs --robust gnc, which looks for them"},
   };
   for (const Case& c : cases) {
     std::vector<std::string> arguments = {"optimize", "none.graph", "-o", "out.graph"};

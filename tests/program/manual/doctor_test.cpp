@@ -136,12 +136,12 @@ TEST_CASE("doctor: drives and graphs are read with the plugins that they need") 
   const RunResult with = run({"doctor", drive, graph, "--plugin", module_file("sound")});
   INFO(with.out);
   CHECK(with.code == 0);
-  CHECK(contains(with.out, drive + ": 3 logs, all there"));
+  CHECK(contains(with.out, drive + ": 3 logs, all found"));
   CHECK(contains(with.out, graph + ": 1 vertices, 1 edges"));
   std::filesystem::remove(folder + "gnss.csv");
   const RunResult lost = run({"doctor", drive});
   CHECK(lost.code == 3);
-  CHECK(contains(lost.out, "gnss.csv: there is no such log"));
+  CHECK(contains(lost.out, "gnss.csv: this log does not exist"));
   write_text(folder + "broken.yaml", "plugins: [");
   CHECK(run({"doctor", folder + "broken.yaml"}).code == 3);
 }

@@ -95,8 +95,7 @@ TEST_CASE("usage: what is mistyped is answered by what was meant, before anythin
       {{"bench", "a.g2o", "--withhold", "3"},
        "unknown option '--withhold'; --withhold belongs to: convert, run"},
       {{"optimize", "a.graph", "-o", "b", "-m", "g1"}, "unknown option '-m'; -m belongs to: convert, run"},
-      {{"info", "--frobnicate"},
-       "unknown option '--frobnicate'; 'waymark info --help' lists those there are"},
+      {{"info", "--frobnicate"}, "unknown option '--frobnicate'; 'waymark info --help' lists all options"},
       // A value may look like an option: it is not what is wrong here.
       {{"optimize", "a.graph", "-o", "--odd", "--quite"},
        "unknown option '--quite'; did you mean '--quiet'?"},

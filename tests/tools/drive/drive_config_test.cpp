@@ -167,11 +167,13 @@ TEST_CASE("drive.yaml: wrong types and ranges") {
   CHECK(error_of("gate: 3\n") == "tours/drive.yaml:3:7: gate: expected a mapping (key: value), got '3'");
   CHECK(error_of("initial_guess: somewhere\n") ==
         "tours/drive.yaml:3:16: initial_guess: expected one of anchored, dead_reckoning, got 'somewhere'");
-  CHECK(error_of("time: {from: 5, to: 5}\n") == "tours/drive.yaml:3:21: time.to: must lie after 'from'");
+  CHECK(error_of("time: {from: 5, to: 5}\n") ==
+        "tours/drive.yaml:3:21: time.to: must be greater than 'from'");
   CHECK(error_of("frame: {utm_zone: 61N}\n") ==
         "tours/drive.yaml:3:19: frame.utm_zone: expected a zone such as 32N or 56S, got '61N'");
   CHECK(error_of("frame: {origin: [1, 2]}\n") ==
-        "tours/drive.yaml:3:17: frame.origin: needs a stated utm_zone: it counts from that zone's corner");
+        "tours/drive.yaml:3:17: frame.origin: needs a stated utm_zone, because it is "
+        "in coordinates of that zone");
   CHECK(error_of("truth: {reference: [1, 2]}\n") == "tours/drive.yaml:3:8: truth: 'file' is missing");
   CHECK(error_of("truth: {file: t.csv, reference: [1, 2, 3]}\n") ==
         "tours/drive.yaml:3:33: truth.reference: expected two numbers [x, y], got a list of 3");

@@ -253,7 +253,7 @@ TEST_CASE("gate: the gate can be off, and options are checked") {
 }
 
 TEST_CASE("gate: a drive without a fix, or with all rejected, is an error with a remedy") {
-  CHECK_THROWS_WITH(require_accepted_fix(GateSummary{}), "the drive has no GNSS fix to work with");
+  CHECK_THROWS_WITH(require_accepted_fix(GateSummary{}), "the drive has no GNSS fix");
   GateSummary rejected;
   rejected.rejected = 7;
   CHECK_THROWS_WITH(

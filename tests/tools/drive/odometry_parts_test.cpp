@@ -81,7 +81,7 @@ TEST_CASE("parts: a clock that nobody stated is the yaw rate's, and said") {
   const AssembledOdometry odometry = assemble_odometry(parts, {}, 0.5);
   CHECK(odometry.samples.size() == 251);
   CHECK(odometry.notes.back() ==
-        "odometry: 251 samples at 25 Hz (the yaw rate's own; state 'rate' for another)");
+        "odometry: 251 samples at 25 Hz (the rate of the yaw rate; state 'rate' for another)");
   CHECK(odometry.notes.front() == "odometry: speed from 'speed', 10 readings a second");
 }
 
@@ -142,8 +142,8 @@ TEST_CASE("parts: the axis of a gyro is stated, with its sign") {
   how.gyro_axis = "gravity";
   CHECK_THROWS_MATCHES(
       assemble_odometry(parts, how, 0.5), InputError,
-      Message("odometry: 'gyro: {axis: gravity}' needs gyro_x, _y, _z and acceleration_x, _y, _z; the logs "
-              "give: gyro_x, speed"));
+      Message("odometry: 'gyro: {axis: gravity}' needs gyro_x, _y, _z and acceleration_x, _y, _z; "
+              "channels found: gyro_x, speed"));
 }
 
 TEST_CASE("parts: gravity at standstill says which way a tilted gyro's yaw points") {
@@ -200,10 +200,9 @@ TEST_CASE("parts: where a channel is silent there are no samples, so that the ga
 TEST_CASE("parts: what cannot be put together is said") {
   const std::vector<OdometryPart> twice{part("speed", 10, 0, 10, constant(5)),
                                         part("speed", 10, 0, 10, constant(5))};
-  CHECK_THROWS_MATCHES(
-      assemble_odometry(twice, {}, 0.5), InputError,
-      Message(
-          "odometry: both speed.csv and speed.csv give 'speed'; leave it out of the columns of one of them"));
+  CHECK_THROWS_MATCHES(assemble_odometry(twice, {}, 0.5), InputError,
+                       Message("odometry: both speed.csv and speed.csv have 'speed'; leave it out "
+                               "of the columns of one of them"));
   const std::vector<OdometryPart> half{part("speed", 10, 0, 10, constant(5))};
   CHECK_THROWS_MATCHES(assemble_odometry(half, {}, 0.5), InputError,
                        Message("odometry: no log has a channel for the yaw rate; channels found: speed"));
@@ -215,8 +214,8 @@ TEST_CASE("parts: what cannot be put together is said") {
   const std::vector<OdometryPart> apart{part("speed", 10, 0, 10, constant(5)),
                                         part("yaw_rate", 10, 20, 30, constant(0))};
   CHECK_THROWS_MATCHES(assemble_odometry(apart, {}, 0.5), InputError,
-                       Message("odometry: speed and yaw rate have no time in common; check 'time: {scale, "
-                               "week, offset}' of the parts"));
+                       Message("odometry: speed and yaw rate do not overlap in time; check 'time: "
+                               "{scale, week, offset}' of the parts"));
 }
 
 TEST_CASE("time series: means over a span are those of the lines between readings") {

@@ -47,8 +47,8 @@ TEST_CASE("plausibility: odometry that agrees with the fixes is not complained a
 TEST_CASE("plausibility: a speed in km/h read as m/s is named with its factor") {
   const auto said = warnings(scene(3.6, 1));
   REQUIRE(said.size() == 1);
-  CHECK_THAT(said[0],
-             Catch::StartsWith("the way of the odometry between fixes is 3.60 times that of the fixes"));
+  CHECK_THAT(said[0], Catch::StartsWith(
+                          "the odometry's distance between fixes is 3.60 times the distance of the fixes"));
   CHECK(warnings(scene(1 / 3.6, 1)).size() == 1);
 }
 

@@ -231,9 +231,8 @@ TEST_CASE("prepare: what cannot become a drive says why and what to do") {
                        Message("odometry.csv: 1 usable odometry samples; at least 2 are needed"));
   logs = small_drive();
   logs.gnss[0].data.fixes.clear();
-  CHECK_THROWS_MATCHES(
-      prepare_drive(logs, small_description()), InputError,
-      Message("gnss.csv: the GNSS logs hold no usable fix; a drive without a fix has no place"));
+  CHECK_THROWS_MATCHES(prepare_drive(logs, small_description()), InputError,
+                       Message("gnss.csv: the GNSS logs hold no usable fix; a drive needs at least one"));
   logs = small_drive();
   for (GeodeticFix& fix : logs.gnss[0].data.fixes) fix.stamp.nanoseconds += 1'000'000'000'000;
   CHECK_THROWS_MATCHES(prepare_drive(logs, small_description()), InputError,
@@ -265,9 +264,8 @@ TEST_CASE("prepare: reading the logs of a description") {
   description.odometry.front().format = "cvs";
   CHECK_THROWS_MATCHES(
       load_drive(description, registry_with_readers()), InputError,
-      Message(
-          "drive.yaml:2:3: unknown log format 'cvs'; did you mean 'csv'?; `waymark info` lists those there "
-          "are; a plugin that brings it is loaded with --plugin"));
+      Message("drive.yaml:2:3: unknown log format 'cvs'; did you mean 'csv'?; `waymark info` lists "
+              "all; load the plugin of a format with --plugin"));
 }
 
 TEST_CASE("prepare: the real drives that come as configs") {

@@ -124,7 +124,7 @@ TEST_CASE("projection: the frame of a drive") {
   CHECK_THROWS_MATCHES(choose_frame({52.5, -100}, 33, std::nullopt), InputError,
                        Message("latitude 52.5, longitude -100 cannot be projected into UTM zone 33"));
   CHECK_THROWS_MATCHES(Projection(Frame{}), InputError,
-                       Message("a frame without a UTM zone (zone 0) has no place on the Earth"));
+                       Message("a frame without a UTM zone (zone 0) has no geodetic position"));
 }
 
 TEST_CASE("projection: a fix keeps what has no direction and turns what has") {

@@ -239,7 +239,7 @@ TEST_CASE("start: two fixes are enough for a start, one is said to be a guess") 
 
   drive.fixes[160].status = FixStatus::rejected;
   const Start one = drive.anchored();
-  CHECK_THAT(one.note, Catch::Contains("say nothing about the heading"));
+  CHECK_THAT(one.note, Catch::Contains("do not determine the heading"));
   drive.fixes[100].heading_rad = drive.truth[drive.timeline.fix_node[100]][2];
   const Start course = drive.anchored();
   CHECK_THAT(course.note, Catch::Contains("course"));
@@ -249,7 +249,7 @@ TEST_CASE("start: two fixes are enough for a start, one is said to be a guess") 
 TEST_CASE("start: a drive that never moves starts at its fixes and says so") {
   const SyntheticDrive drive = simulate([](double) { return std::pair(0.0, 0.0); }, {});
   const Start start = drive.anchored();
-  CHECK_THAT(start.note, Catch::Contains("say nothing about the heading"));
+  CHECK_THAT(start.note, Catch::Contains("do not determine the heading"));
   CHECK(worst_position_m(drive, start) < 1);
   CHECK_FALSE(dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill).note.empty());
 }

@@ -127,7 +127,7 @@ TEST_CASE("truth: fixes that all lie in gaps of the truth are an error") {
   std::vector<TruthPose> truth = straight(1);
   truth.push_back(truth_pose(9, 90, 0));
   CHECK_THROWS_WITH(interpolate_truth(truth, stamps({3, 4})),
-                    Catch::Matchers::Contains("2 of 2 lie in gaps of the truth longer than 0.300 s"));
+                    Catch::Matchers::Contains("2 of 2 are in gaps of the truth longer than 0.300 s"));
 }
 
 TEST_CASE("truth: truth out of order, empty or not finite is an error") {

@@ -38,7 +38,7 @@ void read_time(const YamlSection& top, DriveDescription& drive) {
     drive.time_scale = time_scale_from_string(kTimeScaleWords[*scale]);
   time->read("from", drive.from_s, kNotNegative);
   time->read("to", drive.to_s, kPositive);
-  if (drive.to_s && *drive.to_s <= drive.from_s.value_or(0)) time->fail("to", "must lie after 'from'");
+  if (drive.to_s && *drive.to_s <= drive.from_s.value_or(0)) time->fail("to", "must be greater than 'from'");
 }
 
 /// Reads 32, "32N" or "32S"; a plain number is north.
@@ -64,7 +64,8 @@ void read_frame(const YamlSection& top, DriveDescription& drive) {
   if (!frame) return;
   if (frame->has("utm_zone")) drive.utm_zone = read_zone(*frame);
   if (!frame->has("origin")) return;
-  if (!drive.utm_zone) frame->fail("origin", "needs a stated utm_zone: it counts from that zone's corner");
+  if (!drive.utm_zone)
+    frame->fail("origin", "needs a stated utm_zone, because it is in coordinates of that zone");
   Eigen::Vector2d origin;
   frame->read("origin", origin);
   drive.utm_origin = origin;

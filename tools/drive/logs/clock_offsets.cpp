@@ -33,8 +33,9 @@ std::vector<std::string> put_on_told_time(DriveLogs& logs) {
     const std::int64_t ahead = std::llround(clock->ahead_s * 1e9);
     for (GeodeticFix& fix : log.data.fixes) fix.stamp.nanoseconds -= ahead;
     for (ClockPair& pair : log.data.clocks) pair.logged.nanoseconds -= ahead;
-    notes.push_back(fmt::format("sync: {}: the stamps were {:.3f} s ahead of the GNSS time it tells; applied",
-                                log.file, clock->ahead_s));
+    notes.push_back(
+        fmt::format("sync: {}: the stamps were {:.3f} s ahead of the GNSS time in the log; corrected",
+                    log.file, clock->ahead_s));
   }
   return notes;
 }

@@ -58,7 +58,7 @@ Channels collect_channels(std::span<const OdometryPart> parts) {
       const auto [place, is_new] = origin.try_emplace(known[c].name, part.file);
       if (!is_new)
         throw InputError(
-            fmt::format("odometry: both {} and {} give '{}'; leave it out of the columns of one of them",
+            fmt::format("odometry: both {} and {} have '{}'; leave it out of the columns of one of them",
                         place->second, part.file, known[c].name));
       channels[known[c].name] = series_of(std::move(readings));
     }
@@ -279,8 +279,8 @@ class Assembler {
     const Eigen::Vector3d up = stood ? standing : all;
     if (!(up.norm() > 1))
       throw InputError(
-          "odometry: the accelerometer feels no gravity (below 1 m/s^2); is its unit right, and does the "
-          "device remove gravity? State 'gyro: {axis: x}' or another axis instead");
+          "odometry: the accelerometer shows no gravity (below 1 m/s^2); check its unit. If the "
+          "device removes gravity, state 'gyro: {axis: x}' or another axis");
     note(fmt::format("up is ({:.3f}, {:.3f}, {:.3f}) of the sensor's axes, by {}", up.x() / up.norm(),
                      up.y() / up.norm(), up.z() / up.norm(),
                      stood ? "gravity at standstill" : "the mean specific force (no standstill of 2 s)"));
@@ -332,10 +332,10 @@ class Assembler {
     }
     if (result_.samples.empty())
       throw InputError(
-          "odometry: speed and yaw rate have no time in common; check 'time: {scale, week, offset}' of the "
-          "parts");
+          "odometry: speed and yaw rate do not overlap in time; check 'time: {scale, "
+          "week, offset}' of the parts");
     note(fmt::format("{} samples at {:.4g} Hz{}", result_.samples.size(), rate,
-                     how_.rate_hz > 0 ? "" : " (the yaw rate's own; state 'rate' for another)"));
+                     how_.rate_hz > 0 ? "" : " (the rate of the yaw rate; state 'rate' for another)"));
   }
 
   Channels channels_;

@@ -70,7 +70,7 @@ Frame choose_frame(const GeodeticPoint& first_fix, std::optional<int> zone,
 Projection::Projection(const Frame& frame) : frame_(frame) {
   if (frame.zone < 1 || frame.zone > 60)
     throw InputError(
-        fmt::format("a frame without a UTM zone (zone {}) has no place on the Earth", frame.zone));
+        fmt::format("a frame without a UTM zone (zone {}) has no geodetic position", frame.zone));
 }
 
 GridPoint Projection::to_grid(const GeodeticPoint& point) const {
@@ -83,7 +83,7 @@ GeodeticPoint Projection::to_geodetic(const Eigen::Vector2d& position) const {
   const double x = position.x() + frame_.origin_easting_m - kFalseEasting;
   const double y = position.y() + frame_.origin_northing_m - false_northing(frame_.north);
   if (!(std::abs(x) <= kFarthest && std::abs(y) <= 2 * kFarthest))
-    throw InputError(fmt::format("easting {}, northing {} lie outside of UTM zone {}", x + kFalseEasting,
+    throw InputError(fmt::format("easting {}, northing {} are outside UTM zone {}", x + kFalseEasting,
                                  y + false_northing(frame_.north), frame_.zone));
   GeodeticPoint point;
   TransverseMercator::UTM().Reverse(central_meridian_deg(frame_.zone), x, y, point.latitude_deg,

@@ -18,8 +18,8 @@ void check_readings(const SensorTable& readings, const LogConfig& log) {
   if (readings.size() > 0 && readings.columns == columns &&
       readings.values.size() == readings.size() * columns)
     return;
-  throw InputError(fmt::format("{}{}: format '{}' gives no readings of a sensor; csv and candump do",
-                               log.place, log.file, log.format));
+  throw InputError(fmt::format("{}{}: format '{}' has no readings of a sensor; use csv or candump", log.place,
+                               log.file, log.format));
 }
 
 std::vector<LogReaderType> readers_of(const TypeRegistry& registry) {
@@ -35,8 +35,8 @@ LogReaderType named_reader(const LogConfig& log, const std::vector<LogReaderType
     names.push_back(reader.name);
   }
   throw InputError(
-      fmt::format("{}unknown log format '{}'{}; `waymark info` lists those there are; a plugin that brings "
-                  "it is loaded with --plugin",
+      fmt::format("{}unknown log format '{}'{}; `waymark info` lists all; load the plugin of a "
+                  "format with --plugin",
                   log.place, log.format, did_you_mean(log.format, names)));
 }
 
@@ -49,7 +49,8 @@ void read_companions(const LogConfig& log, LogRequest& request, std::vector<Inpu
   if (std::filesystem::is_directory(log.file) && !companions.contains("timestamps") &&
       std::filesystem::exists(beside)) {
     companions["timestamps"] = beside.string();
-    notes.push_back(fmt::format("{}: time stamps are those of {} (not stated)", log.file, beside.string()));
+    notes.push_back(
+        fmt::format("{}: time stamps are on the scale of {} (not stated)", log.file, beside.string()));
   }
   for (const auto& [key, path] : companions) {
     std::string text;

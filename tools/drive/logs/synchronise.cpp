@@ -13,7 +13,8 @@ namespace {
 bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s,
                   std::vector<std::string>& notes) {
   if (!offset) {
-    notes.push_back(fmt::format("sync: no offset of the {} was found; it stays as it is", quantity));
+    notes.push_back(
+        fmt::format("sync: no offset of the {} was found; its stamps stay as they are", quantity));
     return false;
   }
   const bool is_one = std::abs(offset->late_s) > kOffsetSigmas * offset->sigma_s;

@@ -77,7 +77,7 @@ class OdometryChain {
 void require_fixes_of(const PreparedDrive& drive, const formats::GraphDocument& document) {
   const auto same = [](const Fix& a, const Fix& b) { return a.stamp == b.stamp && a.source == b.source; };
   if (!std::equal(drive.fixes.begin(), drive.fixes.end(), document.fixes.begin(), document.fixes.end(), same))
-    throw UsageError("causal estimate: the fused document has other fixes than the drive");
+    throw UsageError("causal estimate: the fused document has not the fixes of the drive");
 }
 
 }  // namespace

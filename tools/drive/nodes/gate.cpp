@@ -222,7 +222,7 @@ GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> de
 
 void require_accepted_fix(const GateSummary& summary) {
   if (summary.accepted > 0) return;
-  if (summary.rejected == 0) throw InputError("the drive has no GNSS fix to work with");
+  if (summary.rejected == 0) throw InputError("the drive has no GNSS fix");
   throw InputError(
       "all " + std::to_string(summary.rejected) +
       " fixes were rejected by the gate; check the sign and unit of the yaw rate and the clocks of "

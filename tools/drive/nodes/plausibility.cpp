@@ -85,18 +85,18 @@ std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
     std::nth_element(factors.begin(), middle, factors.end());
     if (*middle > kLargestFactor || *middle < 1 / kLargestFactor) {
       warnings.push_back(fmt::format(
-          "the way of the odometry between fixes is {:.2f} times that of the fixes (median of {}): is the "
-          "unit of the speed right? ({})",
+          "the odometry's distance between fixes is {:.2f} times the distance of the fixes (median "
+          "of {}); check the unit of the speed ({})",
           *middle, factors.size(),
-          *middle > 1
-              ? "3.6: km/h read as m/s"
-              : "0.28: m/s read as km/h; or the odometry stands still, or the coordinates have few digits"));
+          *middle > 1 ? "3.6: km/h read as m/s"
+                      : "0.28: m/s read as km/h; otherwise the odometry stands still, or the "
+                        "coordinates have few digits"));
     }
   }
   if (turns >= kFewestTurns && product < kOppositeSigns * std::sqrt(gnss_squared * odometry_squared)) {
     warnings.push_back(fmt::format(
-        "the odometry turns against the fixes (correlation {:.2f} over {} turns): is the yaw rate positive "
-        "counter-clockwise? (else: convention: cw)",
+        "the odometry turns against the fixes (correlation {:.2f} over {} turns); if the yaw rate "
+        "is positive clockwise, state 'convention: cw'",
         product / std::sqrt(gnss_squared * odometry_squared), turns));
   }
   return warnings;

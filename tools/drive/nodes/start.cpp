@@ -46,7 +46,7 @@ void require_fix(const Timeline& timeline, std::span<const Fix> fixes) {
     throw UsageError("start: the timeline was built for other fixes");
   for (const Fix& fix : fixes)
     if (fix.status == FixStatus::accepted) return;
-  throw InputError("no fix is accepted: the drive cannot be placed");
+  throw InputError("no fix is accepted, so the drive has no position");
 }
 
 /// Returns the heading of the body for the course of a fix, if the vehicle moves fast enough for a
@@ -176,7 +176,8 @@ std::string turn_as_a_whole(const Drive& drive, std::vector<double>& headings) {
     note =
         text("the fixes spread over only %.1f m of the way: the first heading is a guess", whole->spread_m);
   } else {
-    note = "the fixes say nothing about the heading (no motion between them): it starts at 0, grid east";
+    note =
+        "the fixes do not determine the heading (no motion between them): its initial guess is 0, grid east";
   }
   for (double& heading : headings) heading += offset;
   return note;

@@ -115,9 +115,9 @@ std::optional<TruthAtEpoch> truth_at(const SampledTruth& truth, Stamp epoch) {
                   formats::decimal_seconds(*first), formats::decimal_seconds(*last));
   if (match.in_gap == 0)
     throw InputError("truth does not overlap the drive in time: " + spans +
-                     "; are both on one time scale (GPS, UTC)?");
+                     "; check that both are on one time scale (GPS, UTC)");
   throw InputError(fmt::format(
-      "no fix could be matched to truth: {} of {} lie in gaps of the truth longer than {:.3f} s; {}",
+      "no fix could be matched to truth: {} of {} are in gaps of the truth longer than {:.3f} s; {}",
       match.in_gap, epochs.size(), match.longest_interpolated_s, spans));
 }
 

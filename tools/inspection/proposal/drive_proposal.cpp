@@ -44,7 +44,7 @@ std::string sign_of_truth(const LogInspection& log) {
   if (!log.table) return {};
   for (const ColumnSummary& column : log.table->columns) {
     if (column.proposal.convention == "ccw_from_east")
-      return fmt::format("column '{}' is a heading counter-clockwise from east, which no receiver gives",
+      return fmt::format("column '{}' is a heading counter-clockwise from east, which no receiver writes",
                          column.name);
   }
   return {};
@@ -120,8 +120,8 @@ class Deciding {
       proposal_.unused.push_back(i);
       if (!told_.contains(i))
         say(i, fmt::format("not used: {}", has_positions(logs_[i]) || !channels_of(logs_[i]).empty()
-                                               ? "other logs give the same"
-                                               : "nothing that a drive needs was found in it"));
+                                               ? "other logs have the same channels"
+                                               : "it has no channel that a drive needs"));
     }
     if (proposal_.gnss.empty())
       proposal_.decisions.emplace_back("no log with positions was found: fill in gnss");
@@ -159,7 +159,7 @@ class Deciding {
       if (sign.empty()) continue;
       if (proposal_.gnss.empty()) {
         proposal_.gnss.push_back(i);
-        say(i, "gnss, as no other log has positions, though it looks like a reference: " + sign);
+        say(i, "gnss, because no other log has positions, although it looks like a reference: " + sign);
       } else if (proposal_.truth.empty()) {
         proposal_.truth.push_back(i);
         say(i, "truth: " + sign);
@@ -178,7 +178,7 @@ class Deciding {
       used_[i] = true;
       const FixSummary& fixes = *logs_[proposal_.gnss[0]].fixes;
       if (fixes.with_speed > 0 && fixes.with_course > 0) {
-        say(i, "not used: a receiver's speed and course, which the log of its positions has");
+        say(i, "not used: the log of the positions already has the receiver's speed and course");
         continue;
       }
       proposal_.velocity.push_back(i);
@@ -241,7 +241,7 @@ class Deciding {
     for (const std::string& name : channels_of(logs_[i]))
       if (std::find(taken.begin(), taken.end(), name) == taken.end()) left.push_back(name);
     say(i, fmt::format("odometry{}: {}{}", proposal_.in_parts ? " part" : "", joined(taken),
-                       left.empty() ? "" : "; left aside: " + joined(left)));
+                       left.empty() ? "" : "; not used: " + joined(left)));
   }
 
   const std::vector<LogInspection>& logs_;

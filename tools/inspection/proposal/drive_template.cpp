@@ -5,7 +5,7 @@ namespace waymark::inspection {
 // A line "# key" is a key that the user can uncomment. Without these "# " the whole text can be
 // parsed; a test checks this.
 std::string drive_template() {
-  return R"(## A drive: what tools/drive/README.md explains, all of it. Uncomment what is needed.
+  return R"(## A drive with all keys of tools/drive/README.md. Uncomment the keys that you need.
 ## Times are seconds and lengths metres unless a key names another unit.
 # name: Somewhere
 # folder: logs                     # where relative log names are looked up; default: beside this file

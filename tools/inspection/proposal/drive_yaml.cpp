@@ -74,9 +74,7 @@ class Writer {
 
   std::string text() {
     decide_scale();
-    line(
-        "# Proposed by `waymark inspect` or `waymark init` from what the logs show. Look at every '# "
-        "CHECK';");
+    line("# Proposed by `waymark inspect` or `waymark init` from the logs. Look at every '# CHECK';");
     line("# the keys are explained in tools/drive/README.md.");
     line("# name: Somewhere", "default: this file's name");
     line(fmt::format("time: {{scale: {}}}", to_string(scale_)), scale_reason_);
@@ -127,7 +125,9 @@ class Writer {
       scale_reason_ = "the logs have dates; those on another scale are converted";
     } else {
       scale_ = TimeScale::unix_time;
-      scale_reason_ = "CHECK: the stamps have no dates; that all logs count from the same start is assumed";
+      scale_reason_ =
+          "CHECK: the stamps have no dates; it is assumed that all logs count "
+          "from the same time";
     }
   }
 
@@ -145,14 +145,14 @@ class Writer {
       line(indent + "# time: {date: 2000-01-01}", "CHECK: fill in the day of the first fix; " + clock.reason);
     } else if (!clock.dated && dated_) {
       line(indent + "# time: {offset: 0}",
-           "CHECK: fill in what makes its stamps those of the other logs: " + clock.reason);
+           "CHECK: fill in the offset to the stamps of the other logs: " + clock.reason);
     } else if (clock.dated && !clock.names_its_own) {
       line(fmt::format("{}time: {{scale: {}}}", indent, to_string(clock.scale)), check + clock.reason);
     }
     if (log.logger_ahead_s && std::abs(*log.logger_ahead_s) > 0.001)
       line(fmt::format("{}# time: {{scale: {}, offset: {:.3f}}}", indent, to_string(clock.scale),
                        -*log.logger_ahead_s),
-           "takes the logger's clock to GNSS time (median); then for every log of this logger");
+           "converts the logger's clock to GNSS time (median); use it for every log of this logger");
   }
 
   /// Writes "speed: v_mps" or "yaw_rate: {column: w, unit: deg/s}" with a remark if there is
@@ -232,9 +232,8 @@ class Writer {
       log_lines(logs_[proposal_.odometry[i]], StreamKind::odometry, proposal_.in_parts ? "      " : "  ",
                 proposal_.in_parts, proposal_.channels[i]);
     if (!proposal_.has_speed || !proposal_.has_yaw_rate)
-      line("    # - file: FILL_IN.csv",
-           fmt::format("CHECK: no log with a {} was found; the drive does not run without",
-                       proposal_.has_speed ? "yaw rate" : "speed"));
+      line("    # - file: FILL_IN.csv", fmt::format("CHECK: no log with a {} was found; a drive needs one",
+                                                    proposal_.has_speed ? "yaw rate" : "speed"));
     vehicle();
     line("  # speed_delay: 0", "`waymark sync` estimates it, and yaw_rate_delay");
   }
@@ -253,7 +252,7 @@ class Writer {
         line("  gyro: {axis: gravity}", "CHECK: the axis that points up is found from the accelerometer");
       } else {
         line(fmt::format("  gyro: {{axis: {}}}", turning_axis()),
-             "CHECK: the axis with the largest rates; with '-' where it points down");
+             "CHECK: the axis with the largest rates; with '-' if it points down");
       }
     } else if (!yaw && taken("wheel_")) {
       line("  # vehicle: {track_width: 1.55}", "CHECK: fill in; m between the rear wheels");
@@ -301,8 +300,7 @@ class Writer {
       const double interval = log.fixes->stamps.median_interval_s();
       if (interval < 0.7)
         line(indent + "# period: 1", fmt::format("keeps one fix a second of {:.3g}", 1 / interval));
-      if (proposal_.truth.empty())
-        line(indent + "# withhold_every: 10", "keeps fixes out, to evaluate against");
+      if (proposal_.truth.empty()) line(indent + "# withhold_every: 10", "keeps fixes out, for evaluation");
     }
   }
 
@@ -328,10 +326,10 @@ class Writer {
       line(fmt::format("{}  meaning: {}", indent, meaning), "CHECK: assumed; 95, 1sigma, drms or cep50");
     if (lacking)
       line(indent + "  default_sigma: 5",
-           fmt::format("CHECK: m per axis, made up: {} of {} fixes have no accuracy",
+           fmt::format("CHECK: m per axis, invented: {} of {} fixes have no accuracy",
                        fixes.fixes - fixes.with_accuracy, fixes.fixes));
     if (lacking && log.format == "nmea")
-      line(indent + "  # range_error: 5", "m, for sigma = HDOP times this, where the log has HDOP");
+      line(indent + "  # range_error: 5", "m, for sigma = HDOP times this, if the log has HDOP");
   }
 
   void truth() {

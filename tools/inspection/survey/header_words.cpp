@@ -270,7 +270,7 @@ ColumnProposal propose_quantity(std::string_view name) {
   read_unit(rest.empty() ? words : rest, proposal);
   read_sense(words, proposal);
   const auto odd = std::find_if_not(rest.begin(), rest.end(), understood);
-  if (odd != rest.end()) proposal.remark = "the name is not understood from '" + *odd + "' on";
+  if (odd != rest.end()) proposal.remark = "the name is not known from '" + *odd + "' on";
   return proposal;
 }
 

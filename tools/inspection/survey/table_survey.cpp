@@ -33,7 +33,7 @@ void check_range(ColumnSummary& column) {
   const bool position = proposal.quantity == "latitude" || proposal.quantity == "longitude";
   if (position && largest > 360) {
     proposal.unit = "1e-7deg";
-    proposal.remark = "the numbers are those of degrees times 10^7";
+    proposal.remark = "the numbers look like degrees times 10^7";
     return;
   }
   if (position && largest <= 3.2 && column.range.count > 0 && column.range.largest != column.range.smallest)
@@ -41,16 +41,16 @@ void check_range(ColumnSummary& column) {
   if (proposal.quantity == "speed" && largest > 75) {
     proposal.unit = "km/h";
     proposal.remark =
-        fmt::format("no unit is named; up to {:.4g} is no speed of a road vehicle in m/s", largest);
+        fmt::format("no unit is named; values up to {:.4g} are too large for a road vehicle in m/s", largest);
   }
   if ((proposal.quantity == "yaw_rate" || proposal.quantity.starts_with("gyro")) && largest > 4) {
     proposal.unit = "deg/s";
     proposal.remark =
-        fmt::format("no unit is named; up to {:.4g} is no turning rate of a vehicle in rad/s", largest);
+        fmt::format("no unit is named; values up to {:.4g} are too large for a vehicle in rad/s", largest);
   }
   if (proposal.quantity == "heading" && largest > 13) {
     proposal.unit = "deg";
-    proposal.remark = "no unit is named; the numbers are those of degrees";
+    proposal.remark = "no unit is named; the numbers look like degrees";
   }
 }
 

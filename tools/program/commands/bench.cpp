@@ -223,8 +223,8 @@ void add_bench(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "bench",
       "Measure algorithms, solvers and peers on a list of graphs\n\n"
-      "Runs each contestant on each graph in turn and prints the median time with its spread, iterations, "
-      "memory, and whether the known optimum was reached.");
+      "Runs each contestant on each graph in turn. Prints the median time with its spread, "
+      "iterations, memory, and whether the known optimum was reached.");
   const auto options = std::make_shared<BenchOptions>();
   command->add_option("graphs", options->files, "Graph files: .graph, g2o, or as --input-format says")
       ->required()
@@ -232,14 +232,14 @@ void add_bench(CLI::App& app, Action& action) {
   add_input_format(*command, options->input_format);
   add_name_list(
       *command, "-a,--algorithm", options->algorithms, "ALGORITHM|all|default",
-      "Algorithms, 'all', or 'default': the configuration of 'optimize', starts included (default)");
+      "Algorithms, 'all', or 'default': the configuration of 'optimize' with its initial guesses (default)");
   add_name_list(*command, "-s,--solver", options->solvers, "SOLVER|all|auto",
                 "Linear solvers, 'all' or 'auto' (default)");
   add_name_list(*command, "--start", options->starts, "START|file",
-                "Starts: file (default), and those that `waymark info` lists");
+                "Initial guesses: file (default), and those that `waymark info` lists");
   add_name_list(*command, "--peer", options->peers, "ceres|ceres_dogleg",
-                "Measure in turn with: ceres (Levenberg-Marquardt), ceres_dogleg");
-  command->add_option("--repeat", options->repeat, "Timed runs of each cell")
+                "Peers to measure in turn with: ceres (Levenberg-Marquardt), ceres_dogleg");
+  command->add_option("--repeat", options->repeat, "Timed runs of each contestant on each graph")
       ->check(CLI::Validator(
           [](const std::string& text) {
             int value = 0;
@@ -259,8 +259,9 @@ void add_bench(CLI::App& app, Action& action) {
       ->type_name("DIR");
   add_common_options(*command, options->common);
   command->footer(
-      "A cell that does not converge is marked '!' and does not change the exit code.\n"
-      "Example:\n  waymark bench city10000.g2o intel.g2o --start file,odometry --peer ceres --out results");
+      "A run that does not converge is marked '!' and does not change the exit code.\n"
+      "Example:\n  waymark bench city10000.g2o intel.g2o --start file,odometry --peer "
+      "ceres --out results");
   command->callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 

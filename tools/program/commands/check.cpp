@@ -92,11 +92,10 @@ ExitCode check(const CheckOptions& options) {
   const TypeRegistry registry = make_registry(options.common);
   if (options.derivatives) {
     if (!options.input.empty())
-      throw UsageError("--derivatives tries the types by themselves and takes no graph; leave out " +
-                       options.input);
+      throw UsageError("--derivatives checks the types without a graph; leave out " + options.input);
     return check_types(options, registry);
   }
-  if (options.input.empty()) throw UsageError("graph is required (or --derivatives, to check the types)");
+  if (options.input.empty()) throw UsageError("a graph is required (or --derivatives, to check the types)");
   return check_file(options, registry);
 }
 
@@ -105,16 +104,17 @@ ExitCode check(const CheckOptions& options) {
 void add_check(CLI::App& app, Action& action) {
   auto* command =
       app.add_subcommand("check",
-                         "Look a graph file over: lines, gauge, Jacobians\n\n"
-                         "Reads every line, compares the Jacobians with differences of the errors and looks "
-                         "for vertices that the edges leave undetermined. The exit code is 3 where it found "
-                         "a problem.");
+                         "Check a graph file: lines, gauge, Jacobians\n\n"
+                         "Reads every line, compares the Jacobians with differences of the errors "
+                         "and looks for vertices that the edges do not determine. The exit code is "
+                         "3 if there is a problem.");
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("graph", options->input, "Graph file: .graph, g2o, or as --input-format says")
       ->type_name("GRAPH");
   add_input_format(*command, options->input_format);
   command->add_flag("--derivatives", options->derivatives,
-                    "Instead of a graph: the Jacobians of every registered edge type, plugins included");
+                    "Check the Jacobians of every registered edge type instead of a "
+                    "graph, plugins included");
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark check drive.graph");
   command->callback([options, &action] { action = [options] { return check(*options); }; });

@@ -31,7 +31,7 @@ void tell_limits(const std::vector<report::ComparedRun>& runs, const Console& co
   if (drives.size() > 1) {
     std::string names;
     for (const std::string& drive : drives) names.append(names.empty() ? "" : ", ").append(drive);
-    console.note(fmt::format("the runs are of {} drives ({}): errors are comparable within a drive only",
+    console.note(fmt::format("the runs are of {} drives ({}): errors are comparable only within one drive",
                              drives.size(), names));
     if (drives.size() == runs.size()) console.note("no two runs are of one drive");
   }
@@ -86,7 +86,7 @@ ExitCode compare(const CompareOptions& options) {
 void add_compare(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "compare",
-      "One report of several runs: modelings, settings, drives\n\n"
+      "Write one report of several runs: modelings, settings, drives\n\n"
       "Reads the folders that 'run' and 'evaluate' wrote. The report shows their errors beside each "
       "other and beside raw GNSS, and the settings that differ. Errors are comparable "
       "only within one drive.");

@@ -59,7 +59,7 @@ ExitCode convert_drive(const ConvertOptions& options, const drive::DriveFile& fi
   refuse_options(options.of_graphs, "a drive");
   const LoadedDrive loaded = load_drive_for(file, options.choice, registry, console);
   if (loaded.settings.size() != 1)
-    throw UsageError("convert writes one graph: name one modeling ('run' takes many)");
+    throw UsageError("convert writes one graph: name one modeling ('run' takes several)");
   const std::string& modeling = loaded.settings.front().modeling;
   require_not_read(options.output, loaded.files);
   drive::Fusion fusion(loaded.drive, registry);
@@ -152,15 +152,13 @@ std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options
 void add_convert(CLI::App& app, Action& action) {
   auto* command =
       app.add_subcommand("convert",
-                         "Raw logs to a graph file, or a graph file to another format\n\n"
+                         "Convert raw logs to a graph file, or a graph file to another format\n\n"
                          "For a drive.yaml it reads the logs, puts them on one clock and into one "
                          "frame, checks the fixes and writes the graph. A graph file is written in "
                          "another format. It is refused if its minimum would move in that format. "
                          "Statements that the format lacks are left out and counted.");
   const auto options = std::make_shared<ConvertOptions>();
-  command
-      ->add_option("input", options->input,
-                   "Description of a drive and its logs (drive.yaml), or a graph file (any other name)")
+  command->add_option("input", options->input, "drive.yaml of a drive, or a graph file (any other name)")
       ->required()
       ->type_name("DRIVE.yaml|GRAPH");
   command->add_option("-o,--output", options->output, "Graph file to write ('-': standard output)")

@@ -55,7 +55,7 @@ void set_loss(DriveFile& file, const std::string& loss) {
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
   const OptionHeading heading(command, "Common options");
-  command.add_flag("-q,--quiet", options.quiet, "Print errors only (and what --json asks for)");
+  command.add_flag("-q,--quiet", options.quiet, "Print only errors (and the result of --json)");
   command.add_flag("-v,--verbose", options.verbosity, "Print what is done (iterations, files)");
   command.add_flag("--json", options.json, "Print the result as JSON on standard output");
   add_plugin_option(command, options);
@@ -92,16 +92,16 @@ void add_drive_options(CLI::App& command, DriveChoice& choice) {
       ->type_name("SECONDS")
       ->check(rule("must be a number of seconds, at least 0", at_least_zero));
   add_edit<int>(command, choice, "--withhold",
-                "Keep the fixes of every N-th epoch out of the graph, to evaluate against",
+                "Keep the fixes of every N-th epoch out of the graph, for evaluation",
                 [](DriveFile& file, const int& every) { file.description.withhold_every = every; })
       ->type_name("N")
       ->check(rule("must be 0 (none) or at least 2", [](double n) { return n == 0 || n >= 2; }));
   add_edit<std::string>(
       command, choice, "--outage",
-      "Keep the last LENGTH of every EVERY seconds of fixes out of the graph, to evaluate against",
+      "Keep the last LENGTH of every EVERY seconds of fixes out of the graph, for evaluation",
       [](DriveFile& file, const std::string& text) { file.description.outage = parse_outage(text); })
       ->type_name("LENGTH/EVERY");
-  add_edit<std::string>(command, choice, "--initial-guess", "How the poses are guessed from the logs",
+  add_edit<std::string>(command, choice, "--initial-guess", "Initial guess of the poses from the logs",
                         set_initial_guess)
       ->check(one_of("initial guess", {"anchored", "dead_reckoning"}));
   add_edit<std::string>(command, choice, "--gnss-loss", "Robust loss of the fixes, or 'none'", set_loss)
@@ -125,7 +125,7 @@ void add_drive_options(CLI::App& command, DriveChoice& choice) {
       [&choice] { choice.edits.emplace_back([](DriveFile& file) { file.settings.gate.enabled = false; }); },
       "Accept every fix");
   command.add_flag("--sync", choice.sync,
-                   "Estimate how late speed and yaw rate are stamped against the GNSS, and apply it");
+                   "Estimate the delay of speed and yaw rate against the GNSS, and correct it");
 }
 
 void add_optimization_options(CLI::App& command, drive::Minimization& minimization) {
@@ -153,7 +153,7 @@ void add_optimization_options(CLI::App& command, drive::Minimization& minimizati
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--covariance", minimization.covariances,
-                  "Covariances to write: of no, the fixes' or all poses")
+                  "Covariances to write: none, of the poses at fixes, or of all poses")
       ->check(one_of("choice", {"none", "fixes", "all"}))
       ->capture_default_str();
   add_stopping_options(command, minimization);
@@ -162,8 +162,7 @@ void add_optimization_options(CLI::App& command, drive::Minimization& minimizati
 void add_stopping_options(CLI::App& command, drive::Minimization& minimization) {
   const OptionHeading heading(command, "Optimisation");
   command
-      .add_option("--threads", minimization.threads,
-                  "Threads to work with; the result is the same for any number")
+      .add_option("--threads", minimization.threads, "Number of threads; the result does not depend on it")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   command.add_option("--max-iterations", minimization.max_iterations, "Stop after N steps")
@@ -171,7 +170,7 @@ void add_stopping_options(CLI::App& command, drive::Minimization& minimization) 
       ->capture_default_str();
   command
       .add_option("--tolerance", minimization.tolerance,
-                  "Newton decrement relative to 1 + chi2 that ends the run")
+                  "The run ends if the Newton decrement is below this share of 1 + chi2")
       ->check(rule("must be above 0", [](double x) { return x > 0 && std::isfinite(x); }))
       ->capture_default_str();
 }

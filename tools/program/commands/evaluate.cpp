@@ -87,7 +87,7 @@ formats::GraphDocument read_fused(const std::string& input, const EvaluationJob&
   const bool optimised = std::any_of(document.provenance.begin(), document.provenance.end(),
                                      [](const auto& entry) { return entry.first == "optimized"; });
   if (!optimised)
-    job.console.note(input + " does not say that it was optimised: these are the metrics of its values");
+    job.console.note(input + " has no note that it was optimised: these are the metrics of its values");
   return document;
 }
 
@@ -158,11 +158,11 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
 
 void add_evaluate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("evaluate",
-                                     "Metrics of fused graphs against truth and withheld fixes\n\n"
-                                     "Prints a table of errors: accuracy, precision, largest error, along "
-                                     "and across the track, heading, and "
-                                     "how honest the stated errors are. Without --truth the fixes that were "
-                                     "kept out of the graph judge it.");
+                                     "Compare fused graphs with truth and withheld fixes\n\n"
+                                     "Prints a table of errors: accuracy, precision, largest error, "
+                                     "along and across the track, heading, and whether the stated "
+                                     "errors are consistent (NEES). Without --truth the errors are "
+                                     "against the fixes that were kept out of the graph.");
   const auto options = std::make_shared<EvaluateOptions>();
   command->add_option("graphs", options->inputs, "Optimised .graph files")->required()->type_name("GRAPH");
   command

@@ -46,11 +46,12 @@ ExitCode help(const CLI::App& app, const HelpOptions& options) {
 void add_help(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "help",
-      "The help of the program or of a subcommand, and the man pages\n\n"
-      "Without options it prints what --help prints. The man pages and the completion of the shell are made "
-      "of the same words. The date of a page is that of SOURCE_DATE_EPOCH, if it is set.");
+      "Print the help of the program or of a subcommand, or write man pages\n\n"
+      "Without options it prints the same text as --help. The man pages and the completion of the "
+      "shell have the same words. SOURCE_DATE_EPOCH, if it is set, gives the date of the pages.");
   const auto options = std::make_shared<HelpOptions>();
-  auto* name = command->add_option("command", options->command, "What to explain")->type_name("SUBCOMMAND");
+  auto* name =
+      command->add_option("command", options->command, "Subcommand to explain")->type_name("SUBCOMMAND");
   auto* man = command->add_flag("--man", options->man, "Print the man page (roff)");
   command->add_option("-o,--out", options->folder, "Write all man pages into this folder")
       ->type_name("DIR")

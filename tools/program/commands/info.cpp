@@ -111,12 +111,10 @@ Json registry_json(const TypeRegistry& registry) {
   json["graph_formats"] = {
       {{"name", "graph"}, {"origin", "waymark"}, {"description", "GRAPH 1; read and written"}},
       {{"name", "g2o"}, {"origin", "waymark"}, {"description", "g2o SE(2); read and written"}},
-      {{"name", "toro"},
-       {"origin", "waymark"},
-       {"description", "TORO SE(2); read and written where asked for"}},
+      {{"name", "toro"}, {"origin", "waymark"}, {"description", "TORO SE(2); read and written on request"}},
       {{"name", "covariance"},
        {"origin", "waymark"},
-       {"description", "GTSAM's covariance .graph; read and written where asked for"}}};
+       {"description", "GTSAM's covariance .graph; read and written on request"}}};
   json["trajectory_formats"] = {
       {{"name", "csv"}, {"origin", "waymark"}, {"description", "written; every column"}},
       {{"name", "tum"}, {"origin", "waymark"}, {"description", "written, read as truth; for evo"}},
@@ -149,7 +147,7 @@ std::string registry_text(const Json& json, const text::TextLook& look) {
         text += fmt::format("    column {:<{}}  {:<{}}  {}{}\n", column["name"].get<std::string>(),
                             width_of(columns, "name"), column["unit"].get<std::string>(),
                             width_of(columns, "unit"), column["description"].get<std::string>(),
-                            column["required"].get<bool>() ? "" : " (may lack)");
+                            column["required"].get<bool>() ? "" : " (optional)");
       }
       const Json options = entry.value("options", Json::array());
       for (const Json& option : options) {
@@ -174,9 +172,9 @@ void add_info(CLI::App& app, Action& action) {
   };
   auto* command = app.add_subcommand(
       "info",
-      "Types, modelings, solvers, algorithms, formats, with their fields\n\n"
-      "Everything that a name on the command line or in a drive.yaml can stand for, plugins included, with "
-      "options and defaults.");
+      "List types, modelings, solvers, algorithms and formats\n\n"
+      "Lists every name that the command line or a drive.yaml can use, plugins included, with "
+      "fields, options and defaults.");
   const auto options = std::make_shared<InfoOptions>();
   command->add_flag("--plugins", options->plugins,
                     "List only the plugins: the file of each and the names that it registers");

@@ -37,7 +37,7 @@ ExitCode initialise(const InspectCommand& command) {
     text = inspection::drive_template();
     formats::write_file_atomically(command.output, text);
     console.tell(command.output +
-                 ": a template was written, as no log was named; fill in its 'file' entries");
+                 ": this is a template, because no log was named; fill in its 'file' entries");
   } else {
     text = write_proposal(command, inspect_files(command, console), console);
   }
@@ -55,11 +55,15 @@ ExitCode initialise(const InspectCommand& command) {
 void add_init(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "init",
-      "A drive.yaml for the logs of a drive\n\n"
-      "Says which log got which role and why. What was assumed is marked '# CHECK' in the file. Without logs "
-      "it writes a template with comments. An existing file is replaced only with --force.");
+      "Write a drive.yaml for the logs of a drive\n\n"
+      "Prints the role of each log and the reason. Assumptions are marked '# CHECK' in the file. "
+      "Without logs it writes a template with comments. An existing file is replaced "
+      "only with --force.");
   const auto options = std::make_shared<InspectCommand>();
-  command->add_option("logs", options->logs, "Logs, and the DBC of CAN logs; none: a template")
+  command
+      ->add_option("logs", options->logs,
+                   "Logs, and the DBC of CAN logs; without logs "
+                   "a template is written")
       ->type_name("LOG");
   command->add_option("-o,--out", options->output, "The drive.yaml to write ('-': standard output)")
       ->type_name("DRIVE.yaml");

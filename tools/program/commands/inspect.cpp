@@ -50,9 +50,10 @@ ExitCode inspect(const InspectCommand& command) {
 void add_inspect(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "inspect",
-      "What is in raw logs: streams, rates, gaps, what looks wrong\n\n"
-      "Formats are known by their content; 'waymark init' writes a drive.yaml for such logs. Of a drive.yaml "
-      "it prints what the drive is like: counts, errors of the fixes against truth, drift of the odometry.");
+      "Show streams, rates, gaps and suspicious values of raw logs\n\n"
+      "Formats are recognised by their content. 'waymark init' writes a drive.yaml for such logs. "
+      "For a drive.yaml it prints statistics of the drive: counts, errors of the fixes against "
+      "truth, drift of the odometry.");
   const auto options = std::make_shared<InspectCommand>();
   command->add_option("logs", options->logs, "Logs, and the DBC of CAN logs; or one drive.yaml")
       ->required()

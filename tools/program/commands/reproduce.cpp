@@ -226,8 +226,7 @@ std::string introduction(const ReproduceOptions& options) {
       "Das and Dubbelman, An Experimental Study on Relative and Absolute Pose Graph Fusion for Vehicle "
       "Localization";
   if (options.ablation)
-    return program +
-           "The default model with one ingredient switched at a time, and the field's alternatives. " +
+    return program + "The default model with one part changed at a time, and common alternatives. " +
            (options.files.empty() ? "Drives: like those of " + paper + ". " : "") + whose_drives(options);
   return program + paper + ". " + (options.files.empty() ? "" : "Its experiment on other drives. ") +
          whose_drives(options);
@@ -235,7 +234,7 @@ std::string introduction(const ReproduceOptions& options) {
 
 ExitCode reproduce(const ReproduceOptions& options) {
   if (options.consistency && (!options.files.empty() || !options.presets.empty() || options.seed))
-    throw UsageError("--consistency draws its own drives: no drive.yaml, --drives or --seed beside it");
+    throw UsageError("--consistency simulates its own drives; leave out drive.yaml, --drives and --seed");
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
   const reproduction::Experiment experiment = chosen_experiment(options);
@@ -267,18 +266,19 @@ ExitCode reproduce(const ReproduceOptions& options) {
 void add_reproduce(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "reproduce",
-      "The paper's experiment: its tables beside ours\n\n"
-      "The paper is Das and Dubbelman, An Experimental Study on Relative and Absolute Pose Graph Fusion for "
-      "Vehicle Localization. The report says where its settings end, and which of its findings hold.");
+      "Repeat the paper's experiment: its tables beside ours\n\n"
+      "The paper is Das and Dubbelman, An Experimental Study on Relative and Absolute Pose Graph "
+      "Fusion for Vehicle Localization. The report shows the results of its settings and which of "
+      "its findings hold.");
   const auto options = std::make_shared<ReproduceOptions>();
   command
       ->add_option("drives", options->files,
-                   "drive.yaml files to run the experiment on; without: the paper's eight drives, simulated")
+                   "drive.yaml files for the experiment; without: the paper's eight drives, simulated")
       ->type_name("DRIVE.yaml");
   command->add_option("-o,--out", options->folder, "Folder for tables, report and page")
       ->required()
       ->type_name("DIR");
-  command->add_option("--drives", options->presets, "Which of the paper's drives to simulate; default: all")
+  command->add_option("--drives", options->presets, "Numbers of the paper's drives to simulate; default: all")
       ->delimiter(',')
       ->expected(1)
       ->allow_extra_args(false)
@@ -287,10 +287,10 @@ void add_reproduce(CLI::App& app, Action& action) {
   command->add_option("--seed", options->seed, "Seed of the simulated drives; default: each preset's own");
   auto* ablation = command->add_flag(
       "--ablation", options->ablation,
-      "Instead: the default model with one ingredient switched at a time, and the field's alternatives");
+      "Compare the default model with one part changed at a time, and with common alternatives, instead");
   command
       ->add_option("--consistency", options->consistency,
-                   "Instead: stated against actual errors, pooled over N simulated drives")
+                   "Compare stated with actual errors, pooled over N simulated drives, instead")
       ->check(CLI::Range(1, 100000))
       ->excludes(ablation)
       ->type_name("N");

@@ -50,14 +50,14 @@ void require_no_real_drive(const std::string& folder) {
     std::string first_line;
     std::getline(std::ifstream(path), first_line);
     if (first_line.find("no vehicle drove this") == std::string::npos)
-      throw UsageError(path + ": is there and was not made by simulate; choose another folder");
+      throw UsageError(path + ": exists and was not written by simulate; choose another folder");
   }
 }
 
 ExitCode simulate_drive(const SimulateOptions& options) {
   const Console console(options.common);
   if (options.list) return list_presets(console);
-  if (options.preset.empty()) throw UsageError("--preset is required (or --list, to see which there are)");
+  if (options.preset.empty()) throw UsageError("--preset is required (--list shows all)");
   const simulation::SimulationPreset& preset = simulation::simulation_preset(options.preset);
   if (options.folder.empty()) throw UsageError("--out is required: the folder for the logs");
   simulation::SimulationRecipe recipe = preset.recipe;
@@ -88,14 +88,13 @@ std::string wrong_seed(const std::string& text) {
 void add_simulate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "simulate",
-      "Raw logs of a simulated drive, with truth and drive.yaml\n\n"
-      "The errors of the logs are like those of real receivers and wheels, "
-      "biases and gaps included. The same "
-      "seed gives the same logs. What the drive is like is printed, as by 'waymark inspect DRIVE.yaml'.");
+      "Write raw logs of a simulated drive, with truth and drive.yaml\n\n"
+      "The errors of the logs are like those of real receivers and wheels, biases and gaps "
+      "included. The same seed gives the same logs. Statistics of the drive are printed, as by "
+      "'waymark inspect DRIVE.yaml'.");
   const auto options = std::make_shared<SimulateOptions>();
-  auto* list = command->add_flag("--list", options->list, "The presets");
-  auto* preset =
-      command->add_option("--preset", options->preset, "Which drive to simulate")->type_name("PRESET");
+  auto* list = command->add_flag("--list", options->list, "List the presets");
+  auto* preset = command->add_option("--preset", options->preset, "Drive to simulate")->type_name("PRESET");
   command->add_option("--seed", options->seed, "Seed of all random numbers; default: the preset's")
       ->check(CLI::Validator(wrong_seed, ""))
       ->needs(preset);

@@ -90,9 +90,9 @@ ExitCode synchronise(const SyncCommand& command) {
   std::string text = table_of(report, description, console.look());
   for (const drive::ClockReport& clock : drive.report.clocks)
     text += fmt::format(
-        "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual deviation "
-        "{:.3f} s),\n"
-        "with the stated 'time: {{offset: ...}}' added. --sync takes that away.\n",
+        "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual "
+        "deviation {:.3f} s),\n"
+        "with the stated 'time: {{offset: ...}}' added. --sync removes this difference.\n",
         clock.file, clock.ahead_s, clock.messages, clock.spread_s);
   console.result(text);
   return kSuccess;
@@ -103,9 +103,10 @@ ExitCode synchronise(const SyncCommand& command) {
 void add_sync(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "sync",
-      "How late a drive's odometry is stamped against its GNSS\n\n"
-      "Compares the odometry's speed and yaw rate with those of the fixes, and the stamps of a log with the "
-      "GNSS time it holds. Nothing is changed; --sync of 'waymark run' and 'waymark convert' applies it.");
+      "Estimate the delay of a drive's odometry against its GNSS\n\n"
+      "Compares the odometry's speed and yaw rate with those of the fixes, and the stamps of a log "
+      "with the GNSS time it holds. Nothing is changed; --sync of 'waymark run' and 'waymark "
+      "convert' applies it.");
   const auto options = std::make_shared<SyncCommand>();
   command->add_option("drive", options->input, "drive.yaml")->required()->type_name("DRIVE.yaml");
   command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own")

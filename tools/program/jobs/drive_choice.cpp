@@ -78,8 +78,8 @@ void check_calibration(const drive::DriveFile& file, const std::vector<std::stri
   for (const auto& [name, value] : *file.settings.calibration) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string hint = did_you_mean(name, known);
-    throw InputError(file.places.at("calibration." + name) + "calibration: neither odometry model '" +
-                     odometry_model + "' nor the GNSS modeling knows '" + name + "'" +
+    throw InputError(file.places.at("calibration." + name) + "calibration: neither the odometry model '" +
+                     odometry_model + "' nor the GNSS modeling has an option '" + name + "'" +
                      (hint.empty() ? "; `waymark info` lists their options" : hint));
   }
 }

@@ -54,8 +54,7 @@ drive::ModeledDrive model_loaded(drive::Fusion& fusion, const drive::FusionSetti
   for (const std::string& warning : modeled.warnings()) console.warning(warning);
   if (!modeled.placed.start.note.empty()) console.note("start: " + modeled.placed.start.note);
   if (scale_is_bent(modeled.settings, registry))
-    console.note(
-        "squared errors let biased fixes bend speed_scale; a robust loss protects it: --gnss-loss cauchy:1");
+    console.note("without a robust loss, biased fixes distort speed_scale; use --gnss-loss cauchy:1");
   auto& provenance = modeled.document.provenance;
   provenance.insert(provenance.begin(), {"program", "waymark " WAYMARK_VERSION});
   return modeled;

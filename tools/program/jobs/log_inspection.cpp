@@ -30,9 +30,9 @@ bool is_dbc(const std::string& path) {
 }  // namespace
 
 void add_inspection_options(CLI::App& command, InspectCommand& options) {
-  command.add_option("--format", options.format, "The logs' format; default: known by their content")
+  command.add_option("--format", options.format, "Format of the logs; default: recognised by their content")
       ->type_name("LOG_FORMAT");
-  command.add_option("--dbc", options.dbc, "Which signals CAN frames hold")->type_name("FILE.dbc");
+  command.add_option("--dbc", options.dbc, "Description of the signals in CAN frames")->type_name("FILE.dbc");
   options.common = {};
   add_common_options(command, options.common);
 }
@@ -57,10 +57,10 @@ std::vector<inspection::LogInspection> inspect_files(const InspectCommand& comma
     } else if (options.dbc.empty()) {
       options.dbc = path;
     } else {
-      throw UsageError(path + ": there is another DBC already: " + options.dbc);
+      throw UsageError(path + ": a DBC is already named: " + options.dbc);
     }
   }
-  if (logs.empty()) throw UsageError(options.dbc + ": a DBC says what CAN frames hold; name a log beside it");
+  if (logs.empty()) throw UsageError(options.dbc + ": a DBC only describes CAN frames; name a log too");
   options.watch = watch_reading(console);
   std::vector<inspection::LogInspection> inspected =
       inspection::inspect_logs(logs, readers_of(registry), options);

@@ -73,7 +73,7 @@ fs::path find_plugin(const std::string& wanted, const std::vector<PluginFolder>&
     if (fs::exists(file)) return file;
     looked += (looked.empty() ? "" : ", ") + folder.path;
   }
-  throw UsageError("no plugin '" + wanted + "': looked for " + wanted + ".so in " +
+  throw UsageError("no plugin '" + wanted + "': searched for " + wanted + ".so in " +
                    (looked.empty() ? "no folder" : looked) +
                    "; give the file's path, or its folder in WAYMARK_PLUGIN_PATH");
 }

@@ -46,7 +46,7 @@ std::string write_comparison(const std::vector<ComparedResult>& results,
   for (const ComparedResult& result : results)
     runs.push_back(report::compared_run(result.evaluated, header, result.optimization));
   drawing::Page page = report::comparison_page(runs, WAYMARK_VERSION);
-  drawing::Section alone{"reports", "Each by itself", {}};
+  drawing::Section alone{"reports", "One report per modeling", {}};
   for (const ComparedResult& result : results)
     alone.blocks.emplace_back(
         drawing::PageLink{result.evaluated.label + ".html", "Report of " + result.evaluated.label});

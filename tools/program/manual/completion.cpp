@@ -237,12 +237,12 @@ std::string bash_completion(const CLI::App& app) {
 void add_completion(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "completion",
-      "A script that completes the program's words in the shell\n\n"
-      "Subcommands, options, their values and files are completed. Names of solvers, modelings and the like "
-      "are asked for at the moment, so that plugins add theirs. An installed program has the script where "
-      "the package bash-completion looks for it.");
+      "Print a script that completes the program's words in the shell\n\n"
+      "Subcommands, options, their values and files are completed. The script asks the program for "
+      "the names of solvers and modelings, so those of plugins are completed too. An installed "
+      "program has the script in the folder that bash-completion searches.");
   const auto options = std::make_shared<CompletionOptions>();
-  auto* shell = command->add_option("shell", options->shell, "The shell")->check(CLI::IsMember({"bash"}));
+  auto* shell = command->add_option("shell", options->shell, "Shell to write for")->check(CLI::IsMember({"bash"}));
   command->add_option("--values", options->kind)->group("")->excludes(shell);
   add_plugin_option(*command, options->common);
   command->footer("Example:\n  source <(waymark completion bash)");

@@ -44,7 +44,8 @@ OptionText describe(const CLI::Option& option) {
   text.required = option.get_required();
   text.repeated = text.positional() && option.get_expected_max() >= CLI::detail::expected_max_vector_size;
   for (const CLI::Option* other : option.get_needs()) text.needs.push_back(name_of(*other));
-  for (const CLI::Option* other : option.get_excludes()) text.excludes.push_back(name_of(*other));
+  for (const CLI::Option* other : option.get_excludes())
+    if (!other->get_group().empty()) text.excludes.push_back(name_of(*other));  // the others are hidden
   std::sort(text.needs.begin(), text.needs.end());  // the parser orders them by address
   std::sort(text.excludes.begin(), text.excludes.end());
   return text;

@@ -60,7 +60,7 @@ std::string explain(const CLI::App& app, const CLI::App& command, const std::str
   const std::vector<std::string_view> views(known.begin(), known.end());
   const std::string nearest = name.starts_with("--") ? did_you_mean(name, views) : "";
   if (!nearest.empty()) return message + nearest;
-  return message + "; 'waymark " + command.get_name() + " --help' lists those there are";
+  return message + "; 'waymark " + command.get_name() + " --help' lists all options";
 }
 
 }  // namespace

@@ -164,7 +164,7 @@ void check_covariance_file(const std::string& path, const std::string& which) {
     throw UsageError("--covariance-file: the name must end in .csv or .json, got '" + path + "'");
   }
   if (which == "none") {
-    throw UsageError("--covariance-file: say which covariances: --covariance fixes or --covariance all");
+    throw UsageError("--covariance-file: choose the covariances: --covariance fixes or --covariance all");
   }
   require_output_place(path);
 }

@@ -94,7 +94,7 @@ void add_robust_options(CLI::App& command, RobustChoice& choice) {
       ->capture_default_str();
   command
       .add_option("--outliers", choice.outliers,
-                  "File for the edges judged outliers, a line each ('-': standard output)")
+                  "File for the outliers, one edge per line ('-': standard output)")
       ->type_name("FILE");
 }
 
@@ -109,8 +109,7 @@ void check_robust(const RobustChoice& choice, const TypeRegistry& registry) {
     require_edge(registry, choice.trusted, "--trusted");
   }
   if (choice.outliers.empty()) return;
-  if (choice.method == "none")
-    throw UsageError("--outliers: no outliers are looked for without --robust gnc");
+  if (choice.method == "none") throw UsageError("--outliers needs --robust gnc, which looks for them");
   require_output_place(choice.outliers);
 }
 
