@@ -13,7 +13,7 @@ void check_start(std::string_view start, const TypeRegistry& registry) {
   std::vector<std::string_view> names = {kAutoStart, kFileStart};
   for (const auto& [type, origin] : registry.starts()) names.push_back(type.name);
   if (std::find(names.begin(), names.end(), start) != names.end()) return;
-  throw UsageError("unknown start '" + std::string(start) + "'" + suggestion(start, names));
+  throw UsageError("unknown initial guess '" + std::string(start) + "'" + suggestion(start, names));
 }
 
 MultiStartSummary optimize_from(std::string_view start, Graph& graph, const TypeRegistry& registry,
@@ -28,7 +28,7 @@ MultiStartSummary optimize_from(std::string_view start, Graph& graph, const Type
   if (start != kFileStart) {
     made = registry.make_start(start, graph);
     if (made.values.empty())
-      throw InputError("start " + std::string(start) + " cannot be made: " + made.note);
+      throw InputError("initial guess " + std::string(start) + " cannot be made: " + made.note);
     graph.set_values(std::move(made.values));
   }
   MultiStartSummary result;

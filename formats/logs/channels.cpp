@@ -31,9 +31,9 @@ const std::vector<SensorColumn>& odometry_channels() {
 const std::vector<SensorColumn>& velocity_channels() {
   static const std::vector<SensorColumn> channels{
       {"speed", "m/s", "", false, "speed over ground"},
-      {"speed_accuracy", "m/s", "", false, "its standard deviation"},
+      {"speed_accuracy", "m/s", "", false, "standard deviation of the speed"},
       {"course", "rad", "", false, "course over ground, clockwise from true north"},
-      {"course_accuracy", "rad", "", false, "its standard deviation"},
+      {"course_accuracy", "rad", "", false, "standard deviation of the course"},
   };
   return channels;
 }

@@ -1,5 +1,5 @@
 // The published pose graphs: every algorithm with every solver reaches the best optimum known (anchors: the
-// best of g2o, Ceres and GTSAM, (t, theta) form). They are not part of the project: skipped where absent.
+// best of g2o, Ceres and GTSAM, (t, theta) form). They are not part of the project: skipped if absent.
 #include <optional>
 
 #include <Eigen/Cholesky>
@@ -179,7 +179,7 @@ TEST_CASE("standard graphs: MIT, dogleg reaches the best known minimum or a bett
   }
 }
 
-TEST_CASE("standard graphs: MIT, an algorithm that ends elsewhere is honest about it") {
+TEST_CASE("standard graphs: MIT, an algorithm that ends elsewhere says so") {
   // 770.66 is where g2o's Gauss-Newton stops as well. Whoever says "converged" must stand at a true local
   // minimum.
   const TypeRegistry registry = full_registry();

@@ -220,8 +220,9 @@ TEST_CASE("named start: each name begins where it says, with a search in place o
   REQUIRE(begun_at.size() == 2);
   CHECK(begun_at[0] == Approx(given_chi2));
   CHECK(begun_at[1] < 0.5 * given_chi2);
-  CHECK_THROWS_WITH(from("nowhere", {}),
-                    "unknown start 'nowhere'; there are: auto, file, linear, spanning_tree, odometry");
+  CHECK_THROWS_WITH(
+      from("nowhere", {}),
+      "unknown initial guess 'nowhere'; there are: auto, file, linear, spanning_tree, odometry");
 }
 
 TEST_CASE("named start: one that cannot be computed is refused, parts that are apart are noted") {

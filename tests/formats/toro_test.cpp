@@ -1,4 +1,4 @@
-// TORO's order of the six numbers, as information and as GTSAM's covariance, and what is refused.
+// TORO's order of the six numbers, as information and as GTSAM's covariance, and refusals.
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>

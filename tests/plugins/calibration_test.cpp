@@ -19,7 +19,7 @@ using Catch::Contains;
 
 namespace {
 
-/// What is wrong with the sensors of a simulated drive.
+/// The errors of the sensors of a simulated drive.
 struct Faults {
   double bias = 0;    ///< rad/s at the start
   double drift = 0;   ///< rad/s per s
@@ -29,7 +29,7 @@ struct Faults {
 
 constexpr double kDt = 0.1;
 constexpr double kSigma = 1.5;           // m, of a fix, per axis
-constexpr double kHeadingRate = 1.5e-6;  // rad^2/s, what the odometry model assumes and the gyro has
+constexpr double kHeadingRate = 1.5e-6;  // rad^2/s, assumed by the odometry model and true for the gyro
 constexpr double kSpeedNoise = 2e-3;     // m^2/m
 
 double speed_at(double t) {
@@ -140,7 +140,7 @@ TEST_CASE(
       CHECK(bias == Approx(faults.bias).margin(4 * bias_sigma));
       CHECK(scale == Approx(faults.scale).margin(4 * scale_sigma));
       CHECK(offset == Approx(faults.offset).margin(4 * offset_sigma));
-      // Far below what was put in: the estimates mean something.
+      // Far below the simulated errors: the estimates are informative.
       CHECK(bias_sigma < 0.05 * faults.bias);
       CHECK(scale_sigma < 0.1 * std::abs(faults.scale));
       CHECK(offset_sigma < 0.1 * faults.offset);

@@ -9,7 +9,7 @@ namespace waymark::benchmark {
 namespace {
 
 void require_values(const std::vector<double>& values) {
-  if (values.empty()) throw UsageError("the median of no values was asked for");
+  if (values.empty()) throw UsageError("a median needs at least one value");
 }
 
 }  // namespace

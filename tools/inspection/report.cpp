@@ -99,14 +99,13 @@ void add_fixes(Text& text, const LogInspection& log) {
                             ? "none"
                             : fmt::format("{:.1f} .. {:.1f} m", fixes.height.smallest, fixes.height.largest));
   if (fixes.with_accuracy == 0) {
-    text.line(
-        "  accuracy",
-        "the log gives none: as gnss it needs a 'default_sigma' (or, with HDOP, a 'range_error') stated");
+    text.line("  accuracy",
+              "the log has none: state a 'default_sigma' (or, with HDOP, a 'range_error') to "
+              "use it as gnss");
   } else {
     if (fixes.with_accuracy < fixes.fixes)
-      text.line("  accuracy",
-                fmt::format("{} of {} fixes have none: a 'default_sigma' must be stated for them",
-                            fixes.fixes - fixes.with_accuracy, fixes.fixes));
+      text.line("  accuracy", fmt::format("{} of {} fixes have none: state a 'default_sigma' for them",
+                                          fixes.fixes - fixes.with_accuracy, fixes.fixes));
     const auto axis = [](const char* name, const SigmaSummary& sigma) {
       return fmt::format("sigma {}: median {:.3g} m, 95 % below {:.3g} m, {:.3g} .. {:.3g} m", name,
                          sigma.median, sigma.percent95, sigma.range.smallest, sigma.range.largest);
@@ -166,8 +165,7 @@ void add_columns(Text& text, const std::vector<ColumnSummary>& columns, bool of_
 
 void add_ids(Text& text, const LogInspection& log) {
   text.line("frames", fmt::format("{} on {}", log.can->frames, log.can->interfaces));
-  if (!log.companions.contains("dbc"))
-    text.line("", "without a DBC (--dbc FILE) the signals in them are unknown");
+  if (!log.companions.contains("dbc")) text.line("", "the signals in them need a DBC (--dbc FILE)");
   text::Table table{.columns = {"id", "frames", "rate", "length"}};
   std::size_t rest = 0;
   for (std::size_t i = 0; i < log.can->ids.size(); ++i) {

@@ -29,8 +29,7 @@ void require_probability(const char* parameter, double value) {
 
 void require_range(const char* parameter, double low, double high) {
   require_not_negative(parameter, low);
-  require(high >= low && std::isfinite(high), parameter, high,
-          "a range whose end is not below its beginning");
+  require(high >= low && std::isfinite(high), parameter, high, "a range whose end is not below its start");
 }
 
 /// Sensors are sampled at ticks of the simulation.

@@ -1,4 +1,4 @@
-// Real CAN logs against what others decoded from them, and against physics.
+// Real CAN logs against the results of other decoders, and against physics.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// UBX logs of real receivers: what they hold, and that the pieces they come in make no difference.
+/// UBX logs of real receivers: their content, which does not depend on the pieces that they come in.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What the defaults must reach on real drives: one set of them for all. The figures are goals, set before the
+// Goals for the defaults on real drives: one set of them for all. The figures are goals, set before the
 // model was written; the program measures itself against the drives' own truth.
 
 #include <catch2/catch.hpp>
@@ -21,7 +21,7 @@ struct NeesRange {
 };
 constexpr NeesRange kWithinAFactorOfTwo{1, 4};
 
-/// Largest values allowed (0: no goal), and what the covariances must show. A drive of a few minutes has as
+/// Largest values allowed (0: no goal), and bounds on the covariances. A drive of a few minutes has as
 /// much to say as one to three independent errors, so consistent covariances may well hold all of it: here
 /// the mean NEES is bounded from above and below, the coverage from below only. coverage_test.cpp bounds the
 /// coverage from both sides, over many drives.
@@ -35,7 +35,7 @@ struct Goal {
   NeesRange nees = kWithinAFactorOfTwo;
 };
 
-/// Metrics of the default modeling, or null where the drive's logs are absent.
+/// Metrics of the default modeling, or null if the drive's logs are absent.
 Json metrics_of(const std::string& name, const std::vector<std::string>& options) {
   const std::string yaml = waymark_test::source_dir() + "/examples/drives/" + name + ".yaml";
   const auto logs = waymark_test::shared_data("drives/" + name);

@@ -84,11 +84,11 @@ TEST_CASE("compare: names what is best and what differs") {
   const std::string gateless = run_of(folder, "gateless", {"--no-gate"});
   REQUIRE(run({"compare", plain, gateless, "-o", folder + "out", "-q"}).code == 0);
   const std::string html = read_text(folder + "out/comparison.html");
-  const std::vector<std::string> gate = table_row(html, "What was done differently", "gate");
+  const std::vector<std::string> gate = table_row(html, "Settings that differ", "gate");
   REQUIRE(gate.size() == 5);
   CHECK(gate[1] == gate[2]);
   CHECK(gate[3] == "off");
-  CHECK(table_row(html, "What was done differently", "input gnss.csv").empty());  // the same in all
+  CHECK(table_row(html, "Settings that differ", "input gnss.csv").empty());  // the same in all
   // Raw fixes scatter more than any fused track does.
   CHECK(table_row(html, "Position errors against truth", "raw GNSS").back().find("Prec") ==
         std::string::npos);

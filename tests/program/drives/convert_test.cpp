@@ -1,4 +1,4 @@
-// Graph files to other formats and programs, as a user does it: what is said, refused, written.
+// Graph files to other formats and programs, as a user does it: messages, refusals, files.
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -47,7 +47,7 @@ TEST_CASE("convert: TORO is never guessed") {
   const std::string folder = fresh_folder();
   const RunResult result = run({"convert", write_text(folder + "toro.graph", kToro), "-o", folder + "out"});
   CHECK(result.code == 3);
-  CHECK(contains(result.err, "toro.graph:1:1: tag 'VERTEX2' of TORO or GTSAM, which are not guessed"));
+  CHECK(contains(result.err, "toro.graph:1:1: tag 'VERTEX2' is of TORO or GTSAM, which differ"));
   CHECK_FALSE(exists(folder + "out"));
 }
 
@@ -105,7 +105,7 @@ TEST_CASE(
       {"EDGE_SE2 0 1 1 0 0 4 1 0 4 0 9\n", "ceres", "write --format g2o for readers that weigh by L^T"},
       {"EDGE_PRIOR_SE2 0 1 0 0 4 1 0 4 0 9\n", "ceres", "EDGE_PRIOR_SE2 0 (number 1): Ceres' pose_graph_2d"},
       {"EDGE_SE2 0 1 1 0 0 4 0 0 4 0 9\nEDGE_SE2 0 1 1 0 0 4 0 0 4 0 9\n", "toro",
-       "EDGE_SE2 0 1 (number 2): TORO drops a second edge between two vertices"}};
+       "EDGE_SE2 0 1 (number 2): TORO drops the second edge between two vertices"}};
   for (const Case& c : cases) {
     const std::string graph = write_text(folder + "a.graph", head + c.lines);
     const RunResult result = run({"convert", graph, "-o", folder + "out", "--profile", c.profile});
@@ -154,7 +154,7 @@ TEST_CASE("convert: our own format says where it comes from, lenient reading say
   const RunResult result = run({"convert", g2o, "-o", folder + "a.graph", "--lenient"});
   CHECK(result.code == 0);
   CHECK(contains(result.err, "warning: 1 lines were skipped"));
-  CHECK(contains(result.err, "note: the file has edges only"));
+  CHECK(contains(result.err, "note: the file has only edges"));
   CHECK(contains(read_text(folder + "a.graph"), "PROVENANCE warning 1 lines were skipped\n"));
   CHECK(contains(read_text(folder + "a.graph"), "PROVENANCE converted waymark "));
   CHECK(contains(read_text(folder + "a.graph"), " from a.g2o fnv1a64:"));

@@ -40,7 +40,7 @@ void check_cell(const std::string& cell, const Json& value) {
 
 }  // namespace
 
-TEST_CASE("evaluation: run states how honest its covariances are, in the table and in metrics.json") {
+TEST_CASE("evaluation: run states whether its covariances are consistent, in the table and in metrics.json") {
   const std::string folder = fresh_folder();
   const RunResult result = run({"run", bundled_drive(), "-m", "g1", "--out", folder + "r"});
   REQUIRE(result.code == 0);
@@ -58,7 +58,7 @@ TEST_CASE("evaluation: run states how honest its covariances are, in the table a
   check_cell(cells[6], 100 * consistency["coverage_95"].get<double>());
   check_cell(cells[7], 100 * consistency["honest_coverage_95"][0].get<double>());
   check_cell(cells[10], consistency["median_error_ratio"]);
-  // White noise is assumed of errors that last for tens of seconds: the covariance cannot be honest.
+  // White noise is assumed of errors that last for tens of seconds: the covariance cannot be consistent.
   CHECK(consistency["effective_n"] < 20);
   CHECK(consistency["nees_mean"] > consistency["honest_nees_mean"][1]);
 
@@ -133,7 +133,7 @@ TEST_CASE("evaluation: an outage without a causal prediction is named in every f
                                 "--outage", "1/2", "--causal"});
   INFO(result.err);
   CHECK(result.code == 0);
-  const std::string warning = "no causal prediction for the outage that ends with epoch 1: ";
+  const std::string warning = "no causal prediction for the outage that ends at epoch 1: ";
   CHECK(contains(result.err, "warning: " + warning));
   CHECK(contains(read_text(folder + "r/g1.fused.graph"), "PROVENANCE warning " + warning));
   CHECK(contains(read_text(folder + "r/metrics.json"), warning));

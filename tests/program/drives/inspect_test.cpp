@@ -1,4 +1,4 @@
-// `waymark inspect` and `waymark init`: what they print, write and refuse; the drive.yaml that they write
+// `waymark inspect` and `waymark init`: their output and their refusals; the drive.yaml that they write
 // runs.
 #include <catch2/catch.hpp>
 
@@ -96,7 +96,7 @@ TEST_CASE("inspect: init without logs writes a template, and -o - goes to the st
   const RunResult result = run({"init", "-o", "-"});
   CHECK(result.code == 0);
   CHECK(contains(result.out, "FILL_IN_odometry.csv"));
-  CHECK(contains(result.err, "a template was written"));
+  CHECK(contains(result.err, "this is a template"));
   const std::string folder = drive_folder();
   const RunResult both = run({"init", folder + "gnss.csv", "-o", "-"});
   CHECK(both.code == 0);
@@ -117,8 +117,7 @@ TEST_CASE("inspect: inspect and init refuse what they cannot read, with exit cod
                 "format is not recognised");
   check_refused(run({"inspect", folder + "gnss.csv", "--format", "cvs"}), 2,
                 "unknown log format 'cvs'; did you mean 'csv'?");
-  check_refused(run({"inspect", write_text(folder + "car.dbc", "BO_ 1 A: 8 X\n")}), 2,
-                "name a log beside it");
+  check_refused(run({"inspect", write_text(folder + "car.dbc", "BO_ 1 A: 8 X\n")}), 2, "name a log too");
   check_refused(run({"init", folder + "gnss.csv"}), 2, "-o is required");
   check_refused(run({"init", folder + "gnss.csv", "-o", folder + "no/drive.yaml"}), 5, "no/drive.yaml");
 }
@@ -141,10 +140,10 @@ TEST_CASE("inspect: finds Munich's frozen receiver and gpsd's date of another ag
   const auto logs = waymark_test::shared_data("logs");
   if (!logs) return;
   const RunResult nmea = run({"inspect", *logs + "/nmea/genivi_munich_Petuelring_2009.nmea"});
-  CHECK(contains(nmea.out,
-                 "the position stands still for 5 fixes or more while the receiver's speed is above 1 m/s"));
+  CHECK(contains(
+      nmea.out, "the position is constant for 5 fixes or more although the receiver's speed is above 1 m/s"));
   const RunResult gpsd = run({"inspect", *logs + "/gpsd/gpsd_neo-m8n.log.chk"});
-  CHECK(contains(gpsd.out, "a receiver that is off by 1024 weeks would mean 2015-03-18T17:19:26.000Z"));
+  CHECK(contains(gpsd.out, "if the receiver is wrong by 1024 weeks, the date is 2015-03-18T17:19:26.000Z"));
   const RunResult nofix = run({"inspect", *logs + "/gpsd/gpsd_bu303-nofix.log.chk"});
   CHECK(nofix.code == 0);
   CHECK(contains(nofix.out, "the receiver has no fix in 7 of 7 records"));

@@ -156,7 +156,7 @@ TEST_CASE("doctor: a drive and a graph from a pipe are read once, with the drive
           {.folder = folder, .program = "/bin/bash"});
   INFO(result.out << result.err);
   CHECK(result.code == 0);
-  CHECK(contains(result.out, ": 3 logs, all there"));
+  CHECK(contains(result.out, ": 3 logs, all found"));
   CHECK(contains(result.out, ": 1 vertices, 1 edges"));
 }
 

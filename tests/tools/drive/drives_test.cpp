@@ -72,7 +72,7 @@ void add_identity_covariance(PreparedDrive& drive) {
 
 }  // namespace
 
-TEST_CASE("real drives: from the anchored start all modelings and algorithms reach one minimum") {
+TEST_CASE("real drives: from the anchored guess all modelings and algorithms reach one minimum") {
   const auto drive = GENERATE(from_range(drives()));
   if (is_absent(drive)) return;
   INFO(drive.name);

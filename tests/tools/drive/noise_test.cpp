@@ -70,7 +70,7 @@ PreparedDrive make_drive(const Truth& truth, std::uint64_t seed) {
   return drive;
 }
 
-/// The default modeling with what else the odometry has of noise stated.
+/// The default modeling with the other noise parameters of the odometry stated.
 FusionSettings complete_settings(const Options& modeling_options = {}) {
   FusionSettings settings;
   settings.modeling_options = modeling_options;

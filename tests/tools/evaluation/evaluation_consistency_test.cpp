@@ -74,8 +74,8 @@ TEST_CASE("consistency: a covariance too small by four gives NEES 8 and half the
   CHECK(s.median_error_ratio == Approx(2).epsilon(0.05));
   // P(4 chi2 <= -2 ln 0.05) = 1 - 0.05^(1/4)
   CHECK(s.coverage == Approx(1 - std::pow(0.05, 0.25)).margin(0.035));
-  CHECK_FALSE(holds(s.nees_mean_honest, s.nees_mean));
-  CHECK_FALSE(holds(s.coverage_honest, s.coverage));
+  CHECK_FALSE(holds(s.nees_mean_consistent, s.nees_mean));
+  CHECK_FALSE(holds(s.coverage_consistent, s.coverage));
 }
 
 TEST_CASE("consistency: a covariance too large by nine is no more consistent than one too small") {
@@ -86,8 +86,8 @@ TEST_CASE("consistency: a covariance too large by nine is no more consistent tha
   CHECK(s.nees_mean == Approx(2.0 / 9).epsilon(0.07));
   CHECK(s.median_error_ratio == Approx(1.0 / 3).epsilon(0.05));
   CHECK(s.coverage == 1);  // P(chi2 / 9 > -2 ln 0.05) = 0.05^9
-  CHECK_FALSE(holds(s.nees_mean_honest, s.nees_mean));
-  CHECK_FALSE(holds(s.coverage_honest, s.coverage));
+  CHECK_FALSE(holds(s.nees_mean_consistent, s.nees_mean));
+  CHECK_FALSE(holds(s.coverage_consistent, s.coverage));
 }
 
 TEST_CASE("consistency: autoregressive errors are worth n (1 - rho) / (1 + rho) samples") {
@@ -173,30 +173,31 @@ TEST_CASE("consistency: autocorrelation is undefined where there is no pair or n
   CHECK(std::isnan(error_autocorrelation({}, {}, lags)[0]));
 }
 
-TEST_CASE("consistency: intervals of an honest covariance") {
+TEST_CASE("consistency: intervals of a consistent covariance") {
   // chi2 with two degrees of freedom: quantile p is -2 ln(1 - p).
-  CHECK(honest_nees_mean(1).low == Approx(-2 * std::log(0.975)));
-  CHECK(honest_nees_mean(1).high == Approx(-2 * std::log(0.025)));
+  CHECK(consistent_nees_mean(1).low == Approx(-2 * std::log(0.975)));
+  CHECK(consistent_nees_mean(1).high == Approx(-2 * std::log(0.025)));
   // Published: chi2 with 20 degrees of freedom has 9.591 and 34.170.
-  CHECK(honest_nees_mean(10).low == Approx(0.9591).epsilon(1e-4));
-  CHECK(honest_nees_mean(10).high == Approx(3.4170).epsilon(1e-4));
+  CHECK(consistent_nees_mean(10).low == Approx(0.9591).epsilon(1e-4));
+  CHECK(consistent_nees_mean(10).high == Approx(3.4170).epsilon(1e-4));
   // Both sides of the change of method: the normal limit 2 +- 1.96 * 2 / sqrt(n), to its skewness.
   for (const double n : {299.0, 301.0, 10000.0}) {
-    CHECK(honest_nees_mean(n).low == Approx(2 - 1.96 * 2 / std::sqrt(n)).margin(4 / n));
-    CHECK(honest_nees_mean(n).high == Approx(2 + 1.96 * 2 / std::sqrt(n)).margin(4 / n));
+    CHECK(consistent_nees_mean(n).low == Approx(2 - 1.96 * 2 / std::sqrt(n)).margin(4 / n));
+    CHECK(consistent_nees_mean(n).high == Approx(2 + 1.96 * 2 / std::sqrt(n)).margin(4 / n));
   }
-  CHECK(honest_nees_mean(300).high == Approx(honest_nees_mean(300.5).high).epsilon(2e-4));
+  CHECK(consistent_nees_mean(300).high == Approx(consistent_nees_mean(300.5).high).epsilon(2e-4));
 
-  CHECK(honest_coverage(1).low == 0);  // it misses once in twenty
-  CHECK(honest_coverage(1).high == 1);
+  CHECK(consistent_coverage(1).low == 0);  // it misses once in twenty
+  CHECK(consistent_coverage(1).high == 1);
   // Of five, 0.0226 lie at three or fewer: 0.95^5 = 0.7738, 5 0.05 0.95^4 = 0.2036.
-  CHECK(honest_coverage(5).low == Approx(0.8));
-  CHECK(honest_coverage(5).high == 1);
-  CHECK(honest_coverage(10000).low == Approx(0.95 - 1.96 * std::sqrt(0.95 * 0.05 / 10000)).margin(2e-4));
-  CHECK(honest_coverage(10000).high == Approx(0.95 + 1.96 * std::sqrt(0.95 * 0.05 / 10000)).margin(2e-4));
+  CHECK(consistent_coverage(5).low == Approx(0.8));
+  CHECK(consistent_coverage(5).high == 1);
+  CHECK(consistent_coverage(10000).low == Approx(0.95 - 1.96 * std::sqrt(0.95 * 0.05 / 10000)).margin(2e-4));
+  CHECK(consistent_coverage(10000).high == Approx(0.95 + 1.96 * std::sqrt(0.95 * 0.05 / 10000)).margin(2e-4));
 }
 
-TEST_CASE("consistency: the intervals hold for honest covariances of correlated errors and drive biases") {
+TEST_CASE(
+    "consistency: the intervals hold for consistent covariances of correlated errors and drive biases") {
   // 15 minutes with tau = 30 s and a bias drawn for each drive; the covariance states both.
   constexpr int kDrives = 300;
   constexpr int kEpochs = 900;
@@ -212,8 +213,8 @@ TEST_CASE("consistency: the intervals hold for honest covariances of correlated 
       const Eigen::Matrix2d covariance = (1 + bias_sigma * bias_sigma) * Eigen::Matrix2d::Identity();
       const ConsistencyStatistics s =
           consistency_statistics(seconds(kEpochs), errors, same(errors.size(), covariance));
-      nees_inside += holds(s.nees_mean_honest, s.nees_mean) ? 1 : 0;
-      coverage_inside += holds(s.coverage_honest, s.coverage) ? 1 : 0;
+      nees_inside += holds(s.nees_mean_consistent, s.nees_mean) ? 1 : 0;
+      coverage_inside += holds(s.coverage_consistent, s.coverage) ? 1 : 0;
     }
     INFO("bias " << bias_sigma);
     // The sample size is estimated from the drive itself. One whose bias happens to be small beside its prior

@@ -155,7 +155,7 @@ TEST_CASE("evaluation: innovations are kept apart by what became of the fix") {
   CHECK(with_pose.prediction.mean == Approx(0.8));
 }
 
-TEST_CASE("evaluation: a simulated drive: honest covariances give mean nu 2 at withheld fixes") {
+TEST_CASE("evaluation: a simulated drive: consistent covariances give mean nu 2 at withheld fixes") {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   EvaluationInput input;

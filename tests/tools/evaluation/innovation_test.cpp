@@ -66,7 +66,7 @@ TEST_CASE("innovation: the bound is the 95 % quantile of chi2 with two degrees o
   CHECK(1 - std::exp(-InnovationStatistics::kBound95 / 2) == Approx(0.95).epsilon(1e-12));
 }
 
-TEST_CASE("innovation: honest innovations have mean nu 2 and 95 % inside") {
+TEST_CASE("innovation: with true covariances the mean of nu is 2 and 95 % are inside") {
   std::mt19937_64 random(7);
   const Eigen::Matrix2d fix = matrix(4, 1.5, 1);
   const Eigen::Matrix2d pose = matrix(0.5, -0.2, 0.8);
@@ -86,7 +86,7 @@ TEST_CASE("innovation: honest innovations have mean nu 2 and 95 % inside") {
   CHECK(without.mean > 2 + 10 * without.expected_deviation);
 }
 
-TEST_CASE("innovation: post-fit residuals are smaller than the noise: R - P makes them honest") {
+TEST_CASE("innovation: post-fit residuals are smaller than the noise: R - P makes them consistent") {
   // The best estimate of a constant from n readings is their mean, P = R / n.
   std::mt19937_64 random(11);
   const Eigen::Matrix2d fix = matrix(1, 0.3, 2);
@@ -108,8 +108,8 @@ TEST_CASE("innovation: post-fit residuals are smaller than the noise: R - P make
     without_pose.push_back(
         normalised_innovation_squared(residual, residual_covariance(ResidualKind::post_fit, fix, nullptr)));
   }
-  const InnovationStatistics honest = innovation_statistics(ResidualKind::post_fit, with_pose);
-  CHECK(std::abs(honest.mean - 2) < 4 * honest.expected_deviation);
+  const InnovationStatistics consistent = innovation_statistics(ResidualKind::post_fit, with_pose);
+  CHECK(std::abs(consistent.mean - 2) < 4 * consistent.expected_deviation);
   const InnovationStatistics small = innovation_statistics(ResidualKind::post_fit, without_pose);
   CHECK(small.mean == Approx(2 * (1 - 1.0 / kReadings)).epsilon(0.03));
 }

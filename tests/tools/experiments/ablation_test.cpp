@@ -174,6 +174,6 @@ TEST_CASE("ablation: a drive of the ablation is judged by truth, or by the fixes
   CHECK(errors.columns[2] == "B: outages");
   CHECK(errors.rows[0] == std::vector<std::string>{"default", "2.00", "7.00", "0.0", "-50.0"});
   CHECK(report.tables.back().columns.size() == 2);  // no NEES without truth
-  CHECK_THAT(report_markdown(report), Contains("# One ingredient at a time"));
+  CHECK_THAT(report_markdown(report), Contains("# One part changed at a time"));
   CHECK_THAT(report_json(report, {with_truth}), Contains("waymark-ablation"));
 }

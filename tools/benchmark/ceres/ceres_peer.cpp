@@ -259,7 +259,7 @@ class CeresProblem {
     }
     if (typed == nullptr && batch.size() > 0) {
       notes_.push_back("the peer evaluates " + std::to_string(batch.size()) + " edges " + tag +
-                       " through a generic, slow cost function: its time is no comparison");
+                       " with a generic, slow cost function: do not compare its time");
     }
   }
 
@@ -268,7 +268,8 @@ class CeresProblem {
     const VertexType& type = graph_.vertex_type(v);
     if (type.linear_chart && type.value_size == type.tangent_size) return block(v);
     throw UsageError("peer 'ceres': vertices " + type.tag +
-                     " do not move by plain addition, which is all the comparison knows");
+                     " are not updated by plain addition, which is the only update that the "
+                     "comparison supports");
   }
 
   void hold(const std::vector<char>& held) {

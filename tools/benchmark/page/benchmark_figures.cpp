@@ -198,7 +198,7 @@ std::vector<drawing::Figure> time_figures(const Files& files, const ContestantNa
       {.id = "time",
        .title = "Time to the result",
        .description = "Median of the repetitions; a bracket goes from the shortest to the longest. "
-                      "The scale is logarithmic: lengths of bars are no ratios.",
+                      "The scale is logarithmic, so lengths of bars are not proportional to times.",
        .x = {.title = "time", .unit = "ms", .logarithmic = true},
        .y = {.title = "file", .unit = ""},
        .series = {}},
@@ -241,8 +241,8 @@ std::vector<drawing::Figure> excess_figures(const Files& files, const Contestant
   return bar_figures(files, names,
                      {.id = "excess",
                       .title = "chi2 above the optimum",
-                      .description = "chi2 / optimum - 1 where a run ended above the optimum; no bar: it was "
-                                     "reached, within 1e-6.",
+                      .description = "chi2 / optimum - 1 of the runs that ended above the optimum. "
+                                     "Without a bar the optimum was reached, within 1e-6.",
                       .x = {.title = "chi2 / optimum - 1", .unit = "", .logarithmic = true},
                       .y = {.title = "file", .unit = ""},
                       .series = {}},
@@ -264,8 +264,7 @@ std::vector<drawing::Figure> ratio_figures(const Files& files, const ContestantN
         {.id = "ratio-" + id,
          .title = "Time of " + peer + " over this one's",
          .description =
-             "Median over the repetitions of the ratio of two runs that were made in turn. Above 1: "
-             "faster than " +
+             "Ratio of two runs that were made in turn, median over the repetitions. Above 1: faster than " +
              peer + ".",
          .x = {.title = peer + " / this", .unit = ""},
          .y = {.title = "file", .unit = ""},
@@ -293,8 +292,9 @@ std::vector<drawing::Figure> size_figures(const Files& files, const ContestantNa
     drawing::Figure figure{.id = fmt::format("size-{}", figures.size() + 1),
                            .title = "Time against size",
                            .description =
-                               "Median times over the number of edges of the files, with their spread. Both "
-                               "scales are logarithmic: time in proportion to size is a line of slope 1.",
+                               "Median time over the number of edges, with its spread. Both scales "
+                               "are logarithmic: if time is proportional to size, the "
+                               "line has slope 1.",
                            .x = {.title = "edges", .unit = "", .logarithmic = true},
                            .y = {.title = "time", .unit = "ms", .logarithmic = true},
                            .series = {},

@@ -31,11 +31,11 @@ std::vector<const CellSummary*> ranking(const FileSummary& file) {
 
 text::Table winners_table(const Files& files, const ContestantNames& names) {
   text::Table table{
-      .title = "Who was fastest where",
+      .title = "Fastest contestants",
       .columns = {"file", "vertices", "edges", "fastest", "median [ms]", "next", "its time / the fastest"}};
   table.notes = {
-      "By median time, of the results that converged and reached the optimum. Ratios near 1 mean little "
-      "where the brackets of the times overlap."};
+      "By median time of the results that converged at the optimum. Ratios near 1 mean little if "
+      "the brackets of the times overlap."};
   for (const FileSummary& file : files) {
     const auto ranked = ranking(file);
     text::Row row{file.file, std::to_string(file.vertices), std::to_string(file.edges)};
@@ -101,7 +101,7 @@ text::Table missed_table(const Files& files, const ContestantNames& names) {
 }
 
 text::Table header_table(const BenchmarkHeader& header) {
-  text::Table table{.title = "What was asked for, and on what it ran", .columns = {"", ""}, .words = true};
+  text::Table table{.title = "Settings and machine", .columns = {"", ""}, .words = true};
   for (const auto& [key, text] : header) table.rows.push_back({key, text});
   return table;
 }
@@ -109,9 +109,9 @@ text::Table header_table(const BenchmarkHeader& header) {
 drawing::Section tables_section(const Files& files) {
   drawing::Section section{"tables", "All numbers", {}};
   section.blocks.emplace_back(drawing::Paragraph{
-      "! behind the iterations: the run did not converge; the reason is below the table. Phases are "
-      "those of the median run, in ms. MB are resident memory, 1e6 bytes. A ratio above 1: faster than "
-      "the peer."});
+      "A ! behind the iterations: the run did not converge; the reason is below the table. The "
+      "phases are of the median run, in ms. MB are resident memory, 1e6 bytes. A ratio above 1: "
+      "faster than the peer."});
   for (const FileSummary& file : files) section.blocks.emplace_back(file_table(file));
   return section;
 }
@@ -125,7 +125,7 @@ std::string text_of(const BenchmarkHeader& header, const std::string& key) {
 }  // namespace
 
 drawing::Page benchmark_page(const Files& files, const BenchmarkHeader& header) {
-  if (files.empty()) throw UsageError("a page of no benchmark was asked for");
+  if (files.empty()) throw UsageError("a benchmark page needs at least one file");
   const ContestantNames names(files);
   drawing::Page page;
   page.title = "Benchmark";

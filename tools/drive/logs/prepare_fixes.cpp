@@ -56,8 +56,8 @@ void add_logged_velocity(const DriveLogs::Log& log, TimeScale scale, std::span<G
   put_on_scale(readings.stamps, log, scale, [](Stamp& stamp) -> Stamp& { return stamp; });
   add_log_report(log.data, report.sensor, report);
   const std::size_t given = add_velocity(readings, fixes);
-  report.notes.push_back(
-      fmt::format("{}: {} of {} fixes have their speed or course from it", log.file, given, fixes.size()));
+  report.notes.push_back(fmt::format("{}: {} of {} fixes take their speed or course from this log", log.file,
+                                     given, fixes.size()));
 }
 
 /// Removes fixes at 0/0. Receivers without a fix write zeros, and nobody drives in the
@@ -67,7 +67,7 @@ void leave_out_null_island(std::vector<GeodeticFix>& fixes, PrepareReport& repor
       fixes, [](const GeodeticFix& fix) { return fix.latitude_deg == 0 && fix.longitude_deg == 0; });
   if (left_out > 0)
     report.notes.push_back(fmt::format(
-        "{} fixes at latitude 0, longitude 0 are left out: receivers write that without a fix", left_out));
+        "{} fixes at latitude 0, longitude 0 are left out: receivers without a fix write them", left_out));
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
                a.speed_mps == b.speed_mps;
       });
   if (fixes.empty())
-    throw InputError(fmt::format("{}: the GNSS logs hold no usable fix; a drive without a fix has no place",
+    throw InputError(fmt::format("{}: the GNSS logs hold no usable fix; a drive needs at least one",
                                  logs.gnss.empty() ? description.path : logs.gnss.front().file));
   for (GeodeticFix& fix : fixes) fix.stamp.nanoseconds -= nanoseconds(description.gnss_delay_s);
 

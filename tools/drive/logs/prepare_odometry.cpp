@@ -26,8 +26,8 @@ void assemble_parts(const DriveLogs& logs, const DriveDescription& description,
   if (parts.empty()) return;
   if (!odometry.empty())
     throw InputError(
-        fmt::format("{}: some of the odometry's parts hold speed and yaw rate side by side, others channels; "
-                    "leave out what is not needed",
+        fmt::format("{}: some parts of the odometry hold speed and yaw rate together, others hold "
+                    "channels; leave out one kind",
                     description.path));
   AssembledOdometry assembled = [&] {
     try {
@@ -48,8 +48,9 @@ void note_gaps(double gap_s, Stamp start, PrepareReport& report) {
       *std::max_element(gaps.begin(), gaps.end(),
                         [](const GapReport& a, const GapReport& b) { return a.length_s < b.length_s; });
   report.notes.push_back(
-      fmt::format("the odometry is silent for more than {:g} s in {} {}, the longest {:.1f} s from {:.1f} s "
-                  "after its start: the speed and turn before and after are assumed there (gap: {{policy}})",
+      fmt::format("the odometry has no samples for more than {:g} s in {} {}, the longest for "
+                  "{:.1f} s from {:.1f} s after its start: the speed and yaw rate before and after "
+                  "are assumed there (gap: {{policy}})",
                   gap_s, gaps.size(), gaps.size() == 1 ? "place" : "places", longest.length_s,
                   seconds_between(start, longest.start)));
 }

@@ -53,13 +53,13 @@ std::optional<Eigen::Vector2d> in_sigmas(const Eigen::Vector2d& offset, const Ei
 
 }  // namespace
 
-Interval95 honest_nees_mean(double effective_samples) {
+Interval95 consistent_nees_mean(double effective_samples) {
   const int freedom = static_cast<int>(std::lround(2 * effective_samples));
   const double samples = 0.5 * freedom;
   return {two_sided_chi_square(freedom, false) / samples, two_sided_chi_square(freedom, true) / samples};
 }
 
-Interval95 honest_coverage(double effective_samples) {
+Interval95 consistent_coverage(double effective_samples) {
   constexpr double kInside = ConsistencyStatistics::kExpectedCoverage;
   const long trials = std::lround(effective_samples);
   const auto share = [&](long k) { return static_cast<double>(k) / static_cast<double>(trials); };
@@ -98,8 +98,8 @@ ConsistencyStatistics consistency_statistics(std::span<const Stamp> stamps,
   std::sort(nees.begin(), nees.end());
   statistics.median_error_ratio = std::sqrt(sorted_median(nees) / kMedianNees);
   statistics.effective_samples = effective_sample_size(used, errors);
-  statistics.nees_mean_honest = honest_nees_mean(statistics.effective_samples);
-  statistics.coverage_honest = honest_coverage(statistics.effective_samples);
+  statistics.nees_mean_consistent = consistent_nees_mean(statistics.effective_samples);
+  statistics.coverage_consistent = consistent_coverage(statistics.effective_samples);
   return statistics;
 }
 

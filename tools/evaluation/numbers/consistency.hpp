@@ -30,10 +30,10 @@ struct ConsistencyStatistics {
   /// Independent samples among `count`: effective_sample_size of the errors in sigmas (P^-1/2 d).
   double effective_samples = kUndefined;
   double nees_mean = kUndefined;
-  Interval95 nees_mean_honest;  ///< range of nees_mean for a consistent covariance
+  Interval95 nees_mean_consistent;  ///< range of nees_mean for a consistent covariance
   /// share of epochs whose 95 % region contains the truth: NEES <= -2 ln 0.05
   double coverage = kUndefined;
-  Interval95 coverage_honest;
+  Interval95 coverage_consistent;
   /// Median of sqrt(NEES / 2 ln 2), the actual error in units of the stated one. It is 1 if P is
   /// consistent, and 2 if the stated sigmas are half of the true ones.
   double median_error_ratio = kUndefined;
@@ -49,11 +49,11 @@ struct ConsistencyStatistics {
 /// Returns the range of the mean NEES of a consistent estimate. N_eff times the mean is chi2 with 2
 /// N_eff degrees of freedom (rounded to a whole number), so the range is its quantiles over N_eff.
 /// @param effective_samples >= 1
-[[nodiscard]] Interval95 honest_nees_mean(double effective_samples);
+[[nodiscard]] Interval95 consistent_nees_mean(double effective_samples);
 
 /// Returns the range of the coverage of a consistent estimate: the 2.5 % and 97.5 % quantiles of
 /// the binomial distribution with N_eff (rounded) trials and probability 0.95, over N_eff. @param
 /// effective_samples >= 1
-[[nodiscard]] Interval95 honest_coverage(double effective_samples);
+[[nodiscard]] Interval95 consistent_coverage(double effective_samples);
 
 }  // namespace waymark::evaluation

@@ -82,10 +82,10 @@ Json to_json(const ConsistencyStatistics& s) {
           {"effective_n", text::number_or_null(s.effective_samples)},
           {"nees_mean", text::number_or_null(s.nees_mean)},
           {"expected_nees_mean", ConsistencyStatistics::kExpectedMean},
-          {"honest_nees_mean", to_json(s.nees_mean_honest)},
+          {"honest_nees_mean", to_json(s.nees_mean_consistent)},
           {"coverage_95", text::number_or_null(s.coverage)},
           {"expected_coverage_95", ConsistencyStatistics::kExpectedCoverage},
-          {"honest_coverage_95", to_json(s.coverage_honest)},
+          {"honest_coverage_95", to_json(s.coverage_consistent)},
           {"median_error_ratio", text::number_or_null(s.median_error_ratio)}};
 }
 

@@ -73,9 +73,9 @@ ConsistencyStatistics consistency(const text::JsonPlace& json) {
   s.undefined = json.count("undefined");
   s.effective_samples = json.number("effective_n");
   s.nees_mean = json.number("nees_mean");
-  s.nees_mean_honest = interval(json.at("honest_nees_mean"));
+  s.nees_mean_consistent = interval(json.at("honest_nees_mean"));
   s.coverage = json.number("coverage_95");
-  s.coverage_honest = interval(json.at("honest_coverage_95"));
+  s.coverage_consistent = interval(json.at("honest_coverage_95"));
   s.median_error_ratio = json.number("median_error_ratio");
   return s;
 }

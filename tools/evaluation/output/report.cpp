@@ -125,14 +125,14 @@ std::string interval(const Interval95& i, double factor, int decimals) {
 }
 
 std::string consistency_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
-  text::Table table{.columns = {"stated against actual error", "n", "effective n", "NEES mean", "honest",
-                                "inside 95 % [%]", "honest [%]", "actual / stated"}};
+  text::Table table{.columns = {"stated against actual error", "n", "effective n", "NEES mean", "consistent",
+                                "inside 95 % [%]", "consistent [%]", "actual / stated"}};
   for (const auto& [label, evaluation] : evaluations) {
     if (!evaluation.truth || !evaluation.truth->consistency) continue;
     const ConsistencyStatistics& s = *evaluation.truth->consistency;
     table.rows.push_back({label, std::to_string(s.count), text::decimals(s.effective_samples, 1),
-                          text::decimals(s.nees_mean, 2), interval(s.nees_mean_honest, 1, 2),
-                          text::decimals(100 * s.coverage, 1), interval(s.coverage_honest, 100, 1),
+                          text::decimals(s.nees_mean, 2), interval(s.nees_mean_consistent, 1, 2),
+                          text::decimals(100 * s.coverage, 1), interval(s.coverage_consistent, 100, 1),
                           text::decimals(s.median_error_ratio, 2)});
   }
   return block(table, look);

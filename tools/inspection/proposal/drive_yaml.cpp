@@ -172,11 +172,11 @@ class Writer {
       if (!own_sense) value += ", convention: " + how.convention;
       value += "}";
     }
-    line(indent + quantity + ": " + value, doubts(quantity, from, log, known));
+    line(indent + quantity + ": " + value, checks_of(quantity, from, log, known));
   }
 
-  static std::string doubts(const std::string& quantity, const ColumnSummary& from, const LogInspection& log,
-                            const formats::Quantity* known) {
+  static std::string checks_of(const std::string& quantity, const ColumnSummary& from,
+                               const LogInspection& log, const formats::Quantity* known) {
     std::string text;
     const auto add = [&text](const std::string& what) { text += (text.empty() ? "CHECK: " : "; ") + what; };
     if (!from.proposal.remark.empty()) add(from.proposal.remark);

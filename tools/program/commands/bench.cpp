@@ -51,7 +51,7 @@ void check_bench_start(const std::string& name, const TypeRegistry& registry) {
   std::vector<std::string_view> known{kFileStart};
   for (const auto& [start, origin] : registry.starts()) known.push_back(start.name);
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  throw UsageError("unknown start '" + name + "'" + suggestion(name, known));
+  throw UsageError("unknown initial guess '" + name + "'" + suggestion(name, known));
 }
 
 /// Returns the names to use. Empty: that of `optimize`; "all": every registered one.
@@ -105,10 +105,10 @@ void apply_start(const std::string& name, LoadedGraph& loaded, const TypeRegistr
   if (name == kFileStart) return;
   InitialValues start = registry.make_start(name, loaded.graph);
   if (start.values.empty()) {
-    throw InputError(loaded.name + ": start " + name + " cannot be made: " + start.note);
+    throw InputError(loaded.name + ": initial guess " + name + " cannot be made: " + start.note);
   }
   loaded.graph.set_values(std::move(start.values));
-  if (start.apart > 0) console.note(loaded.name + ", start " + name + ": " + apart_note(start.apart));
+  if (start.apart > 0) console.note(loaded.name + ", initial guess " + name + ": " + apart_note(start.apart));
 }
 
 /// Returns the starts that differ for this file. A file without vertices has no values of its own.
@@ -116,7 +116,7 @@ Names starts_of(const LoadedGraph& loaded, const Names& asked, const Console& co
   Names starts = asked;
   const bool both = std::find(asked.begin(), asked.end(), "odometry") != asked.end();
   if (loaded.edges_only) {
-    console.note(loaded.name + " has edges only: its start 'file' is the odometry chain");
+    console.note(loaded.name + " has edges only: its initial guess 'file' is the odometry chain");
     if (both) starts.erase(std::remove(starts.begin(), starts.end(), kFileStart), starts.end());
   }
   return starts;

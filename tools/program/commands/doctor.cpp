@@ -81,7 +81,7 @@ std::string plugins_text(const Json& plugins) {
   text += listed(folders);
   if (string_of(plugins, "value").empty())
     text += "  " + string_of(plugins, "variable") + " is not set; it may name more, separated by ':'\n";
-  text += "\nplugins: version, ABI, place, what they bring\n";
+  text += "\nplugins: version, ABI, file, registered names\n";
   text::Table loaded{.words = true};
   for (const Json& plugin : plugins["loaded"])
     loaded.rows.push_back({string_of(plugin, "name"), string_of(plugin, "version"), plugin["abi"].dump(),

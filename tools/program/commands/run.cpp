@@ -14,8 +14,8 @@
 #include <waymark/tools/program/jobs/drive_text.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
-#include <waymark/tools/program/jobs/result_doubts.hpp>
 #include <waymark/tools/program/jobs/result_files.hpp>
+#include <waymark/tools/program/jobs/result_warnings.hpp>
 #include <waymark/tools/program/terminal/iteration_table.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 
@@ -69,7 +69,7 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
   const drive::FuseDrive fuse =
       [&](const drive::PreparedDrive& known) -> std::optional<formats::GraphDocument> {
     if (interrupted) return std::nullopt;
-    const std::string outage = fmt::format("the outage that ends with epoch {}", known.fixes.back().epoch);
+    const std::string outage = fmt::format("the outage that ends at epoch {}", known.fixes.back().epoch);
     progress.next(
         fmt::format("{}: causal, outage {} of {}", settings.modeling, progress.step() + 1, outages));
     try {
@@ -88,7 +88,7 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
     }
   };
   evaluation::Prediction causal = as_prediction("causal", drive::causal_at_withheld(run.loaded.drive, fuse));
-  if (interrupted) warn("interrupted: the causal predictions end early", document, run.console);
+  if (interrupted) warn("interrupted: some causal predictions are missing", document, run.console);
   return causal;
 }
 
@@ -134,8 +134,9 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   const std::size_t known = document.provenance.size();
   result.states = states_of_minimum(document, summary, console);
   result.evaluation = {modeling, evaluate_minimum(run, document, summary, settings)};
-  for (const std::string& doubt : doubts_of_result(result.states, result.noise, result.evaluation.evaluation))
-    warn(doubt, document, console);
+  for (const std::string& sentence :
+       warnings_of_result(result.states, result.noise, result.evaluation.evaluation))
+    warn(sentence, document, console);
   std::optional<evaluation::Sparsity> sparsity = sparsity_for_report(document, console);
   if (document.provenance.size() > known) write(run.folder.fused_graph(modeling));
   add_provenance(document, modeling, header);
@@ -230,7 +231,7 @@ ExitCode run_drive(const RunOptions& options) {
   drive::check_minimization(options.minimization, registry);
   const LoadedDrive loaded = load_drive_for(file, options.choice, registry, console);
   if (options.causal && file.description.outage.length_s == 0)
-    throw UsageError("--causal: there are no outages to be predicted; name them with --outage LENGTH/EVERY");
+    throw UsageError("--causal: there are no outages to predict; name them with --outage LENGTH/EVERY");
   const RunOfDrive run{options, loaded, evaluation::ResultFolder(options.folder), registry, console};
   require_logs_stay(run);
   stop_if_interrupted();
@@ -258,20 +259,19 @@ ExitCode run_drive(const RunOptions& options) {
 void add_run(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "run",
-      "The whole job: convert, optimise, evaluate\n\n"
-      "Reads the logs that the drive.yaml names, makes the graph, optimises it and compares the result with "
-      "truth and with the fixes that were kept out. The folder then holds graphs, trajectories and metrics, "
-      "for each modeling.");
+      "Convert, optimise and evaluate a drive\n\n"
+      "Reads the logs that the drive.yaml names, builds the graph, optimises it and compares the "
+      "result with truth and with the withheld fixes. The folder then holds graphs, trajectories "
+      "and metrics of each modeling.");
   const auto options = std::make_shared<RunOptions>();
-  command->add_option("drive", options->input, "Description of the drive and its logs (drive.yaml)")
+  command->add_option("drive", options->input, "drive.yaml of the drive")
       ->required()
       ->type_name("DRIVE.yaml");
   command->add_option("-o,--out", options->folder, "Folder for all results")->required()->type_name("DIR");
   add_drive_options(*command, options->choice);
   {
     const OptionHeading heading(*command, "The drive");
-    command->add_flag("--causal", options->causal,
-                      "Also predict each outage of --outage from what was known before its end");
+    command->add_flag("--causal", options->causal, "Also predict each outage of --outage without later data");
   }
   add_optimization_options(*command, options->minimization);
   add_common_options(*command, options->common);

@@ -27,10 +27,10 @@ std::string describe_drive_file(const drive::DriveFile& file, const TypeRegistry
   for (const drive::LogConfig& log : logs) {
     std::error_code unknown;
     if (!std::filesystem::exists(log.file, unknown))
-      throw InputError(log.place + log.file + ": there is no such log");
+      throw InputError(log.place + log.file + ": this log does not exist");
   }
   (void)registry.gnss_modeling(file.settings.modeling);
-  return fmt::format("{} logs, all there (not read: `waymark inspect` does); modeling {}", logs.size(),
+  return fmt::format("{} logs, all found (`waymark inspect` reads them); modeling {}", logs.size(),
                      file.settings.modeling);
 }
 

@@ -39,7 +39,7 @@ std::vector<std::pair<std::string, std::string>> provenance_of(const std::string
     if (key == "optimized") {  // RunEnding holds this
       entries["algorithm"] = word_behind(text, "algorithm");
       entries["linear solver"] = word_behind(text, "solver");
-      entries["start of the optimisation"] = word_behind(text, "start");
+      entries["initial guess of the optimisation"] = word_behind(text, "start");
       continue;
     }
     const auto [part, value] = parted(key, text);

@@ -171,7 +171,7 @@ std::vector<drawing::Figure> withheld_bars(const Groups& groups) {
     if (column.name != "RMSE" && column.name != "CEP95") continue;
     figures.push_back(bars_of(groups, column, "withheld-", rows_at_withheld));
     figures.back().title += " at withheld fixes";
-    figures.back().description = "Of the fused antenna from fixes that the graph did not have.";
+    figures.back().description = "Distance of the fused antenna from the withheld fixes.";
   }
   return without_empty(std::move(figures));
 }
@@ -183,8 +183,8 @@ std::vector<drawing::Figure> distribution_figures(const Groups& groups) {
         .id = fmt::format("distribution-{}", part.number + 1),
         .title = titled(groups, part, "Distribution of the position error"),
         .description =
-            "Share of the epochs whose error is at most so large. The axis holds 99 % of every "
-            "run's errors and 90 % of the raw ones; the largest are in the table.",
+            "Share of the epochs whose error is at most this large. The axis holds 99 % of the "
+            "errors of every run and 90 % of the raw errors; the largest are in the table.",
         .x = {.title = "position error", .unit = "m", .low = 0},
         .y = {.title = "epochs", .unit = "%", .low = 0, .high = 100},
         .series = {}};
@@ -226,7 +226,8 @@ std::vector<drawing::Figure> chi2_figures(const std::vector<ComparedRun>& runs) 
     if (lines.empty()) return;
     figures.push_back({.id = fmt::format("chi2-{}", figures.size() + 1),
                        .title = "chi2 over the accepted steps",
-                       .description = "Of the graph of each run; only graphs of one modeling are comparable.",
+                       .description = "chi2 of the graph of each run; only graphs of "
+                                      "one modeling are comparable.",
                        .x = {.title = "accepted steps", .unit = ""},
                        .y = {.title = "chi2", .unit = "", .logarithmic = true},
                        .series = std::exchange(lines, {})});

@@ -5,7 +5,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/report/comparison/comparison_page.hpp>
 #include <waymark/tools/report/comparison/comparison_parts.hpp>
-#include <waymark/tools/report/honesty_figures.hpp>
+#include <waymark/tools/report/consistency_bars.hpp>
 
 namespace waymark::report {
 namespace {
@@ -81,8 +81,8 @@ drawing::Section errors_section(const Groups& groups) {
   drawing::Section section{"errors", "Errors", {}};
   if (groups.size() > 1)
     section.blocks.emplace_back(drawing::Paragraph{
-        "The runs are of several drives. Errors are comparable within a drive only: each has fixes of its "
-        "own."});
+        "The runs are of several drives. Errors are comparable only within one drive, because each "
+        "drive has its own fixes."});
   add_table(error_table(groups), section);
   drawing::add_figures(error_bars(groups), section);
   add_table(improvement_table(groups), section);
@@ -99,8 +99,8 @@ drawing::Section course_section(const Groups& groups) {
   return section;
 }
 
-drawing::Section honesty_section(const Groups& groups) {
-  drawing::Section section{"honesty", "Stated against actual errors", {}};
+drawing::Section consistency_section(const Groups& groups) {
+  drawing::Section section{"consistency", "Stated against actual errors", {}};
   std::vector<StatedErrors> rows;
   for (const DriveGroup& group : groups) {
     for (const ComparedRun* run : group.runs) {
@@ -109,7 +109,7 @@ drawing::Section honesty_section(const Groups& groups) {
     }
   }
   add_table(stated_error_table(groups), section);
-  drawing::add_figures(honesty_figures("stated", rows), section);
+  drawing::add_figures(consistency_bars("stated", rows), section);
   return section;
 }
 
@@ -122,7 +122,7 @@ drawing::Section ending_section(const Runs& runs) {
 }
 
 drawing::Section differences_section(const Runs& runs, const Groups& groups) {
-  drawing::Section section{"differences", "What differs", {}};
+  drawing::Section section{"differences", "Differences", {}};
   text::Table differences = provenance_differences(runs);
   if (differences.rows.empty())
     section.blocks.emplace_back(drawing::Paragraph{"Program, inputs and options are the same in all runs."});
@@ -142,15 +142,16 @@ std::string subtitle(const Runs& runs, const Groups& groups) {
 }  // namespace
 
 drawing::Page comparison_page(const Runs& runs, const std::string& version) {
-  if (runs.empty()) throw UsageError("a comparison of no runs was asked for");
+  if (runs.empty()) throw UsageError("a comparison needs at least one run");
   const Groups groups = groups_by_drive(runs);
   drawing::Page page;
   page.title = "Comparison of runs";
   page.subtitle = subtitle(runs, groups);
   page.footer = "Made by waymark " + version + ".";
   add_summary(runs, groups, page);
-  for (drawing::Section section : {errors_section(groups), course_section(groups), honesty_section(groups),
-                                   ending_section(runs), differences_section(runs, groups)}) {
+  for (drawing::Section section :
+       {errors_section(groups), course_section(groups), consistency_section(groups), ending_section(runs),
+        differences_section(runs, groups)}) {
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
   }
   return page;

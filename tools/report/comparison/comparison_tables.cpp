@@ -7,7 +7,7 @@
 
 #include <waymark/tools/report/comparison/comparison_page.hpp>
 #include <waymark/tools/report/comparison/comparison_parts.hpp>
-#include <waymark/tools/report/honesty_figures.hpp>
+#include <waymark/tools/report/consistency_bars.hpp>
 #include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::report {
@@ -134,7 +134,7 @@ text::Table error_table(const Groups& groups) {
 
 text::Table withheld_error_table(const Groups& groups) {
   text::Table table = position_table(groups, "Errors at withheld fixes", rows_at_withheld);
-  table.notes = {"The withheld fixes' own errors are in these numbers."};
+  table.notes = {"The numbers contain the errors of the withheld fixes."};
   return table;
 }
 
@@ -142,7 +142,7 @@ text::Table improvement_table(const Groups& groups) {
   Row columns;
   for (const PositionColumn& column : position_columns()) columns.push_back(column.name + " [%]");
   text::Table table = table_with(groups, "Improvement over raw GNSS", columns);
-  table.notes = {"100 (1 - fused / raw) at the same epochs. Negative: worse than raw."};
+  table.notes = {"100 (1 - fused / raw) at the same epochs. Negative: worse than raw GNSS."};
   for (const DriveGroup& group : groups) {
     for (const ComparedRun* run : group.runs) {
       if (!run->evaluation.truth) continue;
@@ -177,13 +177,12 @@ text::Table track_table(const Groups& groups) {
 
 text::Table stated_error_table(const Groups& groups) {
   text::Table table = table_with(groups, "Stated against actual errors",
-                                 {"n", "effective n", "mean NEES", "honest NEES", "inside 95 % [%]",
-                                  "honest share [%]", "actual / stated", "stated errors are"});
+                                 {"n", "effective n", "mean NEES", "consistent NEES", "inside 95 % [%]",
+                                  "consistent share [%]", "actual / stated", "stated errors are"});
   table.notes = {
-      "Honest: a mean NEES of 2, 95 % inside, actual / stated 1. The intervals are where an honest "
-      "covariance leaves the numbers on 95 of 100 drives. Stated errors are called honest where the mean "
-      "NEES "
-      "lies in its interval."};
+      "Consistent: a mean NEES of 2, 95 % inside, actual / stated 1. With consistent covariances "
+      "the numbers of 95 of 100 drives lie in the intervals. Stated errors are called consistent if "
+      "the mean NEES lies in its interval."};
   for (const DriveGroup& group : groups) {
     for (const ComparedRun* run : group.runs) {
       if (!run->evaluation.truth || !run->evaluation.truth->consistency) continue;
@@ -193,8 +192,9 @@ text::Table stated_error_table(const Groups& groups) {
       };
       add_row(groups, group, run->label,
               {counted(s.count), text::decimals(s.effective_samples, 1), text::decimals(s.nees_mean, 2),
-               interval(s.nees_mean_honest, 1, 2), text::decimals(100 * s.coverage, 1),
-               interval(s.coverage_honest, 100, 0), text::decimals(s.median_error_ratio, 2), honesty(s)},
+               interval(s.nees_mean_consistent, 1, 2), text::decimals(100 * s.coverage, 1),
+               interval(s.coverage_consistent, 100, 0), text::decimals(s.median_error_ratio, 2),
+               consistency_verdict(s)},
               table);
     }
   }
@@ -219,9 +219,8 @@ text::Table fixes_table(const Groups& groups) {
 }
 
 text::Table ending_table(const std::vector<ComparedRun>& runs) {
-  text::Table table{
-      .title = "How the minimisations ended",
-      .columns = {"run", "ended", "iterations", "time [s]", "chi2 at the start", "chi2 at the end"}};
+  text::Table table{.title = "How the minimisations ended",
+                    .columns = {"run", "ended", "iterations", "time [s]", "initial chi2", "chi2 at the end"}};
   table.notes = {"chi2 of different modelings is not comparable: their graphs differ."};
   for (const ComparedRun& run : runs) {
     if (!run.ending) continue;
@@ -235,7 +234,7 @@ text::Table ending_table(const std::vector<ComparedRun>& runs) {
 }
 
 text::Table provenance_differences(const std::vector<ComparedRun>& runs) {
-  text::Table table{.title = "What was done differently", .columns = {"entry"}, .words = true};
+  text::Table table{.title = "Settings that differ", .columns = {"entry"}, .words = true};
   std::map<std::string, Row> entries;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     table.columns.push_back(runs[r].label);

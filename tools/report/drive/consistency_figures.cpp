@@ -62,8 +62,9 @@ drawing::Figure coverage_figure(const std::vector<double>& nees) {
   figure.id = "coverage";
   figure.title = "Coverage";
   figure.description =
-      "Share of epochs whose truth lies in the region that is stated to hold a share p of them. Below the "
-      "diagonal the stated covariances are too small, above it too large.";
+      "Share of the epochs whose truth lies inside the stated region, over the share that the "
+      "region should hold. Below the diagonal the stated covariances are too small, above "
+      "it too large.";
   figure.x = {.title = "stated", .unit = "%", .low = 0, .high = 100};
   figure.y = {.title = "found", .unit = "%", .low = 0, .high = 100};
   figure.width = 430;

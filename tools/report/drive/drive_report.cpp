@@ -12,16 +12,16 @@ namespace {
 
 std::string describe_consistency(const evaluation::ConsistencyStatistics& stated) {
   return fmt::format(
-      "Mean NEES {:.2f}, honest between {:.2f} and {:.2f}; {:.0f} % of the epochs inside their 95 % region, "
-      "honest between {:.0f} and {:.0f} %. The errors last, so {} epochs are worth {:.1f} independent ones. "
-      "Median of actual over stated error: {:.2f}.",
-      stated.nees_mean, stated.nees_mean_honest.low, stated.nees_mean_honest.high, 100 * stated.coverage,
-      100 * stated.coverage_honest.low, 100 * stated.coverage_honest.high, stated.count,
-      stated.effective_samples, stated.median_error_ratio);
+      "The mean NEES is {:.2f}; between {:.2f} and {:.2f} it is consistent. {:.0f} % of the epochs "
+      "are inside their 95 % region; between {:.0f} and {:.0f} % is consistent. The errors last, so "
+      "{} epochs are worth {:.1f} independent ones. Median of actual over stated error: {:.2f}.",
+      stated.nees_mean, stated.nees_mean_consistent.low, stated.nees_mean_consistent.high,
+      100 * stated.coverage, 100 * stated.coverage_consistent.low, 100 * stated.coverage_consistent.high,
+      stated.count, stated.effective_samples, stated.median_error_ratio);
 }
 
 text::Table provenance(const ReportedDrive& drive) {
-  text::Table table{.title = "Where it comes from", .columns = {"", ""}, .words = true};
+  text::Table table{.title = "Provenance", .columns = {"", ""}, .words = true};
   for (const auto& [key, text] : drive.document.provenance) {
     if (key != "assumed" && key != "warning") table.rows.push_back({key, text});
   }
@@ -65,8 +65,8 @@ void add_optimization(const ReportedDrive& drive, drawing::Page& page) {
   if (drive.optimization != nullptr) {
     const Summary& s = drive.optimization->summary;
     section.blocks.emplace_back(drawing::Paragraph{
-        fmt::format("{}. Algorithm {}, start {}, linear solver {}, {} unknowns.", s.message, s.algorithm,
-                    drive.optimization->start, s.solver, s.unknowns)});
+        fmt::format("{}. Algorithm {}, initial guess {}, linear solver {}, {} unknowns.", s.message,
+                    s.algorithm, drive.optimization->start, s.solver, s.unknowns)});
     if (!s.records.empty()) section.blocks.emplace_back(convergence_figure(s));
   }
   if (drive.sparsity != nullptr) {
@@ -103,8 +103,8 @@ drawing::Page drive_page(const ReportedDrive& drive) {
   drawing::Page page;
   page.title = (drive.name.empty() ? "Drive" : drive.name) + ": " + drive.label;
   page.footer =
-      "Made by Waymark. All figures are beside this page as SVG, their numbers as CSV, in the folder "
-      "figures.";
+      "Made by Waymark. The folder figures beside this page has all figures as SVG "
+      "and their numbers as CSV.";
   summarise(drive, page);
   page.sections.push_back(summary_section(drive));
   page.sections.push_back({"trajectory-section", "Trajectory", {trajectory_figure(drive)}});

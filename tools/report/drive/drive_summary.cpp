@@ -44,15 +44,15 @@ text::Table truth_table(const ReportedDrive& drive) {
                 metrics_row("fused", truth.fused.position)};
   table.rows.push_back(improvement_row(truth.gnss.position, truth.fused.position));
   table.notes = {
-      "Max: largest error. Acc: length of the mean error. Prec: standard deviation about it. CEP50, CEP95: "
-      "radius about the truth that holds 50 and 95 % of the epochs. Raw and fused at the same epochs: the "
-      "stamps of all fixes with a truth."};
+      "Max: largest error. Acc: length of the mean error. Prec: standard deviation about the mean "
+      "error. CEP50, CEP95: radius about the truth that holds 50 and 95 % of the epochs. Raw and "
+      "fused errors are at the same epochs: the stamps of all fixes with a truth."};
   return table;
 }
 
 text::Table withheld_table(const evaluation::Evaluation& evaluation) {
   text::Table table{.title = "At withheld fixes", .columns = metrics_heading()};
-  table.notes = {"The noise of the fixes is in these numbers."};
+  table.notes = {"The numbers contain the noise of the fixes."};
   for (const evaluation::WithheldMetrics& way : evaluation.at_withheld) {
     table.rows.push_back(metrics_row(way.label, way.at_fixes));
     if (way.at_ends.count > 0)
@@ -73,8 +73,8 @@ std::string count_of_rejections(const ReportedDrive& drive) {
   for (const auto& [reason, count] : of_reason)
     text += fmt::format("{} {} for {}", text.back() == ')' ? ":" : ",", count, reason);
   const std::size_t light = nearly_left_out(drive);
-  if (light > 0) text += fmt::format("; {} count for less than a third of their weight", light);
-  if (e.withheld > 0) text += fmt::format("; {} withheld on purpose", e.withheld);
+  if (light > 0) text += fmt::format("; {} have less than a third of their weight", light);
+  if (e.withheld > 0) text += fmt::format("; {} withheld for evaluation", e.withheld);
   return text;
 }
 
@@ -122,7 +122,7 @@ std::string describe_error_model(const ReportedDrive& drive) {
 }
 
 std::string outcome(const ReportedDrive& drive) {
-  if (drive.optimization == nullptr) return "as the graph file has it";
+  if (drive.optimization == nullptr) return "as in the graph file";
   const Summary& s = drive.optimization->summary;
   return fmt::format("{} in {} iterations, {:.3f} s, chi2 {:.6g} -> {:.6g}",
                      s.converged() ? "minimum reached" : "NO MINIMUM: " + s.message, s.iterations,
@@ -133,7 +133,7 @@ std::string outcome(const ReportedDrive& drive) {
 text::Table account(const ReportedDrive& drive) {
   text::Table table{.columns = {"", ""}, .words = true};
   for (const std::string& warning : stated(drive, "warning")) table.rows.push_back({"WARNING", warning});
-  table.rows.push_back({"went in", describe_input(drive)});
+  table.rows.push_back({"input", describe_input(drive)});
   for (const std::string& log : stated(drive, "input")) table.rows.push_back({"log", log});
   for (const auto& [heading, text] : drive.went_in) table.rows.push_back({heading, text});
   const std::string model = describe_error_model(drive);
@@ -141,7 +141,7 @@ text::Table account(const ReportedDrive& drive) {
   for (const std::string& assumption : stated(drive, "assumed"))
     table.rows.push_back({"assumed", assumption});
   table.rows.push_back({"rejected", count_of_rejections(drive)});
-  table.rows.push_back({"came out", outcome(drive)});
+  table.rows.push_back({"result", outcome(drive)});
   return table;
 }
 

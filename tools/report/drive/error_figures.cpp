@@ -106,7 +106,7 @@ std::vector<drawing::Figure> errors_over_time(const ReportedDrive& drive) {
       }));
   add_if_seen(std::move(turned), figures);
   drawing::Figure speed =
-      time_figure(drive, "speed", "Speed", "Of the fused body point; negative in reverse.",
+      time_figure(drive, "speed", "Speed", "Speed of the fused body point; negative in reverse.",
                   {.title = "speed", .unit = "m/s"});
   speed.series.push_back(over_time(drive, "fused", drawing::Look::fused,
                                    [](const evaluation::EpochResult& e) { return e.speed_mps; }));
@@ -117,8 +117,8 @@ std::vector<drawing::Figure> errors_over_time(const ReportedDrive& drive) {
 drawing::Figure fix_residuals_over_time(const ReportedDrive& drive) {
   drawing::Figure figure =
       time_figure(drive, "fix-residuals", "Fix minus fused position",
-                  "How far each raw fix lies from the fused antenna's place, whether it was used or not. Not "
-                  "an error: where fixes pull the poses they look better than they are.",
+                  "Distance of each raw fix from the fused antenna, whether the fix was used or "
+                  "not. This is not an error: fixes that pull the poses look better than they are.",
                   {.title = "fix - fused", .unit = "m", .low = 0});
   const std::vector<Fix>& fixes = drive.document.fixes;
   const Graph& graph = drive.document.graph;
@@ -159,8 +159,8 @@ drawing::Figure error_distribution(const ReportedDrive& drive) {
   }
   const evaluation::TruthEvaluation& truth = *drive.evaluation.truth;
   figure.description = fmt::format(
-      "CEP50 {:.3f} m raw, {:.3f} m fused; CEP95 {:.3f} m raw, {:.3f} m fused: where the curves meet the "
-      "dashed lines.",
+      "CEP50 {:.3f} m raw, {:.3f} m fused; CEP95 {:.3f} m raw, {:.3f} m fused. The dashed lines "
+      "meet the curves there.",
       truth.gnss.position.cep50_m, truth.fused.position.cep50_m, truth.gnss.position.cep95_m,
       truth.fused.position.cep95_m);
   return figure;

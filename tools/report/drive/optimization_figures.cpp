@@ -139,9 +139,10 @@ drawing::Figure residual_figure(const evaluation::GraphResiduals& residuals) {
   figure.id = "residuals";
   figure.title = "Whitened residuals";
   figure.description =
-      "Ordered whitened residuals of each type of measurement against the quantiles of a normal distribution "
-      "of variance 1. On the line the noise is as stated; flatter: it was stated too large; steeper, or bent "
-      "up at the ends: too small, or outliers.";
+      "Ordered whitened residuals of each type of measurement against the quantiles of a normal "
+      "distribution of variance 1. On the line the noise is as stated. A flatter curve: the stated "
+      "noise is too large. A steeper curve, or ends that bend away: the stated noise is too small, "
+      "or there are outliers.";
   figure.x = {.title = "normal quantile", .unit = "sigma"};
   figure.y = {.title = "whitened residual", .unit = "sigma"};
   figure.height = 360;
@@ -205,7 +206,8 @@ text::Table state_table(const std::vector<evaluation::StateReport>& states) {
                     .columns = {"state", "unit", "values", "first", "last", "smallest", "largest", "sigma",
                                 "sigma before", ""}};
   table.notes = {
-      "sigma: of the last value, from the marginal covariance; before: of the first value, by its prior."};
+      "sigma: of the last value, from the marginal covariance. sigma before: of the "
+      "first value, from its prior."};
   for (const evaluation::StateReport& s : states) {
     table.rows.push_back({s.name, s.unit, fmt::to_string(s.values), text::readable(s.first),
                           text::readable(s.last), text::readable(s.smallest), text::readable(s.largest),
@@ -255,8 +257,8 @@ std::vector<drawing::Figure> state_figures(const std::vector<evaluation::StateRe
 
 drawing::FigureRow sparsity_figures(const evaluation::Sparsity& sparsity) {
   return {{raster_figure(sparsity.natural, "sparsity-natural", "H, in the order of the graph",
-                         "Lower triangle of the normal equations' matrix; a cell is dark as it is full (root "
-                         "of its share)."),
+                         "Lower triangle of the matrix of the normal equations. The fuller a cell, "
+                         "the darker it is (root of its share)."),
            raster_figure(sparsity.ordered, "sparsity-ordered", "H, in the order of elimination",
                          fmt::format("The same matrix, ordering {}.", sparsity.ordering)),
            raster_figure(sparsity.factor_raster, "sparsity-factor", "Its Cholesky factor",

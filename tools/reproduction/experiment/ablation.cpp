@@ -52,7 +52,7 @@ std::vector<Ablation> ingredients() {
                   [](drive::FusionSettings& fusion) { fusion.estimates_noise = false; }),
       with_change("with the paper's gate", "gate",
                   [](drive::FusionSettings& fusion) { fusion.gate.enabled = true; }),
-      with_change("dead-reckoned start", "dead_reckoning",
+      with_change("dead-reckoned initial guess", "dead_reckoning",
                   [](drive::FusionSettings& fusion) {
                     fusion.initial_guess.method = drive::StartMethod::dead_reckoning;
                   }),
@@ -172,12 +172,13 @@ text::Table error_table(const Drives& drives) {
                                });
   add_changes(drives, table);
   table.notes = {
-      "Against truth; where the drive's name says so, at fixes kept out of the graph, whose own errors are "
-      "in "
-      "it. Positive changes are worse. Means are of the logarithms of the ratios.",
-      "white noise: modeling g1, the claimed covariances as they are, noise as stated. GNC: outliers among "
-      "the fixes found by graduated non-convexity. adaptive inflation: a second pass with each fix's "
-      "covariance times the mean of nu / 2 of the fixes within 15 s, where above 1."};
+      "Errors against truth. If the name of the drive says so, they are at withheld fixes and "
+      "contain the errors of those. Positive changes are worse. Means are of the logarithms "
+      "of the ratios.",
+      "white noise: modeling g1, the claimed covariances as they are, noise as stated. GNC: "
+      "outliers among the fixes found by graduated non-convexity. adaptive inflation: a second "
+      "pass, which multiplies the covariance of each fix by the mean of nu / 2 of the fixes within "
+      "15 s if that is above 1."};
   note_failures(drives, table);
   return table;
 }
@@ -233,7 +234,7 @@ double mean_change_percent(const std::vector<double>& errors, const std::vector<
 ReproductionReport ablation_report(const Drives& drives, const std::string& introduction) {
   ReproductionReport report;
   report.name = "ablation";
-  report.title = "One ingredient at a time";
+  report.title = "One part changed at a time";
   report.introduction = introduction;
   report.tables.push_back(error_table(drives));
   report.tables.push_back(table_of(drives, "ablation_max", "Largest errors, m", 2,
@@ -246,7 +247,7 @@ ReproductionReport ablation_report(const Drives& drives, const std::string& intr
   }
   if (!with_truth.empty()) {
     report.tables.push_back(table_of(with_truth, "ablation_nees",
-                                     "Mean NEES, drives with truth; 2 where covariances are honest", 2,
+                                     "Mean NEES, drives with truth; 2 if covariances are consistent", 2,
                                      [](const DriveResult& drive, const std::string& setting) {
                                        return judged_stated_errors(drive, setting).nees_mean;
                                      }));

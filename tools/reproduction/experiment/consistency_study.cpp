@@ -65,9 +65,10 @@ text::Table pooled_table(const Drives& drives) {
     }
   }
   table.notes = {
-      "Every drive counts once. NEES: error against truth in units of the stated covariance, 2 where that is "
-      "honest. Standard errors are those over drives; the epochs of one drive have errors in common.",
-      "judged: drives with a minimum and covariances."};
+      "Every drive counts once. NEES: error against truth in units of the stated covariance, 2 if "
+      "the covariances are consistent. Standard errors are over the drives, because the epochs of "
+      "one drive have common errors.",
+      "judged: number of drives with a minimum and covariances."};
   for (const DriveResult& drive : drives) {
     for (const Outcome& outcome : drive.outcomes) {
       const std::string& why = outcome.failure.empty() ? outcome.ending.message : outcome.failure;
@@ -128,7 +129,7 @@ PooledMean pooled_mean(const std::vector<double>& of_drives) {
 ReproductionReport consistency_report(const Drives& drives, const std::string& introduction) {
   ReproductionReport report;
   report.name = "consistency";
-  report.title = "How honest the covariances are";
+  report.title = "Consistency of the covariances (NEES)";
   report.introduction = introduction;
   report.tables = {pooled_table(drives), drive_table(drives)};
   report.runs = run_table(drives);

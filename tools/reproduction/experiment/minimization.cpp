@@ -14,7 +14,8 @@ class GainRule {
   void observe(const IterationRecord& record) {
     if (outer_ != nullptr && outer_->load()) stop_ = true;
     attempts_ = record.accepted ? 0 : attempts_ + 1;
-    if (attempts_ >= kGainAttempts) end(fmt::format("{} steps in a row were of no use", attempts_), false);
+    if (attempts_ >= kGainAttempts)
+      end(fmt::format("{} steps in a row did not lower chi2", attempts_), false);
     if (!record.accepted) return;
     ++taken_;
     const double gain = record.decrease / record.chi2;

@@ -98,8 +98,8 @@ std::vector<Setting> our_settings() {
 
 const std::vector<Cause>& causes() {
   static const std::vector<Cause> all = {{"radius", "scaled radius"},         {"heading", "no dummy heading"},
-                                         {"stopping", "full steps only"},     {"start", "anchored start"},
-                                         {"all_but_start", "first three"},    {"east", "start to the east"},
+                                         {"stopping", "full steps only"},     {"start", "anchored guess"},
+                                         {"all_but_start", "first three"},    {"east", "guess to the east"},
                                          {"nodes_at_fixes", "nodes at fixes"}};
   return all;
 }

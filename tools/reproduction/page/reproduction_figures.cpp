@@ -7,7 +7,7 @@
 
 #include <waymark/tools/drawing/figure/bars.hpp>
 #include <waymark/tools/drawing/figure/look.hpp>
-#include <waymark/tools/report/honesty_figures.hpp>
+#include <waymark/tools/report/consistency_bars.hpp>
 #include <waymark/tools/reproduction/experiment/setting.hpp>
 #include <waymark/tools/reproduction/page/reproduction_parts.hpp>
 
@@ -107,7 +107,8 @@ drawing::Figure paper_error_figure(const Drives& drives, const PaperColumn& colu
     add_bars(metrics_column(drives, system.name), system, column.value, figure);
   if (any_of_paper(drives)) {
     figure.description +=
-        " The drives are simulated; a diamond is what the paper prints of the same system on its own drive.";
+        " The drives are simulated; a diamond is the number that the paper prints for the same "
+        "system on its own drive.";
     add_printed(drives, column.value, figure);
   }
   drawing::fit_bars(figure);
@@ -144,16 +145,16 @@ std::vector<drawing::Figure> stated_error_figures(const Drives& drives) {
         rows.push_back({labelled(drive) + ", " + model_title(setting), *stated});
     }
   }
-  return report::honesty_figures("stated", rows);
+  return report::consistency_bars("stated", rows);
 }
 
 std::vector<drawing::Figure> withheld_figures(const Drives& drives) {
   drawing::Figure figure{
       .id = "withheld",
-      .title = "RMS error at fixes that were kept out",
+      .title = "RMS error at withheld fixes",
       .description =
-          "Drives without truth: distance of the fused antenna from fixes that the graph did not have. "
-          "The fixes' own errors are in it.",
+          "Drives without truth: distance of the fused antenna from the withheld fixes. It contains "
+          "the errors of the fixes.",
       .x = {.title = "RMS error", .unit = "m"},
       .y = {.title = "drive", .unit = ""},
       .series = {}};

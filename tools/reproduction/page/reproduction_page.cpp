@@ -23,7 +23,7 @@ std::string spaced(const std::string& source) {
 }
 
 drawing::Section findings_section(const std::vector<Finding>& findings) {
-  text::Table table{.title = "What the paper found, and what these drives say",
+  text::Table table{.title = "Findings of the paper, checked on these drives",
                     .columns = {"finding", "source", "verdict", "figures"}};
   for (const Finding& finding : findings) {
     std::string statement = finding.statement;
@@ -33,8 +33,8 @@ drawing::Section findings_section(const std::vector<Finding>& findings) {
     }
   }
   table.notes = {
-      "paper: its printed figures. literal: its settings on these drives. minimum: the same model, minimised "
-      "well. ours: our settings. - where a source is no judge."};
+      "paper: the figures that it prints. literal: its settings on these drives. minimum: the same "
+      "model at its minimum. ours: our settings. -: the source cannot judge the finding."};
   return {"findings", "Findings", {std::move(table)}};
 }
 
@@ -70,7 +70,7 @@ std::string summary_of_study(const Drives& drives) {
     }
     if (nees.empty()) continue;
     text +=
-        fmt::format("{}{}: mean NEES {:.2f} (2 is honest), coverage {:.1f} % (95), {} drives.",
+        fmt::format("{}{}: mean NEES {:.2f} (2 is consistent), coverage {:.1f} % (95), {} drives.",
                     text.empty() ? "" : " ", setting.name == kDefaultModel ? "Default model" : "White noise",
                     pooled_mean(nees).mean, pooled_mean(coverage).mean, nees.size());
   }

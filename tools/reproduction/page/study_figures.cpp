@@ -43,9 +43,9 @@ drawing::Figure over_drives(const Drives& drives, drawing::Figure figure, const 
 /// Returns the drives of a study in the order of their draws.
 drawing::Figure of_draws(const Drives& drives, const Setting& setting, drawing::Figure figure, double unit,
                          double evaluation::ConsistencyStatistics::*value,
-                         evaluation::Interval95 evaluation::ConsistencyStatistics::*honest) {
+                         evaluation::Interval95 evaluation::ConsistencyStatistics::*consistent) {
   drawing::Series band{
-      .name = "honest, 95 of 100 drives", .mark = drawing::Mark::band, .look = drawing::Look::reference};
+      .name = "consistent, 95 of 100 drives", .mark = drawing::Mark::band, .look = drawing::Look::reference};
   drawing::Series points{.name = "drives", .mark = drawing::Mark::points, .look = drawing::Look::fused};
   std::vector<double> values;
   for (std::size_t d = 0; d < drives.size(); ++d) {
@@ -53,8 +53,8 @@ drawing::Figure of_draws(const Drives& drives, const Setting& setting, drawing::
     if (!stated) continue;
     const double number = static_cast<double>(d + 1);
     band.x.push_back(number);
-    band.low.push_back(unit * ((*stated).*honest).low);
-    band.high.push_back(unit * ((*stated).*honest).high);
+    band.low.push_back(unit * ((*stated).*consistent).low);
+    band.high.push_back(unit * ((*stated).*consistent).high);
     points.x.push_back(number);
     points.y.push_back(unit * (*stated).*value);
     points.note.push_back(static_cast<int>(points.notes.size()));
@@ -96,8 +96,8 @@ std::vector<drawing::Figure> ablation_figures(const Drives& drives) {
       drives,
       {.id = "ablation-nees",
        .title = "Mean NEES of each setting",
-       .description = "Geometric mean over the drives with truth; a bracket goes from the smallest to the "
-                      "largest. 2 is honest, more: the stated errors are too small.",
+       .description = "Geometric mean over the drives with truth; a bracket goes from the smallest "
+                      "to the largest. 2 is consistent. Above 2 the stated errors are too small.",
        .x = {.title = "mean NEES", .unit = "", .logarithmic = true},
        .y = {.title = "setting", .unit = ""},
        .series = {}},
@@ -109,7 +109,7 @@ std::vector<drawing::Figure> ablation_figures(const Drives& drives) {
     const std::size_t rows = figure->y.categories.size();
     if (rows == 0) continue;
     figure->series.push_back(figure == &errors ? drawing::line_across("default", 1, rows)
-                                               : drawing::line_across("honest: 2", 2, rows));
+                                               : drawing::line_across("consistent: 2", 2, rows));
     drawing::fit_bars(*figure);
     figures.push_back(std::move(*figure));
   }
@@ -125,14 +125,14 @@ std::vector<drawing::Figure> consistency_figures(const Drives& drives) {
         of_draws(drives, setting,
                  {.id = "nees-" + id,
                   .title = "NEES of each drive, " + title_of(setting),
-                  .description = "Mean over the drive's epochs. The band is where an honest covariance "
-                                 "leaves it on 95 of 100 drives.",
+                  .description = "Mean over the epochs of the drive. With consistent covariances 95 "
+                                 "of 100 drives lie in the band.",
                   .x = numbers,
                   .y = {.title = "mean NEES", .unit = "", .logarithmic = true},
                   .series = {},
                   .width = 460},
                  1, &evaluation::ConsistencyStatistics::nees_mean,
-                 &evaluation::ConsistencyStatistics::nees_mean_honest);
+                 &evaluation::ConsistencyStatistics::nees_mean_consistent);
     drawing::Figure coverage =
         of_draws(drives, setting,
                  {.id = "coverage-" + id,
@@ -143,7 +143,7 @@ std::vector<drawing::Figure> consistency_figures(const Drives& drives) {
                   .series = {},
                   .width = 460},
                  100, &evaluation::ConsistencyStatistics::coverage,
-                 &evaluation::ConsistencyStatistics::coverage_honest);
+                 &evaluation::ConsistencyStatistics::coverage_consistent);
     for (drawing::Figure* figure : {&nees, &coverage})
       if (!figure->series.empty()) figures.push_back(std::move(*figure));
   }

@@ -84,7 +84,7 @@ Reached count_common_minimum(const Drives& drives, const std::string& setting) {
 text::Table cause_table(const Drives& drives) {
   text::Table table;
   table.file = "convergence_literal";
-  table.title = "The paper's literal settings: where they end, and with one cause at a time taken away";
+  table.title = "The paper's literal settings: their results, and with one cause at a time removed";
   table.columns = {"Drive", "modeling", "literal"};
   for (const Cause& cause : causes()) table.columns.push_back(cause.title);
   const auto add_row = [&](const std::string& label, const std::string& modeling, const auto& cell_of) {
@@ -104,18 +104,19 @@ text::Table cause_table(const Drives& drives) {
       fmt::format("A number: the steps to the minimum (chi2 less than {} above it). \"x 50: 3.0 m\": stopped "
                   "after 50 steps, a pose 3.0 m from the minimum of the same errors and weights.",
                   kReachedChi2),
-      fmt::format(
-          "literal: g2o's dogleg (norm over metres and radians, first radius 1e4), dead-reckoned start, "
-          "log error with heading 0, 1.1 % per odometry edge. It ends where a step lowers chi2 by less "
-          "than {:g} of it, truncated or not, or after {} steps.",
-          kGain, kGainIterations),
-      "scaled radius: the norm of diag(H), the first radius from the first Newton step.",
+      fmt::format("literal: g2o's dogleg (norm over metres and radians, initial radius 1e4), "
+                  "initial guess by dead reckoning, log error with heading 0, 1.1 % per odometry "
+                  "edge. It ends if a step lowers chi2 by less than {:g} of it, truncated or not, "
+                  "or after {} steps.",
+                  kGain, kGainIterations),
+      "scaled radius: the norm of diag(H), the initial radius from the first Newton step.",
       "no dummy heading: the decoupled error instead of the logarithm.",
       fmt::format("full steps only: convergence is tested on full Newton steps; at most {} steps are tried.",
                   kBareIterations),
-      "anchored start: the fixes anchor place and heading instead of dead reckoning.",
+      "anchored guess: the fixes anchor place and heading instead of dead reckoning.",
       "first three: scaled radius, no dummy heading and full steps only, from dead reckoning.",
-      "start to the east: literal, but dead reckoning begins with heading 0: odometry alone knows no north.",
+      "guess to the east: literal, but dead reckoning begins with heading 0, because odometry alone "
+      "does not know north.",
       "nodes at fixes: literal, but the nodes of G2 begin at their fixes instead of the poses."};
   return table;
 }
@@ -123,7 +124,7 @@ text::Table cause_table(const Drives& drives) {
 text::Table common_minimum_table(const Drives& drives) {
   text::Table table;
   table.file = "convergence_ours";
-  table.title = "Our settings: in how many drives the common minimum is reached, and in how many steps";
+  table.title = "Our settings: number of drives that reach the common minimum, and their steps";
   table.columns = {"start", "modeling"};
   for (const char* algorithm : kConvergenceAlgorithms) table.columns.push_back(algorithm);
   double position_m = 0;
@@ -151,17 +152,15 @@ text::Table common_minimum_table(const Drives& drives) {
     table.rows.push_back(row);
   }
   table.notes = {
-      fmt::format(
-          "Of each drive one minimum for all modelings, algorithms and starts: the lowest found. Reached: "
-          "all poses within {:.0f} mm and {:.1f} degrees of it, and declared converged. Largest difference "
-          "among those: {:.2g} mm, {:.2g} degrees (G2's identity edges raise each fix's variance by 1e-6 "
-          "m^2).",
-          kSamePoses.position_m * 1000, kSamePoses.heading_rad * 180 / std::numbers::pi, position_m * 1000,
-          heading_rad * 180 / std::numbers::pi),
-      "+starts, and default (dogleg): as `waymark optimize` runs them: where a minimum is implausible, other "
-      "starts are "
-      "tried. The others are the bare algorithms, at most 100 steps; Levenberg-Marquardt with "
-      "initial_damping=1e-12.",
+      fmt::format("Each drive has one minimum for all modelings, algorithms and initial guesses: "
+                  "the lowest found. Reached: converged, with all poses within {:.0f} mm and {:.1f} "
+                  "degrees of it. Largest difference among those: {:.2g} mm, {:.2g} degrees (G2's "
+                  "identity edges raise each fix's variance by 1e-6 m^2).",
+                  kSamePoses.position_m * 1000, kSamePoses.heading_rad * 180 / std::numbers::pi,
+                  position_m * 1000, heading_rad * 180 / std::numbers::pi),
+      "+starts, and default (dogleg): as `waymark optimize` runs them: if a minimum is implausible, "
+      "other initial guesses are tried. The others are the bare algorithms, at most 100 steps; "
+      "Levenberg-Marquardt with initial_damping=1e-12.",
       "east: dead reckoning that begins with heading 0."};
   return table;
 }

@@ -20,8 +20,8 @@ const char* reached_word(const Outcome& outcome) {
 void add_consistency(const std::optional<evaluation::ConsistencyStatistics>& stated, Row& row) {
   if (!stated) return row.resize(row.size() + 3, "-");
   row.push_back(text::decimals(stated->nees_mean, 1));
-  row.push_back(text::decimals(stated->nees_mean_honest.low, 1) + " to " +
-                text::decimals(stated->nees_mean_honest.high, 1));
+  row.push_back(text::decimals(stated->nees_mean_consistent.low, 1) + " to " +
+                text::decimals(stated->nees_mean_consistent.high, 1));
   row.push_back(text::decimals(100 * stated->coverage, 0));
 }
 
@@ -54,12 +54,22 @@ text::Table truth_table(const Drives& drives) {
   text::Table table;
   table.file = "drives_truth";
   table.title = "Drives with truth: errors in metres";
-  table.columns = {"Drive",      "system",          "Max",  "Acc",         "Prec",         "RMSE", "CEP95",
-                   "rejected %", "minimum reached", "NEES", "honest NEES", "95 % coverage"};
+  table.columns = {"Drive",
+                   "system",
+                   "Max",
+                   "Acc",
+                   "Prec",
+                   "RMSE",
+                   "CEP95",
+                   "rejected %",
+                   "minimum reached",
+                   "NEES",
+                   "consistent NEES",
+                   "95 % coverage"};
   table.notes = {
-      "NEES: error against truth in units of the stated covariance, 2 where that is honest; honest NEES: "
-      "where 95 of 100 "
-      "honest drives lie, by the effective number of independent epochs."};
+      "NEES: error against truth in units of the stated covariance, 2 if the covariances are "
+      "consistent. consistent NEES: interval of 95 of 100 drives with consistent covariances, from "
+      "the effective number of independent epochs."};
   for (const DriveResult& drive : drives) {
     const auto raw = metrics_of(drive, "gnss");
     if (!raw) continue;
@@ -118,12 +128,12 @@ void add_dead_reckoning(const DriveResult& drive, const WithheldResult& way, tex
 text::Table withheld_table(const Drives& drives) {
   text::Table table;
   table.file = "drives_withheld";
-  table.title = "Drives without truth: errors at fixes that were kept out of the graph, in metres";
+  table.title = "Drives without truth: errors at withheld fixes, in metres";
   table.columns = {"Drive", "kept out", "system", "fixes",          "median",
                    "RMS",   "Max",      "CEP95",  "minimum reached"};
   table.notes = {
-      "The errors contain those of the fixes. dead reckoning: odometry alone from the last fix before each, "
-      "beginning at the pose of ours_g2."};
+      "The numbers contain the errors of the fixes. dead reckoning: odometry alone from the last "
+      "fix before each withheld fix, beginning at the pose of ours_g2."};
   for (const DriveResult& drive : drives) {
     for (const WithheldResult& way : drive.withheld) {
       for (const Outcome& outcome : way.outcomes) {
@@ -133,7 +143,7 @@ text::Table withheld_table(const Drives& drives) {
         if (fused == nullptr) {
           row.resize(table.columns.size(), "-");
           table.notes.push_back(labelled(drive) + ", " + way.way + ", " + outcome.setting.name + ": " +
-                                (outcome.failure.empty() ? "no fix was kept out" : outcome.failure));
+                                (outcome.failure.empty() ? "no fix was withheld" : outcome.failure));
         } else {
           add_withheld(*fused, row);
           row.push_back(reached_word(outcome));

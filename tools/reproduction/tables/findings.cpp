@@ -101,7 +101,7 @@ Finding accuracy_stays(const Sources& sources) {
 
 Finding mixed_by_drive(const Sources& sources) {
   return make(
-      sources, "By drive the picture is mixed: in some the Prec of G2 is worse than that of raw GNSS",
+      sources, "By drive the results are mixed: in some the Prec of G2 is worse than the Prec of raw GNSS",
       [](const Source& source) { return "worse in drives " + source.worse_precision("g2", "gnss"); },
       [](const Source& source) { return source.worse_precision("g2", "gnss") != "none"; });
 }
@@ -126,7 +126,7 @@ Finding rejection_helps_on_average(const Sources& sources) {
 
 Finding rejection_is_mixed(const Sources& sources) {
   return make(
-      sources, "By drive rejection helps the Prec of G2 in some and hurts it in others",
+      sources, "Rejection improves the Prec of G2 in some drives and makes it worse in others",
       [](const Source& source) {
         return "helps in drives " + source.worse_precision("g2_no_rejection", "g2") + " - hurts in " +
                source.worse_precision("g2", "g2_no_rejection");
@@ -171,7 +171,7 @@ Finding convergence(const Drives& drives) {
   finding.evidence = {
       {"paper", fmt::format("g1 {} of 8, g2 8 of 8; g3 performed well", kPaperG1Converged), std::nullopt},
       {"literal", counts(drives, "paper_", "", count_reached), some_miss(drives, "paper_g1")},
-      {"literal, start to the east", counts(drives, "paper_", "/east", count_reached),
+      {"literal, guess to the east", counts(drives, "paper_", "/east", count_reached),
        some_miss(drives, "paper_g1/east")},
       {"literal, scaled radius", counts(drives, "paper_", "/radius", count_reached),
        some_miss(drives, "paper_g1/radius")}};
@@ -200,10 +200,10 @@ Finding default_model_gains(const Drives& drives) {
 }
 
 /// Judges the covariances of our G2 and of the default model.
-Finding default_model_is_honest(const Drives& drives) {
+Finding default_model_is_consistent(const Drives& drives) {
   Finding finding{
       fmt::format("Beyond the paper: at least {:.0f} % of the truth lies in the stated 95 % regions",
-                  100 * kHonestCoverage),
+                  100 * kConsistentCoverage),
       {}};
   for (const std::string& setting : {std::string("ours_g2"), std::string(kDefaultModel)}) {
     double nees = 0;
@@ -217,9 +217,10 @@ Finding default_model_is_honest(const Drives& drives) {
       ++count;
     }
     finding.evidence.push_back({setting == kDefaultModel ? "default model" : "ours",
-                                fmt::format("coverage {:.0f} %, mean NEES {:.1f} (2 is honest), {} drives",
+                                fmt::format("coverage {:.0f} %, mean NEES {:.1f} (2 "
+                                            "is consistent), {} drives",
                                             100 * coverage / count, nees / count, count),
-                                coverage / count >= kHonestCoverage});
+                                coverage / count >= kConsistentCoverage});
   }
   return finding;
 }
@@ -253,7 +254,7 @@ std::vector<Finding> findings(const Drives& drives) {
                                 convergence(drives)};
   if (has_default_model(with_truth)) {
     found.push_back(default_model_gains(with_truth));
-    found.push_back(default_model_is_honest(with_truth));
+    found.push_back(default_model_is_consistent(with_truth));
   }
   return found;
 }

@@ -26,8 +26,8 @@ struct Finding {
 /// drive (2) changes by this much, and the text calls it no change.
 inline constexpr double kUnchangedPercent = 10;
 
-/// Covariances with at least this mean coverage of their 95 % regions are called honest.
-inline constexpr double kHonestCoverage = 0.9;
+/// Covariances with at least this mean coverage of their 95 % regions are called consistent.
+inline constexpr double kConsistentCoverage = 0.9;
 
 /// Returns the findings of the paper, and then those beyond it. Only drives with truth are used;
 /// empty if there are none.

@@ -70,7 +70,8 @@ void note_paper_average(const MetricsColumn& paper, const std::string& system, t
   constexpr double kRounding = 0.00051;
   if (worst <= kRounding) return;
   table.notes.push_back(
-      fmt::format("The paper prints the averages {:.3f}, {:.3f}, {:.3f}; those of its own rows are shown.",
+      fmt::format("The paper prints the averages {:.3f}, {:.3f}, {:.3f}; the table shows the "
+                  "averages of the paper's rows.",
                   printed->max_m, printed->accuracy_m, printed->precision_m));
 }
 
@@ -88,7 +89,8 @@ void note_endings(const Drives& drives, const std::string& setting, text::Table&
   }
   if (!missed.empty())
     table.notes.push_back(fmt::format(
-        "{} did not reach its minimum in drives {}: what is shown is where it stopped.", setting, missed));
+        "{} did not reach its minimum in drives {}: the errors are of the state where it stopped.", setting,
+        missed));
 }
 
 text::Table result_table(const Drives& drives, int number, const std::string& system,
@@ -123,8 +125,9 @@ text::Table result_table(const Drives& drives, int number, const std::string& sy
   table.rows.push_back(better);
 
   table.notes.emplace_back(
-      "paper: its printed figures. On the simulated drives: literal, the paper's settings; minimum, "
-      "the same errors and weights minimised from a good start; ours, our settings.");
+      "paper: the figures that it prints. On the simulated drives: literal, the paper's settings; "
+      "minimum, the same errors and weights minimised from a good initial guess; "
+      "ours, our settings.");
   note_paper_average(paper, system, table);
   if (system == "g1")
     table.notes.push_back(fmt::format(
@@ -136,7 +139,7 @@ text::Table result_table(const Drives& drives, int number, const std::string& sy
 }
 
 /// Adds mean NEES and coverage of both systems. The cells are empty in the lines below the drives.
-void add_honesty(const DriveResult* drive, Row& row) {
+void add_stated_errors(const DriveResult* drive, Row& row) {
   for (const std::string& setting : {std::string("ours_g2"), std::string(kDefaultModel)}) {
     const auto stated = drive != nullptr ? consistency_of(*drive, setting) : std::nullopt;
     row.push_back(text::decimals(stated ? stated->nees_mean : evaluation::kUndefined, 1));
@@ -163,25 +166,25 @@ text::Table default_model_table(const Drives& drives) {
   for (std::size_t i = 0; i < drives.size(); ++i) {
     Row row{drives[i].label()};
     for (const MetricsColumn* column : {&paper, &ours, &model}) add_triple(column->of_drive[i], 3, row);
-    add_honesty(&drives[i], row);
+    add_stated_errors(&drives[i], row);
     table.rows.push_back(row);
   }
   Row average{"Average"};
   for (const MetricsColumn* column : {&paper, &ours, &model}) add_triple(column->average, 3, average);
-  add_honesty(nullptr, average);
+  add_stated_errors(nullptr, average);
   table.rows.push_back(average);
   const MetricsColumn gnss = metrics_column(drives, "gnss");
   Row better{"Improvement %"};
   add_triple(average_improvement(paper_column(drives, "gnss"), paper), 3, better);
   for (const MetricsColumn* column : {&ours, &model})
     add_triple(average_improvement(gnss, *column), 3, better);
-  add_honesty(nullptr, better);
+  add_stated_errors(nullptr, better);
   table.rows.push_back(better);
   table.notes = {
-      "paper G2: its printed figures, on its own drives. ours G2 and default on the simulated ones. default: "
-      "what `waymark run` does: no gate, correlated errors with heavy tails, calibration states, noise "
-      "estimated from the drive.",
-      "NEES: error against truth in units of the stated covariance, 2 where that is honest."};
+      "paper G2: the figures that the paper prints, on its own drives. ours G2 and default on the "
+      "simulated ones. default: what `waymark run` does: no gate, correlated errors with heavy "
+      "tails, calibration states, noise estimated from the drive.",
+      "NEES: error against truth in units of the stated covariance, 2 if the covariances are consistent."};
   note_endings(drives, kDefaultModel, table);
   return table;
 }

@@ -24,12 +24,12 @@ Json consistency_json(const evaluation::ConsistencyStatistics& stated) {
           {"effective_samples", text::number_or_null(stated.effective_samples)},
           {"nees_mean", text::number_or_null(stated.nees_mean)},
           {"nees_mean_honest",
-           {text::number_or_null(stated.nees_mean_honest.low),
-            text::number_or_null(stated.nees_mean_honest.high)}},
+           {text::number_or_null(stated.nees_mean_consistent.low),
+            text::number_or_null(stated.nees_mean_consistent.high)}},
           {"coverage", text::number_or_null(stated.coverage)},
           {"coverage_honest",
-           {text::number_or_null(stated.coverage_honest.low),
-            text::number_or_null(stated.coverage_honest.high)}}};
+           {text::number_or_null(stated.coverage_consistent.low),
+            text::number_or_null(stated.coverage_consistent.high)}}};
 }
 
 Json outcome_json(const Outcome& outcome) {

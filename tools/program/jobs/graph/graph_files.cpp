@@ -74,7 +74,7 @@ formats::GraphDocument read_graph_file(const std::string& text, const std::strin
     console.warning(skipped + "; the first ones:");
     for (const std::string& example : report.examples) console.tell("  " + example);
   }
-  if (report.edges_only) console.note("the file has edges only; started along the odometry chain");
+  if (report.edges_only) console.note("the file has only edges; the initial guess is the odometry chain");
   if (report.apart > 0) console.note(apart_note(report.apart));
   return document;
 }

@@ -1,11 +1,11 @@
 #include <cmath>
 
 #include <waymark/tools/drawing/figure/bars.hpp>
-#include <waymark/tools/report/honesty_figures.hpp>
+#include <waymark/tools/report/consistency_bars.hpp>
 
 namespace waymark::report {
-std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
-                                             const std::vector<StatedErrors>& rows) {
+std::vector<drawing::Figure> consistency_bars(const std::string& prefix,
+                                              const std::vector<StatedErrors>& rows) {
   drawing::Figure nees{
       .id = prefix + "-nees",
       .title = "Mean NEES",
@@ -32,15 +32,15 @@ std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
     const evaluation::ConsistencyStatistics& s = row.statistics;
     if (!std::isfinite(s.nees_mean)) continue;
     const auto add = [&](drawing::Figure& figure, drawing::Series& bars, double value,
-                         const evaluation::Interval95& honest, double unit) {
+                         const evaluation::Interval95& consistent, double unit) {
       bars.y.push_back(static_cast<double>(figure.y.categories.size()));
       figure.y.categories.push_back(row.label);
       bars.x.push_back(unit * value);
-      bars.low.push_back(unit * honest.low);
-      bars.high.push_back(unit * honest.high);
+      bars.low.push_back(unit * consistent.low);
+      bars.high.push_back(unit * consistent.high);
     };
-    add(nees, nees_bars, s.nees_mean, s.nees_mean_honest, 1);
-    add(coverage, coverage_bars, s.coverage, s.coverage_honest, 100);
+    add(nees, nees_bars, s.nees_mean, s.nees_mean_consistent, 1);
+    add(coverage, coverage_bars, s.coverage, s.coverage_consistent, 100);
   }
   const std::size_t count = nees.y.categories.size();
   if (count == 0) return {};
@@ -54,10 +54,10 @@ std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
   return {nees, coverage};
 }
 
-std::string honesty(const evaluation::ConsistencyStatistics& s) {
-  if (!std::isfinite(s.nees_mean) || !std::isfinite(s.nees_mean_honest.low)) return "-";
-  if (s.nees_mean > s.nees_mean_honest.high) return "too small";
-  return s.nees_mean < s.nees_mean_honest.low ? "too large" : "honest";
+std::string consistency_verdict(const evaluation::ConsistencyStatistics& s) {
+  if (!std::isfinite(s.nees_mean) || !std::isfinite(s.nees_mean_consistent.low)) return "-";
+  if (s.nees_mean > s.nees_mean_consistent.high) return "too small";
+  return s.nees_mean < s.nees_mean_consistent.low ? "too large" : "consistent";
 }
 
 }  // namespace waymark::report

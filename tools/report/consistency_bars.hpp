@@ -18,11 +18,11 @@ struct StatedErrors {
 /// Returns two bar figures with a row for each estimate that has a NEES: ids PREFIX-nees and
 /// PREFIX-coverage. The bracket of each row is the range in which a consistent covariance puts the
 /// number on 95 of 100 drives. Empty if no estimate has a NEES.
-[[nodiscard]] std::vector<drawing::Figure> honesty_figures(const std::string& prefix,
-                                                           const std::vector<StatedErrors>& rows);
+[[nodiscard]] std::vector<drawing::Figure> consistency_bars(const std::string& prefix,
+                                                            const std::vector<StatedErrors>& rows);
 
-/// Returns "honest", "too small" or "too large": the judgement of the mean NEES on the stated
+/// Returns "consistent", "too small" or "too large": the judgement of the mean NEES on the stated
 /// errors. "-" if there is none.
-[[nodiscard]] std::string honesty(const evaluation::ConsistencyStatistics& statistics);
+[[nodiscard]] std::string consistency_verdict(const evaluation::ConsistencyStatistics& statistics);
 
 }  // namespace waymark::report

@@ -14,8 +14,8 @@ namespace waymark::program {
 /// Returns a sentence for each fact that a sound drive does not show: a state more than 6 sigmas of
 /// its prior from zero (the mean of the prior), a noise parameter more than 4 deviations from its
 /// prior, and fused positions whose error exceeds that of the raw fixes by half.
-[[nodiscard]] std::vector<std::string> doubts_of_result(const std::vector<evaluation::StateReport>& states,
-                                                        const drive::NoiseEstimate& noise,
-                                                        const evaluation::Evaluation& evaluation);
+[[nodiscard]] std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateReport>& states,
+                                                          const drive::NoiseEstimate& noise,
+                                                          const evaluation::Evaluation& evaluation);
 
 }  // namespace waymark::program

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <waymark/tools/program/jobs/result_doubts.hpp>
+#include <waymark/tools/program/jobs/result_warnings.hpp>
 
 namespace waymark::program {
 namespace {
@@ -13,42 +13,42 @@ constexpr double kNoiseDeviations = 4;
 constexpr double kWorseThanRaw = 1.5;
 constexpr const char* kCause = "is a unit, a sign, a column or a clock wrong?";
 
-void doubt_states(const std::vector<evaluation::StateReport>& states, std::vector<std::string>& doubts) {
+void check_states(const std::vector<evaluation::StateReport>& states, std::vector<std::string>& warnings) {
   for (const evaluation::StateReport& state : states) {
     const double farthest = std::max(std::abs(state.smallest), std::abs(state.largest));
     if (!(state.prior_sigma > 0) || !(farthest > kStateSigmas * state.prior_sigma)) continue;
     const double value = std::abs(state.smallest) > std::abs(state.largest) ? state.smallest : state.largest;
-    doubts.push_back(fmt::format("the estimate of {} is {:.3g}{}, {:.0f} times its usual value ({:.3g}): {}",
-                                 state.name, value, state.unit == "1" ? "" : " " + state.unit,
-                                 farthest / state.prior_sigma, state.prior_sigma, kCause));
+    warnings.push_back(fmt::format(
+        "the estimate of {} is {:.3g}{}, {:.0f} times its usual value ({:.3g}): {}", state.name, value,
+        state.unit == "1" ? "" : " " + state.unit, farthest / state.prior_sigma, state.prior_sigma, kCause));
   }
 }
 
-void doubt_noise(const drive::NoiseEstimate& noise, std::vector<std::string>& doubts) {
+void check_noise(const drive::NoiseEstimate& noise, std::vector<std::string>& warnings) {
   for (const drive::NoiseParameter& parameter : noise.parameters) {
     if (parameter.prior.linear || !(parameter.value > 0) || !(parameter.prior.mean > 0)) continue;
     const double factor = parameter.value / parameter.prior.mean;
     if (!(std::log(factor) > kNoiseDeviations * parameter.prior.deviation)) continue;
-    doubts.push_back(fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value: {}",
-                                 parameter.owner, parameter.option, parameter.value, parameter.unit, factor,
-                                 kCause));
+    warnings.push_back(fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value: {}",
+                                   parameter.owner, parameter.option, parameter.value, parameter.unit, factor,
+                                   kCause));
   }
 }
 
 }  // namespace
 
-std::vector<std::string> doubts_of_result(const std::vector<evaluation::StateReport>& states,
-                                          const drive::NoiseEstimate& noise,
-                                          const evaluation::Evaluation& evaluation) {
-  std::vector<std::string> doubts;
-  doubt_states(states, doubts);
-  doubt_noise(noise, doubts);
-  if (!evaluation.truth) return doubts;
+std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateReport>& states,
+                                            const drive::NoiseEstimate& noise,
+                                            const evaluation::Evaluation& evaluation) {
+  std::vector<std::string> warnings;
+  check_states(states, warnings);
+  check_noise(noise, warnings);
+  if (!evaluation.truth) return warnings;
   const double factor = evaluation.truth->fused.position.rmse_m / evaluation.truth->gnss.position.rmse_m;
   if (factor > kWorseThanRaw)
-    doubts.push_back(fmt::format(
+    warnings.push_back(fmt::format(
         "fused positions are {:.1f} times as far from the truth as raw GNSS (RMSE): {}", factor, kCause));
-  return doubts;
+  return warnings;
 }
 
 }  // namespace waymark::program
