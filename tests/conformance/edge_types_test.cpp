@@ -125,10 +125,9 @@ TEST_CASE("every edge type: an error of whole turns is no error") {
   });
 }
 
-TEST_CASE("every edge type: the schema has a form, names and a dimension") {
+TEST_CASE("every edge type: the schema has names and a dimension") {
   for_each_case(waymark_test::full_registry(), 1, [](const Graph& graph) {
     const EdgeType& type = graph.edge_type(0);
-    CHECK_FALSE(type.form.empty());
     CHECK(graph.batch(0).error_dimension(0) > 0);
     for (const FieldInfo& field : type.fields) {
       CHECK_FALSE(field.name.empty());

@@ -11,7 +11,8 @@
 
 namespace waymark::drive {
 
-/// The places of entries that only a plugin can check, for messages.
+/// The places of entries that are checked after the file is read, against the types in the registry;
+/// for messages.
 struct Places {
   std::string file;
   /// "drive.yaml:12:5: " by key: "modeling.options.NAME", "modeling.loss", "odometry.model",

@@ -31,13 +31,13 @@ struct Minimization {
 /// The modeling decides about empty members (see decided()).
 struct FusionSettings {
   std::string modeling = "correlated";  ///< registered GNSS modeling
-  Options modeling_options{};           ///< of it, checked by its plugin
+  Options modeling_options{};           ///< of it, checked when it is made
   std::string
       /// loss of the fixes, "cauchy:1": a registered loss and its scale; empty or "none":
       /// squared errors
       loss{};
   std::string odometry_model = "constant_twist";  ///< registered odometry model
-  Options odometry_options{};                     ///< of it, checked by its plugin
+  Options odometry_options{};                     ///< of it, checked when it is made
   /// States that are estimated with the poses: options for the odometry model or the GNSS modeling,
   /// whichever has them. An empty map means: no states.
   std::optional<Options> calibration{};

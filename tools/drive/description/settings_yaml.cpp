@@ -17,7 +17,8 @@ constexpr std::array<std::string_view, 4> kSwitch{"on", "off", "true", "false"};
 constexpr std::array kSwitchValues{true, false, true, false};
 constexpr NumberRule kAngle{std::numeric_limits<double>::min(), 180, "degrees above 0, up to 180"};
 
-/// Reads options that only a plugin can check: name and value as they are, with their places.
+/// Reads options of a registered type: name and value as they are, with their places. Names and
+/// ranges are checked when the type is made.
 void read_options(const YamlSection& section, std::string_view key, const std::string& name, Options& options,
                   Places& places) {
   const auto free = section.free_section(key);

@@ -6,7 +6,8 @@
 
 namespace waymark::drive {
 
-/// Reads the settings, and the places of those that only a plugin can check.
+/// Reads the settings, and the places of names and options that the registry checks later
+/// (core/registry/options.hpp).
 /// @param top the whole file
 /// @throws InputError with the place of the error
 void read_settings(const YamlSection& top, FusionSettings& settings, Places& places);
