@@ -1,5 +1,5 @@
 // Every request for memory of the whole process, libraries in C included, passes here on its way to glibc:
-// operator new and what large arrays and CHOLMOD ask of malloc are all one count.
+// operator new, and malloc for large arrays and in CHOLMOD, have one count.
 #include <cerrno>
 #include <cstddef>
 

@@ -1,4 +1,4 @@
-// Benchmarks of what is no optimisation, by name: see README.md.
+// Benchmarks of everything but optimisation, by name: see README.md.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -129,7 +129,7 @@ void window(benchmark::State& state, Problem kind, const std::string& how) {
   }
 }
 
-/// NAME/PROBLEM/POSES, each at a small size and at that of an hour and more of driving.
+/// NAME/PROBLEM/POSES, each at a small size and at the size of an hour and more of driving.
 void register_all() {
   struct Sized {
     Problem kind;

@@ -77,7 +77,7 @@ TEST_CASE("every algorithm with every solver: robust losses") {
     const LossType* loss = registry.find_loss(name);
     graph.batch(0).set_loss(Loss{loss->name, loss->evaluate, 1.5});
     for (const auto& [algorithm, algorithm_origin] : registry.algorithms()) {
-      if (algorithm.name == "gauss_newton") continue;  // full steps may cycle where weights change
+      if (algorithm.name == "gauss_newton") continue;  // full steps may cycle if weights change
       INFO(algorithm.name);
       Graph copy = graph;
       OptimizerOptions options;

@@ -1,5 +1,5 @@
-// Edge types that call themselves relative, carried Jacobians, prepare(): what the fast path of
-// linearisation relies on, and what it makes of every registered type, edge by edge against dense
+// Edge types that call themselves relative, carried Jacobians, prepare(): the promises that the fast
+// linearisation needs, and its results for every registered type, edge by edge against dense
 // algebra.
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ using namespace waymark_test;
 
 namespace {
 
-/// Relative, but its vertices cannot carry: the chart is that of the body.
+/// Relative, but its vertices cannot carry: the chart is in the body frame.
 struct EdgeBodyMotion {
   static constexpr std::string_view kTag = "EDGE_BODY_MOTION";
   static constexpr std::string_view kForm = "log";
@@ -278,7 +278,7 @@ TEST_CASE(
   copy.add_edge(EdgeDistance{5}, {0, 1}, Eigen::Matrix<double, 1, 1>::Identity());
   expect(copy, 3);
   expect(graph, 2);
-  // What it keeps is no field: a text, and what is read from it, know the measurement only.
+  // The stored number is no field: a text, and the edge read from it, have only the measurement.
   std::vector<double> fields;
   copy.batch(0).fields(2, fields);
   CHECK(fields == std::vector{5.0});

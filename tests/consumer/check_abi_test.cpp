@@ -1,4 +1,4 @@
-// tools/packaging/check_abi.sh: what a next version of a library may change, and what it may not.
+// tools/packaging/check_abi.sh: changes that the next version of a library may have, and those it may not.
 #include <filesystem>
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// What the installed tree must be, and which flags a plugin may not be built with.
+// Requirements on the installed tree, and the flags that a plugin may not be built with.
 #include <filesystem>
 #include <iterator>
 #include <set>

@@ -1,5 +1,5 @@
 // The own block Cholesky against dense algebra on every kind of pattern its analysis tells apart, with every
-// set of kernels this processor runs, with one and more threads; what it does with matrices that are not
+// set of kernels this processor runs, with one and more threads; its answer to matrices that are not
 // positive definite; its accuracy beside Eigen's.
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-// The marginal likelihood against dense linear algebra: where errors are linear, Laplace's method
+// The marginal likelihood against dense linear algebra: if errors are linear, Laplace's method
 // is exact.
 #include <algorithm>
 #include <cmath>
@@ -49,8 +49,8 @@ Graph make_graph(const Walk& walk, const Eigen::VectorXd& readings) {
   return graph;
 }
 
-/// The density of the readings themselves: normal, with the covariance of a walk plus that of the
-/// readings.
+/// The density of the readings themselves: normal, with the covariance of a walk plus the
+/// covariance of the readings.
 double exact_negative_log(const Walk& walk, const Eigen::VectorXd& readings) {
   Eigen::MatrixXd covariance(kSteps, kSteps);
   for (int i = 0; i < kSteps; ++i) {

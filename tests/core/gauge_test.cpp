@@ -1,4 +1,4 @@
-// What anchors a graph: rank 0 is held and said, rank 1 and 2 are refused by name, rank 3 is left
+// The anchors of a graph: rank 0 is held with a note, rank 1 and 2 are refused by name, rank 3 is left
 // alone.
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// Graduated non-convexity: false edges are found, good ones stay, and what remains is the optimum
+// Graduated non-convexity: false edges are found, good ones stay, and the result is the optimum
 // without them.
 #include <cmath>
 #include <fstream>
@@ -63,7 +63,7 @@ bool load(const std::string& name, const TypeRegistry& registry, Spoiled& spoile
   return true;
 }
 
-/// A walk on a grid with false closures, ten parallel ones at a time where grouped.
+/// A walk on a grid with false closures, ten parallel ones at a time if grouped.
 Spoiled spoiled_walk(int count, bool grouped, std::uint64_t seed) {
   Spoiled spoiled;
   spoiled.without = grid_walk(400, 12, seed);

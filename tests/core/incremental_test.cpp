@@ -1,5 +1,5 @@
-// Fixed lag: a prefix goes and leaves a prior, structure and optimiser follow, and the window says
-// what the whole graph says.
+// Fixed lag: a prefix is replaced by a prior, structure and optimiser follow, and the window has the
+// estimates of the whole graph.
 #include <array>
 #include <numeric>
 
@@ -50,7 +50,7 @@ struct EdgePosition {
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
 };
 
-/// p_c - 2 p_b + p_a = 0: constant velocity; what is left of it joins two vertices.
+/// p_c - 2 p_b + p_a = 0: constant velocity; its remainder joins two vertices.
 struct EdgeSmooth {
   static constexpr std::string_view kTag = "EDGE_SMOOTH";
   static constexpr int kErrorDimension = 2;
@@ -126,7 +126,7 @@ Drive gnss_drive(std::string_view modeling, int poses) {
   return drive;
 }
 
-/// Marginalises the first vertices of a graph at its minimum; what is left has the same minimum,
+/// Marginalises the first vertices of a graph at its minimum; the remaining graph has the same minimum,
 /// chi2 and covariances.
 void check_minimum_stays(Graph graph, std::initializer_list<VertexIndex> counts) {
   minimise(graph);

@@ -1,4 +1,4 @@
-// Marginal covariances against the inverse of the dense H; Gaussian priors against what they stand
+// Marginal covariances against the inverse of the dense H; Gaussian priors against the edges they stand
 // for.
 #include <array>
 #include <cmath>
@@ -34,7 +34,7 @@ std::vector<VertexIndex> all_vertices(const Graph& graph) {
   return all;
 }
 
-/// The whole inverse of the dense H in the order of the vertices, zero where a vertex is no
+/// The whole inverse of the dense H in the order of the vertices, zero if a vertex is no
 /// unknown.
 Eigen::MatrixXd dense_covariance(const Graph& graph) {
   const DenseSystem system = assemble_dense(graph, find_gauge(graph).held);
@@ -199,7 +199,7 @@ TEST_CASE("marginals: a random walk has the covariance of a random walk") {
       CHECK(joint(3 * i, 3 * j) == Approx(s0 * s0 + std::min(i, j) * s * s).epsilon(1e-9));
       CHECK(joint(3 * i + 1, 3 * j + 1) == Approx(across).epsilon(1e-8));
       CHECK(joint(3 * i + 2, 3 * j + 2) == Approx(heading(i, j)).epsilon(1e-9));
-      // Exactly, also where a link or a front couples them by stored zeros.
+      // Exactly, also if a link or a front couples them by stored zeros.
       CHECK(joint(3 * i, 3 * j + 1) == 0);
       CHECK(joint(3 * i, 3 * j + 2) == 0);
     }
@@ -275,7 +275,7 @@ TEST_CASE("marginals: robust weights count") {
 }
 
 TEST_CASE("marginals: the curvature of a robust loss counts") {
-  // At any values the covariance is that of the Laplace approximation: H = half the second
+  // At any values it is the covariance of the Laplace approximation: H = half the second
   // derivative of chi2.
   Graph graph;
   const VertexIndex v = graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
@@ -349,7 +349,7 @@ TEST_CASE("Gaussian prior: left by marginalisation, it gives the rest of the gra
     whole.add_edge(EdgeSe2Log{{1, 0.1, 0.15}}, {i - 1, i}, pose_information(0.05, 0.02));
     if (i > 1) rest.add_edge(EdgeSe2Log{{1, 0.1, 0.15}}, {i - 2, i - 1}, pose_information(0.05, 0.02));
   }
-  Graph head;  // what is marginalised: the prior and the edge 0-1
+  Graph head;  // the marginalised part: the prior and the edge 0-1
   for (int i = 0; i < 2; ++i) {
     const auto value = whole.value(i);
     head.add_vertex<VertexSe2>(VertexId(i), {value[0], value[1], value[2]});

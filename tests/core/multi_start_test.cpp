@@ -1,4 +1,4 @@
-// The default configuration: where it begins, when it looks further, and that it survives starts
+// The default configuration: its first guess, when it tries others, and that it survives guesses
 // that defeat every algorithm.
 #include <catch2/catch.hpp>
 
@@ -118,7 +118,7 @@ TEST_CASE("default start: the linear start serves every modeling and algorithm, 
 }
 
 TEST_CASE("default start: a minimum that two starts agree on is believed, however high its chi2") {
-  // Noise ten times what the information says: chi2 is a hundred times the degrees of freedom.
+  // Noise ten times larger than the information states: chi2 is a hundred times the degrees of freedom.
   const TypeRegistry registry = full_registry();
   const Graph drive = utm_drive(registry, "g1");
   Graph graph;

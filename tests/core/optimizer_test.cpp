@@ -1,4 +1,4 @@
-// The optimisation loop: what it does when something goes wrong, and what it says when it ends.
+// The optimisation loop: its behaviour if a step fails, and its messages at the end.
 #include <array>
 #include <atomic>
 #include <cmath>

@@ -71,7 +71,7 @@ TEST_CASE("plugins: loaded as modules they give the same graph text as built in"
 TEST_CASE("plugins: loading leaves the floating-point environment as it was") {
   struct Upward {
     Upward() { std::fesetround(FE_UPWARD); }
-    ~Upward() { std::fesetround(FE_TONEAREST); }  // also where loading throws
+    ~Upward() { std::fesetround(FE_TONEAREST); }  // also if loading throws
   };
   TypeRegistry registry = bare_registry();
   int rounding = 0;

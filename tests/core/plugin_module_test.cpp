@@ -1,4 +1,4 @@
-// Modules as files: what does not fit is refused, with the reason, before any of its code runs; nothing that
+// Modules as files: one that does not fit is refused, with the reason, before its code runs; nothing that
 // a module does while it registers can leave half of it behind.
 #include <sys/stat.h>
 #include <xmmintrin.h>

@@ -19,7 +19,7 @@ using namespace waymark_test;
 
 namespace {
 
-/// H and g of a structure equal those assembled edge by edge, and chi2 that of the graph.
+/// H and g of a structure equal H and g assembled edge by edge, and chi2 equals the graph's.
 void check_against_dense(const Graph& graph, const Structure& structure, const std::vector<char>& held) {
   NormalEquations equations(graph, structure);
   CHECK(equations.linearize(graph.values()) == Approx(graph.chi2()).epsilon(1e-12));
@@ -95,7 +95,7 @@ TEST_CASE("structure: with fixed vertices, vertices without edges, two component
 }
 
 TEST_CASE("structure: held vertices smaller than their neighbours write nowhere else") {
-  // What concerns a held vertex is thrown away, in blocks as large as those of its largest
+  // The sums of a held vertex are thrown away, in blocks as large as the blocks of its largest
   // neighbour: into a place that must hold them, or the sums of dense columns just behind it would
   // be spoilt.
   Graph graph = calibrated_chain(20);
@@ -150,7 +150,7 @@ TEST_CASE(
   structure.build(graph, nobody(graph));
   CHECK(structure.dense_columns() == 1);
   CHECK(structure.column_of(0) == structure.pattern().columns() - 1);
-  CHECK(structure.ordering() == "natural");  // what remains is a chain
+  CHECK(structure.ordering() == "natural");  // a chain remains
   check_against_dense(graph, structure, nobody(graph));
 }
 

@@ -1,4 +1,4 @@
-// What is said in another program's words has the same chi2, by that program's own formula.
+// A graph written for another program has the same chi2 by that program's own formula.
 #include <cmath>
 #include <map>
 #include <random>
@@ -115,7 +115,7 @@ TEST_CASE("g2o: lever arms as offsets have the same chi2, and offsets come back 
 }
 
 TEST_CASE("g2o: offset edges are formed as its caches form them, Z^-1 (X O)^-1 (Y P), and (X O)^-1 l") {
-  // EdgeSE2Offset::computeError; for points what its initialEstimate and its name mean.
+  // EdgeSE2Offset::computeError; for points the meaning of its initialEstimate and its name.
   const Graph graph = read(
                           "PARAMS_SE2OFFSET 3 1.2 -0.3 0.4\nPARAMS_SE2OFFSET 5 -0.5 0.1 2\n"
                           "VERTEX_SE2 0 1 2 0.5\nVERTEX_SE2 1 3 1 -1.1\nVERTEX_XY 2 4 5\n"
@@ -151,8 +151,8 @@ TEST_CASE("foreign graph: Ceres' example has the same chi2 by its own formula") 
     graph.add_vertex<VertexSe2>(VertexId(i), {unit(random), unit(random), 3 * unit(random)});
   graph.set_fixed(0, true);
   for (int i = 0; i < 5; ++i) {
-    // Isotropic positions at any heading, others at quarter turns: what stays diagonal when it is
-    // turned.
+    // Isotropic positions at any heading, others at quarter turns: these matrices stay diagonal
+    // when they are turned.
     const double heading = i % 2 == 0 ? unit(random) : 0.5 * M_PI * i;
     const double other = i % 2 == 0 ? 4 : 25;
     graph.add_edge(EdgeSe2{{unit(random), unit(random), heading}}, {i, i + 1},

@@ -1,4 +1,4 @@
-// Every pair in cases/: NAME.graph or NAME.g2o is read; what comes out must be NAME.expected, byte
+// Every pair in cases/: NAME.graph or NAME.g2o is read; the output must be NAME.expected, byte
 // by byte. A new case needs the two files only (README.md). ctest runs each pair as a test of its
 // own.
 #include <algorithm>
@@ -33,8 +33,8 @@ GraphFormat input_format(const fs::path& input) {
   return has_part(input, "covariance") ? GraphFormat::covariance : GraphFormat::graph;
 }
 
-/// "X.to_g2o.graph": the file that a reader of that format or profile gets, and what is noted
-/// beside it.
+/// "X.to_g2o.graph": the file that a reader of that format or profile gets, and its
+/// notes.
 std::string written(const GraphDocument& document, const fs::path& input) {
   const auto write = [&](const Recipient& recipient, GraphFormat format) {
     const ForeignGraph foreign(document, input.filename().string(), recipient, format);

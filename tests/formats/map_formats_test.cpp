@@ -57,7 +57,7 @@ Drive drive(std::int64_t first) {
   return made;
 }
 
-/// What an XML text holds, by expat: how often each element comes, and the texts of each.
+/// The content of an XML text, by expat: the count of each element, and its texts.
 class Content final : public XmlStream {
  public:
   explicit Content(const std::string& text) {

@@ -90,7 +90,7 @@ TEST_CASE("numbers: plain decimals are rounded like from_chars") {
 }
 
 TEST_CASE("numbers: plain decimals end where the number does") {
-  // What follows is the caller's to judge: "12abc" and "1.5.2" are no numbers, whatever their beginning.
+  // The caller must check the rest: "12abc" and "1.5.2" are no numbers, although they begin like one.
   const std::string text = "-12.25abc";
   const Decimal decimal = read_plain_decimal(text.data(), text.data() + text.size());
   CHECK(decimal.value == -12.25);

@@ -1,4 +1,4 @@
-// Reading what was written gives the same document, number by number.
+// Reading a written document gives the same document, number by number.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -94,7 +94,7 @@ TEST_CASE("text file: a file size limit leaves the old file as it was") {
 }
 
 TEST_CASE("text file: a text that cannot be finished leaves the old file as it was") {
-  // Guards against half a graph where its writing fails or is interrupted between two pieces.
+  // Guards against half a graph if its writing fails or is interrupted between two pieces.
   const fs::path folder = fresh_folder("unfinished");
   const std::string path = (folder / "a.graph").string();
   write_file_atomically(path, "old");

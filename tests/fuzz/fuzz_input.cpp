@@ -107,7 +107,7 @@ void set_csv_columns(LogRequest& request, unsigned variant) {
   }
 }
 
-/// One stamp for each record, one too few, or what the log itself begins with.
+/// One stamp for each record, one too few, or the first bytes of the log itself.
 std::string kitti_stamps(std::string& log, unsigned variant, unsigned between) {
   if (variant == 7) {
     const std::size_t end = std::min(log.find('\0'), log.size());

@@ -11,7 +11,7 @@
 namespace waymark_fuzz {
 
 /// A log, and how it is to be read. Layout of the leading bytes (bit 0 is the least):
-/// | byte | bits | what |
+/// | byte | bits | meaning |
 /// |---|---|---|
 /// | 0 | 0-1 | stream, modulo those the reader gives |
 /// |   | 2-3 | pieces of 1, 7, 64 bytes or the whole |

@@ -15,7 +15,7 @@ namespace {
 using waymark::GeodeticFix;
 using waymark::LogData;
 
-/// Longest message: a place, what was expected, and a quoted word of the log.
+/// Longest message: a place, the expectation, and a quoted word of the log.
 constexpr std::size_t kLongestMessage = 4000;
 
 void hold(bool condition, const char* what) {
@@ -89,7 +89,7 @@ void check_data(const LogData& data, const waymark::LogRequest& request) {
   for (const double value : data.readings.values) hold(!std::isinf(value), "readings: finite or none");
   hold(request.readings.empty() || data.readings.columns == request.readings.size(), "readings: columns");
 
-  // One more than the first few may tell what was wrong with the whole log.
+  // One more than the first few may describe an error of the whole log.
   hold(data.corrupt_examples.empty() == (data.corrupt == 0) &&
            data.corrupt_examples.size() <= std::min(data.corrupt, waymark::kCorruptExamples + 1),
        "corrupt examples");

@@ -82,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     request.default_sigma_m = 5;
     check_data(waymark::formats::read_log_file(*found.reader.reader, file.path(), request), request);
   } catch (const waymark::InputError&) {
-    // What cannot be read is refused.
+    // An unreadable log is refused.
   }
   return 0;
 }

@@ -202,7 +202,7 @@ TEST_CASE("house: each library has a namespace of its own") {
 }
 
 TEST_CASE("house: libraries neither print nor exit") {
-  // Words with what stands before them, so that static_assert and snprintf pass.
+  // Words with the character before them, so that static_assert and snprintf pass.
   const std::vector<std::string> forbidden = {"std::cout", "std::cerr", " printf(",   "std::printf(",
                                               "fprintf(",  "std::exit", "std::abort", " assert("};
   for (const auto& [room, allowed] : kArrows) {

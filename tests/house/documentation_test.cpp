@@ -1,4 +1,4 @@
-// The documentation holds together: links lead somewhere, every room says what lives in it.
+// The documentation is complete: links have targets, every room describes its content.
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -95,7 +95,7 @@ std::set<std::string> anchors_of(const fs::path& file) {
   return anchors;
 }
 
-/// Why a link of this file leads nowhere; empty where it leads somewhere. Addresses of the web are not tried.
+/// The reason why a link of this file is broken; empty if it is not. Addresses of the web are not tried.
 std::string broken(const fs::path& file, const std::string& target) {
   if (target.starts_with("https://") || target.starts_with("http://") || target.starts_with("mailto:"))
     return "";

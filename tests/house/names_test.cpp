@@ -1,6 +1,6 @@
 // The documentation names files that exist: in `code` of Markdown and in // comments of C++.
 //
-// A name such as graph.hpp is that of any file of the repository. With folders, as in graph/graph.hpp, it is
+// A name such as graph.hpp is a file in any folder of the repository. With folders, as in graph/graph.hpp, it is
 // the end of a path; includes begin with waymark/. A path that begins with a room, as in tests/formats/cases,
 // leads to a file or a folder. NAME stands for any name. Files of other programs are named without ending.
 #include <algorithm>
@@ -100,7 +100,7 @@ std::string code_of(const std::string& line) {
   return code;
 }
 
-/// What stands behind "//"; nothing for addresses, "https://".
+/// The text behind "//"; nothing for addresses, "https://".
 std::string comment_of(const std::string& line) {
   const auto begin = line.find("//");
   if (begin == std::string::npos || (begin > 0 && line[begin - 1] == ':')) return "";

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kLongest = 24'000;
 
-/// The beginning of a real log, in whole lines; empty where the data are absent.
+/// The beginning of a real log, in whole lines; empty if the data are absent.
 std::string real(const std::string& file) {
   const std::filesystem::path path = shared_data_dir() / file;
   if (!std::filesystem::exists(path)) return {};

@@ -1,4 +1,4 @@
-// Damaged logs, every reader: never a crash, and what is damaged is counted and named. Memory errors show
+// Damaged logs, every reader: never a crash, and each damaged record is counted and named. Memory errors show
 // under the preset asan; tests/fuzz looks further.
 #include <catch2/catch.hpp>
 
@@ -204,7 +204,7 @@ TEST_CASE("hostile: two logs in one another, line by line") {
       for (const std::string& line : lines_of(sample.text)) text += line + strange[k++ % strange.size()];
       const LogData data = sample.read(text);
       CHECK(sample_count(data) <= data.records);
-      // These pass over what is not theirs.
+      // These skip foreign records.
       const bool passes =
           sample.reader == "nmea" || sample.reader == "novatel" || sample.reader == "gpsd_json";
       // gpsd writes the NMEA sentences of a receiver beside its own.

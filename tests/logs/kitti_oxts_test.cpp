@@ -1,5 +1,5 @@
 // No recording is among the data: records follow oxts/dataformat.txt of KITTI's raw data; the first one is
-// that of drive 2011_09_26_0001 as publications quote it.
+// the first of drive 2011_09_26_0001 as publications quote it.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -24,7 +24,7 @@ const std::string kFirst =
     "-0.023140741253985 -0.017909034508194 0.0089018002187228 -0.022495299354602 -0.018809330937153 "
     "0.027658633371879 "
     "0.012727922061358 4 11 6 6 6\n";
-/// Column c holds c, where that is possible.
+/// Column c holds c, if that is possible.
 const std::string kCounting =
     "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 -0.5 2 0.1 4 9 4 4 0\n";
 const std::string kTwoStamps = "2011-09-26 13:02:25.964389445\n2011-09-26 13:02:26.074389445\n";

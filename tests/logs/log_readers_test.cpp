@@ -27,7 +27,7 @@ TEST_CASE("suggestions: the nearest known word is suggested") {
   CHECK(did_you_mean("xyz", words).empty());
   CHECK(suggestion("colums", words) == "; did you mean 'columns'?");
   CHECK(suggestion("xyz", words) == "; there are: columns, format, file");
-  // Where several are as near, none of them is more likely to be meant.
+  // If several names are equally near, none of them is more likely to be meant.
   const std::vector<std::string_view> alike{"g1", "g2"};
   CHECK(suggestion("g9", alike) == "; there are: g1, g2");
 }

@@ -1,4 +1,4 @@
-// What readers say about a log they refuse or a record they cannot use, one complaint a case.
+// The messages of readers about a log that they refuse or a record that they cannot use, one in each case.
 #include <catch2/catch.hpp>
 
 #include <string>
@@ -43,7 +43,7 @@ std::string dbc_complaint(const std::string& text) {
   return "no complaint";
 }
 
-/// What is said about a signal of a sound message.
+/// The message about a signal of a sound message.
 std::string signal_complaint(const std::string& signal) {
   return dbc_complaint("BO_ 1 M: 8 X\n SG_ " + signal + "\n");
 }

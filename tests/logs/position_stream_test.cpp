@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// What is said of a fix with this accuracy; "taken" where nothing is.
+/// The error for a fix with this accuracy; "taken" if there is none.
 std::string said_of(const StatedAccuracy& accuracy, const LogRequest& request = {}) {
   LogData data;
   PositionStream positions("log", request, "figures");

@@ -75,7 +75,7 @@ struct TranslationHeading {
   }
 };
 
-/// The logarithm of what is left after an arc of constant speed and yaw rate: V(theta)^-1 applied to the
+/// The logarithm of the pose relative to the end of an arc of constant twist: V(theta)^-1 applied to the
 /// offset.
 struct ArcLogarithm {
   double speed;
@@ -94,7 +94,7 @@ struct ArcLogarithm {
     relative(a, b, seen);
     relative(measured, seen, off);
     const T theta = normalised(off[2]);
-    // (theta/2) cot(theta/2): its series to theta^4 where sin and theta would cancel.
+    // (theta/2) cot(theta/2): its series to theta^4 if sin and theta would cancel.
     const T half = 0.5 * theta;
     const T h = abs(theta) < T(1e-4) ? T(1.0) - theta * theta / 12.0 : half * cos(half) / sin(half);
     weigh<T, 3>(root, {h * off[0] + half * off[1], h * off[1] - half * off[0], theta}, residual);
@@ -164,7 +164,7 @@ double minimise_with_ceres(const Graph& graph, std::vector<double>& poses) {
   return 2 * summary.final_cost;
 }
 
-/// @param figure what the minimum is, where the caller knows
+/// @param figure the minimum, if the caller knows it
 void check_same_minimum(Graph graph, std::optional<double> figure = {}) {
   const TypeRegistry registry = waymark_test::full_registry();
   std::vector<double> poses;

@@ -35,7 +35,7 @@ Eigen::Vector2d landmark(const KitDrive& drive, int id) {
   return centre + rotate(2 * kPi * id / kLandmarks, Eigen::Vector2d(60, 0));
 }
 
-/// What is seen within 40 m, once a second, by a sensor at the body point.
+/// The landmarks seen within 40 m, once a second, by a sensor at the body point.
 SensorTable sightings(const KitDrive& drive, bool polar, bool on_map, Noise& noise) {
   Readings readings("landmarks");
   for (std::size_t i = 0; i < drive.truth.size(); i += kNodesPerSecond) {
@@ -104,7 +104,7 @@ TEST_CASE("landmarks: forward is along the heading, left is positive, also for t
 }
 
 TEST_CASE("landmarks: a first sight places the landmark, and the mounting counts") {
-  // A sensor 1 m ahead that looks to the left: what lies 2 m to the vehicle's left is ahead of it, what lies
+  // A sensor 1 m ahead that looks to the left: a point 2 m to the vehicle's left is ahead of it, a point
   // further forward is to its right.
   for (const bool polar : {true, false}) {
     KitDrive drive = heading_north();

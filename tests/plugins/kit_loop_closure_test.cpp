@@ -77,7 +77,7 @@ TEST_CASE("loop_closure: the measured pose is moved from the readings' moments t
   CHECK(chi2_at_truth(drive, backward.table(), mounted) < 1e-4);
   CHECK(chi2_at_truth(drive, forward.table(), {}) > 1e3);
 
-  // Its accuracy moves with it: an error of the matcher weighs what the matcher said.
+  // Its accuracy moves with it: an error of the matcher has the weight that the matcher stated.
   for (const Eigen::Vector3d& off : {Eigen::Vector3d(0.05, 0, 0), Eigen::Vector3d(0, 0, 0.003)}) {
     Readings wrong("loop_closure");
     add(wrong, 1.02, 3.97, compose(seen, se2_exp<double>(off)));
@@ -107,8 +107,8 @@ TEST_CASE("loop_closure: a second lap without GNSS is tied to the first") {
     squared_without += std::pow(before.rms_position(), 2);
     squared_with += std::pow(after.rms_position(), 2);
     normalised += after.normalised(kLap * kNodesPerSecond);
-    // p(30 s) = p(0) - R z: known as well as where the drive began, plus the match, plus what headings do to
-    // the way z between the two, which covers the truth's own drift over a lap.
+    // p(30 s) = p(0) - R z: known as well as where the drive began, plus the match, plus the effect of
+    // headings on the way z between the two, which covers the truth's own drift over a lap.
     constexpr int kNode = kLap * kNodesPerSecond;
     const double z = (with.truth[kNode].position - with.truth[0].position).norm();
     for (const int axis : {0, 1}) {

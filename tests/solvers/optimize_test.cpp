@@ -1,4 +1,4 @@
-// The front door: what it chooses, what it says, what it refuses.
+// optimize(graph, how): its choices, its texts, its refusals.
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>

@@ -1,4 +1,4 @@
-/// Where tests find their data, and where they may write. The folders come from the build, so tests
+/// The folders of the tests' data, and of their output. The folders come from the build, so tests
 /// run from any working directory. Only paths.cpp is compiled with their names: the other objects
 /// are the same in every build folder.
 #pragma once

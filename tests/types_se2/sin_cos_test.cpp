@@ -21,7 +21,7 @@ double error_at(double angle) {
 }
 
 /// The angle is reduced with two roundings of a number below pi/4 (2^-54 each), the result is rounded once
-/// (2^-54 near 1), and what the polynomials add to their first term is below 0.31, so that its roundings are
+/// (2^-54 near 1), and all terms of the polynomials after the first are below 0.31, so their roundings are
 /// below 2^-55 in all: 3.5 * 2^-54 = 1.94e-16 at most; the polynomials' own error is below 1e-18
 /// (FDLIBM 5.3).
 constexpr double kBound = 1.95e-16;

@@ -1,4 +1,4 @@
-// A stranger's program: reads a graph, finds its minimum with a built-in solver, compares with what
+// A program outside the tree: it reads a graph, finds its minimum with a built-in solver, compares with what
 // it must be.
 #include <cmath>
 #include <cstdio>

@@ -10,7 +10,7 @@ using namespace waymark::formats;
 
 namespace {
 
-/// The bytes of a data frame, or what is wrong with them.
+/// The bytes of a data frame, or the error in them.
 struct Bytes {
   std::vector<int> bytes;
   std::string what;

@@ -29,7 +29,7 @@ CanData bytes(std::initializer_list<int> values) {
   return data;
 }
 
-/// What the specification says, bit by bit: Intel signals grow from the start bit upwards, Motorola signals
+/// The bits of a signal by the specification: Intel signals grow from the start bit upwards, Motorola signals
 /// begin with the most significant bit and go down within a byte, then on to the next byte's bit 7.
 std::uint64_t bit_by_bit(const CanData& data, unsigned start, unsigned length, bool motorola) {
   std::uint64_t value = 0;

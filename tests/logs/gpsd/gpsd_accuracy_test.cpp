@@ -62,7 +62,7 @@ TEST_CASE("gpsd: a GST object of the same time gives the accuracy, before its TP
   CHECK(read(other + tpv).fixes.at(0).covariance_en(0, 0) == Approx(4));  // of another time
   LogRequest stated = utc_fixes();
   stated.accuracy = AccuracyMeaning::percent95;
-  CHECK(read(gst + tpv, stated).fixes.at(0).covariance_en(0, 0) == Approx(4));  // what is stated wins
+  CHECK(read(gst + tpv, stated).fixes.at(0).covariance_en(0, 0) == Approx(4));  // the stated one wins
 }
 
 TEST_CASE("gpsd: version and values tell the dialect") {

@@ -1,11 +1,11 @@
-// Our decoders against gpsd's, on recordings of real receivers. What gpsdecode 3.22 does otherwise:
+// Our decoders against gpsd's, on recordings of real receivers. gpsdecode 3.22 differs in this:
 // - it does not report the first epoch, from which it learns the receiver's cycle, nor the position of a GLL
 //   that stands alone;
-// - it moves dates by 1024 weeks where it takes them for ones of before a rollover of the GPS week;
+// - it moves dates by 1024 weeks if it takes them for dates before a rollover of the GPS week;
 // - it rounds: a time to 1 ms, a position to 1e-9 degrees (0.1 mm), a height to 1e-4 m, a speed to 1e-3 m/s,
 //   a course to 1e-4 degrees, an error to 1e-3 m;
 // - a fix from fewer than three satellites is none.
-// Its epx and epy are those of GST where the log has them, else of the dilution of precision, which we do not
+// Its epx and epy are from GST if the log has it, else from the dilution of precision, which we do not
 // make an accuracy of unasked: the GST objects are compared.
 #include "logs/gpsd/gpsdecode.hpp"
 

@@ -103,7 +103,7 @@ Differences compare(const std::vector<GeodeticFix>& fixes, const std::vector<Rep
   return largest;
 }
 
-/// What gpsd prints: milliseconds, 1e-4 degree, 0.01 m/s; half a unit of the last digit is no difference.
+/// gpsd prints milliseconds, 1e-4 degree, 0.01 m/s; half a unit of the last digit is no difference.
 void check_agreement(const Differences& largest, double position_m, double hacc_m) {
   CHECK(largest.without_report == 0);
   CHECK(largest.position_m <= position_m);
@@ -145,7 +145,7 @@ TEST_CASE("ubx: a real log of NAV-HPPOSLLH agrees with gpsdecode") {
   const LogData data = read_fixes(name);
   CHECK(data.fixes.size() == 29);
   const std::vector<Report> reports = reports_of(*objects);
-  // Where gpsd reports an epoch only once it is with NAV-PVT's position and hAcc, rounded to 1e-7 degree and
+  // If gpsd reports an epoch only once, it is with NAV-PVT's position and hAcc, rounded to 1e-7 degree and
   // to 1 mm: 5.6 mm north, 3.9 mm east at most, and 0.5 mm.
   check_agreement(compare(data.fixes, reports), 0.0068, 0.00051);
   std::vector<GeodeticFix> precise;

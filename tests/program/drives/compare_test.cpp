@@ -1,4 +1,4 @@
-// `waymark compare`: what stands on the page is what the runs' own files say.
+// `waymark compare`: the page has the numbers of the runs' own files.
 #include <filesystem>
 
 #include <catch2/catch.hpp>

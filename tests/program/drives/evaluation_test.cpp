@@ -1,4 +1,4 @@
-// What `run` says of its own accuracy: on the terminal and in metrics.json, in the same numbers.
+// The accuracy that `run` states: on the terminal and in metrics.json, in the same numbers.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

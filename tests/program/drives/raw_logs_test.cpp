@@ -1,4 +1,4 @@
-// Raw logs through the program: the same drive from what its logger wrote and from tables extracted of it.
+// Raw logs through the program: the same drive from its logger's files and from tables extracted of them.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -20,7 +20,7 @@ std::string example(const std::string& name) {
   return read_text(waymark_test::source_dir() + "/examples/drives/" + name);
 }
 
-/// All but where it comes from.
+/// Everything but the origin.
 std::string without_provenance(const std::string& graph) {
   std::istringstream in(graph);
   std::string rest;

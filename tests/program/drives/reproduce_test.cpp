@@ -1,4 +1,4 @@
-// `waymark reproduce`: on a real drive, and what it refuses.
+// `waymark reproduce`: a real drive, and its refusals.
 #include <map>
 #include <sstream>
 

@@ -17,7 +17,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kYawRate = 0.05;
 constexpr double kRadius = 200;
 
-/// Rows of a log at every second: time, then what `row` gives.
+/// Rows of a log at every second: time, then the text of `row`.
 template <typename Row>
 void write_log(const std::string& file, const std::string& header, const Row& row) {
   std::ostringstream text;
@@ -61,7 +61,7 @@ void check_refused(const std::string& folder, const std::string& message) {
   CHECK_FALSE(exists(folder + "out.graph"));
 }
 
-/// run ends at a minimum; returns what it said.
+/// run ends at a minimum; returns its messages.
 std::string ran(const std::string& folder) {
   const auto result = run({"run", folder + "drive.yaml", "--out", folder + "results"});
   INFO(result.out << result.err);

@@ -1,4 +1,4 @@
-// `waymark simulate`: raw logs through the same door as real ones, labelled as what they are.
+// `waymark simulate`: raw logs that are read like real ones and are labelled as simulated.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -42,7 +42,7 @@ TEST_CASE("simulate: writes a drive that runs, and its logs say that they are si
   const Json& evaluation = metrics.at("evaluations").at(0);
   CHECK(evaluation.at("truth").at("match").at("unmatched") == 0);
 
-  // What simulate said about the drive is what evaluating it says.
+  // simulate and evaluate print the same statistics of the drive.
   const Json told = Json::parse(run({"inspect", folder + "drive/drive.yaml", "--json"}).out);
   CHECK(told.at("name") == "Simulated: urban, seed 1");
   CHECK(told.at("odometry_points") == 120 * 25);

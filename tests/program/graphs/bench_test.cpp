@@ -1,4 +1,4 @@
-// `waymark bench`: the table, CSV and JSON of the same measurement, and what it refuses.
+// `waymark bench`: the table, CSV and JSON of the same measurement, and its refusals.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// Whether this program was built with Ceres; says so where it was not.
+/// Whether this program was built with Ceres; prints a note if it was not.
 bool has_ceres() {
   const bool has = contains(run({"doctor"}).out, "Ceres");
   if (!has) waymark_test::skip("this program was built without Ceres (WAYMARK_WITH_CERES)");

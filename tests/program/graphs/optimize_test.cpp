@@ -1,4 +1,4 @@
-// `waymark optimize` and `waymark check`: what goes in, what comes out, and how it ends.
+// `waymark optimize` and `waymark check`: their inputs, outputs and exit codes.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 

@@ -38,7 +38,7 @@ TEST_CASE("robust: gnc finds a false closure, writes it and leaves it out of the
   const std::string written = read_text(folder + "b.graph");
   CHECK_FALSE(contains(written, "EDGE_SE2 2 27 "));
   CHECK(contains(written, "\nPROVENANCE outliers 1 edges left out by gnc\n"));
-  // What is left is exact, so that it fits without any error.
+  // The remaining edges are exact, so they fit without any error.
   const RunResult again = run({"optimize", folder + "b.graph", "-o", folder + "c.graph", "--json"});
   CHECK(nlohmann::json::parse(again.out).at("initial_chi2") < 1e-12);
 }

@@ -1,4 +1,4 @@
-// `waymark doctor`: what was built in, whether it works, and what is said of plugins, inputs and the folder.
+// `waymark doctor`: the build, the self-test, and its texts about plugins, inputs and the folder.
 #include <filesystem>
 
 #include <unistd.h>
@@ -68,7 +68,7 @@ TEST_CASE("doctor: the licence that results is the strictest of what was linked"
   };
   CHECK(has("Eigen"));
   const std::string mode = json.at("licence").at("mode");
-  // CHOLMOD is GPL, and so is what Debian's Ceres links; NLopt and CXSparse are LGPL.
+  // CHOLMOD is GPL, and so are the libraries that Debian's Ceres links; NLopt and CXSparse are LGPL.
   CHECK(mode == (has("CHOLMOD") || has("Ceres") ? "GPL" : has("NLopt") ? "LGPL" : "permissive"));
   for (const Json& name : json.at("licence").at("because")) CHECK(has(name.get<std::string>().c_str()));
   for (const Json& library : json.at("libraries")) {

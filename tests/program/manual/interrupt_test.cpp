@@ -1,4 +1,4 @@
-// Ctrl-C: what was reached is kept and said to be unfinished; the exit code is the shell's 130.
+// Ctrl-C: the state reached is kept and marked as unfinished; the exit code is the shell's 130.
 #include <csignal>
 #include <thread>
 

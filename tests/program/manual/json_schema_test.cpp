@@ -1,4 +1,4 @@
-// What --json prints against the tables of tools/program/JSON.md: every key printed is documented with its
+// The output of --json against the tables of tools/program/JSON.md: every key printed is documented with its
 // type, every key documented is printed.
 #include <map>
 #include <regex>
@@ -41,7 +41,7 @@ class Schema {
  public:
   Schema() : tables_(read_tables(read_text(waymark_test::source_dir() + "/tools/program/JSON.md"))) {}
 
-  /// What is wrong with a document that names its own kind; empty: nothing.
+  /// The error in a document that names its own kind; empty: none.
   [[nodiscard]] std::string problems_of(const Json& document) {
     problems_.clear();
     kind_ = document.value("schema", "no schema");

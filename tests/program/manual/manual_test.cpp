@@ -55,7 +55,7 @@ bool has_bash() {
   return false;
 }
 
-/// What bash offers for the last of the words. @param folder  where it stands
+/// The completions that bash offers for the last word. @param folder  the working folder
 Words completed(const std::vector<std::string>& words, const std::string& folder = "") {
   static const std::string kScript =
       "source <(\"$0\" completion bash) && COMP_WORDS=(\"$0\" \"$@\") COMP_CWORD=$# && _waymark && "

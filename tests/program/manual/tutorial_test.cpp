@@ -1,5 +1,5 @@
 // The tutorial is followed to the letter: its commands run in order in a fresh folder, end with the exit code
-// it says, and print what it shows.
+// it states, and print the output it shows.
 //
 // In examples/tutorial/README.md a block "sh" is run, with "exit=N" it must end so, with "data=DRIVE" it
 // needs the logs of that drive; a block with a file's name is that file; a block "text" is what the "sh"
@@ -52,7 +52,7 @@ std::optional<double> as_number(const std::string& word) {
   return value;
 }
 
-/// One step of a word's last digit: what rounding leaves open. 0 for words without decimals.
+/// One step of a word's last digit, the uncertainty of rounding. 0 for words without decimals.
 double last_digit(const std::string& word) {
   const auto point = word.find('.');
   if (point == std::string::npos || word.find_first_of("eE") != std::string::npos) return 0;
@@ -136,7 +136,7 @@ class Reader {
   std::string printed_;
 };
 
-/// The commands that need this drive's logs ("" for those that need none), with what belongs to them.
+/// The commands that need the logs of this drive ("": those that need none), with their further blocks.
 std::vector<FencedBlock> part_of_tutorial(const std::string& data) {
   std::vector<FencedBlock> part;
   bool takes = data.empty();

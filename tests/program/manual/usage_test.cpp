@@ -1,4 +1,4 @@
-// What a user types wrong, and what every subcommand has.
+// Errors on the command line, and the options that every subcommand has.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -96,7 +96,7 @@ TEST_CASE("usage: what is mistyped is answered by what was meant, before anythin
        "unknown option '--withhold'; --withhold belongs to: convert, run"},
       {{"optimize", "a.graph", "-o", "b", "-m", "g1"}, "unknown option '-m'; -m belongs to: convert, run"},
       {{"info", "--frobnicate"}, "unknown option '--frobnicate'; 'waymark info --help' lists all options"},
-      // A value may look like an option: it is not what is wrong here.
+      // A value may look like an option: it is not the error here.
       {{"optimize", "a.graph", "-o", "--odd", "--quite"},
        "unknown option '--quite'; did you mean '--quiet'?"},
       {{"optimize", "a.graph", "-o", "b", "-a", "dogle"},

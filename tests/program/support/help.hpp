@@ -1,4 +1,4 @@
-/// What the program says about itself, cut into words.
+/// The help texts of the program, cut into words.
 #pragma once
 
 #include <string>

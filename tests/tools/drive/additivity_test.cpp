@@ -66,7 +66,7 @@ void check_same(const Fused& a, const Fused& b) {
   for (std::size_t i = 0; i < a.poses.size(); ++i) {
     worst = std::max(worst, (a.poses[i].pose.head<2>() - b.poses[i].pose.head<2>()).norm());
   }
-  // A per-edge noise model would move poses by decimetres here; what is left is the curvature of the error
+  // A per-edge noise model would move poses by decimetres here; the rest is the curvature of the error
   // inside an interval, of second order.
   CHECK(worst < 2e-3);
 }

@@ -1,4 +1,4 @@
-// Offsets between clocks: found where they were put in.
+// Offsets between clocks: the simulated ones are found.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -147,7 +147,7 @@ TEST_CASE("sync: Aarhus' fixes lag the speed of its OBD by 0.4 s") {
   TypeRegistry registry;
   register_log_readers(registry);
   const SyncReport report = estimate_clock_offsets(load_drive(description, registry), {});
-  // Both on the logger's clock: the odometry is early by what the fixes are late. 0.36 s by the receiver's
+  // Both on the logger's clock: the odometry is early by the delay of the fixes. 0.36 s by the receiver's
   // own speeds (gnss_speed_heading.csv against obd_speed.csv by a script of its own), 0.4 s to one digit.
   REQUIRE(report.speed);
   CHECK(report.speed->late_s == Approx(-0.36).margin(0.05));

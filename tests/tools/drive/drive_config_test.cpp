@@ -109,8 +109,7 @@ modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
   CHECK(config.description.gnss[0].format == "gpsd_json");
   CHECK(config.description.gnss[0].request.accuracy == AccuracyMeaning::drms);
   CHECK(config.description.gnss[0].request.default_sigma_m == 5);
-  CHECK(config.description.gnss[0].request.time_scale ==
-        TimeScale::utc);  // the drive's, where it states none
+  CHECK(config.description.gnss[0].request.time_scale == TimeScale::utc);  // the drive's, if it states none
   CHECK(config.description.gnss[1].file == "/logs/b.csv");
   CHECK(config.description.gnss[1].request.source == 1);
   CHECK(config.description.antenna_m == Eigen::Vector2d(1, -0.5));

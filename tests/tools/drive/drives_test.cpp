@@ -64,7 +64,7 @@ Summary solve(GraphDocument& document, const std::string& algorithm, const TypeR
 
 const std::vector<std::string> kAlgorithms = {"gauss_newton", "levenberg_marquardt", "dogleg"};
 
-/// What G1 and G3 must be compared with G2 under: the fix's covariance plus that of the stiff identity edge.
+/// Covariance under which G1 and G3 equal G2: the fix's covariance plus the stiff identity edge's.
 void add_identity_covariance(PreparedDrive& drive) {
   constexpr double kIdentityInformation = 1e6;  // default of g2
   for (Fix& fix : drive.fixes) fix.covariance += Eigen::Matrix2d::Identity() / kIdentityInformation;
@@ -128,7 +128,7 @@ TEST_CASE("real drives: from dead reckoning no failure passes for a success") {
       // start's.
       CHECK(summary.final_chi2 > minimum * (1 - 1e-6));
       CHECK(summary.final_chi2 <= start);
-      // The graph holds what the Summary says.
+      // The graph has the values of the Summary.
       CHECK(document.graph.chi2() == Approx(summary.final_chi2).epsilon(1e-9));
       if (!summary.converged()) continue;
       // Declared converged: no step from here promises more than the tolerance.

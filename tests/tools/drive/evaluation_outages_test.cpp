@@ -1,4 +1,4 @@
-// Withheld fixes: what the fused poses, odometry alone and the past alone make of them.
+// Withheld fixes: their prediction by the fused poses, by odometry alone and by the past alone.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -45,7 +45,7 @@ std::vector<Fix> fixes_of(const std::string& word) {
 }
 
 /// Poses eastward on the x axis, a second apart; odometry edges whose gyro is off by `bias`, with
-/// that bias estimated where `calibrated`.
+/// that bias estimated if `calibrated`.
 GraphDocument straight_drive(const std::string& word, double bias, bool calibrated) {
   GraphDocument document;
   document.fixes = fixes_of(word);
@@ -75,7 +75,7 @@ GraphDocument straight_drive(const std::string& word, double bias, bool calibrat
   return document;
 }
 
-/// Where constant speed and yaw rate lead from a pose at the origin, heading east.
+/// The end of a drive at constant speed and yaw rate from a pose at the origin, heading east.
 Eigen::Vector2d on_arc(double seconds, double yaw_rate) {
   const double radius = kSpeed / yaw_rate;
   return {radius * std::sin(yaw_rate * seconds), radius * (1 - std::cos(yaw_rate * seconds))};

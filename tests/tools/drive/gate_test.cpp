@@ -162,7 +162,7 @@ TEST_CASE("gate: missing epochs lengthen the chords and the angle limit with the
     scene.judge();
     return scene.fixes[2].reason;
   };
-  CHECK(turned(4.4) == "agrees");  // 1.5 degrees per second over 3 s: what a gyro bias may do
+  CHECK(turned(4.4) == "agrees");  // 1.5 degrees per second over 3 s: a possible gyro bias
   CHECK(turned(4.6) == "angle");
 }
 

@@ -218,7 +218,7 @@ TEST_CASE(
     }
     INFO("bias " << bias_sigma);
     // The sample size is estimated from the drive itself. One whose bias happens to be small beside its prior
-    // does not show that it is one sample: where biases dominate, the interval of the mean holds less often.
+    // does not show that it is one sample: if biases dominate, the interval of the mean holds less often.
     const double share = bias_sigma > 1 ? 0.9 : 0.95;
     const double three_sigma = 3 * std::sqrt(0.95 * 0.05 / kDrives);
     CHECK(nees_inside > (share - three_sigma) * kDrives);

@@ -224,7 +224,7 @@ TEST_CASE("evaluation: an epoch says what was stated of it, and which way the tr
     CHECK(epoch.fix_sigma_m.isApprox(Eigen::Vector2d(2, 3)));
     CHECK(*epoch.speed_mps == Approx(10));
     CHECK(*epoch.direction_rad == Approx(kNorth));
-    CHECK(epoch.nees == Approx(4));  // 1 m to the east where 0.5 m is stated
+    CHECK(epoch.nees == Approx(4));  // 1 m to the east, 0.5 m is stated
     sum += epoch.nees;
   }
   CHECK(e.truth->consistency->nees_mean == Approx(sum / 4));

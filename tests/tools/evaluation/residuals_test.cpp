@@ -119,7 +119,7 @@ TEST_CASE("residuals: after a fit the rms is what redundancy leaves") {
   CHECK(residuals.components == 3 * graph.edge_count());
   // The information of this problem states a correlation that its noise does not have, which
   // changes the expected square by trace(Omega Sigma) / 3; it is 1 here, as the diagonal of Omega
-  // is that of the noise.
+  // is the inverse of the noise.
   const double rms = std::sqrt(residuals.squared / static_cast<double>(residuals.components));
   CHECK(rms == Approx(residuals.expected_rms(summary.unknowns)).epsilon(0.15));
   CHECK(residuals.chi2 == Approx(graph.chi2()).epsilon(1e-12));

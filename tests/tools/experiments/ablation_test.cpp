@@ -1,4 +1,4 @@
-// The ablation and the consistency study: what is switched, how figures are pooled, what inflation does.
+// The ablation and the consistency study: the settings, the pooling of figures, the effect of inflation.
 #include <cmath>
 #include <set>
 

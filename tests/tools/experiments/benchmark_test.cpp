@@ -91,5 +91,5 @@ TEST_CASE("benchmark: the peak of memory begins anew and sees what was taken and
   CHECK(*peak > *before + 45);
   const auto after = restart_peak_memory();
   REQUIRE(after);
-  CHECK(*peak_megabytes() < *after + 25);  // of what is resident then: a sanitizer keeps freed memory
+  CHECK(*peak_megabytes() < *after + 25);  // of the memory resident then: a sanitizer keeps freed memory
 }

@@ -1,4 +1,4 @@
-// What `inspect` says of made-up logs whose answers are known, each suspicion once, and none of a clean log.
+// `inspect` on constructed logs with known answers: each suspicion once, and none for a clean log.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

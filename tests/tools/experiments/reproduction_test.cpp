@@ -207,7 +207,7 @@ TEST_CASE(
   }
   const text::Table table = table_named(paper_tables(drives), "table_7_default_model");
   REQUIRE(table.rows.size() == 10);
-  CHECK(table.rows[9][7] == "90.000");  // a tenth of what raw GNSS has
+  CHECK(table.rows[9][7] == "90.000");  // a tenth of raw GNSS
   CHECK(table.rows[9][8] == "0.000");
   CHECK(table.rows[0][10] == "-");  // no covariances of G2
   CHECK(table.rows[0][12] == "2.0");

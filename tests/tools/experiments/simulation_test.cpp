@@ -90,7 +90,7 @@ TEST_CASE("simulation: the gyro bias walks as far as it is told") {
   constexpr int seeds = 200;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     const SimulatedDrive drive = simulate(straight_drive(20, odometry), seed);
-    // A straight road: what the gyro reads is its bias.
+    // A straight road: the gyro reads its bias.
     squares += std::pow(drive.odometry.back().yaw_rate_radps - drive.odometry.front().yaw_rate_radps, 2);
   }
   CHECK(squares / seeds == Approx(1e-8 * (20 - 0.04)).epsilon(4 * std::sqrt(2.0 / seeds)));
