@@ -12,5 +12,5 @@ trap 'rm -f "$log"' EXIT
 status=0
 ctest --preset test --parallel "$(nproc)" "$@" | tee "$log" || status=$?
 skipped=$(grep -c '\*\*\*Skipped' "$log" || true)
-echo "tests skipped for want of data or packages: $skipped"
+echo "tests skipped because data or packages are missing: $skipped"
 exit "$status"

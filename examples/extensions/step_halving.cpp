@@ -54,7 +54,8 @@ class StepHalving final : public Algorithm {
 
 static void register_types(TypeRegistry& registry) {
   const std::vector<OptionInfo> options = {{"least_fraction", "1e-6", "", OptionRange{1e-12, 1},
-                                            "of a Newton step, below which the run has stalled"}};
+                                            "smallest fraction of a Newton step; below it "
+                                            "the run has stalled"}};
   registry.add_algorithm({"step_halving", "Gauss-Newton with steps halved until chi2 falls", options,
                           [](const CheckedOptions& checked) {
                             return std::make_unique<StepHalving>(checked.number("least_fraction"));

@@ -28,8 +28,7 @@ class UnaryFixes final : public GnssModeling {
 /// Options: name, default, unit, which values are allowed, and what it is. `waymark info` shows
 /// them.
 static std::vector<OptionInfo> options() {
-  return {
-      {"sigma_factor", "1", "", OptionRange{0.01, 100}, "what the sigmas of the fixes are multiplied by"}};
+  return {{"sigma_factor", "1", "", OptionRange{0.01, 100}, "factor on the sigmas of the fixes"}};
 }
 
 /// The registry has checked what the user gave: these options have allowed values.

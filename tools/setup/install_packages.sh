@@ -20,7 +20,7 @@ done < "$here/packages.txt"
 
 as_root=()
 if [[ $(id -u) -ne 0 ]]; then
-  command -v sudo >/dev/null || { echo "not root and no sudo: please install ${missing[*]}" >&2; exit 1; }
+  command -v sudo >/dev/null || { echo "you are not root and there is no sudo: install these packages as root: ${missing[*]}" >&2; exit 1; }
   as_root=(sudo)
 fi
 echo "installing: ${missing[*]}" >&2

@@ -188,8 +188,8 @@ class Writer {
     const std::vector<ColumnSummary>& all = log.table ? log.table->columns : log.can->signals;
     for (const ColumnSummary& other : all) {
       if (other.proposal.remark ==
-          fmt::format("{} as well; '{}' is taken", from.proposal.quantity, from.name))
-        add(fmt::format("'{}' is {} as well", other.name, quantity));
+          fmt::format("also a candidate for {}; '{}' is used", from.proposal.quantity, from.name))
+        add(fmt::format("'{}' is also a candidate for {}", other.name, quantity));
     }
     return text;
   }

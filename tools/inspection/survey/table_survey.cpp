@@ -56,7 +56,8 @@ void check_range(ColumnSummary& column) {
 
 /// Removes a proposal if another column has the same one.
 void give_way(ColumnSummary& column, const ColumnSummary& to) {
-  const std::string remark = fmt::format("{} as well; '{}' is taken", to.proposal.quantity, to.name);
+  const std::string remark =
+      fmt::format("also a candidate for {}; '{}' is used", to.proposal.quantity, to.name);
   column.proposal = {};
   column.proposal.remark = remark;
 }

@@ -210,9 +210,9 @@ std::vector<Subject> find_subjects(const ReproduceOptions& options, const Consol
 
 std::string whose_drives(const ReproduceOptions& options) {
   if (!options.files.empty()) return fmt::format("Drives given: {}.", options.files.size());
-  return "Its eight drives are not public: those here are SIMULATED (" +
+  return "The paper's eight drives are not public. These drives are SIMULATED (" +
          (options.seed ? fmt::format("seed {}", *options.seed) : "the presets' seeds") +
-         ") so that length, rates, and the errors of the raw fixes are like its tables'.";
+         "); their lengths, rates and errors of the raw fixes are like those in the paper's tables.";
 }
 
 std::string introduction(const ReproduceOptions& options) {

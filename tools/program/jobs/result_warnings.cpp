@@ -11,7 +11,7 @@ namespace {
 constexpr double kStateSigmas = 6;
 constexpr double kNoiseDeviations = 4;
 constexpr double kWorseThanRaw = 1.5;
-constexpr const char* kCause = "is a unit, a sign, a column or a clock wrong?";
+constexpr const char* kRemedy = "check units, signs, columns and clocks";
 
 void check_states(const std::vector<evaluation::StateReport>& states, std::vector<std::string>& warnings) {
   for (const evaluation::StateReport& state : states) {
@@ -20,7 +20,7 @@ void check_states(const std::vector<evaluation::StateReport>& states, std::vecto
     const double value = std::abs(state.smallest) > std::abs(state.largest) ? state.smallest : state.largest;
     warnings.push_back(fmt::format(
         "the estimate of {} is {:.3g}{}, {:.0f} times its usual value ({:.3g}): {}", state.name, value,
-        state.unit == "1" ? "" : " " + state.unit, farthest / state.prior_sigma, state.prior_sigma, kCause));
+        state.unit == "1" ? "" : " " + state.unit, farthest / state.prior_sigma, state.prior_sigma, kRemedy));
   }
 }
 
@@ -31,7 +31,7 @@ void check_noise(const drive::NoiseEstimate& noise, std::vector<std::string>& wa
     if (!(std::log(factor) > kNoiseDeviations * parameter.prior.deviation)) continue;
     warnings.push_back(fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value: {}",
                                    parameter.owner, parameter.option, parameter.value, parameter.unit, factor,
-                                   kCause));
+                                   kRemedy));
   }
 }
 
@@ -47,7 +47,7 @@ std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateR
   const double factor = evaluation.truth->fused.position.rmse_m / evaluation.truth->gnss.position.rmse_m;
   if (factor > kWorseThanRaw)
     warnings.push_back(fmt::format(
-        "fused positions are {:.1f} times as far from the truth as raw GNSS (RMSE): {}", factor, kCause));
+        "fused positions are {:.1f} times as far from the truth as raw GNSS (RMSE): {}", factor, kRemedy));
   return warnings;
 }
 

@@ -602,7 +602,7 @@
       if (moves) {
         button("+", "Zoom in (+, or the wheel over a figure that was clicked)", () => this.zoom(0.6));
         button("\u2212", "Zoom out (-)", () => this.zoom(1 / 0.6));
-        button("whole", "The whole again (0, or a double click)", () => this.reset());
+        button("whole", "Show the whole figure (0, or a double click)", () => this.reset());
       }
       button("SVG", "Save this view as SVG", () => this.saveSvg());
       button("CSV", "Save the numbers as CSV", () => this.saveCsv());

@@ -125,7 +125,8 @@ Json robust_json(const Graph& graph) {
     }
   }
   return {{"losses", losses},
-          {"counted", "weights at the optimum, and second-order terms where the information keeps them"}};
+          {"counted",
+           "weights at the optimum, and second-order terms except for edges whose loss is flat or concave"}};
 }
 
 // Writes one line per vertex, so that a hundred thousand of them are readable and need not be one
