@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <optional>
 
 #include <waymark/core/covariance/evidence.hpp>
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
@@ -15,38 +14,46 @@ namespace {
 /// An axis below this share of the largest eigenvalue carries no information.
 constexpr double kNoInformation = 1e-12;
 
+/// Returns the logarithm of det Omega by Cholesky's method; nothing if an axis carries no
+/// information. Almost all edges have one to three dimensions, and every step of a noise search
+/// asks for each of them.
 template <int N>
-double log_determinant(const Eigen::MatrixXd& information) {
-  using Matrix = Eigen::Matrix<double, N, N>;
-  const Matrix fixed = information;
-  const Eigen::LLT<Matrix> root(fixed);
-  if (root.info() == Eigen::Success) {
-    const auto diagonal = root.matrixLLT().diagonal().array();
-    if (diagonal.square().minCoeff() > kNoInformation * fixed.diagonal().maxCoeff())
-      return 2 * diagonal.log().sum();
+std::optional<double> log_determinant_by_root(const Eigen::MatrixXd& information) {
+  Eigen::Matrix<double, N, N> root = information;
+  Eigen::Array<double, N, 1> diagonal;
+  for (int k = 0; k < N; ++k) {
+    double squares = 0;
+    for (int j = 0; j < k; ++j) squares += root(k, j) * root(k, j);
+    const double pivot = root(k, k) - squares;
+    if (!(pivot > 0)) return std::nullopt;
+    diagonal[k] = std::sqrt(pivot);
+    for (int i = k + 1; i < N; ++i) {
+      for (int j = 0; j < k; ++j) root(i, k) -= root(i, j) * root(k, j);
+      root(i, k) /= diagonal[k];
+    }
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(fixed, Eigen::EigenvaluesOnly);
-  const double largest = solver.eigenvalues().tail(1)[0];
+  if (!(diagonal.square().minCoeff() > kNoInformation * information.diagonal().maxCoeff()))
+    return std::nullopt;
+  return 2 * diagonal.log().sum();
+}
+
+/// Returns the logarithm of the product of the eigenvalues that carry information.
+double log_determinant_by_axes(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(information);
   double sum = 0;
-  for (const double eigenvalue : solver.eigenvalues()) {
-    if (eigenvalue > kNoInformation * largest) sum += std::log(eigenvalue);
+  for (const double eigenvalue : eigenvalues) {
+    if (eigenvalue > kNoInformation * eigenvalues.tail(1)[0]) sum += std::log(eigenvalue);
   }
   return sum;
 }
 
 double log_determinant_of(const Eigen::MatrixXd& information) {
-  switch (information.rows()) {
-    case 0:
-      return 0;
-    case 1:
-      return log_determinant<1>(information);
-    case 2:
-      return log_determinant<2>(information);
-    case 3:
-      return log_determinant<3>(information);
-    default:
-      return log_determinant<Eigen::Dynamic>(information);
-  }
+  if (information.rows() == 0) return 0;
+  std::optional<double> by_root;
+  if (information.rows() == 1) by_root = log_determinant_by_root<1>(information);
+  if (information.rows() == 2) by_root = log_determinant_by_root<2>(information);
+  if (information.rows() == 3) by_root = log_determinant_by_root<3>(information);
+  return by_root ? *by_root : log_determinant_by_axes(information);
 }
 
 double log_det_information(const Graph& graph) {

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/gauge.hpp>
 
@@ -84,8 +84,7 @@ Components describe_components(const Graph& graph) {
 /// Returns how many eigenvalues are above the noise of the largest. 0 if all of them are
 /// only rounding.
 int rank_of(const Eigen::Matrix3d& information) {
-  const Eigen::Vector3d eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(information).eigenvalues();
+  const Eigen::Vector3d eigenvalues = symmetric_eigenvalues(information);
   constexpr double kRounding =
       1e-12;  // (J T) of a component without anchor cancels to about 1e-12, squared times Omega
   constexpr double kRelative = 1e-12;

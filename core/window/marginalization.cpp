@@ -18,6 +18,9 @@ namespace {
 
 using detail::at;
 
+/// The right preconditioner for square and tall matrices, and the cheapest to compile.
+using Svd = Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::HouseholderQRPreconditioner>;
+
 /// |A x + b|^2 over the changes x of some vertices, as rows [A | b].
 struct Factor {
   std::vector<VertexIndex> vertices;  // ascending
@@ -171,7 +174,7 @@ void Elimination::check_determined(VertexIndex v, const Eigen::MatrixXd& triangl
   bool determined = triangle.rows() == triangle.cols() && scale.minCoeff() > 0;
   if (determined) {
     const Eigen::MatrixXd relative = triangle * scale.cwiseInverse().asDiagonal();
-    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(relative).singularValues();
+    const Eigen::VectorXd values = Svd(relative).singularValues();
     determined = values.minCoeff() > std::sqrt(kInformationResolution);
   }
   if (determined) return;
@@ -222,8 +225,7 @@ Prior to_prior(const Factor& factor, const Elimination& elimination) {
     return prior;
   }
   const Eigen::VectorXd inverse = (scale.array() > 0).select(scale.cwiseInverse(), 0);
-  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::HouseholderQRPreconditioner> svd(
-      factor.rows.leftCols(n) * inverse.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Svd svd(factor.rows.leftCols(n) * inverse.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& values = svd.singularValues();  // descending
   Eigen::Index rank = 0;
   while (rank < values.size() && values[rank] > std::sqrt(kInformationResolution)) ++rank;

@@ -1,8 +1,7 @@
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 #include <waymark/formats/graph/detail/own_statements.hpp>
 #include <waymark/formats/graph/detail/sensor_offsets.hpp>
@@ -208,12 +207,9 @@ class GraphReader {
   /// The matrix must be an information matrix; a covariance is inverted first.
   void check_matrix(const LineScanner& line, std::string_view tag) {
     if (format_ == GraphFormat::covariance) {
-      const Eigen::LLT<Eigen::MatrixXd> factor(information_);
-      information_ = factor.solve(Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
-      if (factor.info() != Eigen::Success || !information_.allFinite()) {
-        line.fail(join(tag, "the covariance matrix is not positive definite"));
-      }
-      information_ = Eigen::MatrixXd(0.5 * (information_ + information_.transpose()));
+      const std::optional<Eigen::MatrixXd> inverse = inverse_of_positive_definite(information_);
+      if (!inverse) line.fail(join(tag, "the covariance matrix is not positive definite"));
+      information_ = 0.5 * (*inverse + inverse->transpose());
     } else if (!is_positive_semidefinite(information_)) {
       line.fail(join(tag, "the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)"));
     }

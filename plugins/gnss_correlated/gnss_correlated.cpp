@@ -5,9 +5,8 @@
 #include <map>
 #include <optional>
 
-#include <Eigen/Eigenvalues>
-
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/plugin_kit/gnss_modeling.hpp>
@@ -47,11 +46,10 @@ double median_accuracy(std::span<const Fix> fixes) {
 Eigen::Matrix2d relative_root(const Fix& fix, double median_m, double exponent) {
   constexpr double kSmallest = 0.3;
   constexpr double kLargest = 30;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(fix.covariance);
+  const auto [variances, directions] = symmetric_eigen(fix.covariance);
   const Eigen::Vector2d sigma =
-      (axes.eigenvalues().cwiseMax(0).cwiseSqrt() / median_m).cwiseMax(kSmallest).cwiseMin(kLargest);
-  return axes.eigenvectors() * sigma.array().pow(exponent).matrix().asDiagonal() *
-         axes.eigenvectors().transpose();
+      (variances.cwiseMax(0).cwiseSqrt() / median_m).cwiseMax(kSmallest).cwiseMin(kLargest);
+  return directions * sigma.array().pow(exponent).matrix().asDiagonal() * directions.transpose();
 }
 
 /// A Gauss-Markov process along the fixes of one receiver.

@@ -27,6 +27,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/linear/block_cholesky.hpp
   core/linear/block_pattern.hpp
   core/linear/block_symbolic.hpp
+  core/linear/dense_decompositions.hpp
   core/linear/linear_solver.hpp
   core/optimize/algorithm.hpp
   core/optimize/multi_start.hpp

@@ -1,5 +1,4 @@
-#include <Eigen/Eigenvalues>
-
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/window/detail/information_root.hpp>
 
 namespace waymark {
@@ -15,12 +14,11 @@ Eigen::MatrixXd information_root(const Eigen::MatrixXd& information) {
       if (scale[r] > 0 && scale[c] > 0) scaled(r, c) = information(r, c) / (scale[r] * scale[c]);
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
-  const Eigen::VectorXd& eigenvalues = solver.eigenvalues();  // ascending
+  const auto [eigenvalues, eigenvectors] = symmetric_eigen(scaled);
   Eigen::Index first = 0;
   while (first < n && !(eigenvalues[first] > kInformationResolution)) ++first;
   return eigenvalues.tail(n - first).cwiseSqrt().asDiagonal() *
-         solver.eigenvectors().rightCols(n - first).transpose() * scale.asDiagonal();
+         eigenvectors.rightCols(n - first).transpose() * scale.asDiagonal();
 }
 
 }  // namespace waymark

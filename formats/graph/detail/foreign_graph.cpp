@@ -5,9 +5,8 @@
 #include <map>
 #include <numeric>
 
-#include <Eigen/Cholesky>
-
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/formats/graph/detail/toro.hpp>
 #include <waymark/formats/text/detail/text_builder.hpp>
 
@@ -160,13 +159,12 @@ void ForeignGraph::express(std::size_t batch, std::size_t edge, ForeignEdge& out
            "write --profile g2o");
   }
   if (format_ == GraphFormat::covariance) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(out.information);
-    const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(3, 3));
-    if (factor.info() != Eigen::Success || !covariance.allFinite()) {
+    const std::optional<Eigen::MatrixXd> covariance = inverse_of_positive_definite(out.information);
+    if (!covariance) {
       refuse(place(batch, edge), "cannot hold an edge without information on some axis: it has no covariance",
              "write --format g2o or toro");
     }
-    out.information = 0.5 * (covariance + covariance.transpose());
+    out.information = 0.5 * (*covariance + covariance->transpose());
   }
 }
 

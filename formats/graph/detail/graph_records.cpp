@@ -2,8 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 
 namespace waymark::formats {
@@ -34,8 +33,7 @@ bool is_diagonally_dominant(const Eigen::MatrixXd& matrix) {
 
 bool is_positive_semidefinite(const Eigen::MatrixXd& information) {
   if (is_diagonally_dominant(information)) return true;  // by Gershgorin
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(information, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(information);
   const double largest = std::max(std::abs(eigenvalues[0]), eigenvalues[eigenvalues.size() - 1]);
   return eigenvalues[0] >= -1e-9 * largest;
 }

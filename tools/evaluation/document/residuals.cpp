@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
+#include <waymark/core/linear/dense_decompositions.hpp>
 
 namespace waymark::evaluation {
 namespace {
@@ -16,9 +16,9 @@ Eigen::VectorXd whiten(const Eigen::MatrixXd& information, const Eigen::VectorXd
   if (!information.isDiagonal(0)) {
     const Eigen::VectorXd inverse = (scale.array() > 0).select(scale.cwiseInverse(), 0);
     const Eigen::MatrixXd correlation = inverse.asDiagonal() * information * inverse.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(correlation);
-    const Eigen::VectorXd roots = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
-    scaled = axes.eigenvectors() * roots.asDiagonal() * (axes.eigenvectors().transpose() * scaled);
+    const auto [squares, axes] = symmetric_eigen(correlation);
+    const Eigen::VectorXd roots = squares.cwiseMax(0).cwiseSqrt();
+    scaled = axes * roots.asDiagonal() * (axes.transpose() * scaled);
   }
   for (Eigen::Index k = 0; k < scaled.size(); ++k) {
     if (!(scale[k] > 0)) scaled[k] = kUndefined;

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
+#include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/tools/report/drive/drive_figures.hpp>
 #include <waymark/tools/report/drive/epoch_series.hpp>
 
@@ -14,9 +14,8 @@ namespace {
 constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 drawing::Series ellipse(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance, drawing::Look look) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
-  const Eigen::Matrix2d root =
-      axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal().toDenseMatrix();
+  const auto [variances, axes] = symmetric_eigen(covariance);
+  const Eigen::Matrix2d root = axes * variances.cwiseMax(0).cwiseSqrt().asDiagonal();
   drawing::Series series{.name = "1-sigma ellipse", .mark = drawing::Mark::line, .look = look};
   for (int degrees = 0; degrees <= 360; degrees += 5) {
     const double angle = degrees / kDegreesPerRadian;

@@ -1,0 +1,31 @@
+/// Decompositions of small dense matrices of any size, compiled once: Eigen's templates for them
+/// take seconds in every source that instantiates them. Not for inner loops of a fixed size.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include <waymark/core/base/export.hpp>
+
+namespace waymark {
+
+/// A = V diag(values) V^T.
+struct SymmetricEigen {
+  Eigen::VectorXd values;   ///< n, in increasing order
+  Eigen::MatrixXd vectors;  ///< n x n; column i is the unit eigenvector of values[i]
+};
+
+/// Decomposes a symmetric matrix, n x n with n >= 1. Reads the lower triangle only.
+[[nodiscard]] WAYMARK_EXPORT SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
+
+/// Returns the n eigenvalues of a symmetric matrix in increasing order, n >= 1. Reads the lower
+/// triangle only.
+[[nodiscard]] WAYMARK_EXPORT Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
+
+/// Inverts a symmetric matrix by Cholesky's method.
+/// @return nothing if the matrix is not positive definite or its inverse is not finite
+[[nodiscard]] WAYMARK_EXPORT std::optional<Eigen::MatrixXd> inverse_of_positive_definite(
+    const Eigen::MatrixXd& matrix);
+
+}  // namespace waymark
