@@ -16,6 +16,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace block_cholesky_test {
+
 using namespace waymark;
 using namespace waymark_test;
 
@@ -285,3 +287,5 @@ TEST_CASE("block Cholesky: on ill-conditioned drives its backward error is that 
     check_accuracy(drive.graph);
   }
 }
+
+}  // namespace block_cholesky_test

@@ -14,6 +14,8 @@
 
 #include "plugins/kit_drive.hpp"
 
+namespace evidence_test {
+
 using namespace waymark;
 using namespace waymark::plugins::odometry;
 using namespace waymark_test;
@@ -137,3 +139,5 @@ TEST_CASE("evidence: a robust edge counts by its weight, at most by what gives i
   for (const double reading : readings) expected += std::min(most, 6 / (6 + reading * reading));
   CHECK(evidence(graph).log_det_hessian == Approx(std::log(expected)).epsilon(1e-4));
 }
+
+}  // namespace evidence_test

@@ -12,6 +12,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace gauge_test {
+
 using namespace waymark;
 using Catch::Contains;
 
@@ -191,3 +193,5 @@ TEST_CASE("gauge: optimize says in its notes what was held and leaves it in plac
   CHECK(std::vector<double>(graph.value(0).begin(), graph.value(0).end()) == first);
   CHECK(summary.unknowns == 57);
 }
+
+}  // namespace gauge_test

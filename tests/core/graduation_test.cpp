@@ -16,6 +16,8 @@
 #include "support/registry.hpp"
 #include "support/skip.hpp"
 
+namespace graduation_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test;
@@ -262,3 +264,5 @@ TEST_CASE("graduation: chi-square quantiles are those of the tables") {
   CHECK(chi_square_quantile(0.99, 10) == Approx(23.209251158954356));
   CHECK(chi_square_tail(0, 5) == Approx(1));
 }
+
+}  // namespace graduation_test

@@ -12,6 +12,8 @@
 
 #include "support/scalar_types.hpp"
 
+namespace graph_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using Catch::Contains;
@@ -71,3 +73,5 @@ TEST_CASE("graph: the library says the version of its headers") {
   CHECK(version().starts_with(std::to_string(WAYMARK_VERSION_MAJOR) + "." +
                               std::to_string(WAYMARK_VERSION_MINOR)));
 }
+
+}  // namespace graph_test

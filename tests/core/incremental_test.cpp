@@ -18,6 +18,8 @@
 #include "support/replay.hpp"
 #include "support/scalar_types.hpp"
 
+namespace incremental_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test;
@@ -567,3 +569,5 @@ TEST_CASE("incremental: a window with its prior passes through a .graph file unc
   minimise(again.graph);
   CHECK(again.graph.values() == document.graph.values());
 }
+
+}  // namespace incremental_test

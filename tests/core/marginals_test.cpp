@@ -18,6 +18,8 @@
 #include "support/registry.hpp"
 #include "support/scalar_types.hpp"
 
+namespace marginals_test {
+
 using namespace waymark;
 using namespace waymark_test;
 
@@ -372,3 +374,5 @@ TEST_CASE("Gaussian prior: left by marginalisation, it gives the rest of the gra
   const Eigen::VectorXd kept_step = -kept.hessian.ldlt().solve(kept.gradient);
   CHECK(relative_difference(kept_step, step.tail<9>()) < 1e-9);
 }
+
+}  // namespace marginals_test

@@ -9,6 +9,8 @@
 #include "support/registry.hpp"
 #include "support/spoiling.hpp"
 
+namespace multi_start_test {
+
 using namespace waymark;
 using namespace waymark_test;
 
@@ -240,3 +242,4 @@ TEST_CASE("named start: one that cannot be computed is refused, parts that are a
   CHECK(result.summary.converged());
   CHECK_THAT(result.summary.notes.back(), Catch::StartsWith("3 vertices are not joined"));
 }
+}  // namespace multi_start_test

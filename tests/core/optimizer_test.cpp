@@ -13,6 +13,8 @@
 #include "support/registry.hpp"
 #include "support/scalar_types.hpp"
 
+namespace optimizer_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using Catch::Contains;
@@ -354,3 +356,5 @@ TEST_CASE("options of algorithms: unknown names, words and numbers out of range 
   CHECK_THROWS_WITH(registry().make_algorithm("levenberg_marquardt", {{"scaling", "none"}}),
                     Contains("'marquardt' or 'identity'") && Contains("got 'none'"));
 }
+
+}  // namespace optimizer_test

@@ -5,6 +5,8 @@
 
 #include <waymark/core/registry/options.hpp>
 
+namespace options_test {
+
 using namespace waymark;
 
 namespace {
@@ -100,3 +102,5 @@ TEST_CASE("options: the description ends with the range, as people write numbers
   CHECK(described({.low = 0, .high = 1e100, .low_open = true}) == "text; in (0, 1e100]");
   CHECK(known().back().description() == "'decoupled' or 'literal'");
 }
+
+}  // namespace options_test

@@ -15,6 +15,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace plugin_loader_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark::solvers;
@@ -170,3 +172,5 @@ TEST_CASE("registry: all tags and names are found again and belong to somebody")
   CHECK(registry.find_vertex("VERTEX_NOBODY") == nullptr);
   CHECK(registry.find_loss("nobody") == nullptr);
 }
+
+}  // namespace plugin_loader_test

@@ -17,6 +17,8 @@
 #include "support/registry.hpp"
 #include "support/skip.hpp"
 
+namespace plugin_module_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using Catch::Contains;
@@ -177,3 +179,5 @@ TEST_CASE("modules: a file that is damaged anywhere is refused or loaded, never 
     read(bytes);
   }
 }
+
+}  // namespace plugin_module_test

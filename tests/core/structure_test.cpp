@@ -14,6 +14,8 @@
 #include "support/registry.hpp"
 #include "support/scalar_types.hpp"
 
+namespace structure_test {
+
 using namespace waymark;
 using namespace waymark_test;
 
@@ -366,3 +368,5 @@ TEST_CASE("normal equations: multiply, diagonal and damping agree with the dense
   equations.add_to_diagonal(x, damped);
   CHECK(relative_difference(dense(damped), h + Eigen::MatrixXd(x.asDiagonal())) < 1e-15);
 }
+
+}  // namespace structure_test

@@ -9,6 +9,8 @@
 #include "support/calibrated_drive.hpp"
 #include "support/registry.hpp"
 
+namespace threads_test {
+
 using namespace waymark;
 using namespace waymark_test;
 
@@ -115,3 +117,5 @@ TEST_CASE("threads: values, chi2 and iterations are the same bits for 1, 2 and 3
     }
   }
 }
+
+}  // namespace threads_test

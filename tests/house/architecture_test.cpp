@@ -13,6 +13,8 @@
 
 #include "support/paths.hpp"
 
+namespace architecture_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -231,3 +233,5 @@ TEST_CASE("house: a folder shows at most some twenty names") {
     }
   }
 }
+
+}  // namespace architecture_test

@@ -15,6 +15,8 @@
 #include "support/markdown.hpp"
 #include "support/paths.hpp"
 
+namespace documentation_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -205,3 +207,5 @@ TEST_CASE("documentation: anchors are made as the places make them where the fil
   CHECK(anchor_of("1. Look at the logs") == "1-look-at-the-logs");
   CHECK(anchor_of("Speed & memory") == "speed--memory");
 }
+
+}  // namespace documentation_test

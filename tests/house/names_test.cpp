@@ -18,6 +18,8 @@
 #include "support/markdown.hpp"
 #include "support/paths.hpp"
 
+namespace names_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,3 +145,5 @@ TEST_CASE("names: those that lead nowhere are found") {
   CHECK(comment_of("int a = 1;  // of markdown.hpp") == " of markdown.hpp");
   CHECK(comment_of("see(\"https://c.md\");").empty());
 }
+
+}  // namespace names_test

@@ -10,6 +10,8 @@
 
 #include "logs/log_pieces.hpp"
 
+namespace csv_log_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -310,3 +312,5 @@ TEST_CASE("csv: a missing column names those present and the nearest") {
       Message("log.csv: unknown unit 'kmh' for speed; did you mean 'km/h'?; known: m/s, km/h, mph, "
               "kn, mm/s"));
 }
+
+}  // namespace csv_log_test

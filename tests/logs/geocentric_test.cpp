@@ -4,6 +4,8 @@
 
 #include <waymark/formats/logs/detail/common/geocentric.hpp>
 
+namespace geocentric_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 
@@ -22,3 +24,5 @@ TEST_CASE("geocentric: ECEF to geodetic as in EPSG guidance note 7-2, method 960
     }
   }
 }
+
+}  // namespace geocentric_test

@@ -12,6 +12,8 @@
 #include "logs/log_pieces.hpp"
 #include "support/skip.hpp"
 
+namespace gpx_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -222,3 +224,5 @@ TEST_CASE("gpx: a real track, its points in order and within its bounds") {
   }
   CHECK(GpxReader().recognise(text.substr(0, 65536)).certainty == 1);
 }
+
+}  // namespace gpx_test

@@ -18,6 +18,8 @@
 
 #include "support/skip.hpp"
 
+namespace hostile_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using waymark_test::check_same;
@@ -351,3 +353,5 @@ TEST_CASE("hostile: a header of a thousand columns is not repeated whole") {
     CHECK(text.substr(text.size() - 21) == "c37, c38 and 961 more");
   }
 }
+
+}  // namespace hostile_test

@@ -4,6 +4,8 @@
 
 #include <waymark/formats/logs/detail/common/kind_tally.hpp>
 
+namespace kind_tally_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 
@@ -37,3 +39,5 @@ TEST_CASE("kinds of messages: of endless names the first 128 are counted by name
   CHECK(counts.at("K127") == 2);
   CHECK(counts.at("others") == 2 * (1000 - 128));
 }
+
+}  // namespace kind_tally_test

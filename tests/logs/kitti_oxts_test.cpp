@@ -10,6 +10,8 @@
 
 #include "logs/log_pieces.hpp"
 
+namespace kitti_oxts_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -157,3 +159,5 @@ TEST_CASE("kitti_oxts: it is known by 30 numbers a line") {
   CHECK(KittiOxtsReader().recognise(kFirst + "text\n").certainty == 0);
   CHECK(KittiOxtsReader().recognise("").certainty == 0);
 }
+
+}  // namespace kitti_oxts_test

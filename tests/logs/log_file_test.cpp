@@ -14,6 +14,8 @@
 
 #include "support/paths.hpp"
 
+namespace log_file_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -181,3 +183,5 @@ TEST_CASE("log files: two readers that are equally sure are both named") {
   CHECK_THROWS_MATCHES(recognise_log(path, readers), InputError,
                        Message(path + ": the log may be 'first' or 'second'; state its 'format'"));
 }
+
+}  // namespace log_file_test

@@ -6,6 +6,8 @@
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
+namespace log_readers_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -31,3 +33,5 @@ TEST_CASE("suggestions: the nearest known word is suggested") {
   const std::vector<std::string_view> alike{"g1", "g2"};
   CHECK(suggestion("g9", alike) == "; there are: g1, g2");
 }
+
+}  // namespace log_readers_test

@@ -10,6 +10,8 @@
 
 #include "hostile_samples.hpp"
 
+namespace messages_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 
@@ -141,3 +143,5 @@ TEST_CASE("log messages: a stamp that does not fit, for every receiver's log") {
     CHECK(text.find("too large for a stamp") != std::string::npos);
   }
 }
+
+}  // namespace messages_test

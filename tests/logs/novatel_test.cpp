@@ -12,6 +12,8 @@
 
 #include "logs/log_pieces.hpp"
 
+namespace novatel_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -257,3 +259,5 @@ TEST_CASE("novatel: it is known by right checksums") {
   CHECK(NovatelReader().recognise(replaced(kManualBestpos, "32.8", "32.9")).certainty == 0);
   CHECK(NovatelReader().recognise("# a comment, and text\n").certainty == 0);
 }
+
+}  // namespace novatel_test

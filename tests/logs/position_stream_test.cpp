@@ -7,6 +7,8 @@
 #include <waymark/formats/logs/detail/common/log_request.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 
+namespace position_stream_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -92,3 +94,5 @@ TEST_CASE("log requests: what a format cannot give is refused in one way") {
   CHECK_THROWS_MATCHES(require_streams("run.log", request, "a log", {StreamKind::odometry}), InputError,
                        Message("run.log: a log holds no fixes; it gives the streams odometry"));
 }
+
+}  // namespace position_stream_test

@@ -12,6 +12,8 @@
 #include "logs/log_pieces.hpp"
 #include "support/skip.hpp"
 
+namespace rtklib_pos_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -284,3 +286,5 @@ TEST_CASE("rtklib_pos: the real solution of Nagoya agrees with the table made fr
   }
   CHECK(RtklibPosReader().recognise(text.substr(0, 65536)).certainty == 1);
 }
+
+}  // namespace rtklib_pos_test

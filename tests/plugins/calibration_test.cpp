@@ -13,6 +13,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace calibration_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using Catch::Contains;
@@ -269,3 +271,5 @@ TEST_CASE("calibration: wrong options are named, and what cannot be combined is 
   CHECK_THROWS_WITH(modeling->build({drive.fixes, drive.motion, {0, 0}}, drive.graph),
                     Contains("GnssInput::motion"));
 }
+
+}  // namespace calibration_test

@@ -9,6 +9,8 @@
 
 #include "support/registry.hpp"
 
+namespace gnss_correlated_test {
+
 using namespace waymark;
 using Catch::Contains;
 
@@ -76,3 +78,5 @@ TEST_CASE("correlated: a loss that is asked for replaces that of the tails") {
     CHECK(*fix_of(graph).loss == Loss{huber.name, huber.evaluate, 1.5});
   }
 }
+
+}  // namespace gnss_correlated_test

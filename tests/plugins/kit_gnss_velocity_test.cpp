@@ -6,6 +6,8 @@
 
 #include "plugins/kit_drive.hpp"
 
+namespace kit_gnss_velocity_test {
+
 using namespace waymark;
 using namespace waymark::plugins::gnss_velocity;
 using namespace waymark_test;
@@ -177,3 +179,5 @@ TEST_CASE("gnss_velocity: slow moments are passed over and a receiver that tells
   CHECK_THROWS_WITH(silent.add_sensor("gnss_velocity", {}, {{"course", "off"}, {"speed", "off"}}),
                     Contains("course and speed are both off"));
 }
+
+}  // namespace kit_gnss_velocity_test

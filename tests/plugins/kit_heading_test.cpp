@@ -6,6 +6,8 @@
 
 #include "plugins/kit_drive.hpp"
 
+namespace kit_heading_test {
+
 using namespace waymark;
 using namespace waymark::plugins::heading;
 using namespace waymark_test;
@@ -143,3 +145,5 @@ TEST_CASE("heading: rows that make no sense are named, those outside the drive o
   CHECK_THROWS_WITH(registry().make_sensor_model("heading", {{"mounting", "3"}}),
                     Contains("heading: unknown option 'mounting'; did you mean 'mount_deg'?"));
 }
+
+}  // namespace kit_heading_test

@@ -6,6 +6,8 @@
 
 #include "plugins/kit_drive.hpp"
 
+namespace kit_landmarks_test {
+
 using namespace waymark;
 using namespace waymark::plugins::landmarks;
 using namespace waymark_test;
@@ -199,3 +201,5 @@ TEST_CASE("landmarks: rows that make no sense are named by row and column") {
   CHECK(error_of({{"id", 1}, {"x", 1}, {"y", 1}, {"sigma", 0}}) ==
         place + "'sigma': a sigma must lie in [1e-9, 1e9], got 0");
 }
+
+}  // namespace kit_landmarks_test

@@ -6,6 +6,8 @@
 
 #include "plugins/kit_drive.hpp"
 
+namespace kit_lane_test {
+
 using namespace waymark;
 using namespace waymark::plugins::lane;
 using namespace waymark_test;
@@ -114,3 +116,5 @@ TEST_CASE("lane: two points in one place give no line") {
   CHECK_THROWS_WITH(drive.add_sensor("lane", readings.table()),
                     "row 1 (time 1000.5): column 'bx': a and b are one point: they give no line");
 }
+
+}  // namespace kit_lane_test

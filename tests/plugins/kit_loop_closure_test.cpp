@@ -5,6 +5,8 @@
 
 #include "plugins/kit_drive.hpp"
 
+namespace kit_loop_closure_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using Catch::Contains;
@@ -139,3 +141,5 @@ TEST_CASE("loop_closure: rows outside the drive are left out, a match of a node 
   CHECK_THROWS_WITH(drive.add_sensor("loop_closure", endless.table()),
                     Contains("column 'dt': must lie in [-1e+07, 1e+07], got 999999999"));
 }
+
+}  // namespace kit_loop_closure_test

@@ -13,6 +13,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace modelings_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using Catch::Contains;
@@ -162,3 +164,5 @@ TEST_CASE("odometry model: a standing vehicle's measurement is the identity what
   CHECK(graph.chi2() == 0);
   CHECK(graph.batch(0).information(0).diagonal().minCoeff() >= 1e5);
 }
+
+}  // namespace modelings_test

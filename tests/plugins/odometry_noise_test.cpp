@@ -13,6 +13,8 @@
 
 #include "support/dense.hpp"
 
+namespace odometry_noise_test {
+
 using namespace waymark;
 using namespace waymark::plugins::odometry;
 using waymark_test::relative_difference;
@@ -140,3 +142,5 @@ TEST_CASE("odometry noise: the paper's own covariance is 1.1 % of each edge with
   CHECK(slow(0, 0) == 1e-5);
   CHECK(slow(2, 2) == 1e-6);
 }
+
+}  // namespace odometry_noise_test

@@ -10,6 +10,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace dogleg_options_test {
+
 using namespace waymark;
 using namespace waymark_test;
 
@@ -90,3 +92,5 @@ TEST_CASE("dogleg: options that mean nothing are refused by name") {
   CHECK_THROWS_AS(registry.make_algorithm("dogleg", {{"radius", "relative"}}), UsageError);
   CHECK_THROWS_AS(registry.make_algorithm("dogleg", {{"initial_radius", "1e13"}}), UsageError);
 }
+
+}  // namespace dogleg_options_test

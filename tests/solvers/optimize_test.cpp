@@ -8,6 +8,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace optimize_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using Catch::Contains;
@@ -78,3 +80,5 @@ TEST_CASE("front door: a kept structure that does not follow the graph is refuse
   kept.extend(graph, find_gauge(graph).held);
   CHECK(optimize(graph, kept, *algorithm, {}).converged());
 }
+
+}  // namespace optimize_test

@@ -9,6 +9,8 @@
 
 #include <waymark/types_se2/se2.hpp>
 
+namespace se2_test {
+
 using namespace waymark;
 
 namespace {
@@ -176,3 +178,5 @@ TEST_CASE("wrap_angle: half a turn either way, and the identity inside it to the
     REQUIRE(wrapped <= kPi);
   }
 }
+
+}  // namespace se2_test

@@ -8,6 +8,8 @@
 
 #include <waymark/types_se2/detail/sin_cos.hpp>
 
+namespace sin_cos_test {
+
 using namespace waymark;
 
 namespace {
@@ -104,3 +106,5 @@ TEST_CASE("sin_cos: beyond 1e5 those of the C library, NaN and infinity are NaN"
     CHECK(std::isnan(sin_cos(x).cos));
   }
 }
+
+}  // namespace sin_cos_test

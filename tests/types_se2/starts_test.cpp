@@ -7,6 +7,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace starts_test {
+
 using namespace waymark;
 using namespace waymark_test;
 
@@ -220,3 +222,5 @@ TEST_CASE("starts: what the edges do not determine is refused with a reason") {
   CHECK(start.values.empty());
   CHECK(start.note == "the edges do not determine all headings");
 }
+
+}  // namespace starts_test

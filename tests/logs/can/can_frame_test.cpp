@@ -5,6 +5,8 @@
 
 #include <waymark/formats/logs/detail/can/can_frame.hpp>
 
+namespace can_frame_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 
@@ -101,3 +103,5 @@ TEST_CASE("can frame: what is no frame is told with its place") {
   CHECK(bytes_of("(1.0) can0 123#012").what == "half a byte: the data have an odd number of hex digits");
   CHECK(bytes_of("(1.0) can0 123#01xx").what == "expected hex digits as data");
 }
+
+}  // namespace can_frame_test

@@ -16,6 +16,8 @@
 
 #include "support/skip.hpp"
 
+namespace candump_drives_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 
@@ -233,3 +235,5 @@ TEST_CASE("candump: real logs are recognised") {
     CHECK(recognise_log(*log, readers).why.certainty == 1);
   }
 }
+
+}  // namespace candump_drives_test

@@ -2,6 +2,8 @@
 
 #include "logs/can/candump_frames.hpp"
 
+namespace candump_fixes_test {
+
 using namespace waymark;
 using namespace waymark_test::candump_samples;
 
@@ -148,3 +150,5 @@ TEST_CASE("candump: the receiver's clock beside the logger's") {
         "car.log: gnss_time: 1 values of signal COUNT are outside its range or not finite; "
         "they are ignored");
 }
+
+}  // namespace candump_fixes_test

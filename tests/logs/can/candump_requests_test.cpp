@@ -2,6 +2,8 @@
 
 #include "logs/can/candump_frames.hpp"
 
+namespace candump_requests_test {
+
 using namespace waymark;
 using namespace waymark_test::candump_samples;
 
@@ -95,3 +97,5 @@ TEST_CASE("candump: Vector ASC logs are refused with the remedy") {
       Message("car.log: this is a Vector ASC log, which is not supported; `asc2log < car.log > candump.log` "
               "(can-utils) writes a candump log from it"));
 }
+
+}  // namespace candump_requests_test

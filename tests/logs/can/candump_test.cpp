@@ -2,6 +2,8 @@
 
 #include "logs/can/candump_frames.hpp"
 
+namespace candump_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test::candump_samples;
@@ -106,3 +108,5 @@ TEST_CASE("candump: is recognised by its lines") {
   CHECK(reader.recognise("time,speed\n1,2\n").certainty == 0);
   CHECK(reader.recognise("").certainty == 0);
 }
+
+}  // namespace candump_test

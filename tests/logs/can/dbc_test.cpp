@@ -8,6 +8,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/can/dbc.hpp>
 
+namespace dbc_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using Catch::Matchers::Message;
@@ -244,3 +246,5 @@ TEST_CASE("dbc: units as DBC files write them") {
   CHECK(known_unit("G") == "g");
   CHECK(known_unit("furlong").empty());
 }
+
+}  // namespace dbc_test

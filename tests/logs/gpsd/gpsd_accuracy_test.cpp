@@ -2,6 +2,8 @@
 
 #include "logs/gpsd/gpsd_reports.hpp"
 
+namespace gpsd_accuracy_test {
+
 using namespace waymark;
 using namespace waymark_test::gpsd_samples;
 
@@ -93,3 +95,5 @@ TEST_CASE("gpsd: version and values tell the dialect") {
   CHECK(note("3.17", dilution).empty());
   CHECK(note("3.22", equal).empty());
 }
+
+}  // namespace gpsd_accuracy_test

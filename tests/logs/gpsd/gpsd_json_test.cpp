@@ -2,6 +2,8 @@
 
 #include "logs/gpsd/gpsd_reports.hpp"
 
+namespace gpsd_json_test {
+
 using namespace waymark;
 using namespace waymark_test::gpsd_samples;
 
@@ -197,3 +199,5 @@ TEST_CASE("gpsd: real logs, whole and in pieces") {
     CHECK_THROWS_MATCHES(read(text), InputError,
                          Message("log.json: not one fix in 7 records (7 are marked as without a fix)"));
 }
+
+}  // namespace gpsd_json_test

@@ -4,6 +4,8 @@
 
 #include "support/skip.hpp"
 
+namespace nmea_damage_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test::nmea_samples;
@@ -109,3 +111,5 @@ TEST_CASE("nmea: the pieces that a log comes in make no difference, real and dam
     waymark_test::check_pieces(NmeaReader(), text, "log.nmea", utc());
   }
 }
+
+}  // namespace nmea_damage_test

@@ -17,6 +17,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace nmea_gpsdecode_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test;
@@ -89,3 +91,5 @@ TEST_CASE("gpsdecode: gpsd's own regression output of a recording agrees with it
   CHECK(comparison.other_dates == 22);  // 2034 for 2015
   check_rounding_only(comparison);
 }
+
+}  // namespace nmea_gpsdecode_test

@@ -4,6 +4,8 @@
 
 #include "support/skip.hpp"
 
+namespace nmea_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test::nmea_samples;
@@ -192,3 +194,5 @@ TEST_CASE("nmea: the Petuelring tunnel") {
   CHECK(data.fixes.front().stamp.nanoseconds == at("2009-04-01T12:40:22Z"));
   CHECK(data.kinds.at("GPGSV") == 5601);
 }
+
+}  // namespace nmea_test

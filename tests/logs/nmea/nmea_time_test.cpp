@@ -2,6 +2,8 @@
 
 #include "logs/nmea/nmea_sentences.hpp"
 
+namespace nmea_time_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test::nmea_samples;
@@ -67,3 +69,5 @@ TEST_CASE("nmea: stamps come out on the scale asked for, with the offset, leap s
   CHECK(data.fixes[1].stamp.nanoseconds == at("2017-01-01T00:00:00Z"));
   CHECK(noted(data, "1 fixes in a leap second are stamped as one second later"));
 }
+
+}  // namespace nmea_time_test

@@ -2,6 +2,8 @@
 
 #include "logs/ubx/ubx_epochs.hpp"
 
+namespace ubx_damage_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using namespace waymark_test::ubx_samples;
@@ -88,3 +90,5 @@ TEST_CASE("ubx: a log is known by its frames") {
   const std::string silent = nav_eoe(1) + nav_eoe(2) + nav_eoe(3);
   CHECK(certainty(silent + std::string(36, ' ')) == Approx(0.45));
 }
+
+}  // namespace ubx_damage_test

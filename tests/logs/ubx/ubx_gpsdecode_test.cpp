@@ -18,6 +18,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace ubx_gpsdecode_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 
@@ -168,3 +170,5 @@ TEST_CASE("ubx: real HNR-PVT agrees with what gpsd 3.25 made of it") {
   check_agreement(compare(data.fixes, reports_of(waymark_test::gpsd_objects(read_text_file(*reference)))),
                   1e-6, 1e-9);
 }
+
+}  // namespace ubx_gpsdecode_test

@@ -15,6 +15,8 @@
 #include "logs/log_pieces.hpp"
 #include "support/skip.hpp"
 
+namespace ubx_real_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 
@@ -114,3 +116,5 @@ TEST_CASE("ubx: real single messages of ESF-MEAS") {
   CHECK(value(2, "wheel_ticks_front_left") == 25'677);
   CHECK(value(6, "speed") == 25.677);
 }
+
+}  // namespace ubx_real_test

@@ -11,6 +11,8 @@
 
 #include "logs/ubx/ubx_bytes.hpp"
 
+namespace ubx_sensors_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark_test;
@@ -223,3 +225,5 @@ TEST_CASE("ubx: readings that ESF-MEAS has not are an error that says what it ha
   CHECK_THROWS_MATCHES(UbxReader().open("log.ubx", request), InputError,
                        Message("log.ubx: a UBX log of readings has no columns to map; leave out 'columns'"));
 }
+
+}  // namespace ubx_sensors_test

@@ -2,6 +2,8 @@
 
 #include "logs/ubx/ubx_epochs.hpp"
 
+namespace ubx_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using namespace waymark_test::ubx_samples;
@@ -208,3 +210,5 @@ TEST_CASE("ubx, by the specification: HNR-PVT is read where it is asked for, and
   request.stream = StreamKind::truth;
   CHECK(*read(log, request).truth.at(0).heading_rad == Approx(std::numbers::pi / 2));
 }
+
+}  // namespace ubx_test

@@ -2,6 +2,8 @@
 
 #include "logs/ubx/ubx_epochs.hpp"
 
+namespace ubx_time_test {
+
 using namespace waymark;
 using namespace waymark_test;
 using namespace waymark_test::ubx_samples;
@@ -75,3 +77,5 @@ TEST_CASE("ubx: dates that are not valid or do not exist fall back on the week")
     CHECK(decode(pvt_frame(wrong)).corrupt == 1);
   }
 }
+
+}  // namespace ubx_time_test

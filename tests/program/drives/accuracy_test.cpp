@@ -9,6 +9,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace accuracy_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -91,3 +93,5 @@ TEST_CASE("accuracy: the defaults reach the goals in outages of a minute on Aarh
   CHECK(predictions["fused"]["at_fixes"]["rmse_m"].get<double>() <= 2.0);
   CHECK(predictions["causal"]["at_ends"]["rmse_m"].get<double>() <= 12);
 }
+
+}  // namespace accuracy_test

@@ -9,6 +9,8 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
+namespace calibration_test {
+
 namespace {
 
 /// Prec of the fused trajectory against truth, m.
@@ -151,3 +153,5 @@ TEST_CASE("calibration: a time offset without two stamped poses cannot be evalua
   CHECK(result.code == 3);
   CHECK(contains(result.err, "fewer than two poses have stamps of their own"));
 }
+
+}  // namespace calibration_test

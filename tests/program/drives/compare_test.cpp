@@ -8,6 +8,8 @@
 #include "program/support/page_checks.hpp"
 #include "program/support/program.hpp"
 
+namespace compare_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -235,3 +237,5 @@ TEST_CASE("compare: refuses a table of epochs that is broken, by line") {
     CHECK(contains(result.err, c.message));
   }
 }
+
+}  // namespace compare_test

@@ -7,6 +7,8 @@
 #include "program/support/program.hpp"
 #include "support/skip.hpp"
 
+namespace convert_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -185,3 +187,5 @@ TEST_CASE("convert: fr079 read as TORO and optimised in three formats has one mi
     CHECK(Json::parse(result.out)["final_chi2"].get<double>() == Approx(37.599116).epsilon(1e-6));
   }
 }
+
+}  // namespace convert_test

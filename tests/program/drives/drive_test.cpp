@@ -6,6 +6,8 @@
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
 
+namespace drive_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -223,3 +225,5 @@ TEST_CASE("drive: a wrong key of a drive.yaml is bad input that suggests the rig
   write_drive(folder, {.more_yaml = "gaet: {enabled: false}\n"});
   check_refused(folder, "unknown key 'gaet'; did you mean 'gate'?");
 }
+
+}  // namespace drive_test

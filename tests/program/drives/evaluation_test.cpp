@@ -11,6 +11,8 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
+namespace evaluation_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -234,3 +236,5 @@ TEST_CASE("evaluation: epochs.csv holds what metrics.json is made of") {
   CHECK(nees.size() == truth["consistency"]["n"]);
   CHECK(epochs.column("covariance_xx_m2").size() == epochs.rows.size());
 }
+
+}  // namespace evaluation_test

@@ -11,6 +11,8 @@
 #include "program/support/program.hpp"
 #include "support/skip.hpp"
 
+namespace inspect_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -163,3 +165,5 @@ TEST_CASE("inspect: init makes drives that run of raw logs: Potsdamer Platz, Nag
       {aarhus + "candump.log.gz", aarhus + "canmod-gps.dbc", aarhus + "obd_speed.csv", aarhus + "imu.csv.gz"},
       40e3, 42e3);
 }
+
+}  // namespace inspect_test

@@ -8,6 +8,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace raw_logs_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -139,3 +141,5 @@ TEST_CASE("raw logs: a folder and a compressed file are logs, a log of another k
   CHECK(
       contains(error_of("empty.log", "\n").substr(0, 4000), "empty.log: the log's format is not recognised"));
 }
+
+}  // namespace raw_logs_test

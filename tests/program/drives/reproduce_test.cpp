@@ -9,6 +9,8 @@
 #include "program/support/page_checks.hpp"
 #include "program/support/program.hpp"
 
+namespace reproduce_test {
+
 using Json = nlohmann::json;
 
 TEST_CASE("reproduce: on the bundled drive: one minimum for all, every file, nothing on stderr in a pipe") {
@@ -167,3 +169,5 @@ TEST_CASE("reproduce: refuses what it cannot do before any work") {
   CHECK_FALSE(exists(out));
   CHECK(run({"reproduce", bundled_drive(), "-o", bundled_drive() + "/x"}).code == 5);
 }
+
+}  // namespace reproduce_test

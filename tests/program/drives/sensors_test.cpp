@@ -10,6 +10,8 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
+namespace sensors_test {
+
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -293,3 +295,5 @@ TEST_CASE("sensors: a format that knows no sensors is refused instead of giving 
   CHECK(contains(result.err,
                  "compass.json: a gpsd log holds no sensor readings; it gives the streams gnss and truth"));
 }
+
+}  // namespace sensors_test

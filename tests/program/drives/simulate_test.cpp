@@ -5,6 +5,8 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
+namespace simulate_test {
+
 using Json = nlohmann::json;
 
 TEST_CASE("simulate: lists its presets") {
@@ -122,3 +124,5 @@ TEST_CASE("simulate: cannot write where there is no folder to be made") {
   CHECK(full.code == 5);
   CHECK(names_in(folder + "d").empty());
 }
+
+}  // namespace simulate_test

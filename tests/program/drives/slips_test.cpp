@@ -11,6 +11,8 @@
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
 
+namespace slips_test {
+
 namespace {
 
 /// The bundled drive's logs with all fixes (5 Hz), its odometry changed in each row.
@@ -131,3 +133,5 @@ TEST_CASE("slips: fixes at latitude 0, longitude 0 are left out and counted") {
   CHECK(result.code == 0);
   CHECK(contains(result.err, "1 fixes at latitude 0, longitude 0 are left out"));
 }
+
+}  // namespace slips_test

@@ -11,6 +11,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace bench_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -305,3 +307,5 @@ TEST_CASE("bench: the shipped list of optima is read") {
   CHECK(result.code == 0);
   CHECK(contains(result.out, "optimum 11.163101 (listed)"));
 }
+
+}  // namespace bench_test

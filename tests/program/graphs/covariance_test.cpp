@@ -8,6 +8,8 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
+namespace covariance_test {
+
 namespace {
 
 /// A pose with a prior, one seen from it, a point: chi2 is 0 in the file.
@@ -154,3 +156,5 @@ TEST_CASE("covariance: a table that cannot be written is refused before the work
   CHECK(refuse("all", "none/b.csv").code == 5);
   CHECK(names_in(folder) == std::vector<std::string>{"a.graph"});
 }
+
+}  // namespace covariance_test

@@ -16,6 +16,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace extensions_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -324,3 +326,5 @@ TEST_CASE("extensions: step halving reaches the minimum from where full steps le
   CHECK(refused.code == 2);
   CHECK(contains(refused.err, "option 'least_fraction' must lie in"));
 }
+
+}  // namespace extensions_test

@@ -10,6 +10,8 @@
 
 #include "support/skip.hpp"
 
+namespace optimize_test {
+
 TEST_CASE("optimize: a graph is optimised, and the optimum is read again") {
   const std::string folder = fresh_folder();
   const std::string input = write_text(folder + "a.graph", square_graph());
@@ -202,3 +204,5 @@ TEST_CASE("optimize: bytes that are no UTF-8 do not break json") {
   CHECK(result.code == 0);
   CHECK(nlohmann::json::accept(result.out));
 }
+
+}  // namespace optimize_test

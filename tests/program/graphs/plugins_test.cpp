@@ -9,6 +9,8 @@
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
 
+namespace plugins_test {
+
 namespace {
 
 std::string module_file(const std::string& name) {
@@ -139,3 +141,5 @@ TEST_CASE("derivatives: every registered type is checked without a graph, and a 
                  "EDGE_SAMPLE number 1: Jacobian by vertex 1 (VERTEX_SE2 7), row 1, column 1 (y)"));
   CHECK(run({"check"}).code == 2);
 }
+
+}  // namespace plugins_test

@@ -5,6 +5,8 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 
+namespace robust_test {
+
 namespace {
 
 /// A straight chain with exact shortcuts, and one false closure from end to end.
@@ -103,3 +105,5 @@ TEST_CASE("robust: wrong losses, tags and combinations are refused before anythi
     CHECK(contains(result.err, c.message));
   }
 }
+
+}  // namespace robust_test

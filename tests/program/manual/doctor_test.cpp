@@ -10,6 +10,8 @@
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
 
+namespace doctor_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -195,3 +197,5 @@ TEST_CASE("doctor: what is known of the terminal") {
   CHECK(terminal.at("utf8") == true);
   CHECK(terminal.at("stdout") == false);
 }
+
+}  // namespace doctor_test

@@ -13,6 +13,8 @@
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
 
+namespace interrupt_test {
+
 namespace {
 
 /// A minimisation of thousands of steps: damping holds every one back, and no tolerance ends it.
@@ -85,3 +87,5 @@ TEST_CASE("interrupt: interrupted while reading: nothing is written, and that is
   CHECK(result.err == "waymark: error: interrupted before there was a result\n");
   CHECK(names_in(folder) == std::vector<std::string>{"a.graph", "pid"});
 }
+
+}  // namespace interrupt_test

@@ -12,6 +12,8 @@
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
 
+namespace json_schema_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -183,3 +185,5 @@ TEST_CASE("json: a failure leaves stdout empty and keeps its text on stderr, wit
   CHECK(result.out.empty());
   CHECK(contains(result.err, "waymark: error: missing.graph"));
 }
+
+}  // namespace json_schema_test

@@ -10,6 +10,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace manual_test {
+
 namespace {
 
 using Words = std::set<std::string>;
@@ -209,3 +211,5 @@ TEST_CASE("completion: other shells are refused, and so is none") {
   CHECK(contains(run({"completion", "--values", "CAR"}).err,
                  "unknown kind of names 'CAR'; there are: ALGORITHM"));
 }
+
+}  // namespace manual_test

@@ -5,6 +5,8 @@
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
 
+namespace output_test {
+
 namespace {
 
 const std::vector<std::string> kOnlyInput = {"a.graph"};
@@ -131,3 +133,5 @@ TEST_CASE("output: output folders are made, also in depth") {
   CHECK(run({"run", write_drive(folder), "--out", folder + "a/b/c", "-q"}).code == 0);
   CHECK(exists(folder + "a/b/c/metrics.json"));
 }
+
+}  // namespace output_test

@@ -8,6 +8,8 @@
 #include "program/support/material.hpp"
 #include "program/support/terminal.hpp"
 
+namespace terminal_test {
+
 using waymark::program::duration_text;
 using waymark::program::iteration_progress;
 using waymark::program::ProgressMeter;
@@ -204,3 +206,5 @@ TEST_CASE("terminal: steps of the optimizer stand in columns under one heading f
     CHECK(line->size() == heading->size());
   CHECK(heading->size() <= 80);
 }
+
+}  // namespace terminal_test

@@ -20,6 +20,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace tutorial_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -176,3 +178,5 @@ TEST_CASE("tutorial: a line that was not printed is missed, whatever stands arou
   CHECK(missing_lines("... converged\n", printed) == "... converged\n");
   CHECK(missing_lines("RMSE 2.208\n", printed) == "RMSE 2.208\n");
 }
+
+}  // namespace tutorial_test

@@ -8,6 +8,8 @@
 
 #include "support/skip.hpp"
 
+namespace usage_test {
+
 TEST_CASE("usage: help of every subcommand has an example, and the program's the exit codes") {
   for (const std::string& command : subcommands()) {
     const RunResult result = run({command, "--help"});
@@ -261,3 +263,5 @@ TEST_CASE("usage: check names a graph whose edges leave a vertex undetermined") 
   CHECK(result.code == 3);
   CHECK(contains(result.out, "some vertex is not determined by its edges"));
 }
+
+}  // namespace usage_test

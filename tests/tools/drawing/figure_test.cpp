@@ -12,6 +12,8 @@
 
 #include "tools/drawing/xml.hpp"
 
+namespace figure_test {
+
 using namespace waymark;
 using namespace waymark::drawing;
 
@@ -137,3 +139,5 @@ TEST_CASE("figure: columns that only some series have are empty for the others")
         "line,1,2,,\n"
         "span,,,3,4\n");
 }
+
+}  // namespace figure_test

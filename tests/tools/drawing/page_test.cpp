@@ -5,6 +5,8 @@
 #include <waymark/tools/drawing/page/page.hpp>
 #include <waymark/tools/drawing/page/page_data.hpp>
 
+namespace page_test {
+
 using namespace waymark;
 using namespace waymark::drawing;
 
@@ -99,3 +101,5 @@ TEST_CASE("page: wide figures stand below each other, narrow ones in pairs") {
   CHECK(std::get<Figure>(section.blocks[1]).width == Figure().width);
   CHECK(std::get<FigureRow>(section.blocks[2]).figures.size() == 1);
 }
+
+}  // namespace page_test

@@ -9,6 +9,8 @@
 #include <waymark/tools/drawing/figure/view.hpp>
 #include <waymark/tools/drawing/page/rounded_column.hpp>
 
+namespace view_test {
+
 using namespace waymark;
 using namespace waymark::drawing;
 
@@ -170,3 +172,5 @@ TEST_CASE("view: columns of one value, none, and of nothing finite are rounded")
   CHECK(wild[0] == Approx(1e300));
   CHECK(wild[1] == Approx(-1e300));
 }
+
+}  // namespace view_test

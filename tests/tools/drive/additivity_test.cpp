@@ -9,6 +9,8 @@
 
 #include "support/registry.hpp"
 
+namespace additivity_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::formats;
@@ -99,3 +101,5 @@ TEST_CASE("additivity: nodes that only split intervals do not change the fused p
   of_split.poses = kept;
   check_same(of_split, fused(drive));
 }
+
+}  // namespace additivity_test

@@ -11,6 +11,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace clock_sync_test {
+
 using namespace waymark;
 using namespace waymark::formats;
 using namespace waymark::drive;
@@ -156,3 +158,5 @@ TEST_CASE("sync: Aarhus' fixes lag the speed of its OBD by 0.4 s") {
   REQUIRE(report.yaw_rate);
   CHECK(report.yaw_rate->late_s == Approx(-0.28).margin(0.05));
 }
+
+}  // namespace clock_sync_test

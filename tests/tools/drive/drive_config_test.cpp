@@ -9,6 +9,8 @@
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 
+namespace drive_config_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::formats;
@@ -374,3 +376,5 @@ TEST_CASE("drive.yaml: what is missing, doubled or no YAML") {
   CHECK_THROWS_MATCHES(load_drive_file("absent/drive.yaml"), InputError,
                        Message("absent/drive.yaml: cannot read: No such file or directory"));
 }
+
+}  // namespace drive_config_test

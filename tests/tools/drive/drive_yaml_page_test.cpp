@@ -18,6 +18,8 @@
 #include "support/markdown.hpp"
 #include "support/paths.hpp"
 
+namespace drive_yaml_page_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::formats;
@@ -115,3 +117,5 @@ TEST_CASE(
     }
   }
 }
+
+}  // namespace drive_yaml_page_test

@@ -12,6 +12,8 @@
 #include "support/registry.hpp"
 #include "support/skip.hpp"
 
+namespace drives_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::formats;
@@ -136,3 +138,5 @@ TEST_CASE("real drives: from dead reckoning no failure passes for a success") {
     }
   }
 }
+
+}  // namespace drives_test

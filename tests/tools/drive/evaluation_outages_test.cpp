@@ -11,6 +11,8 @@
 #include <waymark/tools/drive/model/outages.hpp>
 #include <waymark/tools/evaluation/numbers/withheld.hpp>
 
+namespace evaluation_outages_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::evaluation;
@@ -223,3 +225,5 @@ TEST_CASE("outages: errors at withheld fixes and at the end of each outage") {
   prediction.poses.pop_back();
   CHECK_THROWS_AS(withheld_metrics(prediction, fixes, {1, 0}), UsageError);
 }
+
+}  // namespace evaluation_outages_test

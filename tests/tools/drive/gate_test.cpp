@@ -7,6 +7,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
 
+namespace gate_test {
+
 namespace {
 
 using namespace waymark;
@@ -260,3 +262,5 @@ TEST_CASE("gate: a drive without a fix, or with all rejected, is an error with a
       require_accepted_fix(rejected),
       Catch::StartsWith("all 7 fixes were rejected by the gate;") && Catch::Contains("turn the gate off"));
 }
+
+}  // namespace gate_test

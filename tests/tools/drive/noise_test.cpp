@@ -13,6 +13,8 @@
 
 #include "support/registry.hpp"
 
+namespace noise_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark_test;
@@ -235,3 +237,5 @@ TEST_CASE("fuse: the gate, the lever arm and the guess are those of the settings
   CHECK(open.placed.start.poses.front()[2] == Approx(1.25));
   CHECK(gated.placed.start.poses.front()[2] != Approx(1.25));
 }
+
+}  // namespace noise_test

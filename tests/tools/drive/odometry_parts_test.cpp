@@ -11,6 +11,8 @@
 #include <waymark/tools/drive/logs/odometry_parts.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 
+namespace odometry_parts_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::formats;
@@ -229,3 +231,5 @@ TEST_CASE("time series: means over a span are those of the lines between reading
   CHECK_FALSE(value_at(ramp, {2'000'000'000}, 1).has_value());  // between readings 2 s apart
   CHECK_FALSE(value_at(ramp, {-1}, 1).has_value());
 }
+
+}  // namespace odometry_parts_test

@@ -4,6 +4,8 @@
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 #include <waymark/types_se2/se2.hpp>
 
+namespace plausibility_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 
@@ -61,3 +63,5 @@ TEST_CASE("plausibility: a yaw rate of the wrong sign is named") {
 TEST_CASE("plausibility: a few fixes are no evidence") {
   CHECK(warnings(scene(3.6, -1, 8)).empty());
 }
+
+}  // namespace plausibility_test

@@ -13,6 +13,8 @@
 #include "support/paths.hpp"
 #include "support/skip.hpp"
 
+namespace prepare_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::formats;
@@ -297,3 +299,5 @@ TEST_CASE("prepare: the real drives that come as configs") {
     CHECK(drive.fixes.front().position.norm() < 71);
   }
 }
+
+}  // namespace prepare_test

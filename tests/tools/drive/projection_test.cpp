@@ -8,6 +8,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/logs/projection.hpp>
 
+namespace projection_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using Catch::Matchers::Message;
@@ -166,3 +168,5 @@ TEST_CASE("projection: a fix keeps what has no direction and turns what has") {
   truth.heading_rad = pi - 0.01;
   CHECK(*projection.project(truth).heading_rad == Approx(gamma - 0.01 - pi));  // wrapped
 }
+
+}  // namespace projection_test

@@ -7,6 +7,8 @@
 #include <waymark/tools/drive/nodes/start_alignment.hpp>
 #include <waymark/types_se2/se2.hpp>
 
+namespace start_alignment_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 
@@ -67,3 +69,5 @@ TEST_CASE("alignment: the alignment ignores less than half of wild points") {
   CHECK_FALSE(start_detail::align_robustly(std::vector{from[0]}, std::vector{to[0]}));
   CHECK_FALSE(start_detail::align_robustly(std::vector{from[0], from[0]}, std::vector{to[0], to[1]}));
 }
+
+}  // namespace start_alignment_test

@@ -12,6 +12,8 @@
 #include <waymark/tools/drive/nodes/start.hpp>
 #include <waymark/types_se2/se2.hpp>
 
+namespace start_test {
+
 namespace {
 
 using namespace waymark;
@@ -297,3 +299,5 @@ TEST_CASE("start: the start is deterministic and quick on an hour at 25 Hz") {
   CHECK(cpu_s < 1);  // takes some 30 ms; debug and sanitizer builds prove nothing about speed
 #endif
 }
+
+}  // namespace start_test

@@ -7,6 +7,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
 
+namespace timeline_test {
+
 namespace {
 
 using namespace waymark;
@@ -172,3 +174,5 @@ TEST_CASE("timeline: what cannot be placed in time is refused") {
   CHECK_THROWS_AS(build_timeline(odometry, std::vector<Fix>{fix_at(5), fix_at(4)}, {}), UsageError);
   CHECK_THROWS_AS(build_timeline(std::vector{odometry[1], odometry[1]}, {}, {}), UsageError);
 }
+
+}  // namespace timeline_test

@@ -5,6 +5,8 @@
 
 #include <waymark/tools/drive/logs/velocity.hpp>
 
+namespace velocity_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 
@@ -28,3 +30,5 @@ TEST_CASE("velocity: a log of its own gives fixes speed and course, the course t
   CHECK_FALSE(fixes[1].course_rad.has_value());
   CHECK_FALSE(fixes[2].speed_mps.has_value());
 }
+
+}  // namespace velocity_test

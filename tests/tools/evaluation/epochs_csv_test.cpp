@@ -7,6 +7,8 @@
 
 #include <waymark/tools/evaluation/output/epochs_csv.hpp>
 
+namespace epochs_csv_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 
@@ -67,3 +69,5 @@ TEST_CASE("epochs.csv: every row has the header's columns, and no fixes leave th
   REQUIRE(lines.size() == 1);
   CHECK(std::count(lines[0].begin(), lines[0].end(), ',') == kColumns - 1);
 }
+
+}  // namespace epochs_csv_test

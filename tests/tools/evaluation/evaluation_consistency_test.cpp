@@ -11,6 +11,8 @@
 #include <waymark/tools/evaluation/numbers/autocorrelation.hpp>
 #include <waymark/tools/evaluation/numbers/consistency.hpp>
 
+namespace evaluation_consistency_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 
@@ -259,3 +261,5 @@ TEST_CASE("consistency: evaluate compares stated and actual error where covarian
   CHECK(e.truth->consistency->effective_samples == Approx(1));
   CHECK(e.truth->gnss_autocorrelation.size() == kAutocorrelationLags.size());
 }
+
+}  // namespace evaluation_consistency_test

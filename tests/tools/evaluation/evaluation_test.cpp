@@ -8,6 +8,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
 
+namespace evaluation_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 
@@ -253,3 +255,5 @@ TEST_CASE("evaluation: speed of fused poses: chords, reverse, gaps, poses at one
   CHECK_FALSE(speeds[5]);  // 57 s from its neighbour
   CHECK(fused_speeds({}).empty());
 }
+
+}  // namespace evaluation_test

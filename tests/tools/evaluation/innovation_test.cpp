@@ -6,6 +6,8 @@
 
 #include <waymark/tools/evaluation/numbers/innovation.hpp>
 
+namespace innovation_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 
@@ -113,3 +115,5 @@ TEST_CASE("innovation: post-fit residuals are smaller than the noise: R - P make
   const InnovationStatistics small = innovation_statistics(ResidualKind::post_fit, without_pose);
   CHECK(small.mean == Approx(2 * (1 - 1.0 / kReadings)).epsilon(0.03));
 }
+
+}  // namespace innovation_test

@@ -9,6 +9,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/evaluation/numbers/metrics.hpp>
 
+namespace metrics_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 using Offsets = std::vector<Eigen::Vector2d>;
@@ -180,3 +182,5 @@ TEST_CASE("metrics: the published drives average to the published rows") {
   CHECK(improvement_percent(scalar_statistics(gnss_precision).mean, scalar_statistics(g2_precision).mean) ==
         Approx(17.794).margin(0.02));
 }
+
+}  // namespace metrics_test

@@ -8,6 +8,8 @@
 
 #include <waymark/tools/evaluation/output/report.hpp>
 
+namespace report_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 using Catch::Matchers::Contains;
@@ -128,3 +130,5 @@ TEST_CASE("metrics table: metrics.json without a header has empty objects, not l
   CHECK(json["evaluations"].is_array());
   CHECK(json["provenance"].is_object());
 }
+
+}  // namespace report_test

@@ -16,6 +16,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace residuals_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 using namespace waymark::plugins::gnss_correlated;
@@ -192,3 +194,5 @@ TEST_CASE("residuals: of an empty graph there are none") {
   CHECK(residuals.types.empty());
   CHECK(residuals.expected_rms(0) == 0);
 }
+
+}  // namespace residuals_test

@@ -11,6 +11,8 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 
+namespace sparsity_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 
@@ -148,3 +150,5 @@ TEST_CASE("sparsity: held and fixed vertices are no unknowns") {
   CHECK(none.fill_ratio() == 0);
   CHECK_THROWS_AS(sparsity_of(loose, 0), UsageError);
 }
+
+}  // namespace sparsity_test

@@ -6,6 +6,8 @@
 #include <waymark/tools/text/number_text.hpp>
 #include <waymark/tools/text/table.hpp>
 
+namespace table_test {
+
 using namespace waymark;
 using namespace waymark::text;
 
@@ -90,3 +92,5 @@ TEST_CASE("text look: what is fitted into a line neither leaves it nor steers th
                "31m",
                20) == "?31m");  // CSI as one character
 }
+
+}  // namespace table_test

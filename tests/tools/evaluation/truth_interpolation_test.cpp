@@ -7,6 +7,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/evaluation/numbers/truth_interpolation.hpp>
 
+namespace truth_interpolation_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 
@@ -162,3 +164,5 @@ TEST_CASE("truth: poses become truth with headings") {
   CHECK(truth[0].position == Eigen::Vector2d(1, 2));
   CHECK(truth[0].heading_rad == 3.0);
 }
+
+}  // namespace truth_interpolation_test

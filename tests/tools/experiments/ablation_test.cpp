@@ -11,6 +11,8 @@
 
 #include "support/registry.hpp"
 
+namespace ablation_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::evaluation;
@@ -177,3 +179,5 @@ TEST_CASE("ablation: a drive of the ablation is judged by truth, or by the fixes
   CHECK_THAT(report_markdown(report), Contains("# One part changed at a time"));
   CHECK_THAT(report_json(report, {with_truth}), Contains("waymark-ablation"));
 }
+
+}  // namespace ablation_test

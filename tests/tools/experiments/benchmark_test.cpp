@@ -12,6 +12,8 @@
 
 #include "support/skip.hpp"
 
+namespace benchmark_test {
+
 using namespace waymark;
 using namespace waymark::benchmark;
 
@@ -93,3 +95,5 @@ TEST_CASE("benchmark: the peak of memory begins anew and sees what was taken and
   REQUIRE(after);
   CHECK(*peak_megabytes() < *after + 25);  // of the memory resident then: a sanitizer keeps freed memory
 }
+
+}  // namespace benchmark_test

@@ -21,6 +21,8 @@
 #include "support/registry.hpp"
 #include "tools/experiments/simulated.hpp"
 
+namespace coverage_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::simulation;
@@ -191,3 +193,5 @@ TEST_CASE("coverage: the default model is consistent on simulated drives with bi
   }
   check_covariances(errors, {9});
 }
+
+}  // namespace coverage_test

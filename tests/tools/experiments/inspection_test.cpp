@@ -17,6 +17,8 @@
 
 #include "support/paths.hpp"
 
+namespace inspection_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::formats;
@@ -420,3 +422,5 @@ TEST_CASE("inspection: rubbish is an error with a remedy or a report, never a cr
   CHECK(has(inspection_text(ubx), "no position in the log"));
   CHECK_NOTHROW(inspection_json(words).dump());
 }
+
+}  // namespace inspection_test

@@ -10,6 +10,8 @@
 #include <waymark/tools/reproduction/tables/paper_tables.hpp>
 #include <waymark/tools/reproduction/tables/reproduction_report.hpp>
 
+namespace reproduction_test {
+
 using namespace waymark;
 using namespace waymark::evaluation;
 using namespace waymark::reproduction;
@@ -225,3 +227,5 @@ TEST_CASE("reproduction: a report without any drive has nothing to say and does 
   CHECK_THAT(report_markdown(report), Contains("nothing"));
   CHECK_THAT(report_json(report, {}), Contains("waymark-reproduction"));
 }
+
+}  // namespace reproduction_test

@@ -5,6 +5,8 @@
 
 #include <waymark/tools/simulation/random.hpp>
 
+namespace simulation_random_test {
+
 using namespace waymark;
 using namespace waymark::simulation;
 
@@ -104,3 +106,5 @@ TEST_CASE("simulation: smoothed by the receiver the part keeps its sigma and dec
   }
   CHECK(squares / 4000 == Approx(1).margin(4 * std::sqrt(2.0 / 4000)));
 }
+
+}  // namespace simulation_random_test

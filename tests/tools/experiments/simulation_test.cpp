@@ -13,6 +13,8 @@
 
 #include "tools/experiments/simulated.hpp"
 
+namespace simulation_test {
+
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::simulation;
@@ -331,3 +333,5 @@ TEST_CASE("simulation: recipes that make no sense are refused by name") {
                        Message("unknown preset 'paper-9'; there are: highway, urban, rural, mixed, paper-1, "
                                "paper-2, paper-3, paper-4, paper-5, paper-6, paper-7, paper-8"));
 }
+
+}  // namespace simulation_test
