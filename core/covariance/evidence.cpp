@@ -20,21 +20,23 @@ constexpr double kNoInformation = 1e-12;
 template <int N>
 std::optional<double> log_determinant_by_root(const Eigen::MatrixXd& information) {
   Eigen::Matrix<double, N, N> root = information;
-  Eigen::Array<double, N, 1> diagonal;
+  double smallest = std::numeric_limits<double>::infinity();
+  double sum = 0;
   for (int k = 0; k < N; ++k) {
     double squares = 0;
     for (int j = 0; j < k; ++j) squares += root(k, j) * root(k, j);
     const double pivot = root(k, k) - squares;
     if (!(pivot > 0)) return std::nullopt;
-    diagonal[k] = std::sqrt(pivot);
+    smallest = std::min(smallest, pivot);
+    root(k, k) = std::sqrt(pivot);
+    sum += std::log(root(k, k));
     for (int i = k + 1; i < N; ++i) {
       for (int j = 0; j < k; ++j) root(i, k) -= root(i, j) * root(k, j);
-      root(i, k) /= diagonal[k];
+      root(i, k) /= root(k, k);
     }
   }
-  if (!(diagonal.square().minCoeff() > kNoInformation * information.diagonal().maxCoeff()))
-    return std::nullopt;
-  return 2 * diagonal.log().sum();
+  if (!(smallest > kNoInformation * information.diagonal().maxCoeff())) return std::nullopt;
+  return 2 * sum;
 }
 
 /// Returns the logarithm of the product of the eigenvalues that carry information.
