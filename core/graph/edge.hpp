@@ -2,7 +2,7 @@
 /// @code
 ///   struct EdgeRange {
 ///     static constexpr std::string_view kTag = "EDGE_RANGE";
-///     static constexpr std::string_view kForm = "range";  // form of the error, for reports
+///     static constexpr std::string_view kForm = "range";  // optional: form of the error, for reports
 ///     static constexpr int kErrorDimension = 1;
 ///     using Vertices = VertexList<VertexSe2, VertexXy>;
 ///     static constexpr auto fields() {

@@ -8,7 +8,7 @@
 
 #include <waymark/core/base/export.hpp>
 
-namespace waymark {
+namespace WAYMARK_EXPORT waymark {
 
 /// A = V diag(values) V^T.
 struct SymmetricEigen {
@@ -17,15 +17,14 @@ struct SymmetricEigen {
 };
 
 /// Decomposes a symmetric matrix, n x n with n >= 1. Reads the lower triangle only.
-[[nodiscard]] WAYMARK_EXPORT SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
+[[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 
 /// Returns the n eigenvalues of a symmetric matrix in increasing order, n >= 1. Reads the lower
 /// triangle only.
-[[nodiscard]] WAYMARK_EXPORT Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
+[[nodiscard]] Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
 /// Inverts a symmetric matrix by Cholesky's method.
 /// @return nothing if the matrix is not positive definite or its inverse is not finite
-[[nodiscard]] WAYMARK_EXPORT std::optional<Eigen::MatrixXd> inverse_of_positive_definite(
-    const Eigen::MatrixXd& matrix);
+[[nodiscard]] std::optional<Eigen::MatrixXd> inverse_of_positive_definite(const Eigen::MatrixXd& matrix);
 
 }  // namespace waymark

@@ -31,6 +31,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/linear/linear_solver.hpp
   core/optimize/algorithm.hpp
   core/optimize/multi_start.hpp
+  core/optimize/named_start.hpp
   core/optimize/optimizer.hpp
   core/optimize/start.hpp
   core/optimize/summary.hpp
