@@ -57,12 +57,16 @@ if(WAYMARK_FAST_TOOLS)
   endif()
 endif()
 
-# All libraries share one precompiled header. Its owner has no definition of its own, so that it fits every other target.
+# All libraries share a precompiled header. Its owner has no definition of its own, so that it fits every other target.
+# There are two of them, because g++ optimises a source as its precompiled header was, whatever its own options say.
 file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cpp" CONTENT "// The owner of the precompiled header needs a source.\n")
-add_library(waymark_precompiled OBJECT "${PROJECT_BINARY_DIR}/precompiled.cpp")
-target_link_libraries(waymark_precompiled PRIVATE waymark_settings Eigen3::Eigen)
-target_precompile_headers(waymark_precompiled PRIVATE <Eigen/Core> <algorithm> <array> <functional> <map> <memory>
-  <optional> <span> <string> <string_view> <variant> <vector>)
+foreach(owner waymark_precompiled waymark_precompiled_cold)
+  add_library(${owner} OBJECT "${PROJECT_BINARY_DIR}/precompiled.cpp")
+  target_link_libraries(${owner} PRIVATE waymark_settings Eigen3::Eigen)
+  target_precompile_headers(${owner} PRIVATE <Eigen/Core> <algorithm> <array> <functional> <map> <memory>
+    <optional> <span> <string> <string_view> <variant> <vector>)
+endforeach()
+target_compile_options(waymark_precompiled_cold PRIVATE $<$<CONFIG:Release>:-O1>)
 
 # waymark_not_merged(FILES...): a build that merges sources (CMAKE_UNITY_BUILD) compiles these one by one: their inner loops
 # are compiled for several processors, and that code must not depend on its neighbours.
@@ -70,10 +74,11 @@ function(waymark_not_merged)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# waymark_library(NAME [SHARED] [WITHOUT FOLDERS...]): a library of every *.cpp below the calling CMakeLists.txt, but for
-# those in the folders given, with the shared settings and the alias waymark::NAME.
+# waymark_library(NAME [SHARED] [COLD] [WITHOUT FOLDERS...]): a library of every *.cpp below the calling CMakeLists.txt, but
+# for those in the folders given, with the shared settings and the alias waymark::NAME. COLD: its speed does not matter, so
+# it is optimised little.
 function(waymark_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED" "" "WITHOUT")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED;COLD" "" "WITHOUT")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" *.cpp)
   foreach(folder ${ARG_WITHOUT})
     list(FILTER sources EXCLUDE REGEX "^${folder}/")
@@ -86,5 +91,10 @@ function(waymark_library name)
   add_library(waymark::${name} ALIAS waymark_${name})
   set_target_properties(waymark_${name} PROPERTIES EXPORT_NAME ${name})
   target_link_libraries(waymark_${name} PUBLIC waymark_settings)
-  target_precompile_headers(waymark_${name} REUSE_FROM waymark_precompiled)
+  if(ARG_COLD)
+    target_compile_options(waymark_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_precompile_headers(waymark_${name} REUSE_FROM waymark_precompiled_cold)
+  else()
+    target_precompile_headers(waymark_${name} REUSE_FROM waymark_precompiled)
+  endif()
 endfunction()
