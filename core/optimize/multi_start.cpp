@@ -19,7 +19,6 @@ constexpr double kSameMinimum = 1e-6;  // relative difference of chi2
 constexpr double kSuspicious = 6;      // standard deviations above the degrees of freedom
 // loops per free vertex; from here on a start costs less than a step
 constexpr double kLoopShare = 0.02;
-constexpr const char* kFile = kFileStart.data();
 
 struct Size {
   std::int64_t unknowns = 0;   ///< scalar
@@ -68,14 +67,14 @@ class MultiStart {
 
  private:
   void choose_first();
-  void try_from(const std::string& start, const std::vector<double>& values, int patience);
+  void try_from(std::string_view start, const std::vector<double>& values, int patience);
   void try_others();
   void finish_best();
   void describe();
   std::vector<double> make(const StartType& start);
   double chi2_at(const std::vector<double>& values);
 
-  [[nodiscard]] bool tried(const std::string& start) const {
+  [[nodiscard]] bool tried(std::string_view start) const {
     return std::find(tried_.begin(), tried_.end(), start) != tried_.end();
   }
   [[nodiscard]] bool settled() const {
@@ -118,10 +117,10 @@ double MultiStart::chi2_at(const std::vector<double>& values) {
   return graph_.chi2();
 }
 
-void MultiStart::try_from(const std::string& start, const std::vector<double>& values, int patience) {
+void MultiStart::try_from(std::string_view start, const std::vector<double>& values, int patience) {
   const Clock::time_point begin = Clock::now();
   graph_.set_values(values);
-  tried_.push_back(start);
+  tried_.emplace_back(start);
   OptimizerOptions options = options_;
   options.max_iterations = std::min(patience, iterations_left());
   Summary summary;
@@ -131,11 +130,11 @@ void MultiStart::try_from(const std::string& start, const std::vector<double>& v
     // The gauge is judged at these values. If, for example, all poses are at one place, they seem
     // to say nothing about their headings.
     if (!refusal_) refusal_ = std::current_exception();
-    notes_.push_back("initial guess " + start + " cannot be used: " + error.what());
+    notes_.push_back("initial guess " + std::string(start) + " cannot be used: " + error.what());
     return;
   }
   iterations_ += summary.iterations;
-  result_.trials.push_back({start, summary.initial_chi2, summary.final_chi2, summary.iterations,
+  result_.trials.push_back({std::string(start), summary.initial_chi2, summary.final_chi2, summary.iterations,
                             summary.termination, seconds_since(begin)});
   const Summary& best = result_.summary;
   const bool first = result_.trials.size() == 1;
@@ -163,11 +162,11 @@ void MultiStart::choose_first() {
       if (!values.empty() && chi2_at(values) < file_chi2_) return try_from(start.name, values, kPatience);
     }
   }
-  try_from(kFile, file_values_, kPatience);
+  try_from(kFileStart, file_values_, kPatience);
 }
 
 void MultiStart::try_others() {
-  if (!settled() && !tried(kFile)) try_from(kFile, file_values_, kPatience);
+  if (!settled() && !tried(kFileStart)) try_from(kFileStart, file_values_, kPatience);
   for (const auto& [start, origin] : starts_) {
     if (settled()) return;
     if (tried(start.name)) continue;
@@ -214,7 +213,7 @@ void MultiStart::describe() {
   std::vector<std::string>& notes = result_.summary.notes;
   notes.insert(notes.end(), notes_.begin(), notes_.end());
   if (result_.trials.size() == 1) {
-    if (result_.start == kFile) return;
+    if (result_.start == kFileStart) return;
     std::string note = "initial guess " + result_.start;
     if (!refusal_) {  // otherwise chi2 at these values was not computed
       note += ": chi2 " + number("%.6g", result_.summary.initial_chi2) + " there, " +

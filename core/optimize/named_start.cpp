@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 
 namespace waymark {
 
-void check_start(std::string_view start, const TypeRegistry& registry) {
-  std::vector<std::string_view> names = {kAutoStart, kFileStart};
+void check_start(std::string_view start, const TypeRegistry& registry, std::vector<std::string_view> names) {
   for (const auto& [type, origin] : registry.starts()) names.push_back(type.name);
   if (std::find(names.begin(), names.end(), start) != names.end()) return;
   throw UsageError("unknown initial guess '" + std::string(start) + "'" + suggestion(start, names));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/optimize/multi_start.hpp>
@@ -14,9 +15,10 @@ namespace WAYMARK_EXPORT waymark {
 /// A search around optimize() that replaces it, for example one for outliers among the edges.
 using Minimizer = std::function<Summary(Graph&, Algorithm&, LinearSolver&, const OptimizerOptions&)>;
 
-/// Checks that the name is kFileStart, kAutoStart or that of a registered start.
-/// @throws UsageError that lists these names
-void check_start(std::string_view start, const TypeRegistry& registry);
+/// Checks that the name is that of a registered start or one of the others.
+/// @throws UsageError with the most similar name or all of them
+void check_start(std::string_view start, const TypeRegistry& registry,
+                 std::vector<std::string_view> others = {kAutoStart, kFileStart});
 
 /// Optimises from the start with this name. Afterwards the graph holds the best values found.
 /// kAutoStart is optimize_from_best_start, but a search begins at the values of the graph, because

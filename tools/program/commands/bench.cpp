@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/base/suggest.hpp>
+#include <waymark/core/optimize/named_start.hpp>
 #include <waymark/formats/text/hash.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/benchmark/benchmark_report.hpp>
@@ -44,14 +44,6 @@ Names all_names(const RegistryTable<Type>& table) {
   Names names;
   for (const auto& entry : table) names.push_back(entry.type.name);
   return names;
-}
-
-/// @throws UsageError for an unknown name.
-void check_bench_start(const std::string& name, const TypeRegistry& registry) {
-  std::vector<std::string_view> known{kFileStart};
-  for (const auto& [start, origin] : registry.starts()) known.push_back(start.name);
-  if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  throw UsageError("unknown initial guess '" + name + "'" + suggestion(name, known));
 }
 
 /// Returns the names to use. Empty: that of `optimize`; "all": every registered one.
@@ -172,7 +164,7 @@ ExitCode bench(const BenchOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
   const std::vector<benchmark::Contestant> contestants = make_contestants(options, registry);
-  for (const std::string& start : options.starts) check_bench_start(start, registry);
+  for (const std::string& start : options.starts) check_start(start, registry, {kFileStart});
   benchmark::KnownOptima known;
   if (!options.optima.empty())
     known = benchmark::read_known_optima(formats::read_text_file(options.optima), options.optima);
