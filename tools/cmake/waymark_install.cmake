@@ -3,11 +3,6 @@
 include(CMakePackageConfigHelpers)
 
 set(cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/waymark")
-set(plugin_libraries "")
-foreach(name ${WAYMARK_BUILTIN_NAMES})
-  list(APPEND plugin_libraries waymark_plugin_${name})
-  set_target_properties(waymark_plugin_${name} PROPERTIES EXPORT_NAME plugin_${name})
-endforeach()
 
 # While the version is 0.x, each minor version may break the ABI (plugins/README.md, "ABI and versions").
 set_target_properties(waymark_core PROPERTIES
@@ -17,7 +12,7 @@ file(RELATIVE_PATH bin_to_lib "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FU
 set_target_properties(waymark PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
 
 install(TARGETS waymark RUNTIME COMPONENT runtime)
-install(TARGETS waymark_core waymark_types_se2 waymark_solvers waymark_formats waymark_drive waymark_plugins ${plugin_libraries}
+install(TARGETS waymark_core waymark_types_se2 waymark_solvers waymark_formats waymark_drive waymark_plugins
                 waymark_settings EXPORT waymark_targets
   LIBRARY COMPONENT runtime NAMELINK_COMPONENT dev
   ARCHIVE COMPONENT dev)
@@ -45,11 +40,7 @@ install(FILES
   DESTINATION "${cmake_folder}" COMPONENT dev)
 
 # pkg-config: static libraries in link order, then what the backends need.
-set(WAYMARK_PC_LIBRARIES -lwaymark_plugins)
-foreach(name ${WAYMARK_BUILTIN_NAMES})
-  list(APPEND WAYMARK_PC_LIBRARIES -lwaymark_plugin_${name})
-endforeach()
-list(APPEND WAYMARK_PC_LIBRARIES -lwaymark_formats -lwaymark_solvers)
+set(WAYMARK_PC_LIBRARIES -lwaymark_plugins -lwaymark_formats -lwaymark_solvers)
 if(WAYMARK_WITH_CHOLMOD)
   list(APPEND WAYMARK_PC_LIBRARIES -lcholmod)
 endif()

@@ -32,6 +32,9 @@ set_target_properties(waymark_settings PROPERTIES EXPORT_NAME settings)
 # Not for those who build us as a part of theirs: their warnings are their own affair.
 if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
+  # g++ collects garbage whenever its memory has grown by a share; from half a GB on, a build takes a twentieth less time.
+  target_compile_options(waymark_settings INTERFACE
+    $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>>)
 endif()
 if(WAYMARK_WARNINGS_AS_ERRORS)
   target_compile_options(waymark_settings INTERFACE $<BUILD_INTERFACE:-Werror>)
@@ -57,16 +60,19 @@ if(WAYMARK_FAST_TOOLS)
   endif()
 endif()
 
-# All libraries share a precompiled header. Its owner has no definition of its own, so that it fits every other target.
-# There are two of them, because g++ optimises a source as its precompiled header was, whatever its own options say.
+# All libraries share a precompiled header, those in whose inner loops the time goes a second one, because g++ optimises a
+# source as its precompiled header was, whatever its own options say. The owner of a header has no definition of its own, so
+# that it fits every other target.
+find_package(nlohmann_json REQUIRED)
 file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cpp" CONTENT "// The owner of the precompiled header needs a source.\n")
-foreach(owner waymark_precompiled waymark_precompiled_cold)
+foreach(owner waymark_precompiled waymark_precompiled_hot)
   add_library(${owner} OBJECT "${PROJECT_BINARY_DIR}/precompiled.cpp")
-  target_link_libraries(${owner} PRIVATE waymark_settings Eigen3::Eigen)
+  target_link_libraries(${owner} PRIVATE waymark_settings Eigen3::Eigen nlohmann_json::nlohmann_json)
   target_precompile_headers(${owner} PRIVATE <Eigen/Core> <algorithm> <array> <functional> <map> <memory>
     <optional> <span> <string> <string_view> <variant> <vector>)
 endforeach()
-target_compile_options(waymark_precompiled_cold PRIVATE $<$<CONFIG:Release>:-O1>)
+target_precompile_headers(waymark_precompiled PRIVATE <chrono> <filesystem> <nlohmann/json.hpp>)
+target_compile_options(waymark_precompiled PRIVATE $<$<CONFIG:Release>:-O1>)
 
 # waymark_not_merged(FILES...): a build that merges sources (CMAKE_UNITY_BUILD) compiles these one by one: their inner loops
 # are compiled for several processors, and that code must not depend on its neighbours.
@@ -74,11 +80,11 @@ function(waymark_not_merged)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# waymark_library(NAME [SHARED] [COLD] [WITHOUT FOLDERS...]): a library of every *.cpp below the calling CMakeLists.txt, but
-# for those in the folders given, with the shared settings and the alias waymark::NAME. COLD: its speed does not matter, so
-# it is optimised little.
+# waymark_library(NAME [SHARED] [HOT] [WITHOUT FOLDERS...]): a library of every *.cpp below the calling CMakeLists.txt, but
+# for those in the folders given, with the shared settings and the alias waymark::NAME. HOT: it has inner loops. The others
+# are optimised little: a whole `waymark run` then takes 1 % more instructions, and a build a quarter less time.
 function(waymark_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED;COLD" "" "WITHOUT")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "SHARED;HOT" "" "WITHOUT")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" *.cpp)
   foreach(folder ${ARG_WITHOUT})
     list(FILTER sources EXCLUDE REGEX "^${folder}/")
@@ -91,10 +97,10 @@ function(waymark_library name)
   add_library(waymark::${name} ALIAS waymark_${name})
   set_target_properties(waymark_${name} PROPERTIES EXPORT_NAME ${name})
   target_link_libraries(waymark_${name} PUBLIC waymark_settings)
-  if(ARG_COLD)
-    target_compile_options(waymark_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-    target_precompile_headers(waymark_${name} REUSE_FROM waymark_precompiled_cold)
+  if(ARG_HOT)
+    target_precompile_headers(waymark_${name} REUSE_FROM waymark_precompiled_hot)
   else()
+    target_compile_options(waymark_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
     target_precompile_headers(waymark_${name} REUSE_FROM waymark_precompiled)
   endif()
 endfunction()
