@@ -39,9 +39,8 @@ enum class AccuracyMeaning {
 
 /// The place of a quantity in a table (or the signal that holds it), and its unit.
 struct ColumnRequest {
-  std::string
-      /// name in the header line, or 1-based number; for CAN frames SIGNAL or MESSAGE.SIGNAL
-      column;
+  /// name in the header line, or 1-based number; for CAN frames SIGNAL or MESSAGE.SIGNAL
+  std::string column;
   /// "km/h", "deg", ...; empty: the SI unit of the quantity (latitude, longitude: degrees)
   std::string unit;
   /// sense of an angle, e.g. "cw_from_north"; empty: the default of the quantity
@@ -64,17 +63,15 @@ struct LogRequest {
   std::vector<SensorColumn> readings;
   /// "dbc" for CAN frames, "timestamps" for KITTI oxts
   std::map<std::string, CompanionFile> companions;
-  char separator =
-      /// CSV field separator; ' ': any run of blanks and tabs; 0: found in the header and noted
-      0;
+  /// CSV field separator; ' ': any run of blanks and tabs; 0: found in the header and noted
+  char separator = 0;
   AccuracyMeaning accuracy = AccuracyMeaning::automatic;
   double default_sigma_m = 0;  ///< per-axis sigma if the log gives none; 0: such a fix is corrupt
   double range_error_m =
       0;  ///< per-axis sigma = HDOP times this if the log gives only HDOP; 0: HDOP is not used
-  TimeScale time_scale =
-      /// scale of the stamps of the samples. It is that of the log, but stamps of a log that names
-      /// its own scale (ISO 8601 dates are UTC) are converted
-      TimeScale::gps;
+  /// scale of the stamps of the samples. It is that of the log, but stamps of a log that names
+  /// its own scale (ISO 8601 dates are UTC) are converted
+  TimeScale time_scale = TimeScale::gps;
   int gps_week = 0;  ///< added if the log counts seconds of week; 0: none
   /// UTC midnight before the first record, for logs that give only the time of day
   std::optional<Stamp> date;

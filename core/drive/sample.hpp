@@ -92,9 +92,8 @@ struct Fix {
   std::string reason = "unjudged";  ///< one word, see tools/drive/nodes/gate.hpp
   /// angle error in the gate; NaN: not computed
   double chord_angle_rad = std::numeric_limits<double>::quiet_NaN();
-  double displacement_m =
-      /// displacement error in the gate; NaN: not computed
-      std::numeric_limits<double>::quiet_NaN();
+  /// displacement error in the gate; NaN: not computed
+  double displacement_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A pose of the reference system in the metric frame.

@@ -19,9 +19,8 @@ struct FencedBlock {
 
 struct Markdown {
   std::vector<FencedBlock> blocks{};
-  std::vector<std::string>
-      /// lines outside of blocks; lines inside are empty, so numbers are those of the file
-      lines{};
+  /// lines outside of blocks; lines inside are empty, so numbers are those of the file
+  std::vector<std::string> lines{};
 };
 
 [[nodiscard]] inline Markdown parse_markdown(std::string_view text) {

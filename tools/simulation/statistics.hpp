@@ -35,9 +35,8 @@ struct DriveStatistics {
   std::vector<double> autocorrelation;  ///< of the errors of the fixes, at kAutocorrelationLags
   double drift_percent =
       evaluation::kUndefined;  ///< mean over the pieces, see DriftOptions; NaN if there is no piece
-  double yaw_drift_deg_per_minute =
-      /// median over one-minute windows of |heading change of odometry - of truth|
-      evaluation::kUndefined;
+  /// median over one-minute windows of |heading change of odometry - of truth|
+  double yaw_drift_deg_per_minute = evaluation::kUndefined;
 };
 
 /// Returns the mean drift over the pieces (DriftOptions), 0.011 for 1.1 %; NaN if no piece fits.

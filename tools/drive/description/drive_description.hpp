@@ -20,9 +20,8 @@ namespace waymark::drive {
 /// One log of a stream: its reader, its file, and how it is read.
 struct LogConfig {
   std::string file;  ///< resolved against the folder of the logs
-  std::string format =
-      /// name of a registered log reader; "auto": the reader that recognises the content of the log
-      "csv";
+  /// name of a registered log reader; "auto": the reader that recognises the content of the log
+  std::string format = "csv";
   LogRequest request;  ///< without the text of companion files
   /// files that belong to the log, resolved, by key ("dbc")
   std::map<std::string, std::string> companions;
@@ -62,9 +61,8 @@ struct DriveDescription {
   /// modules to load, resolved against the folder of the drive.yaml
   std::vector<std::string> plugins;
 
-  std::optional<TimeScale>
-      /// scale of the drive; logs on others are converted. Empty: gps is assumed
-      time_scale;
+  /// scale of the drive; logs on others are converted. Empty: gps is assumed
+  std::optional<TimeScale> time_scale;
   double speed_delay_s = 0;  ///< how late the stamps of the odometry's speed are; subtracted
   double yaw_rate_delay_s = 0;
   double gnss_delay_s = 0;       ///< how late the stamps of the receiver are; subtracted
@@ -74,9 +72,8 @@ struct DriveDescription {
   TimelineOptions timeline;  ///< how samples become nodes in time
 
   std::optional<int> utm_zone;  ///< signed: negative is south; empty: zone of the first good fix
-  std::optional<Eigen::Vector2d>
-      /// easting, northing of the local origin; empty: near the first fix
-      utm_origin;
+  /// easting, northing of the local origin; empty: near the first fix
+  std::optional<Eigen::Vector2d> utm_origin;
   Eigen::Vector2d antenna_m{0, 0};          ///< GNSS antenna in the body frame (x forward, y left)
   Eigen::Vector2d truth_reference_m{0, 0};  ///< reference point of the truth in the body frame
 

@@ -32,10 +32,9 @@ struct Minimization {
 struct FusionSettings {
   std::string modeling = "correlated";  ///< registered GNSS modeling
   Options modeling_options{};           ///< of it, checked when it is made
-  std::string
-      /// loss of the fixes, "cauchy:1": a registered loss and its scale; empty or "none":
-      /// squared errors
-      loss{};
+  /// loss of the fixes, "cauchy:1": a registered loss and its scale; empty or "none":
+  /// squared errors
+  std::string loss{};
   std::string odometry_model = "constant_twist";  ///< registered odometry model
   Options odometry_options{};                     ///< of it, checked when it is made
   /// States that are estimated with the poses: options for the odometry model or the GNSS modeling,

@@ -30,10 +30,9 @@ struct SyncReport {
 };
 
 struct SyncOptions {
-  double largest_s =
-      /// offsets are searched in [-largest_s, largest_s]; above 18, so that a missing leap
-      /// second is found
-      30;
+  /// offsets are searched in [-largest_s, largest_s]; above 18, so that a missing leap
+  /// second is found
+  double largest_s = 30;
 };
 
 /// Compares speed with speed and yaw rate with yaw rate. The odometry side is the mean between two

@@ -58,8 +58,8 @@ struct PrepareReport {
   StreamReport sensor;        ///< of all further sensors: records and corrupt ones
   std::size_t reversing = 0;  ///< odometry samples with negative speed; this is no error
   std::size_t odometry_outside_window = 0;
-  std::size_t fixes_outside_odometry =
-      0;  ///< dropped: before the first or after the last used odometry sample
+  /// dropped: before the first or after the last used odometry sample
+  std::size_t fixes_outside_odometry = 0;
   /// dropped: another fix was nearer to a multiple of gnss_period_s
   std::size_t fixes_thinned = 0;
   std::size_t fixes_withheld = 0;   ///< kept, but left out of the graph

@@ -22,9 +22,8 @@ enum class GapPolicy {
 inline constexpr double kLargestSnap = 0.05;
 
 struct TimelineOptions {
-  double snap_s =
-      /// a GNSS epoch this near to an odometry stamp shares its node; in [0, kLargestSnap]
-      0.001;
+  /// a GNSS epoch this near to an odometry stamp shares its node; in [0, kLargestSnap]
+  double snap_s = 0.001;
   double gap_s = 0.5;  ///< a longer interval between odometry samples is a gap; > 0
   GapPolicy gap_policy = GapPolicy::bridge;
   double gap_noise_factor = 100;  ///< variance factor of a bridged interval; >= 1
