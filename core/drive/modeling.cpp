@@ -9,6 +9,16 @@ namespace waymark {
 OdometryModel::~OdometryModel() = default;
 GnssModeling::~GnssModeling() = default;
 SensorModel::~SensorModel() = default;
+void SensorModel::check_drive(std::span<const Fix>, const SensorTable&) const {}
+
+double median_accuracy(std::span<const Fix> fixes) {
+  std::vector<double> ordered;
+  ordered.reserve(fixes.size());
+  for (const Fix& fix : fixes) ordered.push_back(std::sqrt(0.5 * fix.covariance.trace()));
+  const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2);
+  std::nth_element(ordered.begin(), middle, ordered.end());
+  return *middle;
+}
 
 std::optional<NodeInTime> nearest_node(const DriveNodes& nodes, Stamp moment, double tolerance_s) {
   if (nodes.stamps.empty()) return std::nullopt;

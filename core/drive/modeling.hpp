@@ -1,8 +1,13 @@
 /// The interfaces through which a drive becomes a graph. Odometry intervals become edges; GNSS
 /// fixes and readings of further sensors become vertices and edges. Implementations are plugins.
 ///
-/// Spans in inputs are valid only during build(). One thread at a time may use a model, and it may
-/// be used again. It belongs to the caller of its factory.
+/// A model serves one graph and lets it grow: each call of extend() adds the next part of the drive.
+/// A drive that is known as a whole is one part. So a model keeps what the next call continues
+/// from: the last states, the landmarks seen. It keeps vertices by id (KeptVertex), because
+/// vertices may leave the graph between two calls, as in a sliding window, and indices change then.
+///
+/// Spans in inputs are valid only during the call. One thread at a time may use a model. It belongs
+/// to the caller of its factory.
 #pragma once
 
 #include <functional>
@@ -52,7 +57,8 @@ class OdometryModel {
   virtual ~OdometryModel();
   /// Adds one or more edges per interval, and the states that the model calibrates (ids from
   /// Graph::free_id).
-  virtual void build(const DriveNodes& nodes, Graph& graph) const = 0;
+  /// @param nodes the next part: its first node is the last one of the part before
+  virtual void extend(const DriveNodes& nodes, Graph& graph) = 0;
   /// Returns |speed| in m/s below which the vehicle stands. Its measured motion is then
   /// the identity.
   [[nodiscard]] virtual double standstill_speed() const = 0;
@@ -66,25 +72,33 @@ struct GnssInput {
   Eigen::Vector2d antenna = {0, 0};  ///< antenna in the body frame, m
   /// robust loss of the edges that carry the information of the fixes
   std::optional<Loss> loss = {};
+  /// median_accuracy() of all fixes of the drive, of the ones so far if it grows; 0: of these fixes
+  double median_accuracy_m = 0;
 };
+
+/// Returns the median of the accuracies that fixes claim: sqrt(trace(covariance) / 2), in m.
+/// @param fixes at least one
+[[nodiscard]] double median_accuracy(std::span<const Fix> fixes);
 
 /// Connects poses and fixes (the paper's G1, G2, G3, and those of plugins).
 class GnssModeling {
  public:
   virtual ~GnssModeling();
-  /// Adds vertices (ids from Graph::free_id) and edges for all fixes. The values of existing
-  /// vertices are the initial guess.
-  virtual void build(const GnssInput& input, Graph& graph) const = 0;
+  /// Adds vertices (ids from Graph::free_id) and edges for the fixes, the next ones in time. The
+  /// values of existing vertices are the initial guess.
+  virtual void extend(const GnssInput& input, Graph& graph) = 0;
 };
 
 /// The input of a sensor model.
 struct SensorInput {
+  /// all nodes in the graph, those of former parts too: a reading may look back
   DriveNodes nodes;
-  /// only accepted ones, with course and speed of their receiver
+  /// the next ones, only accepted ones, with course and speed of their receiver
   std::span<const Fix> fixes;
   Eigen::Vector2d antenna = {0, 0};  ///< GNSS antenna in the body frame, m
-  /// the log of the sensor in SI units; empty if the type has no columns
+  /// the next readings of the sensor in SI units; empty if the type has no columns
   const SensorTable& readings;
+  double grid_scale = 1;  ///< grid metres per metre on the ground, at the last fix before these
 };
 
 /// Connects poses with the readings of a further sensor: a compass, a scan matcher, a
@@ -92,9 +106,13 @@ struct SensorInput {
 class SensorModel {
  public:
   virtual ~SensorModel();
+  /// Judges a drive that is known as a whole, before it becomes a graph.
+  /// @param fixes, readings all of the drive
+  /// @throws InputError if the drive has nothing that the sensor could use
+  virtual void check_drive(std::span<const Fix> fixes, const SensorTable& readings) const;
   /// Adds vertices (ids from Graph::free_id) and edges for all readings within the drive.
   /// @throws InputError for impossible readings; it names the row
-  virtual void build(const SensorInput& input, Graph& graph) const = 0;
+  virtual void extend(const SensorInput& input, Graph& graph) = 0;
 };
 
 struct OdometryModelType {

@@ -11,8 +11,9 @@ class UnaryFixes final : public GnssModeling {
  public:
   explicit UnaryFixes(double sigma_factor) : sigma_factor_(sigma_factor) {}
 
-  /// Called once per drive, with the poses in the graph already. Only accepted fixes come here.
-  void build(const GnssInput& input, Graph& graph) const override {
+  /// Called with the next fixes of a drive, often all of them, with their poses in the graph already.
+  /// Only accepted fixes come here.
+  void extend(const GnssInput& input, Graph& graph) override {
     // What a modeling cannot take into account it refuses: the user would never know.
     if (!input.antenna.isZero(0)) throw UsageError("unary: this modeling has no antenna lever arm; use g1");
     for (const Fix& fix : input.fixes) {

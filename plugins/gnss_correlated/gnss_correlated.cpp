@@ -35,14 +35,6 @@ struct ErrorModel {
 
 /// The claimed accuracies are used relative to their median. Receivers know which fix is worse
 /// better than they know how bad it is.
-double median_accuracy(std::span<const Fix> fixes) {
-  std::vector<double> ordered;
-  for (const Fix& fix : fixes) ordered.push_back(std::sqrt(0.5 * fix.covariance.trace()));
-  const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2);
-  std::nth_element(ordered.begin(), middle, ordered.end());
-  return *middle;
-}
-
 Eigen::Matrix2d relative_root(const Fix& fix, double median_m, double exponent) {
   constexpr double kSmallest = 0.3;
   constexpr double kLargest = 30;
@@ -56,33 +48,31 @@ Eigen::Matrix2d relative_root(const Fix& fix, double median_m, double exponent) 
 template <Vertex V, Edge Decay>
 class ProcessAlongFixes {
  public:
-  ProcessAlongFixes(double sigma, double time_s, Graph& graph)
-      : variance_(sigma * sigma), time_s_(time_s), graph_(graph) {}
+  ProcessAlongFixes(double sigma, double time_s) : variance_(sigma * sigma), time_s_(time_s) {}
 
   /// Returns the vertex of a fix. Stamps must not decrease.
-  [[nodiscard]] VertexIndex at(Stamp stamp) {
-    if (vertex_ >= 0 && since_ == stamp) return vertex_;
-    const VertexIndex next = graph_.add_vertex<V>(graph_.free_id(), {0, 0});
-    graph_.set_stamp(next, stamp);
-    if (vertex_ < 0) {
-      graph_.add_edge(gaussian_prior_type(), std::array{next}, std::array{0.0, 0.0, 0.0, 0.0},
-                      Eigen::MatrixXd::Identity(2, 2) / variance_);
+  [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
+    const VertexIndex last = last_.in(graph);
+    if (last >= 0 && since_ == stamp) return last;
+    const VertexIndex next = graph.add_vertex<V>(graph.free_id(), {0, 0});
+    graph.set_stamp(next, stamp);
+    if (last < 0) {
+      graph.add_edge(gaussian_prior_type(), std::array{next}, std::array{0.0, 0.0, 0.0, 0.0},
+                     Eigen::MatrixXd::Identity(2, 2) / variance_);
     } else {
       Decay edge;
       edge.decay = std::exp(-seconds_between(since_, stamp) / time_s_);
-      graph_.add_edge(edge, {vertex_, next},
-                      Eigen::Matrix2d::Identity() / (variance_ * (1 - edge.decay * edge.decay)));
+      graph.add_edge(edge, {last, next},
+                     Eigen::Matrix2d::Identity() / (variance_ * (1 - edge.decay * edge.decay)));
     }
-    vertex_ = next;
     since_ = stamp;
-    return next;
+    return last_.keep(next, graph);
   }
 
  private:
   double variance_;
   double time_s_;
-  Graph& graph_;
-  VertexIndex vertex_ = -1;  // none yet
+  KeptVertex last_;
   Stamp since_;
 };
 
@@ -98,20 +88,20 @@ class GnssCorrelated final : public GnssModeling {
   GnssCorrelated(const ErrorModel& model, double time_offset_sigma_s)
       : model_(model), time_offset_sigma_s_(time_offset_sigma_s) {}
 
-  void build(const GnssInput& input, Graph& graph) const override {
+  void extend(const GnssInput& input, Graph& graph) override {
     if (input.fixes.empty()) return;
     if (input.motion.size() != input.fixes.size())
       throw UsageError("correlated: the motion at each fix is needed (GnssInput::motion)");
-    const VertexIndex origin = add_origin(graph);
-    const VertexIndex offset = add_time_offset(graph);
+    const VertexIndex origin = origin_.in_or(graph, [&] { return add_origin(graph); });
+    const VertexIndex offset = offset_.in_or(graph, [&] { return add_time_offset(graph); });
     const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
     const double peak = model_.heavy_tails ? kStudentInformation : 1;
-    const double median_m = median_accuracy(input.fixes);
-    std::map<int, Receiver> receivers;
+    const double median_m =
+        input.median_accuracy_m > 0 ? input.median_accuracy_m : median_accuracy(input.fixes);
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const Eigen::Matrix2d root = relative_root(fix, median_m, model_.accuracy_exponent);
-      Receiver& receiver = receivers.try_emplace(fix.source, make_receiver(graph)).first->second;
+      Receiver& receiver = receivers_.try_emplace(fix.source, make_receiver()).first->second;
       EdgeGnssPositionBiased edge;
       edge.measured = fix.position;
       edge.antenna = input.antenna;
@@ -120,8 +110,8 @@ class GnssCorrelated final : public GnssModeling {
       edge.scale = model_.multipath_m * Eigen::Vector3d(root(0, 0), root(0, 1), root(1, 1));
       const Eigen::Matrix2d information = peak * (model_.white_m * model_.white_m * root * root).inverse();
       graph.add_edge(edge,
-                     {origin, pose_vertex(fix, graph), offset, receiver.bias.at(fix.stamp),
-                      receiver.multipath.at(fix.stamp)},
+                     {origin, pose_vertex(fix, graph), offset, receiver.bias.at(fix.stamp, graph),
+                      receiver.multipath.at(fix.stamp, graph)},
                      0.5 * (information + information.transpose()), loss);
     }
   }
@@ -144,12 +134,15 @@ class GnssCorrelated final : public GnssModeling {
     return offset;
   }
 
-  [[nodiscard]] Receiver make_receiver(Graph& graph) const {
-    return {{model_.bias_m(), model_.bias_time_s, graph}, {1, model_.multipath_time_s, graph}};
+  [[nodiscard]] Receiver make_receiver() const {
+    return {{model_.bias_m(), model_.bias_time_s}, {1, model_.multipath_time_s}};
   }
 
   ErrorModel model_;
   double time_offset_sigma_s_;
+  KeptVertex origin_;
+  KeptVertex offset_;
+  std::map<int, Receiver> receivers_;
 };
 
 std::vector<OptionInfo> options() {

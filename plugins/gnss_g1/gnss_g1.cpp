@@ -13,10 +13,10 @@ class GnssG1 final : public GnssModeling {
   GnssG1(bool literal, double time_offset_sigma_s)
       : literal_(literal), time_offset_sigma_s_(time_offset_sigma_s) {}
 
-  void build(const GnssInput& input, Graph& graph) const override {
+  void extend(const GnssInput& input, Graph& graph) override {
     if (literal_) require_no_lever_arm(input, "g1");
-    const VertexIndex origin = add_origin(graph);
-    PositionEdges positions(input, time_offset_sigma_s_, graph);
+    const VertexIndex origin = origin_.in_or(graph, [&] { return add_origin(graph); });
+    PositionEdges positions(input, time_offset_sigma_s_, offset_, graph);
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const std::array<VertexIndex, 2> vertices = {origin, pose_vertex(fix, graph)};
@@ -32,6 +32,8 @@ class GnssG1 final : public GnssModeling {
  private:
   bool literal_;
   double time_offset_sigma_s_;
+  KeptVertex origin_;
+  KeptVertex offset_;
 };
 
 std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {

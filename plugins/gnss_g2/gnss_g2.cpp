@@ -24,11 +24,11 @@ class GnssG2 final : public GnssModeling {
         identity_(given.identity_information),
         time_offset_sigma_s_(given.time_offset_sigma_s) {}
 
-  void build(const GnssInput& input, Graph& graph) const override {
+  void extend(const GnssInput& input, Graph& graph) override {
     if (literal_) require_no_lever_arm(input, "g2");
-    const VertexIndex origin = add_origin(graph);
+    const VertexIndex origin = origin_.in_or(graph, [&] { return add_origin(graph); });
     const Eigen::Matrix3d identity = identity_ * Eigen::Matrix3d::Identity();
-    PositionEdges positions(input, time_offset_sigma_s_, graph);
+    PositionEdges positions(input, time_offset_sigma_s_, offset_, graph);
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const VertexIndex pose = pose_vertex(fix, graph);
@@ -51,6 +51,8 @@ class GnssG2 final : public GnssModeling {
   bool begin_at_pose_;
   double identity_;
   double time_offset_sigma_s_;
+  KeptVertex origin_;
+  KeptVertex offset_;
 };
 
 std::vector<OptionInfo> options() {

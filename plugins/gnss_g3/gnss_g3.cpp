@@ -14,9 +14,9 @@ class GnssG3 final : public GnssModeling {
   GnssG3(bool literal, double time_offset_sigma_s)
       : literal_(literal), time_offset_sigma_s_(time_offset_sigma_s) {}
 
-  void build(const GnssInput& input, Graph& graph) const override {
+  void extend(const GnssInput& input, Graph& graph) override {
     if (literal_) require_no_lever_arm(input, "g3");
-    PositionEdges positions(input, time_offset_sigma_s_, graph);
+    PositionEdges positions(input, time_offset_sigma_s_, offset_, graph);
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const VertexIndex pose = pose_vertex(fix, graph);
@@ -35,6 +35,7 @@ class GnssG3 final : public GnssModeling {
  private:
   bool literal_;
   double time_offset_sigma_s_;
+  KeptVertex offset_;
 };
 
 std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {

@@ -38,8 +38,19 @@ class GnssVelocity final : public SensorModel {
       throw UsageError("gnss_velocity: course and speed are both off; leave the sensor out");
   }
 
-  void build(const SensorInput& input, Graph& graph) const override {
-    require_velocities(input);
+  void check_drive(std::span<const Fix> fixes, const SensorTable&) const override {
+    const bool any = std::any_of(fixes.begin(), fixes.end(), [&](const Fix& fix) {
+      return (uses_course_ && fix.heading_rad) || (uses_speed_ && fix.speed_mps);
+    });
+    if (any) return;
+    throw InputError("no accepted fix has " +
+                     std::string(!uses_speed_    ? "a course; does the gnss log have a column 'course'?"
+                                 : !uses_course_ ? "a speed; does the gnss log have a column 'speed'?"
+                                                 : "a course or a speed; does the gnss log have columns "
+                                                   "'course' and 'speed'?"));
+  }
+
+  void extend(const SensorInput& input, Graph& graph) override {
     for (const Fix& fix : input.fixes) {
       const auto place = find_place(input.nodes, fix.stamp);
       if (!place) continue;
@@ -51,18 +62,6 @@ class GnssVelocity final : public SensorModel {
   }
 
  private:
-  void require_velocities(const SensorInput& input) const {
-    const bool any = std::any_of(input.fixes.begin(), input.fixes.end(), [&](const Fix& fix) {
-      return (uses_course_ && fix.heading_rad) || (uses_speed_ && fix.speed_mps);
-    });
-    if (any) return;
-    throw InputError("no accepted fix has " +
-                     std::string(!uses_speed_    ? "a course; does the gnss log have a column 'course'?"
-                                 : !uses_course_ ? "a speed; does the gnss log have a column 'speed'?"
-                                                 : "a course or a speed; does the gnss log have columns "
-                                                   "'course' and 'speed'?"));
-  }
-
   void add_course(const SensorInput& input, const Fix& fix, const ReadingPlace& place, const Interval& motion,
                   Graph& graph) const {
     const double sigma = fix.heading_sigma_rad.value_or(course_sigma_);

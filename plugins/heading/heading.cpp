@@ -3,6 +3,7 @@
 #include <array>
 #include <numbers>
 
+#include <waymark/core/drive/kept_vertex.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
@@ -37,8 +38,9 @@ class Heading final : public SensorModel {
         estimates_offset_(options.word("offset") == "constant"),
         offset_sigma_(kDegree * options.number("offset_sigma_deg")) {}
 
-  void build(const SensorInput& input, Graph& graph) const override {
-    const VertexIndex offset = estimates_offset_ ? add_offset(graph) : -1;
+  void extend(const SensorInput& input, Graph& graph) override {
+    const VertexIndex offset =
+        estimates_offset_ ? offset_.in_or(graph, [&] { return add_offset(graph); }) : -1;
     for (std::size_t row = 0; row < input.readings.size(); ++row) {
       const double sigma = sigma_of_reading(input.readings, row, kSigma, "sigma", sigma_);
       const double reading = number_of_reading(input.readings, row, kHeading, "heading", kLargestAngle_rad);
@@ -65,6 +67,7 @@ class Heading final : public SensorModel {
   double sigma_ = 0;
   bool estimates_offset_ = false;
   double offset_sigma_ = 0;
+  KeptVertex offset_;
 };
 
 void register_types(TypeRegistry& registry) {

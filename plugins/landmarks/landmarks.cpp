@@ -1,9 +1,11 @@
 #include <waymark/plugins/landmarks/landmarks.hpp>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 
+#include <waymark/core/drive/kept_vertex.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
@@ -39,18 +41,38 @@ std::vector<OptionInfo> options() {
 /// Maps the ids of the landmarks of a drive to their vertices.
 class Landmarks {
  public:
-  Landmarks(const SensorTable& readings, Graph& graph) : graph_(graph) { read_map(readings); }
-
   /// Returns the vertex of a landmark. Its first sight creates the vertex: fixed at the place in
   /// the map, or else free at the place where it was seen.
-  VertexIndex vertex(std::int64_t id, const Eigen::Vector2d& seen_at) {
-    const auto [entry, is_new] = vertices_.try_emplace(id, -1);
-    if (!is_new) return entry->second;
-    const auto known = map_.find(id);
-    const Eigen::Vector2d place = known == map_.end() ? seen_at : known->second;
-    entry->second = graph_.add_vertex<VertexXy>(graph_.free_id(), {place[0], place[1]});
-    graph_.set_fixed(entry->second, known != map_.end());
-    return entry->second;
+  VertexIndex vertex(std::int64_t id, const Eigen::Vector2d& seen_at, Graph& graph) {
+    return vertices_[id].in_or(graph, [&] {
+      const auto known = map_.find(id);
+      const Eigen::Vector2d place = known == map_.end() ? seen_at : known->second;
+      const VertexIndex made = graph.add_vertex<VertexXy>(graph.free_id(), {place[0], place[1]});
+      graph.set_fixed(made, known != map_.end());
+      return made;
+    });
+  }
+
+  /// Takes the places that these readings state. A landmark that was seen before moves to its place.
+  void read_map(const SensorTable& readings, Graph& graph) {
+    for (std::size_t row = 0; row < readings.size(); ++row) {
+      const Eigen::Vector2d place(readings.at(row, kMapX), readings.at(row, kMapY));
+      const bool has_x = !std::isnan(place[0]);
+      const bool has_y = !std::isnan(place[1]);
+      if (!has_x && !has_y) continue;
+      if (has_x != has_y)
+        fail_reading(readings, row, has_x ? "map_y" : "map_x", "map_x and map_y go together");
+      (void)number_of_reading(readings, row, kMapX, "map_x", kLargestLength_m);
+      (void)number_of_reading(readings, row, kMapY, "map_y", kLargestLength_m);
+      const std::int64_t id = id_of(readings, row);
+      const auto [entry, is_new] = map_.try_emplace(id, place);
+      if (!is_new && entry->second != place)
+        fail_reading(readings, row, "map_x", "another row has this landmark at another place");
+      const VertexIndex seen = is_new ? vertices_[id].in(graph) : -1;
+      if (seen < 0) continue;
+      graph.set_value(seen, std::array{place[0], place[1]});
+      graph.set_fixed(seen, true);
+    }
   }
 
   static std::int64_t id_of(const SensorTable& readings, std::size_t row) {
@@ -62,24 +84,7 @@ class Landmarks {
   }
 
  private:
-  void read_map(const SensorTable& readings) {
-    for (std::size_t row = 0; row < readings.size(); ++row) {
-      const Eigen::Vector2d place(readings.at(row, kMapX), readings.at(row, kMapY));
-      const bool has_x = !std::isnan(place[0]);
-      const bool has_y = !std::isnan(place[1]);
-      if (!has_x && !has_y) continue;
-      if (has_x != has_y)
-        fail_reading(readings, row, has_x ? "map_y" : "map_x", "map_x and map_y go together");
-      (void)number_of_reading(readings, row, kMapX, "map_x", kLargestLength_m);
-      (void)number_of_reading(readings, row, kMapY, "map_y", kLargestLength_m);
-      const auto [entry, is_new] = map_.try_emplace(id_of(readings, row), place);
-      if (!is_new && entry->second != place)
-        fail_reading(readings, row, "map_x", "another row has this landmark at another place");
-    }
-  }
-
-  Graph& graph_;
-  std::map<std::int64_t, VertexIndex> vertices_;
+  std::map<std::int64_t, KeptVertex> vertices_;
   std::map<std::int64_t, Eigen::Vector2d> map_;
 };
 
@@ -90,8 +95,8 @@ class LandmarkSensor final : public SensorModel {
         sigma_bearing_(kDegree * options.number("sigma_bearing_deg")),
         mount_(read_mount(options)) {}
 
-  void build(const SensorInput& input, Graph& graph) const override {
-    Landmarks landmarks(input.readings, graph);
+  void extend(const SensorInput& input, Graph& graph) override {
+    landmarks_.read_map(input.readings, graph);
     for (std::size_t row = 0; row < input.readings.size(); ++row) {
       const std::int64_t id = Landmarks::id_of(input.readings, row);
       const bool polar = is_polar(input.readings, row);
@@ -102,9 +107,9 @@ class LandmarkSensor final : public SensorModel {
       if (!place) continue;
       const double scale = grid_scale_at(input, input.readings.stamps[row]);
       if (polar) {
-        add_polar(input.readings, row, scale, *place, {sigma, sigma_bearing}, id, landmarks, graph);
+        add_polar(input.readings, row, scale, *place, {sigma, sigma_bearing}, id, graph);
       } else {
-        add_cartesian(input.readings, row, scale, *place, sigma, id, landmarks, graph);
+        add_cartesian(input.readings, row, scale, *place, sigma, id, graph);
       }
     }
   }
@@ -128,7 +133,7 @@ class LandmarkSensor final : public SensorModel {
   }
 
   void add_polar(const SensorTable& readings, std::size_t row, double scale, const ReadingPlace& place,
-                 const Eigen::Vector2d& sigmas, std::int64_t id, Landmarks& landmarks, Graph& graph) const {
+                 const Eigen::Vector2d& sigmas, std::int64_t id, Graph& graph) {
     const Pose2<double> sensor = compose(place.ahead, mount_);
     EdgeSe2XyRangeBearing edge;
     edge.measured = {scale * readings.at(row, kRange),
@@ -137,17 +142,18 @@ class LandmarkSensor final : public SensorModel {
     edge.sensor = sensor.position;
     const Eigen::Vector2d along(edge.measured[0], 0);
     const Eigen::Vector2d seen = sensor.position + rotate(edge.measured[1], along);
-    graph.add_edge(edge, {place.pose, landmarks.vertex(id, in_frame(graph, place.pose, seen))},
+    graph.add_edge(edge, {place.pose, landmarks_.vertex(id, in_frame(graph, place.pose, seen), graph)},
                    sigmas.cwiseAbs2().cwiseInverse().asDiagonal());
   }
 
   void add_cartesian(const SensorTable& readings, std::size_t row, double scale, const ReadingPlace& place,
-                     double sigma, std::int64_t id, Landmarks& landmarks, Graph& graph) const {
+                     double sigma, std::int64_t id, Graph& graph) {
     const Pose2<double> sensor = compose(place.ahead, mount_);
     const Eigen::Vector2d z(scale * number_of_reading(readings, row, kX, "x", kLargestLength_m),
                             scale * number_of_reading(readings, row, kY, "y", kLargestLength_m));
     const Eigen::Vector2d seen = sensor.position + rotate(sensor.heading, z);
-    graph.add_edge(EdgeSe2Xy{seen}, {place.pose, landmarks.vertex(id, in_frame(graph, place.pose, seen))},
+    graph.add_edge(EdgeSe2Xy{seen},
+                   {place.pose, landmarks_.vertex(id, in_frame(graph, place.pose, seen), graph)},
                    Eigen::Matrix2d::Identity() / (sigma * sigma));
   }
 
@@ -159,6 +165,7 @@ class LandmarkSensor final : public SensorModel {
   double sigma_ = 0;
   double sigma_bearing_ = 0;
   Pose2<double> mount_;
+  Landmarks landmarks_;
 };
 
 void register_types(TypeRegistry& registry) {

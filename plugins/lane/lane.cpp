@@ -33,7 +33,7 @@ class Lane final : public SensorModel {
   explicit Lane(const CheckedOptions& options)
       : sigma_(options.number("sigma")), lever_(options.number("lever_x"), options.number("lever_y")) {}
 
-  void build(const SensorInput& input, Graph& graph) const override {
+  void extend(const SensorInput& input, Graph& graph) override {
     const SensorTable& readings = input.readings;
     for (std::size_t row = 0; row < readings.size(); ++row) {
       const double sigma = sigma_of_reading(readings, row, kSigma, "sigma", sigma_);

@@ -38,7 +38,7 @@ class LoopClosure final : public SensorModel {
         sigma_heading_(kDegree * options.number("sigma_heading_deg")),
         mount_(read_mount(options)) {}
 
-  void build(const SensorInput& input, Graph& graph) const override {
+  void extend(const SensorInput& input, Graph& graph) override {
     const SensorTable& readings = input.readings;
     for (std::size_t row = 0; row < readings.size(); ++row) {
       const double sigma = sigma_of_reading(readings, row, kSigma, "sigma", sigma_);

@@ -30,25 +30,24 @@ class ConstantTwist final : public OdometryModel {
     StateOptions speed_scale;
   };
 
-  explicit ConstantTwist(const Configuration& configuration) : given_(configuration) {}
+  explicit ConstantTwist(const Configuration& configuration)
+      : given_(configuration), bias_(configuration.gyro_bias), scale_(configuration.speed_scale) {}
 
-  void build(const DriveNodes& nodes, Graph& graph) const override {
+  void extend(const DriveNodes& nodes, Graph& graph) override {
     if (nodes.poses.size() != nodes.intervals.size() + 1)
       throw UsageError("odometry: one pose more than intervals is needed");
-    StateAlongDrive<VertexGyroBias, EdgeGyroBiasWalk> bias(given_.gyro_bias, graph);
-    StateAlongDrive<VertexSpeedScale, EdgeSpeedScaleWalk> scale(given_.speed_scale, graph);
-    const bool calibrates_bias = given_.gyro_bias.model != StateModel::off;
-    const bool calibrates = calibrates_bias || given_.speed_scale.model != StateModel::off;
+    const bool calibrates = bias_.is_calibrated() || scale_.is_calibrated();
     for (std::size_t i = 0; i < nodes.intervals.size(); ++i) {
       const Interval& interval = nodes.intervals[i];
       const std::array<VertexIndex, 2> poses = {nodes.poses[i], nodes.poses[i + 1]};
       if (std::abs(interval.speed_mps) < given_.standstill_speed && !interval.bridged) {
         graph.add_edge(reading<EdgeSe2Standstill>(interval), poses, standstill_information(interval));
-        if (calibrates_bias) add_gyro_at_rest(interval, bias.at(nodes.stamps[i]), graph);
+        if (bias_.is_calibrated()) add_gyro_at_rest(interval, bias_.at(nodes.stamps[i], graph), graph);
       } else if (calibrates) {
-        graph.add_edge(reading<EdgeSe2OdometryCalibrated>(interval),
-                       {poses[0], poses[1], scale.at(nodes.stamps[i]), bias.at(nodes.stamps[i])},
-                       motion_information(interval));
+        graph.add_edge(
+            reading<EdgeSe2OdometryCalibrated>(interval),
+            {poses[0], poses[1], scale_.at(nodes.stamps[i], graph), bias_.at(nodes.stamps[i], graph)},
+            motion_information(interval));
       } else {
         graph.add_edge(reading<EdgeSe2Odometry>(interval), poses, motion_information(interval));
       }
@@ -86,6 +85,8 @@ class ConstantTwist final : public OdometryModel {
   }
 
   Configuration given_;
+  StateAlongDrive<VertexGyroBias, EdgeGyroBiasWalk> bias_;
+  StateAlongDrive<VertexSpeedScale, EdgeSpeedScaleWalk> scale_;
 };
 
 constexpr const char* kGapFactor = "gap_noise_factor";

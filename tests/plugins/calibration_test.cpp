@@ -90,8 +90,8 @@ struct Simulated {
   }
 
   void solve(const Options& odometry, const Options& modeling, const std::string& name = "g1") {
-    registry().make_odometry_model("constant_twist", odometry)->build({stamps, poses, intervals}, graph);
-    registry().make_gnss_modeling(name, modeling)->build({fixes, motion, {0, 0}}, graph);
+    registry().make_odometry_model("constant_twist", odometry)->extend({stamps, poses, intervals}, graph);
+    registry().make_gnss_modeling(name, modeling)->extend({fixes, motion, {0, 0}}, graph);
     const Summary summary =
         optimize(graph, *registry().make_algorithm("dogleg"), *registry().make_linear_solver("eigen"), {});
     INFO(summary.message);
@@ -177,7 +177,7 @@ TEST_CASE(
     const std::vector<Interval> motion(3, turning);
     registry()
         .make_gnss_modeling(name, {{"time_offset", "constant"}})
-        ->build({fixes, motion, antenna}, graph);
+        ->extend({fixes, motion, antenna}, graph);
     VertexIndex nodes = 0;
     for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
       if (graph.vertex_type(v).tag == "VERTEX_TIME_OFFSET") graph.set_value(v, std::array{0.4});
@@ -234,7 +234,7 @@ TEST_CASE("calibration: a standing gyro shows its bias to sqrt(q / T)") {
   graph.set_fixed(poses[0], true);
   registry()
       .make_odometry_model("constant_twist", {{"gyro_bias", "constant"}, {"gyro_bias_sigma", "10"}})
-      ->build({stamps, poses, intervals}, graph);
+      ->extend({stamps, poses, intervals}, graph);
   const Summary summary =
       optimize(graph, *registry().make_algorithm("dogleg"), *registry().make_linear_solver("eigen"), {});
   REQUIRE(summary.converged());
@@ -268,7 +268,7 @@ TEST_CASE("calibration: wrong options are named, and what cannot be combined is 
   Simulated drive({}, 10, 1);
   drive.motion.clear();
   const auto modeling = registry().make_gnss_modeling("g1", {{"time_offset", "constant"}});
-  CHECK_THROWS_WITH(modeling->build({drive.fixes, drive.motion, {0, 0}}, drive.graph),
+  CHECK_THROWS_WITH(modeling->extend({drive.fixes, drive.motion, {0, 0}}, drive.graph),
                     Contains("GnssInput::motion"));
 }
 

@@ -33,7 +33,7 @@ Graph graph_with(const Options& options, const std::optional<Loss>& loss = std::
   fix.covariance = 4 * Eigen::Matrix2d::Identity();
   const std::vector<Fix> fixes{fix};
   const std::vector<Interval> motion(1);
-  registry.make_gnss_modeling("correlated", options)->build({fixes, motion, {0, 0}, loss}, graph);
+  registry.make_gnss_modeling("correlated", options)->extend({fixes, motion, {0, 0}, loss}, graph);
   return graph;
 }
 

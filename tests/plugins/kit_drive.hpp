@@ -49,11 +49,13 @@ struct KitDrive {
   [[nodiscard]] waymark::DriveNodes nodes() const { return {stamps, poses, intervals}; }
   void add_sensor(const std::string& name, const waymark::SensorTable& readings,
                   const waymark::Options& options = {}) {
-    registry().make_sensor_model(name, options)->build({nodes(), fixes, antenna_m, readings}, graph);
+    const auto model = registry().make_sensor_model(name, options);
+    model->check_drive(fixes, readings);
+    model->extend({nodes(), fixes, antenna_m, readings}, graph);
   }
   void add_fixes() {
     const std::vector<waymark::Interval> motion(fixes.size(), intervals.front());
-    registry().make_gnss_modeling("g1", {})->build({fixes, motion, antenna_m}, graph);
+    registry().make_gnss_modeling("g1", {})->extend({fixes, motion, antenna_m}, graph);
   }
 };
 
@@ -153,7 +155,7 @@ inline waymark::Options odometry_options(const KitRecipe& recipe) {
   }
   registry()
       .make_odometry_model("constant_twist", odometry_options(recipe))
-      ->build(drive.nodes(), drive.graph);
+      ->extend(drive.nodes(), drive.graph);
   drive.add_fixes();
   return drive;
 }

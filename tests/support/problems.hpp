@@ -121,7 +121,7 @@ struct Drive {
       const auto node = static_cast<std::size_t>(fix.vertex);
       motion.push_back(intervals[std::min(node, intervals.size() - 1)]);
     }
-    registry.make_gnss_modeling(modeling, options)->build({fixes, motion, antenna_m}, graph);
+    registry.make_gnss_modeling(modeling, options)->extend({fixes, motion, antenna_m}, graph);
   }
 };
 
@@ -170,7 +170,7 @@ struct Drive {
   }
   std::vector<Stamp> stamps;
   for (int i = 0; i < poses; ++i) stamps.push_back(Stamp{std::int64_t{i} * 40'000'000});
-  registry.make_odometry_model("constant_twist")->build({stamps, chain, drive.intervals}, drive.graph);
+  registry.make_odometry_model("constant_twist")->extend({stamps, chain, drive.intervals}, drive.graph);
   return drive;
 }
 

@@ -9,6 +9,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/covariance/evidence.hpp
   core/covariance/marginals.hpp
   core/drive/frame.hpp
+  core/drive/kept_vertex.hpp
   core/drive/log_reader.hpp
   core/drive/modeling.hpp
   core/drive/sample.hpp

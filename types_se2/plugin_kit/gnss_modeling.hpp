@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/drive/kept_vertex.hpp>
 #include <waymark/core/drive/modeling.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/types_se2/edge_gnss.hpp>
@@ -63,13 +64,18 @@ inline VertexIndex add_origin(Graph& graph) {
 class PositionEdges {
  public:
   /// @param prior_sigma_s sigma of the prior on the time offset; 0: the offset is not estimated
+  /// @param offset of the earlier fixes; it is made for the first ones
   /// @throws UsageError if the offset is estimated and the motion at the fixes is not given
-  PositionEdges(const GnssInput& input, double prior_sigma_s, Graph& graph) : input_(input), graph_(graph) {
+  PositionEdges(const GnssInput& input, double prior_sigma_s, KeptVertex& offset, Graph& graph)
+      : input_(input), graph_(graph) {
     if (prior_sigma_s == 0) return;
     if (input.motion.size() != input.fixes.size())
       throw UsageError("a time offset needs the motion at each fix (GnssInput::motion)");
-    offset_ = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
-    add_prior_about_zero(graph, offset_, prior_sigma_s);
+    offset_ = offset.in_or(graph, [&] {
+      const VertexIndex made = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
+      add_prior_about_zero(graph, made, prior_sigma_s);
+      return made;
+    });
   }
 
   /// Adds the edge of fix i.

@@ -60,7 +60,7 @@ Pose2<double> read_mount(const CheckedOptions& options) {
 }
 
 double grid_scale_at(const SensorInput& input, Stamp moment) {
-  if (input.fixes.empty()) return 1;
+  if (input.fixes.empty()) return input.grid_scale;
   const auto after = std::lower_bound(input.fixes.begin(), input.fixes.end(), moment,
                                       [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; });
   if (after == input.fixes.begin()) return after->grid_scale;

@@ -29,8 +29,8 @@ struct ReadingPlace {
 [[nodiscard]] std::vector<OptionInfo> mount_options();
 [[nodiscard]] Pose2<double> read_mount(const CheckedOptions& options);
 
-/// Returns grid metres per metre on the ground, taken from the fix nearest in time; 1
-/// without fixes.
+/// Returns grid metres per metre on the ground, taken from the fix nearest in time;
+/// SensorInput::grid_scale without fixes.
 [[nodiscard]] double grid_scale_at(const SensorInput& input, Stamp moment);
 
 /// @throws InputError "row 3 (time 1003.2): column 'id': " followed by `what`. Rows count from 1,

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include <waymark/core/drive/kept_vertex.hpp>
 #include <waymark/core/drive/modeling.hpp>
 #include <waymark/core/graph/scalar_state.hpp>
 
@@ -27,43 +28,43 @@ struct StateOptions {
 template <Vertex V, Edge Walk>
 class StateAlongDrive {
  public:
-  StateAlongDrive(const StateOptions& options, Graph& graph) : options_(options), graph_(graph) {}
+  explicit StateAlongDrive(const StateOptions& options) : options_(options) {}
+
+  [[nodiscard]] bool is_calibrated() const { return options_.model != StateModel::off; }
 
   /// Returns the vertex of the interval that begins at `stamp`. Stamps must not decrease.
-  [[nodiscard]] VertexIndex at(Stamp stamp) {
-    if (vertex_ < 0) {
-      begin(stamp);
-    } else if (options_.model == StateModel::random_walk &&
-               seconds_between(since_, stamp) >= options_.period_s) {
-      step(stamp);
-    }
-    return vertex_;
+  [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
+    const VertexIndex last = last_.in(graph);
+    if (last < 0) return begin(stamp, graph);
+    const bool ends =
+        options_.model == StateModel::random_walk && seconds_between(since_, stamp) >= options_.period_s;
+    return ends ? step(last, stamp, graph) : last;
   }
 
  private:
-  void begin(Stamp stamp) {
-    vertex_ = graph_.add_vertex<V>(graph_.free_id(), {0});
+  VertexIndex begin(Stamp stamp, Graph& graph) {
+    const VertexIndex first = graph.add_vertex<V>(graph.free_id(), {0});
     since_ = stamp;
-    if (options_.model == StateModel::off) {
-      graph_.set_fixed(vertex_, true);
-      return;
+    if (is_calibrated()) {
+      graph.set_stamp(first, stamp);
+      add_prior_about_zero(graph, first, options_.prior_sigma);
+    } else {
+      graph.set_fixed(first, true);
     }
-    graph_.set_stamp(vertex_, stamp);
-    add_prior_about_zero(graph_, vertex_, options_.prior_sigma);
+    return last_.keep(first, graph);
   }
 
-  void step(Stamp stamp) {
-    const VertexIndex next = graph_.add_vertex<V>(graph_.free_id(), {0});
-    graph_.set_stamp(next, stamp);
+  VertexIndex step(VertexIndex last, Stamp stamp, Graph& graph) {
+    const VertexIndex next = graph.add_vertex<V>(graph.free_id(), {0});
+    graph.set_stamp(next, stamp);
     const double variance = options_.walk_sigma * options_.walk_sigma * seconds_between(since_, stamp);
-    graph_.add_edge(Walk{}, {vertex_, next}, Eigen::Matrix<double, 1, 1>(1 / variance));
-    vertex_ = next;
+    graph.add_edge(Walk{}, {last, next}, Eigen::Matrix<double, 1, 1>(1 / variance));
     since_ = stamp;
+    return last_.keep(next, graph);
   }
 
-  const StateOptions& options_;
-  Graph& graph_;
-  VertexIndex vertex_ = -1;  // none yet
+  StateOptions options_;
+  KeptVertex last_;
   Stamp since_;
 };
 

@@ -1,27 +1,14 @@
 #include <waymark/tools/drive/model/build.hpp>
 
-#include <waymark/tools/drive/model/sensors.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark::drive {
 namespace {
 
-/// Adds a pose for every node, with its stamp, at the initial guess.
-std::vector<VertexIndex> add_poses(const PlacedDrive& placed, Graph& graph) {
-  const Timeline& timeline = placed.timeline;
-  std::vector<VertexIndex> poses;
-  poses.reserve(timeline.stamps.size());
-  for (std::size_t node = 0; node < timeline.stamps.size(); ++node) {
-    const Eigen::Vector3d& pose = placed.start.poses[node];
-    poses.push_back(graph.add_vertex<VertexSe2>(vertex_of(node), {pose[0], pose[1], pose[2]}));
-    graph.set_stamp(poses.back(), timeline.stamps[node]);
-  }
-  return poses;
-}
-
-/// The fixes in the graph, and the motion of the odometry at them.
+/// The fixes in the graph.
 struct AcceptedFixes {
   std::vector<Fix> fixes;
+  std::vector<std::size_t> nodes;
   std::vector<Interval> motion;
 };
 
@@ -30,6 +17,7 @@ AcceptedFixes accepted_fixes(const PlacedDrive& placed) {
   for (std::size_t i = 0; i < placed.fixes.size(); ++i) {
     if (placed.fixes[i].status != FixStatus::accepted) continue;
     accepted.fixes.push_back(placed.fixes[i]);
+    accepted.nodes.push_back(placed.timeline.fix_node[i]);
     accepted.motion.push_back(placed.motion[i]);
   }
   return accepted;
@@ -37,17 +25,51 @@ AcceptedFixes accepted_fixes(const PlacedDrive& placed) {
 
 }  // namespace
 
+GraphBuilder::GraphBuilder(const DriveFacts& facts, std::span<const PreparedSensor> sensors,
+                           const FusionSettings& settings, const TypeRegistry& registry)
+    : facts_(facts),
+      loss_(loss_of_fixes(settings.loss, registry)),
+      odometry_(make_odometry_model(settings, facts.gap_noise_factor, registry)),
+      sensors_(sensors, registry),
+      modeling_(registry.make_gnss_modeling(settings.modeling, settings.modeling_options)) {}
+
+// Each pose gets the next free id: i + 1 for node i if the drive is one part.
+void GraphBuilder::add_nodes(const DrivePart& part) {
+  poses_.reserve(poses_.size() + part.stamps.size());
+  for (std::size_t i = 0; i < part.stamps.size(); ++i) {
+    const Eigen::Vector3d& pose = part.poses[i];
+    poses_.push_back(graph_.add_vertex<VertexSe2>(graph_.free_id(), {pose[0], pose[1], pose[2]}));
+    graph_.set_stamp(poses_.back(), part.stamps[i]);
+  }
+  stamps_.insert(stamps_.end(), part.stamps.begin(), part.stamps.end());
+  intervals_.insert(intervals_.end(), part.intervals.begin(), part.intervals.end());
+}
+
+void GraphBuilder::extend(const DrivePart& part) {
+  const std::size_t joint = poses_.empty() ? 0 : poses_.size() - 1;
+  add_nodes(part);
+  const DriveNodes all = nodes();
+  odometry_->extend({all.stamps.subspan(joint), all.poses.subspan(joint), all.intervals.subspan(joint)},
+                    graph_);
+  std::vector<Fix> fixes(part.fixes.begin(), part.fixes.end());
+  for (std::size_t i = 0; i < fixes.size(); ++i) fixes[i].vertex = graph_.id(poses_[part.fix_nodes[i]]);
+  sensors_.extend(part.sensors, all, fixes, facts_.antenna_m, grid_scale_, graph_);
+  modeling_->extend({fixes, part.motion, facts_.antenna_m, loss_, facts_.median_accuracy_m}, graph_);
+  if (!fixes.empty()) grid_scale_ = fixes.back().grid_scale;
+}
+
 BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                        const FusionSettings& settings, const TypeRegistry& registry) {
-  BuiltGraph built;
-  const std::vector<VertexIndex> poses = add_poses(placed, built.graph);
-  const DriveNodes nodes{placed.timeline.stamps, poses, placed.timeline.intervals};
-  make_odometry_model(settings, placed.gap_noise_factor, registry)->build(nodes, built.graph);
   const AcceptedFixes accepted = accepted_fixes(placed);
-  built.warnings = add_sensors(sensors, nodes, accepted.fixes, placed.antenna_m, registry, built.graph);
-  registry.make_gnss_modeling(settings.modeling, settings.modeling_options)
-      ->build({accepted.fixes, accepted.motion, placed.antenna_m, loss_of_fixes(settings.loss, registry)},
-              built.graph);
+  const DriveFacts facts{placed.antenna_m, placed.gap_noise_factor,
+                         accepted.fixes.empty() ? 0 : median_accuracy(accepted.fixes)};
+  GraphBuilder builder(facts, sensors, settings, registry);
+  builder.check_drive(accepted.fixes, sensors);
+  builder.extend({placed.timeline.stamps, placed.start.poses, placed.timeline.intervals, accepted.fixes,
+                  accepted.nodes, accepted.motion, sensors});
+  BuiltGraph built;
+  built.warnings = warnings_of_sensors_apart(sensors, builder.nodes());
+  built.graph = builder.take_graph();
   return built;
 }
 

@@ -1,19 +1,81 @@
 /// Builds the graph of a placed drive: poses, odometry edges, further sensors, and the connection
 /// to the fixes.
 ///
-/// The steps visit the nodes in order of time, and each passes its part to one plugin. A growing
-/// drive calls them with the new nodes and fixes: DriveNodes is a view, and may begin at any node.
+/// The graph grows: each part of a drive adds its nodes, and each plugin adds its share of the
+/// part. A drive that is known as a whole is one part. The graph of several parts has the same
+/// vertices and edges as that of one, in another order (tests/tools/drive/growing_drive_test.cpp).
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/model/place.hpp>
+#include <waymark/tools/drive/model/sensors.hpp>
 
 namespace waymark::drive {
+
+/// What the models know of a drive before its first part.
+struct DriveFacts {
+  Eigen::Vector2d antenna_m{0, 0};  ///< body frame
+  double gap_noise_factor = 1;      ///< for the odometry model
+  double median_accuracy_m = 0;     ///< for the modeling: GnssInput
+};
+
+/// The next part of a drive, in order of time. The spans are used during the call only.
+struct DrivePart {
+  std::span<const Stamp> stamps;           ///< of its nodes, later than those before
+  std::span<const Eigen::Vector3d> poses;  ///< their initial guess: x, y in m, heading in rad
+  /// the motion to each of these nodes from the one before; none to the first node of the drive
+  std::span<const Interval> intervals;
+  std::span<const Fix> fixes;              ///< accepted ones
+  std::span<const std::size_t> fix_nodes;  ///< the node of each fix, counted from the first of the drive
+  std::span<const Interval> motion;        ///< motion of the odometry at each fix
+  /// those of the constructor, each with its next readings
+  std::span<const PreparedSensor> sensors = {};
+};
+
+/// A graph that grows with its drive.
+class GraphBuilder {
+ public:
+  /// @param settings from decided(), with the estimated noise among the options
+  /// @throws UsageError for an unknown modeling, model, sensor or option
+  GraphBuilder(const DriveFacts& facts, std::span<const PreparedSensor> sensors,
+               const FusionSettings& settings, const TypeRegistry& registry);
+
+  /// Judges a drive that is known as a whole, before its one part. @throws InputError of a sensor
+  void check_drive(std::span<const Fix> accepted, std::span<const PreparedSensor> sensors) const {
+    sensors_.check_drive(sensors, accepted);
+  }
+
+  /// Adds the vertices and edges of a part. @throws errors of the plugins
+  void extend(const DrivePart& part);
+
+  /// The nodes so far. The view is valid until the next part.
+  [[nodiscard]] DriveNodes nodes() const { return {stamps_, poses_, intervals_}; }
+  [[nodiscard]] const Graph& graph() const { return graph_; }
+  /// Gives the graph away. The builder is then at its end.
+  [[nodiscard]] Graph take_graph() { return std::move(graph_); }
+
+ private:
+  void add_nodes(const DrivePart& part);
+
+  DriveFacts facts_;
+  std::optional<Loss> loss_;
+  std::unique_ptr<OdometryModel> odometry_;
+  SensorModels sensors_;
+  std::unique_ptr<GnssModeling> modeling_;
+  Graph graph_;
+  std::vector<Stamp> stamps_;
+  std::vector<VertexIndex> poses_;
+  std::vector<Interval> intervals_;
+  double grid_scale_ = 1;  ///< of the last fix
+};
 
 /// A graph at its initial guess.
 struct BuiltGraph {
@@ -21,7 +83,7 @@ struct BuiltGraph {
   std::vector<std::string> warnings;  ///< of the sensors
 };
 
-/// Builds the graph of the accepted fixes.
+/// Builds the graph of the accepted fixes of a whole drive.
 /// @param sensors further ones, on the clock and in the frame of the drive; may be empty
 /// @param settings from decided(), with the estimated noise among the options
 /// @throws UsageError for an unknown modeling or option; errors of the plugins

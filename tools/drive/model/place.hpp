@@ -1,10 +1,9 @@
 /// The nodes of a drive in time, the verdicts of the gate and the initial guess: everything before
 /// the first vertex.
 ///
-/// Nodes and fixes are in order of time, and the vertex of node i is always i + 1. So a growing
-/// drive only appends. A new odometry sample is a new node with the interval before it. A new fix
-/// is judged with the fixes before it and gets the vertex of its node. The initial guess of a new
-/// node is the previous pose, moved along its interval. Earlier nodes are never renumbered.
+/// Nodes and fixes are in order of time. This is the placing of a drive that is known as a whole:
+/// the vertex of node i is i + 1, and gate and initial guess look at all fixes. A drive that grows
+/// is placed by its caller, part by part (DrivePart in build.hpp).
 #pragma once
 
 #include <memory>
@@ -24,9 +23,8 @@ namespace waymark::drive {
 
 struct PlacedDrive {
   Timeline timeline;
-  std::vector<Fix>
-      /// with verdicts of the gate, in the order of timeline.fix_node; Fix::vertex names the node
-      fixes;
+  /// with verdicts of the gate, in the order of timeline.fix_node; Fix::vertex names the node
+  std::vector<Fix> fixes;
   std::vector<Interval> motion;  ///< motion of the odometry at each fix
   GateSummary gate;
   Start start;

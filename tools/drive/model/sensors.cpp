@@ -16,20 +16,39 @@ bool lie_apart(const SensorTable& readings, const DriveNodes& nodes) {
 
 }  // namespace
 
-std::vector<std::string> add_sensors(std::span<const PreparedSensor> sensors, const DriveNodes& nodes,
-                                     std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m,
-                                     const TypeRegistry& registry, Graph& graph) {
+SensorModels::SensorModels(std::span<const PreparedSensor> sensors, const TypeRegistry& registry) {
+  for (const PreparedSensor& sensor : sensors) {
+    at_place_of(sensor.place, sensor.name,
+                [&] { models_.push_back(registry.make_sensor_model(sensor.name, sensor.options)); });
+  }
+}
+
+void SensorModels::check_drive(std::span<const PreparedSensor> sensors, std::span<const Fix> fixes) const {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    at_place_of(sensors[i].place, sensors[i].name,
+                [&] { models_[i]->check_drive(fixes, sensors[i].readings); });
+  }
+}
+
+void SensorModels::extend(std::span<const PreparedSensor> sensors, const DriveNodes& nodes,
+                          std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m, double grid_scale,
+                          Graph& graph) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    at_place_of(sensors[i].place, sensors[i].name, [&] {
+      models_[i]->extend({nodes, fixes, antenna_m, sensors[i].readings, grid_scale}, graph);
+    });
+  }
+}
+
+std::vector<std::string> warnings_of_sensors_apart(std::span<const PreparedSensor> sensors,
+                                                   const DriveNodes& nodes) {
   std::vector<std::string> warnings;
   for (const PreparedSensor& sensor : sensors) {
-    at_place_of(sensor.place, sensor.name, [&] {
-      registry.make_sensor_model(sensor.name, sensor.options)
-          ->build({nodes, fixes, antenna_m, sensor.readings}, graph);
-      if (lie_apart(sensor.readings, nodes))
-        warnings.push_back(
-            fmt::format("{}sensor {}: none of its {} readings lies within the drive; is its "
-                        "clock (time: scale, week, offset) right?",
-                        sensor.place, sensor.name, sensor.readings.size()));
-    });
+    if (!lie_apart(sensor.readings, nodes)) continue;
+    warnings.push_back(
+        fmt::format("{}sensor {}: none of its {} readings lies within the drive; is its "
+                    "clock (time: scale, week, offset) right?",
+                    sensor.place, sensor.name, sensor.readings.size()));
   }
   return warnings;
 }

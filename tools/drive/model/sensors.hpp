@@ -1,6 +1,7 @@
-/// Adds the further sensors of a drive to its graph.
+/// The further sensors of a drive and their models.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,14 +11,30 @@
 
 namespace waymark::drive {
 
-/// Calls every sensor to add its vertices and edges.
-/// @param fixes accepted ones
-/// @param antenna_m GNSS antenna in the body frame
-/// @return warnings: sensors without a reading within the drive
-/// @throws InputError from a model, with the place of the sensor in the drive.yaml
-[[nodiscard]] std::vector<std::string> add_sensors(std::span<const PreparedSensor> sensors,
-                                                   const DriveNodes& nodes, std::span<const Fix> fixes,
-                                                   const Eigen::Vector2d& antenna_m,
-                                                   const TypeRegistry& registry, Graph& graph);
+/// The models of the sensors. Errors of a model get the place of its sensor in the drive.yaml.
+class SensorModels {
+ public:
+  /// @throws UsageError for an unknown sensor or option
+  SensorModels(std::span<const PreparedSensor> sensors, const TypeRegistry& registry);
+
+  /// Judges a whole drive. @param fixes accepted ones @throws InputError from a model
+  void check_drive(std::span<const PreparedSensor> sensors, std::span<const Fix> fixes) const;
+
+  /// Calls every model to add its vertices and edges.
+  /// @param sensors those of the constructor, with their next readings
+  /// @param fixes the next accepted ones
+  /// @param antenna_m GNSS antenna in the body frame
+  /// @param grid_scale at the last fix before these
+  /// @throws InputError from a model
+  void extend(std::span<const PreparedSensor> sensors, const DriveNodes& nodes, std::span<const Fix> fixes,
+              const Eigen::Vector2d& antenna_m, double grid_scale, Graph& graph);
+
+ private:
+  std::vector<std::unique_ptr<SensorModel>> models_;
+};
+
+/// Returns a warning for each sensor without a reading within the drive.
+[[nodiscard]] std::vector<std::string> warnings_of_sensors_apart(std::span<const PreparedSensor> sensors,
+                                                                 const DriveNodes& nodes);
 
 }  // namespace waymark::drive
