@@ -3,7 +3,10 @@
 #include <filesystem>
 
 #include <catch2/catch.hpp>
+
 #include <nlohmann/json.hpp>
+
+#include <waymark/core/registry/plugin.hpp>
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
@@ -31,7 +34,8 @@ class PluginPath {
 TEST_CASE("plugins: --plugin loads a file, and info says where each plugin comes from") {
   const RunResult result = run({"info", "--plugins", "--plugin", module_file("sound")});
   CHECK(result.code == 0);
-  CHECK(contains(result.out, "plugin ABI 4, Eigen 30400 with alignment 16"));
+  CHECK(contains(result.out,
+                 "plugin ABI " + std::to_string(waymark::kPluginAbi) + ", Eigen 30400 with alignment 16"));
   CHECK(contains(result.out, "gnss_g1 0.1.0, built in\n  g1\n"));
   CHECK(contains(result.out, "sample 1.2.3, " + module_file("sound") + "\n  EDGE_SAMPLE\n"));
   const RunResult json = run({"info", "--plugins", "--json", "--plugin", module_file("sound")});

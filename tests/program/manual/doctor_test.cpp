@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+
 #include <nlohmann/json.hpp>
+
+#include <waymark/core/registry/plugin.hpp>
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
@@ -101,12 +104,13 @@ TEST_CASE("doctor: broken plugins in a folder are named with reason and remedy, 
   CHECK(plugins.at("folders").back().at("problem") == "No such file or directory");
   CHECK(plugins.at("loaded").back().at("name") == "sample");
   CHECK(plugins.at("loaded").back().at("version") == "1.2.3");
-  CHECK(plugins.at("loaded").back().at("abi") == 4);
+  CHECK(plugins.at("loaded").back().at("abi") == waymark::kPluginAbi);
   CHECK(plugins.at("loaded").back().at("brings") == Json::array({"EDGE_SAMPLE"}));
   REQUIRE(plugins.at("left_out").size() == 2);
   CHECK(plugins.at("left_out")[0].at("file") == folder + "old.so");
   CHECK(contains(plugins.at("left_out")[0].at("problem"),
-                 "plugin ABI number differs (plugin 3, waymark 4); build the plugin again"));
+                 "plugin ABI number differs (plugin " + std::to_string(waymark::kPluginAbi - 1) +
+                     ", waymark " + std::to_string(waymark::kPluginAbi) + "); build the plugin again"));
   CHECK(contains(plugins.at("left_out")[1].at("problem"), "text.so: is no shared object for this machine"));
   const RunResult text = run({"doctor"});
   CHECK(contains(text.out, "warning: plugin left out: " + folder + "old.so"));

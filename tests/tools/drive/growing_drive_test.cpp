@@ -179,12 +179,12 @@ std::vector<PreparedSensor> two_sensors(const PlacedDrive& placed) {
 
 }  // namespace
 
-TEST_CASE("growing drive: parts give the graph of the whole drive under every modeling") {
-  for (const char* modeling : {"correlated", "g1", "g2", "g3"}) {
-    const FusionSettings settings = settings_of(modeling, kAllStates);
+TEST_CASE("growing drive: parts give the graph of the whole drive under every registered modeling") {
+  for (const auto& [modeling, origin] : registry_with_readers().gnss_modelings()) {
+    const FusionSettings settings = settings_of(modeling.name, kAllStates);
     const PlacedDrive placed = place(settings);
     for (const std::size_t nodes_per_part : {std::size_t{1}, std::size_t{333}}) {
-      INFO(modeling << ", " << nodes_per_part << " nodes in each part");
+      INFO(modeling.name << ", " << nodes_per_part << " nodes in each part");
       check_same(placed, {}, settings, nodes_per_part);
     }
   }
