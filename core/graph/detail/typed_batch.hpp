@@ -91,7 +91,8 @@ class EdgeBatch final : public EdgeBatchBase {
 #if defined(__x86_64__)
     if (has_fused_multiply()) return linearize_fused(view, scatter, range, normal);
 #endif
-    return linearize_range(view, scatter, range, normal);
+    return has_loss() ? linearize_range<true>(view, scatter, range, normal)
+                      : linearize_range<false>(view, scatter, range, normal);
   }
 
   void linearize_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& e,
@@ -184,8 +185,8 @@ class EdgeBatch final : public EdgeBatchBase {
     return product;
   }
 
-  // These are templates, so that an explicit instantiation of the class makes no further copy of what
-  // is inlined everywhere.
+  // A template, as is derive(): an explicit instantiation of the class then makes no further copy of
+  // what is inlined everywhere.
   template <typename View>
   [[gnu::always_inline]] double chi2_range(const View& view, EdgeRange range) const {
     double sum = 0;
@@ -206,55 +207,48 @@ class EdgeBatch final : public EdgeBatchBase {
   }
   [[gnu::target("avx2,fma")]] double linearize_fused(const ValueView& view, const Scatter& scatter,
                                                      EdgeRange range, const NormalView& normal) const {
-    return linearize_range(view, scatter, range, normal);
+    return has_loss() ? linearize_range<true>(view, scatter, range, normal)
+                      : linearize_range<false>(view, scatter, range, normal);
   }
 #endif
 
-  template <typename View>
-  [[gnu::always_inline]] double linearize_range(const View& view, const Scatter& scatter, EdgeRange range,
-                                                const NormalView& normal) const {
+  template <bool kRobust>
+  [[gnu::always_inline]] double linearize_range(const ValueView& view, const Scatter& scatter,
+                                                EdgeRange range, const NormalView& normal) const {
     double sum = 0;
-    const bool robust = has_loss();
     const std::uint32_t* gradient = scatter.gradient.data() + std::size_t{range.first} * kArity;
     const BlockTarget* blocks = scatter.blocks.data() + std::size_t{range.first} * kPairs;
-    Weighted weighted;
     for (std::size_t i = range.first; i < range.last; ++i, gradient += kArity, blocks += kPairs) {
       const Record& record = records_[i];
       ErrorVector<kDimension> e;
       Jacobians jacobians;
       derive(record, view, e, jacobians);
-      ErrorVector<kDimension> weighted_error = times(record.information, e);
-      double rho = e.dot(weighted_error);
-      const Triangle* information = &record.information;
-      if (robust) {
-        weighted = apply_loss(i, e, rho, normal.evidence_weight);
-        rho = weighted.loss.rho;
-        weighted_error *= weighted.loss.weight;
-        information = &weighted.information;
-      }
-      sum += rho;
-      if constexpr (carries()) {
-        add_carried<VertexOf<0>>(record, view, jacobians, *information, weighted_error, gradient, blocks,
-                                 normal);
+      const auto add_part = [&](const Triangle& information, const ErrorVector<kDimension>& weighted_error)
+          __attribute__((always_inline)) {
+        if constexpr (carries()) {
+          add_carried<VertexOf<0>>(record, view, jacobians, information, weighted_error, gradient, blocks,
+                                   normal);
+        } else {
+          add(jacobians, information, weighted_error, gradient, blocks, normal,
+              std::make_index_sequence<kArity>());
+        }
+      };
+      const ErrorVector<kDimension> weighted_error = times(record.information, e);
+      const double squared = e.dot(weighted_error);
+      if constexpr (kRobust) {
+        const LossValue loss = evaluate_loss(i, squared);
+        sum += loss.rho;
+        const Information linearized =
+            normal.evidence_weight > 0
+                ? Information(std::min(loss.weight, normal.evidence_weight) * square(record))
+                : Information(robust_information(loss, squared, square(record), e));
+        add_part(triangle(linearized), loss.weight * weighted_error);
       } else {
-        add(jacobians, *information, weighted_error, gradient, blocks, normal,
-            std::make_index_sequence<kArity>());
+        sum += squared;
+        add_part(record.information, weighted_error);
       }
     }
     return sum;
-  }
-
-  struct Weighted {
-    LossValue loss;
-    Triangle information;  ///< of the linearised edge
-  };
-  // By value and out of line: a reference to the error would keep it out of registers in the loop.
-  [[gnu::noinline]] Weighted apply_loss(std::size_t i, ErrorVector<kDimension> e, double squared,
-                                        double evidence_weight) const {
-    const Information full = square(records_[i]);
-    const LossValue loss = evaluate_loss(i, squared);
-    return {loss, triangle(evidence_weight > 0 ? Information(std::min(loss.weight, evidence_weight) * full)
-                                               : Information(robust_information(loss, squared, full, e)))};
   }
 
   template <typename Sequence>
