@@ -7,6 +7,7 @@
 #include <waymark/tools/drawing/figure/bars.hpp>
 #include <waymark/tools/drawing/figure/look.hpp>
 #include <waymark/tools/report/comparison/comparison_parts.hpp>
+#include <waymark/tools/report/drive/epoch_series.hpp>
 
 namespace waymark::report {
 namespace {
@@ -58,8 +59,6 @@ std::vector<Part> parts_with_epochs(const Groups& groups) {
 double length_of(const std::optional<Eigen::Vector2d>& offset) {
   return offset ? offset->norm() : evaluation::kUndefined;
 }
-
-using Offset = std::optional<Eigen::Vector2d> evaluation::EpochResult::*;
 
 drawing::Series distribution_of(const ComparedRun& run, Offset offset, const std::string& name,
                                 drawing::Look look) {
