@@ -31,7 +31,8 @@ void put(const std::string& folder, const std::string& file, const std::string& 
   write_text(folder + "/" + file, text);
 }
 
-double position(const Json& metrics, int evaluation, const std::string& system, const std::string& metric) {
+double position(const Json& metrics, std::size_t evaluation, const std::string& system,
+                const std::string& metric) {
   return metrics.at("evaluations").at(evaluation).at("truth").at(system).at("position").at(metric);
 }
 
@@ -56,7 +57,7 @@ TEST_CASE("compare: the page has the metrics of every run, and raw GNSS once") {
   struct Case {
     const char* row;
     const Json& metrics;
-    int evaluation;
+    std::size_t evaluation;
     const char* system;
   };
   for (const Case& c : {Case{"raw GNSS", plain, 0, "gnss"}, Case{"plain g1", plain, 0, "fused"},

@@ -93,7 +93,7 @@ TEST_CASE("page: columns of numbers stand to the right in tables, words to the l
 
 TEST_CASE("page: wide figures stand below each other, narrow ones in pairs") {
   std::vector<Figure> figures(4, line_figure("a"));
-  for (const std::size_t narrow : {0, 1, 3}) figures[narrow].width = 430;
+  for (const std::size_t narrow : {0U, 1U, 3U}) figures[narrow].width = 430;
   Section section;
   add_figures(figures, section);
   REQUIRE(section.blocks.size() == 3);
