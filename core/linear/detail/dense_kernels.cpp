@@ -14,17 +14,21 @@ namespace {
 /// W numbers in a register. GCC and clang split it if the instruction set has only shorter ones.
 template <int W>
 struct Register {
-  using Type [[gnu::vector_size(W * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
+  using Type [[gnu::vector_size(W * sizeof(double))]] = double;
+  /// The same numbers in memory, which are aligned as single ones. Not for variables: clang forgets
+  /// the alignment of an element of an array of it, and takes it for that of Type.
+  using InMemory [[gnu::vector_size(W * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] =
+      double;
 };
 
 template <int W>
 WAYMARK_INLINE void load(const double* from, typename Register<W>::Type& to) {
-  to = *reinterpret_cast<const typename Register<W>::Type*>(from);
+  to = *reinterpret_cast<const typename Register<W>::InMemory*>(from);
 }
 
 template <int W>
 WAYMARK_INLINE void store(const typename Register<W>::Type& from, double* to) {
-  *reinterpret_cast<typename Register<W>::Type*>(to) = from;
+  *reinterpret_cast<typename Register<W>::InMemory*>(to) = from;
 }
 
 /// Computes a tile of 4 columns and R registers of rows: c -= a b^T, over `depth` columns. Only the
