@@ -99,7 +99,7 @@ class EdgeBatch final : public EdgeBatchBase {
                       std::vector<Eigen::MatrixXd>& out) const override {
     ErrorVector<kDimension> fixed;
     Jacobians jacobians;
-    derive_alone(records_[i], view, fixed, jacobians);
+    derive(records_[i], view, fixed, jacobians);
     e = fixed;
     to_dynamic(jacobians, out);
   }
@@ -118,7 +118,7 @@ class EdgeBatch final : public EdgeBatchBase {
       if (is_blind(record, motion)) continue;
       ErrorVector<kDimension> e;
       Jacobians jacobians;
-      derive_alone(record, view, e, jacobians);
+      derive(record, view, e, jacobians);
       Eigen::Matrix<double, kDimension, 3> moved = Eigen::Matrix<double, kDimension, 3>::Zero();
       const std::int32_t component =
           add_motion(record, view, jacobians, motion, moved, std::make_index_sequence<kArity>());
@@ -185,10 +185,7 @@ class EdgeBatch final : public EdgeBatchBase {
     return product;
   }
 
-  // A template, as is derive(): an explicit instantiation of the class then makes no further copy of
-  // what is inlined everywhere.
-  template <typename View>
-  [[gnu::always_inline]] double chi2_range(const View& view, EdgeRange range) const {
+  [[gnu::always_inline]] double chi2_range(const ValueView& view, EdgeRange range) const {
     double sum = 0;
     const bool robust = has_loss();
     for (std::size_t i = range.first; i < range.last; ++i) {
@@ -276,16 +273,9 @@ class EdgeBatch final : public EdgeBatchBase {
     return record.edge.template error<double>(load<K>(record, view)...);
   }
 
-  template <typename View>
-  [[gnu::always_inline]] static void derive(const Record& record, const View& view,
+  [[gnu::always_inline]] static void derive(const Record& record, const ValueView& view,
                                             ErrorVector<kDimension>& e, Jacobians& jacobians) {
     derive_impl(record, view, e, jacobians, std::make_index_sequence<kArity>());
-  }
-
-  /// Computes the same where speed does not matter. Each copy of it takes a second to compile.
-  [[gnu::noinline]] static void derive_alone(const Record& record, const ValueView& view,
-                                             ErrorVector<kDimension>& e, Jacobians& jacobians) {
-    derive(record, view, e, jacobians);
   }
 
   template <std::size_t... K>
