@@ -93,7 +93,7 @@ class GnssCorrelated final : public GnssModeling {
     if (input.motion.size() != input.fixes.size())
       throw UsageError("correlated: the motion at each fix is needed (GnssInput::motion)");
     const VertexIndex origin = origin_.in_or(graph, [&] { return add_origin(graph); });
-    const VertexIndex offset = offset_.in_or(graph, [&] { return add_time_offset(graph); });
+    const VertexIndex offset = offset_.in_or(graph, [&] { return make_offset(graph); });
     const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
     const double peak = model_.heavy_tails ? kStudentInformation : 1;
     const double median_m =
@@ -124,14 +124,11 @@ class GnssCorrelated final : public GnssModeling {
     throw UsageError("correlated: there is no loss 'cauchy'");
   }
 
-  [[nodiscard]] VertexIndex add_time_offset(Graph& graph) const {
-    const VertexIndex offset = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
-    if (time_offset_sigma_s_ > 0) {
-      add_prior_about_zero(graph, offset, time_offset_sigma_s_);
-    } else {
-      graph.set_fixed(offset, true);
-    }
-    return offset;
+  [[nodiscard]] VertexIndex make_offset(Graph& graph) const {
+    if (time_offset_sigma_s_ > 0) return add_time_offset(graph, time_offset_sigma_s_);
+    const VertexIndex none = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
+    graph.set_fixed(none, true);
+    return none;
   }
 
   [[nodiscard]] Receiver make_receiver() const {

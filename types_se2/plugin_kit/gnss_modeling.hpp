@@ -44,6 +44,13 @@ inline VertexIndex add_origin(Graph& graph) {
   return origin;
 }
 
+/// Adds the time offset of fixes. @param prior_sigma_s sigma of its prior about 0
+inline VertexIndex add_time_offset(Graph& graph, double prior_sigma_s) {
+  const VertexIndex offset = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
+  add_prior_about_zero(graph, offset, prior_sigma_s);
+  return offset;
+}
+
 /// Returns the options that all modelings share: the form of the error of a fix, and whether its
 /// time offset is estimated.
 [[nodiscard]] inline std::vector<OptionInfo> gnss_options() {
@@ -71,11 +78,7 @@ class PositionEdges {
     if (prior_sigma_s == 0) return;
     if (input.motion.size() != input.fixes.size())
       throw UsageError("a time offset needs the motion at each fix (GnssInput::motion)");
-    offset_ = offset.in_or(graph, [&] {
-      const VertexIndex made = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
-      add_prior_about_zero(graph, made, prior_sigma_s);
-      return made;
-    });
+    offset_ = offset.in_or(graph, [&] { return add_time_offset(graph, prior_sigma_s); });
   }
 
   /// Adds the edge of fix i.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include <catch2/catch.hpp>
 
@@ -20,22 +21,16 @@ namespace growing_drive_test {
 
 using namespace waymark;
 using namespace waymark::drive;
+using waymark_test::registry;
 
 namespace {
-
-const TypeRegistry& registry_with_readers() {
-  static const TypeRegistry registry = [] {
-    TypeRegistry all = waymark_test::full_registry();
-    formats::register_log_readers(all);
-    return all;
-  }();
-  return registry;
-}
 
 const PreparedDrive& bundled_drive() {
   static const PreparedDrive drive = [] {
     const std::string yaml = waymark_test::source_dir() + "/examples/berlin_potsdamer_platz/drive.yaml";
-    return load_drive(load_drive_file(yaml).description, registry_with_readers());
+    TypeRegistry readers;
+    formats::register_log_readers(readers);
+    return load_drive(load_drive_file(yaml).description, readers);
   }();
   return drive;
 }
@@ -46,14 +41,14 @@ FusionSettings settings_of(const std::string& modeling, const Options& calibrati
   settings.modeling = modeling;
   settings.calibration = calibration;
   settings.estimates_noise = false;
-  return decided(settings, registry_with_readers());
+  return decided(settings, registry());
 }
 
 const Options kAllStates = {
     {"gyro_bias", "random_walk"}, {"speed_scale", "constant"}, {"time_offset", "constant"}};
 
 PlacedDrive place(const FusionSettings& settings) {
-  return place_drive(bundled_drive(), timeline_of(bundled_drive()), settings, registry_with_readers());
+  return place_drive(bundled_drive(), timeline_of(bundled_drive()), settings, registry());
 }
 
 SensorTable rows_between(const SensorTable& table, std::optional<Stamp> after, Stamp last) {
@@ -105,7 +100,7 @@ double median_of_accepted(const PlacedDrive& placed) {
 GraphBuilder grown(const PlacedDrive& placed, const std::vector<PreparedSensor>& sensors,
                    const FusionSettings& settings, std::size_t nodes_per_part) {
   GraphBuilder builder({placed.antenna_m, placed.gap_noise_factor, median_of_accepted(placed)}, sensors,
-                       settings, registry_with_readers());
+                       settings, registry());
   const std::size_t nodes = placed.timeline.stamps.size();
   for (std::size_t begin = 0; begin < nodes; begin += nodes_per_part)
     add_part(begin, std::min(begin + nodes_per_part, nodes), placed, sensors, builder);
@@ -120,8 +115,8 @@ std::map<std::string, std::size_t> edges_by_type(const Graph& graph) {
 }
 
 double solve(Graph& graph) {
-  const auto algorithm = registry_with_readers().make_algorithm("dogleg");
-  const auto solver = registry_with_readers().make_linear_solver("block_cholesky");
+  const auto algorithm = registry().make_algorithm("dogleg");
+  const auto solver = registry().make_linear_solver("block_cholesky");
   OptimizerOptions options;
   options.decrement_tolerance = 1e-12;
   options.max_iterations = 200;
@@ -133,10 +128,10 @@ double solve(Graph& graph) {
 /// @param tolerance of chi2, relative
 void check_same(const PlacedDrive& placed, const std::vector<PreparedSensor>& sensors,
                 const FusionSettings& settings, std::size_t nodes_per_part, double tolerance = 1e-9) {
-  Graph whole = build_graph(placed, sensors, settings, registry_with_readers()).graph;
+  Graph whole = build_graph(placed, sensors, settings, registry()).graph;
   GraphBuilder builder = grown(placed, sensors, settings, nodes_per_part);
-  const std::vector<VertexIndex> poses(builder.nodes().poses.begin(), builder.nodes().poses.end());
-  Graph parts = builder.take_graph();
+  const std::span<const VertexIndex> poses = builder.nodes().poses;
+  Graph& parts = builder.graph();
   CHECK(parts.vertex_count() == whole.vertex_count());
   CHECK(edges_by_type(parts) == edges_by_type(whole));
   CHECK(parts.chi2() == Approx(whole.chi2()).epsilon(tolerance));
@@ -180,7 +175,7 @@ std::vector<PreparedSensor> two_sensors(const PlacedDrive& placed) {
 }  // namespace
 
 TEST_CASE("growing drive: parts give the graph of the whole drive under every registered modeling") {
-  for (const auto& [modeling, origin] : registry_with_readers().gnss_modelings()) {
+  for (const auto& [modeling, origin] : registry().gnss_modelings()) {
     const FusionSettings settings = settings_of(modeling.name, kAllStates);
     const PlacedDrive placed = place(settings);
     for (const std::size_t nodes_per_part : {std::size_t{1}, std::size_t{333}}) {

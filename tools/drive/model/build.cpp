@@ -1,5 +1,7 @@
 #include <waymark/tools/drive/model/build.hpp>
 
+#include <utility>
+
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark::drive {
@@ -35,7 +37,6 @@ GraphBuilder::GraphBuilder(const DriveFacts& facts, std::span<const PreparedSens
 
 // Each pose gets the next free id: i + 1 for node i if the drive is one part.
 void GraphBuilder::add_nodes(const DrivePart& part) {
-  poses_.reserve(poses_.size() + part.stamps.size());
   for (std::size_t i = 0; i < part.stamps.size(); ++i) {
     const Eigen::Vector3d& pose = part.poses[i];
     poses_.push_back(graph_.add_vertex<VertexSe2>(graph_.free_id(), {pose[0], pose[1], pose[2]}));
@@ -69,7 +70,7 @@ BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor
                   accepted.nodes, accepted.motion, sensors});
   BuiltGraph built;
   built.warnings = warnings_of_sensors_apart(sensors, builder.nodes());
-  built.graph = builder.take_graph();
+  built.graph = std::move(builder.graph());
   return built;
 }
 

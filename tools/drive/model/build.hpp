@@ -10,7 +10,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <waymark/core/registry/registry.hpp>
@@ -40,7 +39,7 @@ struct DrivePart {
   std::span<const PreparedSensor> sensors = {};
 };
 
-/// A graph that grows with its drive.
+/// A graph that grows with its drive. Nodes are known by index, so no vertex may leave the graph.
 class GraphBuilder {
  public:
   /// @param settings from decided(), with the estimated noise among the options
@@ -58,9 +57,8 @@ class GraphBuilder {
 
   /// The nodes so far. The view is valid until the next part.
   [[nodiscard]] DriveNodes nodes() const { return {stamps_, poses_, intervals_}; }
-  [[nodiscard]] const Graph& graph() const { return graph_; }
-  /// Gives the graph away. The builder is then at its end.
-  [[nodiscard]] Graph take_graph() { return std::move(graph_); }
+  /// The graph so far. It may be optimised between two parts, and moved from after the last one.
+  [[nodiscard]] Graph& graph() { return graph_; }
 
  private:
   void add_nodes(const DrivePart& part);
