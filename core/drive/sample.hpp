@@ -26,6 +26,8 @@ struct OdometrySample {
   Stamp stamp;
   double speed_mps = 0;       ///< forward velocity, m/s; negative is reversing
   double yaw_rate_radps = 0;  ///< counter-clockwise seen from above, rad/s
+  /// not measured: a stand-in for a sensor that failed; its intervals are bridged
+  bool assumed = false;
 };
 
 /// The motion between two consecutive nodes of a drive: constant speed and yaw rate over dt.
@@ -33,7 +35,7 @@ struct Interval {
   double speed_mps = 0;  ///< grid metres per second (grid scale applied); negative is reversing
   double yaw_rate_radps = 0;
   double dt_s = 0;
-  bool bridged = false;  ///< the interval lies in a gap of the odometry
+  bool bridged = false;  ///< the interval lies in a gap of the odometry, or its motion is assumed
 
   friend bool operator==(const Interval&, const Interval&) = default;
 };

@@ -263,4 +263,14 @@ TEST_CASE("gate: a drive without a fix, or with all rejected, is an error with a
       Catch::StartsWith("all 7 fixes were rejected by the gate;") && Catch::Contains("turn the gate off"));
 }
 
+TEST_CASE("gate: more rejected than accepted fixes are warned about with the remedy") {
+  GateSummary summary;
+  summary.accepted = 50;
+  summary.rejected = 50;
+  CHECK(warning_of(summary).empty());
+  summary.rejected = 450;
+  CHECK_THAT(warning_of(summary), Catch::StartsWith("the gate rejects 450 of 500 fixes (90 %)") &&
+                                      Catch::Contains("'correlated' needs no gate"));
+}
+
 }  // namespace gate_test

@@ -1,4 +1,6 @@
 // Wrong units and signs of the odometry are named; right ones are not.
+#include <cmath>
+
 #include <catch2/catch.hpp>
 
 #include <waymark/tools/drive/nodes/plausibility.hpp>
@@ -43,7 +45,7 @@ std::vector<std::string> warnings(const Scene& scene) {
 
 TEST_CASE("plausibility: odometry that agrees with the fixes is not complained about") {
   CHECK(warnings(scene(1, 1)).empty());
-  CHECK(warnings(scene(1.1, 0.9)).empty());
+  CHECK(warnings(scene(1.02, 0.9)).empty());
 }
 
 TEST_CASE("plausibility: a speed in km/h read as m/s is named with its factor") {
@@ -62,6 +64,64 @@ TEST_CASE("plausibility: a yaw rate of the wrong sign is named") {
 
 TEST_CASE("plausibility: a few fixes are no evidence") {
   CHECK(warnings(scene(3.6, -1, 8)).empty());
+}
+
+TEST_CASE("plausibility: a yaw rate in deg/s read as rad/s is named with its factor, and the reverse") {
+  constexpr double kDegrees = 57.29577951308232;
+  const auto large = warnings(scene(1, kDegrees));
+  REQUIRE(large.size() == 1);
+  CHECK_THAT(large[0], Catch::StartsWith("the odometry's turns are 57.") && Catch::Contains("'unit: deg/s'"));
+  const auto small = warnings(scene(1, 1 / kDegrees));
+  REQUIRE(small.size() == 1);
+  CHECK_THAT(small[0],
+             Catch::StartsWith("the odometry's turns are 0.017") && Catch::Contains("'unit: rad/s'"));
+  const auto both = warnings(scene(1, -kDegrees));
+  REQUIRE(both.size() == 1);
+  CHECK_THAT(both[0], Catch::EndsWith("and 'convention: cw'"));
+  CHECK_THAT(warnings(scene(1, 2)).at(0), Catch::Contains("check the unit and the scale of the yaw rate"));
+}
+
+TEST_CASE("plausibility: a scale error of 5 % is named if the fixes show it") {
+  const auto said = warnings(scene(1.05, 1, 400));
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::StartsWith("the odometry's distances are 1.050 times those of the fixes"));
+  CHECK_THAT(warnings(scene(0.95, 1, 400)).at(0), Catch::Contains("0.950 times"));
+  CHECK(warnings(scene(1.02, 1, 400)).empty());
+  // fixes with an error of 15 m per axis do not show it
+  Scene noisy = scene(1.05, 1, 400);
+  for (std::size_t i = 0; i < noisy.fixes.size(); ++i)
+    noisy.fixes[i].position += 15 * Eigen::Vector2d(std::sin(2.3 * double(i)), std::cos(3.1 * double(i)));
+  CHECK(warnings(noisy).empty());
+}
+
+TEST_CASE("plausibility: fixes with an error of 10 m do not lengthen the way of a slow vehicle") {
+  Scene slow = scene(1, 1, 400);
+  for (std::size_t i = 0; i < slow.fixes.size(); ++i) {
+    slow.fixes[i].position *= 0.1;  // 1 m/s
+    slow.antenna[i].head<2>() *= 0.1;
+    slow.fixes[i].position += 10 * Eigen::Vector2d(std::sin(2.3 * double(i)), std::cos(3.1 * double(i)));
+  }
+  CHECK(warnings(slow).empty());
+}
+
+TEST_CASE("plausibility: a jump that lasts is named with its size and time, a single wrong fix is not") {
+  Scene jump = scene(1, 1, 200);
+  for (std::size_t i = 80; i < 120; ++i) jump.fixes[i].position.y() += 200;
+  const auto said = warnings(jump);
+  REQUIRE(said.size() == 2);
+  CHECK_THAT(said[0], Catch::Contains("at 80.0 s after the first fix, and stay there for 40 s;"));
+  CHECK_THAT(said[1], Catch::Contains("at 120.0 s after the first fix") && Catch::Contains("until the end"));
+  Scene single = scene(1, 1, 200);
+  single.fixes[80].position.y() += 200;
+  CHECK(warnings(single).empty());
+}
+
+TEST_CASE("plausibility: an impossible acceleration is named without any fix") {
+  std::vector<OdometrySample> odometry(100);
+  for (OdometrySample& sample : odometry) sample = {.stamp = {}, .speed_mps = 10, .yaw_rate_radps = 0.9};
+  CHECK(warning_of_accelerations(odometry).empty());  // 9 m/s^2
+  for (std::size_t i = 0; i < 6; ++i) odometry[i].yaw_rate_radps *= 57.3;
+  CHECK_THAT(warning_of_accelerations(odometry), Catch::Contains("in 6 % of the driving"));
 }
 
 }  // namespace plausibility_test

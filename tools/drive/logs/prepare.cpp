@@ -1,6 +1,7 @@
 #include <waymark/tools/drive/logs/prepare.hpp>
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,8 @@
 #include <waymark/tools/drive/logs/projection.hpp>
 #include <waymark/tools/drive/logs/sensor_logs.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/nodes/frozen.hpp>
+#include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -72,6 +75,15 @@ void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description,
   }
 }
 
+void judge_odometry(PreparedDrive& drive) {
+  const std::vector<FrozenOdometry> frozen = find_frozen_odometry(drive.odometry, drive.fixes);
+  assume_motion_of_fixes(frozen, drive.fixes, drive.odometry);
+  for (const FrozenOdometry& time : frozen)
+    drive.report.warnings.push_back(warning_of(time, drive.odometry.front().stamp));
+  if (std::string warning = warning_of_accelerations(drive.odometry); !warning.empty())
+    drive.report.warnings.push_back(std::move(warning));
+}
+
 }  // namespace
 
 PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& description) {
@@ -93,6 +105,7 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   for (const GeodeticFix& fix : fixes) drive.fixes.push_back(projection.project(fix));
   for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection.project(pose));
   number_epochs(drive.fixes, description, drive.report);
+  judge_odometry(drive);
   for (std::size_t i = 0; i < logs.sensors.size(); ++i) {
     const SensorConfig& sensor = description.sensors[i];
     PreparedSensor& prepared = drive.sensors.emplace_back(

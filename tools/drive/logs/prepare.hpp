@@ -66,6 +66,8 @@ struct PrepareReport {
   std::vector<ClockReport> clocks;  ///< for logs with their own stamps and GNSS time
   /// the assumptions of the readers and conclusions of this step, in sentences
   std::vector<std::string> notes;
+  /// sentences about readings that contradict each other
+  std::vector<std::string> warnings;
   std::vector<std::string> corrupt_examples;
 };
 
@@ -134,6 +136,7 @@ struct DriveLogs {
 /// 6. Epochs are numbered; fixes with one stamp are one epoch. For withhold_every = n, epochs n-1,
 ///    2n-1, ... are withheld, and so are those in an outage.
 /// 7. Everything is projected.
+/// 8. Odometry that repeats one reading while the fixes move is replaced (nodes/frozen.hpp).
 /// @throws InputError with the remedy for: fewer than two odometry samples, no fix, no fix within
 /// the span of the odometry, truth that does not overlap the odometry, and a log of seconds of week
 /// that would need a date

@@ -1,5 +1,7 @@
 #include <waymark/tools/drive/model/place.hpp>
 
+#include <utility>
+
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
@@ -29,9 +31,13 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
   const std::vector<Eigen::Vector3d> reckoned =
       dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
   const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.antenna_m);
-  placed.warnings = compare_odometry_with_fixes(placed.fixes, antenna);
+  placed.warnings = drive.report.warnings;
+  for (std::string& warning : compare_odometry_with_fixes(placed.fixes, antenna))
+    placed.warnings.push_back(std::move(warning));
   placed.gate = apply_gate(placed.fixes, antenna, settings.gate);
   require_accepted_fix(placed.gate);
+  if (std::string warning = warning_of(placed.gate); !warning.empty())
+    placed.warnings.push_back(std::move(warning));
   placed.start =
       make_start(timeline, placed.fixes, placed.antenna_m, placed.standstill_mps, settings.initial_guess);
   const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};

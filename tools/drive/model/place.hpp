@@ -31,7 +31,7 @@ struct PlacedDrive {
   Eigen::Vector2d antenna_m{0, 0};    ///< body frame
   double standstill_mps = 0;          ///< of the odometry model
   double gap_noise_factor = 1;        ///< for the odometry model, from PreparedDrive::timeline
-  std::vector<std::string> warnings;  ///< suspicious units and signs of the logs
+  std::vector<std::string> warnings;  ///< of the preparation; suspicious units, signs, jumps
 };
 
 /// Returns the vertex of a node.

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <waymark/core/base/error.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -228,6 +230,15 @@ void require_accepted_fix(const GateSummary& summary) {
       " fixes were rejected by the gate; check the sign and unit of the yaw rate and the clocks of "
       "both logs, widen gate: max_angle_deg and max_displacement_m, or turn the gate off (gate: enabled: "
       "false)");
+}
+
+std::string warning_of(const GateSummary& summary) {
+  if (summary.rejected <= summary.accepted) return {};
+  return fmt::format(
+      "the gate rejects {} of {} fixes ({:.0f} %), so the rest may be a chance agreement: the modeling "
+      "'correlated' needs no gate; otherwise check the sign and unit of the yaw rate and the clocks of both "
+      "logs, or widen gate: max_angle_deg and max_displacement_m",
+      summary.rejected, summary.accepted + summary.rejected, summary.rejected_percent());
 }
 
 }  // namespace waymark::drive

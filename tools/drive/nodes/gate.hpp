@@ -73,4 +73,7 @@ GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> de
 /// gate left no fix
 void require_accepted_fix(const GateSummary& summary);
 
+/// Returns a warning with the remedy if the gate rejected more than half of the fixes; empty otherwise.
+[[nodiscard]] std::string warning_of(const GateSummary& summary);
+
 }  // namespace waymark::drive

@@ -4,101 +4,173 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/drive/nodes/chords.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
-#include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
 namespace {
 
-constexpr double kLongestChord_s = 5;
-constexpr double kShortestChord_s = 0.95;
-constexpr double kShortestChord_m = 5;  // a shorter one is mainly noise of its fixes
-constexpr std::size_t kFewestChords = 20;
-constexpr std::size_t kFewestTurns = 10;
+constexpr double kDegrees = std::numbers::pi / 180;
+constexpr std::size_t kFewestChords = 10;
+constexpr std::size_t kFewestTurns = 8;
 constexpr double kLargestFactor = 1.5;
-constexpr double kSmallestTurn = 5 * std::numbers::pi / 180;
-constexpr double kOppositeSigns = -0.3;
 
-/// The distance between two fixes of the first receiver.
-struct ChordPair {
-  Eigen::Vector2d gnss;
-  Eigen::Vector2d odometry;
-  bool follows = false;  ///< it begins at the end of the previous chord
-};
+bool is_unusual(double factor) {
+  return factor > kLargestFactor || factor < 1 / kLargestFactor;
+}
 
-/// Returns chords that are long enough, whatever the rate of the fixes. Each is extended until it
-/// spans a second and is no longer mainly noise, at most for kLongestChord_s.
-std::vector<ChordPair> chords_of(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna) {
-  std::vector<ChordPair> chords;
-  std::size_t first = fixes.size();
-  bool unbroken = false;
-  for (std::size_t i = 0; i < fixes.size(); ++i) {
-    if (fixes[i].source != fixes.front().source) continue;
-    const double elapsed_s = first < fixes.size() ? seconds_between(fixes[first].stamp, fixes[i].stamp) : 0;
-    if (first == fixes.size() || elapsed_s > kLongestChord_s) {
-      first = i;
-      unbroken = false;
-      continue;
-    }
-    const Eigen::Vector2d gnss = fixes[i].position - fixes[first].position;
-    if (elapsed_s < kShortestChord_s || gnss.norm() < kShortestChord_m) continue;
-    chords.push_back({gnss, antenna[i].head<2>() - antenna[first].head<2>(), unbroken});
-    unbroken = true;
-    first = i;
+/// Chords for turns end by the fixes alone, because turns in a wrong unit curl the odometry up.
+std::vector<TurnPair> turns_between(const ReckonedFixes& receiver) {
+  constexpr double kChord_m = 20;
+  constexpr double kLongest_s = 10;
+  const auto is_complete = [](const ChordPair& chord) { return chord.gnss.norm() >= kChord_m; };
+  return turns_of(chords_of(receiver, kLongest_s, is_complete));
+}
+
+/// Compares the size of the turns of the fixes.
+std::string size_of_turns(const std::vector<TurnPair>& all) {
+  constexpr double kSmallest = 15 * kDegrees;
+  constexpr double kNear = 1.15;
+  std::vector<TurnPair> turns;
+  for (const TurnPair& pair : all)
+    if (std::abs(pair.gnss_rad) >= kSmallest) turns.push_back(pair);
+  if (turns.size() < kFewestTurns) return {};
+  const std::optional<double> found = factor_of_turns(turns);
+  if (!found || !is_unusual(std::abs(*found))) return {};
+  const double factor = 1 / std::abs(*found);  // of the odometry
+  const auto is_near = [&](double unit) { return factor < kNear * unit && factor > unit / kNear; };
+  const char* remedy = "check the unit and the scale of the yaw rate";
+  if (is_near(180 / std::numbers::pi)) remedy = "deg/s are read as rad/s: state 'unit: deg/s' of the column";
+  if (is_near(std::numbers::pi / 180)) remedy = "rad/s are read as deg/s: state 'unit: rad/s' of the column";
+  return fmt::format("the odometry's turns are {:.3g} times the turns of the fixes ({} turns); {}{}", factor,
+                     turns.size(), remedy, *found < 0 ? ", and 'convention: cw'" : "");
+}
+
+std::string sign_of_turns(const std::vector<TurnPair>& turns) {
+  constexpr double kSmallest = 5 * kDegrees;
+  constexpr double kOpposite = -0.3;
+  double gnss_squared = 0;
+  double odometry_squared = 0;
+  double product = 0;
+  std::size_t count = 0;
+  for (const TurnPair& pair : turns) {
+    if (std::abs(pair.odometry_rad) < kSmallest) continue;
+    gnss_squared += pair.gnss_rad * pair.gnss_rad;
+    odometry_squared += pair.odometry_rad * pair.odometry_rad;
+    product += pair.gnss_rad * pair.odometry_rad;
+    ++count;
   }
-  return chords;
+  const double correlation = product / std::sqrt(gnss_squared * odometry_squared);
+  if (count < kFewestTurns || !(correlation < kOpposite)) return {};
+  return fmt::format(
+      "the odometry turns against the fixes (correlation {:.2f} over {} turns); if the yaw rate is positive "
+      "clockwise, state 'convention: cw'",
+      correlation, count);
 }
 
-bool is_long(const ChordPair& chord) {
-  return chord.gnss.norm() >= kShortestChord_m && chord.odometry.norm() >= 0.1 * kShortestChord_m;
+/// Finds wrong units of the speed. The product of both lengths ends a chord, so that the noise of the
+/// fixes of a slow vehicle does not.
+std::string large_factor(const ReckonedFixes& receiver) {
+  constexpr double kChord_m = 20;
+  constexpr double kOneSided_m = 100;
+  constexpr double kLongest_s = 30;
+  const auto is_complete = [](const ChordPair& chord) {
+    const double gnss = chord.gnss.norm();
+    const double odometry = chord.odometry.norm();
+    return gnss * odometry >= kChord_m * kChord_m || std::max(gnss, odometry) >= kOneSided_m;
+  };
+  std::vector<double> factors;
+  for (const ChordPair& chord : chords_of(receiver, kLongest_s, is_complete))
+    factors.push_back(chord.odometry.norm() / std::max(1e-3, chord.gnss.norm()));
+  if (factors.size() < kFewestChords) return {};
+  const double factor = median_with_sigma(factors).value;
+  if (!is_unusual(factor)) return {};
+  return fmt::format(
+      "the odometry's distance between fixes is {:.2f} times the distance of the fixes (median of {}); "
+      "check the unit of the speed ({})",
+      factor, factors.size(),
+      factor > 1 ? "3.6: km/h read as m/s"
+                 : "0.28: m/s read as km/h; otherwise the odometry stands still, or the coordinates "
+                   "have few digits");
 }
 
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return std::atan2(a[0] * b[1] - a[1] * b[0], a.dot(b));
+/// Finds an error of scale beyond the prior of `speed_scale`. The noise of fixes across a chord makes
+/// the chord longer by at most half the squared spread.
+std::string small_factor(const ReckonedFixes& receiver) {
+  constexpr double kChord_m = 100;
+  constexpr double kLongest_s = 60;
+  constexpr double kUsual = 0.03;  // three sigmas of the prior of speed_scale
+  constexpr double kSigmas = 4;
+  const auto is_complete = [](const ChordPair& chord) { return chord.odometry.norm() >= kChord_m; };
+  std::vector<double> factors;
+  for (const ChordPair& chord : chords_of(receiver, kLongest_s, is_complete))
+    factors.push_back(chord.gnss.norm() / chord.odometry.norm());
+  if (factors.size() < kFewestChords) return {};
+  const Median factor = median_with_sigma(factors);
+  const double uncertain = kSigmas * factor.sigma + 0.5 * factor.spread * factor.spread;
+  if (std::abs(factor.value - 1) < kUsual + uncertain) return {};
+  return fmt::format(
+      "the odometry's distances are {:.3f} times those of the fixes (median of {}, sigma {:.3f}): its scale "
+      "is wrong beyond the prior of speed_scale, which holds the estimate back; correct the scale, or widen "
+      "the prior (odometry: 'options: {{speed_scale_sigma: 0.05}}')",
+      1 / factor.value, factors.size(), factor.sigma);
+}
+
+/// The words for jumps that name at most three of them.
+std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> sentences;
+  const std::vector<Jump> jumps = jumps_of(receiver);
+  for (std::size_t i = 0; i < std::min(jumps.size(), kMost); ++i) {
+    sentences.push_back(fmt::format(
+        "the fixes jump by {:.0f} m at {:.1f} s after the first fix, and stay there for {:.0f} s{}; the "
+        "odometry does not move so: the fixes before or after it are wrong, and no gate rejects them once "
+        "they agree among themselves",
+        jumps[i].distance_m, seconds_between(receiver.fixes.front().stamp, jumps[i].at), jumps[i].stays_s,
+        jumps[i].returns ? "" : ", until the end"));
+  }
+  if (jumps.size() > kMost)
+    sentences.push_back(fmt::format("the fixes jump {} more times", jumps.size() - kMost));
+  return sentences;
 }
 
 }  // namespace
 
+std::string warning_of_accelerations(std::span<const OdometrySample> odometry) {
+  constexpr double kLargest = 10;  // m/s^2
+  constexpr double kDrives = 2;    // m/s
+  constexpr double kShare = 0.05;
+  std::size_t driving = 0;
+  std::size_t impossible = 0;
+  for (const OdometrySample& sample : odometry) {
+    const double speed = std::abs(sample.speed_mps);
+    if (speed < kDrives) continue;
+    ++driving;
+    impossible += speed * std::abs(sample.yaw_rate_radps) > kLargest;
+  }
+  const double share = driving == 0 ? 0 : static_cast<double>(impossible) / static_cast<double>(driving);
+  if (share <= kShare) return {};
+  return fmt::format(
+      "speed times yaw rate exceeds {:g} m/s^2 in {:.0f} % of the driving, more than tyres hold: check "
+      "their units (57.3: deg/s read as rad/s, state 'unit: deg/s' of the column)",
+      kLargest, 100 * share);
+}
+
 std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
                                                      std::span<const Eigen::Vector3d> antenna) {
+  const ReckonedFixes receiver = of_first_receiver(fixes, antenna);
+  const std::vector<TurnPair> turns = turns_between(receiver);
+  // Turns of another size distort all lengths, and lengths of another unit all differences of them.
+  std::string first = size_of_turns(turns);
+  if (!first.empty()) return {std::move(first)};
   std::vector<std::string> warnings;
-  const std::vector<ChordPair> chords = chords_of(fixes, antenna);
-  std::vector<double> factors;
-  double gnss_squared = 0;
-  double odometry_squared = 0;
-  double product = 0;
-  std::size_t turns = 0;
-  for (std::size_t i = 0; i < chords.size(); ++i) {
-    if (!is_long(chords[i])) continue;
-    factors.push_back(chords[i].odometry.norm() / chords[i].gnss.norm());
-    if (!chords[i].follows || !is_long(chords[i - 1])) continue;
-    const double odometry_turn = turn(chords[i - 1].odometry, chords[i].odometry);
-    if (std::abs(odometry_turn) < kSmallestTurn) continue;
-    const double gnss_turn = turn(chords[i - 1].gnss, chords[i].gnss);
-    gnss_squared += gnss_turn * gnss_turn;
-    odometry_squared += odometry_turn * odometry_turn;
-    product += gnss_turn * odometry_turn;
-    ++turns;
+  if (std::string sign = sign_of_turns(turns); !sign.empty()) warnings.push_back(std::move(sign));
+  if (std::string factor = large_factor(receiver); !factor.empty()) {
+    warnings.push_back(std::move(factor));
+    return warnings;
   }
-  if (factors.size() >= kFewestChords) {
-    const auto middle = factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2);
-    std::nth_element(factors.begin(), middle, factors.end());
-    if (*middle > kLargestFactor || *middle < 1 / kLargestFactor) {
-      warnings.push_back(fmt::format(
-          "the odometry's distance between fixes is {:.2f} times the distance of the fixes (median "
-          "of {}); check the unit of the speed ({})",
-          *middle, factors.size(),
-          *middle > 1 ? "3.6: km/h read as m/s"
-                      : "0.28: m/s read as km/h; otherwise the odometry stands still, or the "
-                        "coordinates have few digits"));
-    }
-  }
-  if (turns >= kFewestTurns && product < kOppositeSigns * std::sqrt(gnss_squared * odometry_squared)) {
-    warnings.push_back(fmt::format(
-        "the odometry turns against the fixes (correlation {:.2f} over {} turns); if the yaw rate "
-        "is positive clockwise, state 'convention: cw'",
-        product / std::sqrt(gnss_squared * odometry_squared), turns));
-  }
+  if (std::string factor = small_factor(receiver); !factor.empty()) warnings.push_back(std::move(factor));
+  for (std::string& jump : jumps_in_words(receiver)) warnings.push_back(std::move(jump));
   return warnings;
 }
 

@@ -1,5 +1,5 @@
-/// Compares the odometry with the fixes. It detects wrong units and signs, which otherwise only
-/// show as rejected fixes.
+/// Compares the odometry with the fixes. It detects wrong units and signs, and jumps of the receiver,
+/// which otherwise only show as rejected fixes or as errors.
 #pragma once
 
 #include <span>
@@ -12,12 +12,20 @@
 
 namespace waymark::drive {
 
-/// Returns one sentence for each suspicious fact. The distances between fixes of 1 to 5 s may
-/// differ by a factor (median over at least 20 of them beyond 1.5). The turns may have opposite
-/// signs (correlation over at least 10 of them below -0.3).
-/// @param antenna dead-reckoned antenna poses at the fixes, in any frame; same length and
-/// order as `fixes`
+/// Returns one sentence for each suspicious fact:
+/// - The turns have another size or sign than those of the fixes (at least 8 turns of 15 degrees).
+/// - The distances differ by a factor beyond 1.5 (median over at least 10 chords of about 20 m).
+/// - The distances differ by a factor that is significant, and beyond 3 % (median over at least 10
+///   chords of 100 m, compared with its own uncertainty).
+/// - The fixes jump by 50 m or more and stay there for 10 s or more.
+/// @param fixes those of the first receiver are compared
+/// @param antenna dead-reckoned antenna poses at the fixes, in any frame, with headings that are not
+/// wrapped; same length and order as `fixes`
 [[nodiscard]] std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
                                                                    std::span<const Eigen::Vector3d> antenna);
+
+/// Returns a warning if the acceleration across the vehicle exceeds 10 m/s^2 in 5 % of the samples above
+/// 2 m/s: a wrong unit of the yaw rate also shows without turns in the fixes. Empty otherwise.
+[[nodiscard]] std::string warning_of_accelerations(std::span<const OdometrySample> odometry);
 
 }  // namespace waymark::drive

@@ -67,7 +67,7 @@ Interval twist_between(const OdometrySample& left, const OdometrySample& right, 
   Interval twist;
   twist.speed_mps = 0.5 * (left.speed_mps + right.speed_mps) * grid_scale;
   twist.yaw_rate_radps = 0.5 * (left.yaw_rate_radps + right.yaw_rate_radps);
-  twist.bridged = seconds_between(left.stamp, right.stamp) > gap_s;
+  twist.bridged = left.assumed || right.assumed || seconds_between(left.stamp, right.stamp) > gap_s;
   return twist;
 }
 

@@ -1,0 +1,172 @@
+// Odometry that stops measuring while the vehicle drives on: its time is found, and the motion of the fixes stands in.
+#include <cmath>
+#include <functional>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/tools/drive/nodes/frozen.hpp>
+#include <waymark/tools/drive/nodes/timeline.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace frozen_test {
+
+namespace {
+
+using namespace waymark;
+using namespace waymark::drive;
+
+struct Scene {
+  std::vector<OdometrySample> odometry;  ///< 10 Hz
+  std::vector<Fix> fixes;                ///< 1 Hz, exact
+};
+
+double speed_at(double t) {
+  return 10 + 2 * std::sin(0.3 * t);
+}
+
+double yaw_rate_at(double t) {
+  return 0.1 * std::sin(0.2 * t);
+}
+
+/// 100 s of a winding way, without a stop.
+Scene scene() {
+  Scene result;
+  Pose2<double> pose;
+  for (int i = 0; i <= 1000; ++i) {
+    const double t = 0.1 * i;
+    result.odometry.push_back(
+        {.stamp = Stamp::from_seconds(t), .speed_mps = speed_at(t), .yaw_rate_radps = yaw_rate_at(t)});
+    if (i % 10 == 0) {
+      Fix fix;
+      fix.stamp = Stamp::from_seconds(t);
+      fix.position = pose.position;
+      result.fixes.push_back(fix);
+    }
+    pose = compose(pose, se2_exp<double>(Eigen::Vector3d(0.1 * speed_at(t), 0, 0.1 * yaw_rate_at(t))));
+  }
+  return result;
+}
+
+/// The odometry repeats readings from 30 to 60 s.
+Scene frozen_at(double speed, double yaw_rate) {
+  Scene result = scene();
+  for (std::size_t i = 300; i <= 600; ++i) {
+    result.odometry[i].speed_mps = speed;
+    result.odometry[i].yaw_rate_radps = yaw_rate;
+  }
+  return result;
+}
+
+/// The vehicle stands from 30 to 60 s, and its fixes show `position`.
+Scene standing(const std::function<Eigen::Vector2d(int second)>& position) {
+  Scene result = frozen_at(0, 0);
+  const Eigen::Vector2d place = result.fixes[30].position;
+  const Eigen::Vector2d driven = result.fixes[60].position - place;
+  for (int second = 30; second <= 100; ++second) {
+    Fix& fix = result.fixes[static_cast<std::size_t>(second)];
+    fix.position =
+        second <= 60 ? Eigen::Vector2d(place + position(second)) : Eigen::Vector2d(fix.position - driven);
+  }
+  return result;
+}
+
+double distance_of(const Scene& scene) {
+  double distance = 0;
+  for (const Interval& interval : build_timeline(scene.odometry, {}, {}).intervals)
+    distance += interval.speed_mps * interval.dt_s;
+  return distance;
+}
+
+}  // namespace
+
+TEST_CASE("frozen: odometry that reads 0 while the fixes move is found with its time") {
+  const Scene scene = frozen_at(0, 0);
+  const std::vector<FrozenOdometry> found = find_frozen_odometry(scene.odometry, scene.fixes);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].from.seconds() == Approx(30).margin(0.11));
+  CHECK(found[0].to.seconds() == Approx(60).margin(0.11));
+  CHECK(found[0].with_turns);
+  // the integral of the speed from 30 s to 60 s
+  const double driven = 10 * 30 - 2 / 0.3 * (std::cos(18.0) - std::cos(9.0));
+  CHECK(found[0].distance_m == Approx(driven).epsilon(0.05));
+  CHECK_THAT(warning_of(found[0], Stamp::from_seconds(10)),
+             Catch::Contains("repeats 0 m/s and its yaw rate from 20.0 s to 50.0 s after its start"));
+}
+
+TEST_CASE("frozen: the motion of the fixes stands in, and its intervals are bridged") {
+  const double true_distance = distance_of(scene());
+  Scene scene = frozen_at(0, 0);
+  CHECK(distance_of(scene) < true_distance - 250);
+  assume_motion_of_fixes(find_frozen_odometry(scene.odometry, scene.fixes), scene.fixes, scene.odometry);
+  CHECK(distance_of(scene) == Approx(true_distance).epsilon(0.01));
+  double turned = 0;
+  for (std::size_t i = 300; i < 600; ++i) turned += 0.1 * scene.odometry[i].yaw_rate_radps;
+  // the integral of the yaw rate from 30 s to 60 s
+  CHECK(turned == Approx(-0.5 * (std::cos(12.0) - std::cos(6.0))).margin(0.05));
+  const Timeline timeline = build_timeline(scene.odometry, {}, {});
+  CHECK(timeline.intervals[450].bridged);
+  CHECK_FALSE(timeline.intervals[100].bridged);
+}
+
+TEST_CASE("frozen: a yaw rate that is alive is kept") {
+  Scene scene = frozen_at(0, 0);
+  for (std::size_t i = 300; i <= 600; ++i)
+    scene.odometry[i].yaw_rate_radps = yaw_rate_at(0.1 * static_cast<double>(i));
+  const std::vector<FrozenOdometry> found = find_frozen_odometry(scene.odometry, scene.fixes);
+  REQUIRE(found.size() == 1);
+  CHECK_FALSE(found[0].with_turns);
+  assume_motion_of_fixes(found, scene.fixes, scene.odometry);
+  CHECK(scene.odometry[450].yaw_rate_radps == yaw_rate_at(45));
+  CHECK(scene.odometry[450].speed_mps == Approx(speed_at(45)).margin(0.5));
+}
+
+TEST_CASE("frozen: a moving vehicle does not repeat its readings, even if the fixes fit") {
+  const Scene scene = frozen_at(10, 0.01);
+  const std::vector<FrozenOdometry> found = find_frozen_odometry(scene.odometry, scene.fixes);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].speed_mps == 10);
+  CHECK(found[0].from.seconds() == Approx(30));
+}
+
+TEST_CASE("frozen: odometry of few digits repeats readings without a failure") {
+  Scene scene;
+  for (int i = 0; i <= 1000; ++i) {
+    scene.odometry.push_back({.stamp = Stamp::from_seconds(0.1 * i), .speed_mps = i / 200 + 1.0});
+    if (i % 10 != 0) continue;
+    Fix fix;
+    fix.stamp = Stamp::from_seconds(0.1 * i);
+    fix.position.x() = 0.1 * i * (1 + i / 400.0);
+    scene.fixes.push_back(fix);
+  }
+  for (std::size_t i = 0; i + 1 < scene.odometry.size(); i += 2) scene.odometry[i].yaw_rate_radps = 0;
+  CHECK(find_frozen_odometry(scene.odometry, scene.fixes).empty());
+}
+
+TEST_CASE("frozen: a vehicle that stands is not doubted, whatever its fixes do") {
+  const Scene still = standing([](int) { return Eigen::Vector2d(0, 0); });
+  CHECK(find_frozen_odometry(still.odometry, still.fixes).empty());
+  // multipath of 12 m to alternating sides
+  const Scene wild =
+      standing([](int s) { return Eigen::Vector2d(12 * std::cos(2.1 * s), 12 * std::sin(1.3 * s)); });
+  CHECK(find_frozen_odometry(wild.odometry, wild.fixes).empty());
+  // one jump of 60 m
+  const Scene jump = standing([](int s) { return Eigen::Vector2d(s > 40 ? 60 : 0, 0); });
+  CHECK(find_frozen_odometry(jump.odometry, jump.fixes).empty());
+  // a slow drift of 0.8 m/s
+  const Scene drift = standing([](int s) { return Eigen::Vector2d(0.8 * (s - 30), 0); });
+  CHECK(find_frozen_odometry(drift.odometry, drift.fixes).empty());
+}
+
+TEST_CASE("frozen: a receiver that measures a standstill is believed") {
+  Scene scene = frozen_at(0, 0);
+  for (Fix& fix : scene.fixes) fix.speed_mps = 0.1;
+  CHECK(find_frozen_odometry(scene.odometry, scene.fixes).empty());
+}
+
+TEST_CASE("frozen: withheld fixes take no part") {
+  Scene scene = frozen_at(0, 0);
+  for (std::size_t i = 25; i <= 65; ++i) scene.fixes[i].status = FixStatus::withheld;
+  CHECK(find_frozen_odometry(scene.odometry, scene.fixes).empty());
+}
+
+}  // namespace frozen_test

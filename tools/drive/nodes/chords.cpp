@@ -1,0 +1,159 @@
+#include <waymark/tools/drive/nodes/chords.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark::drive {
+namespace {
+
+double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return std::atan2(a[0] * b[1] - a[1] * b[0], a.dot(b));
+}
+
+/// Returns the heading along [first, last], weighted with time.
+double mean_heading(const ReckonedFixes& receiver, std::size_t first, std::size_t last) {
+  double sum = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    const double dt = seconds_between(receiver.fixes[i].stamp, receiver.fixes[i + 1].stamp);
+    sum += 0.5 * (receiver.antenna[i][2] + receiver.antenna[i + 1][2]) * dt;
+  }
+  return sum / seconds_between(receiver.fixes[first].stamp, receiver.fixes[last].stamp);
+}
+
+ChordPair chord(const ReckonedFixes& receiver, std::size_t first, std::size_t last) {
+  return {.gnss = receiver.fixes[last].position - receiver.fixes[first].position,
+          .odometry = receiver.antenna[last].head<2>() - receiver.antenna[first].head<2>()};
+}
+
+/// Returns the mean difference of the turns with a factor. A single wrong fix counts at most 1 rad.
+double difference_with(double factor, std::span<const TurnPair> turns) {
+  double sum = 0;
+  for (const TurnPair& pair : turns)
+    sum += std::min(1.0, std::abs(wrap_angle(pair.gnss_rad - factor * pair.odometry_rad)));
+  return sum / static_cast<double>(turns.size());
+}
+
+double disagreement(const ReckonedFixes& receiver, std::size_t first, std::size_t last) {
+  const ChordPair pair = chord(receiver, first, last);
+  return std::abs(pair.gnss.norm() - pair.odometry.norm());
+}
+
+/// Tells whether all fixes of 10 s before (step -1) or after (step 1) another one agree with the
+/// odometry. False if the log ends earlier.
+bool is_settled(const ReckonedFixes& receiver, std::size_t from, int step, double tolerance_m) {
+  constexpr double kSettled_s = 10;
+  for (auto i = static_cast<std::ptrdiff_t>(from); i >= 0 && i < std::ssize(receiver.fixes); i += step) {
+    const auto at = static_cast<std::size_t>(i);
+    if (disagreement(receiver, from, at) >= tolerance_m) return false;
+    if (std::abs(seconds_between(receiver.fixes[from].stamp, receiver.fixes[at].stamp)) >= kSettled_s)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ReckonedFixes of_first_receiver(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna) {
+  ReckonedFixes receiver;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const bool same_time = !receiver.fixes.empty() && receiver.fixes.back().stamp == fixes[i].stamp;
+    if (fixes[i].source != fixes.front().source || same_time) continue;
+    receiver.fixes.push_back(fixes[i]);
+    receiver.antenna.push_back(antenna[i]);
+  }
+  return receiver;
+}
+
+std::vector<ChordPair> chords_of(const ReckonedFixes& receiver, double longest_s,
+                                 const std::function<bool(const ChordPair&)>& is_complete) {
+  std::vector<ChordPair> chords;
+  std::size_t first = 0;
+  bool unbroken = false;
+  for (std::size_t i = 1; i < receiver.fixes.size(); ++i) {
+    while (first < i && seconds_between(receiver.fixes[first].stamp, receiver.fixes[i].stamp) > longest_s) {
+      ++first;
+      unbroken = false;
+    }
+    if (first == i) continue;
+    ChordPair next = chord(receiver, first, i);
+    if (!is_complete(next)) continue;
+    next.heading_rad = mean_heading(receiver, first, i);
+    next.follows = unbroken;
+    chords.push_back(next);
+    unbroken = true;
+    first = i;
+  }
+  return chords;
+}
+
+std::vector<TurnPair> turns_of(std::span<const ChordPair> chords) {
+  std::vector<TurnPair> turns;
+  for (std::size_t i = 1; i < chords.size(); ++i) {
+    if (!chords[i].follows) continue;
+    turns.push_back(
+        {turn(chords[i - 1].gnss, chords[i].gnss), chords[i].heading_rad - chords[i - 1].heading_rad});
+  }
+  return turns;
+}
+
+std::optional<double> factor_of_turns(std::span<const TurnPair> turns) {
+  if (turns.empty()) return std::nullopt;
+  constexpr int kSteps = 300;  // of 3 % each, from 0.01 to 100
+  double best = 1;
+  double least = difference_with(1, turns);
+  const double enough = 0.5 * std::min(least, difference_with(0, turns));
+  for (int step = 0; step <= kSteps; ++step) {
+    const double size = 0.01 * std::pow(1e4, static_cast<double>(step) / kSteps);
+    for (const double factor : {size, -size}) {
+      const double difference = difference_with(factor, turns);
+      if (difference >= least) continue;
+      least = difference;
+      best = factor;
+    }
+  }
+  if (least > enough) return std::nullopt;
+  return best;
+}
+
+Median median_with_sigma(std::vector<double> values) {
+  const auto middle_of = [](std::vector<double>& of) {
+    const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
+    std::nth_element(of.begin(), middle, of.end());
+    return *middle;
+  };
+  Median median;
+  median.value = middle_of(values);
+  const auto count = static_cast<double>(values.size());
+  for (double& value : values) value = std::abs(value - median.value);
+  median.spread = 1.4826 * middle_of(values);  // of a normal distribution
+  median.sigma = std::sqrt(std::numbers::pi / 2) * median.spread / std::sqrt(count);
+  return median;
+}
+
+std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
+  constexpr double kSmallest_m = 50;
+  constexpr double kSigmas = 10;
+  constexpr double kLongest_s = 5;
+  std::vector<Jump> jumps;
+  const std::vector<Fix>& fixes = receiver.fixes;
+  for (std::size_t i = 1; i < fixes.size(); ++i) {
+    if (seconds_between(fixes[i - 1].stamp, fixes[i].stamp) > kLongest_s) continue;
+    const double distance_m = disagreement(receiver, i - 1, i);
+    const double claimed_m =
+        std::sqrt(0.5 * std::max(fixes[i].covariance.trace(), fixes[i - 1].covariance.trace()));
+    if (distance_m < std::max(kSmallest_m, kSigmas * claimed_m)) continue;
+    const double tolerance_m = 0.25 * distance_m;
+    if (!is_settled(receiver, i - 1, -1, tolerance_m) || !is_settled(receiver, i, 1, tolerance_m)) continue;
+    jumps.push_back({fixes[i].stamp, distance_m, 0, false});
+  }
+  for (std::size_t i = 0; i < jumps.size(); ++i) {
+    jumps[i].returns = i + 1 < jumps.size();
+    jumps[i].stays_s = seconds_between(jumps[i].at, jumps[i].returns ? jumps[i + 1].at : fixes.back().stamp);
+  }
+  return jumps;
+}
+
+}  // namespace waymark::drive

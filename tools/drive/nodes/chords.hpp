@@ -1,0 +1,75 @@
+/// Chords between fixes, in GNSS and in the odometry. They compare the two without a common frame.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <waymark/core/drive/sample.hpp>
+
+namespace waymark::drive {
+
+/// One receiver, and the dead-reckoned antenna poses at its fixes. Headings are not wrapped.
+struct ReckonedFixes {
+  std::vector<Fix> fixes;
+  std::vector<Eigen::Vector3d> antenna;
+};
+
+/// Returns the fixes of the first receiver.
+[[nodiscard]] ReckonedFixes of_first_receiver(std::span<const Fix> fixes,
+                                              std::span<const Eigen::Vector3d> antenna);
+
+/// The way between two fixes.
+struct ChordPair {
+  Eigen::Vector2d gnss = Eigen::Vector2d::Zero();
+  Eigen::Vector2d odometry = Eigen::Vector2d::Zero();
+  double heading_rad = 0;  ///< mean of the odometry along the chord, not wrapped
+  bool follows = false;    ///< it begins at the end of the previous chord
+};
+
+/// Returns chords one after another. Each is extended until it is complete.
+/// @param is_complete of a chord
+/// @param longest_s a chord that lasts longer is left out
+[[nodiscard]] std::vector<ChordPair> chords_of(const ReckonedFixes& receiver, double longest_s,
+                                               const std::function<bool(const ChordPair&)>& is_complete);
+
+/// A turn from one chord to the next.
+struct TurnPair {
+  double gnss_rad = 0;      ///< in (-pi, pi]
+  double odometry_rad = 0;  ///< not wrapped
+};
+
+/// Returns the turns between chords that follow each other.
+[[nodiscard]] std::vector<TurnPair> turns_of(std::span<const ChordPair> chords);
+
+/// Returns the factor on the odometry's turns that explains the turns of the fixes: from -100 to -0.01
+/// or from 0.01 to 100. Empty unless the turns differ from those of the fixes at most half as much
+/// with it as with a factor of 1 and without turns.
+[[nodiscard]] std::optional<double> factor_of_turns(std::span<const TurnPair> turns);
+
+/// A median with its standard deviation, if the values are independent.
+struct Median {
+  double value = 0;
+  double spread = 0;  ///< standard deviation of one value, from the median absolute deviation
+  double sigma = 0;   ///< of the median
+};
+/// @param values not empty
+[[nodiscard]] Median median_with_sigma(std::vector<double> values);
+
+/// A time from which the fixes are elsewhere, by the odometry.
+struct Jump {
+  Stamp at;  ///< of the first fix that is elsewhere
+  double distance_m = 0;
+  double stays_s = 0;    ///< until they jump again, or until the end
+  bool returns = false;  ///< they jump again
+};
+
+/// Finds jumps between fixes at most 5 s apart: their distance differs by 50 m or more, and by more
+/// than 10 sigmas of the fixes, from that of the odometry. For 10 s before and after, all fixes agree
+/// with the odometry within a quarter of that.
+[[nodiscard]] std::vector<Jump> jumps_of(const ReckonedFixes& receiver);
+
+}  // namespace waymark::drive

@@ -1,0 +1,47 @@
+/// Finds times in which the odometry repeats one reading although the fixes move otherwise: a sensor
+/// or a logger that stopped.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <waymark/core/drive/sample.hpp>
+
+namespace waymark::drive {
+
+/// A time in which the odometry was not measured.
+struct FrozenOdometry {
+  Stamp from;               ///< of its first sample
+  Stamp to;                 ///< of its last sample
+  double speed_mps = 0;     ///< that the samples repeat
+  double distance_m = 0;    ///< between the fixes in this time
+  bool with_turns = false;  ///< the samples repeat their yaw rate too
+};
+
+/// Finds them with the fixes of the first receiver that are not withheld.
+///
+/// A moving vehicle does not repeat a reading. If at most one pair of samples in 20 does, 3 s of one
+/// speed above 0.5 m/s and one yaw rate (20 samples or more) are such a time.
+///
+/// Otherwise the speed is the same in each sample for 5 s or more. If the vehicle does not stand by
+/// it, the yaw rate is the same as well. The fixes contradict it in at least four chords in a row, of 2 to
+/// 10 s each. Every chord differs from the odometry's distance by at least 5 m, 1 m/s and three
+/// sigmas of the fixes; all of them together by at least 30 m and ten sigmas. The chords have a
+/// common direction, within 60 degrees from each to the next: fixes of a standing receiver wander
+/// without one. If the receiver measures its speed, this speed must contradict the odometry too.
+/// @param odometry sorted by stamp
+/// @param fixes sorted by stamp
+[[nodiscard]] std::vector<FrozenOdometry> find_frozen_odometry(std::span<const OdometrySample> odometry,
+                                                               std::span<const Fix> fixes);
+
+/// Gives the samples of those times the motion of the fixes, and marks them as assumed. The speed is
+/// that of the receiver, or that of its positions over 5 s. The yaw rate is kept unless it is frozen.
+/// @param fixes as for find_frozen_odometry
+void assume_motion_of_fixes(std::span<const FrozenOdometry> frozen, std::span<const Fix> fixes,
+                            std::span<OdometrySample> odometry);
+
+/// Returns the warning for one of them. @param start first stamp of the odometry
+[[nodiscard]] std::string warning_of(const FrozenOdometry& frozen, Stamp start);
+
+}  // namespace waymark::drive
