@@ -63,10 +63,11 @@ TEST_CASE("slips: a speed in km/h is named at 5 Hz too, and in the report") {
   CHECK(contains(result.err, "times the distance of the fixes"));
   CHECK(contains(result.err, "(3.6: km/h read as m/s)"));
   CHECK(contains(result.err, "warning: the estimate of speed_scale is"));
+  CHECK(contains(result.err, "white_sigma is 81.9 m, 55 times its usual value, where the search ends"));
   CHECK(contains(result.err, "times as far from the truth as raw GNSS"));
   const std::string report = read_text(folder + "out/report.html");
   CHECK(contains(report, "(3.6: km/h read as m/s)"));
-  CHECK(contains(report, "3 warnings: see below."));
+  CHECK(contains(report, "4 warnings: see below."));
   CHECK(contains(report, "<td>WARNING</td>"));
 }
 
@@ -74,6 +75,30 @@ TEST_CASE("slips: a yaw rate of the wrong sign is named at 5 Hz too") {
   const std::string folder = fresh_folder();
   const std::string drive = drive_with(folder, [](double t, double v, double w) { return line(t, v, -w); });
   CHECK(contains(run({"run", drive, "-o", folder + "out"}).err, "the odometry turns against the fixes"));
+}
+
+TEST_CASE("slips: a yaw rate in deg/s read as rad/s, and the reverse, are named") {
+  const std::string folder = fresh_folder();
+  const std::string fast =
+      drive_with(folder, [](double t, double v, double w) { return line(t, v, 57.29578 * w); });
+  CHECK(contains(run({"convert", fast, "-o", folder + "a.graph"}).err, "57.3: deg/s read as rad/s"));
+  const std::string slow =
+      drive_with(folder, [](double t, double v, double w) { return line(t, v, 0.01745329 * w); });
+  CHECK(contains(run({"convert", slow, "-o", folder + "a.graph"}).err, "rad/s are read as deg/s"));
+}
+
+TEST_CASE("slips: odometry that reads 0 for 30 s of driving is replaced, told once and in the report") {
+  const std::string folder = fresh_folder();
+  const std::string drive = drive_with(folder, [](double t, double v, double w) {
+    const bool frozen = t > 126700 && t < 126730;
+    return line(t, frozen ? 0 : v, frozen ? 0 : w);
+  });
+  const RunResult result = run({"run", drive, "-o", folder + "out", "-m", "g1,correlated"});
+  const std::string said = "the odometry repeats 0 m/s and its yaw rate";
+  CHECK(contains(result.err, said));
+  CHECK(result.err.find(said) == result.err.rfind(said));
+  CHECK(contains(read_text(folder + "out/correlated.html"), said));
+  CHECK(contains(read_text(folder + "out/g1.fused.graph"), said));
 }
 
 TEST_CASE("slips: a hole in the odometry is told with its place and length") {

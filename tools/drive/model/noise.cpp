@@ -107,17 +107,16 @@ double evaluate(unsigned size, const double* coordinates, double*, void* data) {
 }
 
 /// BOBYQA (Powell 2009) needs no derivatives and respects bounds. A parameter may leave its prior
-/// by four deviations.
+/// by kNoiseReach deviations.
 void minimize(Objective& objective, NoiseEstimate& noise) {
-  constexpr double kReach = 4;
   constexpr double kTolerance = 0.05;  // of a deviation of the prior
   const auto size = static_cast<unsigned>(noise.parameters.size());
   std::vector<double> at(size), low(size), high(size), step(size), tolerance(size);
   for (unsigned i = 0; i < size; ++i) {
     const NoisePrior& prior = noise.parameters[i].prior;
     at[i] = to_search(prior, prior.mean);
-    low[i] = at[i] - kReach * prior.deviation;
-    high[i] = at[i] + kReach * prior.deviation;
+    low[i] = at[i] - kNoiseReach * prior.deviation;
+    high[i] = at[i] + kNoiseReach * prior.deviation;
     if (prior.linear) {  // a share
       low[i] = std::max(low[i], 0.0);
       high[i] = std::min(high[i], 1.0);

@@ -12,6 +12,9 @@
 
 namespace waymark::drive {
 
+/// The search may leave the prior of a parameter by this many of its deviations.
+inline constexpr double kNoiseReach = 4;
+
 /// The estimate of one option.
 struct NoiseParameter {
   std::string owner;  ///< the odometry model or modeling that has the option

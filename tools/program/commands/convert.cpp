@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -63,7 +64,8 @@ ExitCode convert_drive(const ConvertOptions& options, const drive::DriveFile& fi
   const std::string& modeling = loaded.settings.front().modeling;
   require_not_read(options.output, loaded.files);
   drive::Fusion fusion(loaded.drive, registry);
-  const drive::ModeledDrive modeled = model_loaded(fusion, loaded.settings.front(), registry, console);
+  std::set<std::string> told;
+  const drive::ModeledDrive modeled = model_loaded(fusion, loaded.settings.front(), registry, console, told);
   const formats::GraphDocument& document = modeled.document;
   stop_if_interrupted();
   announce_output(options.format, document, options.input, console);

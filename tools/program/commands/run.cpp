@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -135,7 +136,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   result.states = states_of_minimum(document, summary, console);
   result.evaluation = {modeling, evaluate_minimum(run, document, summary, settings)};
   for (const std::string& sentence :
-       warnings_of_result(result.states, result.noise, result.evaluation.evaluation))
+       warnings_of_result(result.states, modeled.settings, result.noise, result.evaluation.evaluation))
     warn(sentence, document, console);
   std::optional<evaluation::Sparsity> sparsity = sparsity_for_report(document, console);
   if (document.provenance.size() > known) write(run.folder.fused_graph(modeling));
@@ -169,9 +170,10 @@ void require_logs_stay(const RunOfDrive& run) {
 /// Returns the modelings of a drive. Errors in one of them are found before anything is written.
 std::vector<drive::ModeledDrive> model_all(const RunOfDrive& run) {
   drive::Fusion fusion(run.loaded.drive, run.registry);
+  std::set<std::string> told;
   std::vector<drive::ModeledDrive> models;
   for (const drive::FusionSettings& settings : run.loaded.settings) {
-    models.push_back(model_loaded(fusion, settings, run.registry, run.console));
+    models.push_back(model_loaded(fusion, settings, run.registry, run.console, told));
     stop_if_interrupted();
   }
   return models;

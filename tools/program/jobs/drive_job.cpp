@@ -47,14 +47,17 @@ LoadedDrive load_drive_for(const drive::DriveFile& file, const DriveChoice& choi
 }
 
 drive::ModeledDrive model_loaded(drive::Fusion& fusion, const drive::FusionSettings& settings,
-                                 const TypeRegistry& registry, const Console& console) {
+                                 const TypeRegistry& registry, const Console& console,
+                                 std::set<std::string>& told) {
   console.progress(settings.modeling + ": start and noise");
   drive::ModeledDrive modeled = fusion.model(settings);
   console.end_progress();
-  for (const std::string& warning : modeled.warnings()) console.warning(warning);
-  if (!modeled.placed.start.note.empty()) console.note("start: " + modeled.placed.start.note);
+  for (const std::string& warning : modeled.warnings())
+    if (told.insert(warning).second) console.warning(warning);
+  if (const std::string& note = modeled.placed.start.note; !note.empty() && told.insert(note).second)
+    console.note("start: " + note);
   if (scale_is_bent(modeled.settings, registry))
-    console.note("without a robust loss, biased fixes distort speed_scale; use --gnss-loss cauchy:1");
+    console.note("biased fixes distort speed_scale with this modeling; the modeling correlated avoids that");
   auto& provenance = modeled.document.provenance;
   provenance.insert(provenance.begin(), {"program", "waymark " WAYMARK_VERSION});
   return modeled;

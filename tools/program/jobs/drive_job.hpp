@@ -2,6 +2,7 @@
 /// reports on the console.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,9 @@ struct LoadedDrive {
 
 /// Returns the drive with one modeling. Oddities are reported on the console.
 /// @param fusion of the drive
+/// @param told sentences that another modeling of the drive has reported; those of this one are added
 [[nodiscard]] drive::ModeledDrive model_loaded(drive::Fusion& fusion, const drive::FusionSettings& settings,
-                                               const TypeRegistry& registry, const Console& console);
+                                               const TypeRegistry& registry, const Console& console,
+                                               std::set<std::string>& told);
 
 }  // namespace waymark::program

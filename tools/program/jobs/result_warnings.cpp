@@ -9,14 +9,31 @@ namespace waymark::program {
 namespace {
 
 constexpr double kStateSigmas = 6;
-constexpr double kNoiseDeviations = 4;
+constexpr double kHeldSigmas = 2.5;
+constexpr double kNearEnd = 0.95;  // of the reach of the search
 constexpr double kWorseThanRaw = 1.5;
 constexpr const char* kRemedy = "check units, signs, columns and clocks";
 
-void check_states(const std::vector<evaluation::StateReport>& states, std::vector<std::string>& warnings) {
+/// The prior holds on the first value of a state.
+void check_held(const evaluation::StateReport& state, std::vector<std::string>& warnings) {
+  const double sigmas = std::abs(state.first) / state.prior_sigma;
+  if (!(sigmas > kHeldSigmas)) return;
+  warnings.push_back(
+      fmt::format("the estimate of {} begins at {:.3g}{}, {:.1f} sigmas of its prior ({:.3g}) from zero, so "
+                  "the prior may hold it back: {}; if it is real, widen the prior ({}_sigma)",
+                  state.name, state.first, state.unit == "1" ? "" : " " + state.unit, sigmas,
+                  state.prior_sigma, kRemedy, state.name));
+}
+
+void check_states(const std::vector<evaluation::StateReport>& states, const Options& calibration,
+                  std::vector<std::string>& warnings) {
   for (const evaluation::StateReport& state : states) {
     const double farthest = std::max(std::abs(state.smallest), std::abs(state.largest));
-    if (!(state.prior_sigma > 0) || !(farthest > kStateSigmas * state.prior_sigma)) continue;
+    if (!(state.prior_sigma > 0)) continue;
+    if (!(farthest > kStateSigmas * state.prior_sigma)) {
+      if (calibration.contains(state.name)) check_held(state, warnings);
+      continue;
+    }
     const double value = std::abs(state.smallest) > std::abs(state.largest) ? state.smallest : state.largest;
     warnings.push_back(fmt::format(
         "the estimate of {} is {:.3g}{}, {:.0f} times its usual value ({:.3g}): {}", state.name, value,
@@ -28,20 +45,22 @@ void check_noise(const drive::NoiseEstimate& noise, std::vector<std::string>& wa
   for (const drive::NoiseParameter& parameter : noise.parameters) {
     if (parameter.prior.linear || !(parameter.value > 0) || !(parameter.prior.mean > 0)) continue;
     const double factor = parameter.value / parameter.prior.mean;
-    if (!(std::log(factor) > kNoiseDeviations * parameter.prior.deviation)) continue;
-    warnings.push_back(fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value: {}",
-                                   parameter.owner, parameter.option, parameter.value, parameter.unit, factor,
-                                   kRemedy));
+    if (!(std::log(factor) > kNearEnd * drive::kNoiseReach * parameter.prior.deviation)) continue;
+    warnings.push_back(
+        fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value, where the search "
+                    "ends: {}",
+                    parameter.owner, parameter.option, parameter.value, parameter.unit, factor, kRemedy));
   }
 }
 
 }  // namespace
 
 std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateReport>& states,
+                                            const drive::FusionSettings& modeled,
                                             const drive::NoiseEstimate& noise,
                                             const evaluation::Evaluation& evaluation) {
   std::vector<std::string> warnings;
-  check_states(states, warnings);
+  check_states(states, *modeled.calibration, warnings);
   check_noise(noise, warnings);
   if (!evaluation.truth) return warnings;
   const double factor = evaluation.truth->fused.position.rmse_m / evaluation.truth->gnss.position.rmse_m;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/model/noise.hpp>
 #include <waymark/tools/evaluation/document/estimated_states.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
@@ -12,9 +13,12 @@
 namespace waymark::program {
 
 /// Returns a sentence for each fact that a sound drive does not show: a state more than 6 sigmas of
-/// its prior from zero (the mean of the prior), a noise parameter more than 4 deviations from its
-/// prior, and fused positions whose error exceeds that of the raw fixes by half.
+/// its prior from zero (the mean of the prior), a first value of a calibration state more than 2.5 sigmas from it,
+/// a noise parameter at the upper end of its search (kNoiseReach), and fused positions whose error
+/// exceeds that of the raw fixes by half.
+/// @param modeled settings of the modeled drive
 [[nodiscard]] std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateReport>& states,
+                                                          const drive::FusionSettings& modeled,
                                                           const drive::NoiseEstimate& noise,
                                                           const evaluation::Evaluation& evaluation);
 
