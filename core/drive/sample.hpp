@@ -36,6 +36,7 @@ struct Interval {
   double yaw_rate_radps = 0;
   double dt_s = 0;
   bool bridged = false;  ///< the interval lies in a gap of the odometry, or its motion is assumed
+  double gap_s = 0;      ///< time between the readings around a bridged interval, all its parts together
 
   friend bool operator==(const Interval&, const Interval&) = default;
 };

@@ -107,7 +107,7 @@ std::vector<OptionInfo> options() {
       {"heading_variance_per_s", "1.5e-6", "rad^2/s", OptionRange{1e-12, 1}, "heading variance per second",
        NoisePrior{4e-6, 1.4}},
       {kGapFactor, "100", "", OptionRange{1, 1e6},
-       "factor on the process noise across a gap of the odometry"},
+       "factor on the default process noise across a gap of the odometry, whatever the other options say"},
       {"standstill_speed", "0.05", "m/s", OptionRange{0, 1}, "below this |speed| the vehicle stands"},
       {"standstill_position_variance_per_s", "1e-5", "m^2/s", OptionRange{1e-9, 1},
        "position variance per second at rest"},

@@ -46,7 +46,7 @@ Uncertain drive(double speed, double yaw_rate, const std::vector<double>& durati
 
 const Interval kIntervals[] = {{10, 0, 0.04, false},  {10, 0.3, 0.04, false}, {-3, 0.5, 0.04, false},
                                {30, 0.1, 0.1, false}, {0.06, 1, 0.04, false}, {10, 0, 30, false},
-                               {2, -0.9, 0.1, true},  {15, 0.2, 0.5, false}};
+                               {2, -0.9, 0.1, true},  {15, 0.2, 0.5, false},  {8, 0.1, 3, true, 30}};
 
 }  // namespace
 
@@ -118,9 +118,23 @@ TEST_CASE("odometry noise: every covariance is symmetric and invertible, also fo
   }
 }
 
-TEST_CASE("odometry noise: a gap is as uncertain as its factor says") {
+TEST_CASE("odometry noise: a gap is as uncertain as its factor and the motions of a vehicle") {
+  // short: the factor
   const Eigen::Matrix3d plain = process_covariance({10, 0.1, 2, false}, {});
   CHECK(relative_difference(process_covariance({10, 0.1, 2, true}, {}), 100 * plain) < 1e-14);
+  // long: the integrals of Brownian bridges of speed and yaw rate, density gap_s^3 / 12
+  const Eigen::Matrix3d long_gap = process_covariance({0, 0, 30, true, 30}, {});
+  CHECK(long_gap(0, 0) == Approx(4 * 27000.0 / 12).epsilon(1e-3));
+  CHECK(long_gap(2, 2) == Approx(0.04 * 27000.0 / 12).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "odometry noise: a gap does not depend on the noise of the sensors, so it cannot bend their estimate") {
+  ProcessNoise poor;
+  poor.longitudinal_per_m *= 25;
+  poor.heading_per_s *= 270;
+  const Interval gap{10, 0.1, 2, true, 2};
+  CHECK(relative_difference(process_covariance(gap, poor), process_covariance(gap, {})) < 1e-14);
 }
 
 TEST_CASE("odometry noise: standstill information is at least 1e5 on every axis for any time") {

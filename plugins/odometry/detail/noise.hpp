@@ -18,7 +18,9 @@ struct ProcessNoise {
   double position_per_s = 1e-4;
   double heading_per_m = 2.05e-7;  ///< rad^2 per m
   double heading_per_s = 1.5e-6;   ///< rad^2 per s
-  double gap_factor = 100;         ///< factor on all of them in a gap of the odometry
+  /// In a gap of the odometry: factor on the defaults of all of them, whatever is stated or estimated.
+  /// The motion there is unknown, and must not change an estimate of the noise of the sensors.
+  double gap_factor = 100;
 };
 
 /// The noise of a standing vehicle.

@@ -109,6 +109,8 @@ TEST_CASE("slips: a hole in the odometry is told with its place and length") {
   const RunResult result = run({"convert", drive, "-o", folder + "a.graph"});
   CHECK(contains(result.err,
                  "the odometry has no samples for more than 0.5 s in 1 place, the longest for 30.0 s"));
+  CHECK(contains(result.err, "(gap: {policy: bridge})"));
+  CHECK(contains(result.err, "the motion of the fixes is assumed in 1 of these places"));
 }
 
 TEST_CASE(

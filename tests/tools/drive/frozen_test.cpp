@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/tools/drive/nodes/fix_motion.hpp>
 #include <waymark/tools/drive/nodes/frozen.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -167,6 +168,30 @@ TEST_CASE("frozen: withheld fixes take no part") {
   Scene scene = frozen_at(0, 0);
   for (std::size_t i = 25; i <= 65; ++i) scene.fixes[i].status = FixStatus::withheld;
   CHECK(find_frozen_odometry(scene.odometry, scene.fixes).empty());
+}
+
+TEST_CASE("frozen: a gap that fixes cover is filled with their motion, others and short ones stay") {
+  const auto with_gap = [](double from, double to) {
+    Scene made = scene();
+    std::erase_if(made.odometry, [&](const OdometrySample& sample) {
+      return sample.stamp.seconds() > from + 0.05 && sample.stamp.seconds() < to - 0.05;
+    });
+    return made;
+  };
+  const double true_distance = distance_of(scene());
+  Scene covered = with_gap(30, 60);
+  CHECK(fill_gaps(covered.odometry, covered.fixes, 0.5) == 1);
+  CHECK(distance_of(covered) == Approx(true_distance).epsilon(0.01));
+  CHECK(build_timeline(covered.odometry, {}, {}).intervals[310].bridged);
+
+  Scene tunnel = with_gap(30, 60);
+  std::erase_if(tunnel.fixes,
+                [](const Fix& fix) { return fix.stamp.seconds() > 40 && fix.stamp.seconds() < 46; });
+  CHECK(fill_gaps(tunnel.odometry, tunnel.fixes, 0.5) == 0);
+  Scene brief = with_gap(30, 31.5);
+  CHECK(fill_gaps(brief.odometry, brief.fixes, 0.5) == 0);
+  Scene slow = with_gap(30, 33);
+  CHECK(fill_gaps(slow.odometry, slow.fixes, 4) == 0);
 }
 
 }  // namespace frozen_test

@@ -135,6 +135,26 @@ TEST_CASE("prepare: two receivers may speak at one stamp: one epoch, two fixes")
   CHECK(drive.report.gnss.duplicates_identical == 0);
 }
 
+TEST_CASE("prepare: a gap is longer than four usual intervals of the odometry, unless its length is stated") {
+  DriveLogs logs = small_drive();
+  std::vector<OdometrySample>& odometry = logs.odometry.front().data.odometry;
+  const double start_s = odometry.front().stamp.seconds();
+  std::erase_if(odometry, [&](const OdometrySample& s) {
+    const double second = s.stamp.seconds() - start_s;
+    return std::abs(second - std::round(second)) > 1e-6;
+  });
+  DriveDescription description = small_description();
+  const PreparedDrive slow = prepare_drive(logs, description);
+  CHECK(slow.timeline.gap_s == Approx(4));
+  CHECK(slow.report.odometry.gaps.empty());
+  for (const Interval& interval : build_timeline(slow.odometry, slow.fixes, slow.timeline).intervals)
+    CHECK_FALSE(interval.bridged);
+  description.states_gap = true;
+  const PreparedDrive stated = prepare_drive(logs, description);
+  CHECK(stated.timeline.gap_s == 0.5);
+  CHECK(stated.report.odometry.gaps.size() == stated.odometry.size() - 1);
+}
+
 TEST_CASE("prepare: gaps are named") {
   DriveLogs logs = small_drive();
   std::erase_if(logs.odometry.front().data.odometry, [](const OdometrySample& s) {

@@ -192,6 +192,7 @@ void read_timeline(const YamlSection& top, DriveDescription& drive) {
   const auto gap = top.section("gap", {"longer_than", "policy", "noise_factor"});
   if (!gap) return;
   gap->read("longer_than", drive.timeline.gap_s, kPositive);
+  drive.states_gap = gap->has("longer_than");
   if (const auto policy = gap->read_word("policy", kGapPolicies))
     drive.timeline.gap_policy = *policy == 0 ? GapPolicy::bridge : GapPolicy::error;
   gap->read("noise_factor", drive.timeline.gap_noise_factor, kFactor);

@@ -70,6 +70,8 @@ struct DriveDescription {
   std::optional<double> from_s;  ///< seconds after the first stamp of the drive
   std::optional<double> to_s;
   TimelineOptions timeline;  ///< how samples become nodes in time
+  /// false: timeline.gap_s grows with the usual interval of the odometry
+  bool states_gap = false;
 
   std::optional<int> utm_zone;  ///< signed: negative is south; empty: zone of the first good fix
   /// easting, northing of the local origin; empty: near the first fix

@@ -10,6 +10,7 @@
 #include <waymark/tools/drive/logs/projection.hpp>
 #include <waymark/tools/drive/logs/sensor_logs.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/nodes/fix_motion.hpp>
 #include <waymark/tools/drive/nodes/frozen.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 
@@ -76,6 +77,11 @@ void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description,
 }
 
 void judge_odometry(PreparedDrive& drive) {
+  const bool bridges = drive.timeline.gap_policy == GapPolicy::bridge;
+  const std::size_t filled = bridges ? fill_gaps(drive.odometry, drive.fixes, drive.timeline.gap_s) : 0;
+  if (filled > 0)
+    drive.report.notes.push_back(
+        fmt::format("the motion of the fixes is assumed in {} of these places", filled));
   const std::vector<FrozenOdometry> frozen = find_frozen_odometry(drive.odometry, drive.fixes);
   assume_motion_of_fixes(frozen, drive.fixes, drive.odometry);
   for (const FrozenOdometry& time : frozen)
@@ -95,6 +101,7 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   drive.timeline = description.timeline;
   drive.inputs = inputs_of(logs);
   drive.odometry = prepare_odometry(logs, description, drive.report);
+  drive.timeline.gap_s = longest_interval_s(description, drive.odometry);
   const std::vector<GeodeticFix> fixes = prepare_fixes(logs, description, drive.odometry, drive.report);
   const std::vector<GeodeticTruth> truth = clean_truth(logs.truth, drive.scale, drive.report);
   require_overlap(truth, drive.odometry, description);

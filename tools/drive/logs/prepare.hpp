@@ -39,7 +39,7 @@ struct StreamReport {
       0;  ///< dropped: same stamp as an earlier sample, other content; the first one is kept
   std::size_t used = 0;
   double median_interval_s = 0;
-  /// odometry: above timeline.gap_s; others: above 2.5 median intervals
+  /// odometry: above PreparedDrive::timeline.gap_s; others: above 2.5 median intervals
   std::vector<GapReport> gaps;
 };
 

@@ -47,15 +47,23 @@ void note_gaps(double gap_s, Stamp start, PrepareReport& report) {
   const GapReport& longest =
       *std::max_element(gaps.begin(), gaps.end(),
                         [](const GapReport& a, const GapReport& b) { return a.length_s < b.length_s; });
-  report.notes.push_back(
-      fmt::format("the odometry has no samples for more than {:g} s in {} {}, the longest for "
-                  "{:.1f} s from {:.1f} s after its start: the speed and yaw rate before and after "
-                  "are assumed there (gap: {{policy}})",
-                  gap_s, gaps.size(), gaps.size() == 1 ? "place" : "places", longest.length_s,
-                  seconds_between(start, longest.start)));
+  report.notes.push_back(fmt::format(
+      "the odometry has no samples for more than {:g} s in {} {}, the longest for {:.1f} s from {:.1f} s "
+      "after its start: the motion there is assumed (gap: {{policy: bridge}})",
+      gap_s, gaps.size(), gaps.size() == 1 ? "place" : "places", longest.length_s,
+      seconds_between(start, longest.start)));
 }
 
 }  // namespace
+
+double longest_interval_s(const DriveDescription& description, std::span<const OdometrySample> odometry) {
+  constexpr double kUsualIntervals = 4;
+  if (description.states_gap || odometry.size() < 2) return description.timeline.gap_s;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < odometry.size(); ++i)
+    intervals.push_back(seconds_between(odometry[i - 1].stamp, odometry[i].stamp));
+  return std::max(description.timeline.gap_s, kUsualIntervals * median_of(intervals));
+}
 
 std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveDescription& description,
                                              PrepareReport& report) {
@@ -91,8 +99,9 @@ std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveD
         description.path, description.from_s.value_or(0),
         description.to_s ? fmt::format("{} s", *description.to_s) : "the end", odometry.size(), length_s));
   for (const OdometrySample& sample : odometry) report.reversing += sample.speed_mps < 0;
-  describe_stream(odometry, description.timeline.gap_s, report.odometry);
-  note_gaps(description.timeline.gap_s, odometry.front().stamp, report);
+  const double gap_s = longest_interval_s(description, odometry);
+  describe_stream(odometry, gap_s, report.odometry);
+  if (description.timeline.gap_policy == GapPolicy::bridge) note_gaps(gap_s, odometry.front().stamp, report);
   return odometry;
 }
 

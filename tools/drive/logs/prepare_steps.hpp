@@ -1,6 +1,7 @@
 /// The steps of prepare_drive for odometry and for fixes.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <waymark/core/drive/log_reader.hpp>
@@ -13,6 +14,11 @@ namespace waymark::drive {
 [[nodiscard]] std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs,
                                                            const DriveDescription& description,
                                                            PrepareReport& report);
+
+/// Returns how far apart samples of the odometry may be without a gap between them: as stated, or the
+/// larger of timeline.gap_s and four usual intervals.
+[[nodiscard]] double longest_interval_s(const DriveDescription& description,
+                                        std::span<const OdometrySample> odometry);
 
 /// Adds logged velocities to the fixes, cleans them, subtracts their delay, drops those outside the
 /// odometry and thins the rest. @throws InputError if no fix is left

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <waymark/types_se2/se2.hpp>
+#include <waymark/tools/drive/nodes/fix_motion.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -62,13 +62,6 @@ bool readings_vary(std::span<const OdometrySample> odometry, const std::vector<R
     equal += repeats(odometry[i - 1], odometry[i]);
   }
   return pairs >= kFewestPairs && kVaries * equal <= pairs;
-}
-
-std::vector<Fix> usable(std::span<const Fix> fixes) {
-  std::vector<Fix> kept;
-  for (const Fix& fix : fixes)
-    if (fix.source == fixes.front().source && fix.status != FixStatus::withheld) kept.push_back(fix);
-  return kept;
 }
 
 double sigma_of(const Fix& fix) {
@@ -169,74 +162,13 @@ double length_of(std::span<const Fix> fixes) {
   return length;
 }
 
-/// The way of the receiver between its fixes.
-class Way {
- public:
-  explicit Way(std::vector<Fix> fixes) : fixes_(std::move(fixes)) {}
-
-  [[nodiscard]] double speed(Stamp at) const {
-    const auto [left, right, share] = around(at);
-    if (left.speed_mps && right.speed_mps) return (1 - share) * *left.speed_mps + share * *right.speed_mps;
-    const auto [chord, duration_s] = chord_at(at);
-    return duration_s > 0 ? chord.norm() / duration_s : 0;
-  }
-  [[nodiscard]] double yaw_rate(Stamp at) const {
-    const auto [before, before_s] = chord_at(moved(at, -kTurn_s));
-    const auto [after, after_s] = chord_at(moved(at, kTurn_s));
-    if (before.norm() < kDirection_m || after.norm() < kDirection_m) return 0;
-    return std::atan2(before[0] * after[1] - before[1] * after[0], before.dot(after)) / (2 * kTurn_s);
-  }
-
- private:
-  static constexpr double kHalfChord_s = 2.5;
-  static constexpr double kTurn_s = 1.5;
-  static constexpr double kDirection_m = 5;
-
-  struct Neighbours {
-    const Fix& left;
-    const Fix& right;
-    double share = 0;  ///< of the right one
-  };
-  struct TimedChord {
-    Eigen::Vector2d chord = Eigen::Vector2d::Zero();
-    double duration_s = 0;
-  };
-
-  static Stamp moved(Stamp stamp, double by_s) {
-    stamp.nanoseconds += static_cast<std::int64_t>(by_s * 1e9);
-    return stamp;
-  }
-  [[nodiscard]] Stamp clamped(Stamp at) const {
-    return std::clamp(at, fixes_.front().stamp, fixes_.back().stamp);
-  }
-  [[nodiscard]] Neighbours around(Stamp at) const {
-    const Stamp inside = clamped(at);
-    const auto right = std::lower_bound(fixes_.begin(), fixes_.end(), inside,
-                                        [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; });
-    if (right == fixes_.begin()) return {*right, *right, 0};
-    const Fix& left = *(right - 1);
-    return {left, *right, seconds_between(left.stamp, inside) / seconds_between(left.stamp, right->stamp)};
-  }
-  [[nodiscard]] Eigen::Vector2d position(Stamp at) const {
-    const auto [left, right, share] = around(at);
-    return (1 - share) * left.position + share * right.position;
-  }
-  [[nodiscard]] TimedChord chord_at(Stamp at) const {
-    const Stamp from = clamped(moved(at, -kHalfChord_s));
-    const Stamp to = clamped(moved(at, kHalfChord_s));
-    return {position(to) - position(from), seconds_between(from, to)};
-  }
-
-  std::vector<Fix> fixes_;
-};
-
 }  // namespace
 
 std::vector<FrozenOdometry> find_frozen_odometry(std::span<const OdometrySample> odometry,
                                                  std::span<const Fix> fixes) {
   constexpr std::size_t kFewestSamples = 20;
   std::vector<FrozenOdometry> found;
-  const std::vector<Fix> all = usable(fixes);
+  const std::vector<Fix> all = fixes_for_motion(fixes);
   const std::vector<Run> runs = runs_of(odometry);
   const bool vary = readings_vary(odometry, runs);
   for (const Run& run : runs) {
@@ -262,12 +194,12 @@ std::vector<FrozenOdometry> find_frozen_odometry(std::span<const OdometrySample>
 void assume_motion_of_fixes(std::span<const FrozenOdometry> frozen, std::span<const Fix> fixes,
                             std::span<OdometrySample> odometry) {
   if (frozen.empty()) return;
-  const Way way(usable(fixes));
+  const MotionOfFixes motion(fixes);
   for (OdometrySample& sample : odometry) {
     for (const FrozenOdometry& time : frozen) {
       if (!within(sample.stamp, time)) continue;
-      sample.speed_mps = way.speed(sample.stamp);
-      if (time.with_turns) sample.yaw_rate_radps = way.yaw_rate(sample.stamp);
+      sample.speed_mps = motion.speed(sample.stamp);
+      if (time.with_turns) sample.yaw_rate_radps = motion.yaw_rate(sample.stamp);
       sample.assumed = true;
     }
   }

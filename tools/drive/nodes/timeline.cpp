@@ -67,7 +67,9 @@ Interval twist_between(const OdometrySample& left, const OdometrySample& right, 
   Interval twist;
   twist.speed_mps = 0.5 * (left.speed_mps + right.speed_mps) * grid_scale;
   twist.yaw_rate_radps = 0.5 * (left.yaw_rate_radps + right.yaw_rate_radps);
-  twist.bridged = left.assumed || right.assumed || seconds_between(left.stamp, right.stamp) > gap_s;
+  const double apart_s = seconds_between(left.stamp, right.stamp);
+  twist.bridged = left.assumed || right.assumed || apart_s > gap_s;
+  if (twist.bridged) twist.gap_s = apart_s;
   return twist;
 }
 
