@@ -175,11 +175,14 @@ std::string withheld_block(std::span<const LabelledEvaluation> evaluations, cons
   return block(table, look) + block(ends, look);
 }
 
+/// Only innovations are chi2 distributed. Post-fit residuals of a modeling with correlated errors have no
+/// nu at all, and those of the others are too small.
 void add_innovations(text::Table& table, const std::string& label, const InnovationStatistics& s) {
-  if (s.count + s.undefined == 0) return;
+  if (s.count == 0) return;
+  const bool is_expected = s.kind == ResidualKind::prediction;
   table.rows.push_back({label + ", " + to_string(s.kind), std::to_string(s.count), text::decimals(s.mean, 3),
-                        "2", percent(100 * s.fraction_inside), "95", text::decimals(s.max, 1),
-                        std::to_string(s.undefined)});
+                        is_expected ? "2" : "-", percent(100 * s.fraction_inside), is_expected ? "95" : "-",
+                        text::decimals(s.max, 1), std::to_string(s.undefined)});
 }
 
 std::string innovation_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
