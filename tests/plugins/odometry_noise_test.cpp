@@ -46,7 +46,7 @@ Uncertain drive(double speed, double yaw_rate, const std::vector<double>& durati
 
 const Interval kIntervals[] = {{10, 0, 0.04, false},  {10, 0.3, 0.04, false}, {-3, 0.5, 0.04, false},
                                {30, 0.1, 0.1, false}, {0.06, 1, 0.04, false}, {10, 0, 30, false},
-                               {2, -0.9, 0.1, true},  {15, 0.2, 0.5, false},  {8, 0.1, 3, true, 30}};
+                               {2, -0.9, 0.1, true},  {15, 0.2, 0.5, false},  {8, 0.1, 1, true, 30}};
 
 }  // namespace
 
