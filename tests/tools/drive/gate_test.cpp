@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/nodes/frozen_fixes.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
 
 namespace gate_test {
@@ -271,6 +272,35 @@ TEST_CASE("gate: more rejected than accepted fixes are warned about with the rem
   summary.rejected = 450;
   CHECK_THAT(warning_of(summary), Catch::StartsWith("the gate rejects 450 of 500 fixes (90 %)") &&
                                       Catch::Contains("'correlated' needs no gate"));
+}
+
+TEST_CASE(
+    "gate: fixes that repeat a position while the odometry moves are rejected, also if the gate is off") {
+  std::vector<Fix> fixes(30);
+  std::vector<Eigen::Vector3d> reckoned(30);
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const auto second = static_cast<double>(i);
+    fixes[i].stamp = Stamp::from_seconds(second);
+    const bool stands = i >= 20;  // the vehicle itself
+    reckoned[i] = Eigen::Vector3d(stands ? 200 : 10 * second, 0, 0);
+    const bool frozen = i > 8 && i < 15;
+    fixes[i].position = frozen ? Eigen::Vector2d(80, 0) : Eigen::Vector2d(reckoned[i].head<2>());
+  }
+  fixes[12].status = FixStatus::withheld;
+  const std::vector<FrozenFixes> found = find_frozen_fixes(fixes, reckoned);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].repeated == std::vector<std::size_t>{9, 10, 11, 12, 13, 14});
+  CHECK(found[0].distance_m == Approx(60));
+  CHECK_THAT(warning_of(found[0], fixes[0].stamp),
+             Catch::StartsWith("6 fixes repeat one position from 8.0 s to 14.0 s"));
+  GateOptions off;
+  off.enabled = false;
+  const GateSummary summary = apply_gate(fixes, reckoned, off);
+  CHECK(summary.rejected == 5);
+  CHECK(summary.reasons.at("frozen") == 5);
+  CHECK(fixes[8].status == FixStatus::accepted);
+  CHECK(fixes[12].status == FixStatus::withheld);
+  CHECK(fixes[25].status == FixStatus::accepted);
 }
 
 }  // namespace gate_test

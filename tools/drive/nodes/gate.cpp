@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/nodes/frozen_fixes.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
@@ -182,6 +183,17 @@ void judge_source(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_re
     apply(fixes[forward.members[c]], judge_with_fallbacks(forward, backward, c, options));
 }
 
+/// A position that is repeated while the vehicle moves is no measurement, so this needs no gate.
+void reject_frozen(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned) {
+  for (const FrozenFixes& frozen : find_frozen_fixes(fixes, dead_reckoned)) {
+    for (const std::size_t i : frozen.repeated) {
+      if (fixes[i].status == FixStatus::withheld) continue;
+      fixes[i].status = FixStatus::rejected;
+      fixes[i].reason = "frozen";
+    }
+  }
+}
+
 std::vector<int> sources_of(std::span<const Fix> fixes) {
   std::vector<int> sources;
   for (const Fix& fix : fixes) sources.push_back(fix.source);
@@ -219,6 +231,7 @@ GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> de
     for (Fix& fix : fixes)
       if (fix.status != FixStatus::withheld) apply(fix, Verdict{.reason = "off"});
   }
+  reject_frozen(fixes, dead_reckoned);
   return count(fixes);
 }
 

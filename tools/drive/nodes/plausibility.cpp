@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <waymark/tools/drive/nodes/chords.hpp>
+#include <waymark/tools/drive/nodes/frozen_fixes.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
@@ -116,6 +117,14 @@ std::string small_factor(const ReckonedFixes& receiver) {
       1 / factor.value, factors.size(), factor.sigma);
 }
 
+/// Returns 1 for each fix that repeats a position.
+std::vector<char> marked(const std::vector<FrozenFixes>& frozen, std::size_t fixes) {
+  std::vector<char> marks(fixes, 0);
+  for (const FrozenFixes& place : frozen)
+    for (const std::size_t i : place.repeated) marks[i] = 1;
+  return marks;
+}
+
 /// The words for jumps that name at most three of them.
 std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
   constexpr std::size_t kMost = 3;
@@ -158,12 +167,23 @@ std::string warning_of_accelerations(std::span<const OdometrySample> odometry) {
 
 std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
                                                      std::span<const Eigen::Vector3d> antenna) {
-  const ReckonedFixes receiver = of_first_receiver(fixes, antenna);
+  std::vector<std::string> warnings;
+  std::vector<Fix> live(fixes.begin(), fixes.end());
+  std::vector<Eigen::Vector3d> reckoned(antenna.begin(), antenna.end());
+  const std::vector<FrozenFixes> frozen = find_frozen_fixes(fixes, antenna);
+  for (const FrozenFixes& place : frozen) warnings.push_back(warning_of(place, fixes.front().stamp));
+  const std::vector<char> is_frozen = marked(frozen, fixes.size());
+  std::size_t at = 0;
+  std::erase_if(live, [&](const Fix&) { return is_frozen[at++] != 0; });
+  at = 0;
+  std::erase_if(reckoned, [&](const Eigen::Vector3d&) { return is_frozen[at++] != 0; });
+  const ReckonedFixes receiver = of_first_receiver(live, reckoned);
   const std::vector<TurnPair> turns = turns_between(receiver);
   // Turns of another size distort all lengths, and lengths of another unit all differences of them.
-  std::string first = size_of_turns(turns);
-  if (!first.empty()) return {std::move(first)};
-  std::vector<std::string> warnings;
+  if (std::string size = size_of_turns(turns); !size.empty()) {
+    warnings.push_back(std::move(size));
+    return warnings;
+  }
   if (std::string sign = sign_of_turns(turns); !sign.empty()) warnings.push_back(std::move(sign));
   if (std::string factor = large_factor(receiver); !factor.empty()) {
     warnings.push_back(std::move(factor));

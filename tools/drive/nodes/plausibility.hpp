@@ -17,6 +17,7 @@ namespace waymark::drive {
 /// - The distances differ by a factor beyond 1.5 (median over at least 10 chords of about 20 m).
 /// - The distances differ by a factor that is significant, and beyond 3 % (median over at least 10
 ///   chords of 100 m, compared with its own uncertainty).
+/// - Fixes repeat one position while the odometry moves (frozen_fixes.hpp).
 /// - The fixes jump by 50 m or more and stay there for 10 s or more.
 /// @param fixes those of the first receiver are compared
 /// @param antenna dead-reckoned antenna poses at the fixes, in any frame, with headings that are not
