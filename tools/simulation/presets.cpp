@@ -2,7 +2,9 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
+#include <waymark/tools/simulation/random.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
+#include <waymark/tools/simulation/streams.hpp>
 
 namespace waymark::simulation {
 namespace {
@@ -241,7 +243,57 @@ std::vector<SimulationPreset> paper_presets() {
   return all;
 }
 
+/// Returns one of the values, each as likely.
+template <typename T>
+T one_of(std::initializer_list<T> values, RandomStream& random) {
+  const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(values.size()));
+  return *(values.begin() + at);
+}
+
+/// Uniform in the logarithm.
+double scattered(double low, double high, RandomStream& random) {
+  return low * std::pow(high / low, random.uniform());
+}
+
+OdometryRecipe varied_odometry(RandomStream& random) {
+  OdometryRecipe odometry;
+  odometry.rate_hz = one_of({1.0, 2.0, 5.0, 10.0, 25.0, 50.0, 100.0}, random);
+  odometry.speed_scale_sigma = scattered(0.002, 0.03, random);
+  odometry.speed_noise_mps = scattered(0.01, 0.1, random);
+  odometry.gyro_bias_sigma_radps = scattered(1e-4, 5e-3, random);
+  // The heading walks by this in the root of a second, at any rate.
+  odometry.yaw_rate_noise_radps = scattered(3e-4, 0.033, random) * std::sqrt(odometry.rate_hz);
+  return odometry;
+}
+
+GnssRecipe varied_gnss(double duration_s, RandomStream& random) {
+  GnssRecipe gnss;
+  gnss.fast_sigma_m = one_of({0.01, 0.3, 1.0, 2.0, 4.0, 8.0}, random);
+  gnss.fast_tau_s = scattered(8, 120, random);
+  gnss.smoothing_s = one_of({0.0, 4.0}, random);
+  gnss.jitter_m = scattered(0.1, 1, random) * gnss.fast_sigma_m;
+  gnss.bias_sigma_m = 0.7 * gnss.fast_sigma_m;
+  gnss.bursts_per_minute = one_of({0.0, 1.0, 3.0}, random);
+  gnss.burst_size_m = 5 * gnss.fast_sigma_m;
+  gnss.stated_95_m = 2 * gnss.fast_sigma_m * scattered(1.0 / 3, 3, random);
+  gnss.stated_step_m = 0.001;
+  gnss.delay_s = one_of({0.0, 1.0, 1.0}, random) * 0.01 * std::round(random.uniform(-100, 100));
+  gnss.missing_epochs = static_cast<int>(one_of({0.0, 0.05, 0.2}, random) * duration_s);
+  gnss.outage_s = scattered(2, 60, random);
+  return gnss;
+}
+
 }  // namespace
+
+SimulationRecipe varied(const SimulationRecipe& recipe, std::uint64_t seed) {
+  RandomStream random(seed, kVariedStream);
+  SimulationRecipe drawn = recipe;
+  drawn.varied = false;
+  drawn.roads = {one_of({highway(), congested(), urban(), rural()}, random)};
+  drawn.odometry = varied_odometry(random);
+  drawn.gnss = varied_gnss(recipe.duration_s, random);
+  return drawn;
+}
 
 const std::vector<SimulationPreset>& simulation_presets() {
   static const std::vector<SimulationPreset> presets = [] {
@@ -252,6 +304,10 @@ const std::vector<SimulationPreset>& simulation_presets() {
     all.push_back({"rural", "10 minutes of country roads", consistency("rural", {rural()}, 1.5), 1});
     all.push_back({"mixed", "10 minutes: streets, country roads, motorway",
                    consistency("mixed", {urban(), rural(), highway()}, 2), 1});
+    all.push_back({"varied",
+                   "10 minutes whose road, sensors and delay the seed draws",
+                   {.name = "varied", .duration_s = 600, .roads = {rural()}, .varied = true},
+                   1});
     for (SimulationPreset& preset : paper_presets()) all.push_back(std::move(preset));
     return all;
   }();

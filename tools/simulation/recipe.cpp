@@ -89,6 +89,7 @@ void check(const GnssRecipe& gnss) {
   require_positive("gnss.burst_rise_s", gnss.burst_rise_s);
   require_positive("gnss.burst_decay_s", gnss.burst_decay_s);
   require_not_negative("gnss.burst_admitted", gnss.burst_admitted);
+  require(std::abs(gnss.delay_s) <= 10, "gnss.delay_s", gnss.delay_s, "in [-10, 10]");
   require_not_negative("gnss.missing_epochs", gnss.missing_epochs);
   require_positive("gnss.outage_s", gnss.outage_s);
   require_positive("gnss.stated_95_m", gnss.stated_95_m);

@@ -1,6 +1,7 @@
 /// The parameters of a simulated drive, with a unit in each name. README.md explains the models.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,9 @@ struct GnssRecipe {
   /// share of a burst in epx and epy: below 1 the receiver is over-confident
   double burst_admitted = 0.05;
 
+  /// a fix shows the vehicle as it was so long before its stamp; a multiple of 0.01 s, < 0: early
+  double delay_s = 0;
+
   int missing_epochs = 0;  ///< total number of seconds without a fix; exact
   double outage_s = 5;     ///< mean length of the outages that contain them (exponential)
 
@@ -99,7 +103,15 @@ struct SimulationRecipe {
   TruthRecipe truth{};
   double start_latitude_deg = 52.27;  ///< a real place; its UTM zone is the frame
   double start_longitude_deg = 10.53;
+  /// The seed draws everything but name, duration and place: varied().
+  bool varied = false;
 };
+
+/// Returns the drive that a seed draws: kind of road, odometry (1 to 100 Hz, good and poor gyros,
+/// wrong wheel radii), receiver (RTK to single point, stated errors from a third to three times the
+/// actual ones), delay of the fixes (none, or up to a second) and outages. Ranges are in
+/// README.md. @param recipe for name, duration and place
+[[nodiscard]] SimulationRecipe varied(const SimulationRecipe& recipe, std::uint64_t seed);
 
 /// Returns the same drive with another duration. Distance and missing epochs are scaled with it.
 [[nodiscard]] SimulationRecipe with_duration(SimulationRecipe recipe, double duration_s);

@@ -53,9 +53,26 @@ std::vector<PlacedState> place_every(std::size_t step, const std::vector<DrivenS
   return placed;
 }
 
+/// Returns what the fixes of all whole seconds show, with their stamps. The fix of second 0 would
+/// be before the first odometry sample and be dropped.
+std::vector<PlacedState> place_epochs(double delay_s, const std::vector<DrivenState>& states,
+                                      const drive::Projection& projection) {
+  const auto late = static_cast<std::ptrdiff_t>(std::lround(delay_s * kTicksPerSecond));
+  const auto ticks = static_cast<std::ptrdiff_t>(states.size());
+  Placement placement(states, projection);
+  std::vector<PlacedState> placed;
+  for (std::ptrdiff_t tick = kTicksPerSecond; tick < ticks; tick += kTicksPerSecond) {
+    if (tick - late < 0 || tick - late >= ticks) continue;
+    placed.push_back(placement.at(static_cast<std::size_t>(tick - late)));
+    placed.back().stamp.nanoseconds = kStart.nanoseconds + tick * (1'000'000'000 / kTicksPerSecond);
+  }
+  return placed;
+}
+
 }  // namespace
 
-SimulatedDrive simulate(const SimulationRecipe& recipe, std::uint64_t seed) {
+SimulatedDrive simulate(const SimulationRecipe& given, std::uint64_t seed) {
+  const SimulationRecipe recipe = given.varied ? varied(given, seed) : given;
   check(recipe);
   SimulatedDrive drive;
   drive.name = "Simulated: " + recipe.name + ", seed " + std::to_string(seed);
@@ -71,10 +88,7 @@ SimulatedDrive simulate(const SimulationRecipe& recipe, std::uint64_t seed) {
   drive.distance_m = states.back().way_m;
   sense_odometry(states, kStart, drive);
 
-  // The fix of second 0 would be before the first odometry sample and be dropped.
-  std::vector<PlacedState> epochs = place_every(kTicksPerSecond, states, projection);
-  epochs.erase(epochs.begin());
-  sense_gnss(epochs, projection, drive);
+  sense_gnss(place_epochs(recipe.gnss.delay_s, states, projection), projection, drive);
   const auto truth_step = static_cast<std::size_t>(std::lround(kTicksPerSecond / recipe.truth.rate_hz));
   sense_truth(place_every(truth_step, states, projection), projection, drive);
   return drive;

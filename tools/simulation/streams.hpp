@@ -19,7 +19,8 @@ enum SimulationStream : std::uint64_t {
   kGnssOutageStream,
   kGnssStatedStream,
   kGnssVelocityStream,
-  kTruthStream
+  kTruthStream,
+  kVariedStream
 };
 
 }  // namespace waymark::simulation

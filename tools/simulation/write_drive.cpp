@@ -67,6 +67,7 @@ std::string drive_yaml(const SimulatedDrive& drive) {
       "# Simulated drive: no vehicle drove this. Made by `waymark simulate`, recipe {}, seed {}; the models "
       "are\n"
       "# explained in tools/simulation/README.md, the keys in tools/drive/README.md.\n"
+      "# Errors: fixes {:.2f} s late, of {:g} m over {:.0f} s; yaw rate {:.2g} rad/sqrt(s); odometry of {:g} Hz.\n"
       "name: \"{}\"\n"
       "time: {{scale: gps}}              # gpsd's log counts UTC and is converted\n"
       "\n"
@@ -84,7 +85,10 @@ std::string drive_yaml(const SimulatedDrive& drive) {
       "  columns: {{time: time_s, latitude: latitude_deg, longitude: longitude_deg, height: height_m, "
       "heading: "
       "heading_rad}}\n",
-      drive.recipe.name, drive.seed, drive.name);
+      drive.recipe.name, drive.seed, drive.recipe.gnss.delay_s, drive.recipe.gnss.fast_sigma_m,
+      drive.recipe.gnss.fast_tau_s,
+      drive.recipe.odometry.yaw_rate_noise_radps / std::sqrt(drive.recipe.odometry.rate_hz),
+      drive.recipe.odometry.rate_hz, drive.name);
 }
 
 }  // namespace

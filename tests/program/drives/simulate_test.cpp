@@ -15,8 +15,8 @@ TEST_CASE("simulate: lists its presets") {
   for (const char* name : {"highway", "urban", "rural", "mixed", "paper-1", "paper-8"})
     CHECK(contains(result.out, name));
   const Json json = Json::parse(run({"simulate", "--list", "--json"}).out).at("presets");
-  CHECK(json.size() == 12);
-  CHECK(json.at(4).at("name") == "paper-1");
+  CHECK(json.size() == 13);
+  CHECK(json.at(5).at("name") == "paper-1");
 }
 
 TEST_CASE("simulate: writes a drive that runs, and its logs say that they are simulated") {
