@@ -18,6 +18,6 @@ void EdgeGnssPosition::linearize(const Pose2<double>& from, const Pose2<double>&
 }
 
 template class EdgeBatch<EdgeGnssPosition>;
-template class EdgeBatch<EdgeGnssPositionDelayed>;
+template class EdgeBatch<EdgeGnssPositionLate>;
 
 }  // namespace waymark

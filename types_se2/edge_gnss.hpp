@@ -49,40 +49,42 @@ struct VertexTimeOffset : ScalarState {
   static constexpr std::array<std::string_view, 1> value_units() { return {"s"}; }
 };
 
-/// EDGE_GNSS_POSITION of a fix that is late. The body was at X exp(-offset [speed, 0, yaw_rate])
-/// when the antenna was measured, given the motion at the fix. e = R_from^T (p_then + R_then
-/// antenna - p_from) - measured. Metres. The speed is in (grid) m/s and the yaw rate in rad/s,
-/// both of `to`.
-struct EdgeGnssPositionDelayed {
-  static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_DELAYED";
+/// EDGE_GNSS_POSITION of a fix whose lateness is estimated:
+///   e = R_from^T (p_to + R_to antenna - p_from) - (offset - assumed_offset) velocity - measured.
+/// Metres. `to` and `antenna` are where the antenna was if the fix is late by `assumed_offset`. The
+/// velocity is a number, not that of `to`: with the heading of `to` in this product each fix could
+/// buy itself a step to the side with a larger offset, and a poor gyro would make all of them do so.
+/// So the edge is exact where the offset is the assumed one, and right to first order about it.
+struct EdgeGnssPositionLate {
+  static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_LATE";
   static constexpr std::string_view kForm = "position";
   static constexpr int kErrorDimension = 2;
   using Vertices = VertexList<VertexSe2, VertexSe2, VertexTimeOffset>;
   static constexpr bool kRelative = true;
   static constexpr auto fields() {
-    return std::array{field<&EdgeGnssPositionDelayed::measured>("measured"),
-                      field<&EdgeGnssPositionDelayed::antenna>("antenna"),
-                      field<&EdgeGnssPositionDelayed::velocity>("velocity"),
-                      field<&EdgeGnssPositionDelayed::yaw_rate>("yaw_rate")};
+    return std::array{field<&EdgeGnssPositionLate::measured>("measured"),
+                      field<&EdgeGnssPositionLate::antenna>("antenna"),
+                      field<&EdgeGnssPositionLate::velocity>("velocity"),
+                      field<&EdgeGnssPositionLate::assumed_offset>("assumed_offset")};
   }
 
   template <typename T>
   Vector2<T> error(const Pose2<T>& from, const Pose2<T>& to, const T& offset) const {
-    const Vector3<T> back(T(-offset * T(velocity[0])), T(-offset * T(velocity[1])), T(-offset * T(yaw_rate)));
-    const Pose2<T> then = compose(to, se2_exp(back));
-    const Vector2<T> place = then.position + rotate(then.heading, constant_vector<T>(antenna));
+    const Vector2<T> place = to.position + rotate(to.heading, constant_vector<T>(antenna));
     const Vector2<T> seen = rotate_back(from.heading, Vector2<T>(place - from.position));
-    return seen - constant_vector<T>(measured);
+    const T since = offset - T(assumed_offset);
+    return {seen[0] - since * T(velocity[0]) - T(measured[0]),
+            seen[1] - since * T(velocity[1]) - T(measured[1])};
   }
 
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
-  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();  ///< in the body frame: x forward, y left
-  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
-  double yaw_rate = 0;
+  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();   ///< in the body frame of `to`: x forward, y left
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of the antenna, in the axes of `from`, m/s
+  double assumed_offset = 0;                           ///< s
 };
 
 // This is compiled once, in edge_gnss.cpp.
 extern template class EdgeBatch<EdgeGnssPosition>;
-extern template class EdgeBatch<EdgeGnssPositionDelayed>;
+extern template class EdgeBatch<EdgeGnssPositionLate>;
 
 }  // namespace waymark

@@ -13,7 +13,7 @@ void register_se2_types(TypeRegistry& registry) {
   registry.add_edge<EdgeSe2>();
   registry.add_edge<EdgeSe2Log>();
   registry.add_edge<EdgeGnssPosition>();
-  registry.add_edge<EdgeGnssPositionDelayed>();
+  registry.add_edge<EdgeGnssPositionLate>();
   registry.add_edge<EdgePriorSe2>();
   registry.add_edge<EdgeSe2Xy>();
   registry.add_edge<EdgePriorSe2Xy>();

@@ -14,7 +14,10 @@ void SensorModel::check_drive(std::span<const Fix>, const SensorTable&) const {}
 double median_accuracy(std::span<const Fix> fixes) {
   std::vector<double> ordered;
   ordered.reserve(fixes.size());
-  for (const Fix& fix : fixes) ordered.push_back(std::sqrt(0.5 * fix.covariance.trace()));
+  for (const Fix& fix : fixes) {
+    if (fix.accuracy_claimed) ordered.push_back(std::sqrt(0.5 * fix.covariance.trace()));
+  }
+  if (ordered.empty()) return 0;
   const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2);
   std::nth_element(ordered.begin(), middle, ordered.end());
   return *middle;

@@ -64,11 +64,24 @@ class OdometryModel {
   [[nodiscard]] virtual double standstill_speed() const = 0;
 };
 
+/// The antenna when a fix was measured, if the fix is late by the assumed offset.
+struct FixMoment {
+  /// in the body frame of the pose that Fix::vertex names, m. It is the lever arm, moved by the
+  /// odometry from the stamp of that pose to the moment.
+  Eigen::Vector2d antenna = {0, 0};
+  /// of the antenna, in the same axes, (grid) m/s
+  Eigen::Vector2d velocity = {0, 0};
+  double assumed_offset_s = 0;  ///< late: > 0
+};
+
 /// The input of a GNSS modeling.
 struct GnssInput {
-  /// only accepted ones; Fix::vertex names the pose at the epoch
+  /// only accepted ones; Fix::vertex names the pose nearest in time to when it was measured: the
+  /// pose at its stamp if its assumed offset is 0
   std::span<const Fix> fixes;
-  std::span<const Interval> motion;  ///< motion of the odometry at each fix
+  /// One for each fix. A modeling without a time offset may leave them alone: the assumed offset is
+  /// then 0, and FixMoment::antenna is `antenna`. May be empty for such a modeling.
+  std::span<const FixMoment> moments;
   Eigen::Vector2d antenna = {0, 0};  ///< antenna in the body frame, m
   /// robust loss of the edges that carry the information of the fixes
   std::optional<Loss> loss = {};
@@ -76,8 +89,8 @@ struct GnssInput {
   double median_accuracy_m = 0;
 };
 
-/// Returns the median of the accuracies that fixes claim: sqrt(trace(covariance) / 2), in m.
-/// @param fixes at least one
+/// Returns the median of the accuracies that fixes claim: sqrt(trace(covariance) / 2), in m. 0 if
+/// none claims any (Fix::accuracy_claimed).
 [[nodiscard]] double median_accuracy(std::span<const Fix> fixes);
 
 /// Connects poses and fixes (the paper's G1, G2, G3, and those of plugins).

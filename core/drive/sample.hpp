@@ -48,7 +48,8 @@ struct GeodeticFix {
   double longitude_deg = 0;
   double height_m = std::numeric_limits<double>::quiet_NaN();   ///< NaN if not given
   Eigen::Matrix2d covariance_en = Eigen::Matrix2d::Identity();  ///< m^2; axes east, north (true)
-  std::optional<double> course_rad;                             ///< clockwise from true north
+  bool accuracy_claimed = true;      ///< false: the covariance is a stated stand-in, not the receiver's claim
+  std::optional<double> course_rad;  ///< clockwise from true north
   std::optional<double> course_sigma_rad;
   std::optional<double> speed_mps;
   std::optional<double> speed_sigma_mps;
@@ -81,6 +82,7 @@ struct Fix {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< antenna, frame coordinates, m
   Eigen::Matrix2d covariance =
       Eigen::Matrix2d::Identity();    ///< m^2, frame axes (x east, y north on the grid)
+  bool accuracy_claimed = true;       ///< as GeodeticFix::accuracy_claimed
   std::optional<double> heading_rad;  ///< course as a heading: counter-clockwise from grid east
   std::optional<double> heading_sigma_rad;
   std::optional<double> speed_mps;

@@ -40,6 +40,9 @@ struct NoisePrior {
   double mean = 0;       ///< of the parameter itself, in the option's unit
   double deviation = 1;  ///< of its logarithm; of the parameter itself if `linear` is set
   bool linear = false;
+  /// The mean holds for receivers that claim an accuracy of half a metre or more. Below it shrinks
+  /// in proportion: a receiver that claims centimetres has not the errors of a phone.
+  bool shrinks_with_claim = false;
 };
 
 /// An option of a registered type.

@@ -49,40 +49,36 @@ struct EdgeGnssMultipathDecay : EdgeGnssBiasDecay {
   }
 };
 
-/// EDGE_GNSS_POSITION_DELAYED with the correlated errors in the measurement:
-///   e = R_from^T (p_then + R_then antenna - p_from) + bias + scale multipath - measured.
+/// EDGE_GNSS_POSITION_LATE with the correlated errors in the measurement:
+///   e = R_from^T (p_to + R_to antenna - p_from) - (offset - assumed_offset) velocity + bias + scale multipath - measured.
 /// `from` is the fixed origin; its axes are those of the frame. Metres.
-struct EdgeGnssPositionBiased {
-  static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_BIASED";
+struct EdgeGnssPositionCorrelated {
+  static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_CORRELATED";
   static constexpr std::string_view kForm = "position";
   static constexpr int kErrorDimension = 2;
   using Vertices = VertexList<VertexSe2, VertexSe2, VertexTimeOffset, VertexGnssBias, VertexGnssMultipath>;
   static constexpr bool kRelative = true;
   static constexpr auto fields() {
-    return std::array{field<&EdgeGnssPositionBiased::measured>("measured"),
-                      field<&EdgeGnssPositionBiased::antenna>("antenna"),
-                      field<&EdgeGnssPositionBiased::velocity>("velocity"),
-                      field<&EdgeGnssPositionBiased::yaw_rate>("yaw_rate"),
-                      field<&EdgeGnssPositionBiased::scale>("scale")};
+    return std::array{field<&EdgeGnssPositionCorrelated::measured>("measured"),
+                      field<&EdgeGnssPositionCorrelated::antenna>("antenna"),
+                      field<&EdgeGnssPositionCorrelated::velocity>("velocity"),
+                      field<&EdgeGnssPositionCorrelated::assumed_offset>("assumed_offset"),
+                      field<&EdgeGnssPositionCorrelated::scale>("scale")};
   }
 
   template <typename T>
   Vector2<T> error(const Pose2<T>& from, const Pose2<T>& to, const T& offset, const Vector2<T>& bias,
                    const Vector2<T>& multipath) const {
-    EdgeGnssPositionDelayed fix;
-    fix.measured = measured;
-    fix.antenna = antenna;
-    fix.velocity = velocity;
-    fix.yaw_rate = yaw_rate;
+    const EdgeGnssPositionLate fix{measured, antenna, velocity, assumed_offset};
     const Vector2<T> spread = {multipath[0] * scale[0] + multipath[1] * scale[1],
                                multipath[0] * scale[1] + multipath[1] * scale[2]};
     return fix.error(from, to, offset) + bias + spread;
   }
 
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();
-  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();   ///< in the body frame: x forward, y left
-  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of `to` in the body frame, (grid) m/s
-  double yaw_rate = 0;
+  Eigen::Vector2d antenna = Eigen::Vector2d::Zero();   ///< in the body frame of `to`: x forward, y left
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< of the antenna, in the axes of `from`, m/s
+  double assumed_offset = 0;                           ///< s
   /// The symmetric root of the covariance of the part that lasts for seconds: xx, xy, yy, in m.
   Eigen::Vector3d scale = {1, 0, 1};
 };

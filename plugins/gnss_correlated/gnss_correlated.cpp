@@ -26,16 +26,22 @@ struct ErrorModel {
   double multipath_time_s = 0;
   double bias_floor_m = 0;
   double bias_share = 0;
+  double bias_per_accuracy = 0;
   double bias_time_s = 0;
   double accuracy_exponent = 0;
   bool heavy_tails = true;
 
-  [[nodiscard]] double bias_m() const { return std::hypot(bias_floor_m, bias_share * multipath_m); }
+  /// @param median_m of the claimed accuracies; 0: none
+  [[nodiscard]] double bias_m(double median_m) const {
+    const double floor_m = median_m > 0 ? std::min(bias_floor_m, bias_per_accuracy * median_m) : bias_floor_m;
+    return std::hypot(floor_m, bias_share * multipath_m);
+  }
 };
 
 /// The claimed accuracies are used relative to their median. Receivers know which fix is worse
-/// better than they know how bad it is.
+/// better than they know how bad it is. A stand-in for a claim says nothing.
 Eigen::Matrix2d relative_root(const Fix& fix, double median_m, double exponent) {
+  if (!fix.accuracy_claimed) return Eigen::Matrix2d::Identity();
   constexpr double kSmallest = 0.3;
   constexpr double kLargest = 30;
   const auto [variances, directions] = symmetric_eigen(fix.covariance);
@@ -90,10 +96,10 @@ class GnssCorrelated final : public GnssModeling {
 
   void extend(const GnssInput& input, Graph& graph) override {
     if (input.fixes.empty()) return;
-    if (input.motion.size() != input.fixes.size())
-      throw UsageError("correlated: the motion at each fix is needed (GnssInput::motion)");
+    require_moments(input);
     const VertexIndex origin = origin_.in_or(graph, [&] { return add_origin(graph); });
-    const VertexIndex offset = offset_.in_or(graph, [&] { return make_offset(graph); });
+    const VertexIndex offset =
+        offset_.in_or(graph, [&] { return make_offset(graph, input.moments.front().assumed_offset_s); });
     const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
     const double peak = model_.heavy_tails ? kStudentInformation : 1;
     const double median_m =
@@ -101,18 +107,19 @@ class GnssCorrelated final : public GnssModeling {
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const Eigen::Matrix2d root = relative_root(fix, median_m, model_.accuracy_exponent);
-      Receiver& receiver = receivers_.try_emplace(fix.source, make_receiver()).first->second;
-      EdgeGnssPositionBiased edge;
+      Receiver& receiver = receivers_.try_emplace(fix.source, make_receiver(median_m)).first->second;
+      const VertexIndex pose = pose_vertex(fix, graph);
+      EdgeGnssPositionCorrelated edge;
       edge.measured = fix.position;
-      edge.antenna = input.antenna;
-      edge.velocity = {input.motion[i].speed_mps, 0};
-      edge.yaw_rate = input.motion[i].yaw_rate_radps;
+      edge.antenna = input.moments[i].antenna;
+      edge.velocity = velocity_in_frame(input.moments[i], graph.value(pose)[2]);
+      edge.assumed_offset = input.moments[i].assumed_offset_s;
       edge.scale = model_.multipath_m * Eigen::Vector3d(root(0, 0), root(0, 1), root(1, 1));
       const Eigen::Matrix2d information = peak * (model_.white_m * model_.white_m * root * root).inverse();
-      graph.add_edge(edge,
-                     {origin, pose_vertex(fix, graph), offset, receiver.bias.at(fix.stamp, graph),
-                      receiver.multipath.at(fix.stamp, graph)},
-                     0.5 * (information + information.transpose()), loss);
+      graph.add_edge(
+          edge,
+          {origin, pose, offset, receiver.bias.at(fix.stamp, graph), receiver.multipath.at(fix.stamp, graph)},
+          0.5 * (information + information.transpose()), loss);
     }
   }
 
@@ -124,15 +131,15 @@ class GnssCorrelated final : public GnssModeling {
     throw UsageError("correlated: there is no loss 'cauchy'");
   }
 
-  [[nodiscard]] VertexIndex make_offset(Graph& graph) const {
-    if (time_offset_sigma_s_ > 0) return add_time_offset(graph, time_offset_sigma_s_);
-    const VertexIndex none = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
+  [[nodiscard]] VertexIndex make_offset(Graph& graph, double assumed_s) const {
+    if (time_offset_sigma_s_ > 0) return add_time_offset(graph, time_offset_sigma_s_, assumed_s);
+    const VertexIndex none = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {assumed_s});
     graph.set_fixed(none, true);
     return none;
   }
 
-  [[nodiscard]] Receiver make_receiver() const {
-    return {{model_.bias_m(), model_.bias_time_s}, {1, model_.multipath_time_s}};
+  [[nodiscard]] Receiver make_receiver(double median_m) const {
+    return {{model_.bias_m(median_m), model_.bias_time_s}, {1, model_.multipath_time_s}};
   }
 
   ErrorModel model_;
@@ -145,16 +152,19 @@ class GnssCorrelated final : public GnssModeling {
 std::vector<OptionInfo> options() {
   return {
       {"white_sigma", "1.5", "m", OptionRange{1e-3, 1e3}, "scale of the error that is new in every fix",
-       NoisePrior{1.5, 1}},
+       NoisePrior{1.5, 1, false, true}},
       {"tails", "student", "", OptionWords{"student", "normal"},
        "distribution of the error that is new in every fix: 'student', Student's t of four degrees "
        "of freedom, or 'normal'"},
-      {"multipath_sigma", "4", "m", OptionRange{1e-3, 1e3}, "sigma of the error that lasts for seconds",
-       NoisePrior{4, 0.6}},
-      {"multipath_time", "40", "s", OptionRange{1, 1e4}, "correlation time of the multipath error",
-       NoisePrior{40, 0.5}},
+      {"multipath_sigma", "3", "m", OptionRange{1e-3, 1e3}, "sigma of the error that lasts for seconds",
+       NoisePrior{3, 0.7, false, true}},
+      {"multipath_time", "30", "s", OptionRange{1, 1e4}, "correlation time of the multipath error",
+       NoisePrior{30, 0.4}},
       {"bias_floor", "1.5", "m", OptionRange{1e-3, 1e3},
        "smallest sigma of the error that lasts for minutes"},
+      {"bias_per_accuracy", "1.5", "", OptionRange{0.01, 1e6},
+       "largest bias_floor, in medians of the claimed accuracies: a receiver that claims centimetres is "
+       "not off by metres"},
       {"bias_share", "0.7", "", OptionRange{0, 10},
        "share of multipath_sigma that is added to bias_floor in quadrature"},
       {"bias_time", "2000", "s", OptionRange{1, 1e6}, "correlation time of the bias"},
@@ -173,6 +183,7 @@ std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {
   model.multipath_m = options.number("multipath_sigma");
   model.multipath_time_s = options.number("multipath_time");
   model.bias_floor_m = options.number("bias_floor");
+  model.bias_per_accuracy = options.number("bias_per_accuracy");
   model.bias_share = options.number("bias_share");
   model.bias_time_s = options.number("bias_time");
   model.accuracy_exponent = options.number("accuracy_exponent");
@@ -186,7 +197,7 @@ void register_types(TypeRegistry& registry) {
   registry.add_vertex<VertexGnssMultipath>();
   registry.add_edge<EdgeGnssBiasDecay>();
   registry.add_edge<EdgeGnssMultipathDecay>();
-  registry.add_edge<EdgeGnssPositionBiased>();
+  registry.add_edge<EdgeGnssPositionCorrelated>();
   registry.add_gnss_modeling({"correlated",
                               "fixes with biases that last, heavy-tailed noise and a latency (the default)",
                               options(), make, true});

@@ -24,7 +24,7 @@ class GnssG1 final : public GnssModeling {
         graph.add_edge(EdgeSe2Log{{fix.position[0], fix.position[1], 0}}, vertices, pose_information(fix),
                        input.loss);
       } else {
-        positions.add(i, fix.position, input.antenna, vertices);
+        positions.add(i, fix.position, positions.antenna(i), vertices);
       }
     }
   }

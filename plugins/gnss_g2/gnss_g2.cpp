@@ -40,8 +40,9 @@ class GnssG2 final : public GnssModeling {
                        pose_information(fix), input.loss);
         graph.add_edge(EdgeSe2Log{}, {node, pose}, identity);
       } else {
-        positions.add(i, fix.position, {0, 0}, {origin, node}, input.antenna);
-        graph.add_edge(EdgeSe2{{-input.antenna[0], -input.antenna[1], 0}}, {node, pose}, identity);
+        const Eigen::Vector2d& antenna = positions.antenna(i);
+        positions.add(i, fix.position, {0, 0}, {origin, node});
+        graph.add_edge(EdgeSe2{{-antenna[0], -antenna[1], 0}}, {node, pose}, identity);
       }
     }
   }

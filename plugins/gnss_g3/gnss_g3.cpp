@@ -27,7 +27,7 @@ class GnssG3 final : public GnssModeling {
       if (literal_) {
         graph.add_edge(EdgeSe2Log{}, {node, pose}, pose_information(fix), input.loss);
       } else {
-        positions.add(i, {0, 0}, input.antenna, {node, pose});
+        positions.add(i, {0, 0}, positions.antenna(i), {node, pose});
       }
     }
   }

@@ -47,7 +47,7 @@ struct Simulated {
   Graph graph;
   std::vector<Fix> fixes;
   std::vector<Interval> intervals;
-  std::vector<Interval> motion;
+  std::vector<FixMoment> moments;
   std::vector<Stamp> stamps;
   std::vector<VertexIndex> poses;
   std::vector<Pose2<double>> truth;
@@ -86,12 +86,12 @@ struct Simulated {
     fix.covariance = kSigma * kSigma * Eigen::Matrix2d::Identity();
     fix.vertex = VertexId(i + 1);
     fixes.push_back(fix);
-    motion.push_back(moves);
+    moments.push_back({{0, 0}, {moves.speed_mps, 0}});
   }
 
   void solve(const Options& odometry, const Options& modeling, const std::string& name = "g1") {
     registry().make_odometry_model("constant_twist", odometry)->extend({stamps, poses, intervals}, graph);
-    registry().make_gnss_modeling(name, modeling)->extend({fixes, motion, {0, 0}}, graph);
+    registry().make_gnss_modeling(name, modeling)->extend({fixes, moments, {0, 0}}, graph);
     const Summary summary =
         optimize(graph, *registry().make_algorithm("dogleg"), *registry().make_linear_solver("eigen"), {});
     INFO(summary.message);
@@ -160,7 +160,6 @@ TEST_CASE(
   // Three poses of a turn; the node of G2 is the antenna, whose velocity has a part across the
   // vehicle.
   const Eigen::Vector2d antenna(2, -0.5);
-  const Interval turning{8, 0.6, kDt, false};
   std::vector<double> chi2;
   for (const std::string_view name : {"g1", "g2", "g3"}) {
     Graph graph;
@@ -174,10 +173,10 @@ TEST_CASE(
       fixes.push_back(fix);
       pose = compose(pose, se2_exp<double>(Eigen::Vector3d(8, 0, 0.6)));
     }
-    const std::vector<Interval> motion(3, turning);
+    const std::vector<FixMoment> moments(3, {antenna, {8 + 0.6 * 0.5, 0.6 * 2}});
     registry()
         .make_gnss_modeling(name, {{"time_offset", "constant"}})
-        ->extend({fixes, motion, antenna}, graph);
+        ->extend({fixes, moments, antenna}, graph);
     VertexIndex nodes = 0;
     for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
       if (graph.vertex_type(v).tag == "VERTEX_TIME_OFFSET") graph.set_value(v, std::array{0.4});
@@ -266,10 +265,10 @@ TEST_CASE("calibration: wrong options are named, and what cannot be combined is 
   CHECK_THROWS_WITH(registry().make_gnss_modeling("g1", {{"time_offset", "constant"}, {"error", "literal"}}),
                     Contains("literal error has no time offset"));
   Simulated drive({}, 10, 1);
-  drive.motion.clear();
+  drive.moments.clear();
   const auto modeling = registry().make_gnss_modeling("g1", {{"time_offset", "constant"}});
-  CHECK_THROWS_WITH(modeling->extend({drive.fixes, drive.motion, {0, 0}}, drive.graph),
-                    Contains("GnssInput::motion"));
+  CHECK_THROWS_WITH(modeling->extend({drive.fixes, drive.moments, {0, 0}}, drive.graph),
+                    Contains("GnssInput::moments"));
 }
 
 }  // namespace calibration_test

@@ -32,14 +32,14 @@ Graph graph_with(const Options& options, const std::optional<Loss>& loss = std::
   fix.vertex = VertexId{1};
   fix.covariance = 4 * Eigen::Matrix2d::Identity();
   const std::vector<Fix> fixes{fix};
-  const std::vector<Interval> motion(1);
-  registry.make_gnss_modeling("correlated", options)->extend({fixes, motion, {0, 0}, loss}, graph);
+  const std::vector<FixMoment> moments(1);
+  registry.make_gnss_modeling("correlated", options)->extend({fixes, moments, {0, 0}, loss}, graph);
   return graph;
 }
 
 BuiltFix fix_of(const Graph& graph) {
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
-    if (graph.edge_type(b).tag == "EDGE_GNSS_POSITION_BIASED")
+    if (graph.edge_type(b).tag == "EDGE_GNSS_POSITION_CORRELATED")
       return {graph.batch(b).information(0), graph.batch(b).loss(0)};
   }
   throw std::runtime_error("no fix");

@@ -53,10 +53,7 @@ struct KitDrive {
     model->check_drive(fixes, readings);
     model->extend({nodes(), fixes, antenna_m, readings}, graph);
   }
-  void add_fixes() {
-    const std::vector<waymark::Interval> motion(fixes.size(), intervals.front());
-    registry().make_gnss_modeling("g1", {})->extend({fixes, motion, antenna_m}, graph);
-  }
+  void add_fixes() { registry().make_gnss_modeling("g1", {})->extend({fixes, {}, antenna_m}, graph); }
 };
 
 constexpr int kNodesPerSecond = 10;

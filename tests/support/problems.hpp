@@ -116,12 +116,14 @@ struct Drive {
   /// Adds the fixes with a modeling of the registry.
   void add_fixes(const waymark::TypeRegistry& registry, std::string_view modeling,
                  const waymark::Options& options = {}) {
-    std::vector<waymark::Interval> motion;
+    std::vector<waymark::FixMoment> moments;
     for (const waymark::Fix& fix : fixes) {
       const auto node = static_cast<std::size_t>(fix.vertex);
-      motion.push_back(intervals[std::min(node, intervals.size() - 1)]);
+      const waymark::Interval& motion = intervals[std::min(node, intervals.size() - 1)];
+      const double turn = motion.yaw_rate_radps;
+      moments.push_back({antenna_m, {motion.speed_mps - turn * antenna_m[1], turn * antenna_m[0]}});
     }
-    registry.make_gnss_modeling(modeling, options)->extend({fixes, motion, antenna_m}, graph);
+    registry.make_gnss_modeling(modeling, options)->extend({fixes, moments, antenna_m}, graph);
   }
 };
 

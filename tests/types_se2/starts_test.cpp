@@ -190,7 +190,7 @@ TEST_CASE("starts: the linear start finds a drive's headings from its fixes, und
     fix.vertex = VertexId(i);
     fixes.push_back(fix);
   }
-  const std::vector<Interval> standing(fixes.size());  // the factor of a time offset
+  const std::vector<FixMoment> standing(fixes.size(), {antenna});  // the factor of a time offset
   for (const auto& [modeling, origin] : registry.gnss_modelings()) {
     Graph graph = wild_track(track);
     registry.make_gnss_modeling(modeling.name)->extend({fixes, standing, antenna}, graph);

@@ -91,7 +91,7 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/logs/prepare.hpp
   tools/drive/model/fuse.hpp
   tools/drive/model/minimize.hpp
-  tools/drive/model/noise.hpp
+  tools/drive/estimation/noise.hpp
   tools/drive/model/place.hpp
   tools/drive/model/poses_at_fixes.hpp
   tools/drive/nodes/gate.hpp

@@ -45,8 +45,9 @@ inline VertexIndex add_origin(Graph& graph) {
 }
 
 /// Adds the time offset of fixes. @param prior_sigma_s sigma of its prior about 0
-inline VertexIndex add_time_offset(Graph& graph, double prior_sigma_s) {
-  const VertexIndex offset = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {0});
+/// @param assumed_s its initial guess
+inline VertexIndex add_time_offset(Graph& graph, double prior_sigma_s, double assumed_s) {
+  const VertexIndex offset = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {assumed_s});
   add_prior_about_zero(graph, offset, prior_sigma_s);
   return offset;
 }
@@ -66,35 +67,51 @@ inline VertexIndex add_time_offset(Graph& graph, double prior_sigma_s) {
   return options.word("error") == "literal";
 }
 
+/// @throws UsageError if the input does not tell where the antenna was
+inline void require_moments(const GnssInput& input) {
+  if (input.moments.size() != input.fixes.size())
+    throw UsageError("a time offset needs the motion at each fix (GnssInput::moments)");
+}
+
+/// Returns the velocity of the antenna in the axes of the frame. @param heading of its pose
+[[nodiscard]] inline Eigen::Vector2d velocity_in_frame(const FixMoment& moment, double heading) {
+  return rotate(heading, moment.velocity);
+}
+
 /// Adds the position edges of fixes. If the time offset is to be estimated, one offset serves
 /// all of them.
 class PositionEdges {
  public:
   /// @param prior_sigma_s sigma of the prior on the time offset; 0: the offset is not estimated
   /// @param offset of the earlier fixes; it is made for the first ones
-  /// @throws UsageError if the offset is estimated and the motion at the fixes is not given
+  /// @throws UsageError if the offset is estimated and the moments of the fixes are not given
   PositionEdges(const GnssInput& input, double prior_sigma_s, KeptVertex& offset, Graph& graph)
       : input_(input), graph_(graph) {
     if (prior_sigma_s == 0) return;
-    if (input.motion.size() != input.fixes.size())
-      throw UsageError("a time offset needs the motion at each fix (GnssInput::motion)");
-    offset_ = offset.in_or(graph, [&] { return add_time_offset(graph, prior_sigma_s); });
+    require_moments(input);
+    if (input.fixes.empty()) return;
+    const double assumed_s = input.moments.front().assumed_offset_s;
+    offset_ = offset.in_or(graph, [&] { return add_time_offset(graph, prior_sigma_s, assumed_s); });
+  }
+
+  /// Where the antenna was in the body frame of the pose of fix i.
+  [[nodiscard]] const Eigen::Vector2d& antenna(std::size_t i) const {
+    return offset_ < 0 ? input_.antenna : input_.moments[i].antenna;
   }
 
   /// Adds the edge of fix i.
+  /// @param antenna in the body frame of the second vertex: antenna(i), or 0 if that is the antenna
   /// @param vertices the reference pose and the pose that carries the antenna
-  /// @param place where the antenna is in the body frame of the second pose: 0 if the node
-  /// is the antenna
   void add(std::size_t i, const Eigen::Vector2d& measured, const Eigen::Vector2d& antenna,
-           const std::array<VertexIndex, 2>& vertices, const Eigen::Vector2d& place = {0, 0}) {
+           const std::array<VertexIndex, 2>& vertices) {
     const Eigen::Matrix2d information = position_information(input_.fixes[i]);
     if (offset_ < 0) {
       graph_.add_edge(EdgeGnssPosition{measured, antenna}, vertices, information, input_.loss);
       return;
     }
-    const double turn = input_.motion[i].yaw_rate_radps;
-    const Eigen::Vector2d velocity(input_.motion[i].speed_mps - turn * place[1], turn * place[0]);
-    graph_.add_edge(EdgeGnssPositionDelayed{measured, antenna, velocity, turn},
+    const FixMoment& moment = input_.moments[i];
+    const Eigen::Vector2d velocity = velocity_in_frame(moment, graph_.value(vertices[1])[2]);
+    graph_.add_edge(EdgeGnssPositionLate{measured, antenna, velocity, moment.assumed_offset_s},
                     {vertices[0], vertices[1], offset_}, information, input_.loss);
   }
 

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPatience_ms = 60'000;
+constexpr int kPatience_ms = 240'000;
 
 /// The folder of this process, removed at its end (process ids come again).
 struct Scratch {

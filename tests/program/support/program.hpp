@@ -21,7 +21,7 @@ struct RunResult {
   std::string err;
 };
 
-/// Runs the program with the arguments and waits for it. A run of more than a minute is killed.
+/// Runs the program with the arguments and waits for it. A run of more than four minutes is killed.
 [[nodiscard]] RunResult run(std::vector<std::string> arguments, const RunOptions& options = {});
 
 /// Checks that the program refused: with this exit code, this text in its message, and no result.

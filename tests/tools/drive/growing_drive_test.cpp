@@ -69,13 +69,11 @@ void add_part(std::size_t begin, std::size_t end, const PlacedDrive& placed,
   const Timeline& timeline = placed.timeline;
   std::vector<Fix> fixes;
   std::vector<std::size_t> fix_nodes;
-  std::vector<Interval> motion;
   for (std::size_t i = 0; i < placed.fixes.size(); ++i) {
     const std::size_t node = timeline.fix_node[i];
     if (placed.fixes[i].status != FixStatus::accepted || node < begin || node >= end) continue;
     fixes.push_back(placed.fixes[i]);
     fix_nodes.push_back(node);
-    motion.push_back(placed.motion[i]);
   }
   std::vector<PreparedSensor> next = sensors;
   for (PreparedSensor& sensor : next) {
@@ -86,7 +84,7 @@ void add_part(std::size_t begin, std::size_t end, const PlacedDrive& placed,
   builder.extend({std::span(timeline.stamps).subspan(begin, end - begin),
                   std::span(placed.start.poses).subspan(begin, end - begin),
                   std::span(timeline.intervals).subspan(first_interval, end - 1 - first_interval), fixes,
-                  fix_nodes, motion, next});
+                  fix_nodes, next});
 }
 
 double median_of_accepted(const PlacedDrive& placed) {
@@ -99,10 +97,13 @@ double median_of_accepted(const PlacedDrive& placed) {
 
 GraphBuilder grown(const PlacedDrive& placed, const std::vector<PreparedSensor>& sensors,
                    const FusionSettings& settings, std::size_t nodes_per_part) {
-  GraphBuilder builder({placed.antenna_m, placed.gap_noise_factor, median_of_accepted(placed)}, sensors,
-                       settings, registry());
+  GraphBuilder builder(
+      {placed.antenna_m, placed.time_offset_s, placed.gap_noise_factor, median_of_accepted(placed)}, sensors,
+      settings, registry());
   const std::size_t nodes = placed.timeline.stamps.size();
-  for (std::size_t begin = 0; begin < nodes; begin += nodes_per_part)
+  const std::size_t first = std::max<std::size_t>(nodes_per_part, 2);  // with an interval
+  add_part(0, first, placed, sensors, builder);
+  for (std::size_t begin = first; begin < nodes; begin += nodes_per_part)
     add_part(begin, std::min(begin + nodes_per_part, nodes), placed, sensors, builder);
   return builder;
 }

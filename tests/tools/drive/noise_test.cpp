@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/model/coarse.hpp>
+#include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 
 #include <waymark/types_se2/se2.hpp>
@@ -118,9 +118,10 @@ TEST_CASE("noise: what a drive was made with is found, within what the drive can
       mean[option] += away / kSeeds;
     }
   }
-  // Logarithms of a ratio. White noise is judged on one fix in 7.5 s, beside a part of 2.5 m that moves by as
-  // much meanwhile: single drives are off by up to e^1.3, their mean by a fifth at most.
-  CHECK(std::abs(mean["white_sigma"]) < 0.2);
+  // Logarithms of a ratio. Laplace's method at heavy tails makes white noise a third too large
+  // (tools/drive/MEASUREMENTS.md); nothing else is off by more than the drives can show.
+  CHECK(mean["white_sigma"] > 0);
+  CHECK(mean["white_sigma"] < 0.4);
   CHECK(std::abs(mean["multipath_sigma"]) < 0.2);
   CHECK(std::abs(mean["multipath_time"]) < 0.2);
   CHECK(std::abs(mean["heading_variance_per_s"]) < 0.3);
@@ -144,6 +145,58 @@ TEST_CASE("noise: what is stated is not estimated, what the drive cannot show ke
   CHECK(with.modeling_options.contains("multipath_sigma"));
   CHECK_FALSE(with.modeling_options.contains("heading_variance_per_s"));
   CHECK(with.odometry_options.contains("heading_variance_per_s"));
+}
+
+namespace {
+
+/// The largest difference of two estimates, in deviations of the first.
+double apart(const NoiseEstimate& one, const NoiseEstimate& other) {
+  double largest = 0;
+  for (const NoiseParameter& parameter : one.parameters) {
+    for (const NoiseParameter& same : other.parameters) {
+      if (same.option != parameter.option) continue;
+      const double away =
+          parameter.prior.linear ? same.value - parameter.value : std::log(same.value / parameter.value);
+      largest = std::max(largest, std::abs(away) / parameter.deviation);
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("noise: a parameter without effect changes nothing, and is not observed") {
+  PreparedDrive drive = make_drive({}, 3);
+  for (Fix& fix : drive.fixes) fix.covariance = Eigen::Matrix2d::Identity();
+  const NoiseEstimate with = estimate(drive, complete_settings());
+  const NoiseEstimate without = estimate(drive, complete_settings({{"accuracy_exponent", "0.5"}}));
+  CHECK_FALSE(find(with, "accuracy_exponent").observed());
+  CHECK(find(with, "accuracy_exponent").value == Approx(0.5).margin(0.003));
+  CHECK(apart(without, with) < 0.01);
+}
+
+TEST_CASE("noise: the frame's origin and the numbers of the receivers change nothing") {
+  PreparedDrive drive = make_drive({}, 4);
+  for (std::size_t i = 0; i < drive.fixes.size(); i += 2) drive.fixes[i].source = 1;
+  const NoiseEstimate here = estimate(drive, complete_settings());
+  for (Fix& fix : drive.fixes) fix.position += Eigen::Vector2d(1000, -1);
+  CHECK(apart(here, estimate(drive, complete_settings())) < 0.01);
+  for (Fix& fix : drive.fixes) fix.source = 1 - fix.source;
+  CHECK(apart(here, estimate(drive, complete_settings())) < 0.01);
+}
+
+TEST_CASE("noise: what a stand-in for an accuracy says does not count") {
+  // Fixes without a claim in the second half: whatever stands in for it, the drive says the same.
+  PreparedDrive drive = make_drive({}, 5);
+  for (std::size_t i = drive.fixes.size() / 2; i < drive.fixes.size(); ++i)
+    drive.fixes[i].accuracy_claimed = false;
+  const auto with_stand_in = [&](double sigma_m) {
+    for (Fix& fix : drive.fixes) {
+      if (!fix.accuracy_claimed) fix.covariance = sigma_m * sigma_m * Eigen::Matrix2d::Identity();
+    }
+    return estimate(drive, complete_settings());
+  };
+  CHECK(apart(with_stand_in(0.5), with_stand_in(50)) < 1e-6);
 }
 
 TEST_CASE("noise: a modeling without such options and fixes that leave nothing open have none") {

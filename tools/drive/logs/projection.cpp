@@ -103,6 +103,7 @@ Fix Projection::project(const GeodeticFix& fix) const {
   result.position = grid.position;
   const Eigen::Matrix2d turned = grid.scale * grid.scale * turn * fix.covariance_en * turn.transpose();
   result.covariance = 0.5 * (turned + turned.transpose());
+  result.accuracy_claimed = fix.accuracy_claimed;
   if (fix.course_rad) result.heading_rad = grid_heading_from_course(*fix.course_rad, grid.convergence_rad);
   result.heading_sigma_rad = fix.course_sigma_rad;
   result.speed_mps = fix.speed_mps;

@@ -1,7 +1,12 @@
 #include <waymark/tools/drive/model/build.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
+#include <waymark/core/base/error.hpp>
+#include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark::drive {
@@ -11,7 +16,6 @@ namespace {
 struct AcceptedFixes {
   std::vector<Fix> fixes;
   std::vector<std::size_t> nodes;
-  std::vector<Interval> motion;
 };
 
 AcceptedFixes accepted_fixes(const PlacedDrive& placed) {
@@ -20,9 +24,23 @@ AcceptedFixes accepted_fixes(const PlacedDrive& placed) {
     if (placed.fixes[i].status != FixStatus::accepted) continue;
     accepted.fixes.push_back(placed.fixes[i]);
     accepted.nodes.push_back(placed.timeline.fix_node[i]);
-    accepted.motion.push_back(placed.motion[i]);
   }
   return accepted;
+}
+
+/// The motion of the odometry about a moment near a node; that of the interval before it at the
+/// node itself, so that the next part of a drive changes nothing.
+Interval motion_about(const DriveNodes& nodes, const NodeInTime& moment) {
+  const std::size_t after = moment.ahead_s > 0 || moment.node == 0 ? moment.node : moment.node - 1;
+  return nodes.intervals[std::min(after, nodes.intervals.size() - 1)];
+}
+
+FixMoment moment_of_fix(const DriveNodes& nodes, const NodeInTime& moment, const Eigen::Vector2d& antenna) {
+  const Interval motion = motion_about(nodes, moment);
+  const Eigen::Vector3d twist(motion.speed_mps, 0, motion.yaw_rate_radps);
+  const Pose2<double> moved = se2_exp<double>(moment.ahead_s * twist);
+  const Eigen::Vector2d velocity(twist[0] - twist[2] * antenna[1], twist[2] * antenna[0]);
+  return {moved.position + rotate(moved.heading, antenna), rotate(moved.heading, velocity)};
 }
 
 }  // namespace
@@ -47,27 +65,37 @@ void GraphBuilder::add_nodes(const DrivePart& part) {
 }
 
 void GraphBuilder::extend(const DrivePart& part) {
+  if (intervals_.empty() && part.intervals.empty() && !part.fixes.empty())
+    throw UsageError("a drive that grows needs its first two nodes before its first fix");
   const std::size_t joint = poses_.empty() ? 0 : poses_.size() - 1;
   add_nodes(part);
   const DriveNodes all = nodes();
   odometry_->extend({all.stamps.subspan(joint), all.poses.subspan(joint), all.intervals.subspan(joint)},
                     graph_);
   std::vector<Fix> fixes(part.fixes.begin(), part.fixes.end());
-  for (std::size_t i = 0; i < fixes.size(); ++i) fixes[i].vertex = graph_.id(poses_[part.fix_nodes[i]]);
+  std::vector<FixMoment> moments(fixes.size());
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const Stamp stamp = stamps_[part.fix_nodes[i]];
+    const Stamp measured{stamp.nanoseconds - std::llround(facts_.time_offset_s * 1e9)};
+    const NodeInTime near = *nearest_node(all, measured, std::numeric_limits<double>::infinity());
+    fixes[i].vertex = graph_.id(poses_[near.node]);
+    moments[i] = moment_of_fix(all, near, facts_.antenna_m);
+    moments[i].assumed_offset_s = facts_.time_offset_s;
+  }
   sensors_.extend(part.sensors, all, fixes, facts_.antenna_m, grid_scale_, graph_);
-  modeling_->extend({fixes, part.motion, facts_.antenna_m, loss_, facts_.median_accuracy_m}, graph_);
+  modeling_->extend({fixes, moments, facts_.antenna_m, loss_, facts_.median_accuracy_m}, graph_);
   if (!fixes.empty()) grid_scale_ = fixes.back().grid_scale;
 }
 
 BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                        const FusionSettings& settings, const TypeRegistry& registry) {
   const AcceptedFixes accepted = accepted_fixes(placed);
-  const DriveFacts facts{placed.antenna_m, placed.gap_noise_factor,
+  const DriveFacts facts{placed.antenna_m, placed.time_offset_s, placed.gap_noise_factor,
                          accepted.fixes.empty() ? 0 : median_accuracy(accepted.fixes)};
   GraphBuilder builder(facts, sensors, settings, registry);
   builder.check_drive(accepted.fixes, sensors);
   builder.extend({placed.timeline.stamps, placed.start.poses, placed.timeline.intervals, accepted.fixes,
-                  accepted.nodes, accepted.motion, sensors});
+                  accepted.nodes, sensors});
   BuiltGraph built;
   built.warnings = warnings_of_sensors_apart(sensors, builder.nodes());
   built.graph = std::move(builder.graph());

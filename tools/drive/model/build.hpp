@@ -22,19 +22,22 @@ namespace waymark::drive {
 /// What the models know of a drive before its first part.
 struct DriveFacts {
   Eigen::Vector2d antenna_m{0, 0};  ///< body frame
+  double time_offset_s = 0;         ///< FixMoment::assumed_offset_s
   double gap_noise_factor = 1;      ///< for the odometry model
   double median_accuracy_m = 0;     ///< for the modeling: GnssInput
 };
 
-/// The next part of a drive, in order of time. The spans are used during the call only.
+/// The next part of a drive, in order of time. The first part with a fix has an interval, or follows
+/// one: the motion at a fix is that of an interval. The spans are used during the call only.
 struct DrivePart {
   std::span<const Stamp> stamps;           ///< of its nodes, later than those before
   std::span<const Eigen::Vector3d> poses;  ///< their initial guess: x, y in m, heading in rad
   /// the motion to each of these nodes from the one before; none to the first node of the drive
   std::span<const Interval> intervals;
-  std::span<const Fix> fixes;              ///< accepted ones
-  std::span<const std::size_t> fix_nodes;  ///< the node of each fix, counted from the first of the drive
-  std::span<const Interval> motion;        ///< motion of the odometry at each fix
+  std::span<const Fix> fixes;  ///< accepted ones
+  /// The node at the stamp of each fix, counted from the first of the drive. If fixes are assumed
+  /// to be early, the nodes up to when they were measured must be there.
+  std::span<const std::size_t> fix_nodes;
   /// those of the constructor, each with its next readings
   std::span<const PreparedSensor> sensors = {};
 };
@@ -52,7 +55,8 @@ class GraphBuilder {
     sensors_.check_drive(sensors, accepted);
   }
 
-  /// Adds the vertices and edges of a part. @throws errors of the plugins
+  /// Adds the vertices and edges of a part.
+  /// @throws UsageError for fixes before the first interval; errors of the plugins
   void extend(const DrivePart& part);
 
   /// The nodes so far. The view is valid until the next part.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
 
@@ -38,9 +39,11 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   ModeledDrive modeled;
   modeled.settings = decided(settings, registry_);
   modeled.placed = placed(modeled.settings);
+  assume_time_offset(modeled.placed, modeled.settings, registry_);
   if (*modeled.settings.estimates_noise) {
     modeled.noise = estimate_noise(modeled.placed, modeled.settings, registry_);
     modeled.settings = with_noise(std::move(modeled.settings), modeled.noise);
+    assume_time_offset(modeled.placed, modeled.settings, registry_);
   }
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);

@@ -32,9 +32,9 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/drive/estimation/noise.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/minimize.hpp>
-#include <waymark/tools/drive/model/noise.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 
 namespace waymark::drive {

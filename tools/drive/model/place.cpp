@@ -40,11 +40,8 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
     placed.warnings.push_back(std::move(warning));
   placed.start =
       make_start(timeline, placed.fixes, placed.antenna_m, placed.standstill_mps, settings.initial_guess);
-  const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};
-  for (std::size_t i = 0; i < placed.fixes.size(); ++i) {
+  for (std::size_t i = 0; i < placed.fixes.size(); ++i)
     placed.fixes[i].vertex = vertex_of(timeline.fix_node[i]);
-    placed.motion.push_back(motion_at(nodes, timeline.fix_node[i]));
-  }
   return placed;
 }
 

@@ -25,10 +25,10 @@ struct PlacedDrive {
   Timeline timeline;
   /// with verdicts of the gate, in the order of timeline.fix_node; Fix::vertex names the node
   std::vector<Fix> fixes;
-  std::vector<Interval> motion;  ///< motion of the odometry at each fix
   GateSummary gate;
   Start start;
   Eigen::Vector2d antenna_m{0, 0};    ///< body frame
+  double time_offset_s = 0;           ///< how late the graph assumes the fixes to be: latency.hpp
   double standstill_mps = 0;          ///< of the odometry model
   double gap_noise_factor = 1;        ///< for the odometry model, from PreparedDrive::timeline
   std::vector<std::string> warnings;  ///< of the preparation; suspicious units, signs, jumps

@@ -4,20 +4,13 @@
 #include <cmath>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
-#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark::drive {
 namespace {
-
-std::optional<double> estimated_time_offset(const Graph& graph) {
-  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    if (graph.vertex_type(v).tag == VertexTimeOffset::kTag && !graph.fixed(v)) return graph.value(v)[0];
-  }
-  return std::nullopt;
-}
 
 /// Returns all poses with a stamp, by time; one for each stamp.
 std::vector<StampedPose> stamped_poses(const Graph& graph) {
@@ -51,13 +44,14 @@ Eigen::Vector3d pose_at(const std::vector<StampedPose>& nodes, Stamp stamp, doub
 }  // namespace
 
 std::vector<Eigen::Vector3d> poses_when_measured(const formats::GraphDocument& document) {
-  const std::optional<double> offset = estimated_time_offset(document.graph);
+  const std::optional<VertexIndex> offset = time_offset_vertex(document.graph);
   if (!offset) return {};
   const std::vector<StampedPose> nodes = stamped_poses(document.graph);
   if (nodes.size() < 2)
     throw InputError("a time offset is estimated, but fewer than two poses have stamps of their own");
+  const double late_s = document.graph.value(*offset)[0];
   std::vector<Eigen::Vector3d> poses;
-  for (const Fix& fix : document.fixes) poses.push_back(pose_at(nodes, fix.stamp, -*offset));
+  for (const Fix& fix : document.fixes) poses.push_back(pose_at(nodes, fix.stamp, -late_s));
   return poses;
 }
 

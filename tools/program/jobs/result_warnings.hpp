@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <waymark/tools/drive/description/fusion_settings.hpp>
-#include <waymark/tools/drive/model/noise.hpp>
+#include <waymark/tools/drive/estimation/noise.hpp>
 #include <waymark/tools/evaluation/document/estimated_states.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
 

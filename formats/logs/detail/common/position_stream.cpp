@@ -62,6 +62,7 @@ const char* PositionStream::stand_in(GeodeticFix& fix, double hdop) {
     ++from_hdop_;
   } else if (sigma > 0) {
     ++defaulted_;
+    fix.accuracy_claimed = false;
   } else if (hdop > 0) {
     return "the log has no accuracy but HDOP: state 'range_error', which is multiplied by "
            "HDOP, or 'default_sigma'";

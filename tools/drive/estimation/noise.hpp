@@ -20,10 +20,11 @@ struct NoiseParameter {
   std::string owner;  ///< the odometry model or modeling that has the option
   std::string option;
   std::string unit;
+  OptionRange range;  ///< what the option allows
   NoisePrior prior;
   double value = 0;
   /// Standard deviation of the posterior, in the form of the prior (of the logarithm, or linear),
-  /// with the other parameters held.
+  /// whatever the other parameters are.
   double deviation = 0;
 
   /// Tells whether the drive has more information about it than the prior.

@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/model/coarse.hpp>
+#include <waymark/tools/drive/estimation/coarse.hpp>
 
 #include <cmath>
 #include <map>
@@ -38,6 +38,7 @@ PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_
   PlacedDrive coarse;
   coarse.gate = placed.gate;
   coarse.antenna_m = placed.antenna_m;
+  coarse.time_offset_s = placed.time_offset_s;
   coarse.standstill_mps = placed.standstill_mps;
   coarse.gap_noise_factor = placed.gap_noise_factor;
   std::vector<std::size_t> coarse_node(timeline.stamps.size(), 0);
@@ -68,7 +69,6 @@ PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_
     coarse.timeline.fix_node.push_back(node);
     coarse.fixes.push_back(placed.fixes[i]);
     coarse.fixes.back().vertex = vertex_of(node);
-    coarse.motion.push_back(placed.motion[i]);
   }
   return coarse;
 }

@@ -1,0 +1,95 @@
+// How late the fixes are: found without bias and with a true sigma, whatever the gyro, and no free place for
+// the errors of fixes.
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/core/covariance/marginals.hpp>
+#include <waymark/tools/drive/estimation/latency.hpp>
+#include <waymark/tools/drive/model/fuse.hpp>
+#include <waymark/tools/drive/model/poses_at_fixes.hpp>
+#include <waymark/tools/evaluation/evaluation.hpp>
+#include <waymark/tools/simulation/simulation.hpp>
+
+#include "support/registry.hpp"
+#include "tools/experiments/simulated.hpp"
+
+namespace latency_test {
+
+using namespace waymark;
+using namespace waymark::drive;
+using namespace waymark::simulation;
+using namespace waymark_test;
+
+namespace {
+
+/// A motorway, or streets, with a gyro whose heading walks by so much in the root of a second.
+SimulatedDrive make_drive(const char* preset, double yaw_noise, double delay_s, std::uint64_t seed) {
+  SimulationRecipe recipe = with_duration(simulation_preset(preset).recipe, 300);
+  recipe.odometry.yaw_rate_noise_radps = yaw_noise * std::sqrt(recipe.odometry.rate_hz);
+  recipe.gnss.delay_s = delay_s;
+  return simulate(recipe, seed);
+}
+
+struct Found {
+  double offset_s = 0;
+  double sigma_s = 0;
+  double raw_rmse_m = 0;
+  double fused_rmse_m = 0;
+};
+
+Found fuse_late_fixes(const SimulatedDrive& simulated, const PreparedDrive& drive) {
+  const FusedDrive fused = fuse(drive, {}, registry());
+  REQUIRE(fused.minimum.summary.converged());
+  const formats::GraphDocument& document = fused.model.document;
+  evaluation::EvaluationInput input;
+  input.fused = poses_at_fixes(document);
+  input.fixes = document.fixes;
+  input.truth = evaluation::truth_from_poses(simulated.poses);
+  const evaluation::Evaluation result = evaluation::evaluate(input);
+  const std::vector<VertexIndex> offset{time_offset_vertex(document.graph).value()};
+  return {document.graph.value(offset[0])[0],
+          std::sqrt(marginal_covariances(document.graph, offset)[0](0, 0)),
+          result.truth->gnss.position.rmse_m, result.truth->fused.position.rmse_m};
+}
+
+}  // namespace
+
+TEST_CASE("latency: found within its sigma under good and poor gyros, and never worse than the fixes") {
+  double squares = 0;
+  int drives = 0;
+  for (const char* preset : {"highway", "urban"}) {
+    for (const double yaw_noise : {5e-4, 0.033}) {
+      for (const double delay_s : {-0.8, 0.0, 0.3, 1.0}) {
+        const auto seed = static_cast<std::uint64_t>(100 + drives);
+        const SimulatedDrive simulated = make_drive(preset, yaw_noise, delay_s, seed);
+        const Found found = fuse_late_fixes(simulated, prepared(simulated));
+        INFO(preset << ", yaw noise " << yaw_noise << ", delay " << delay_s << ": " << found.offset_s
+                    << " +- " << found.sigma_s << " s, " << found.raw_rmse_m << " -> " << found.fused_rmse_m
+                    << " m");
+        CHECK(found.fused_rmse_m < 1.05 * found.raw_rmse_m);  // a constant bias stays with both
+        CHECK(found.sigma_s < 0.15);                          // half of its prior
+        squares += std::pow((found.offset_s - delay_s) / found.sigma_s, 2);
+        ++drives;
+      }
+    }
+  }
+  // 1e-4 and 1 - 1e-4 of chi-square with 16 degrees of freedom.
+  CHECK(squares > 2.9);
+  CHECK(squares < 45.9);
+}
+
+TEST_CASE("latency: moving a receiver's clock by a second moves the offset by a second, and nothing else") {
+  const SimulatedDrive simulated = make_drive("urban", 2e-3, 0, 7);
+  const Found before = fuse_late_fixes(simulated, prepared(simulated));
+  PreparedDrive moved = prepared(simulated);
+  for (Fix& fix : moved.fixes) fix.stamp.nanoseconds += 1'000'000'000;
+  while (moved.fixes.back().stamp > moved.odometry.back().stamp) moved.fixes.pop_back();
+  const Found after = fuse_late_fixes(simulated, moved);
+  // The prior of 0.3 s pulls both towards 0, each by the share of its information.
+  const double pulled = std::pow(after.sigma_s / 0.3, 2);
+  CHECK(after.offset_s - before.offset_s == Approx(1 - pulled).margin(0.5 * before.sigma_s));
+  CHECK(after.sigma_s == Approx(before.sigma_s).epsilon(0.1));
+}
+
+}  // namespace latency_test

@@ -1,0 +1,179 @@
+#include <waymark/tools/drive/estimation/noise.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/covariance/evidence.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/registry/options.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/tools/drive/estimation/coarse.hpp>
+#include <waymark/tools/drive/estimation/posterior_mode.hpp>
+#include <waymark/tools/drive/model/build.hpp>
+
+namespace waymark::drive {
+namespace {
+
+/// The distance of a value from the mean of its prior, in deviations of the prior.
+double coordinate_of(double value, const NoisePrior& prior) {
+  const double away = prior.linear ? value - prior.mean : std::log(value / prior.mean);
+  return away / prior.deviation;
+}
+double value_at(double coordinate, const NoisePrior& prior) {
+  const double away = coordinate * prior.deviation;
+  return prior.linear ? prior.mean + away : prior.mean * std::exp(away);
+}
+
+void place(double coordinate, NoiseParameter& parameter) {
+  // A value at the end of its range must not leave it by rounding.
+  parameter.value =
+      std::clamp(value_at(coordinate, parameter.prior), parameter.range.low, parameter.range.high);
+}
+
+/// The prior for receivers that claim an accuracy. @param accuracy_m median; 0: none is claimed
+NoisePrior prior_for(const NoisePrior& general, double accuracy_m) {
+  constexpr double kCoarse_m = 0.5;
+  NoisePrior prior = general;
+  if (prior.shrinks_with_claim && accuracy_m > 0) prior.mean *= std::min(1.0, accuracy_m / kCoarse_m);
+  return prior;
+}
+
+/// Adds options with a prior that are not stated.
+void add_parameters(const std::string& owner, const std::vector<OptionInfo>& known, const Options& given,
+                    double accuracy_m, std::vector<NoiseParameter>& parameters) {
+  for (const OptionInfo& option : known) {
+    if (!option.prior || given.contains(option.name)) continue;
+    NoiseParameter parameter;
+    parameter.owner = owner;
+    parameter.option = option.name;
+    parameter.unit = option.unit;
+    parameter.range = std::get<OptionRange>(option.allowed);
+    parameter.prior = prior_for(*option.prior, accuracy_m);
+    place(0, parameter);
+    parameters.push_back(std::move(parameter));
+  }
+}
+
+/// The function that the noise minimises: -log of prior times marginal likelihood.
+class Objective {
+ public:
+  Objective(const PlacedDrive& placed, const FusionSettings& settings, const TypeRegistry& registry)
+      : coarse_(coarsen(placed)),
+        settings_(settings),
+        registry_(registry),
+        algorithm_(registry.make_algorithm("dogleg")) {}
+
+  /// From now on every minimisation begins at the minimum of this noise and goes to its end. Before,
+  /// it begins at the one before: heavy tails have several minima, so that the cost depends a little
+  /// on where the search has been.
+  void begin_always_at(const NoiseEstimate& noise) {
+    (void)(*this)(noise);
+    exact_ = true;
+  }
+
+  double operator()(const NoiseEstimate& noise) {
+    ++evaluations_;
+    Graph graph = build_graph(coarse_, {}, with_noise(settings_, noise), registry_).graph;
+    prepare(graph);
+    OptimizerOptions options;
+    options.decrement_tolerance = exact_ ? 1e-8 : 1e-6;
+    options.max_iterations = 200;
+    const Summary summary = optimize(graph, kept_, *algorithm_, options);
+    if (!exact_ && summary.converged()) values_ = graph.values();
+    double cost = evidence(graph, kept_.structure(), cholesky_).negative_log();
+    for (const NoiseParameter& parameter : noise.parameters)
+      cost += 0.5 * std::pow(coordinate_of(parameter.value, parameter.prior), 2);
+    return std::isfinite(cost) ? cost : 1e300;
+  }
+  [[nodiscard]] int evaluations() const { return evaluations_; }
+
+ private:
+  /// Vertices and edges are the same every time. So structure and analysis are made once.
+  void prepare(Graph& graph) {
+    if (!values_.empty()) {
+      graph.set_values(values_);
+      return;
+    }
+    if (evaluations_ > 1) return;
+    kept_.build(graph, find_gauge(graph).held);
+  }
+
+  PlacedDrive coarse_;
+  const FusionSettings& settings_;
+  const TypeRegistry& registry_;
+  std::unique_ptr<Algorithm> algorithm_;
+  BlockCholesky cholesky_;
+  StructuredSolver kept_{cholesky_};
+  std::vector<double> values_;
+  int evaluations_ = 0;
+  bool exact_ = false;
+};
+
+/// A parameter may leave its prior by kNoiseReach deviations, but not what its option allows.
+PosteriorBounds bounds_of(const NoiseEstimate& noise) {
+  const auto size = static_cast<Eigen::Index>(noise.parameters.size());
+  PosteriorBounds bounds{Eigen::VectorXd(size), Eigen::VectorXd(size)};
+  Eigen::Index i = 0;
+  for (const NoiseParameter& parameter : noise.parameters) {
+    bounds.low[i] = std::max(-kNoiseReach, coordinate_of(parameter.range.low, parameter.prior));
+    bounds.high[i] = std::min(kNoiseReach, coordinate_of(parameter.range.high, parameter.prior));
+    ++i;
+  }
+  return bounds;
+}
+
+void minimize(Objective& objective, NoiseEstimate& noise) {
+  const PosteriorBounds bounds = bounds_of(noise);
+  const Eigen::Index size = bounds.low.size();
+  const auto place_all = [&](const Eigen::VectorXd& coordinates) {
+    for (Eigen::Index i = 0; i < size; ++i)
+      place(coordinates[i], noise.parameters[static_cast<std::size_t>(i)]);
+  };
+  const PosteriorCost cost = [&](const Eigen::VectorXd& coordinates) {
+    place_all(coordinates);
+    return objective(noise);
+  };
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(size).cwiseMax(bounds.low).cwiseMin(bounds.high);
+  const Eigen::VectorXd near = search_posterior(cost, start, bounds);
+  place_all(near);
+  objective.begin_always_at(noise);
+  const PosteriorMode mode = find_posterior_mode(cost, near, bounds);
+  place_all(mode.at);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    NoiseParameter& parameter = noise.parameters[static_cast<std::size_t>(i)];
+    parameter.deviation = std::sqrt(mode.covariance(i, i)) * parameter.prior.deviation;
+  }
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
+                             const TypeRegistry& registry) {
+  const auto start = std::chrono::steady_clock::now();
+  NoiseEstimate noise;
+  const double accuracy_m = median_accuracy(placed.fixes);
+  add_parameters(settings.odometry_model, registry.odometry_model(settings.odometry_model).options,
+                 settings.odometry_options, accuracy_m, noise.parameters);
+  add_parameters(settings.modeling, registry.gnss_modeling(settings.modeling).options,
+                 settings.modeling_options, accuracy_m, noise.parameters);
+  if (noise.parameters.empty()) return noise;
+  Objective objective(placed, settings, registry);
+  minimize(objective, noise);
+  noise.evaluations = objective.evaluations();
+  noise.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return noise;
+}
+
+FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise) {
+  for (const NoiseParameter& parameter : noise.parameters) {
+    if (parameter.owner == settings.odometry_model)
+      settings.odometry_options.try_emplace(parameter.option, shortest(parameter.value));
+    if (parameter.owner == settings.modeling)
+      settings.modeling_options.try_emplace(parameter.option, shortest(parameter.value));
+  }
+  return settings;
+}
+
+}  // namespace waymark::drive

@@ -1,0 +1,36 @@
+/// The most probable values of a few parameters, and how well they are known.
+#pragma once
+
+#include <functional>
+
+#include <Eigen/Core>
+
+namespace waymark::drive {
+
+/// The cost of n coordinates, -log of prior times likelihood, each coordinate in units of its
+/// prior's deviation. It must be a smooth function of them and of nothing else.
+using PosteriorCost = std::function<double(const Eigen::VectorXd& coordinates)>;
+
+struct PosteriorMode {
+  Eigen::VectorXd at;          ///< n
+  Eigen::MatrixXd covariance;  ///< n x n, the inverse of the curvature there
+};
+
+/// The bounds of the coordinates, n each, low < high. A coordinate may end at them.
+struct PosteriorBounds {
+  Eigen::VectorXd low;
+  Eigen::VectorXd high;
+};
+
+/// Comes near the least cost: a quasi-Newton search (SLSQP, Kraft 1988) with differences of the cost
+/// as its gradient. The cost may be rough.
+[[nodiscard]] Eigen::VectorXd search_posterior(const PosteriorCost& cost, const Eigen::VectorXd& start,
+                                               const PosteriorBounds& bounds);
+
+/// Finds the least cost from a point near it. Newton's steps with the full curvature go on until
+/// they are a small part of what the parameters are known to: parameters on a ridge move together,
+/// which no search along axes does.
+[[nodiscard]] PosteriorMode find_posterior_mode(const PosteriorCost& cost, const Eigen::VectorXd& near,
+                                                const PosteriorBounds& bounds);
+
+}  // namespace waymark::drive
