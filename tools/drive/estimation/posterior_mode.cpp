@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double kStep = 0.05;        // of the differences in the search
 constexpr double kNear = 0.05;        // where the search ends
 constexpr int kMostSearchSteps = 20;  // evaluations with derivatives
-constexpr int kMostNewtonSteps = 8;
+constexpr int kMostNewtonSteps = 20;
 constexpr double kSettled = 0.002;       // gain of cost, a sixteenth of a deviation; its step is still taken
 constexpr double kFirstStep = 0.1;       // of the differences for the first of them
 constexpr double kLongestStep = 1.0;     // in deviations of the priors
