@@ -152,7 +152,7 @@ class GnssCorrelated final : public GnssModeling {
 std::vector<OptionInfo> options() {
   return {
       {"white_sigma", "1.5", "m", OptionRange{1e-3, 1e3}, "scale of the error that is new in every fix",
-       NoisePrior{1.5, 1, false, true}},
+       NoisePrior{1.5, 0.7, false, true}},
       {"tails", "student", "", OptionWords{"student", "normal"},
        "distribution of the error that is new in every fix: 'student', Student's t of four degrees "
        "of freedom, or 'normal'"},

@@ -81,7 +81,7 @@ TEST_CASE("raw logs: Aarhus is as good from its raw logs as from odometry combin
     const Json metrics = Json::parse(read_text(folder + name + "/metrics.json"));
     return metrics["evaluations"][0]["withheld_fixes"]["position"]["rmse_m"].get<double>();
   };
-  CHECK(rmse("raw") == Approx(rmse("combined")).epsilon(0.02));
+  CHECK(rmse("raw") < 1.02 * rmse("combined"));
 }
 
 TEST_CASE(

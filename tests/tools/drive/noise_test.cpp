@@ -118,11 +118,11 @@ TEST_CASE("noise: what a drive was made with is found, within what the drive can
       mean[option] += away / kSeeds;
     }
   }
-  // Logarithms of a ratio. Laplace's method at heavy tails moves white noise by a third
-  // (tools/drive/MEASUREMENTS.md); nothing else is off by more than the drives can show.
+  // Logarithms of a ratio. Laplace's method at heavy tails takes a third of the white noise, and
+  // with it a quarter of the time (tools/drive/MEASUREMENTS.md).
   CHECK(std::abs(mean["white_sigma"]) < 0.4);
   CHECK(std::abs(mean["multipath_sigma"]) < 0.2);
-  CHECK(std::abs(mean["multipath_time"]) < 0.2);
+  CHECK(std::abs(mean["multipath_time"]) < 0.3);
   CHECK(std::abs(mean["heading_variance_per_s"]) < 0.3);
   CHECK(std::abs(mean["accuracy_exponent"]) < 0.1);  // a difference, not a ratio
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <nlopt.h>
@@ -19,7 +20,12 @@ constexpr double kStep = 0.05;        // of the differences in the search
 constexpr double kNear = 0.05;        // where the search ends
 constexpr int kMostSearchSteps = 20;  // evaluations with derivatives
 constexpr int kMostNewtonSteps = 20;
-constexpr double kSettled = 0.002;       // gain of cost, a sixteenth of a deviation; its step is still taken
+constexpr double kSettled = 5e-5;        // gain of cost, a hundredth of a deviation; its step is still taken
+constexpr double kClose = 0.5;           // gain of cost, a deviation: the correlations are kept from there
+constexpr double kSearchShare = 0.5;     // of a deviation, the differences until then
+constexpr double kEndShare = 0.05;       // and for the curvature at the end
+constexpr double kFalling = 0.2;         // from step to step, or they are found anew
+constexpr double kTolerated = 0.02;      // rise of cost in a step, a fifth of a deviation
 constexpr double kFirstStep = 0.1;       // of the differences for the first of them
 constexpr double kLongestStep = 1.0;     // in deviations of the priors
 constexpr double kLeastCurvature = 0.1;  // the prior alone has 1
@@ -62,39 +68,54 @@ struct Quadratic {
   }
 };
 
-/// Returns steps that are about half of what each coordinate is known to alone. Far smaller ones
-/// see rounding, far larger ones the third derivative.
-VectorXd fitting_steps(const VectorXd& curvature) {
-  return (0.5 / curvature.array().max(kLeastCurvature).sqrt()).cwiseMin(0.5).cwiseMax(0.02);
+/// Returns steps that are a share of what each coordinate is known to alone. Far smaller ones see
+/// rounding, far larger ones the derivatives of higher order.
+VectorXd fitting_steps(const VectorXd& curvature, double share) {
+  return (share / curvature.array().max(kLeastCurvature).sqrt()).cwiseMin(share).cwiseMax(0.02);
 }
 
+/// Returns the quadratic through the least costs that determine it. With the correlations of the
+/// curvature known from nearby, a gradient by central differences gives the rest.
 Quadratic fit_quadratic(const PosteriorCost& cost, const VectorXd& at, const VectorXd& steps,
-                        const PosteriorBounds& bounds) {
+                        const PosteriorBounds& bounds, const MatrixXd* correlations) {
   const Index n = at.size();
   Quadratic fit{at.cwiseMax(bounds.low + steps).cwiseMin(bounds.high - steps), 0, VectorXd(n),
                 MatrixXd(n, n)};
   fit.cost = cost(fit.centre);
-  VectorXd ahead(n);
+  VectorXd bend(n);
   for (Index i = 0; i < n; ++i) {
-    ahead[i] = cost(with_step(fit.centre, i, steps[i]));
+    const double ahead = cost(with_step(fit.centre, i, steps[i]));
     const double behind = cost(with_step(fit.centre, i, -steps[i]));
-    fit.gradient[i] = (ahead[i] - behind) / (2 * steps[i]);
-    fit.curvature(i, i) = (ahead[i] + behind - 2 * fit.cost) / (steps[i] * steps[i]);
+    bend[i] = ahead + behind - 2 * fit.cost;
+    fit.gradient[i] = (ahead - behind) / (2 * steps[i]);
+    fit.curvature(i, i) = bend[i] / (steps[i] * steps[i]);
+  }
+  if (correlations != nullptr) {
+    const VectorXd scale = fit.curvature.diagonal().cwiseMax(kLeastCurvature).cwiseSqrt();
+    fit.curvature = scale.asDiagonal() * *correlations * scale.asDiagonal();
+    return fit;
   }
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < i; ++j) {
-      const double both = cost(with_step(with_step(fit.centre, i, steps[i]), j, steps[j]));
-      fit.curvature(i, j) = (both - ahead[i] - ahead[j] + fit.cost) / (steps[i] * steps[j]);
+      const double both = cost(with_step(with_step(fit.centre, i, steps[i]), j, steps[j])) +
+                          cost(with_step(with_step(fit.centre, i, -steps[i]), j, -steps[j])) - 2 * fit.cost;
+      fit.curvature(i, j) = (both - bend[i] - bend[j]) / (2 * steps[i] * steps[j]);
       fit.curvature(j, i) = fit.curvature(i, j);
     }
   }
   return fit;
 }
 
+/// Returns a curvature scaled to ones on its diagonal.
+MatrixXd correlations_of(const MatrixXd& curvature) {
+  const VectorXd scale = curvature.diagonal().cwiseMax(kLeastCurvature).cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * curvature * scale.asDiagonal();
+}
+
 /// Returns the inverse, with the curvature made positive where rounding or a saddle has left none.
 MatrixXd covariance_of(const MatrixXd& curvature) {
   const auto [values, vectors] = symmetric_eigen(curvature);
-  return vectors * values.cwiseMax(kLeastCurvature).cwiseInverse().asDiagonal() * vectors.transpose();
+  return vectors * values.cwiseAbs().cwiseMax(kLeastCurvature).cwiseInverse().asDiagonal() * vectors.transpose();
 }
 
 /// Returns the least point of the quadratic between the bounds. Coordinates that it pushes over a
@@ -130,11 +151,12 @@ VectorXd least_point(const Quadratic& fit, const PosteriorBounds& bounds) {
 }
 
 /// Returns the share of a step at which the cost does not rise: the step may leave the region
-/// where the quadratic fits.
+/// where the quadratic fits. Close to the mode a rise is the difference between the cost and its
+/// quadratic over the width of the steps, and no reason to halt.
 double descending(const PosteriorCost& cost, const Quadratic& fit, const VectorXd& step) {
   constexpr double kLeastShare = 0.05;
   double share = std::min(1.0, kLongestStep / std::max(step.cwiseAbs().maxCoeff(), 1e-12));
-  while (share > kLeastShare && cost(fit.centre + share * step) > fit.cost) share *= 0.4;
+  while (share > kLeastShare && cost(fit.centre + share * step) > fit.cost + kTolerated) share *= 0.4;
   return share;
 }
 
@@ -160,18 +182,26 @@ PosteriorMode find_posterior_mode(const PosteriorCost& cost, const VectorXd& nea
   const VectorXd longest = 0.25 * (bounds.high - bounds.low);
   VectorXd steps = longest.cwiseMin(kFirstStep);
   PosteriorMode mode{near, {}};
+  MatrixXd correlations;
+  double gain_before = std::numeric_limits<double>::max();
   for (int i = 0; i < kMostNewtonSteps; ++i) {
-    const Quadratic fit = fit_quadratic(cost, mode.at, steps, bounds);
-    mode.covariance = covariance_of(fit.curvature);
+    const Quadratic fit =
+        fit_quadratic(cost, mode.at, steps, bounds, correlations.size() > 0 ? &correlations : nullptr);
     const VectorXd least = least_point(fit, bounds);
-    if (fit.rise_to(mode.at) - fit.rise_to(least) < kSettled) {
+    const double gain = fit.rise_to(mode.at) - fit.rise_to(least);
+    if (gain < kSettled) {
       mode.at = least;
       break;
     }
     const VectorXd step = least - fit.centre;
     mode.at = fit.centre + descending(cost, fit, step) * step;
-    steps = fitting_steps(fit.curvature.diagonal()).cwiseMin(longest);
+    steps = fitting_steps(fit.curvature.diagonal(), kSearchShare).cwiseMin(longest);
+    const bool converging = gain < kClose && gain < kFalling * gain_before;
+    correlations = converging ? correlations_of(fit.curvature) : MatrixXd();
+    gain_before = gain;
   }
+  const VectorXd fine = steps * (kEndShare / kSearchShare);
+  mode.covariance = covariance_of(fit_quadratic(cost, mode.at, fine, bounds, nullptr).curvature);
   return mode;
 }
 
