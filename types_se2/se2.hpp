@@ -35,6 +35,11 @@ template <typename T>
   return angle - T(kTurn * std::ceil((value - std::numbers::pi) / kTurn));
 }
 
+/// Returns the signed angle from a to b, in (-pi, pi]; 0 if one of them is zero.
+[[nodiscard]] inline double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return std::atan2(a[0] * b[1] - a[1] * b[0], a.dot(b));
+}
+
 /// A pose or a relative motion: translation [m] and heading [rad]. The constructor does not wrap
 /// the heading.
 template <typename T>

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/core/drive/modeling.hpp>
 
@@ -15,12 +17,9 @@ double median_accuracy(std::span<const Fix> fixes) {
   std::vector<double> ordered;
   ordered.reserve(fixes.size());
   for (const Fix& fix : fixes) {
-    if (fix.accuracy_claimed) ordered.push_back(std::sqrt(0.5 * fix.covariance.trace()));
+    if (fix.status == FixStatus::accepted && fix.accuracy_claimed) ordered.push_back(fix.accuracy_m());
   }
-  if (ordered.empty()) return 0;
-  const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2);
-  std::nth_element(ordered.begin(), middle, ordered.end());
-  return *middle;
+  return ordered.empty() ? 0 : upper_median(std::move(ordered));
 }
 
 std::optional<NodeInTime> nearest_node(const DriveNodes& nodes, Stamp moment, double tolerance_s) {
@@ -41,6 +40,10 @@ std::optional<NodeInTime> nearest_node(const DriveNodes& nodes, Stamp moment, do
 
 const Interval& motion_at(const DriveNodes& nodes, std::size_t node) {
   return nodes.intervals[std::min(node, nodes.intervals.size() - 1)];
+}
+
+const Interval& motion_at(const DriveNodes& nodes, const NodeInTime& moment) {
+  return motion_at(nodes, moment.ahead_s > 0 || moment.node == 0 ? moment.node : moment.node - 1);
 }
 
 }  // namespace waymark

@@ -50,6 +50,10 @@ struct NodeInTime {
 /// Returns the motion of the odometry at a node: that of the interval after it, or before it for
 /// the last node.
 [[nodiscard]] const Interval& motion_at(const DriveNodes& nodes, std::size_t node);
+/// Returns the motion about a moment near a node: that of the interval that contains it, or of the
+/// first or last one. At the node itself it is the interval before, so that the next part of a
+/// drive changes nothing.
+[[nodiscard]] const Interval& motion_at(const DriveNodes& nodes, const NodeInTime& moment);
 
 /// Joins the poses of consecutive nodes.
 class OdometryModel {
@@ -89,8 +93,8 @@ struct GnssInput {
   double median_accuracy_m = 0;
 };
 
-/// Returns the median of the accuracies that fixes claim: sqrt(trace(covariance) / 2), in m. 0 if
-/// none claims any (Fix::accuracy_claimed).
+/// Returns the median of the accuracies that accepted fixes claim (Fix::accuracy_m), in m. 0 if none
+/// claims any (Fix::accuracy_claimed).
 [[nodiscard]] double median_accuracy(std::span<const Fix> fixes);
 
 /// Connects poses and fixes (the paper's G1, G2, G3, and those of plugins).

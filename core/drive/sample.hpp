@@ -81,8 +81,10 @@ struct Fix {
   Stamp stamp;
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< antenna, frame coordinates, m
   Eigen::Matrix2d covariance =
-      Eigen::Matrix2d::Identity();    ///< m^2, frame axes (x east, y north on the grid)
-  bool accuracy_claimed = true;       ///< as GeodeticFix::accuracy_claimed
+      Eigen::Matrix2d::Identity();  ///< m^2, frame axes (x east, y north on the grid)
+  bool accuracy_claimed = true;     ///< as GeodeticFix::accuracy_claimed
+  /// Returns the standard deviation along an axis, in the mean of both [m].
+  [[nodiscard]] double accuracy_m() const { return std::sqrt(0.5 * covariance.trace()); }
   std::optional<double> heading_rad;  ///< course as a heading: counter-clockwise from grid east
   std::optional<double> heading_sigma_rad;
   std::optional<double> speed_mps;

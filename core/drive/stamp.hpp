@@ -33,6 +33,8 @@ struct Stamp {
     const double whole = std::floor(seconds);
     return Stamp{static_cast<std::int64_t>(whole) * 1'000'000'000 + std::llround((seconds - whole) * 1e9)};
   }
+  /// Returns the instant that is `seconds` later, to the nanosecond. @param seconds |seconds| < 9.2e9
+  [[nodiscard]] Stamp later(double seconds) const { return Stamp{nanoseconds + std::llround(seconds * 1e9)}; }
   [[nodiscard]] constexpr double seconds() const { return static_cast<double>(nanoseconds) * 1e-9; }
 };
 

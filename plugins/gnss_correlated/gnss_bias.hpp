@@ -50,7 +50,8 @@ struct EdgeGnssMultipathDecay : EdgeGnssBiasDecay {
 };
 
 /// EDGE_GNSS_POSITION_LATE with the correlated errors in the measurement:
-///   e = R_from^T (p_to + R_to antenna - p_from) - (offset - assumed_offset) velocity + bias + scale multipath - measured.
+///   e = R_from^T (p_to + R_to antenna - p_from) - (offset - assumed_offset) velocity
+///       + bias + scale multipath - measured.
 /// `from` is the fixed origin; its axes are those of the frame. Metres.
 struct EdgeGnssPositionCorrelated {
   static constexpr std::string_view kTag = "EDGE_GNSS_POSITION_CORRELATED";

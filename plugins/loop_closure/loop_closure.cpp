@@ -1,4 +1,3 @@
-#include <cmath>
 #include <numbers>
 
 #include <waymark/core/registry/options.hpp>
@@ -62,8 +61,7 @@ class LoopClosure final : public SensorModel {
  private:
   static Stamp moment_later(const SensorTable& readings, std::size_t row) {
     constexpr double kLongest_s = 1e7;
-    const double dt = number_of_reading(readings, row, kDt, "dt", kLongest_s);
-    return Stamp{readings.stamps[row].nanoseconds + std::llround(dt * 1e9)};
+    return readings.stamps[row].later(number_of_reading(readings, row, kDt, "dt", kLongest_s));
   }
 
   /// At the two moments the sensor stood at A = ahead_from mount and B = ahead_to mount, in the

@@ -1,11 +1,11 @@
 #include <waymark/tools/simulation/statistics.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Geometry>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
 #include <waymark/tools/evaluation/numbers/truth_interpolation.hpp>
 
@@ -18,10 +18,7 @@ constexpr double kLeastTruthStep = 0.05;
 constexpr double kYawWindow = 60;  // s
 
 double median_of(std::vector<double> values) {
-  if (values.empty()) return evaluation::kUndefined;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? evaluation::kUndefined : upper_median(std::move(values));
 }
 
 double median_interval(std::span<const Stamp> stamps) {

@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kFarthestNode_s = 0.5;
 
-/// Returns the interval that contains a moment near a node. Beyond the ends of the drive it is the
-/// last interval on that side.
-const Interval& interval_beside(const DriveNodes& nodes, const NodeInTime& place) {
-  return motion_at(nodes, place.ahead_s < 0 && place.node > 0 ? place.node - 1 : place.node);
-}
-
 /// Prints all digits, unlike Stamp::seconds(), without trailing zeros.
 std::string seconds_text(Stamp stamp) {
   constexpr std::int64_t kSecond = 1'000'000'000;
@@ -40,7 +34,7 @@ std::optional<ReadingPlace> find_place(const DriveNodes& nodes, Stamp moment) {
   if (!nearest || std::abs(nearest->ahead_s) > kFarthestNode_s) return std::nullopt;
   ReadingPlace place{nearest->node, nodes.poses[nearest->node], {}};
   if (!nodes.intervals.empty()) {
-    const Interval& interval = interval_beside(nodes, *nearest);
+    const Interval& interval = motion_at(nodes, *nearest);
     const Eigen::Vector3d twist(interval.speed_mps, 0, interval.yaw_rate_radps);
     place.ahead = se2_exp<double>(nearest->ahead_s * twist);
   }

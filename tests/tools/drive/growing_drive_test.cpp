@@ -87,19 +87,11 @@ void add_part(std::size_t begin, std::size_t end, const PlacedDrive& placed,
                   fix_nodes, next});
 }
 
-double median_of_accepted(const PlacedDrive& placed) {
-  std::vector<Fix> accepted;
-  for (const Fix& fix : placed.fixes) {
-    if (fix.status == FixStatus::accepted) accepted.push_back(fix);
-  }
-  return median_accuracy(accepted);
-}
-
 GraphBuilder grown(const PlacedDrive& placed, const std::vector<PreparedSensor>& sensors,
                    const FusionSettings& settings, std::size_t nodes_per_part) {
   GraphBuilder builder(
-      {placed.antenna_m, placed.time_offset_s, placed.gap_noise_factor, median_of_accepted(placed)}, sensors,
-      settings, registry());
+      {placed.antenna_m, placed.time_offset_s, placed.gap_noise_factor, median_accuracy(placed.fixes)},
+      sensors, settings, registry());
   const std::size_t nodes = placed.timeline.stamps.size();
   const std::size_t first = std::max<std::size_t>(nodes_per_part, 2);  // with an interval
   add_part(0, first, placed, sensors, builder);

@@ -91,10 +91,7 @@ StatedError error_in_the_middle(const SimulatedDrive& simulated, const PreparedD
   const FusedDrive fused = fuse(drive, settings, registry);
   REQUIRE(fused.minimum.summary.converged());
   const formats::GraphDocument& document = fused.model.document;
-  evaluation::EvaluationInput input;
-  input.fused = poses_at_fixes(document);
-  input.fixes = document.fixes;
-  input.truth = evaluation::truth_from_poses(simulated.poses);
+  evaluation::EvaluationInput input = waymark_test::against_truth(document, simulated);
   for (const auto& covariance : position_covariances_at_fixes(document))
     input.position_covariances.push_back(covariance.value());
   const evaluation::EpochResult& epoch = evaluation::evaluate(input).epochs[input.fixes.size() / 2];

@@ -42,11 +42,7 @@ Found fuse_late_fixes(const SimulatedDrive& simulated, const PreparedDrive& driv
   const FusedDrive fused = fuse(drive, {}, registry());
   REQUIRE(fused.minimum.summary.converged());
   const formats::GraphDocument& document = fused.model.document;
-  evaluation::EvaluationInput input;
-  input.fused = poses_at_fixes(document);
-  input.fixes = document.fixes;
-  input.truth = evaluation::truth_from_poses(simulated.poses);
-  const evaluation::Evaluation result = evaluation::evaluate(input);
+  const evaluation::Evaluation result = evaluation::evaluate(against_truth(document, simulated));
   const std::vector<VertexIndex> offset{time_offset_vertex(document.graph).value()};
   return {document.graph.value(offset[0])[0],
           std::sqrt(marginal_covariances(document.graph, offset)[0](0, 0)),

@@ -3,6 +3,8 @@
 
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/model/poses_at_fixes.hpp>
+#include <waymark/tools/evaluation/evaluation.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 
 namespace waymark_test {
@@ -20,6 +22,16 @@ namespace waymark_test {
   for (const waymark::GeodeticTruth& truth : simulated.truth)
     drive.truth.push_back(projection.project(truth));
   return drive;
+}
+
+/// The fused poses at the fixes against the exact truth.
+[[nodiscard]] inline waymark::evaluation::EvaluationInput against_truth(
+    const waymark::formats::GraphDocument& document, const waymark::simulation::SimulatedDrive& simulated) {
+  waymark::evaluation::EvaluationInput input;
+  input.fused = waymark::drive::poses_at_fixes(document);
+  input.fixes = document.fixes;
+  input.truth = waymark::evaluation::truth_from_poses(simulated.poses);
+  return input;
 }
 
 /// One straight road without end, driven at 20 m/s.

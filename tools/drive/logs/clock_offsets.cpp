@@ -1,10 +1,10 @@
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/logs/clock_sync.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 
@@ -19,9 +19,9 @@ std::optional<ClockReport> clock_of(const DriveLogs::Log& log) {
   if (log.data.clocks.empty()) return std::nullopt;
   std::vector<double> ahead;
   for (const ClockPair& pair : log.data.clocks) ahead.push_back(seconds_between(pair.told, pair.logged));
-  ClockReport clock{log.file, ahead.size(), median_of(ahead), 0};
+  ClockReport clock{log.file, ahead.size(), upper_median(ahead), 0};
   for (double& value : ahead) value = std::abs(value - clock.ahead_s);
-  clock.spread_s = median_of(std::move(ahead));
+  clock.spread_s = upper_median(std::move(ahead));
   return clock;
 }
 
@@ -49,9 +49,9 @@ std::vector<OdometrySample> without_delays(const std::vector<OdometrySample>& od
   const TimeSeries yaw_rate = series_of(odometry, &OdometrySample::yaw_rate_radps);
   std::vector<OdometrySample> result;
   for (const OdometrySample& sample : odometry) {
-    const auto v = value_at(speed, moved(sample.stamp, speed_delay_s - common), kAnyGap);
-    const auto w = value_at(yaw_rate, moved(sample.stamp, yaw_rate_delay_s - common), kAnyGap);
-    if (v && w) result.push_back({moved(sample.stamp, -common), *v, *w});
+    const auto v = value_at(speed, sample.stamp.later(speed_delay_s - common), kAnyGap);
+    const auto w = value_at(yaw_rate, sample.stamp.later(yaw_rate_delay_s - common), kAnyGap);
+    if (v && w) result.push_back({sample.stamp.later(-common), *v, *w});
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -63,7 +64,7 @@ Comparison gnss_speeds(const std::vector<const Fix*>& fixes) {
     for (const Fix* fix : fixes) {
       if (fix->speed_mps && *fix->speed_mps < kFastest)
         result.stretches.push_back(
-            {moved(fix->stamp, -kDopplerWindow / 2), moved(fix->stamp, kDopplerWindow / 2), *fix->speed_mps});
+            {fix->stamp.later(-kDopplerWindow / 2), fix->stamp.later(kDopplerWindow / 2), *fix->speed_mps});
     }
     return result;
   }
@@ -144,8 +145,8 @@ class Correlator {
     // Only stretches that the odometry covers at every offset are used, so that the same readings
     // judge all offsets.
     for (const Stretch& stretch : stretches) {
-      if (moved(stretch.from, -largest_s) >= odometry.stamps.front() &&
-          moved(stretch.to, largest_s) <= odometry.stamps.back())
+      if (stretch.from.later(-largest_s) >= odometry.stamps.front() &&
+          stretch.to.later(largest_s) <= odometry.stamps.back())
         stretches_.push_back(stretch);
     }
   }
@@ -186,7 +187,7 @@ class Correlator {
     std::vector<double> lively;
     for (std::size_t i = by_motion.size() / 2; i < by_motion.size(); ++i)
       lively.push_back(by_motion[i].second);
-    const double limit = kOutlier * 1.4826 * median_of(std::move(lively));
+    const double limit = kOutlier * 1.4826 * upper_median(std::move(lively));
     std::size_t index = 0;
     std::erase_if(stretches_, [&](const Stretch&) { return std::abs(left[index++]) > limit; });
   }
@@ -214,7 +215,7 @@ class Correlator {
     std::vector<double> x;
     x.reserve(stretches_.size());
     for (const Stretch& stretch : stretches_)
-      x.push_back(integral_.mean(moved(stretch.from, late_s), moved(stretch.to, late_s)));
+      x.push_back(integral_.mean(stretch.from.later(late_s), stretch.to.later(late_s)));
     return x;
   }
   [[nodiscard]] std::vector<double> residuals(double late_s) const {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/logs/clock_sync.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
@@ -62,7 +63,7 @@ double longest_interval_s(const DriveDescription& description, std::span<const O
   std::vector<double> intervals;
   for (std::size_t i = 1; i < odometry.size(); ++i)
     intervals.push_back(seconds_between(odometry[i - 1].stamp, odometry[i].stamp));
-  return std::max(description.timeline.gap_s, kUsualIntervals * median_of(intervals));
+  return std::max(description.timeline.gap_s, kUsualIntervals * upper_median(intervals));
 }
 
 std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs, const DriveDescription& description,

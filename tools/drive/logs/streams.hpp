@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/drive/stamp.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
@@ -95,7 +96,7 @@ void describe_stream(const std::vector<Sample>& samples, double gap_s, StreamRep
   for (std::size_t i = 1; i < samples.size(); ++i)
     intervals.push_back(seconds_between(samples[i - 1].stamp, samples[i].stamp));
   if (intervals.empty()) return;
-  report.median_interval_s = median_of(intervals);
+  report.median_interval_s = upper_median(intervals);
   const double limit = gap_s > 0 ? gap_s : 2.5 * report.median_interval_s;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     if (intervals[i] > limit) report.gaps.push_back({samples[i].stamp, intervals[i]});

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include <waymark/core/base/detail/median.hpp>
+
 namespace waymark::drive {
 namespace {
 
@@ -29,12 +31,6 @@ double value_held(const TimeSeries& series, Stamp moment) {
 
 }  // namespace
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 TimeSeries series_of(const std::vector<OdometrySample>& odometry, double OdometrySample::*quantity) {
   TimeSeries series;
   for (const OdometrySample& sample : odometry) {
@@ -48,7 +44,7 @@ double median_interval_s(const TimeSeries& series) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < series.stamps.size(); ++i)
     intervals.push_back(seconds_between(series.stamps[i - 1], series.stamps[i]));
-  return intervals.empty() ? 0 : median_of(std::move(intervals));
+  return intervals.empty() ? 0 : upper_median(std::move(intervals));
 }
 
 double longest_silence_s(const TimeSeries& series, double gap_s) {

@@ -10,20 +10,12 @@
 
 namespace waymark::drive {
 
-/// Returns a stamp shifted by seconds, to the nanosecond.
-[[nodiscard]] inline Stamp moved(Stamp stamp, double seconds) {
-  return {stamp.nanoseconds + std::llround(seconds * 1e9)};
-}
-
 struct TimeSeries {
   std::vector<Stamp> stamps;  ///< ascending
   std::vector<double> values;
 
   [[nodiscard]] bool empty() const { return stamps.empty(); }
 };
-
-/// Returns the upper median. @param values at least one
-[[nodiscard]] double median_of(std::vector<double> values);
 
 /// @param quantity &OdometrySample::speed_mps or &OdometrySample::yaw_rate_radps
 [[nodiscard]] TimeSeries series_of(const std::vector<OdometrySample>& odometry,

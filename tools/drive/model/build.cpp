@@ -1,7 +1,5 @@
 #include <waymark/tools/drive/model/build.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -28,15 +26,8 @@ AcceptedFixes accepted_fixes(const PlacedDrive& placed) {
   return accepted;
 }
 
-/// The motion of the odometry about a moment near a node; that of the interval before it at the
-/// node itself, so that the next part of a drive changes nothing.
-Interval motion_about(const DriveNodes& nodes, const NodeInTime& moment) {
-  const std::size_t after = moment.ahead_s > 0 || moment.node == 0 ? moment.node : moment.node - 1;
-  return nodes.intervals[std::min(after, nodes.intervals.size() - 1)];
-}
-
 FixMoment moment_of_fix(const DriveNodes& nodes, const NodeInTime& moment, const Eigen::Vector2d& antenna) {
-  const Interval motion = motion_about(nodes, moment);
+  const Interval& motion = motion_at(nodes, moment);
   const Eigen::Vector3d twist(motion.speed_mps, 0, motion.yaw_rate_radps);
   const Pose2<double> moved = se2_exp<double>(moment.ahead_s * twist);
   const Eigen::Vector2d velocity(twist[0] - twist[2] * antenna[1], twist[2] * antenna[0]);
@@ -76,8 +67,8 @@ void GraphBuilder::extend(const DrivePart& part) {
   std::vector<FixMoment> moments(fixes.size());
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const Stamp stamp = stamps_[part.fix_nodes[i]];
-    const Stamp measured{stamp.nanoseconds - std::llround(facts_.time_offset_s * 1e9)};
-    const NodeInTime near = *nearest_node(all, measured, std::numeric_limits<double>::infinity());
+    const NodeInTime near =
+        *nearest_node(all, stamp.later(-facts_.time_offset_s), std::numeric_limits<double>::infinity());
     fixes[i].vertex = graph_.id(poses_[near.node]);
     moments[i] = moment_of_fix(all, near, facts_.antenna_m);
     moments[i].assumed_offset_s = facts_.time_offset_s;
@@ -91,7 +82,7 @@ BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor
                        const FusionSettings& settings, const TypeRegistry& registry) {
   const AcceptedFixes accepted = accepted_fixes(placed);
   const DriveFacts facts{placed.antenna_m, placed.time_offset_s, placed.gap_noise_factor,
-                         accepted.fixes.empty() ? 0 : median_accuracy(accepted.fixes)};
+                         median_accuracy(placed.fixes)};
   GraphBuilder builder(facts, sensors, settings, registry);
   builder.check_drive(accepted.fixes, sensors);
   builder.extend({placed.timeline.stamps, placed.start.poses, placed.timeline.intervals, accepted.fixes,

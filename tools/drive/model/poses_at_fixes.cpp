@@ -32,7 +32,7 @@ Pose2<double> as_pose(const StampedPose& pose) {
 /// Returns the pose `later_s` seconds after a stamp, on the twist between the two adjacent poses.
 /// Beyond the ends the twist of the last two continues. @param nodes at least two
 Eigen::Vector3d pose_at(const std::vector<StampedPose>& nodes, Stamp stamp, double later_s) {
-  const Stamp moment{stamp.nanoseconds + std::llround(later_s * 1e9)};
+  const Stamp moment = stamp.later(later_s);
   auto after = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, moment,
                                 [](Stamp time, const StampedPose& pose) { return time < pose.stamp; });
   const StampedPose& before = *(after - 1);

@@ -4,14 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
 namespace {
-
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return std::atan2(a[0] * b[1] - a[1] * b[0], a.dot(b));
-}
 
 /// Returns the heading along [first, last], weighted with time.
 double mean_heading(const ReckonedFixes& receiver, std::size_t first, std::size_t last) {
@@ -93,8 +90,8 @@ std::vector<TurnPair> turns_of(std::span<const ChordPair> chords) {
   std::vector<TurnPair> turns;
   for (std::size_t i = 1; i < chords.size(); ++i) {
     if (!chords[i].follows) continue;
-    turns.push_back(
-        {turn(chords[i - 1].gnss, chords[i].gnss), chords[i].heading_rad - chords[i - 1].heading_rad});
+    turns.push_back({angle_between(chords[i - 1].gnss, chords[i].gnss),
+                     chords[i].heading_rad - chords[i - 1].heading_rad});
   }
   return turns;
 }
@@ -119,16 +116,11 @@ std::optional<double> factor_of_turns(std::span<const TurnPair> turns) {
 }
 
 Median median_with_sigma(std::vector<double> values) {
-  const auto middle_of = [](std::vector<double>& of) {
-    const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
-    std::nth_element(of.begin(), middle, of.end());
-    return *middle;
-  };
   Median median;
-  median.value = middle_of(values);
+  median.value = upper_median(values);
   const auto count = static_cast<double>(values.size());
   for (double& value : values) value = std::abs(value - median.value);
-  median.spread = 1.4826 * middle_of(values);  // of a normal distribution
+  median.spread = 1.4826 * upper_median(values);  // of a normal distribution
   median.sigma = std::sqrt(std::numbers::pi / 2) * median.spread / std::sqrt(count);
   return median;
 }
@@ -142,8 +134,7 @@ std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
   for (std::size_t i = 1; i < fixes.size(); ++i) {
     if (seconds_between(fixes[i - 1].stamp, fixes[i].stamp) > kLongest_s) continue;
     const double distance_m = disagreement(receiver, i - 1, i);
-    const double claimed_m =
-        std::sqrt(0.5 * std::max(fixes[i].covariance.trace(), fixes[i - 1].covariance.trace()));
+    const double claimed_m = std::max(fixes[i].accuracy_m(), fixes[i - 1].accuracy_m());
     if (distance_m < std::max(kSmallest_m, kSigmas * claimed_m)) continue;
     const double tolerance_m = 0.25 * distance_m;
     if (!is_settled(receiver, i - 1, -1, tolerance_m) || !is_settled(receiver, i, 1, tolerance_m)) continue;

@@ -4,17 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include <waymark/types_se2/se2.hpp>
+
 namespace waymark::drive {
 namespace {
 
 constexpr double kHalfChord_s = 2.5;
 constexpr double kHalfTurn_s = 1.5;
 constexpr double kDirection_m = 5;
-
-Stamp moved(Stamp stamp, double by_s) {
-  stamp.nanoseconds += static_cast<std::int64_t>(by_s * 1e9);
-  return stamp;
-}
 
 }  // namespace
 
@@ -44,8 +41,8 @@ Eigen::Vector2d MotionOfFixes::position(Stamp at) const {
 }
 
 MotionOfFixes::TimedChord MotionOfFixes::chord_at(Stamp at) const {
-  const Stamp from = clamped(moved(at, -kHalfChord_s));
-  const Stamp to = clamped(moved(at, kHalfChord_s));
+  const Stamp from = clamped(at.later(-kHalfChord_s));
+  const Stamp to = clamped(at.later(kHalfChord_s));
   return {position(to) - position(from), seconds_between(from, to)};
 }
 
@@ -57,10 +54,10 @@ double MotionOfFixes::speed(Stamp at) const {
 }
 
 double MotionOfFixes::yaw_rate(Stamp at) const {
-  const Eigen::Vector2d before = chord_at(moved(at, -kHalfTurn_s)).chord;
-  const Eigen::Vector2d after = chord_at(moved(at, kHalfTurn_s)).chord;
+  const Eigen::Vector2d before = chord_at(at.later(-kHalfTurn_s)).chord;
+  const Eigen::Vector2d after = chord_at(at.later(kHalfTurn_s)).chord;
   if (before.norm() < kDirection_m || after.norm() < kDirection_m) return 0;
-  return std::atan2(before[0] * after[1] - before[1] * after[0], before.dot(after)) / (2 * kHalfTurn_s);
+  return angle_between(before, after) / (2 * kHalfTurn_s);
 }
 
 bool MotionOfFixes::covers(Stamp from, Stamp to) const {
@@ -89,7 +86,7 @@ std::size_t fill_gaps(std::vector<OdometrySample>& odometry, std::span<const Fix
       const Stamp begin = filled.back().stamp;
       const int parts = static_cast<int>(std::ceil(length_s / kPeriod_s));
       for (int part = 1; part < parts; ++part) {
-        const Stamp at = moved(begin, part * length_s / parts);
+        const Stamp at = begin.later(part * length_s / parts);
         filled.push_back({at, motion.speed(at), motion.yaw_rate(at), true});
       }
     }

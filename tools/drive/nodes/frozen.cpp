@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <waymark/tools/drive/nodes/fix_motion.hpp>
+#include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -64,10 +65,6 @@ bool readings_vary(std::span<const OdometrySample> odometry, const std::vector<R
   return pairs >= kFewestPairs && kVaries * equal <= pairs;
 }
 
-double sigma_of(const Fix& fix) {
-  return std::sqrt(0.5 * fix.covariance.trace());
-}
-
 /// Two fixes between which the odometry is wrong.
 struct Contradiction {
   std::size_t first = 0;
@@ -90,7 +87,7 @@ std::optional<Contradiction> contradiction(std::span<const Fix> fixes, std::size
     if (dt < kShortestChord_s) continue;
     const Eigen::Vector2d chord = fixes[i].position - fixes[first].position;
     const double difference = std::abs(chord.norm() - speed_mps * dt);
-    const double enough = std::max({5.0, dt, 3 * std::max(sigma_of(fixes[first]), sigma_of(fixes[i]))});
+    const double enough = std::max({5.0, dt, 3 * std::max(fixes[first].accuracy_m(), fixes[i].accuracy_m())});
     // A receiver that repeats its position proves nothing.
     if (difference < enough || chord.isZero() || speeds_agree(fixes[first], fixes[i], speed_mps)) continue;
     return Contradiction{first, i, chord, difference};
@@ -99,7 +96,7 @@ std::optional<Contradiction> contradiction(std::span<const Fix> fixes, std::size
 }
 
 bool same_direction(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return std::abs(std::atan2(a[0] * b[1] - a[1] * b[0], a.dot(b))) < kLargestTurn;
+  return std::abs(angle_between(a, b)) < kLargestTurn;
 }
 
 /// Returns the contradictions in a row, of fixes during one run.

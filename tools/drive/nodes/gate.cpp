@@ -88,11 +88,6 @@ std::optional<std::size_t> reference(const Track& track, std::size_t i, const Ga
   return best;
 }
 
-/// Returns the signed angle from a to b in (-pi, pi].
-double angle_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return std::atan2(a[0] * b[1] - a[1] * b[0], a.dot(b));
-}
-
 bool has_direction(const Eigen::Vector2d& v, const GateOptions& options) {
   return v.norm() >= options.min_chord_m;
 }

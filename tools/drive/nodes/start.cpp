@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/nodes/start_alignment.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -199,7 +200,7 @@ Knots translation(const Drive& drive, std::span<const Eigen::Vector3d> poses, in
     for (std::size_t i = first; i < last; ++i)
       near.push_back(anchors[i].gnss[axis] - antenna_at(poses[anchors[i].node], drive.antenna_m)[axis]);
     knots.at.push_back(anchor.moving_s);
-    knots.value.push_back(median(near));
+    knots.value.push_back(upper_median(near));
   }
   return knots;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive::start_detail {
@@ -70,7 +71,7 @@ double window_length(std::span<const Anchor> anchors) {
   std::vector<double> spacing;
   for (std::size_t i = 1; i < anchors.size(); ++i)
     spacing.push_back(anchors[i].moving_s - anchors[i - 1].moving_s);
-  return std::max(kWindow, 5 * median(spacing));
+  return spacing.empty() ? kWindow : std::max(kWindow, 5 * upper_median(std::move(spacing)));
 }
 
 std::optional<HeadingWindow> align_window(std::span<const Anchor> anchors,
@@ -98,20 +99,13 @@ double nearest_turn(double angle, double target) {
 }
 
 Anchor stop_anchor(double moving_s, std::size_t node, std::vector<double>& x, std::vector<double>& y) {
-  const Anchor anchor{.moving_s = moving_s, .node = node, .gnss = {median(x), median(y)}};
+  const Anchor anchor{.moving_s = moving_s, .node = node, .gnss = {upper_median(x), upper_median(y)}};
   x.clear();
   y.clear();
   return anchor;
 }
 
 }  // namespace
-
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double weighted_median(std::vector<std::pair<double, double>>& items) {
   if (items.empty()) return 0;
@@ -193,7 +187,7 @@ std::optional<Alignment> align_robustly(std::span<const Eigen::Vector2d> from,
     alignment.rotation_rad = align_once(from, to, weights, distances);
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = 1 / std::max(distances[i], kReweightFloor);
   }
-  alignment.residual_m = median(distances);
+  alignment.residual_m = upper_median(distances);
   return alignment;
 }
 

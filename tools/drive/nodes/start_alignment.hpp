@@ -85,7 +85,5 @@ void unwrap_offsets(std::span<HeadingWindow> windows);
 /// Returns the median by weight. `items` are (value, weight) and are reordered. 0 if
 /// there are none.
 [[nodiscard]] double weighted_median(std::vector<std::pair<double, double>>& items);
-/// Returns the median (upper of the two middle ones), and reorders. 0 if there are none.
-[[nodiscard]] double median(std::vector<double>& values);
 
 }  // namespace waymark::drive::start_detail

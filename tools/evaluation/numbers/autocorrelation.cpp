@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/evaluation/numbers/metrics.hpp>
 
@@ -95,10 +96,7 @@ class Series {
     for (std::size_t i = 1; i < times_.size(); ++i) {
       if (times_[i] > times_[i - 1]) intervals.push_back(times_[i] - times_[i - 1]);
     }
-    if (intervals.empty()) return;
-    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-    std::nth_element(intervals.begin(), middle, intervals.end());
-    interval_ = *middle;
+    if (!intervals.empty()) interval_ = upper_median(std::move(intervals));
   }
 
   void add_up() {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/tools/evaluation/numbers/metrics.hpp>
@@ -43,10 +44,7 @@ double median_interval_s(std::span<const TruthPose> truth) {
     const double interval = seconds_between(truth[i - 1].stamp, truth[i].stamp);
     if (interval > 0) intervals.push_back(interval);
   }
-  if (intervals.empty()) return kUndefined;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return intervals.empty() ? kUndefined : upper_median(std::move(intervals));
 }
 
 /// The truth and facts about its sampling.

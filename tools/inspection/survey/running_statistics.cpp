@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include <waymark/core/base/detail/median.hpp>
+
 namespace waymark::inspection {
 namespace {
 
@@ -70,11 +72,7 @@ void EvenSample::add(double value) {
 }
 
 double EvenSample::median() const {
-  if (kept_.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> sorted = kept_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  return kept_.empty() ? std::numeric_limits<double>::quiet_NaN() : upper_median(kept_);
 }
 
 void StampSeries::add(Stamp stamp, std::size_t line) {
