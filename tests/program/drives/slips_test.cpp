@@ -63,7 +63,7 @@ TEST_CASE("slips: a speed in km/h is named at 5 Hz too, and in the report") {
   CHECK(contains(result.err, "times the distance of the fixes"));
   CHECK(contains(result.err, "(3.6: km/h read as m/s)"));
   CHECK(contains(result.err, "warning: the estimate of speed_scale is"));
-  CHECK(contains(result.err, "white_sigma is 81.9 m, 55 times its usual value, where the search ends"));
+  CHECK(contains(result.err, "white_sigma is 24.7 m, 16 times its usual value, where the search ends"));
   CHECK(contains(result.err, "times as far from the truth as raw GNSS"));
   const std::string report = read_text(folder + "out/report.html");
   CHECK(contains(report, "(3.6: km/h read as m/s)"));
