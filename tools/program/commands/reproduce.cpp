@@ -181,7 +181,11 @@ std::vector<Subject> simulated_subjects(const ReproduceOptions& options, const C
 /// Returns the drives of the consistency study.
 std::vector<Subject> drawn_subjects(const ReproduceOptions& options, const Console& console) {
   std::vector<Subject> subjects;
-  const std::vector<reproduction::Draw> draws = reproduction::consistency_draws(*options.consistency);
+  std::vector<std::string> presets;
+  for (const simulation::SimulationPreset& preset : simulation::simulation_presets())
+    presets.push_back(preset.name);
+  const std::vector<reproduction::Draw> draws =
+      reproduction::consistency_draws(presets, *options.consistency);
   StepProgress progress(console, draws.size());
   for (const reproduction::Draw& draw : draws) {
     const std::string folder = fmt::format("{}/drives/{}-{}", options.folder, draw.preset, draw.seed);

@@ -10,7 +10,6 @@
 namespace waymark::reproduction {
 namespace {
 
-constexpr const char* kPresets[] = {"highway", "urban", "rural", "mixed"};
 constexpr const char* kTogether = "together";
 
 using Drives = std::vector<DriveResult>;
@@ -42,6 +41,16 @@ const char* model_name(const Setting& setting) {
   return setting.name == kDefaultModel ? "default" : "white noise with gate";
 }
 
+/// Returns the presets in the order of their first drives, and kTogether.
+std::vector<std::string> groups_of(const Drives& drives) {
+  std::vector<std::string> groups;
+  for (const DriveResult& drive : drives) {
+    if (std::find(groups.begin(), groups.end(), drive.group) == groups.end()) groups.push_back(drive.group);
+  }
+  groups.emplace_back(kTogether);
+  return groups;
+}
+
 text::Table pooled_table(const Drives& drives) {
   text::Table table;
   table.file = "consistency";
@@ -49,9 +58,7 @@ text::Table pooled_table(const Drives& drives) {
   table.columns = {"preset",    "model",          "drives",        "judged",
                    "mean NEES", "standard error", "95 % coverage", "coverage standard error",
                    "RMSE"};
-  std::vector<std::string> groups(std::begin(kPresets), std::end(kPresets));
-  groups.emplace_back(kTogether);
-  for (const std::string& group : groups) {
+  for (const std::string& group : groups_of(drives)) {
     for (const Setting& setting : consistency_settings()) {
       const Pool of = pool(drives, group, setting.name);
       if (of.drives == 0) continue;
@@ -107,11 +114,10 @@ text::Table drive_table(const Drives& drives) {
 
 }  // namespace
 
-std::vector<Draw> consistency_draws(int count) {
+std::vector<Draw> consistency_draws(std::span<const std::string> presets, int count) {
   std::vector<Draw> draws;
-  for (int i = 0; i < count; ++i)
-    draws.push_back(
-        {kPresets[static_cast<std::size_t>(i) % std::size(kPresets)], kFirstStudySeed + std::uint64_t(i)});
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    draws.push_back({presets[i % presets.size()], kFirstStudySeed + i});
   return draws;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ struct Draw {
 
 /// The first seed of the study. The others follow it; none is left out.
 inline constexpr std::uint64_t kFirstStudySeed = 1000;
-/// Returns highway, urban, rural, mixed in turn. Every drive has its own errors and its own road.
-[[nodiscard]] std::vector<Draw> consistency_draws(int count);
+/// Returns the presets in turn. Every drive has its own errors and its own road.
+/// @param presets names, at least one
+[[nodiscard]] std::vector<Draw> consistency_draws(std::span<const std::string> presets, int count);
 
 /// Returns the default model, and white noise with the gate of the paper (ours_g1).
 [[nodiscard]] std::vector<Setting> consistency_settings();
