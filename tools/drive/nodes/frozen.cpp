@@ -126,7 +126,7 @@ std::optional<FrozenOdometry> judged(const std::vector<Contradiction>& row, std:
   for (const Contradiction& part : row) {
     difference_m += part.difference_m;
     frozen.distance_m += part.chord.norm();
-    sigma_m = std::max(sigma_m, sigma_of(fixes[part.last]));
+    sigma_m = std::max(sigma_m, fixes[part.last].accuracy_m());
   }
   if (row.size() < kFewestContradictions || difference_m < std::max(30.0, 10 * sigma_m)) return std::nullopt;
   const auto margin = static_cast<std::int64_t>(kMargin_s * 1e9);
