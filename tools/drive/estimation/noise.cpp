@@ -68,9 +68,12 @@ class Objective {
   /// From now on every minimisation begins at the minimum of this noise and goes to its end. Before,
   /// it begins at the one before: heavy tails have several minima, so that the cost depends a little
   /// on where the search has been.
-  void begin_always_at(const NoiseEstimate& noise) {
-    (void)(*this)(noise);
+  double begin_at(const NoiseEstimate& noise) {
     exact_ = true;
+    stays_ = false;
+    const double cost = (*this)(noise);
+    stays_ = true;
+    return cost;
   }
 
   double operator()(const NoiseEstimate& noise) {
@@ -78,10 +81,10 @@ class Objective {
     Graph graph = build_graph(coarse_, {}, with_noise(settings_, noise), registry_).graph;
     prepare(graph);
     OptimizerOptions options;
-    options.decrement_tolerance = exact_ ? 1e-8 : 1e-6;
+    if (exact_) options.decrement_tolerance = stays_ ? 1e-7 : 1e-12;
     options.max_iterations = 200;
     const Summary summary = optimize(graph, kept_, *algorithm_, options);
-    if (!exact_ && summary.converged()) values_ = graph.values();
+    if (!stays_ && summary.converged()) values_ = graph.values();
     double cost = evidence(graph, kept_.structure(), cholesky_).negative_log();
     for (const NoiseParameter& parameter : noise.parameters)
       cost += 0.5 * std::pow(coordinate_of(parameter.value, parameter.prior), 2);
@@ -109,6 +112,7 @@ class Objective {
   std::vector<double> values_;
   int evaluations_ = 0;
   bool exact_ = false;
+  bool stays_ = false;  ///< where the next minimisation begins
 };
 
 /// A parameter may leave its prior by kNoiseReach deviations, but not what its option allows.
@@ -131,14 +135,14 @@ void minimize(Objective& objective, NoiseEstimate& noise) {
     for (Eigen::Index i = 0; i < size; ++i)
       place(coordinates[i], noise.parameters[static_cast<std::size_t>(i)]);
   };
-  const PosteriorCost cost = [&](const Eigen::VectorXd& coordinates) {
+  const auto with = [&](const Eigen::VectorXd& coordinates) -> const NoiseEstimate& {
     place_all(coordinates);
-    return objective(noise);
+    return noise;
   };
+  const PosteriorCost cost{[&](const Eigen::VectorXd& x) { return objective(with(x)); },
+                           [&](const Eigen::VectorXd& x) { return objective.begin_at(with(x)); }};
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(size).cwiseMax(bounds.low).cwiseMin(bounds.high);
   const Eigen::VectorXd near = search_posterior(cost, start, bounds);
-  place_all(near);
-  objective.begin_always_at(noise);
   const PosteriorMode mode = find_posterior_mode(cost, near, bounds);
   place_all(mode.at);
   for (Eigen::Index i = 0; i < size; ++i) {

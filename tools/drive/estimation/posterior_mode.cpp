@@ -22,8 +22,9 @@ constexpr int kMostSearchSteps = 20;  // evaluations with derivatives
 constexpr int kMostNewtonSteps = 20;
 constexpr double kSettled = 5e-5;        // gain of cost, a hundredth of a deviation; its step is still taken
 constexpr double kClose = 0.5;           // gain of cost, a deviation: the correlations are kept from there
+constexpr double kFar = 2;               // gain of cost, two deviations: a rough curvature leads nearer
 constexpr double kSearchShare = 0.5;     // of a deviation, the differences until then
-constexpr double kEndShare = 0.05;       // and for the curvature at the end
+constexpr double kEndShare = 0.1;        // and for the curvature at the end
 constexpr double kFalling = 0.2;         // from step to step, or they are found anew
 constexpr double kTolerated = 0.02;      // rise of cost in a step, a fifth of a deviation
 constexpr double kFirstStep = 0.1;       // of the differences for the first of them
@@ -45,11 +46,11 @@ VectorXd with_step(VectorXd at, Index i, double step) {
 double evaluate(unsigned size, const double* coordinates, double* gradient, void* data) {
   const Search& search = *static_cast<Search*>(data);
   const VectorXd at = Eigen::Map<const VectorXd>(coordinates, size);
-  const double cost = search.cost(at);
+  const double cost = search.cost.at(at);
   if (gradient == nullptr) return cost;
   for (Index i = 0; i < at.size(); ++i) {
     const double step = at[i] + kStep <= search.high[i] ? kStep : -kStep;
-    gradient[i] = (search.cost(with_step(at, i, step)) - cost) / step;
+    gradient[i] = (search.cost.at(with_step(at, i, step)) - cost) / step;
   }
   return cost;
 }
@@ -74,32 +75,42 @@ VectorXd fitting_steps(const VectorXd& curvature, double share) {
   return (share / curvature.array().max(kLeastCurvature).sqrt()).cwiseMin(share).cwiseMax(0.02);
 }
 
-/// Returns the quadratic through the least costs that determine it. With the correlations of the
-/// curvature known from nearby, a gradient by central differences gives the rest.
+/// How the terms between two coordinates are found.
+enum class Mixed {
+  known,    ///< from the correlations of a curvature nearby: no costs of their own
+  forward,  ///< with one cost each
+  central   ///< with two: exact to one order more
+};
+
+/// Returns the quadratic through the costs about a point, by central differences.
+/// @param correlations for Mixed::known
 Quadratic fit_quadratic(const PosteriorCost& cost, const VectorXd& at, const VectorXd& steps,
-                        const PosteriorBounds& bounds, const MatrixXd* correlations) {
+                        const PosteriorBounds& bounds, Mixed mixed, const MatrixXd& correlations) {
   const Index n = at.size();
   Quadratic fit{at.cwiseMax(bounds.low + steps).cwiseMin(bounds.high - steps), 0, VectorXd(n),
                 MatrixXd(n, n)};
-  fit.cost = cost(fit.centre);
-  VectorXd bend(n);
+  fit.cost = cost.begin_at ? cost.begin_at(fit.centre) : cost.at(fit.centre);
+  VectorXd ahead(n);
+  VectorXd behind(n);
   for (Index i = 0; i < n; ++i) {
-    const double ahead = cost(with_step(fit.centre, i, steps[i]));
-    const double behind = cost(with_step(fit.centre, i, -steps[i]));
-    bend[i] = ahead + behind - 2 * fit.cost;
-    fit.gradient[i] = (ahead - behind) / (2 * steps[i]);
-    fit.curvature(i, i) = bend[i] / (steps[i] * steps[i]);
+    ahead[i] = cost.at(with_step(fit.centre, i, steps[i])) - fit.cost;
+    behind[i] = cost.at(with_step(fit.centre, i, -steps[i])) - fit.cost;
+    fit.gradient[i] = (ahead[i] - behind[i]) / (2 * steps[i]);
+    fit.curvature(i, i) = (ahead[i] + behind[i]) / (steps[i] * steps[i]);
   }
-  if (correlations != nullptr) {
+  if (mixed == Mixed::known) {
     const VectorXd scale = fit.curvature.diagonal().cwiseMax(kLeastCurvature).cwiseSqrt();
-    fit.curvature = scale.asDiagonal() * *correlations * scale.asDiagonal();
+    fit.curvature = scale.asDiagonal() * correlations * scale.asDiagonal();
     return fit;
   }
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < i; ++j) {
-      const double both = cost(with_step(with_step(fit.centre, i, steps[i]), j, steps[j])) +
-                          cost(with_step(with_step(fit.centre, i, -steps[i]), j, -steps[j])) - 2 * fit.cost;
-      fit.curvature(i, j) = (both - bend[i] - bend[j]) / (2 * steps[i] * steps[j]);
+      const auto along_both = [&](double share) {
+        return cost.at(with_step(with_step(fit.centre, i, share * steps[i]), j, share * steps[j])) - fit.cost;
+      };
+      double product = along_both(1) - ahead[i] - ahead[j];
+      if (mixed == Mixed::central) product = 0.5 * (product + along_both(-1) - behind[i] - behind[j]);
+      fit.curvature(i, j) = product / (steps[i] * steps[j]);
       fit.curvature(j, i) = fit.curvature(i, j);
     }
   }
@@ -115,7 +126,8 @@ MatrixXd correlations_of(const MatrixXd& curvature) {
 /// Returns the inverse, with the curvature made positive where rounding or a saddle has left none.
 MatrixXd covariance_of(const MatrixXd& curvature) {
   const auto [values, vectors] = symmetric_eigen(curvature);
-  return vectors * values.cwiseAbs().cwiseMax(kLeastCurvature).cwiseInverse().asDiagonal() * vectors.transpose();
+  return vectors * values.cwiseAbs().cwiseMax(kLeastCurvature).cwiseInverse().asDiagonal() *
+         vectors.transpose();
 }
 
 /// Returns the least point of the quadratic between the bounds. Coordinates that it pushes over a
@@ -156,7 +168,7 @@ VectorXd least_point(const Quadratic& fit, const PosteriorBounds& bounds) {
 double descending(const PosteriorCost& cost, const Quadratic& fit, const VectorXd& step) {
   constexpr double kLeastShare = 0.05;
   double share = std::min(1.0, kLongestStep / std::max(step.cwiseAbs().maxCoeff(), 1e-12));
-  while (share > kLeastShare && cost(fit.centre + share * step) > fit.cost + kTolerated) share *= 0.4;
+  while (share > kLeastShare && cost.at(fit.centre + share * step) > fit.cost + kTolerated) share *= 0.4;
   return share;
 }
 
@@ -185,8 +197,9 @@ PosteriorMode find_posterior_mode(const PosteriorCost& cost, const VectorXd& nea
   MatrixXd correlations;
   double gain_before = std::numeric_limits<double>::max();
   for (int i = 0; i < kMostNewtonSteps; ++i) {
-    const Quadratic fit =
-        fit_quadratic(cost, mode.at, steps, bounds, correlations.size() > 0 ? &correlations : nullptr);
+    Mixed mixed = gain_before > kFar ? Mixed::forward : Mixed::central;
+    if (correlations.size() > 0) mixed = Mixed::known;
+    const Quadratic fit = fit_quadratic(cost, mode.at, steps, bounds, mixed, correlations);
     const VectorXd least = least_point(fit, bounds);
     const double gain = fit.rise_to(mode.at) - fit.rise_to(least);
     if (gain < kSettled) {
@@ -201,7 +214,7 @@ PosteriorMode find_posterior_mode(const PosteriorCost& cost, const VectorXd& nea
     gain_before = gain;
   }
   const VectorXd fine = steps * (kEndShare / kSearchShare);
-  mode.covariance = covariance_of(fit_quadratic(cost, mode.at, fine, bounds, nullptr).curvature);
+  mode.covariance = covariance_of(fit_quadratic(cost, mode.at, fine, bounds, Mixed::central, {}).curvature);
   return mode;
 }
 

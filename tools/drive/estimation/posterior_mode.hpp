@@ -9,7 +9,12 @@ namespace waymark::drive {
 
 /// The cost of n coordinates, -log of prior times likelihood, each coordinate in units of its
 /// prior's deviation. It must be a smooth function of them and of nothing else.
-using PosteriorCost = std::function<double(const Eigen::VectorXd& coordinates)>;
+struct PosteriorCost {
+  std::function<double(const Eigen::VectorXd& coordinates)> at;
+  /// Returns the same. The costs near these coordinates are asked for next, so that a cost which is a
+  /// minimum itself can begin there. May be empty.
+  std::function<double(const Eigen::VectorXd& coordinates)> begin_at = {};
+};
 
 struct PosteriorMode {
   Eigen::VectorXd at;          ///< n
