@@ -42,8 +42,16 @@ const Interval& motion_at(const DriveNodes& nodes, std::size_t node) {
   return nodes.intervals[std::min(node, nodes.intervals.size() - 1)];
 }
 
-const Interval& motion_at(const DriveNodes& nodes, const NodeInTime& moment) {
-  return motion_at(nodes, moment.ahead_s > 0 || moment.node == 0 ? moment.node : moment.node - 1);
+MotionFromNode motion_from_node(const DriveNodes& nodes, const NodeInTime& moment) {
+  const double t = moment.ahead_s;
+  const bool after = t > 0;
+  const bool beyond = after ? moment.node + 1 == nodes.stamps.size() : moment.node == 0;
+  const Interval& interval = motion_at(nodes, after || beyond ? moment.node : moment.node - 1);
+  const Eigen::Vector3d mean(interval.speed_mps, 0, interval.yaw_rate_radps);
+  const Eigen::Vector3d change(interval.speed_change_mps, 0, interval.yaw_rate_change_radps);
+  const double end = after != beyond ? -0.5 : 0.5;  // of the interval at which the node is
+  const double share = beyond ? 0 : t / interval.dt_s;
+  return {t * (mean + (end + 0.5 * share) * change), mean + (end + share) * change};
 }
 
 }  // namespace waymark

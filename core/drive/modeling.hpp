@@ -50,10 +50,16 @@ struct NodeInTime {
 /// Returns the motion of the odometry at a node: that of the interval after it, or before it for
 /// the last node.
 [[nodiscard]] const Interval& motion_at(const DriveNodes& nodes, std::size_t node);
-/// Returns the motion about a moment near a node: that of the interval that contains it, or of the
-/// first or last one. At the node itself it is the interval before, so that the next part of a
-/// drive changes nothing.
-[[nodiscard]] const Interval& motion_at(const DriveNodes& nodes, const NodeInTime& moment);
+/// The motion of the odometry from a node to a moment near it.
+struct MotionFromNode {
+  /// Mean twist times time: forward [m], 0, turn [rad]. Negative for a moment before the node.
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  Eigen::Vector3d twist = Eigen::Vector3d::Zero();  ///< at the moment: forward [m/s], 0, yaw rate [rad/s]
+};
+/// Returns the motion in the interval that contains a moment, which is linear there; beyond the
+/// nodes it stays what it is at the last one. At a node itself the interval before counts, so that
+/// the next part of a drive changes nothing. @param nodes with one interval at least
+[[nodiscard]] MotionFromNode motion_from_node(const DriveNodes& nodes, const NodeInTime& moment);
 
 /// Joins the poses of consecutive nodes.
 class OdometryModel {

@@ -35,6 +35,9 @@ struct Interval {
   double speed_mps = 0;  ///< grid metres per second (grid scale applied); negative is reversing
   double yaw_rate_radps = 0;
   double dt_s = 0;
+  /// From the beginning to the end; speed_mps and yaw_rate_radps are means, and the way is linear.
+  double speed_change_mps = 0;
+  double yaw_rate_change_radps = 0;
   bool bridged = false;  ///< the interval lies in a gap of the odometry, or its motion is assumed
   double gap_s = 0;      ///< time between the readings around a bridged interval, all its parts together
 

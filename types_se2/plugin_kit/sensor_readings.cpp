@@ -33,11 +33,7 @@ std::optional<ReadingPlace> find_place(const DriveNodes& nodes, Stamp moment) {
   const std::optional<NodeInTime> nearest = nearest_node(nodes, moment);
   if (!nearest || std::abs(nearest->ahead_s) > kFarthestNode_s) return std::nullopt;
   ReadingPlace place{nearest->node, nodes.poses[nearest->node], {}};
-  if (!nodes.intervals.empty()) {
-    const Interval& interval = motion_at(nodes, *nearest);
-    const Eigen::Vector3d twist(interval.speed_mps, 0, interval.yaw_rate_radps);
-    place.ahead = se2_exp<double>(nearest->ahead_s * twist);
-  }
+  if (!nodes.intervals.empty()) place.ahead = se2_exp<double>(motion_from_node(nodes, *nearest).way);
   return place;
 }
 

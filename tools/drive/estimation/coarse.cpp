@@ -19,9 +19,16 @@ std::vector<std::size_t> kept_fixes(const std::vector<Fix>& fixes, double period
   return kept;
 }
 
-/// Adds a part to a mean twist.
+/// Adds the part that follows.
 void merge(Interval& whole, const Interval& part) {
   const double dt = whole.dt_s + part.dt_s;
+  const auto change = [](double mean, double before, double next, double after) {
+    return next + 0.5 * after - (mean - 0.5 * before);
+  };
+  whole.speed_change_mps =
+      change(whole.speed_mps, whole.speed_change_mps, part.speed_mps, part.speed_change_mps);
+  whole.yaw_rate_change_radps = change(whole.yaw_rate_radps, whole.yaw_rate_change_radps, part.yaw_rate_radps,
+                                       part.yaw_rate_change_radps);
   whole.speed_mps = (whole.speed_mps * whole.dt_s + part.speed_mps * part.dt_s) / dt;
   whole.yaw_rate_radps = (whole.yaw_rate_radps * whole.dt_s + part.yaw_rate_radps * part.dt_s) / dt;
   whole.dt_s = dt;

@@ -27,9 +27,8 @@ AcceptedFixes accepted_fixes(const PlacedDrive& placed) {
 }
 
 FixMoment moment_of_fix(const DriveNodes& nodes, const NodeInTime& moment, const Eigen::Vector2d& antenna) {
-  const Interval& motion = motion_at(nodes, moment);
-  const Eigen::Vector3d twist(motion.speed_mps, 0, motion.yaw_rate_radps);
-  const Pose2<double> moved = se2_exp<double>(moment.ahead_s * twist);
+  const auto [way, twist] = motion_from_node(nodes, moment);
+  const Pose2<double> moved = se2_exp<double>(way);
   const Eigen::Vector2d velocity(twist[0] - twist[2] * antenna[1], twist[2] * antenna[0]);
   return {moved.position + rotate(moved.heading, antenna), rotate(moved.heading, velocity)};
 }

@@ -61,24 +61,34 @@ double grid_scale_at(std::int64_t middle_ns, std::span<const Fix> fixes, std::si
   return fixes[hint].grid_scale;
 }
 
-/// Returns the twist between two consecutive odometry samples. dt_s is filled for each part.
+/// Returns the motion between two consecutive odometry samples. dt_s is filled for each part.
 Interval twist_between(const OdometrySample& left, const OdometrySample& right, double grid_scale,
                        double gap_s) {
   Interval twist;
   twist.speed_mps = 0.5 * (left.speed_mps + right.speed_mps) * grid_scale;
   twist.yaw_rate_radps = 0.5 * (left.yaw_rate_radps + right.yaw_rate_radps);
+  twist.speed_change_mps = (right.speed_mps - left.speed_mps) * grid_scale;
+  twist.yaw_rate_change_radps = right.yaw_rate_radps - left.yaw_rate_radps;
   const double apart_s = seconds_between(left.stamp, right.stamp);
   twist.bridged = left.assumed || right.assumed || apart_s > gap_s;
   if (twist.bridged) twist.gap_s = apart_s;
   return twist;
 }
 
-/// Appends a node at `stamp`, reached with `twist`. dt is the difference of stamps, so that the
-/// parts of a split interval add up to the whole.
-void append_node(Timeline& timeline, Stamp stamp, Interval twist) {
-  twist.dt_s = seconds_between(timeline.stamps.back(), stamp);
+/// Appends a node at `stamp`, which ends a part of the motion between two samples. dt is the
+/// difference of stamps, so that the parts add up to the whole.
+void append_node(Timeline& timeline, Stamp stamp, const Interval& whole, Stamp left, Stamp right) {
+  Interval part = whole;
+  part.dt_s = seconds_between(timeline.stamps.back(), stamp);
+  const double length_s = seconds_between(left, right);
+  const double share = part.dt_s / length_s;
+  const double middle = seconds_between(left, timeline.stamps.back()) / length_s + 0.5 * share;
+  part.speed_mps += (middle - 0.5) * whole.speed_change_mps;
+  part.yaw_rate_radps += (middle - 0.5) * whole.yaw_rate_change_radps;
+  part.speed_change_mps *= share;
+  part.yaw_rate_change_radps *= share;
   timeline.stamps.push_back(stamp);
-  timeline.intervals.push_back(twist);
+  timeline.intervals.push_back(part);
 }
 
 }  // namespace
@@ -114,10 +124,10 @@ Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<cons
     // Epochs strictly inside, not near either end, split the interval.
     while (fix < fixes.size() && fixes[fix].stamp < right.stamp &&
            !shares_node(fixes[fix].stamp, right.stamp, options.snap_s)) {
-      append_node(timeline, fixes[fix].stamp, twist);
+      append_node(timeline, fixes[fix].stamp, twist, left.stamp, right.stamp);
       attach();
     }
-    append_node(timeline, right.stamp, twist);
+    append_node(timeline, right.stamp, twist, left.stamp, right.stamp);
     attach();
   }
   return timeline;
