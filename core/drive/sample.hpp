@@ -30,16 +30,15 @@ struct OdometrySample {
   bool assumed = false;
 };
 
-/// The motion between two consecutive nodes of a drive: constant speed and yaw rate over dt.
+/// The motion between two consecutive nodes of a drive. Speed and yaw rate are means over dt.
 struct Interval {
   double speed_mps = 0;  ///< grid metres per second (grid scale applied); negative is reversing
   double yaw_rate_radps = 0;
   double dt_s = 0;
-  /// From the beginning to the end; speed_mps and yaw_rate_radps are means, and the way is linear.
-  double speed_change_mps = 0;
-  double yaw_rate_change_radps = 0;
   bool bridged = false;  ///< the interval lies in a gap of the odometry, or its motion is assumed
   double gap_s = 0;      ///< time between the readings around a bridged interval, all its parts together
+  double speed_change_mps = 0;  ///< from beginning to end: speed and yaw rate are linear in between
+  double yaw_rate_change_radps = 0;
 
   friend bool operator==(const Interval&, const Interval&) = default;
 };

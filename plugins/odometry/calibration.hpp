@@ -1,5 +1,5 @@
-/// Calibration of the odometry: gyro bias and speed scale as states of the graph. They are constant
-/// over a drive or wander slowly.
+/// Calibration of the odometry: gyro bias, speed scale and yaw rate per speed as states of the graph.
+/// They are constant over a drive or wander slowly.
 #pragma once
 
 #include <array>
@@ -22,6 +22,14 @@ struct VertexSpeedScale : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_SPEED_SCALE";
   static constexpr std::array<std::string_view, 1> value_names() { return {"speed_scale"}; }
   static constexpr std::array<std::string_view, 1> value_units() { return {"1"}; }
+};
+
+/// The error of a yaw rate that is made from wheels or steering: true yaw rate = reading - bias -
+/// this * reading of the speed. A wrong radius of a wheel or a wrong zero of the steering give it. rad/m.
+struct VertexYawPerSpeed : ScalarState {
+  static constexpr std::string_view kTag = "VERTEX_YAW_PER_SPEED";
+  static constexpr std::array<std::string_view, 1> value_names() { return {"yaw_per_speed"}; }
+  static constexpr std::array<std::string_view, 1> value_units() { return {"rad/m"}; }
 };
 
 /// EDGE_SE2_ODOMETRY with calibrated readings: Z = exp([(1 + s) speed dt, 0, (yaw_rate - b) dt]),
@@ -61,6 +69,32 @@ struct EdgeSe2OdometryCalibrated {
   double dt = 0;
 };
 
+/// The same with a yaw rate that errs in proportion to the speed: the yaw rate is w - b - k speed.
+struct EdgeSe2OdometryYawCalibrated : EdgeSe2OdometryCalibrated {
+  using Base = EdgeSe2OdometryCalibrated;
+  static constexpr std::string_view kTag = "EDGE_SE2_ODOMETRY_YAW_CALIBRATED";
+  using Vertices = VertexList<VertexSe2, VertexSe2, VertexSpeedScale, VertexGyroBias, VertexYawPerSpeed>;
+  static constexpr auto fields() {
+    return std::array{field<&Base::speed, EdgeSe2OdometryYawCalibrated>("speed"),
+                      field<&Base::yaw_rate, EdgeSe2OdometryYawCalibrated>("yaw_rate"),
+                      field<&Base::dt, EdgeSe2OdometryYawCalibrated>("dt")};
+  }
+
+  template <typename T>
+  Vector3<T> error(const Pose2<T>& from, const Pose2<T>& to, const T& scale, const T& bias,
+                   const T& per_speed) const {
+    return Base::error(from, to, scale, T(bias + per_speed * T(speed)));
+  }
+
+  void linearize(const Pose2<double>& from, const Pose2<double>& to, double scale, double bias,
+                 double per_speed, ErrorVector<3>& e, JacobianMatrix<3, 3>& by_from,
+                 JacobianMatrix<3, 3>& by_to, JacobianMatrix<3, 1>& by_scale, JacobianMatrix<3, 1>& by_bias,
+                 JacobianMatrix<3, 1>& by_per_speed) const {
+    Base::linearize(from, to, scale, bias + per_speed * speed, e, by_from, by_to, by_scale, by_bias);
+    by_per_speed = by_bias * speed;
+  }
+};
+
 /// The gyro reads its bias while the vehicle stands: e = yaw_rate - b. rad/s.
 struct EdgeGyroAtRest {
   static constexpr std::string_view kTag = "EDGE_GYRO_AT_REST";
@@ -91,6 +125,15 @@ struct EdgeGyroBiasWalk {
   }
 
   double change = 0;  ///< the expected change, usually 0
+};
+
+/// The same step for the yaw rate per speed.
+struct EdgeYawPerSpeedWalk : EdgeGyroBiasWalk {
+  static constexpr std::string_view kTag = "EDGE_YAW_PER_SPEED_WALK";
+  using Vertices = VertexList<VertexYawPerSpeed, VertexYawPerSpeed>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeGyroBiasWalk::change, EdgeYawPerSpeedWalk>("change")};
+  }
 };
 
 /// The same step for the speed scale.

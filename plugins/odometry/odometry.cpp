@@ -28,10 +28,14 @@ class ConstantTwist final : public OdometryModel {
     bool paper = false;
     StateOptions gyro_bias;
     StateOptions speed_scale;
+    StateOptions yaw_per_speed;
   };
 
   explicit ConstantTwist(const Configuration& configuration)
-      : given_(configuration), bias_(configuration.gyro_bias), scale_(configuration.speed_scale) {}
+      : given_(configuration),
+        bias_(configuration.gyro_bias),
+        scale_(configuration.speed_scale),
+        yaw_(configuration.yaw_per_speed) {}
 
   void extend(const DriveNodes& nodes, Graph& graph) override {
     if (nodes.poses.size() != nodes.intervals.size() + 1)
@@ -43,6 +47,11 @@ class ConstantTwist final : public OdometryModel {
       if (std::abs(interval.speed_mps) < given_.standstill_speed && !interval.bridged) {
         graph.add_edge(reading<EdgeSe2Standstill>(interval), poses, standstill_information(interval));
         if (bias_.is_calibrated()) add_gyro_at_rest(interval, bias_.at(nodes.stamps[i], graph), graph);
+      } else if (yaw_.is_calibrated()) {
+        graph.add_edge(reading<EdgeSe2OdometryYawCalibrated>(interval),
+                       {poses[0], poses[1], scale_.at(nodes.stamps[i], graph),
+                        bias_.at(nodes.stamps[i], graph), yaw_.at(nodes.stamps[i], graph)},
+                       motion_information(interval));
       } else if (calibrates) {
         graph.add_edge(
             reading<EdgeSe2OdometryCalibrated>(interval),
@@ -87,6 +96,7 @@ class ConstantTwist final : public OdometryModel {
   Configuration given_;
   StateAlongDrive<VertexGyroBias, EdgeGyroBiasWalk> bias_;
   StateAlongDrive<VertexSpeedScale, EdgeSpeedScaleWalk> scale_;
+  StateAlongDrive<VertexYawPerSpeed, EdgeYawPerSpeedWalk> yaw_;
 };
 
 constexpr const char* kGapFactor = "gap_noise_factor";
@@ -125,6 +135,10 @@ std::vector<OptionInfo> options() {
                                                 "scale error of the speed, true speed = (1 "
                                                 "+ scale) reading"))
     all.push_back(option);
+  for (const OptionInfo& option :
+       state_options("yaw_per_speed", "rad/m", "1e-3", "1e-5",
+                     "error of a yaw rate from wheels or steering, true yaw rate = reading - this * speed"))
+    all.push_back(option);
   all.push_back(
       {"calibration_period", "10", "s", OptionRange{0.1, 1e4}, "time between two values of a random walk"});
   return all;
@@ -158,18 +172,22 @@ std::unique_ptr<OdometryModel> make(const CheckedOptions& options) {
   configuration.paper = options.word("noise") == "paper";
   configuration.gyro_bias = state(options, "gyro_bias");
   configuration.speed_scale = state(options, "speed_scale");
+  configuration.yaw_per_speed = state(options, "yaw_per_speed");
   return std::make_unique<ConstantTwist>(configuration);
 }
 
 void register_types(TypeRegistry& registry) {
   registry.add_vertex<VertexGyroBias>();
   registry.add_vertex<VertexSpeedScale>();
+  registry.add_vertex<VertexYawPerSpeed>();
   registry.add_edge<EdgeSe2Odometry>();
   registry.add_edge<EdgeSe2Standstill>();
   registry.add_edge<EdgeSe2OdometryCalibrated>();
+  registry.add_edge<EdgeSe2OdometryYawCalibrated>();
   registry.add_edge<EdgeGyroAtRest>();
   registry.add_edge<EdgeGyroBiasWalk>();
   registry.add_edge<EdgeSpeedScaleWalk>();
+  registry.add_edge<EdgeYawPerSpeedWalk>();
   registry.add_odometry_model({"constant_twist", "exact constant-twist integration of speed and yaw rate",
                                options(), make, kGapFactor});
 }

@@ -23,10 +23,11 @@ namespace {
 
 /// The errors of the sensors of a simulated drive.
 struct Faults {
-  double bias = 0;    ///< rad/s at the start
-  double drift = 0;   ///< rad/s per s
-  double scale = 0;   ///< true speed = (1 + scale) reading
-  double offset = 0;  ///< s
+  double bias = 0;       ///< rad/s at the start
+  double drift = 0;      ///< rad/s per s
+  double scale = 0;      ///< true speed = (1 + scale) reading
+  double offset = 0;     ///< s
+  double per_speed = 0;  ///< rad/m: a yaw rate from wheels, which reads 0 at rest
 };
 
 constexpr double kDt = 0.1;
@@ -67,6 +68,8 @@ struct Simulated {
           graph.add_vertex<VertexSe2>(VertexId(i + 1), {pose.position[0], pose.position[1], pose.heading}));
       Interval reading{speed / (1 + faults.scale), yaw_rate + faults.bias + faults.drift * t, kDt, false};
       reading.yaw_rate_radps += std::sqrt(kHeadingRate / kDt) * unit(random);
+      reading.yaw_rate_radps += faults.per_speed * speed;
+      if (faults.per_speed != 0 && speed == 0) reading.yaw_rate_radps = 0;
       if (speed > 0) reading.speed_mps += std::sqrt(kSpeedNoise * speed * kDt) / kDt * unit(random);
       if (i % 10 == 0) add_fix(i, pose, {speed, yaw_rate, 0, false}, faults.offset, random);
       if (i == n) break;
@@ -269,6 +272,30 @@ TEST_CASE("calibration: wrong options are named, and what cannot be combined is 
   const auto modeling = registry().make_gnss_modeling("g1", {{"time_offset", "constant"}});
   CHECK_THROWS_WITH(modeling->extend({drive.fixes, drive.moments, {0, 0}}, drive.graph),
                     Contains("GnssInput::moments"));
+}
+
+TEST_CASE(
+    "calibration: a yaw rate from wheels gives its error per speed, and none of its zeros at rest count") {
+  Faults faults;
+  faults.per_speed = 2e-3;
+  const Options states{
+      {"gyro_bias", "constant"}, {"yaw_per_speed", "constant"}, {"gyro_at_rest_variance_per_s", "1"}};
+  double squares = 0;  // chi-square with 4 degrees of freedom
+  double without = 0;
+  double with = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Simulated drive(faults, 300, seed);
+    drive.solve(states, {});
+    const auto [per_speed, sigma] = estimate(drive, "VERTEX_YAW_PER_SPEED");
+    CHECK(sigma < 5e-4);
+    squares += std::pow((per_speed - faults.per_speed) / sigma, 2);
+    with += drive.position_rms() / 4;
+    Simulated biased(faults, 300, seed);
+    biased.solve(kConstant, {});
+    without += biased.position_rms() / 4;
+  }
+  CHECK(squares < 13.3);  // 99 %
+  CHECK(with < 0.7 * without);
 }
 
 }  // namespace calibration_test

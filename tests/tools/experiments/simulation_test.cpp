@@ -223,7 +223,7 @@ TEST_CASE("simulation: every seed draws biases of the stated size") {
     scale += std::pow(drive.speed_scale, 2);
   }
   const double margin = 4 * std::sqrt(2.0 / seeds);
-  CHECK(gnss / seeds == Approx(1.5 * 1.5 + 0.7 * 0.7 * 1.5 * 1.5).epsilon(margin));
+  CHECK(gnss / seeds == Approx(1.2 * 1.2 + 0.6 * 0.6 * 1.5 * 1.5).epsilon(margin));
   CHECK(std::sqrt(gyro / seeds) == Approx(recipe.odometry.gyro_bias_sigma_radps).epsilon(margin / 2));
   CHECK(std::sqrt(scale / seeds) == Approx(recipe.odometry.speed_scale_sigma).epsilon(margin / 2));
 }

@@ -1,6 +1,8 @@
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <string>
 #include <utility>
 
 #include <waymark/core/base/error.hpp>
@@ -20,6 +22,21 @@ FusionSettings decided(FusionSettings settings, const TypeRegistry& registry) {
   settings.modeling_options =
       with_calibration(std::move(settings.modeling_options), settings, modeling.options);
   return settings;
+}
+
+void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSettings& settings,
+                       const TypeRegistry& registry) {
+  if (!rest.is_known()) return;
+  constexpr double kSilent = 1;  // rad^2/s: says nothing
+  const std::vector<OptionInfo>& known = registry.odometry_model(settings.odometry_model).options;
+  for (const OptionInfo& option : known) {
+    if (option.name != "gyro_at_rest_variance_per_s") continue;
+    const double variance = rest.is_derived() ? kSilent : std::min(rest.variance_per_s, kSilent);
+    if (variance > std::stod(option.value))
+      settings.odometry_options.try_emplace(option.name, shortest(variance));
+  }
+  if (rest.is_derived() && by_default && !settings.calibration->empty() && has_option(known, "yaw_per_speed"))
+    settings.calibration->try_emplace("yaw_per_speed", "constant");
 }
 
 Options with_calibration(Options options, const FusionSettings& settings,

@@ -8,6 +8,7 @@
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
+#include <waymark/tools/drive/nodes/plausibility.hpp>
 #include <waymark/tools/drive/nodes/start.hpp>
 
 namespace waymark::drive {
@@ -59,6 +60,13 @@ struct FusionSettings {
 /// calibration states that it knows.
 /// @throws UsageError for an unknown modeling
 [[nodiscard]] FusionSettings decided(FusionSettings settings, const TypeRegistry& registry);
+
+/// Adapts decided settings to the yaw rate at rest, if the odometry model has the options: one from
+/// wheels or steering shows no bias there and errs in proportion to the speed, and a noisy gyro shows
+/// its bias less well. Stated options are kept.
+/// @param by_default the calibration was not stated
+void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSettings& settings,
+                       const TypeRegistry& registry);
 
 /// Returns the options of an odometry model or a GNSS modeling, with the calibration states
 /// that it knows.

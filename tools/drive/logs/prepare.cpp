@@ -77,6 +77,11 @@ void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description,
 }
 
 void judge_odometry(PreparedDrive& drive) {
+  drive.yaw_rate_at_rest = yaw_rate_at_rest(drive.odometry);
+  if (drive.yaw_rate_at_rest.is_derived())
+    drive.report.notes.emplace_back(
+        "the yaw rate never changes while the vehicle stands, so it is taken for one from wheels or "
+        "steering: its readings at rest show no bias, and the default calibration has yaw_per_speed");
   const bool bridges = drive.timeline.gap_policy == GapPolicy::bridge;
   const std::size_t filled = bridges ? fill_gaps(drive.odometry, drive.fixes, drive.timeline.gap_s) : 0;
   if (filled > 0)

@@ -16,6 +16,7 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/tools/drive/description/drive_description.hpp>
+#include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
 
@@ -92,6 +93,7 @@ struct PreparedDrive {
   Frame frame;
   TimeScale scale = TimeScale::gps;
   std::vector<OdometrySample> odometry;  ///< stamps unique; at least 2
+  YawRateAtRest yaw_rate_at_rest;        ///< of the odometry
   /// stamp and source are unique together; at least 1; `epoch` counts from 0
   std::vector<Fix> fixes;
   std::vector<TruthPose> truth;             ///< stamps unique; may be empty

@@ -38,6 +38,7 @@ const PlacedDrive& Fusion::placed(const FusionSettings& settings) {
 ModeledDrive Fusion::model(const FusionSettings& settings) {
   ModeledDrive modeled;
   modeled.settings = decided(settings, registry_);
+  adapt_to_yaw_rate(drive_.yaw_rate_at_rest, !settings.calibration, modeled.settings, registry_);
   modeled.placed = placed(modeled.settings);
   assume_time_offset(modeled.placed, modeled.settings, registry_);
   if (*modeled.settings.estimates_noise) {
