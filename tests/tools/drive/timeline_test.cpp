@@ -62,7 +62,8 @@ TEST_CASE("timeline: a constant twist gives the exact arc at any odometry rate")
   }
 }
 
-TEST_CASE("timeline: splitting at arbitrary stamps changes neither end pose nor total time") {
+TEST_CASE(
+    "timeline: splitting at arbitrary stamps changes neither heading nor time, and the end by a millimetre") {
   std::vector<OdometrySample> odometry;
   for (int i = 0; i <= 250; ++i) {
     const double t = 0.04 * i;
@@ -73,21 +74,28 @@ TEST_CASE("timeline: splitting at arbitrary stamps changes neither end pose nor 
   const Timeline whole = build_timeline(odometry, {}, {});
   const Timeline split = build_timeline(odometry, fixes, {});
   CHECK(split.stamps.size() > whole.stamps.size() + 80);
-  CHECK((end_pose(split) - end_pose(whole)).norm() < 1e-12);
+  CHECK(end_pose(split)[2] == Approx(end_pose(whole)[2]).epsilon(1e-12));
+  CHECK((end_pose(split) - end_pose(whole)).norm() < 1e-3);  // parts follow the linear motion more closely
   CHECK(total_s(split) == Approx(10.0).epsilon(1e-14));
   CHECK(split.intervals.size() + 1 == split.stamps.size());
   for (std::size_t i = 0; i < fixes.size(); ++i)
     CHECK(std::abs(seconds_between(split.stamps[split.fix_node[i]], fixes[i].stamp)) < 0.001);
 }
 
-TEST_CASE("timeline: a fix in an interval splits it and both parts keep the mean twist") {
+TEST_CASE("timeline: a fix in an interval splits it, and speed and yaw rate are linear over both parts") {
   const std::vector<OdometrySample> odometry{sample(0, 1, 0.1), sample(0.1, 3, 0.3)};
   const Timeline timeline = build_timeline(odometry, std::vector<Fix>{fix_at(0.03)}, {});
   REQUIRE(timeline.stamps.size() == 3);
   CHECK(timeline.fix_node == std::vector<std::size_t>{1});
-  for (const Interval& interval : timeline.intervals) {
-    CHECK(interval.speed_mps == Approx(2));
-    CHECK(interval.yaw_rate_radps == Approx(0.2));
+  // 1 m/s at 0 s, 1.6 m/s at the fix, 3 m/s at 0.1 s; the yaw rate is a tenth of it.
+  const double mean[] = {1.3, 2.3};
+  const double change[] = {0.6, 1.4};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Interval& interval = timeline.intervals[i];
+    CHECK(interval.speed_mps == Approx(mean[i]));
+    CHECK(interval.yaw_rate_radps == Approx(0.1 * mean[i]));
+    CHECK(interval.speed_change_mps == Approx(change[i]));
+    CHECK(interval.yaw_rate_change_radps == Approx(0.1 * change[i]));
     CHECK_FALSE(interval.bridged);
   }
   CHECK(timeline.intervals[0].dt_s == Approx(0.03));
