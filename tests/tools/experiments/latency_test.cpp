@@ -39,7 +39,9 @@ struct Found {
 };
 
 Found fuse_late_fixes(const SimulatedDrive& simulated, const PreparedDrive& drive) {
-  const FusedDrive fused = fuse(drive, {}, registry());
+  FusionSettings settings;
+  settings.modeling_options["time_offset"] = "constant";  // stated, so that the odds do not leave it out
+  const FusedDrive fused = fuse(drive, settings, registry());
   REQUIRE(fused.minimum.summary.converged());
   const formats::GraphDocument& document = fused.model.document;
   const evaluation::Evaluation result = evaluation::evaluate(against_truth(document, simulated));
@@ -86,6 +88,28 @@ TEST_CASE("latency: moving a receiver's clock by a second moves the offset by a 
   const double pulled = std::pow(after.sigma_s / 0.3, 2);
   CHECK(after.offset_s - before.offset_s == Approx(1 - pulled).margin(0.5 * before.sigma_s));
   CHECK(after.sigma_s == Approx(before.sigma_s).epsilon(0.1));
+}
+
+TEST_CASE("latency: the odds of no delay are the ratio of its densities after and before the drive") {
+  // Normal densities at 0: exp(-2) / 0.02 over 1 / 0.3.
+  CHECK(TimeOffset{0.04, 0.02, 0.3}.odds_of_none() == Approx(15 * std::exp(-2.0)));
+  CHECK(TimeOffset{0, 0.3, 0.3}.odds_of_none() == Approx(1));  // the drive says nothing
+}
+
+TEST_CASE("latency: fixes that are not late get no offset, late ones do, and it is said") {
+  const auto offset_of = [](double delay_s, const FusionSettings& settings) {
+    return fuse(prepared(make_drive("urban", 5e-4, delay_s, 11)), settings, registry()).model;
+  };
+  const ModeledDrive in_time = offset_of(0, {});
+  CHECK_FALSE(time_offset_vertex(in_time.document.graph).has_value());
+  REQUIRE(in_time.notes.size() == 1);
+  CHECK(in_time.notes[0].starts_with("the fixes are taken as not late"));
+  const ModeledDrive late = offset_of(0.5, {});
+  CHECK(time_offset_vertex(late.document.graph).has_value());
+  CHECK(late.notes.empty());
+  FusionSettings stated;
+  stated.calibration = Options{{"time_offset", "constant"}};
+  CHECK(time_offset_vertex(offset_of(0, stated).document.graph).has_value());
 }
 
 }  // namespace latency_test

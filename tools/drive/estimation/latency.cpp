@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
@@ -26,7 +28,22 @@ void keep_poses(const Graph& graph, std::vector<Eigen::Vector3d>& poses) {
   }
 }
 
+double prior_sigma_of(const FusionSettings& settings, const TypeRegistry& registry) {
+  constexpr const char* kOption = "time_offset_sigma";
+  const auto stated = settings.modeling_options.find(kOption);
+  if (stated != settings.modeling_options.end()) return std::stod(stated->second);
+  for (const OptionInfo& option : registry.gnss_modeling(settings.modeling).options) {
+    if (option.name == kOption) return std::stod(option.value);
+  }
+  throw UsageError("modeling '" + settings.modeling + "' estimates a time offset without an option " +
+                   kOption);
+}
+
 }  // namespace
+
+double TimeOffset::odds_of_none() const {
+  return prior_sigma_s / sigma_s * std::exp(-0.5 * std::pow(value_s / sigma_s, 2));
+}
 
 std::optional<VertexIndex> time_offset_vertex(const Graph& graph) {
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
@@ -35,23 +52,31 @@ std::optional<VertexIndex> time_offset_vertex(const Graph& graph) {
   return std::nullopt;
 }
 
-void assume_time_offset(PlacedDrive& placed, const FusionSettings& settings, const TypeRegistry& registry) {
+std::optional<TimeOffset> assume_time_offset(PlacedDrive& placed, const FusionSettings& settings,
+                                             const TypeRegistry& registry) {
   PlacedDrive coarse = coarsen(placed, kFixPeriod_s, kNodePeriod_s);
   const auto algorithm = registry.make_algorithm("dogleg");
   BlockCholesky cholesky;
   StructuredSolver solver{cholesky};
+  TimeOffset found;
   for (int round = 0; round < kMostRounds; ++round) {
     Graph graph = build_graph(coarse, {}, settings, registry).graph;
     const std::optional<VertexIndex> offset = time_offset_vertex(graph);
-    if (!offset) return;
+    if (!offset) return std::nullopt;
     solver.build(graph, find_gauge(graph).held);
     optimize(graph, solver, *algorithm, {});
     const double moved_s = graph.value(*offset)[0] - coarse.time_offset_s;
     coarse.time_offset_s += moved_s;
-    if (std::abs(moved_s) < kSettled_s) break;
+    if (std::abs(moved_s) < kSettled_s || round + 1 == kMostRounds) {
+      found.sigma_s = std::sqrt(marginal_covariances(graph, {*offset})[0](0, 0));
+      break;
+    }
     keep_poses(graph, coarse.start.poses);
   }
   placed.time_offset_s = coarse.time_offset_s;
+  found.value_s = coarse.time_offset_s;
+  found.prior_sigma_s = prior_sigma_of(settings, registry);
+  return found;
 }
 
 }  // namespace waymark::drive

@@ -13,12 +13,26 @@
 
 namespace waymark::drive {
 
+/// What a drive says about the delay of its fixes.
+struct TimeOffset {
+  double value_s = 0;
+  double sigma_s = 0;  ///< posterior
+  double prior_sigma_s = 0;
+
+  /// Returns the odds that there is no delay, against one that is drawn from its prior: the ratio of
+  /// posterior and prior density at 0 (Dickey, "The weighted likelihood ratio", Annals of Mathematical
+  /// Statistics 42, 1971).
+  [[nodiscard]] double odds_of_none() const;
+};
+
 /// Finds PlacedDrive::time_offset_s. The coarse drive is fused with the offset of before, and again
 /// with the offset that this gives, until it no longer moves. Nothing changes if the settings
 /// estimate no time offset. Sensors are left out.
 /// @param settings from decided()
 /// @throws UsageError for an unknown modeling or option; errors of the plugins
-void assume_time_offset(PlacedDrive& placed, const FusionSettings& settings, const TypeRegistry& registry);
+/// @returns the offset; empty if the settings estimate none
+std::optional<TimeOffset> assume_time_offset(PlacedDrive& placed, const FusionSettings& settings,
+                                             const TypeRegistry& registry);
 
 /// Returns the vertex of the time offset, if the graph estimates one.
 [[nodiscard]] std::optional<VertexIndex> time_offset_vertex(const Graph& graph);

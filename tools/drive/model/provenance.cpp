@@ -54,6 +54,7 @@ Provenance provenance_of(const PreparedDrive& drive, const ModeledDrive& modeled
   provenance.emplace_back(
       "start", settings.initial_guess.method == StartMethod::anchored ? "anchored" : "dead_reckoning");
   for (const std::string& note : drive.report.notes) provenance.emplace_back("assumed", note);
+  for (const std::string& note : modeled.notes) provenance.emplace_back("assumed", note);
   if (const std::string corrupt = corrupt_warning(drive.report); !corrupt.empty())
     provenance.emplace_back("warning", corrupt);
   for (const std::string& warning : modeled.warnings()) provenance.emplace_back("warning", warning);

@@ -56,6 +56,8 @@ drive::ModeledDrive model_loaded(drive::Fusion& fusion, const drive::FusionSetti
     if (told.insert(warning).second) console.warning(warning);
   if (const std::string& note = modeled.placed.start.note; !note.empty() && told.insert(note).second)
     console.note("start: " + note);
+  for (const std::string& note : modeled.notes)
+    if (told.insert(note).second) console.note(note);
   if (scale_is_bent(modeled.settings, registry))
     console.note("biased fixes distort speed_scale with this modeling; the modeling correlated avoids that");
   auto& provenance = modeled.document.provenance;
