@@ -96,7 +96,8 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/model/poses_at_fixes.hpp
   tools/drive/nodes/gate.hpp
   tools/drive/nodes/start.hpp
-  tools/drive/nodes/timeline.hpp)
+  tools/drive/nodes/timeline.hpp
+  tools/drive/nodes/yaw_rate_at_rest.hpp)
 
 # Included by public headers, mostly by their templates. No promise: a program does not include them itself.
 set(WAYMARK_INCLUDED_HEADERS

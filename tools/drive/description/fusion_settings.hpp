@@ -8,8 +8,8 @@
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
-#include <waymark/tools/drive/nodes/plausibility.hpp>
 #include <waymark/tools/drive/nodes/start.hpp>
+#include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 
 namespace waymark::drive {
 

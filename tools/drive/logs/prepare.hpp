@@ -16,7 +16,7 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/tools/drive/description/drive_description.hpp>
-#include <waymark/tools/drive/nodes/plausibility.hpp>
+#include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 
 namespace waymark::drive {
 

@@ -1,0 +1,22 @@
+/// What the yaw rate of the odometry shows while the vehicle stands.
+#pragma once
+
+#include <span>
+
+#include <waymark/core/drive/sample.hpp>
+
+namespace waymark::drive {
+
+/// The yaw rate while the vehicle stands (below 0.05 m/s). A gyro shows its bias and noise there; a
+/// yaw rate from wheels or steering always reads the same.
+struct YawRateAtRest {
+  double seconds = 0;         ///< between readings
+  double variance_per_s = 0;  ///< white noise of its integral, rad^2/s, from successive differences
+
+  [[nodiscard]] bool is_known() const { return seconds >= 5; }
+  [[nodiscard]] bool is_derived() const { return is_known() && variance_per_s == 0; }
+};
+
+[[nodiscard]] YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry);
+
+}  // namespace waymark::drive
