@@ -1,6 +1,5 @@
 // Wrong units and signs of the odometry are named; right ones are not.
 #include <cmath>
-#include <random>
 
 #include <catch2/catch.hpp>
 
@@ -123,26 +122,6 @@ TEST_CASE("plausibility: an impossible acceleration is named without any fix") {
   CHECK(warning_of_accelerations(odometry).empty());  // 9 m/s^2
   for (std::size_t i = 0; i < 6; ++i) odometry[i].yaw_rate_radps *= 57.3;
   CHECK_THAT(warning_of_accelerations(odometry), Catch::Contains("in 6 % of the driving"));
-}
-
-TEST_CASE(
-    "plausibility: a yaw rate that never changes at rest is no gyro's, and a gyro shows its noise there") {
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> noise(0, 0.01);
-  std::vector<OdometrySample> wheels;
-  for (int i = 0; i < 2000; ++i)
-    wheels.push_back({.stamp = Stamp::from_seconds(0.1 * i),
-                      .speed_mps = i < 1500 ? 0.0 : 5.0,
-                      .yaw_rate_radps = i < 1500 ? 0.0 : 0.01 * i});
-  CHECK(yaw_rate_at_rest(wheels).is_derived());
-  std::vector<OdometrySample> gyro = wheels;
-  for (OdometrySample& sample : gyro) sample.yaw_rate_radps += 0.02 + noise(random);
-  const YawRateAtRest rest = yaw_rate_at_rest(gyro);
-  CHECK_FALSE(rest.is_derived());
-  CHECK(rest.seconds == Approx(149.9));
-  CHECK(rest.variance_per_s == Approx(1e-4 * 0.1).epsilon(0.15));  // variance times period; 1500 readings
-  wheels.erase(wheels.begin(), wheels.begin() + 1460);             // 4 s at rest
-  CHECK_FALSE(yaw_rate_at_rest(wheels).is_known());
 }
 
 }  // namespace plausibility_test

@@ -1,6 +1,7 @@
 #include <waymark/tools/drive/estimation/latency.hpp>
 
 #include <cmath>
+#include <vector>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/covariance/marginals.hpp>
@@ -68,7 +69,7 @@ std::optional<TimeOffset> assume_time_offset(PlacedDrive& placed, const FusionSe
     const double moved_s = graph.value(*offset)[0] - coarse.time_offset_s;
     coarse.time_offset_s += moved_s;
     if (std::abs(moved_s) < kSettled_s || round + 1 == kMostRounds) {
-      found.sigma_s = std::sqrt(marginal_covariances(graph, {*offset})[0](0, 0));
+      found.sigma_s = std::sqrt(marginal_covariances(graph, std::vector{*offset})[0](0, 0));
       break;
     }
     keep_poses(graph, coarse.start.poses);
