@@ -94,6 +94,7 @@ TEST_CASE("latency: the odds of no delay are the ratio of its densities after an
   // Normal densities at 0: exp(-2) / 0.02 over 1 / 0.3.
   CHECK(TimeOffset{0.04, 0.02, 0.3}.odds_of_none() == Approx(15 * std::exp(-2.0)));
   CHECK(TimeOffset{0, 0.3, 0.3}.odds_of_none() == Approx(1));  // the drive says nothing
+  CHECK(TimeOffset{0, 0.02, 0}.odds_of_none() == 0);           // a modeling without a stated prior
 }
 
 TEST_CASE("latency: fixes that are not late get no offset, late ones do, and it is said") {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <string>
 #include <utility>
 
 #include <waymark/core/base/error.hpp>
@@ -28,13 +27,12 @@ void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSetting
                        const TypeRegistry& registry) {
   if (!rest.is_known()) return;
   constexpr double kSilent = 1;  // rad^2/s: says nothing
+  constexpr const char* kAtRest = "gyro_at_rest_variance_per_s";
   const std::vector<OptionInfo>& known = registry.odometry_model(settings.odometry_model).options;
-  for (const OptionInfo& option : known) {
-    if (option.name != "gyro_at_rest_variance_per_s") continue;
-    const double variance = rest.is_derived() ? kSilent : std::min(rest.variance_per_s, kSilent);
-    if (variance > std::stod(option.value))
-      settings.odometry_options.try_emplace(option.name, shortest(variance));
-  }
+  const double variance = rest.is_derived() ? kSilent : std::min(rest.variance_per_s, kSilent);
+  if (has_option(known, kAtRest) &&
+      variance > CheckedOptions(settings.odometry_model, {}, known).number(kAtRest))
+    settings.odometry_options.try_emplace(kAtRest, shortest(variance));
   if (rest.is_derived() && by_default && !settings.calibration->empty() && has_option(known, "yaw_per_speed"))
     settings.calibration->try_emplace("yaw_per_speed", "constant");
 }

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include <waymark/core/base/error.hpp>
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
@@ -31,13 +30,9 @@ void keep_poses(const Graph& graph, std::vector<Eigen::Vector3d>& poses) {
 
 double prior_sigma_of(const FusionSettings& settings, const TypeRegistry& registry) {
   constexpr const char* kOption = "time_offset_sigma";
-  const auto stated = settings.modeling_options.find(kOption);
-  if (stated != settings.modeling_options.end()) return std::stod(stated->second);
-  for (const OptionInfo& option : registry.gnss_modeling(settings.modeling).options) {
-    if (option.name == kOption) return std::stod(option.value);
-  }
-  throw UsageError("modeling '" + settings.modeling + "' estimates a time offset without an option " +
-                   kOption);
+  const GnssModelingType& type = registry.gnss_modeling(settings.modeling);
+  if (!has_option(type.options, kOption)) return 0;
+  return CheckedOptions(type.name, settings.modeling_options, type.options).number(kOption);
 }
 
 }  // namespace

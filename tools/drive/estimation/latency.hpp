@@ -16,8 +16,8 @@ namespace waymark::drive {
 /// What a drive says about the delay of its fixes.
 struct TimeOffset {
   double value_s = 0;
-  double sigma_s = 0;  ///< posterior
-  double prior_sigma_s = 0;
+  double sigma_s = 0;        ///< posterior
+  double prior_sigma_s = 0;  ///< 0: the modeling has no option time_offset_sigma; the odds are then 0
 
   /// Returns the odds that there is no delay, against one that is drawn from its prior: the ratio of
   /// posterior and prior density at 0 (Dickey, "The weighted likelihood ratio", Annals of Mathematical

@@ -69,30 +69,30 @@ class Objective {
   /// it begins at the one before: heavy tails have several minima, so that the cost depends a little
   /// on where the search has been.
   double begin_at(const NoiseEstimate& noise) {
-    exact_ = true;
-    stays_ = false;
-    const double cost = (*this)(noise);
     stays_ = true;
-    return cost;
+    return cost_of(noise, 1e-12, true);
   }
 
-  double operator()(const NoiseEstimate& noise) {
+  double operator()(const NoiseEstimate& noise) { return cost_of(noise, stays_ ? 1e-7 : 1e-6, !stays_); }
+  [[nodiscard]] int evaluations() const { return evaluations_; }
+
+ private:
+  /// @param next whether the next minimisation begins at this minimum
+  double cost_of(const NoiseEstimate& noise, double decrement_tolerance, bool next) {
     ++evaluations_;
     Graph graph = build_graph(coarse_, {}, with_noise(settings_, noise), registry_).graph;
     prepare(graph);
     OptimizerOptions options;
-    if (exact_) options.decrement_tolerance = stays_ ? 1e-7 : 1e-12;
+    options.decrement_tolerance = decrement_tolerance;
     options.max_iterations = 200;
     const Summary summary = optimize(graph, kept_, *algorithm_, options);
-    if (!stays_ && summary.converged()) values_ = graph.values();
+    if (next && summary.converged()) values_ = graph.values();
     double cost = evidence(graph, kept_.structure(), cholesky_).negative_log();
     for (const NoiseParameter& parameter : noise.parameters)
       cost += 0.5 * std::pow(coordinate_of(parameter.value, parameter.prior), 2);
     return std::isfinite(cost) ? cost : 1e300;
   }
-  [[nodiscard]] int evaluations() const { return evaluations_; }
 
- private:
   /// Vertices and edges are the same every time. So structure and analysis are made once.
   void prepare(Graph& graph) {
     if (!values_.empty()) {
@@ -111,7 +111,6 @@ class Objective {
   StructuredSolver kept_{cholesky_};
   std::vector<double> values_;
   int evaluations_ = 0;
-  bool exact_ = false;
   bool stays_ = false;  ///< where the next minimisation begins
 };
 
@@ -131,12 +130,9 @@ PosteriorBounds bounds_of(const NoiseEstimate& noise) {
 void minimize(Objective& objective, NoiseEstimate& noise) {
   const PosteriorBounds bounds = bounds_of(noise);
   const Eigen::Index size = bounds.low.size();
-  const auto place_all = [&](const Eigen::VectorXd& coordinates) {
+  const auto with = [&](const Eigen::VectorXd& coordinates) -> const NoiseEstimate& {
     for (Eigen::Index i = 0; i < size; ++i)
       place(coordinates[i], noise.parameters[static_cast<std::size_t>(i)]);
-  };
-  const auto with = [&](const Eigen::VectorXd& coordinates) -> const NoiseEstimate& {
-    place_all(coordinates);
     return noise;
   };
   const PosteriorCost cost{[&](const Eigen::VectorXd& x) { return objective(with(x)); },
@@ -144,7 +140,7 @@ void minimize(Objective& objective, NoiseEstimate& noise) {
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(size).cwiseMax(bounds.low).cwiseMin(bounds.high);
   const Eigen::VectorXd near = search_posterior(cost, start, bounds);
   const PosteriorMode mode = find_posterior_mode(cost, near, bounds);
-  place_all(mode.at);
+  with(mode.at);
   for (Eigen::Index i = 0; i < size; ++i) {
     NoiseParameter& parameter = noise.parameters[static_cast<std::size_t>(i)];
     parameter.deviation = std::sqrt(mode.covariance(i, i)) * parameter.prior.deviation;
