@@ -4,7 +4,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/graph/detail/robust_information.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
-#include <waymark/core/window/detail/information_root.hpp>
+#include <waymark/core/linear/detail/information_root.hpp>
 
 namespace waymark {
 

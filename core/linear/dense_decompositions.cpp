@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
@@ -12,6 +15,20 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) {
 
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+// [0 A; A^T 0] has the eigenvalues +-values with the eigenvectors (u, +-v) / sqrt(2). Nothing is squared,
+// and the decomposition that exists is used again.
+SingularValues singular_values(const Eigen::MatrixXd& matrix) {
+  const Eigen::Index m = matrix.rows();
+  const Eigen::Index n = matrix.cols();
+  const Eigen::Index k = std::min(m, n);
+  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(m + n, m + n);
+  both.topRightCorner(m, n) = matrix;
+  both.bottomLeftCorner(n, m) = matrix.transpose();
+  const auto [values, vectors] = symmetric_eigen(both);
+  const Eigen::MatrixXd pairs = std::sqrt(2.0) * vectors.rightCols(k).rowwise().reverse();
+  return {values.tail(k).reverse().cwiseMax(0), pairs.topRows(m), pairs.bottomRows(n)};
 }
 
 std::optional<Eigen::MatrixXd> inverse_of_positive_definite(const Eigen::MatrixXd& matrix) {

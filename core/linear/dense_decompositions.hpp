@@ -23,6 +23,16 @@ struct SymmetricEigen {
 /// triangle only.
 [[nodiscard]] Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
+/// A = U diag(values) V^T.
+struct SingularValues {
+  Eigen::VectorXd values;  ///< k = min(m, n), in decreasing order
+  Eigen::MatrixXd left;    ///< m x k; column i is the unit vector u_i, unless values[i] is about 0
+  Eigen::MatrixXd right;   ///< n x k; the same of v_i
+};
+
+/// Decomposes any matrix, m x n with m, n >= 1. A value is right to rounding of the largest one.
+[[nodiscard]] SingularValues singular_values(const Eigen::MatrixXd& matrix);
+
 /// Inverts a symmetric matrix by Cholesky's method.
 /// @return nothing if the matrix is not positive definite or its inverse is not finite
 [[nodiscard]] std::optional<Eigen::MatrixXd> inverse_of_positive_definite(const Eigen::MatrixXd& matrix);

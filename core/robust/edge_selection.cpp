@@ -1,7 +1,7 @@
 #include <limits>
 
-#include <Eigen/LU>
-
+#include <waymark/core/linear/dense_decompositions.hpp>
+#include <waymark/core/linear/detail/information_root.hpp>
 #include <waymark/core/robust/edge_selection.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/core/system/normal_equations.hpp>
@@ -84,16 +84,18 @@ std::vector<double> innovations(const Graph& graph, std::span<const EdgePlace> e
                                                           jacobians[k].cols());
       }
     }
-    // (Omega^-1 + C)^-1 = Omega (I + C Omega)^-1 also holds if Omega is singular.
-    const Eigen::MatrixXd information = batch.information(edges[i].edge);
+    // With Omega = A^T A: (Omega^-1 + C)^-1 = A^T (I + A C A^T)^-1 A also holds if Omega is singular.
+    const Eigen::MatrixXd root = information_root(batch.information(edges[i].edge));
+    result[i] = 0;
+    if (root.rows() == 0) continue;
     const double sign = membership == Membership::outside ? 1 : -1;
-    const Eigen::MatrixXd spread =
-        Eigen::MatrixXd::Identity(e.size(), e.size()) + sign * predicted * information;
-    const Eigen::FullPivLU<Eigen::MatrixXd> factor(spread);
+    const auto [spread, directions] = symmetric_eigen(Eigen::MatrixXd::Identity(root.rows(), root.rows()) +
+                                                      sign * root * predicted * root.transpose());
     // For an edge inside, directions that no other edge knows leave no spread, and rounding
     // would decide.
-    const bool checked = membership == Membership::outside || factor.rcond() > 1e-9;
-    result[i] = checked ? e.dot(information * factor.solve(e)) : 0;
+    const bool checked = membership == Membership::outside || spread[0] > 1e-9 * spread[root.rows() - 1];
+    const Eigen::VectorXd along = directions.transpose() * (root * e);
+    if (checked) result[i] = along.cwiseAbs2().cwiseQuotient(spread).sum();
   }
   return result;
 }

@@ -4,22 +4,19 @@
 #include <utility>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/graph/detail/robust_information.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
-#include <waymark/core/window/detail/information_root.hpp>
+#include <waymark/core/linear/dense_decompositions.hpp>
+#include <waymark/core/linear/detail/information_root.hpp>
 #include <waymark/core/window/marginalization.hpp>
 
 namespace waymark {
 namespace {
 
 using detail::at;
-
-/// The right preconditioner for square and tall matrices, and the cheapest to compile.
-using Svd = Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::HouseholderQRPreconditioner>;
 
 /// |A x + b|^2 over the changes x of some vertices, as rows [A | b].
 struct Factor {
@@ -174,7 +171,7 @@ void Elimination::check_determined(VertexIndex v, const Eigen::MatrixXd& triangl
   bool determined = triangle.rows() == triangle.cols() && scale.minCoeff() > 0;
   if (determined) {
     const Eigen::MatrixXd relative = triangle * scale.cwiseInverse().asDiagonal();
-    const Eigen::VectorXd values = Svd(relative).singularValues();
+    const Eigen::VectorXd values = singular_values(relative).values;
     determined = values.minCoeff() > std::sqrt(kInformationResolution);
   }
   if (determined) return;
@@ -225,13 +222,12 @@ Prior to_prior(const Factor& factor, const Elimination& elimination) {
     return prior;
   }
   const Eigen::VectorXd inverse = (scale.array() > 0).select(scale.cwiseInverse(), 0);
-  const Svd svd(factor.rows.leftCols(n) * inverse.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& values = svd.singularValues();  // descending
+  const auto [values, left, right] = singular_values(factor.rows.leftCols(n) * inverse.asDiagonal());
   Eigen::Index rank = 0;
   while (rank < values.size() && values[rank] > std::sqrt(kInformationResolution)) ++rank;
   const Eigen::VectorXd b = factor.rows.rightCols(1);
-  const Eigen::VectorXd inside = svd.matrixU().leftCols(rank).transpose() * b;
-  const Eigen::MatrixXd directions = svd.matrixV().leftCols(rank);
+  const Eigen::VectorXd inside = left.leftCols(rank).transpose() * b;
+  const Eigen::MatrixXd directions = right.leftCols(rank);
   const Eigen::MatrixXd root = values.head(rank).asDiagonal() * directions.transpose() * scale.asDiagonal();
   prior.information = root.transpose() * root;
   prior.information = (0.5 * (prior.information + prior.information.transpose())).eval();

@@ -1,5 +1,5 @@
 #include <waymark/core/linear/dense_decompositions.hpp>
-#include <waymark/core/window/detail/information_root.hpp>
+#include <waymark/core/linear/detail/information_root.hpp>
 
 namespace waymark {
 
