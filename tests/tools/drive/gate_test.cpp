@@ -113,6 +113,29 @@ TEST_CASE("gate: a lasting jump does not lock the gate out") {
   CHECK(scene.rejected() == Indices{20, 21});
 }
 
+TEST_CASE("gate: fixes between a jump and the jump back are rejected, also without the gate") {
+  GateOptions off;
+  off.enabled = false;
+  Scene there_and_back = circle(1, 10, 200);
+  for (std::size_t i = 50; i < 110; ++i) there_and_back.fixes[i].position += Eigen::Vector2d(60, -80);
+  there_and_back.fixes[80].status = FixStatus::withheld;
+  CHECK(there_and_back.judge(off).reasons.at("jump") == 59);
+  CHECK(there_and_back.rejected().front() == 50);
+  CHECK(there_and_back.rejected().back() == 109);
+
+  // Which of two places is wrong is not known if the fixes do not come back.
+  Scene elsewhere = circle(1, 10, 200);
+  for (std::size_t i = 50; i < 200; ++i) elsewhere.fixes[i].position += Eigen::Vector2d(60, -80);
+  CHECK(elsewhere.judge(off).rejected == 0);
+  for (std::size_t i = 110; i < 200; ++i) elsewhere.fixes[i].position += Eigen::Vector2d(60, 80);
+  CHECK(elsewhere.judge(off).rejected == 0);
+
+  // The longer part is believed.
+  Scene mostly_there = circle(1, 10, 200);
+  for (std::size_t i = 50; i < 170; ++i) mostly_there.fixes[i].position += Eigen::Vector2d(60, -80);
+  CHECK(mostly_there.judge(off).rejected == 0);
+}
+
 TEST_CASE("gate: the first two fixes are judged by their successors") {
   Scene scene = straight(10, 10);
   scene.fixes[0].position[1] += 40;

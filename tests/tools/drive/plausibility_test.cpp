@@ -108,9 +108,14 @@ TEST_CASE("plausibility: a jump that lasts is named with its size and time, a si
   Scene jump = scene(1, 1, 200);
   for (std::size_t i = 80; i < 120; ++i) jump.fixes[i].position.y() += 200;
   const auto said = warnings(jump);
-  REQUIRE(said.size() == 2);
-  CHECK_THAT(said[0], Catch::Contains("at 80.0 s after the first fix, and stay there for 40 s;"));
-  CHECK_THAT(said[1], Catch::Contains("at 120.0 s after the first fix") && Catch::Contains("until the end"));
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("by 200 m at 80.0 s after the first fix, and back after 40 s;") &&
+                          Catch::Contains("the 40 fixes between are left out"));
+  for (std::size_t i = 120; i < 200; ++i) jump.fixes[i].position.y() += 200;
+  const auto stays = warnings(jump);
+  REQUIRE(stays.size() == 1);
+  CHECK_THAT(stays[0], Catch::Contains("by 200 m at 80.0 s after the first fix, and stay there for 119 s, "
+                                       "until the end;"));
   Scene single = scene(1, 1, 200);
   single.fixes[80].position.y() += 200;
   CHECK(warnings(single).empty());

@@ -21,9 +21,9 @@ constexpr const char* kTimeOffset = "time_offset";
 
 /// Takes the fixes as measured when their stamps say. An offset that is not needed costs RTK fixes at
 /// 30 m/s a decimetre.
-void leave_out(const TimeOffset& offset, ModeledDrive& modeled) {
-  modeled.settings.modeling_options[kTimeOffset] = "off";
-  (*modeled.settings.calibration)[kTimeOffset] = "off";
+void leave_out(const TimeOffset& offset, FusionSettings& settings, ModeledDrive& modeled) {
+  settings.modeling_options[kTimeOffset] = "off";
+  (*settings.calibration)[kTimeOffset] = "off";
   modeled.placed.time_offset_s = 0;
   char text[200];
   std::snprintf(
@@ -31,6 +31,18 @@ void leave_out(const TimeOffset& offset, ModeledDrive& modeled) {
       "the fixes are taken as not late: the drive says %.3f +- %.3f s, odds of %.3g to 1 for no delay",
       offset.value_s, offset.sigma_s, offset.odds_of_none());
   modeled.notes.emplace_back(text);
+}
+
+/// Finds the delay of the fixes, and the noise if it is estimated: each depends on the other.
+/// @returns what the drive says about the delay; empty if the settings estimate none
+std::optional<TimeOffset> estimate(const FusionSettings& settings, const TypeRegistry& registry,
+                                   ModeledDrive& modeled) {
+  modeled.settings = settings;
+  const std::optional<TimeOffset> offset = assume_time_offset(modeled.placed, settings, registry);
+  if (!*settings.estimates_noise) return offset;
+  modeled.noise = estimate_noise(modeled.placed, settings, registry);
+  modeled.settings = with_noise(settings, modeled.noise);
+  return assume_time_offset(modeled.placed, modeled.settings, registry);
 }
 
 }  // namespace
@@ -54,17 +66,15 @@ const PlacedDrive& Fusion::placed(const FusionSettings& settings) {
 
 ModeledDrive Fusion::model(const FusionSettings& settings) {
   ModeledDrive modeled;
-  modeled.settings = decided(settings, registry_);
-  adapt_to_yaw_rate(drive_.yaw_rate_at_rest, !settings.calibration, modeled.settings, registry_);
-  modeled.placed = placed(modeled.settings);
-  std::optional<TimeOffset> offset = assume_time_offset(modeled.placed, modeled.settings, registry_);
-  if (*modeled.settings.estimates_noise) {
-    modeled.noise = estimate_noise(modeled.placed, modeled.settings, registry_);
-    modeled.settings = with_noise(std::move(modeled.settings), modeled.noise);
-    offset = assume_time_offset(modeled.placed, modeled.settings, registry_);
-  }
+  FusionSettings decision = decided(settings, registry_);
+  adapt_to_yaw_rate(drive_.yaw_rate_at_rest, !settings.calibration, decision, registry_);
+  modeled.placed = placed(decision);
+  const std::optional<TimeOffset> offset = estimate(decision, registry_, modeled);
   const bool is_stated = settings.calibration || settings.modeling_options.contains(kTimeOffset);
-  if (offset && !is_stated && offset->odds_of_none() > 1) leave_out(*offset, modeled);
+  if (offset && !is_stated && offset->odds_of_none() > 1) {
+    leave_out(*offset, decision, modeled);
+    (void)estimate(decision, registry_, modeled);
+  }
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.distance_m = distance_of(modeled.placed.timeline);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -38,28 +40,43 @@ double disagreement(const ReckonedFixes& receiver, std::size_t first, std::size_
   return std::abs(pair.gnss.norm() - pair.odometry.norm());
 }
 
-/// Tells whether all fixes of 10 s before (step -1) or after (step 1) another one agree with the
-/// odometry. False if the log ends earlier.
-bool is_settled(const ReckonedFixes& receiver, std::size_t from, int step, double tolerance_m) {
+/// Returns the fix 10 s before (step -1) or after (step 1) another one, if all between agree with the
+/// odometry. Empty if the log ends earlier.
+std::optional<std::size_t> settled(const ReckonedFixes& receiver, std::size_t from, int step,
+                                   double tolerance_m) {
   constexpr double kSettled_s = 10;
   for (auto i = static_cast<std::ptrdiff_t>(from); i >= 0 && i < std::ssize(receiver.fixes); i += step) {
     const auto at = static_cast<std::size_t>(i);
-    if (disagreement(receiver, from, at) >= tolerance_m) return false;
+    if (disagreement(receiver, from, at) >= tolerance_m) return std::nullopt;
     if (std::abs(seconds_between(receiver.fixes[from].stamp, receiver.fixes[at].stamp)) >= kSettled_s)
-      return true;
+      return at;
   }
-  return false;
+  return std::nullopt;
+}
+
+/// Returns the part of the chord before fix i that the odometry does not explain.
+/// @param before fix that begins a way along which the odometry is laid
+Eigen::Vector2d unexplained(const ReckonedFixes& receiver, std::size_t before, std::size_t i) {
+  const ChordPair way = chord(receiver, before, i - 1);
+  const ChordPair step = chord(receiver, i - 1, i);
+  return step.gnss - Eigen::Rotation2Dd(angle_between(way.odometry, way.gnss)) * step.odometry;
+}
+
+/// Tells whether the second of two jumps takes the fixes back.
+bool undoes(const Jump& second, const Jump& first) {
+  return (first.by + second.by).norm() <= 0.25 * first.by.norm();
 }
 
 }  // namespace
 
-ReckonedFixes of_first_receiver(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna) {
+ReckonedFixes of_receiver(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna, int source) {
   ReckonedFixes receiver;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const bool same_time = !receiver.fixes.empty() && receiver.fixes.back().stamp == fixes[i].stamp;
-    if (fixes[i].source != fixes.front().source || same_time) continue;
+    if (fixes[i].source != source || same_time) continue;
     receiver.fixes.push_back(fixes[i]);
     receiver.antenna.push_back(antenna[i]);
+    receiver.place.push_back(i);
   }
   return receiver;
 }
@@ -137,12 +154,19 @@ std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
     const double claimed_m = std::max(fixes[i].accuracy_m(), fixes[i - 1].accuracy_m());
     if (distance_m < std::max(kSmallest_m, kSigmas * claimed_m)) continue;
     const double tolerance_m = 0.25 * distance_m;
-    if (!is_settled(receiver, i - 1, -1, tolerance_m) || !is_settled(receiver, i, 1, tolerance_m)) continue;
-    jumps.push_back({fixes[i].stamp, distance_m, 0, false});
+    const std::optional<std::size_t> before = settled(receiver, i - 1, -1, tolerance_m);
+    if (!before || !settled(receiver, i, 1, tolerance_m)) continue;
+    jumps.push_back({i, fixes.size(), unexplained(receiver, *before, i), 0, false});
   }
-  for (std::size_t i = 0; i < jumps.size(); ++i) {
-    jumps[i].returns = i + 1 < jumps.size();
-    jumps[i].stays_s = seconds_between(jumps[i].at, jumps[i].returns ? jumps[i + 1].at : fixes.back().stamp);
+  for (std::size_t j = 0; j < jumps.size(); ++j) {
+    const bool is_last = j + 1 == jumps.size();
+    if (!is_last) jumps[j].end = jumps[j + 1].first;
+    jumps[j].stays_s =
+        seconds_between(fixes[jumps[j].first].stamp, fixes[std::min(jumps[j].end, fixes.size() - 1)].stamp);
+    const double log_s = seconds_between(fixes.front().stamp, fixes.back().stamp);
+    const bool returned = j > 0 && jumps[j - 1].undone;
+    jumps[j].undone =
+        !is_last && !returned && undoes(jumps[j + 1], jumps[j]) && jumps[j].stays_s < 0.5 * log_s;
   }
   return jumps;
 }

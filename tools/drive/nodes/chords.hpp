@@ -16,11 +16,13 @@ namespace waymark::drive {
 struct ReckonedFixes {
   std::vector<Fix> fixes;
   std::vector<Eigen::Vector3d> antenna;
+  std::vector<std::size_t> place;  ///< of each fix among those of all receivers
 };
 
-/// Returns the fixes of the first receiver.
-[[nodiscard]] ReckonedFixes of_first_receiver(std::span<const Fix> fixes,
-                                              std::span<const Eigen::Vector3d> antenna);
+/// Returns the fixes of one receiver, one for each stamp.
+/// @param antenna dead-reckoned antenna poses, one for each fix
+[[nodiscard]] ReckonedFixes of_receiver(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
+                                        int source);
 
 /// The way between two fixes.
 struct ChordPair {
@@ -61,10 +63,12 @@ struct Median {
 
 /// A time from which the fixes are elsewhere, by the odometry.
 struct Jump {
-  Stamp at;  ///< of the first fix that is elsewhere
-  double distance_m = 0;
-  double stays_s = 0;    ///< until they jump again, or until the end
-  bool returns = false;  ///< they jump again
+  std::size_t first = 0;                         ///< fix of the receiver that is elsewhere
+  std::size_t end = 0;                           ///< the fix that jumps again, or the number of fixes
+  Eigen::Vector2d by = Eigen::Vector2d::Zero();  ///< m, in the frame of the fixes
+  double stays_s = 0;                            ///< from the first fix to `end`, or to the last one
+  /// the next jump undoes this one after less than half of the log: the fixes between are wrong
+  bool undone = false;
 };
 
 /// Finds jumps between fixes at most 5 s apart: their distance differs by 50 m or more, and by more

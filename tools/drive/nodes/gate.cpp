@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/nodes/chords.hpp>
 #include <waymark/tools/drive/nodes/frozen_fixes.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -178,14 +179,23 @@ void judge_source(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_re
     apply(fixes[forward.members[c]], judge_with_fallbacks(forward, backward, c, options));
 }
 
+void reject(Fix& fix, const char* reason) {
+  if (fix.status == FixStatus::withheld) return;
+  fix.status = FixStatus::rejected;
+  fix.reason = reason;
+}
+
 /// A position that is repeated while the vehicle moves is no measurement, so this needs no gate.
 void reject_frozen(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned) {
-  for (const FrozenFixes& frozen : find_frozen_fixes(fixes, dead_reckoned)) {
-    for (const std::size_t i : frozen.repeated) {
-      if (fixes[i].status == FixStatus::withheld) continue;
-      fixes[i].status = FixStatus::rejected;
-      fixes[i].reason = "frozen";
-    }
+  for (const FrozenFixes& frozen : find_frozen_fixes(fixes, dead_reckoned))
+    for (const std::size_t i : frozen.repeated) reject(fixes[i], "frozen");
+}
+
+/// Between a jump and the jump back the fixes agree among themselves, so that no gate sees them.
+void reject_excursions(std::span<Fix> fixes, const ReckonedFixes& receiver) {
+  for (const Jump& jump : jumps_of(receiver)) {
+    if (!jump.undone) continue;
+    for (std::size_t i = jump.first; i < jump.end; ++i) reject(fixes[receiver.place[i]], "jump");
   }
 }
 
@@ -226,6 +236,8 @@ GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> de
     for (Fix& fix : fixes)
       if (fix.status != FixStatus::withheld) apply(fix, Verdict{.reason = "off"});
   }
+  for (const int source : sources_of(fixes))
+    reject_excursions(fixes, of_receiver(fixes, dead_reckoned, source));
   reject_frozen(fixes, dead_reckoned);
   return count(fixes);
 }

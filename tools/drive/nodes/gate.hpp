@@ -59,7 +59,8 @@ struct GateSummary {
 /// - `off`: the gate is disabled.
 ///
 /// Reasons of a rejected fix: `angle`, `displacement`, `both`, `frozen` (GNSS stands while the
-/// odometry moves; fixes that repeat a position are rejected without the gate too: frozen_fixes.hpp).
+/// odometry moves; fixes that repeat a position are rejected without the gate too: frozen_fixes.hpp),
+/// `jump` (between a jump and the jump back, without the gate too: chords.hpp).
 ///
 /// @param fixes sorted by stamp; fixes of different `source` are judged separately
 /// @param dead_reckoned for each fix the pose (x [m], y [m], heading [rad]) of odometry alone at

@@ -125,21 +125,32 @@ std::vector<char> marked(const std::vector<FrozenFixes>& frozen, std::size_t fix
   return marks;
 }
 
-/// The words for jumps that name at most three of them.
+std::string in_words(const Jump& jump, const ReckonedFixes& receiver) {
+  const double at_s = seconds_between(receiver.fixes.front().stamp, receiver.fixes[jump.first].stamp);
+  if (jump.undone)
+    return fmt::format(
+        "the fixes jump by {:.0f} m at {:.1f} s after the first fix, and back after {:.0f} s; the odometry does "
+        "not move so: the {} fixes between are left out (rejected: jump)",
+        jump.by.norm(), at_s, jump.stays_s, jump.end - jump.first);
+  return fmt::format(
+      "the fixes jump by {:.0f} m at {:.1f} s after the first fix, and stay there for {:.0f} s{}; the "
+      "odometry does not move so: the fixes before or after it are wrong, and no gate rejects them once "
+      "they agree among themselves",
+      jump.by.norm(), at_s, jump.stays_s, jump.end < receiver.fixes.size() ? "" : ", until the end");
+}
+
+/// The words for jumps that name at most three of them. A jump back is named with the one it undoes.
 std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
   constexpr std::size_t kMost = 3;
   std::vector<std::string> sentences;
   const std::vector<Jump> jumps = jumps_of(receiver);
-  for (std::size_t i = 0; i < std::min(jumps.size(), kMost); ++i) {
-    sentences.push_back(fmt::format(
-        "the fixes jump by {:.0f} m at {:.1f} s after the first fix, and stay there for {:.0f} s{}; the "
-        "odometry does not move so: the fixes before or after it are wrong, and no gate rejects them once "
-        "they agree among themselves",
-        jumps[i].distance_m, seconds_between(receiver.fixes.front().stamp, jumps[i].at), jumps[i].stays_s,
-        jumps[i].returns ? "" : ", until the end"));
+  for (std::size_t i = 0; i < jumps.size(); ++i)
+    if (i == 0 || !jumps[i - 1].undone) sentences.push_back(in_words(jumps[i], receiver));
+  if (sentences.size() > kMost) {
+    const std::size_t more = sentences.size() - kMost;
+    sentences.resize(kMost);
+    sentences.push_back(fmt::format("the fixes jump {} more times", more));
   }
-  if (jumps.size() > kMost)
-    sentences.push_back(fmt::format("the fixes jump {} more times", jumps.size() - kMost));
   return sentences;
 }
 
@@ -177,7 +188,7 @@ std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
   std::erase_if(live, [&](const Fix&) { return is_frozen[at++] != 0; });
   at = 0;
   std::erase_if(reckoned, [&](const Eigen::Vector3d&) { return is_frozen[at++] != 0; });
-  const ReckonedFixes receiver = of_first_receiver(live, reckoned);
+  const ReckonedFixes receiver = of_receiver(live, reckoned, fixes.empty() ? 0 : fixes.front().source);
   const std::vector<TurnPair> turns = turns_between(receiver);
   // Turns of another size distort all lengths, and lengths of another unit all differences of them.
   if (std::string size = size_of_turns(turns); !size.empty()) {

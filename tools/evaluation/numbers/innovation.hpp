@@ -25,7 +25,7 @@ enum class ResidualKind {
 
 /// Statistics of nu = r^T S^-1 r over the fixes of one kind.
 struct InnovationStatistics {
-  /// mean of chi2 with two degrees of freedom
+  /// mean of chi2 with two degrees of freedom: what innovations have, and no other kind
   static constexpr double kExpectedMean = 2;
   static constexpr double kBound95 = 5.991464547107979;  ///< -2 ln 0.05: its 95 % quantile
   static constexpr double kExpectedInside = 0.95;        ///< of fraction_inside
@@ -40,6 +40,9 @@ struct InnovationStatistics {
   double expected_deviation = kUndefined;
   double fraction_inside = kUndefined;  ///< share of fixes with nu <= kBound95
   double max = kUndefined;
+
+  /// Tells whether kExpectedMean, kExpectedInside and expected_deviation hold for this kind.
+  [[nodiscard]] bool has_expectation() const { return kind == ResidualKind::prediction; }
 };
 
 /// Returns the covariance S of a residual. Let R be the covariance of the fix and P that of the

@@ -50,15 +50,18 @@ Json to_json(const Improvement& i) {
 }
 
 Json to_json(const InnovationStatistics& s) {
+  const auto expected = [&](double value) {
+    return s.has_expectation() ? text::number_or_null(value) : Json(nullptr);
+  };
   return {{"kind", to_string(s.kind)},
           {"n", s.count},
           {"undefined", s.undefined},
           {"mean", text::number_or_null(s.mean)},
-          {"expected_mean", InnovationStatistics::kExpectedMean},
-          {"expected_deviation_of_mean", text::number_or_null(s.expected_deviation)},
+          {"expected_mean", expected(InnovationStatistics::kExpectedMean)},
+          {"expected_deviation_of_mean", expected(s.expected_deviation)},
           {"bound_95", InnovationStatistics::kBound95},
           {"fraction_inside", text::number_or_null(s.fraction_inside)},
-          {"expected_fraction_inside", InnovationStatistics::kExpectedInside},
+          {"expected_fraction_inside", expected(InnovationStatistics::kExpectedInside)},
           {"max", text::number_or_null(s.max)}};
 }
 

@@ -179,7 +179,7 @@ std::string withheld_block(std::span<const LabelledEvaluation> evaluations, cons
 /// nu at all, and those of the others are too small.
 void add_innovations(text::Table& table, const std::string& label, const InnovationStatistics& s) {
   if (s.count == 0) return;
-  const bool is_expected = s.kind == ResidualKind::prediction;
+  const bool is_expected = s.has_expectation();
   table.rows.push_back({label + ", " + to_string(s.kind), std::to_string(s.count), text::decimals(s.mean, 3),
                         is_expected ? "2" : "-", percent(100 * s.fraction_inside), is_expected ? "95" : "-",
                         text::decimals(s.max, 1), std::to_string(s.undefined)});
