@@ -91,7 +91,7 @@ SimulationRecipe consistency(std::string name, std::vector<RoadRecipe> roads, do
   recipe.odometry.speed_scale_sigma = 0.006;
   recipe.odometry.gyro_bias_sigma_radps = 5e-4;
   recipe.gnss.fast_sigma_m = fast_sigma_m;
-  recipe.gnss.bias_sigma_m = std::hypot(1.2, 0.6 * fast_sigma_m);
+  recipe.gnss.bias_sigma_m = std::hypot(1.1, 0.75 * fast_sigma_m);
   recipe.gnss.jitter_m = 0.3;
   recipe.gnss.stated_95_m = 2 * fast_sigma_m;
   recipe.gnss.missing_epochs = 10;

@@ -91,11 +91,14 @@ StateReport report(const Graph& graph, const StateVertices& state, int axis,
 void judge_by_prior(const std::map<VertexIndex, Eigen::MatrixXd>& priors, VertexIndex first, int axis,
                     const Eigen::MatrixXd& covariance, StateReport& result) {
   result.prior_sigma = std::numeric_limits<double>::quiet_NaN();
+  result.surprise = std::numeric_limits<double>::quiet_NaN();
   const auto prior = priors.find(first);
   if (prior == priors.end() || !(prior->second(axis, axis) > 0)) return;
   result.prior_sigma = 1 / std::sqrt(prior->second(axis, axis));
   result.observed =
       covariance(axis, axis) > 0 && std::sqrt(covariance(axis, axis)) < kNotObserved * result.prior_sigma;
+  result.surprise =
+      std::abs(result.first) / std::sqrt(result.prior_sigma * result.prior_sigma - covariance(axis, axis));
 }
 
 }  // namespace

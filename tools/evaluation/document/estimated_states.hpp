@@ -27,6 +27,9 @@ struct StateReport {
   double prior_sigma = 0;
   /// the drive has more information about the first value than its prior
   bool observed = true;
+  /// |first value| over sqrt(prior^2 - posterior^2) of it, which is about 1 if the prior is right; NaN
+  /// without a prior
+  double surprise = 0;
   std::vector<Stamp> stamps;      ///< of the values of a wandering state; empty for a constant
   std::vector<double> wandering;  ///< one value per stamp
 };

@@ -9,20 +9,20 @@ namespace waymark::program {
 namespace {
 
 constexpr double kStateSigmas = 6;
-constexpr double kHeldSigmas = 2.5;
+constexpr double kHeldSigmas = 3;
 constexpr double kNearEnd = 0.95;  // of the reach of the search
 constexpr double kWorseThanRaw = 1.5;
 constexpr const char* kRemedy = "check units, signs, columns and clocks";
 
-/// The prior holds on the first value of a state.
+/// The prior holds on the first value of a state. A short drive moves it by less than its error.
 void check_held(const evaluation::StateReport& state, std::vector<std::string>& warnings) {
-  const double sigmas = std::abs(state.first) / state.prior_sigma;
-  if (!(sigmas > kHeldSigmas)) return;
-  warnings.push_back(
-      fmt::format("the estimate of {} begins at {:.3g}{}, {:.1f} sigmas of its prior ({:.3g}) from zero, so "
-                  "the prior may hold it back: {}; if it is real, widen the prior ({}_sigma)",
-                  state.name, state.first, state.unit == "1" ? "" : " " + state.unit, sigmas,
-                  state.prior_sigma, kRemedy, state.name));
+  if (!(state.surprise > kHeldSigmas)) return;
+  warnings.push_back(fmt::format(
+      "the estimate of {} begins at {:.3g}{}, which its prior ({:.3g}) does not expect: {:.1f} times as far from "
+      "zero as this drive would move it, so the prior may hold it back: {}; if it is real, widen the "
+      "prior ({}_sigma)",
+      state.name, state.first, state.unit == "1" ? "" : " " + state.unit, state.prior_sigma, state.surprise,
+      kRemedy, state.name));
 }
 
 void check_states(const std::vector<evaluation::StateReport>& states, const Options& calibration,
