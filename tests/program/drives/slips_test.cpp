@@ -101,6 +101,25 @@ TEST_CASE("slips: odometry that reads 0 for 30 s of driving is replaced, told on
   CHECK(contains(read_text(folder + "out/g1.fused.graph"), said));
 }
 
+TEST_CASE("slips: a scale error of 5 % is named on a drive of one minute, and no scale is on a sound one") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "rural", "--duration", "60", "--seed", "3", "-o", folder}).code == 0);
+  const RunResult sound = run({"run", folder + "drive.yaml", "-o", folder + "sound"});
+  CHECK_FALSE(contains(sound.err, "speed_scale"));
+  std::istringstream log(read_text(folder + "odometry.csv"));
+  std::string slow;
+  for (std::string row; std::getline(log, row);) {
+    double time = 0, speed = 0, yaw_rate = 0;
+    const bool is_sample = std::sscanf(row.c_str(), "%lf,%lf,%lf", &time, &speed, &yaw_rate) == 3;
+    slow += is_sample ? line(time, 0.95 * speed, yaw_rate) : row + "\n";
+  }
+  write_text(folder + "odometry.csv", slow);
+  const RunResult result = run({"run", folder + "drive.yaml", "-o", folder + "slow"});
+  CHECK(result.code == 0);
+  CHECK(contains(result.err, "warning: the estimate of speed_scale begins at 0.04"));
+  CHECK(contains(result.err, "which its prior (0.01) does not expect"));
+}
+
 TEST_CASE("slips: a hole in the odometry is told with its place and length") {
   const std::string folder = fresh_folder();
   const std::string drive = drive_with(folder, [](double t, double v, double w) {
