@@ -10,6 +10,10 @@ namespace waymark {
 
 OdometryModel::~OdometryModel() = default;
 GnssModeling::~GnssModeling() = default;
+
+std::vector<Eigen::Vector2d> GnssModeling::lasting_errors(std::span<const Fix>, const Graph&) const {
+  return {};
+}
 SensorModel::~SensorModel() = default;
 void SensorModel::check_drive(std::span<const Fix>, const SensorTable&) const {}
 

@@ -110,6 +110,13 @@ class GnssModeling {
   /// Adds vertices (ids from Graph::free_id) and edges for the fixes, the next ones in time. The
   /// values of existing vertices are the initial guess.
   virtual void extend(const GnssInput& input, Graph& graph) = 0;
+  /// Predicts the errors of fixes that are not in the graph from those that are: the expectation of
+  /// the part that lasts. A model of white noise has none.
+  /// @param fixes those that extend() never saw, in order of time
+  /// @param minimum the graph that extend() built, at its minimum; no vertex has left it
+  /// @returns one error for each fix (measured minus antenna, m, frame); empty: there is no such part
+  [[nodiscard]] virtual std::vector<Eigen::Vector2d> lasting_errors(std::span<const Fix> fixes,
+                                                                    const Graph& minimum) const;
 };
 
 /// The input of a sensor model.

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
@@ -60,6 +63,7 @@ class ProcessAlongFixes {
   [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
     const VertexIndex last = last_.in(graph);
     if (last >= 0 && since_ == stamp) return last;
+    states_.emplace(stamp, graph.free_id());
     const VertexIndex next = graph.add_vertex<V>(graph.free_id(), {0, 0});
     graph.set_stamp(next, stamp);
     if (last < 0) {
@@ -75,11 +79,34 @@ class ProcessAlongFixes {
     return last_.keep(next, graph);
   }
 
+  /// Returns the expectation between the states of the fixes, given all of them: the process has no
+  /// memory beyond its neighbours.
+  [[nodiscard]] Eigen::Vector2d expected(Stamp stamp, const Graph& minimum) const {
+    const auto after = states_.lower_bound(stamp);
+    const auto decayed = [&](auto state) {
+      return std::exp(-std::abs(seconds_between(state->first, stamp)) / time_s_);
+    };
+    if (after == states_.begin()) return decayed(after) * value(after->second, minimum);
+    const auto before = std::prev(after);
+    if (after == states_.end()) return decayed(before) * value(before->second, minimum);
+    const double a = decayed(before);
+    const double b = decayed(after);
+    return (a * (1 - b * b) * value(before->second, minimum) +
+            b * (1 - a * a) * value(after->second, minimum)) /
+           (1 - a * a * b * b);
+  }
+
  private:
+  [[nodiscard]] static Eigen::Vector2d value(VertexId id, const Graph& minimum) {
+    const auto numbers = minimum.value(*minimum.find(id));
+    return {numbers[0], numbers[1]};
+  }
+
   double variance_;
   double time_s_;
   KeptVertex last_;
   Stamp since_;
+  std::map<Stamp, VertexId> states_;
 };
 
 /// The correlated errors of one receiver.
@@ -94,6 +121,20 @@ class GnssCorrelated final : public GnssModeling {
   GnssCorrelated(const ErrorModel& model, double time_offset_sigma_s)
       : model_(model), time_offset_sigma_s_(time_offset_sigma_s) {}
 
+  [[nodiscard]] std::vector<Eigen::Vector2d> lasting_errors(std::span<const Fix> fixes,
+                                                            const Graph& minimum) const override {
+    std::vector<Eigen::Vector2d> errors;
+    for (const Fix& fix : fixes) {
+      errors.emplace_back(Eigen::Vector2d::Zero());
+      const auto receiver = receivers_.find(fix.source);
+      if (receiver == receivers_.end()) continue;
+      const Eigen::Matrix2d root = relative_root(fix, median_m_, model_.accuracy_exponent);
+      errors.back() = receiver->second.bias.expected(fix.stamp, minimum) +
+                      model_.multipath_m * root * receiver->second.multipath.expected(fix.stamp, minimum);
+    }
+    return errors;
+  }
+
   void extend(const GnssInput& input, Graph& graph) override {
     if (input.fixes.empty()) return;
     require_moments(input);
@@ -102,12 +143,11 @@ class GnssCorrelated final : public GnssModeling {
         offset_.in_or(graph, [&] { return make_offset(graph, input.moments.front().assumed_offset_s); });
     const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
     const double peak = model_.heavy_tails ? kStudentInformation : 1;
-    const double median_m =
-        input.median_accuracy_m > 0 ? input.median_accuracy_m : median_accuracy(input.fixes);
+    median_m_ = input.median_accuracy_m > 0 ? input.median_accuracy_m : median_accuracy(input.fixes);
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
-      const Eigen::Matrix2d root = relative_root(fix, median_m, model_.accuracy_exponent);
-      Receiver& receiver = receivers_.try_emplace(fix.source, make_receiver(median_m)).first->second;
+      const Eigen::Matrix2d root = relative_root(fix, median_m_, model_.accuracy_exponent);
+      Receiver& receiver = receivers_.try_emplace(fix.source, make_receiver(median_m_)).first->second;
       const VertexIndex pose = pose_vertex(fix, graph);
       EdgeGnssPositionCorrelated edge;
       edge.measured = fix.position;
@@ -144,6 +184,7 @@ class GnssCorrelated final : public GnssModeling {
 
   ErrorModel model_;
   double time_offset_sigma_s_;
+  double median_m_ = 0;  ///< claimed accuracy
   KeptVertex origin_;
   KeptVertex offset_;
   std::map<int, Receiver> receivers_;

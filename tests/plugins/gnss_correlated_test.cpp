@@ -1,10 +1,12 @@
 // Options of the modeling `correlated`: the tails of the white part.
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/drive/modeling.hpp>
+#include <waymark/solvers/optimize.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 #include "support/registry.hpp"
@@ -77,6 +79,56 @@ TEST_CASE("correlated: a loss that is asked for replaces that of the tails") {
     REQUIRE(fix_of(graph).loss != nullptr);
     CHECK(*fix_of(graph).loss == Loss{huber.name, huber.evaluate, 1.5});
   }
+}
+
+TEST_CASE("correlated: the lasting errors of other fixes are those of a Gaussian process") {
+  const TypeRegistry registry = waymark_test::full_registry();
+  const Options options = {{"tails", "normal"},      {"white_sigma", "0.5"},    {"multipath_sigma", "3"},
+                           {"multipath_time", "30"}, {"bias_floor", "0.8"},     {"bias_share", "0.5"},
+                           {"bias_time", "2000"},    {"accuracy_exponent", "0"}};
+  // The vehicle stands at a known place, so that each fix shows its error.
+  const std::vector<double> times = {0, 10, 20, 60, 70};
+  const std::vector<Eigen::Vector2d> errors = {{1, 4}, {2, 3}, {-1, 2}, {5, 0}, {4, -1}};
+  const auto fix_at = [](double time_s, const Eigen::Vector2d& error) {
+    Fix fix;
+    fix.stamp = Stamp::from_seconds(time_s);
+    fix.vertex = VertexId{1};
+    fix.covariance = Eigen::Matrix2d::Identity();
+    fix.position = Eigen::Vector2d(7, -2) + error;
+    return fix;
+  };
+  Graph graph;
+  graph.set_fixed(graph.add_vertex<VertexSe2>(VertexId{1}, {7, -2, 0.3}), true);
+  std::vector<Fix> known;
+  for (std::size_t i = 0; i < times.size(); ++i) known.push_back(fix_at(times[i], errors[i]));
+  const auto modeling = registry.make_gnss_modeling("correlated", options);
+  modeling->extend({known, std::vector<FixMoment>(known.size()), {0, 0}, std::nullopt}, graph);
+  REQUIRE(optimize(graph).converged());
+
+  const auto covariance = [](double a, double b) {
+    const double bias = 0.8 * 0.8 + 1.5 * 1.5;
+    return bias * std::exp(-std::abs(a - b) / 2000) + 9 * std::exp(-std::abs(a - b) / 30);
+  };
+  Eigen::MatrixXd gram(5, 5);
+  Eigen::MatrixXd measured(5, 2);
+  for (int i = 0; i < 5; ++i) {
+    measured.row(i) = errors[static_cast<std::size_t>(i)];
+    for (int j = 0; j < 5; ++j)
+      gram(i, j) = covariance(times[static_cast<std::size_t>(i)], times[static_cast<std::size_t>(j)]) +
+                   (i == j ? 0.25 : 0);
+  }
+  const Eigen::MatrixXd weights = gram.ldlt().solve(measured);
+  for (const double time_s : {-40.0, 4.0, 10.0, 45.0, 100.0}) {
+    Eigen::RowVectorXd to_known(5);
+    for (int i = 0; i < 5; ++i) to_known[i] = covariance(time_s, times[static_cast<std::size_t>(i)]);
+    const Eigen::Vector2d expected = (to_known * weights).transpose();
+    const std::vector<Fix> asked{fix_at(time_s, {0, 0})};
+    const std::vector<Eigen::Vector2d> predicted = modeling->lasting_errors(asked, graph);
+    REQUIRE(predicted.size() == 1);
+    INFO(time_s);
+    CHECK((predicted[0] - expected).norm() < 1e-6);
+  }
+  CHECK(registry.make_gnss_modeling("g1", {})->lasting_errors(known, graph).empty());
 }
 
 }  // namespace gnss_correlated_test

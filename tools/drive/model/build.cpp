@@ -88,6 +88,7 @@ BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor
                   accepted.nodes, sensors});
   BuiltGraph built;
   built.warnings = warnings_of_sensors_apart(sensors, builder.nodes());
+  built.modeling = builder.modeling();
   built.graph = std::move(builder.graph());
   return built;
 }

@@ -63,6 +63,8 @@ class GraphBuilder {
   [[nodiscard]] DriveNodes nodes() const { return {stamps_, poses_, intervals_}; }
   /// The graph so far. It may be optimised between two parts, and moved from after the last one.
   [[nodiscard]] Graph& graph() { return graph_; }
+  /// The model of the fixes, with what it keeps of the graph.
+  [[nodiscard]] std::shared_ptr<const GnssModeling> modeling() const { return modeling_; }
 
  private:
   void add_nodes(const DrivePart& part);
@@ -71,7 +73,7 @@ class GraphBuilder {
   std::optional<Loss> loss_;
   std::unique_ptr<OdometryModel> odometry_;
   SensorModels sensors_;
-  std::unique_ptr<GnssModeling> modeling_;
+  std::shared_ptr<GnssModeling> modeling_;
   Graph graph_;
   std::vector<Stamp> stamps_;
   std::vector<VertexIndex> poses_;
@@ -83,6 +85,7 @@ class GraphBuilder {
 struct BuiltGraph {
   Graph graph;                        ///< the pose of node i has the id i + 1
   std::vector<std::string> warnings;  ///< of the sensors
+  std::shared_ptr<const GnssModeling> modeling;
 };
 
 /// Builds the graph of the accepted fixes of a whole drive.

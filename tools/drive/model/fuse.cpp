@@ -77,6 +77,7 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   }
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
+  modeled.modeling = std::move(built.modeling);
   modeled.distance_m = distance_of(modeled.placed.timeline);
   formats::GraphDocument& document = modeled.document;
   document.graph = std::move(built.graph);

@@ -104,6 +104,24 @@ PosesAtWithheld dead_reckoned_at_withheld(const formats::GraphDocument& document
   return result;
 }
 
+PosesAtWithheld with_lasting_errors(const formats::GraphDocument& document, const GnssModeling& modeling,
+                                    std::span<const Eigen::Vector3d> poses) {
+  PosesAtWithheld result;
+  std::vector<Fix> withheld;
+  for (const Fix& fix : document.fixes)
+    if (fix.status == FixStatus::withheld) withheld.push_back(fix);
+  const std::vector<Eigen::Vector2d> errors = modeling.lasting_errors(withheld, document.graph);
+  if (errors.empty()) return result;
+  result.poses.resize(document.fixes.size());
+  auto error = errors.begin();
+  for (std::size_t i = 0; i < document.fixes.size(); ++i) {
+    if (document.fixes[i].status != FixStatus::withheld) continue;
+    result.poses[i] = poses[i];
+    result.poses[i]->head<2>() += *error++;
+  }
+  return result;
+}
+
 std::vector<WithheldRun> withheld_runs(std::span<const Fix> fixes) {
   std::vector<WithheldRun> runs;
   for (std::size_t i = 0; i < fixes.size(); ++i) {

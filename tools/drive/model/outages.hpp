@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/drive/modeling.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 
@@ -29,6 +30,15 @@ struct PosesAtWithheld {
 /// states are zero, its error is the negative of its measured motion. Fixes must be in order of
 /// time, as those of a drive are.
 [[nodiscard]] PosesAtWithheld dead_reckoned_at_withheld(const formats::GraphDocument& document);
+
+/// Predicts what the receiver will say, not where the vehicle is: the poses of the minimum, moved by the
+/// errors that the modeling expects of these fixes. Without poses if it expects none, as for white
+/// noise.
+/// @param document at its minimum @param modeling that built its graph
+/// @param poses at the fixes of the document, in their order
+[[nodiscard]] PosesAtWithheld with_lasting_errors(const formats::GraphDocument& document,
+                                                  const GnssModeling& modeling,
+                                                  std::span<const Eigen::Vector3d> poses);
 
 /// Fixes [begin, end) of a drive, all withheld, between fixes that are not withheld.
 struct WithheldRun {

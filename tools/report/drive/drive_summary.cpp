@@ -52,7 +52,9 @@ text::Table truth_table(const ReportedDrive& drive) {
 
 text::Table withheld_table(const evaluation::Evaluation& evaluation) {
   text::Table table{.title = "At withheld fixes", .columns = metrics_heading()};
-  table.notes = {"The numbers contain the noise of the fixes."};
+  table.notes = {
+      "The numbers contain the noise of the fixes. 'with lasting errors' predicts the fixes, all others "
+      "the antenna."};
   for (const evaluation::WithheldMetrics& way : evaluation.at_withheld) {
     table.rows.push_back(metrics_row(way.label, way.at_fixes));
     if (way.at_ends.count > 0)
