@@ -103,7 +103,7 @@ TEST_CASE("correlated: the lasting errors of other fixes are those of a Gaussian
   for (std::size_t i = 0; i < times.size(); ++i) known.push_back(fix_at(times[i], errors[i]));
   const auto modeling = registry.make_gnss_modeling("correlated", options);
   modeling->extend({known, std::vector<FixMoment>(known.size()), {0, 0}, std::nullopt}, graph);
-  REQUIRE(optimize(graph).converged());
+  REQUIRE(optimize(graph).summary.converged());
 
   const auto covariance = [](double a, double b) {
     const double bias = 0.8 * 0.8 + 1.5 * 1.5;
