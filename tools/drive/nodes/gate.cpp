@@ -195,7 +195,8 @@ void reject_frozen(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_r
 void reject_excursions(std::span<Fix> fixes, const ReckonedFixes& receiver) {
   for (const Jump& jump : jumps_of(receiver)) {
     if (!jump.undone) continue;
-    for (std::size_t i = jump.first; i < jump.end; ++i) reject(fixes[receiver.place[i]], "jump");
+    for (std::size_t i = receiver.place[jump.first]; i < receiver.place[jump.end]; ++i)
+      if (fixes[i].source == receiver.fixes.front().source) reject(fixes[i], "jump");
   }
 }
 
