@@ -123,6 +123,11 @@ TEST_CASE("gate: fixes between a jump and the jump back are rejected, also witho
   CHECK(there_and_back.rejected().front() == 50);
   CHECK(there_and_back.rejected().back() == 109);
 
+  // A block that is off by 30 m agrees in itself as well.
+  Scene block = circle(1, 10, 200);
+  for (std::size_t i = 50; i < 110; ++i) block.fixes[i].position += Eigen::Vector2d(0, 30);
+  CHECK(block.judge(off).reasons.at("jump") == 60);
+
   // Which of two places is wrong is not known if the fixes do not come back.
   Scene elsewhere = circle(1, 10, 200);
   for (std::size_t i = 50; i < 200; ++i) elsewhere.fixes[i].position += Eigen::Vector2d(60, -80);

@@ -143,8 +143,8 @@ Median median_with_sigma(std::vector<double> values) {
 }
 
 std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
-  constexpr double kSmallest_m = 50;
-  constexpr double kSigmas = 10;
+  constexpr double kSmallest_m = 20;
+  constexpr double kSigmas = 5;
   constexpr double kLongest_s = 5;
   std::vector<Jump> jumps;
   const std::vector<Fix>& fixes = receiver.fixes;

@@ -71,8 +71,8 @@ struct Jump {
   bool undone = false;
 };
 
-/// Finds jumps between fixes at most 5 s apart: their distance differs by 50 m or more, and by more
-/// than 10 sigmas of the fixes, from that of the odometry. For 10 s before and after, all fixes agree
+/// Finds jumps between fixes at most 5 s apart: their distance differs by 20 m or more, and by more
+/// than 5 sigmas of the fixes, from that of the odometry. For 10 s before and after, all fixes agree
 /// with the odometry within a quarter of that.
 [[nodiscard]] std::vector<Jump> jumps_of(const ReckonedFixes& receiver);
 

@@ -142,10 +142,14 @@ std::string in_words(const Jump& jump, const ReckonedFixes& receiver) {
 /// The words for jumps that name at most three of them. A jump back is named with the one it undoes.
 std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
   constexpr std::size_t kMost = 3;
+  constexpr double kLarge_m = 50;  // reflections make smaller ones that stay
   std::vector<std::string> sentences;
   const std::vector<Jump> jumps = jumps_of(receiver);
-  for (std::size_t i = 0; i < jumps.size(); ++i)
-    if (i == 0 || !jumps[i - 1].undone) sentences.push_back(in_words(jumps[i], receiver));
+  for (std::size_t i = 0; i < jumps.size(); ++i) {
+    const bool jumps_back = i > 0 && jumps[i - 1].undone;
+    if (!jumps_back && (jumps[i].undone || jumps[i].by.norm() >= kLarge_m))
+      sentences.push_back(in_words(jumps[i], receiver));
+  }
   if (sentences.size() > kMost) {
     const std::size_t more = sentences.size() - kMost;
     sentences.resize(kMost);

@@ -18,7 +18,7 @@ namespace waymark::drive {
 /// - The distances differ by a factor that is significant, and beyond 3 % (median over at least 10
 ///   chords of 100 m, compared with its own uncertainty).
 /// - Fixes repeat one position while the odometry moves (frozen_fixes.hpp).
-/// - The fixes jump by 50 m or more and stay there for 10 s or more.
+/// - The fixes jump by 50 m or more and stay there for 10 s or more, or by 20 m or more and back.
 /// @param fixes those of the first receiver are compared
 /// @param antenna dead-reckoned antenna poses at the fixes, in any frame, with headings that are not
 /// wrapped; same length and order as `fixes`

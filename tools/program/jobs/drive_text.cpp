@@ -26,10 +26,14 @@ std::string describe_model(const drive::ModeledDrive& modeled, const text::TextL
   std::string text;
   const drive::GateSummary& gate = modeled.placed.gate;
   std::string reasons;
-  for (const auto& [reason, count] : gate.reasons) reasons += fmt::format(" {} {}", reason, count);
+  for (const auto& [reason, count] : gate.reasons)
+    if (reason != "off") reasons += fmt::format(" {} {}", reason, count);
   if (*modeled.settings.gate.enabled) {
     text += fmt::format("gate        {} of {} fixes rejected ({:.1f} %):{}\n", gate.rejected,
                         gate.accepted + gate.rejected, gate.rejected_percent(), reasons);
+  } else if (gate.rejected > 0) {
+    text += fmt::format("gate        off: {} of {} fixes are used:{}\n", gate.accepted,
+                        gate.accepted + gate.rejected, reasons);
   } else {
     text += fmt::format("gate        off: all {} fixes are used\n", gate.accepted);
   }
