@@ -40,18 +40,23 @@ double disagreement(const ReckonedFixes& receiver, std::size_t first, std::size_
   return std::abs(pair.gnss.norm() - pair.odometry.norm());
 }
 
-/// Returns the fix 10 s before (step -1) or after (step 1) another one, if all between agree with the
-/// odometry. Empty if the log ends earlier.
-std::optional<std::size_t> settled(const ReckonedFixes& receiver, std::size_t from, int step,
-                                   double tolerance_m) {
+/// Returns the fix 10 s before (step -1) or after (step 1) another one. Empty if the log ends earlier.
+std::optional<std::size_t> fix_10_s_from(const ReckonedFixes& receiver, std::size_t from, int step) {
   constexpr double kSettled_s = 10;
   for (auto i = static_cast<std::ptrdiff_t>(from); i >= 0 && i < std::ssize(receiver.fixes); i += step) {
     const auto at = static_cast<std::size_t>(i);
-    if (disagreement(receiver, from, at) >= tolerance_m) return std::nullopt;
     if (std::abs(seconds_between(receiver.fixes[from].stamp, receiver.fixes[at].stamp)) >= kSettled_s)
       return at;
   }
   return std::nullopt;
+}
+
+/// Tells whether all fixes from `first` to `last` are as far from `from` as the odometry says.
+bool agree(const ReckonedFixes& receiver, std::size_t from, std::size_t first, std::size_t last,
+           double tolerance_m) {
+  for (std::size_t i = first; i <= last; ++i)
+    if (disagreement(receiver, from, i) >= tolerance_m) return false;
+  return true;
 }
 
 /// Returns the part of the chord before fix i that the odometry does not explain.
@@ -60,6 +65,28 @@ Eigen::Vector2d unexplained(const ReckonedFixes& receiver, std::size_t before, s
   const ChordPair way = chord(receiver, before, i - 1);
   const ChordPair step = chord(receiver, i - 1, i);
   return step.gnss - Eigen::Rotation2Dd(angle_between(way.odometry, way.gnss)) * step.odometry;
+}
+
+/// Returns the jump to fix i. Empty if there is none.
+std::optional<Jump> jump_to(const ReckonedFixes& receiver, std::size_t i) {
+  constexpr double kSmallest_m = 20;
+  constexpr double kSigmas = 5;
+  constexpr double kLongest_s = 5;
+  const std::vector<Fix>& fixes = receiver.fixes;
+  if (seconds_between(fixes[i - 1].stamp, fixes[i].stamp) > kLongest_s) return std::nullopt;
+  const double claimed_m = std::max(fixes[i].accuracy_m(), fixes[i - 1].accuracy_m());
+  const double least_m = std::max(kSmallest_m, kSigmas * claimed_m);
+  const ChordPair step = chord(receiver, i - 1, i);
+  if (step.gnss.norm() + step.odometry.norm() < least_m) return std::nullopt;
+  const std::optional<std::size_t> before = fix_10_s_from(receiver, i - 1, -1);
+  const std::optional<std::size_t> after = fix_10_s_from(receiver, i, 1);
+  if (!before || !after) return std::nullopt;
+  const Eigen::Vector2d by = unexplained(receiver, *before, i);
+  const double tolerance_m = 0.25 * by.norm();
+  if (by.norm() < least_m || !agree(receiver, i - 1, *before, i - 1, tolerance_m) ||
+      !agree(receiver, i, i, *after, tolerance_m))
+    return std::nullopt;
+  return Jump{i, fixes.size(), by, 0, false};
 }
 
 /// Tells whether the second of two jumps takes the fixes back.
@@ -143,21 +170,10 @@ Median median_with_sigma(std::vector<double> values) {
 }
 
 std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
-  constexpr double kSmallest_m = 20;
-  constexpr double kSigmas = 5;
-  constexpr double kLongest_s = 5;
-  std::vector<Jump> jumps;
   const std::vector<Fix>& fixes = receiver.fixes;
-  for (std::size_t i = 1; i < fixes.size(); ++i) {
-    if (seconds_between(fixes[i - 1].stamp, fixes[i].stamp) > kLongest_s) continue;
-    const double distance_m = disagreement(receiver, i - 1, i);
-    const double claimed_m = std::max(fixes[i].accuracy_m(), fixes[i - 1].accuracy_m());
-    if (distance_m < std::max(kSmallest_m, kSigmas * claimed_m)) continue;
-    const double tolerance_m = 0.25 * distance_m;
-    const std::optional<std::size_t> before = settled(receiver, i - 1, -1, tolerance_m);
-    if (!before || !settled(receiver, i, 1, tolerance_m)) continue;
-    jumps.push_back({i, fixes.size(), unexplained(receiver, *before, i), 0, false});
-  }
+  std::vector<Jump> jumps;
+  for (std::size_t i = 1; i < fixes.size(); ++i)
+    if (const std::optional<Jump> jump = jump_to(receiver, i)) jumps.push_back(*jump);
   for (std::size_t j = 0; j < jumps.size(); ++j) {
     const bool is_last = j + 1 == jumps.size();
     if (!is_last) jumps[j].end = jumps[j + 1].first;
