@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -92,18 +93,22 @@ struct GnssInput {
   /// One for each fix. A modeling without a time offset may leave them alone: the assumed offset is
   /// then 0, and FixMoment::antenna is `antenna`. May be empty for such a modeling.
   std::span<const FixMoment> moments;
-  Eigen::Vector2d antenna = {0, 0};  ///< antenna in the body frame, m
+  /// of the first fix in the body frame, m; all others have it too unless errors are shared
+  Eigen::Vector2d antenna = {0, 0};
   /// robust loss of the edges that carry the information of the fixes
   std::optional<Loss> loss = {};
   /// median_accuracy() of all fixes of the drive, of the ones so far if it grows; 0: of these fixes
   double median_accuracy_m = 0;
+  /// name of the source of these fixes; of the first one if several share their errors
+  std::string_view source = {};
 };
 
 /// Returns the median of the accuracies that accepted fixes claim (Fix::accuracy_m), in m. 0 if none
 /// claims any (Fix::accuracy_claimed).
 [[nodiscard]] double median_accuracy(std::span<const Fix> fixes);
 
-/// Connects poses and fixes (the paper's G1, G2, G3, and those of plugins).
+/// Connects poses and the fixes of one source (the paper's G1, G2, G3, and those of plugins). Several
+/// sources are served by one object only if they share their errors (GnssModelingType::shares_errors).
 class GnssModeling {
  public:
   virtual ~GnssModeling();
@@ -125,10 +130,11 @@ struct SensorInput {
   DriveNodes nodes;
   /// the next ones, only accepted ones, with course and speed of their receiver
   std::span<const Fix> fixes;
-  Eigen::Vector2d antenna = {0, 0};  ///< GNSS antenna in the body frame, m
+  Eigen::Vector2d antenna = {0, 0};  ///< antenna of the first receiver in the body frame, m
   /// the next readings of the sensor in SI units; empty if the type has no columns
   const SensorTable& readings;
   double grid_scale = 1;  ///< grid metres per metre on the ground, at the last fix before these
+  std::string_view source = {};  ///< name of the source that the readings are of
 };
 
 /// Connects poses with the readings of a further sensor: a compass, a scan matcher, a
@@ -164,6 +170,9 @@ struct GnssModelingType {
   /// drive has by default no gate, all calibration states and an estimated noise. Other drives have
   /// by default the gate of the paper, no calibration states, and the stated noise.
   bool complete = false;
+  /// Whether one object may serve several sources whose lasting errors are common, such as receivers
+  /// that see the same satellites. It then takes the antenna of each fix from its moment.
+  bool shares_errors = false;
 };
 
 /// A registered sensor. drive.yaml names it under `sensors`, and a log reader reads its columns.

@@ -94,7 +94,7 @@ struct Fix {
   double height_m = std::numeric_limits<double>::quiet_NaN();
   double grid_scale = 1;  ///< grid metres per metre on the ground at this place (UTM point scale)
   int epoch = 0;          ///< running number of the fix in the drive
-  int source = 0;         ///< index of the receiver
+  int source = 0;         ///< index of its source in the drive, a receiver
   VertexId vertex{-1};    ///< pose vertex at this epoch; -1 before the graph is built
 
   FixStatus status = FixStatus::accepted;
@@ -103,6 +103,7 @@ struct Fix {
   double chord_angle_rad = std::numeric_limits<double>::quiet_NaN();
   /// displacement error in the gate; NaN: not computed
   double displacement_m = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Vector2d antenna_m{0, 0};  ///< of its receiver in the body frame (x forward, y left)
 };
 
 /// A pose of the reference system in the metric frame.

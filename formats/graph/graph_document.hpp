@@ -29,18 +29,45 @@ struct VertexCovariance {
   Eigen::MatrixXd covariance;
 };
 
+/// Vertices by their ids, from the first to the last.
+struct VertexRange {
+  VertexId first{0};
+  VertexId last{0};
+
+  friend bool operator==(const VertexRange&, const VertexRange&) = default;
+};
+
+/// A source of a drive that has several: a receiver, an odometry, another sensor.
+struct DocumentSource {
+  std::string name;
+  std::string kind;                   ///< "gnss", "odometry", or the name of a sensor model
+  Eigen::Vector2d antenna_m{0, 0};    ///< of a receiver, body frame
+  std::vector<VertexRange> vertices;  ///< that it has added: its states
+};
+
 struct GraphDocument {
   Graph graph;
   std::optional<Frame> frame;
   TimeScale time_scale = TimeScale::gps;  ///< of all stamps
   /// key and text, in the order of writing
   std::vector<std::pair<std::string, std::string>> provenance;
-  Eigen::Vector2d antenna_m{0, 0};          ///< GNSS antenna in the body frame
+  Eigen::Vector2d antenna_m{0, 0};          ///< of the only receiver, body frame; see `sources`
   Eigen::Vector2d truth_reference_m{0, 0};  ///< reference point of the truth, in the body frame
   /// every fix of the drive, with the verdict of the gate
   std::vector<Fix> fixes;
   std::vector<VertexCovariance> covariances;  ///< for the vertices that were asked for
+  /// Sources if there are several; the n-th "gnss" is Fix::source n. Empty: one odometry, one receiver.
+  std::vector<DocumentSource> sources{};
 };
+
+/// Returns the sources of kind "gnss": Fix::source is the index.
+[[nodiscard]] std::vector<DocumentSource> receivers_of(const GraphDocument& document);
+
+/// Returns the name of the source that a vertex belongs to; empty if it belongs to none.
+[[nodiscard]] std::string source_of(VertexId vertex, const GraphDocument& document);
+
+/// Gives every fix the antenna of its receiver.
+void place_antennas(GraphDocument& document);
 
 /// Lines that a lenient reading skipped.
 struct ReadReport {

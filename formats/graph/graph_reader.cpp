@@ -18,7 +18,7 @@ constexpr std::size_t kMostTags = 64;
 constexpr std::int64_t kMaxArity = 1000;  // of a run-time-arity edge: 72 MB of information matrix
 
 constexpr std::string_view kOwnTags[] = {"GRAPH", "FRAME", "TIME", "PROVENANCE", "LEVER",
-                                         "TYPE",  "STAMP", "LOSS", "GNSS",       "COVARIANCE"};
+                                         "SOURCE", "STATES", "TYPE",  "STAMP", "LOSS", "GNSS",       "COVARIANCE"};
 constexpr std::string_view kToroTags[] = {"VERTEX2", "EDGE2", "VERTEX", "EDGE"};
 
 template <std::size_t N>
@@ -56,6 +56,7 @@ class GraphReader {
     }
     if (report_.edges_only) place_along_odometry();
     if (document_.graph.vertex_count() == 0) throw InputError(name_ + ": no vertices in it");
+    place_antennas(document_);
     return std::move(document_);
   }
 

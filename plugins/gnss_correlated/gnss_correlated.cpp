@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -61,9 +60,8 @@ class ProcessAlongFixes {
 
   /// Returns the vertex of a fix. Stamps must not decrease.
   [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
-    const VertexIndex last = last_.in(graph);
-    if (last >= 0 && since_ == stamp) return last;
-    states_.emplace(stamp, graph.free_id());
+    const VertexIndex last = states_.empty() ? -1 : states_.back().vertex.in(graph);
+    if (last >= 0 && states_.back().stamp == stamp) return last;
     const VertexIndex next = graph.add_vertex<V>(graph.free_id(), {0, 0});
     graph.set_stamp(next, stamp);
     if (last < 0) {
@@ -71,45 +69,48 @@ class ProcessAlongFixes {
                      Eigen::MatrixXd::Identity(2, 2) / variance_);
     } else {
       Decay edge;
-      edge.decay = std::exp(-seconds_between(since_, stamp) / time_s_);
+      edge.decay = decay_to(stamp, states_.back());
       graph.add_edge(edge, {last, next},
                      Eigen::Matrix2d::Identity() / (variance_ * (1 - edge.decay * edge.decay)));
     }
-    since_ = stamp;
-    return last_.keep(next, graph);
+    states_.push_back({stamp, {}});
+    return states_.back().vertex.keep(next, graph);
   }
 
   /// Returns the expectation between the states of the fixes, given all of them: the process has no
   /// memory beyond its neighbours.
   [[nodiscard]] Eigen::Vector2d expected(Stamp stamp, const Graph& minimum) const {
-    const auto after = states_.lower_bound(stamp);
-    const auto decayed = [&](auto state) {
-      return std::exp(-std::abs(seconds_between(state->first, stamp)) / time_s_);
-    };
-    if (after == states_.begin()) return decayed(after) * value(after->second, minimum);
+    const auto after =
+        std::lower_bound(states_.begin(), states_.end(), stamp,
+                         [](const State& state, Stamp moment) { return state.stamp < moment; });
+    if (after == states_.begin()) return decay_to(stamp, *after) * value(*after, minimum);
     const auto before = std::prev(after);
-    if (after == states_.end()) return decayed(before) * value(before->second, minimum);
-    const double a = decayed(before);
-    const double b = decayed(after);
-    return (a * (1 - b * b) * value(before->second, minimum) +
-            b * (1 - a * a) * value(after->second, minimum)) /
+    if (after == states_.end()) return decay_to(stamp, *before) * value(*before, minimum);
+    const double a = decay_to(stamp, *before);
+    const double b = decay_to(stamp, *after);
+    return (a * (1 - b * b) * value(*before, minimum) + b * (1 - a * a) * value(*after, minimum)) /
            (1 - a * a * b * b);
   }
 
  private:
-  [[nodiscard]] static Eigen::Vector2d value(VertexId id, const Graph& minimum) {
-    const auto numbers = minimum.value(*minimum.find(id));
+  struct State {
+    Stamp stamp;
+    KeptVertex vertex;
+  };
+  [[nodiscard]] double decay_to(Stamp stamp, const State& state) const {
+    return std::exp(-std::abs(seconds_between(state.stamp, stamp)) / time_s_);
+  }
+  [[nodiscard]] static Eigen::Vector2d value(const State& state, const Graph& minimum) {
+    const auto numbers = minimum.value(state.vertex.in(minimum));
     return {numbers[0], numbers[1]};
   }
 
   double variance_;
   double time_s_;
-  KeptVertex last_;
-  Stamp since_;
-  std::map<Stamp, VertexId> states_;
+  std::vector<State> states_;  ///< in order of time
 };
 
-/// The correlated errors of one receiver.
+/// The correlated errors of one receiver, or of several that share them.
 struct Receiver {
   ProcessAlongFixes<VertexGnssBias, EdgeGnssBiasDecay> bias;
   ProcessAlongFixes<VertexGnssMultipath, EdgeGnssMultipathDecay> multipath;
@@ -126,11 +127,10 @@ class GnssCorrelated final : public GnssModeling {
     std::vector<Eigen::Vector2d> errors;
     for (const Fix& fix : fixes) {
       errors.emplace_back(Eigen::Vector2d::Zero());
-      const auto receiver = receivers_.find(fix.source);
-      if (receiver == receivers_.end()) continue;
+      if (!receiver_) continue;
       const Eigen::Matrix2d root = relative_root(fix, median_m_, model_.accuracy_exponent);
-      errors.back() = receiver->second.bias.expected(fix.stamp, minimum) +
-                      model_.multipath_m * root * receiver->second.multipath.expected(fix.stamp, minimum);
+      errors.back() = receiver_->bias.expected(fix.stamp, minimum) +
+                      model_.multipath_m * root * receiver_->multipath.expected(fix.stamp, minimum);
     }
     return errors;
   }
@@ -144,10 +144,10 @@ class GnssCorrelated final : public GnssModeling {
     const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
     const double peak = model_.heavy_tails ? kStudentInformation : 1;
     median_m_ = input.median_accuracy_m > 0 ? input.median_accuracy_m : median_accuracy(input.fixes);
+    if (!receiver_) receiver_ = make_receiver(median_m_);
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const Eigen::Matrix2d root = relative_root(fix, median_m_, model_.accuracy_exponent);
-      Receiver& receiver = receivers_.try_emplace(fix.source, make_receiver(median_m_)).first->second;
       const VertexIndex pose = pose_vertex(fix, graph);
       EdgeGnssPositionCorrelated edge;
       edge.measured = fix.position;
@@ -158,7 +158,7 @@ class GnssCorrelated final : public GnssModeling {
       const Eigen::Matrix2d information = peak * (model_.white_m * model_.white_m * root * root).inverse();
       graph.add_edge(
           edge,
-          {origin, pose, offset, receiver.bias.at(fix.stamp, graph), receiver.multipath.at(fix.stamp, graph)},
+          {origin, pose, offset, receiver_->bias.at(fix.stamp, graph), receiver_->multipath.at(fix.stamp, graph)},
           0.5 * (information + information.transpose()), loss);
     }
   }
@@ -187,7 +187,7 @@ class GnssCorrelated final : public GnssModeling {
   double median_m_ = 0;  ///< claimed accuracy
   KeptVertex origin_;
   KeptVertex offset_;
-  std::map<int, Receiver> receivers_;
+  std::optional<Receiver> receiver_;
 };
 
 std::vector<OptionInfo> options() {
@@ -241,7 +241,7 @@ void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeGnssPositionCorrelated>();
   registry.add_gnss_modeling({"correlated",
                               "fixes with biases that last, heavy-tailed noise and a latency (the default)",
-                              options(), make, true});
+                              options(), make, true, true});
 }
 
 }  // namespace

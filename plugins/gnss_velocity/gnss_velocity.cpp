@@ -56,20 +56,19 @@ class GnssVelocity final : public SensorModel {
       if (!place) continue;
       const Interval& motion = motion_at(input.nodes, place->node);
       if (std::abs(motion.speed_mps) < min_speed_) continue;
-      if (uses_course_ && fix.heading_rad) add_course(input, fix, *place, motion, graph);
+      if (uses_course_ && fix.heading_rad) add_course(fix, *place, motion, graph);
       if (uses_speed_ && fix.speed_mps) add_speed(input, fix, place->node, graph);
     }
   }
 
  private:
-  void add_course(const SensorInput& input, const Fix& fix, const ReadingPlace& place, const Interval& motion,
-                  Graph& graph) const {
+  void add_course(const Fix& fix, const ReadingPlace& place, const Interval& motion, Graph& graph) const {
     const double sigma = fix.heading_sigma_rad.value_or(course_sigma_);
     EdgeGnssCourse edge;
     edge.course = wrap_angle(*fix.heading_rad - place.ahead.heading);
     edge.speed = motion.speed_mps;
     edge.yaw_rate = motion.yaw_rate_radps;
-    edge.antenna = input.antenna;
+    edge.antenna = fix.antenna_m;
     graph.add_edge(edge, {place.pose}, Eigen::Matrix<double, 1, 1>(1 / (sigma * sigma)));
   }
 
@@ -84,7 +83,7 @@ class GnssVelocity final : public SensorModel {
     EdgeGnssSpeed edge;
     edge.speed = fix.grid_scale * *fix.speed_mps;
     edge.dt = dt;
-    edge.antenna = input.antenna;
+    edge.antenna = fix.antenna_m;
     const double sigma_m = fix.speed_sigma_mps.value_or(speed_sigma_) * dt;
     graph.add_edge(edge, {nodes.poses[from], nodes.poses[to]},
                    Eigen::Matrix<double, 1, 1>(1 / (sigma_m * sigma_m)));

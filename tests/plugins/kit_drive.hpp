@@ -139,6 +139,7 @@ inline waymark::Options odometry_options(const KitRecipe& recipe) {
       fix.position = truth.position + rotate(truth.heading, recipe.antenna_m);
       fix.position += Eigen::Vector2d(noise(recipe.fix_sigma_m), noise(recipe.fix_sigma_m));
       fix.vertex = VertexId(i);
+      fix.antenna_m = recipe.antenna_m;
       drive.fixes.push_back(fix);
     }
     if (i + 1 == count) break;

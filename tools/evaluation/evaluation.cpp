@@ -21,7 +21,9 @@ void check(const EvaluationInput& input) {
   if (!input.position_covariances.empty() && input.position_covariances.size() != n)
     throw UsageError(
         fmt::format("evaluate: {} covariances for {} poses", input.position_covariances.size(), n));
-  if (!input.antenna_m.allFinite() || !input.truth_reference_m.allFinite())
+  const bool levers = std::all_of(input.fixes.begin(), input.fixes.end(),
+                                  [](const Fix& fix) { return fix.antenna_m.allFinite(); });
+  if (!levers || !input.truth_reference_m.allFinite())
     throw UsageError("evaluate: a lever arm is not finite");
   for (std::size_t i = 0; i < n; ++i) {
     const Stamp stamp = input.fixes[i].stamp;
@@ -57,7 +59,7 @@ const Eigen::Vector3d& pose_when_measured(const EvaluationInput& input, std::siz
 /// Returns the position of the antenna of fix i by the fused trajectory.
 Eigen::Vector2d predicted_antenna(const EvaluationInput& input, std::size_t i) {
   const Eigen::Vector3d& pose = pose_when_measured(input, i);
-  return pose.head<2>() + rotate(pose[2], input.antenna_m);
+  return pose.head<2>() + rotate(pose[2], input.fixes[i].antenna_m);
 }
 
 /// The offsets of one system over the epochs.
@@ -89,7 +91,7 @@ void compare_with_truth(const EvaluationInput& input, std::size_t i, const Truth
   const Eigen::Vector3d& fused = input.fused[i].pose;
   const double heading = truth.heading_rad.value_or(fused[2]);
   const Eigen::Vector2d truth_body = truth.position - rotate(heading, input.truth_reference_m);
-  const Eigen::Vector2d gnss_body = input.fixes[i].position - rotate(heading, input.antenna_m);
+  const Eigen::Vector2d gnss_body = input.fixes[i].position - rotate(heading, input.fixes[i].antenna_m);
   result.gnss_offset_m = gnss_body - truth_body;
   result.fused_offset_m = fused.head<2>() - truth_body;
   if (truth.heading_rad) result.heading_error_rad = wrap_angle(fused[2] - *truth.heading_rad);
@@ -193,7 +195,7 @@ void compare_at_withheld(const EvaluationInput& input, Evaluation& evaluation) {
   if (evaluation.withheld == 0) return;
   evaluation.outages = outage_ends(input.fixes).size();
   const auto add = [&](const Prediction& prediction) {
-    evaluation.at_withheld.push_back(withheld_metrics(prediction, input.fixes, input.antenna_m));
+    evaluation.at_withheld.push_back(withheld_metrics(prediction, input.fixes));
   };
   add(fused_prediction(input));
   for (const Prediction& prediction : input.predictions) add(prediction);

@@ -35,7 +35,6 @@ struct EvaluationInput {
   std::vector<Eigen::Vector3d> when_measured;
   std::vector<Fix> fixes;                   ///< all fixes of the drive, whatever their status
   std::vector<TruthPose> truth;             ///< empty: no truth
-  Eigen::Vector2d antenna_m{0, 0};          ///< GNSS antenna in the body frame (x forward, y left)
   Eigen::Vector2d truth_reference_m{0, 0};  ///< truth reference point in the body frame
   /// Covariances of the fused positions, m^2, frame axes; empty or one per pose.
   std::vector<Eigen::Matrix2d> position_covariances;

@@ -46,12 +46,12 @@ std::vector<Stamp> fix_stamps(const drive::PreparedDrive& drive) {
   return stamps;
 }
 
-/// Returns the antenna position of a truth. Without a heading, antenna and reference point are
+/// Returns the true position of the antenna of a fix. Without a heading, antenna and reference point are
 /// taken as the same point.
-Eigen::Vector2d truth_antenna(const TruthPose& truth, const drive::PreparedDrive& drive) {
+Eigen::Vector2d truth_antenna(const TruthPose& truth, const Fix& fix, const drive::PreparedDrive& drive) {
   if (!truth.heading_rad) return truth.position;
   return truth.position +
-         Eigen::Rotation2Dd(*truth.heading_rad) * (drive.antenna_m - drive.truth_reference_m);
+         Eigen::Rotation2Dd(*truth.heading_rad) * (fix.antenna_m - drive.truth_reference_m);
 }
 
 void judge_gnss(const drive::PreparedDrive& drive, DriveStatistics& statistics) {
@@ -62,7 +62,7 @@ void judge_gnss(const drive::PreparedDrive& drive, DriveStatistics& statistics) 
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (!match.at[i]) continue;
     matched.push_back(stamps[i]);
-    offsets.push_back(drive.fixes[i].position - truth_antenna(match.at[i]->pose, drive));
+    offsets.push_back(drive.fixes[i].position - truth_antenna(match.at[i]->pose, drive.fixes[i], drive));
   }
   statistics.gnss = evaluation::position_metrics(offsets);
   statistics.autocorrelation =
@@ -152,7 +152,7 @@ DriveStatistics drive_statistics(const drive::PreparedDrive& drive, const drive:
   const std::vector<Eigen::Vector3d> reckoned =
       drive::dead_reckon(timeline, Eigen::Vector3d::Zero(), kStandstill);
   const drive::GateSummary gated =
-      drive::apply_gate(fixes, drive::antenna_at_fixes(timeline, reckoned, drive.antenna_m), gate);
+      drive::apply_gate(fixes, drive::antenna_at_fixes(timeline, reckoned, fixes), gate);
   statistics.rejected = gated.rejected;
   statistics.rejected_percent = gated.rejected_percent();
   if (drive.truth.empty()) return statistics;

@@ -32,6 +32,10 @@ bool OwnStatements::read_header(LineScanner& line, std::string_view tag) {
     document_.provenance.emplace_back(key, std::string(line.rest()));
   } else if (tag == "LEVER") {
     read_lever(line);
+  } else if (tag == "SOURCE") {
+    read_source(line);
+  } else if (tag == "STATES") {
+    read_states(line);
   } else if (tag == "TYPE") {
     check_type(line);
   } else {
@@ -66,6 +70,32 @@ void OwnStatements::read_lever(LineScanner& line) {
   lever[0] = line.number({"LEVER", "x"});
   lever[1] = line.number({"LEVER", "y"});
   line.end("LEVER");
+}
+
+void OwnStatements::read_source(LineScanner& line) {
+  DocumentSource source;
+  source.name = line.word();
+  source.kind = line.word();
+  if (source.kind.empty()) line.fail("SOURCE: expected a name and a kind");
+  only_once(line, "SOURCE " + source.name);
+  source.antenna_m[0] = line.number({"SOURCE", "x"});
+  source.antenna_m[1] = line.number({"SOURCE", "y"});
+  line.end("SOURCE");
+  document_.sources.push_back(std::move(source));
+}
+
+void OwnStatements::read_states(LineScanner& line) {
+  const std::string name(line.word());
+  const auto source = std::find_if(document_.sources.begin(), document_.sources.end(),
+                                   [&](const DocumentSource& known) { return known.name == name; });
+  if (source == document_.sources.end())
+    line.fail("STATES: there is no SOURCE " + quote_word(name) + " above this line");
+  VertexRange range;
+  range.first = VertexId{line.integer({"STATES", "first"})};
+  range.last = VertexId{line.integer({"STATES", "last"})};
+  if (range.last < range.first) line.fail("STATES: the last id is below the first");
+  line.end("STATES");
+  source->vertices.push_back(range);
 }
 
 void OwnStatements::check_type(LineScanner& line) const {

@@ -31,6 +31,8 @@ class OwnStatements {
   void read_covariance(LineScanner& line);
   void read_time(LineScanner& line);
   void read_lever(LineScanner& line);
+  void read_source(LineScanner& line);
+  void read_states(LineScanner& line);
   void check_type(LineScanner& line) const;
   /// Refuses a second line of a statement that holds for the whole file.
   void only_once(LineScanner& line, const std::string& statement);

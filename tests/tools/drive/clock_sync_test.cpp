@@ -145,7 +145,7 @@ TEST_CASE("sync: Aarhus' fixes lag the speed of its OBD by 0.4 s") {
   if (!data) return;
   DriveDescription description =
       load_drive_file(waymark_test::source_dir() + "/examples/drives/aarhus_horsens.yaml", *data).description;
-  description.gnss_delay_s = 0;
+  description.gnss.front().delay_s = 0;
   TypeRegistry registry;
   register_log_readers(registry);
   const SyncReport report = estimate_clock_offsets(load_drive(description, registry), {});

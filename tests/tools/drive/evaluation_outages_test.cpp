@@ -203,14 +203,15 @@ TEST_CASE("outages: an outage is a run of withheld epochs") {
 }
 
 TEST_CASE("outages: errors at withheld fixes and at the end of each outage") {
-  const std::vector<Fix> fixes = fixes_of("awwaw");
+  std::vector<Fix> fixes = fixes_of("awwaw");
+  for (Fix& fix : fixes) fix.antenna_m = {1, 0};
   Prediction prediction{.label = "drifting", .poses = {}, .position_covariances = {}};
   for (const Fix& fix : fixes)  // off to the left by 2 m per second; heading north, the antenna 1 m ahead
     prediction.poses.emplace_back(
         Eigen::Vector3d(fix.position.x(), 2.0 * fix.epoch - 1, std::numbers::pi / 2));
   prediction.position_covariances.assign(5, Eigen::Matrix2d(12 * Eigen::Matrix2d::Identity()));
   prediction.position_covariances[4].reset();
-  const WithheldMetrics w = withheld_metrics(prediction, fixes, {1, 0});
+  const WithheldMetrics w = withheld_metrics(prediction, fixes);
   CHECK(w.label == "drifting");
   CHECK(w.at_fixes.count == 3);
   CHECK(w.at_fixes.median_m == Approx(4));
@@ -221,9 +222,9 @@ TEST_CASE("outages: errors at withheld fixes and at the end of each outage") {
   CHECK(w.innovation.mean == Approx((4.0 + 16.0) / 16 / 2));
 
   prediction.poses[1].reset();
-  CHECK(withheld_metrics(prediction, fixes, {1, 0}).at_fixes.count == 2);
+  CHECK(withheld_metrics(prediction, fixes).at_fixes.count == 2);
   prediction.poses.pop_back();
-  CHECK_THROWS_AS(withheld_metrics(prediction, fixes, {1, 0}), UsageError);
+  CHECK_THROWS_AS(withheld_metrics(prediction, fixes), UsageError);
 }
 
 }  // namespace evaluation_outages_test

@@ -89,9 +89,7 @@ void add_part(std::size_t begin, std::size_t end, const PlacedDrive& placed,
 
 GraphBuilder grown(const PlacedDrive& placed, const std::vector<PreparedSensor>& sensors,
                    const FusionSettings& settings, std::size_t nodes_per_part) {
-  GraphBuilder builder(
-      {placed.antenna_m, placed.time_offset_s, placed.gap_noise_factor, median_accuracy(placed.fixes)},
-      sensors, settings, registry());
+  GraphBuilder builder(facts_of(placed, settings), sensors, settings, registry());
   const std::size_t nodes = placed.timeline.stamps.size();
   const std::size_t first = std::max<std::size_t>(nodes_per_part, 2);  // with an interval
   add_part(0, first, placed, sensors, builder);

@@ -273,7 +273,7 @@ TEST_CASE("fuse: modelings that agree on gate and guess share them, and give wha
 
 TEST_CASE("fuse: the gate, the lever arm and the guess are those of the settings, not of the one before") {
   PreparedDrive drive = make_drive({}, 7);
-  drive.antenna_m = {1, 0};
+  for (Fix& fix : drive.fixes) fix.antenna_m = {1, 0};
   Fusion fusion(drive, registry());
   FusionSettings settings;
   settings.modeling = "g1";

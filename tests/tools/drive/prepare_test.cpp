@@ -54,9 +54,9 @@ GeodeticTruth truth_at(double t) {
 /// Ten seconds of odometry at 10 Hz from t = 100 s, fixes at 101, 102, ... 108 s.
 DriveLogs small_drive() {
   DriveLogs logs;
-  logs.odometry.resize(1);
-  logs.odometry.front().file = "odometry.csv";
-  for (int i = 0; i <= 100; ++i) logs.odometry.front().data.odometry.push_back(odometry_at(100 + 0.1 * i));
+  logs.odometry.assign(1, std::vector<DriveLogs::Log>(1));
+  logs.odometry.front().front().file = "odometry.csv";
+  for (int i = 0; i <= 100; ++i) logs.odometry.front().front().data.odometry.push_back(odometry_at(100 + 0.1 * i));
   logs.gnss.emplace_back();
   logs.gnss[0].file = "gnss.csv";
   for (int i = 1; i <= 8; ++i) logs.gnss[0].data.fixes.push_back(fix_at(100 + i));
@@ -92,7 +92,7 @@ TEST_CASE("prepare: a clean drive passes whole") {
 
 TEST_CASE("prepare: disorder, repetition, garbage and reversing are counted") {
   DriveLogs logs = small_drive();
-  auto& odometry = logs.odometry.front().data.odometry;
+  auto& odometry = logs.odometry.front().front().data.odometry;
   std::swap(odometry[10], odometry[11]);
   odometry.push_back(odometry_at(100.5));         // identical to an earlier one, and out of order
   odometry.push_back(odometry_at(100.6, 7));      // conflicting: the first is kept
@@ -137,7 +137,7 @@ TEST_CASE("prepare: two receivers may speak at one stamp: one epoch, two fixes")
 
 TEST_CASE("prepare: a gap is longer than four usual intervals of the odometry, unless its length is stated") {
   DriveLogs logs = small_drive();
-  std::vector<OdometrySample>& odometry = logs.odometry.front().data.odometry;
+  std::vector<OdometrySample>& odometry = logs.odometry.front().front().data.odometry;
   const double start_s = odometry.front().stamp.seconds();
   std::erase_if(odometry, [&](const OdometrySample& s) {
     const double second = s.stamp.seconds() - start_s;
@@ -157,7 +157,7 @@ TEST_CASE("prepare: a gap is longer than four usual intervals of the odometry, u
 
 TEST_CASE("prepare: gaps are named") {
   DriveLogs logs = small_drive();
-  std::erase_if(logs.odometry.front().data.odometry, [](const OdometrySample& s) {
+  std::erase_if(logs.odometry.front().front().data.odometry, [](const OdometrySample& s) {
     return s.stamp.seconds() > 103.05 && s.stamp.seconds() < 104.95;
   });
   std::erase_if(logs.gnss[0].data.fixes,
@@ -188,7 +188,8 @@ TEST_CASE("prepare: window and delay") {
   CHECK(drive.fixes.size() == 4);  // 102 .. 105
   CHECK(drive.report.odometry_outside_window == 70);
 
-  description.gnss_delay_s = 0.25;  // stamped late: each happened a quarter second before
+  description.gnss.resize(1);
+  description.gnss.front().delay_s = 0.25;  // stamped late: each happened a quarter second before
   drive = prepare_drive(small_drive(), description);
   REQUIRE(drive.fixes.size() == 3);
   CHECK(drive.fixes[0].stamp.nanoseconds == 102'750'000'000);
@@ -201,14 +202,15 @@ TEST_CASE("prepare: thinning keeps the fix nearest to each whole multiple of the
   // 5 Hz as of a receiver whose epochs straddle the second: .9 and .1 are equally near, the earlier wins.
   for (int i = 0; i < 18; ++i) fixes.push_back(fix_at(100.9 + 0.2 * i));
   DriveDescription description = small_description();
-  description.gnss_period_s = 1;
+  description.gnss.resize(1);
+  description.gnss.front().period_s = 1;
   PreparedDrive drive = prepare_drive(logs, description);
   REQUIRE(drive.fixes.size() == 4);
   for (std::size_t i = 0; i < 4; ++i)
     CHECK(drive.fixes[i].stamp == Stamp::from_seconds(100.9 + static_cast<double>(i)));
   CHECK(drive.report.fixes_thinned == 14);
 
-  description.gnss_period_s = 0.5;
+  description.gnss.front().period_s = 0.5;
   drive = prepare_drive(logs, description);
   CHECK(drive.fixes.size() == 8);
   CHECK(drive.fixes[1].stamp == Stamp::from_seconds(101.5));
@@ -216,7 +218,8 @@ TEST_CASE("prepare: thinning keeps the fix nearest to each whole multiple of the
 
 TEST_CASE("prepare: every n-th epoch is withheld") {
   DriveDescription description = small_description();
-  description.withhold_every = 3;
+  description.gnss.resize(1);
+  description.gnss.front().withhold_every = 3;
   const PreparedDrive drive = prepare_drive(small_drive(), description);
   CHECK(drive.report.fixes_withheld == 2);
   for (const Fix& fix : drive.fixes) {
@@ -228,10 +231,10 @@ TEST_CASE("prepare: every n-th epoch is withheld") {
 
 TEST_CASE("prepare: logs on other scales are converted, which needs dates") {
   DriveLogs logs;
-  logs.odometry.resize(1);
-  logs.odometry.front().scale = TimeScale::gps;
-  logs.odometry.front().file = "odometry.csv";
-  for (int i = 0; i < 30; ++i) logs.odometry.front().data.odometry.push_back(odometry_at(1'200'000'000 + i));
+  logs.odometry.assign(1, std::vector<DriveLogs::Log>(1));
+  logs.odometry.front().front().scale = TimeScale::gps;
+  logs.odometry.front().front().file = "odometry.csv";
+  for (int i = 0; i < 30; ++i) logs.odometry.front().front().data.odometry.push_back(odometry_at(1'200'000'000 + i));
   logs.gnss.emplace_back();
   logs.gnss[0].scale = TimeScale::utc;
   logs.gnss[0].data.fixes.push_back(fix_at(1'200'000'000 + 315'964'800 - 18 + 5));  // 18 leap seconds in 2018
@@ -248,7 +251,7 @@ TEST_CASE("prepare: logs on other scales are converted, which needs dates") {
 
 TEST_CASE("prepare: what cannot become a drive says why and what to do") {
   DriveLogs logs = small_drive();
-  logs.odometry.front().data.odometry.resize(1);
+  logs.odometry.front().front().data.odometry.resize(1);
   CHECK_THROWS_MATCHES(prepare_drive(logs, small_description()), InputError,
                        Message("odometry.csv: 1 usable odometry samples; at least 2 are needed"));
   logs = small_drive();
@@ -281,9 +284,9 @@ TEST_CASE("prepare: reading the logs of a description") {
   DriveDescription description = small_description();
   CHECK_THROWS_MATCHES(load_drive(description, registry_with_readers()), InputError,
                        Message("drive.yaml: no odometry log is named"));
-  description.odometry.emplace_back();
-  description.odometry.front().place = "drive.yaml:2:3: ";
-  description.odometry.front().format = "cvs";
+  LogConfig& log = description.odometry.emplace_back().logs.emplace_back();
+  log.place = "drive.yaml:2:3: ";
+  log.format = "cvs";
   CHECK_THROWS_MATCHES(
       load_drive(description, registry_with_readers()), InputError,
       Message("drive.yaml:2:3: unknown log format 'cvs'; did you mean 'csv'?; `waymark info` lists "

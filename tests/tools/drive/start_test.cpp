@@ -40,9 +40,8 @@ struct SyntheticDrive {
   Timeline timeline;
   std::vector<Fix> fixes;
   std::vector<Eigen::Vector3d> truth;  ///< of the nodes, unwrapped
-  Eigen::Vector2d antenna_m{0, 0};
 
-  [[nodiscard]] Start anchored() const { return anchored_start(timeline, fixes, antenna_m, kStandstill); }
+  [[nodiscard]] Start anchored() const { return anchored_start(timeline, fixes, kStandstill); }
 };
 
 SyntheticDrive simulate(const Motion& motion, const Settings& settings) {
@@ -54,10 +53,10 @@ SyntheticDrive simulate(const Motion& motion, const Settings& settings) {
     odometry.push_back({.stamp = Stamp::from_seconds(t), .speed_mps = speed, .yaw_rate_radps = yaw_rate});
   }
   SyntheticDrive drive;
-  drive.antenna_m = settings.antenna_m;
   for (int i = 0; i * settings.fix_period_s < settings.duration_s; ++i) {
     Fix fix;
     fix.stamp = Stamp::from_seconds(i * settings.fix_period_s);
+    fix.antenna_m = settings.antenna_m;
     drive.fixes.push_back(fix);
   }
   drive.timeline = build_timeline(odometry, drive.fixes, {});
@@ -164,7 +163,7 @@ TEST_CASE("start: windings across a stop come from the odometry") {
 TEST_CASE("start: headings are wrapped to half a turn either way") {
   const SyntheticDrive drive = simulate([](double) { return std::pair(8.0, 0.2); }, {});
   for (const Start& start :
-       {drive.anchored(), dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill)})
+       {drive.anchored(), dead_reckoning_start(drive.timeline, drive.fixes, kStandstill)})
     for (const Eigen::Vector3d& pose : start.poses)
       REQUIRE((pose[2] > -std::numbers::pi && pose[2] <= std::numbers::pi));
 }
@@ -226,7 +225,7 @@ TEST_CASE("start: the antenna's lever arm is taken off") {
   settings.fix_sigma_m = 0.1;
   const SyntheticDrive drive = simulate(city(false), settings);
   CHECK(worst_position_m(drive, drive.anchored()) < 3);
-  const Start start = dead_reckoning_start(drive.timeline, drive.fixes, drive.antenna_m, kStandstill);
+  const Start start = dead_reckoning_start(drive.timeline, drive.fixes, kStandstill);
   CHECK((start.poses[0] - drive.truth[0]).head<2>().norm() < 3);
 }
 
@@ -253,7 +252,7 @@ TEST_CASE("start: a drive that never moves starts at its fixes and says so") {
   const Start start = drive.anchored();
   CHECK_THAT(start.note, Catch::Contains("do not determine the heading"));
   CHECK(worst_position_m(drive, start) < 1);
-  CHECK_FALSE(dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill).note.empty());
+  CHECK_FALSE(dead_reckoning_start(drive.timeline, drive.fixes, kStandstill).note.empty());
 }
 
 TEST_CASE("start: the paper's start lies on the first accepted fix along its first long chord") {
@@ -262,15 +261,15 @@ TEST_CASE("start: the paper's start lies on the first accepted fix along its fir
   SyntheticDrive drive = simulate(city(true), settings);
   drive.fixes[0].status = FixStatus::rejected;
   drive.fixes[0].position += Eigen::Vector2d(500, 0);
-  const Start start = dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill);
+  const Start start = dead_reckoning_start(drive.timeline, drive.fixes, kStandstill);
   CHECK(worst_heading_deg(drive, start) < 1e-6);
   CHECK(worst_position_m(drive, start) < 1e-6);
   CHECK(start.note.empty());
 
   drive.fixes[1].heading_rad = drive.truth[drive.timeline.fix_node[1]][2] + 0.5;
-  const Start course = dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill);
+  const Start course = dead_reckoning_start(drive.timeline, drive.fixes, kStandstill);
   CHECK(worst_heading_deg(drive, course) == Approx(0.5 / kDegree));
-  CHECK(make_start(drive.timeline, drive.fixes, {0, 0}, kStandstill, {StartMethod::dead_reckoning}).poses ==
+  CHECK(make_start(drive.timeline, drive.fixes, kStandstill, {StartMethod::dead_reckoning}).poses ==
         course.poses);
 }
 
@@ -278,7 +277,7 @@ TEST_CASE("start: without an accepted fix there is no start") {
   SyntheticDrive drive = simulate(city(true), {});
   for (Fix& fix : drive.fixes) fix.status = FixStatus::rejected;
   CHECK_THROWS_AS(drive.anchored(), InputError);
-  CHECK_THROWS_AS(dead_reckoning_start(drive.timeline, drive.fixes, {0, 0}, kStandstill), InputError);
+  CHECK_THROWS_AS(dead_reckoning_start(drive.timeline, drive.fixes, kStandstill), InputError);
   drive.fixes.pop_back();
   CHECK_THROWS_AS(drive.anchored(), UsageError);
 }

@@ -163,10 +163,11 @@ TEST_CASE("timeline: speeds are multiplied by the grid scale of the nearest fix"
 }
 
 TEST_CASE("timeline: the antenna at a fix turns with the body") {
-  const std::vector<Fix> fixes{fix_at(2.05), fix_at(5)};
+  std::vector<Fix> fixes{fix_at(2.05), fix_at(5)};
+  fixes[1].antenna_m = {2, 0.5};
   const Timeline timeline = build_timeline(constant_twist(10, 5, 0.3), fixes, {});
   const auto poses = dead_reckon(timeline, {1, 2, 3}, 0.05);
-  const auto antennas = antenna_at_fixes(timeline, poses, {2, 0.5});
+  const auto antennas = antenna_at_fixes(timeline, poses, fixes);
   REQUIRE(antennas.size() == 2);
   const Eigen::Vector3d body = poses[timeline.fix_node[1]];
   CHECK(antennas[1][0] == Approx(body[0] + 2 * std::cos(body[2]) - 0.5 * std::sin(body[2])));

@@ -94,9 +94,9 @@ TEST_CASE("lever arms: everything is compared at the body point") {
   // Body at the origin heading north; antenna 1 m ahead and 0.5 m left, truth reference 2 m behind.
   const bool truth_heading = GENERATE(true, false);
   EvaluationInput input;
-  input.antenna_m = {1, 0.5};
   input.truth_reference_m = {-2, 0};
   input.fixes = {fix_at(0, -0.5, 1), fix_at(1, -0.5, 11)};
+  for (Fix& fix : input.fixes) fix.antenna_m = {1, 0.5};
   input.fused = {pose_at(0, 0, 0, kNorth), pose_at(1, 0, 10, kNorth + 4 * std::numbers::pi)};
   const auto heading = truth_heading ? std::optional<double>(kNorth) : std::nullopt;
   input.truth = {truth_at(0, 0, -2, heading), truth_at(1, 0, 8, heading)};
@@ -110,8 +110,8 @@ TEST_CASE("lever arms: everything is compared at the body point") {
 
 TEST_CASE("evaluation: the truth's heading moves the raw fix where both headings are known") {
   EvaluationInput input;
-  input.antenna_m = {1, 0};
   input.fixes = {fix_at(0, 1, 0)};
+  for (Fix& fix : input.fixes) fix.antenna_m = {1, 0};
   input.fused = {pose_at(0, 0, 0, kNorth)};  // wrong by 90 degrees
   input.truth = {truth_at(0, 0, 0, 0.0)};
   CHECK(evaluate(input).truth->gnss.position.max_m == Approx(0).margin(1e-12));
@@ -121,9 +121,9 @@ TEST_CASE("evaluation: the truth's heading moves the raw fix where both headings
 
 TEST_CASE("evaluation: error at withheld fixes, at the antenna") {
   EvaluationInput input;
-  input.antenna_m = {2, 0};
   input.fixes = {fix_at(0, 2, 0), fix_at(1, 5, 0, FixStatus::withheld),
                  fix_at(2, 12, 4, FixStatus::withheld)};
+  for (Fix& fix : input.fixes) fix.antenna_m = {2, 0};
   input.fused = {pose_at(0, 0, 0, 0), pose_at(1, 0, 0, 0), pose_at(2, 10, 0, 0)};
   const Evaluation e = evaluate(input);
   CHECK_FALSE(e.truth);

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/description/log_config.hpp>
+#include <waymark/tools/drive/description/source_entries.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -20,16 +22,6 @@ constexpr NumberRule kRate{1e-3, 1000, "a rate in Hz from 0.001 to 1000"};
 constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
 constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
 constexpr NumberRule kWithhold{0, 1e9, "0 (none) or a whole number from 2"};
-
-/// The content of a gnss entry besides its log.
-struct Receiver {
-  Eigen::Vector2d antenna_m{0, 0};
-  double period_s = 0;
-  double delay_s = 0;
-  int withhold_every = 0;
-
-  friend bool operator==(const Receiver&, const Receiver&) = default;
-};
 
 void read_time(const YamlSection& top, DriveDescription& drive) {
   const auto time = top.section("time", {"scale", "from", "to"});
@@ -71,16 +63,6 @@ void read_frame(const YamlSection& top, DriveDescription& drive) {
   drive.utm_origin = origin;
 }
 
-std::vector<YAML::Node> entries_of(const YAML::Node& node) {
-  std::vector<YAML::Node> entries;
-  if (node.IsSequence()) {
-    for (const auto& entry : node) entries.push_back(entry);
-  } else {
-    entries.push_back(node);
-  }
-  return entries;
-}
-
 void read_assembly(const YamlSection& section, OdometryAssembly& assembly) {
   section.read("rate", assembly.rate_hz, kRate);
   if (const auto word = section.read_word("speed_from", kSpeedSources))
@@ -110,38 +92,28 @@ bool names_channels(const YamlSection& section) {
   });
 }
 
-void read_odometry(const YamlSection& top, DriveDescription& drive) {
-  if (!top.has("odometry")) throw InputError(top.place() + "'odometry' is missing");
-  const YamlSection section(top.node("odometry"), "odometry", top.file(),
-                            log_keys({"parts", "rate", "speed_from", "yaw_rate_from", "gyro", "vehicle",
-                                      "speed_delay", "yaw_rate_delay", "model", "options"}));
+OdometryConfig read_odometry(const YamlSection& section, std::string name, const DriveDescription& drive) {
+  OdometryConfig odometry;
+  odometry.name = std::move(name);
   const auto read_log = [&](const YamlSection& from, bool in_channels) {
     LogRequest request;
     request.stream = StreamKind::odometry;
     if (in_channels) request.readings = formats::odometry_channels();
-    drive.odometry.push_back(read_log_config(from, request, drive.folder, drive.scale()));
+    odometry.logs.push_back(read_log_config(from, request, drive.folder, drive.scale()));
   };
   if (section.has("parts")) {
     if (section.has("file")) section.fail("file", "give either 'file' or 'parts'");
     for (const YAML::Node& entry : entries_of(section.node("parts")))
-      read_log(YamlSection(entry, "odometry.parts", top.file(), log_keys()), true);
-    if (drive.odometry.empty()) section.fail("parts", "at least one log is needed");
+      read_log(YamlSection(entry, "odometry.parts", section.file(), log_keys()), true);
+    if (odometry.logs.empty()) section.fail("parts", "at least one log is needed");
   } else {
     read_log(section, names_channels(section));
   }
-  read_assembly(section, drive.assembly);
-  section.read("speed_delay", drive.speed_delay_s, kAnyNumber);
-  section.read("yaw_rate_delay", drive.yaw_rate_delay_s, kAnyNumber);
-}
-
-Receiver read_receiver(const YamlSection& section) {
-  Receiver receiver;
-  section.read("antenna", receiver.antenna_m);
-  section.read("period", receiver.period_s, kNotNegative);
-  section.read("delay", receiver.delay_s, kAnyNumber);
-  section.read("withhold_every", receiver.withhold_every, kWithhold);
-  if (receiver.withhold_every == 1) section.fail_value("withhold_every", kWithhold.words);
-  return receiver;
+  read_assembly(section, odometry.assembly);
+  section.read("speed_delay", odometry.speed_delay_s, kAnyNumber);
+  section.read("yaw_rate_delay", odometry.yaw_rate_delay_s, kAnyNumber);
+  section.read("nodes", odometry.gives_nodes);
+  return odometry;
 }
 
 std::optional<LogConfig> read_velocity(const YamlSection& section, const DriveDescription& drive) {
@@ -152,30 +124,19 @@ std::optional<LogConfig> read_velocity(const YamlSection& section, const DriveDe
                          request, drive.folder, drive.scale());
 }
 
-void read_gnss(const YamlSection& top, DriveDescription& drive) {
-  if (!top.has("gnss")) throw InputError(top.place() + "'gnss' is missing");
-  const std::vector<YAML::Node> entries = entries_of(top.node("gnss"));
-  if (entries.empty()) top.fail("gnss", "at least one log is needed");
-  std::optional<Receiver> first;
-  for (const YAML::Node& entry : entries) {
-    const YamlSection section(
-        entry, "gnss", top.file(),
-        log_keys({"accuracy", "velocity", "antenna", "period", "delay", "withhold_every"}));
-    LogRequest request;
-    request.source = static_cast<int>(drive.gnss.size());
-    GnssConfig log{read_log_config(section, request, drive.folder, drive.scale()),
-                   read_velocity(section, drive)};
-    drive.gnss.push_back(std::move(log));
-    const Receiver receiver = read_receiver(section);
-    if (first && !(receiver == *first))
-      throw InputError(section.place() +
-                       "gnss: all logs must state the same antenna, period, delay and withhold_every");
-    first = receiver;
-  }
-  drive.antenna_m = first->antenna_m;
-  drive.gnss_period_s = first->period_s;
-  drive.gnss_delay_s = first->delay_s;
-  drive.withhold_every = first->withhold_every;
+GnssConfig read_gnss(const YamlSection& section, std::string name, const DriveDescription& drive) {
+  LogRequest request;
+  request.source = static_cast<int>(drive.gnss.size());
+  GnssConfig gnss{read_log_config(section, request, drive.folder, drive.scale())};
+  gnss.velocity = read_velocity(section, drive);
+  gnss.name = std::move(name);
+  section.read("antenna", gnss.antenna_m);
+  section.read("period", gnss.period_s, kNotNegative);
+  section.read("delay", gnss.delay_s, kAnyNumber);
+  section.read("withhold_every", gnss.withhold_every, kWithhold);
+  if (gnss.withhold_every == 1) section.fail_value("withhold_every", kWithhold.words);
+  section.read("withheld", gnss.withheld);
+  return gnss;
 }
 
 void read_truth(const YamlSection& top, DriveDescription& drive) {
@@ -198,22 +159,43 @@ void read_timeline(const YamlSection& top, DriveDescription& drive) {
   gap->read("noise_factor", drive.timeline.gap_noise_factor, kFactor);
 }
 
-void read_sensors(const YamlSection& top, DriveDescription& drive) {
-  if (!top.has("sensors")) return;
-  for (const YAML::Node& entry : entries_of(top.node("sensors"))) {
-    const YamlSection section(entry, "sensors", top.file(), log_keys({"name", "options"}));
-    SensorConfig sensor;
-    sensor.place = section.place();
-    section.read("name", sensor.name);
-    if (sensor.name.empty()) throw InputError(sensor.place + "sensors: 'name' is missing");
-    LogRequest request;
-    request.stream = StreamKind::sensor;
-    if (section.has("file")) sensor.log = read_log_config(section, request, drive.folder, drive.scale());
-    if (const auto options = section.free_section("options")) {
-      for (const std::string& option : options->keys()) options->read(option, sensor.options[option]);
-    }
-    drive.sensors.push_back(std::move(sensor));
+SensorConfig read_sensor(const YamlSection& section, std::string kind, std::string source,
+                         const DriveDescription& drive) {
+  SensorConfig sensor;
+  sensor.place = section.place();
+  sensor.name = std::move(kind);
+  sensor.source = std::move(source);
+  LogRequest request;
+  request.stream = StreamKind::sensor;
+  if (section.has("file")) sensor.log = read_log_config(section, request, drive.folder, drive.scale());
+  if (const auto options = section.free_section("options")) {
+    for (const std::string& option : options->keys()) options->read(option, sensor.options[option]);
   }
+  return sensor;
+}
+
+/// Adds every source of the file. @throws InputError for a name that two of them have
+void read_sources(const YamlSection& top, DriveDescription& drive) {
+  std::map<std::string, std::string> places;
+  for (const SourceEntry& entry : source_entries(top)) {
+    const YamlSection& section = entry.section;
+    const auto [known, is_new] = places.try_emplace(entry.name, section.place());
+    if (!is_new)
+      throw InputError(section.place() + "there is a source '" + entry.name + "' already (" + known->second +
+                       "); give them different names");
+    if (entry.kind == kOdometryKind) {
+      drive.odometry.push_back(read_odometry(section, entry.name, drive));
+    } else if (entry.kind == kGnssKind) {
+      drive.gnss.push_back(read_gnss(section, entry.name, drive));
+    } else {
+      drive.sensors.push_back(read_sensor(section, entry.kind, entry.name, drive));
+    }
+  }
+  if (drive.odometry.empty()) throw InputError(top.place() + "'odometry' is missing");
+  if (drive.gnss.empty()) throw InputError(top.place() + "'gnss' is missing");
+  if (std::count_if(drive.odometry.begin(), drive.odometry.end(),
+                    [](const OdometryConfig& odometry) { return odometry.gives_nodes; }) > 1)
+    throw InputError(top.place() + "'nodes: true' is stated for two sources; nodes come from one");
 }
 
 /// Relative names of files are relative to the drive.yaml.
@@ -244,11 +226,9 @@ DriveDescription read_description(const YamlSection& top, const std::string& dat
   read_folder(top, data_folder, drive);
   read_time(top, drive);
   read_frame(top, drive);
-  read_odometry(top, drive);
-  read_gnss(top, drive);
+  read_sources(top, drive);
   read_truth(top, drive);
   read_timeline(top, drive);
-  read_sensors(top, drive);
   read_plugins(top, drive);
   return drive;
 }

@@ -28,9 +28,25 @@ struct LogConfig {
   std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
 };
 
-/// The log of a receiver, and the log of its velocity if that is another one.
+/// A relative source: the logs of speed and yaw rate.
+struct OdometryConfig {
+  std::string name = "odometry";  ///< of the source
+  std::vector<LogConfig> logs;    ///< one, or the parts that odometry is assembled from
+  OdometryAssembly assembly;
+  double speed_delay_s = 0;  ///< how late the stamps of the speed are; subtracted
+  double yaw_rate_delay_s = 0;
+  bool gives_nodes = false;  ///< stated: the nodes of the graph are at its stamps
+};
+
+/// An absolute source: the log of its positions, and the log of its velocity if that is another one.
 struct GnssConfig : LogConfig {
-  std::optional<LogConfig> velocity;
+  std::optional<LogConfig> velocity{};
+  std::string name = "gnss";                ///< of the source
+  Eigen::Vector2d antenna_m{0, 0};          ///< body frame (x forward, y left)
+  double delay_s = 0;                       ///< how late its stamps are; subtracted
+  double period_s = 0;                      ///< its fixes are thinned to one per period (0: keep all)
+  int withhold_every = 0;                   ///< every n-th epoch is left out of the graph (0: none)
+  bool withheld = false;                    ///< all of its fixes are left out of the graph
 };
 
 /// A further sensor of the vehicle.
@@ -38,7 +54,8 @@ struct SensorConfig {
   std::string name;              ///< of a registered sensor model
   std::optional<LogConfig> log;  ///< empty: the sensor has no log
   Options options;
-  std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
+  std::string place;        ///< "drive.yaml:12:5: " of the entry, for messages
+  std::string source = {};  ///< name of the source; that of the sensor model if none is stated
 };
 
 /// Artificial outages. Time after the first fix is divided into periods of `every_s` seconds; the
@@ -53,9 +70,8 @@ struct DriveDescription {
   std::string path;                 ///< of the drive.yaml, for messages; may be empty
   std::string name;                 ///< default: name of the file without ".yaml"
   std::string folder;               ///< the folder for relative names of logs
-  std::vector<LogConfig> odometry;  ///< one, or the parts that odometry is assembled from
-  OdometryAssembly assembly;
-  std::vector<GnssConfig> gnss;  ///< at least one
+  std::vector<OdometryConfig> odometry;  ///< relative sources, at least one
+  std::vector<GnssConfig> gnss;          ///< absolute sources, at least one
   std::optional<LogConfig> truth;
   std::vector<SensorConfig> sensors;
   /// modules to load, resolved against the folder of the drive.yaml
@@ -63,10 +79,6 @@ struct DriveDescription {
 
   /// scale of the drive; logs on others are converted. Empty: gps is assumed
   std::optional<TimeScale> time_scale;
-  double speed_delay_s = 0;  ///< how late the stamps of the odometry's speed are; subtracted
-  double yaw_rate_delay_s = 0;
-  double gnss_delay_s = 0;       ///< how late the stamps of the receiver are; subtracted
-  double gnss_period_s = 0;      ///< thin fixes to one per period (0: keep all)
   std::optional<double> from_s;  ///< seconds after the first stamp of the drive
   std::optional<double> to_s;
   TimelineOptions timeline;  ///< how samples become nodes in time
@@ -76,11 +88,9 @@ struct DriveDescription {
   std::optional<int> utm_zone;  ///< signed: negative is south; empty: zone of the first good fix
   /// easting, northing of the local origin; empty: near the first fix
   std::optional<Eigen::Vector2d> utm_origin;
-  Eigen::Vector2d antenna_m{0, 0};          ///< GNSS antenna in the body frame (x forward, y left)
   Eigen::Vector2d truth_reference_m{0, 0};  ///< reference point of the truth in the body frame
 
-  int withhold_every = 0;  ///< every n-th fix is left out of the graph, for evaluation (0: none)
-  OutagePattern outage;    ///< fixes in it are left out of the graph too
+  OutagePattern outage;  ///< fixes in it are left out of the graph, for evaluation
 
   [[nodiscard]] TimeScale scale() const { return time_scale.value_or(TimeScale::gps); }
 };

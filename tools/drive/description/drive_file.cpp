@@ -34,8 +34,10 @@ bool is_drive_file(std::string_view path) {
 
 bool is_drive_text(std::string_view path, std::string_view text) {
   if (std::filesystem::path(path).has_extension()) return is_drive_file(path);
-  constexpr std::string_view kLine = "\nodometry:";
-  return text.starts_with(kLine.substr(1)) || text.find(kLine) != std::string_view::npos;
+  const auto has = [&](std::string_view line) {
+    return text.starts_with(line.substr(1)) || text.find(line) != std::string_view::npos;
+  };
+  return has("\nodometry:") || has("\nsources:");
 }
 
 bool is_plugin_file(std::string_view plugin) {
@@ -46,7 +48,7 @@ bool is_plugin_file(std::string_view plugin) {
 DriveFile parse_drive_file(const std::string& text, const std::string& path, const std::string& data_folder) {
   const YamlSection top(load_yaml(text, path), "", path,
                         {"name", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap",
-                         "snap", "initial_guess", "modeling", "calibration", "noise", "sensors", "plugins"});
+                         "snap", "initial_guess", "modeling", "calibration", "noise", "sensors", "sources", "plugins"});
   DriveFile file;
   file.places.file = path;
   file.description = read_description(top, data_folder);

@@ -34,7 +34,8 @@ struct DriveFile {
 /// such a name, whatever its format.
 [[nodiscard]] bool is_drive_file(std::string_view path);
 /// Tells the same of a file that was read. A name without extension, such as that of a pipe, says
-/// nothing; the text then is a drive if a line begins with `odometry:`, which every drive states.
+/// nothing; the text then is a drive if a line begins with `odometry:` or `sources:`: every drive states
+/// one of them.
 [[nodiscard]] bool is_drive_text(std::string_view path, std::string_view text);
 /// Tells whether a plugin is named by its file. A word without folder and extension is looked up by
 /// the caller that loads it.

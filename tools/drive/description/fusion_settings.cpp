@@ -13,8 +13,80 @@ Options default_calibration() {
   return {{"gyro_bias", "random_walk"}, {"speed_scale", "random_walk"}, {"time_offset", "constant"}};
 }
 
+namespace {
+
+/// A source with a modeling of its own has the gate that fits this one, if none is stated.
+void decide_gates(FusionSettings& settings, const TypeRegistry& registry) {
+  for (auto& [name, source] : settings.sources) {
+    if (source.model.empty() || (source.gate && source.gate->enabled)) continue;
+    const auto& known = registry.gnss_modelings();
+    const auto type = std::find_if(known.begin(), known.end(),
+                                   [&, model = source.model](const auto& of) { return of.type.name == model; });
+    if (type == known.end()) continue;  // an odometry model, or refused when it is made
+    if (!source.gate) source.gate = settings.gate;
+    source.gate->enabled = !type->type.complete;
+  }
+}
+
+Options merged(Options first, const Options& then) {
+  for (const auto& [name, value] : then) first[name] = value;
+  return first;
+}
+
+const SourceSettings& stated_for(const FusionSettings& settings, const std::string& source) {
+  static const SourceSettings kNone;
+  const auto found = settings.sources.find(source);
+  return found == settings.sources.end() ? kNone : found->second;
+}
+
+}  // namespace
+
+std::string group_of(const FusionSettings& settings, const std::string& source) {
+  std::string name = source;
+  for (std::size_t steps = 0; steps <= settings.sources.size(); ++steps) {
+    const std::string& next = stated_for(settings, name).common;
+    if (next.empty()) return name;
+    name = next;
+  }
+  throw UsageError("sources: the groups of '" + source + "' name each other in a ring (common)");
+}
+
+FusionSettings for_absolute(const FusionSettings& settings, const std::string& source,
+                            const TypeRegistry& registry) {
+  const SourceSettings& own = stated_for(settings, group_of(settings, source));
+  FusionSettings result = settings;
+  if (!own.model.empty() && own.model != settings.modeling) {
+    result.modeling = own.model;
+    result.modeling_options.clear();
+  }
+  const std::vector<OptionInfo>& known = registry.gnss_modeling(result.modeling).options;
+  for (const auto& [name, value] : own.calibration)
+    if (has_option(known, name)) result.modeling_options[name] = value;
+  result.modeling_options =
+      with_calibration(merged(std::move(result.modeling_options), own.options), result, known);
+  if (own.loss) result.loss = *own.loss;
+  if (const auto& gate = stated_for(settings, source).gate) {
+    result.gate = *gate;
+    if (!result.gate.enabled) result.gate.enabled = settings.gate.enabled;
+  }
+  return result;
+}
+
+FusionSettings for_relative(const FusionSettings& settings, const std::string& source) {
+  const SourceSettings& own = stated_for(settings, source);
+  FusionSettings result = settings;
+  if (!own.model.empty() && own.model != settings.odometry_model) {
+    result.odometry_model = own.model;
+    result.odometry_options.clear();
+  }
+  result.odometry_options = merged(std::move(result.odometry_options), own.options);
+  if (result.calibration) result.calibration = merged(*std::move(result.calibration), own.calibration);
+  return result;
+}
+
 FusionSettings decided(FusionSettings settings, const TypeRegistry& registry) {
   const GnssModelingType& modeling = registry.gnss_modeling(settings.modeling);
+  if (!settings.gate.enabled) decide_gates(settings, registry);
   if (!settings.gate.enabled) settings.gate.enabled = !modeling.complete;
   if (!settings.calibration) settings.calibration = modeling.complete ? default_calibration() : Options();
   if (!settings.estimates_noise) settings.estimates_noise = modeling.complete;

@@ -2,6 +2,7 @@
 /// programs fill.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,21 @@ struct Minimization {
   friend bool operator==(const Minimization&, const Minimization&) = default;
 };
 
+/// What is stated for one source. It goes before what is stated for the drive.
+struct SourceSettings {
+  /// modeling of an absolute source, odometry model of a relative one; empty: that of the drive
+  std::string model{};
+  Options options{};  ///< of it; those of the drive stay if the model is that of the drive
+  Options calibration{};
+  std::optional<std::string> loss{};
+  std::optional<GateOptions> gate{};
+  /// Another absolute source that has the same lasting errors, such as a receiver that sees the same
+  /// satellites. Both are one group, with the settings of the source that is named.
+  std::string common{};
+
+  friend bool operator==(const SourceSettings&, const SourceSettings&) = default;
+};
+
 /// The modeling decides about empty members (see decided()).
 struct FusionSettings {
   std::string modeling = "correlated";  ///< registered GNSS modeling
@@ -47,6 +63,7 @@ struct FusionSettings {
   StartOptions initial_guess{};
   bool lever_arm = true;  ///< false: the antenna is taken as the body point
   Minimization minimization{};
+  std::map<std::string, SourceSettings> sources{};  ///< by name of the source
 
   friend bool operator==(const FusionSettings&, const FusionSettings&) = default;
 };
@@ -60,6 +77,18 @@ struct FusionSettings {
 /// calibration states that it knows.
 /// @throws UsageError for an unknown modeling
 [[nodiscard]] FusionSettings decided(FusionSettings settings, const TypeRegistry& registry);
+
+/// Returns the settings of one absolute source: modeling, its options, loss and gate are its own. A member
+/// of a group has those of its first source.
+/// @param settings from decided()
+[[nodiscard]] FusionSettings for_absolute(const FusionSettings& settings, const std::string& source,
+                                          const TypeRegistry& registry);
+/// Returns the settings of one relative source: odometry model, options and calibration are its own.
+[[nodiscard]] FusionSettings for_relative(const FusionSettings& settings, const std::string& source);
+
+/// Returns the name of the source whose settings and errors a source has: its own, or that of its group.
+/// @throws UsageError if groups name each other in a ring
+[[nodiscard]] std::string group_of(const FusionSettings& settings, const std::string& source);
 
 /// Adapts decided settings to the yaw rate at rest, if the odometry model has the options: one from
 /// wheels or steering shows no bias there and errs in proportion to the speed, and a noisy gyro shows

@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/description/source_entries.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -29,17 +30,11 @@ void read_options(const YamlSection& section, std::string_view key, const std::s
   }
 }
 
-void read_odometry_model(const YamlSection& top, FusionSettings& settings, Places& places) {
-  const YamlSection section = *top.free_section("odometry");
-  section.read("model", settings.odometry_model);
-  if (section.has("model")) places.of["odometry.model"] = section.place("model");
-  read_options(section, "options", "odometry.options.", settings.odometry_options, places);
-}
-
-void read_gate(const YamlSection& top, GateOptions& options) {
+/// Returns whether there is a gate.
+bool read_gate(const YamlSection& top, GateOptions& options) {
   const auto gate = top.section(
       "gate", {"enabled", "max_angle_deg", "max_displacement_m", "chord_s", "max_chord_s", "min_chord_m"});
-  if (!gate) return;
+  if (!gate) return false;
   bool enabled = true;
   gate->read("enabled", enabled);
   options.enabled = enabled;
@@ -53,6 +48,7 @@ void read_gate(const YamlSection& top, GateOptions& options) {
   if (options.max_chord_s < options.chord_s)
     throw InputError(fmt::format("{}gate: max_chord_s ({}) must not be below chord_s ({})", gate->place(),
                                  options.max_chord_s, options.chord_s));
+  return true;
 }
 
 void read_modeling(const YamlSection& top, FusionSettings& settings, Places& places) {
@@ -75,11 +71,61 @@ void read_calibration(const YamlSection& top, FusionSettings& settings, Places& 
   if (kSwitchValues[word]) calibration = default_calibration();
 }
 
+/// Reads what an odometry states for itself. @param place of the keys in Places
+void read_relative(const YamlSection& section, const std::string& place, SourceSettings& source,
+                   Places& places) {
+  section.read("model", source.model);
+  if (section.has("model")) places.of[place + ".model"] = section.place("model");
+  read_options(section, "options", place + ".options.", source.options, places);
+  read_options(section, "calibration", place + ".calibration.", source.calibration, places);
+}
+
+/// Reads what a receiver states for itself.
+void read_absolute(const YamlSection& section, const std::string& place, const GateOptions& gate,
+                   SourceSettings& source, Places& places) {
+  section.read("common", source.common);
+  if (section.has("common")) places.of[place + ".common"] = section.place("common");
+  read_options(section, "calibration", place + ".calibration.", source.calibration, places);
+  GateOptions own = gate;
+  if (read_gate(section, own)) source.gate = own;
+  if (!section.has("modeling")) return;
+  places.of[place + ".modeling"] = section.place("modeling");
+  if (!section.node("modeling").IsMap()) return section.read("modeling", source.model);
+  const YamlSection modeling = *section.section("modeling", {"name", "loss", "options"});
+  modeling.read("name", source.model);
+  if (modeling.has("loss")) {
+    modeling.read("loss", source.loss.emplace());
+    places.of[place + ".loss"] = modeling.place("loss");
+  }
+  read_options(modeling, "options", place + ".options.", source.options, places);
+}
+
+/// Reads the settings of single sources. What the short form of one odometry states is stated for the
+/// drive.
+void read_sources(const YamlSection& top, FusionSettings& settings, Places& places) {
+  for (const SourceEntry& entry : source_entries(top)) {
+    SourceSettings source;
+    const bool is_short = entry.name == kOdometryKind;
+    const std::string place = is_short ? entry.name : "sources." + entry.name;
+    if (entry.kind == kOdometryKind) {
+      read_relative(entry.section, place, source, places);
+    } else if (entry.kind == kGnssKind) {
+      read_absolute(entry.section, place, settings.gate, source, places);
+    }
+    if (is_short) {
+      if (!source.model.empty()) settings.odometry_model = source.model;
+      settings.odometry_options = source.options;
+      source = {.calibration = source.calibration};
+    }
+    if (!(source == SourceSettings{})) settings.sources[entry.name] = std::move(source);
+  }
+}
+
 }  // namespace
 
 void read_settings(const YamlSection& top, FusionSettings& settings, Places& places) {
-  read_odometry_model(top, settings, places);
-  read_gate(top, settings.gate);
+  (void)read_gate(top, settings.gate);
+  read_sources(top, settings, places);
   if (const auto start = top.read_word("initial_guess", kInitialGuesses))
     settings.initial_guess.method = *start == 0 ? StartMethod::anchored : StartMethod::dead_reckoning;
   read_modeling(top, settings, places);

@@ -44,8 +44,10 @@ PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_
 
   PlacedDrive coarse;
   coarse.gate = placed.gate;
-  coarse.antenna_m = placed.antenna_m;
-  coarse.time_offset_s = placed.time_offset_s;
+  coarse.receivers = placed.receivers;
+  coarse.time_offsets_s = placed.time_offsets_s;
+  coarse.odometry_name = placed.odometry_name;
+  coarse.relative = placed.relative;
   coarse.standstill_mps = placed.standstill_mps;
   coarse.gap_noise_factor = placed.gap_noise_factor;
   std::vector<std::size_t> coarse_node(timeline.stamps.size(), 0);

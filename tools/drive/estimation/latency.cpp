@@ -1,6 +1,8 @@
 #include <waymark/tools/drive/estimation/latency.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <waymark/core/covariance/marginals.hpp>
@@ -41,38 +43,87 @@ double TimeOffset::odds_of_none() const {
   return prior_sigma_s / sigma_s * std::exp(-0.5 * std::pow(value_s / sigma_s, 2));
 }
 
-std::optional<VertexIndex> time_offset_vertex(const Graph& graph) {
+std::optional<VertexIndex> time_offset_vertex(const Graph& graph,
+                                              std::span<const formats::VertexRange> among) {
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
-    if (graph.vertex_type(v).tag == VertexTimeOffset::kTag && !graph.fixed(v)) return v;
+    if (graph.vertex_type(v).tag != VertexTimeOffset::kTag || graph.fixed(v)) continue;
+    for (const formats::VertexRange& range : among)
+      if (graph.id(v) >= range.first && graph.id(v) <= range.last) return v;
   }
   return std::nullopt;
 }
 
-std::optional<TimeOffset> assume_time_offset(PlacedDrive& placed, const FusionSettings& settings,
-                                             const TypeRegistry& registry) {
+namespace {
+
+/// The time offsets of the groups of a coarse drive, in the graph of one round.
+struct Round {
+  std::vector<AbsoluteGroup> groups;
+  Graph graph;
+  std::vector<std::optional<VertexIndex>> offsets;  ///< one for each group
+
+  [[nodiscard]] bool estimates() const {
+    return std::any_of(offsets.begin(), offsets.end(), [](const auto& offset) { return offset.has_value(); });
+  }
+};
+
+Round begin_round(const PlacedDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry) {
+  BuiltGraph built = build_graph(coarse, {}, settings, registry);
+  Round round{.groups = groups_of(coarse, settings), .graph = std::move(built.graph), .offsets = {}};
+  for (const AbsoluteGroup& group : round.groups)
+    round.offsets.push_back(time_offset_vertex(round.graph, built.vertices[group.name]));
+  return round;
+}
+
+/// Takes the offsets of a minimum. @returns how far the farthest one moved
+double take_offsets(const Round& round, PlacedDrive& coarse) {
+  double farthest_s = 0;
+  for (std::size_t g = 0; g < round.groups.size(); ++g) {
+    if (!round.offsets[g]) continue;
+    const double offset_s = round.graph.value(*round.offsets[g])[0];
+    for (const int source : round.groups[g].sources) {
+      double& assumed_s = coarse.time_offsets_s[static_cast<std::size_t>(source)];
+      farthest_s = std::max(farthest_s, std::abs(offset_s - assumed_s));
+      assumed_s = offset_s;
+    }
+  }
+  return farthest_s;
+}
+
+std::vector<std::optional<TimeOffset>> found_in(const Round& round, const FusionSettings& settings,
+                                                const TypeRegistry& registry) {
+  std::vector<std::optional<TimeOffset>> found(round.groups.size());
+  for (std::size_t g = 0; g < round.groups.size(); ++g) {
+    if (!round.offsets[g]) continue;
+    const auto covariances = marginal_covariances(round.graph, std::vector{*round.offsets[g]});
+    found[g] = TimeOffset{
+        .value_s = round.graph.value(*round.offsets[g])[0],
+        .sigma_s = std::sqrt(covariances[0](0, 0)),
+        .prior_sigma_s = prior_sigma_of(for_absolute(settings, round.groups[g].name, registry), registry)};
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
+                                                           const FusionSettings& settings,
+                                                           const TypeRegistry& registry) {
   PlacedDrive coarse = coarsen(placed, kFixPeriod_s, kNodePeriod_s);
   const auto algorithm = registry.make_algorithm("dogleg");
   BlockCholesky cholesky;
   StructuredSolver solver{cholesky};
-  TimeOffset found;
-  for (int round = 0; round < kMostRounds; ++round) {
-    Graph graph = build_graph(coarse, {}, settings, registry).graph;
-    const std::optional<VertexIndex> offset = time_offset_vertex(graph);
-    if (!offset) return std::nullopt;
-    solver.build(graph, find_gauge(graph).held);
-    optimize(graph, solver, *algorithm, {});
-    const double moved_s = graph.value(*offset)[0] - coarse.time_offset_s;
-    coarse.time_offset_s += moved_s;
-    if (std::abs(moved_s) < kSettled_s || round + 1 == kMostRounds) {
-      found.sigma_s = std::sqrt(marginal_covariances(graph, std::vector{*offset})[0](0, 0));
-      break;
+  for (int count = 1;; ++count) {
+    Round round = begin_round(coarse, settings, registry);
+    if (!round.estimates()) return std::vector<std::optional<TimeOffset>>(round.groups.size());
+    solver.build(round.graph, find_gauge(round.graph).held);
+    optimize(round.graph, solver, *algorithm, {});
+    const double moved_s = take_offsets(round, coarse);
+    if (moved_s < kSettled_s || count == kMostRounds) {
+      placed.time_offsets_s = coarse.time_offsets_s;
+      return found_in(round, settings, registry);
     }
-    keep_poses(graph, coarse.start.poses);
+    keep_poses(round.graph, coarse.start.poses);
   }
-  placed.time_offset_s = coarse.time_offset_s;
-  found.value_s = coarse.time_offset_s;
-  found.prior_sigma_s = prior_sigma_of(settings, registry);
-  return found;
 }
 
 }  // namespace waymark::drive

@@ -5,9 +5,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/registry/registry.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 
@@ -25,16 +28,18 @@ struct TimeOffset {
   [[nodiscard]] double odds_of_none() const;
 };
 
-/// Finds PlacedDrive::time_offset_s. The coarse drive is fused with the offset of before, and again
-/// with the offset that this gives, until it no longer moves. Nothing changes if the settings
+/// Finds PlacedDrive::time_offsets_s. The coarse drive is fused with the offsets of before, and again
+/// with those that this gives, until they no longer move. Nothing changes if the settings
 /// estimate no time offset. Sensors are left out.
 /// @param settings from decided()
 /// @throws UsageError for an unknown modeling or option; errors of the plugins
-/// @returns the offset; empty if the settings estimate none
-std::optional<TimeOffset> assume_time_offset(PlacedDrive& placed, const FusionSettings& settings,
-                                             const TypeRegistry& registry);
+/// @returns the offset of each group (groups_of() in build.hpp); empty for one that has none
+std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
+                                                           const FusionSettings& settings,
+                                                           const TypeRegistry& registry);
 
-/// Returns the vertex of the time offset, if the graph estimates one.
-[[nodiscard]] std::optional<VertexIndex> time_offset_vertex(const Graph& graph);
+/// Returns the vertex of the time offset that a graph estimates among some vertices, if it does.
+[[nodiscard]] std::optional<VertexIndex> time_offset_vertex(const Graph& graph,
+                                                            std::span<const formats::VertexRange> among);
 
 }  // namespace waymark::drive

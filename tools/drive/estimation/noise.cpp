@@ -41,11 +41,12 @@ NoisePrior prior_for(const NoisePrior& general, double accuracy_m) {
 }
 
 /// Adds options with a prior that are not stated.
-void add_parameters(const std::string& owner, const std::vector<OptionInfo>& known, const Options& given,
-                    double accuracy_m, std::vector<NoiseParameter>& parameters) {
+void add_parameters(const std::string& source, const std::string& owner, const std::vector<OptionInfo>& known,
+                    const Options& given, double accuracy_m, std::vector<NoiseParameter>& parameters) {
   for (const OptionInfo& option : known) {
     if (!option.prior || given.contains(option.name)) continue;
     NoiseParameter parameter;
+    parameter.source = source;
     parameter.owner = owner;
     parameter.option = option.name;
     parameter.unit = option.unit;
@@ -153,11 +154,23 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& se
                              const TypeRegistry& registry) {
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
-  const double accuracy_m = median_accuracy(placed.fixes);
-  add_parameters(settings.odometry_model, registry.odometry_model(settings.odometry_model).options,
-                 settings.odometry_options, accuracy_m, noise.parameters);
-  add_parameters(settings.modeling, registry.gnss_modeling(settings.modeling).options,
-                 settings.modeling_options, accuracy_m, noise.parameters);
+  const DriveFacts facts = facts_of(placed, settings);
+  // What is estimated for the only source of a kind is an option of the drive, unless it states its own.
+  const auto label = [&](const std::string& source, std::size_t sources) {
+    return sources > 1 || settings.sources.contains(source) ? source : std::string();
+  };
+  for (const std::string& source : facts.relative) {
+    const FusionSettings own = for_relative(settings, source);
+    add_parameters(label(source, facts.relative.size()), own.odometry_model,
+                   registry.odometry_model(own.odometry_model).options, own.odometry_options, 0,
+                   noise.parameters);
+  }
+  for (const AbsoluteGroup& group : facts.absolute) {
+    const FusionSettings own = for_absolute(settings, group.name, registry);
+    add_parameters(label(group.name, facts.absolute.size()), own.modeling,
+                   registry.gnss_modeling(own.modeling).options, own.modeling_options,
+                   group.median_accuracy_m, noise.parameters);
+  }
   if (noise.parameters.empty()) return noise;
   Objective objective(placed, settings, registry);
   minimize(objective, noise);
@@ -168,10 +181,14 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& se
 
 FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise) {
   for (const NoiseParameter& parameter : noise.parameters) {
+    const std::string value = shortest(parameter.value);
+    if (!parameter.source.empty()) {
+      settings.sources[parameter.source].options.try_emplace(parameter.option, value);
+      continue;
+    }
     if (parameter.owner == settings.odometry_model)
-      settings.odometry_options.try_emplace(parameter.option, shortest(parameter.value));
-    if (parameter.owner == settings.modeling)
-      settings.modeling_options.try_emplace(parameter.option, shortest(parameter.value));
+      settings.odometry_options.try_emplace(parameter.option, value);
+    if (parameter.owner == settings.modeling) settings.modeling_options.try_emplace(parameter.option, value);
   }
   return settings;
 }

@@ -17,7 +17,8 @@ inline constexpr double kNoiseReach = 4;
 
 /// The estimate of one option.
 struct NoiseParameter {
-  std::string owner;  ///< the odometry model or modeling that has the option
+  std::string source;  ///< of the drive, if it has several of that kind; otherwise empty
+  std::string owner;   ///< the odometry model or modeling that has the option
   std::string option;
   std::string unit;
   OptionRange range;  ///< what the option allows
@@ -27,6 +28,8 @@ struct NoiseParameter {
   /// whatever the other parameters are.
   double deviation = 0;
 
+  /// Returns the option with its source if there are several: "front.white_sigma".
+  [[nodiscard]] std::string name() const { return source.empty() ? option : source + "." + option; }
   /// Tells whether the drive has more information about it than the prior.
   [[nodiscard]] bool observed() const { return deviation < 0.9 * prior.deviation; }
 };

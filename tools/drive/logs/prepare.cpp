@@ -1,5 +1,6 @@
 #include <waymark/tools/drive/logs/prepare.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -22,7 +23,8 @@ std::vector<InputFile> inputs_of(const DriveLogs& logs) {
   const auto add = [&inputs](const DriveLogs::Log& log) {
     inputs.insert(inputs.end(), log.inputs.begin(), log.inputs.end());
   };
-  for (const DriveLogs::Log& log : logs.odometry) add(log);
+  for (const std::vector<DriveLogs::Log>& source : logs.odometry)
+    for (const DriveLogs::Log& log : source) add(log);
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
     add(logs.gnss[i]);
     if (i < logs.velocity.size()) add(logs.velocity[i]);
@@ -67,8 +69,9 @@ void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description,
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (i == 0 || fixes[i].stamp != fixes[i - 1].stamp) ++epoch;
     fixes[i].epoch = epoch;
-    const bool nth = description.withhold_every >= 2 && (epoch + 1) % description.withhold_every == 0;
-    if (!nth && !in_outage(description.outage, seconds_between(fixes.front().stamp, fixes[i].stamp)))
+    const GnssConfig& receiver = receiver_of(description, static_cast<std::size_t>(fixes[i].source));
+    const bool nth = receiver.withhold_every >= 2 && (epoch + 1) % receiver.withhold_every == 0;
+    if (!nth && !receiver.withheld && !in_outage(description.outage, seconds_between(fixes.front().stamp, fixes[i].stamp)))
       continue;
     fixes[i].status = FixStatus::withheld;
     fixes[i].reason = "withheld";
@@ -76,12 +79,44 @@ void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description,
   }
 }
 
+void note_yaw_rate(const std::string& source, const YawRateAtRest& rest, PrepareReport& report) {
+  if (!rest.is_derived()) return;
+  report.notes.push_back(
+      source +
+      "the yaw rate never changes while the vehicle stands, so it is taken for one from wheels or "
+      "steering: its readings at rest show no bias, and the default calibration has yaw_per_speed");
+}
+
+/// Frozen samples of one of several sources are left out: the others measure the motion.
+void leave_out_frozen(PreparedDrive& drive) {
+  for (PreparedOdometry& source : drive.relative) {
+    note_yaw_rate(source.name + ": ", source.yaw_rate_at_rest, drive.report);
+    for (const FrozenOdometry& time : find_frozen_odometry(source.samples, drive.fixes)) {
+      drive.report.warnings.push_back(source.name + ": " + warning_of(time, source.samples.front().stamp));
+      std::erase_if(source.samples, [&](const OdometrySample& sample) {
+        return sample.stamp >= time.from && sample.stamp <= time.to;
+      });
+    }
+    if (source.samples.size() < 2) throw InputError(source.name + ": the whole log repeats one reading");
+  }
+}
+
+void cover_gaps(PreparedDrive& drive) {
+  std::size_t added = 0;
+  drive.odometry = covered_by_all(drive.relative, added);
+  if (added > 0)
+    drive.report.notes.push_back(
+        fmt::format("{} is silent in places, where {} nodes come from the samples of other sources",
+                    drive.odometry_name, added));
+}
+
 void judge_odometry(PreparedDrive& drive) {
-  drive.yaw_rate_at_rest = yaw_rate_at_rest(drive.odometry);
-  if (drive.yaw_rate_at_rest.is_derived())
-    drive.report.notes.emplace_back(
-        "the yaw rate never changes while the vehicle stands, so it is taken for one from wheels or "
-        "steering: its readings at rest show no bias, and the default calibration has yaw_per_speed");
+  if (!drive.relative.empty()) {
+    leave_out_frozen(drive);
+    cover_gaps(drive);
+  } else {
+    note_yaw_rate("", drive.yaw_rate_at_rest, drive.report);
+  }
   const bool bridges = drive.timeline.gap_policy == GapPolicy::bridge;
   const std::size_t filled = bridges ? fill_gaps(drive.odometry, drive.fixes, drive.timeline.gap_s) : 0;
   if (filled > 0)
@@ -95,18 +130,36 @@ void judge_odometry(PreparedDrive& drive) {
     drive.report.warnings.push_back(std::move(warning));
 }
 
+/// Takes the relative sources: the only one, or all of them.
+void take_odometry(std::vector<PreparedOdometry> relative, PreparedDrive& drive) {
+  drive.odometry_name = relative.front().name;
+  drive.yaw_rate_at_rest = relative.front().yaw_rate_at_rest;
+  drive.timeline.gap_s = relative.front().gap_s;
+  if (relative.size() == 1) {
+    drive.odometry = std::move(relative.front().samples);
+    return;
+  }
+  for (const PreparedOdometry& source : relative)
+    drive.timeline.gap_s = std::max(drive.timeline.gap_s, source.gap_s);
+  drive.relative = std::move(relative);
+  std::size_t added = 0;
+  drive.odometry = covered_by_all(drive.relative, added);
+}
+
 }  // namespace
 
 PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& description) {
   PreparedDrive drive;
   drive.name = description.name;
   drive.scale = description.scale();
-  drive.antenna_m = description.antenna_m;
   drive.truth_reference_m = description.truth_reference_m;
   drive.timeline = description.timeline;
   drive.inputs = inputs_of(logs);
-  drive.odometry = prepare_odometry(logs, description, drive.report);
-  drive.timeline.gap_s = longest_interval_s(description, drive.odometry);
+  take_odometry(prepare_odometry(logs, description, drive.report), drive);
+  for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
+    const GnssConfig& receiver = receiver_of(description, i);
+    drive.receivers.push_back({receiver.name, receiver.antenna_m});
+  }
   const std::vector<GeodeticFix> fixes = prepare_fixes(logs, description, drive.odometry, drive.report);
   const std::vector<GeodeticTruth> truth = clean_truth(logs.truth, drive.scale, drive.report);
   require_overlap(truth, drive.odometry, description);
@@ -114,14 +167,17 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   drive.frame = choose_frame({fixes.front().latitude_deg, fixes.front().longitude_deg}, description.utm_zone,
                              description.utm_origin);
   const Projection projection(drive.frame);
-  for (const GeodeticFix& fix : fixes) drive.fixes.push_back(projection.project(fix));
+  for (const GeodeticFix& fix : fixes) {
+    drive.fixes.push_back(projection.project(fix));
+    drive.fixes.back().antenna_m = drive.receivers.at(static_cast<std::size_t>(fix.source)).antenna_m;
+  }
   for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection.project(pose));
   number_epochs(drive.fixes, description, drive.report);
   judge_odometry(drive);
   for (std::size_t i = 0; i < logs.sensors.size(); ++i) {
     const SensorConfig& sensor = description.sensors[i];
     PreparedSensor& prepared = drive.sensors.emplace_back(
-        PreparedSensor{.name = sensor.name, .options = sensor.options, .place = sensor.place});
+        PreparedSensor{.name = sensor.name, .options = sensor.options, .place = sensor.place, .source = sensor.source});
     if (sensor.log)
       prepared.readings = prepare_readings(logs.sensors[i], sensor.log->request.readings, drive.scale, fixes,
                                            projection, drive.report);

@@ -78,6 +78,21 @@ struct PreparedSensor {
   Options options{};       ///< of the model
   std::string place{};     ///< of its entry in the drive.yaml, for messages
   SensorTable readings{};  ///< empty for a sensor without a log
+  std::string source{};    ///< name of the source
+};
+
+/// A relative source: its own samples, on the clock of the drive.
+struct PreparedOdometry {
+  std::string name;
+  std::vector<OdometrySample> samples;  ///< stamps unique
+  double gap_s = 0;                     ///< it is silent between samples that are further apart
+  YawRateAtRest yaw_rate_at_rest{};
+};
+
+/// An absolute source: Fix::source is its index.
+struct PreparedReceiver {
+  std::string name;
+  Eigen::Vector2d antenna_m{0, 0};  ///< body frame
 };
 
 /// A file that a drive was read from.
@@ -92,13 +107,17 @@ struct PreparedDrive {
   std::string name;
   Frame frame;
   TimeScale scale = TimeScale::gps;
-  std::vector<OdometrySample> odometry;  ///< stamps unique; at least 2
-  YawRateAtRest yaw_rate_at_rest;        ///< of the odometry
+  /// The samples that nodes come from: those of one relative source, and those of others while it is
+  /// silent. Stamps unique; at least 2.
+  std::vector<OdometrySample> odometry;
+  std::string odometry_name = "odometry";     ///< the relative source that nodes come from
+  YawRateAtRest yaw_rate_at_rest;             ///< of it
+  std::vector<PreparedOdometry> relative{};   ///< all relative sources if there are several; else empty
+  std::vector<PreparedReceiver> receivers{};  ///< absolute sources
   /// stamp and source are unique together; at least 1; `epoch` counts from 0
   std::vector<Fix> fixes;
   std::vector<TruthPose> truth;             ///< stamps unique; may be empty
   std::vector<PreparedSensor> sensors;      ///< as DriveDescription::sensors
-  Eigen::Vector2d antenna_m{0, 0};          ///< body frame
   Eigen::Vector2d truth_reference_m{0, 0};  ///< body frame
   TimelineOptions timeline;                 ///< how samples become nodes
   /// in the order of the description, each log before its companions
@@ -114,7 +133,8 @@ struct DriveLogs {
     std::string file;                 ///< for messages
     std::vector<InputFile> inputs{};  ///< the log and the companions that the description names
   };
-  std::vector<Log> odometry;  ///< in the order of DriveDescription::odometry
+  /// in the order of DriveDescription::odometry, and of the logs of each
+  std::vector<std::vector<Log>> odometry;
   std::vector<Log> gnss;      ///< in the order of DriveDescription::gnss
   /// in the order of gnss; readings as in velocity_channels(), empty if there are none
   std::vector<Log> velocity;
@@ -130,13 +150,14 @@ struct DriveLogs {
 /// 1. Scales are converted, and non-finite samples are dropped.
 /// 2. Each stream is sorted (stable), and duplicates of a stamp are dropped. For fixes, stamp and
 ///    source count, and the first one in the log is kept.
-/// 3. gnss_delay_s is subtracted.
-/// 4. The odometry is cut to [from_s, to_s] after its first stamp. Fixes outside the span of the
-///    odometry are dropped.
-/// 5. Fixes are thinned per source to the one nearest to each whole multiple of gnss_period_s on
+/// 3. The delay of each receiver is subtracted.
+/// 4. The odometry is cut to [from_s, to_s] after its first stamp. Where the source of the nodes is
+///    silent, the samples of the next relative source that is not take its place. Fixes outside the
+///    span of the odometry are dropped.
+/// 5. Fixes are thinned per source to the one nearest to each whole multiple of its period on
 ///    the scale of the drive (the earlier of two equally near ones).
 /// 6. Epochs are numbered; fixes with one stamp are one epoch. For withhold_every = n, epochs n-1,
-///    2n-1, ... are withheld, and so are those in an outage.
+///    2n-1, ... are withheld, and so are those in an outage and those of sources that are withheld.
 /// 7. Everything is projected.
 /// 8. Odometry that repeats one reading while the fixes move is replaced (nodes/frozen.hpp).
 /// @throws InputError with the remedy for: fewer than two odometry samples, no fix, no fix within

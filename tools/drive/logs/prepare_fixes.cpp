@@ -15,15 +15,22 @@
 namespace waymark::drive {
 namespace {
 
-/// Keeps, for each source, the fix nearest to each whole multiple of the period; the earlier of two
+/// Keeps, for each source with a period, the fix nearest to each whole multiple of it; the earlier of two
 /// equally near ones.
-void thin(std::vector<GeodeticFix>& fixes, std::int64_t period) {
+void thin(std::vector<GeodeticFix>& fixes, const DriveDescription& description) {
   struct Nearest {
     std::size_t index = 0;
     std::int64_t distance = 0;
   };
   std::map<std::pair<int, std::int64_t>, Nearest> nearest;  // by source and multiple
+  std::vector<char> keep(fixes.size(), 0);
   for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const double period_s = receiver_of(description, static_cast<std::size_t>(fixes[i].source)).period_s;
+    if (period_s <= 0) {
+      keep[i] = 1;
+      continue;
+    }
+    const std::int64_t period = nanoseconds(period_s);
     const std::int64_t stamp = fixes[i].stamp.nanoseconds;
     std::int64_t remainder = stamp % period;
     if (remainder < 0) remainder += period;
@@ -33,7 +40,6 @@ void thin(std::vector<GeodeticFix>& fixes, std::int64_t period) {
     const auto [place, is_new] = nearest.try_emplace({fixes[i].source, multiple}, Nearest{i, distance});
     if (!is_new && distance < place->second.distance) place->second = {i, distance};
   }
-  std::vector<char> keep(fixes.size(), 0);
   for (const auto& [key, best] : nearest) keep[best.index] = 1;
   std::size_t index = 0;
   std::erase_if(fixes, [&](const GeodeticFix&) { return keep[index++] == 0; });
@@ -72,6 +78,11 @@ void leave_out_null_island(std::vector<GeodeticFix>& fixes, PrepareReport& repor
 
 }  // namespace
 
+const GnssConfig& receiver_of(const DriveDescription& description, std::size_t source) {
+  static const GnssConfig kNothingStated;
+  return source < description.gnss.size() ? description.gnss[source] : kNothingStated;
+}
+
 std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescription& description,
                                        const std::vector<OdometrySample>& odometry, PrepareReport& report) {
   std::vector<GeodeticFix> fixes;
@@ -82,6 +93,8 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
     if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)
       add_logged_velocity(logs.velocity[i], description.scale(), std::span(fixes).subspan(before), report);
     report_clock(log, report);
+    const std::int64_t delay = nanoseconds(receiver_of(description, i).delay_s);
+    for (GeodeticFix& fix : std::span(fixes).subspan(before)) fix.stamp.nanoseconds -= delay;
   }
   leave_out_null_island(fixes, report);
   clean_stream(
@@ -94,7 +107,6 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
   if (fixes.empty())
     throw InputError(fmt::format("{}: the GNSS logs hold no usable fix; a drive needs at least one",
                                  logs.gnss.empty() ? description.path : logs.gnss.front().file));
-  for (GeodeticFix& fix : fixes) fix.stamp.nanoseconds -= nanoseconds(description.gnss_delay_s);
 
   const std::string gnss_span = span_text(fixes);
   const std::size_t before = fixes.size();
@@ -108,7 +120,7 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
                     "'time: {{scale, week, offset}}' of both logs and 'time: {{from, to}}'",
                     description.path, span_text(odometry), gnss_span, to_string(description.scale())));
   const std::size_t within = fixes.size();
-  if (description.gnss_period_s > 0) thin(fixes, nanoseconds(description.gnss_period_s));
+  thin(fixes, description);
   report.fixes_thinned = within - fixes.size();
   describe_stream(fixes, 0, report.gnss);
   return fixes;

@@ -9,16 +9,25 @@
 
 namespace waymark::drive {
 
-/// Assembles odometry that comes in parts, cleans it, subtracts the delays of its channels and cuts
-/// it to the window of the drive. @throws InputError for fewer than two usable samples
-[[nodiscard]] std::vector<OdometrySample> prepare_odometry(const DriveLogs& logs,
-                                                           const DriveDescription& description,
-                                                           PrepareReport& report);
+/// Assembles each odometry that comes in parts, cleans it, subtracts the delays of its channels and cuts
+/// it to the window of the drive. The source of the nodes is the first one.
+/// @throws InputError for fewer than two usable samples
+[[nodiscard]] std::vector<PreparedOdometry> prepare_odometry(const DriveLogs& logs,
+                                                             const DriveDescription& description,
+                                                             PrepareReport& report);
 
-/// Returns how far apart samples of the odometry may be without a gap between them: as stated, or the
+/// Returns the samples of the first source, and those of the others where it is silent.
+/// @param added how many are those of others
+[[nodiscard]] std::vector<OdometrySample> covered_by_all(const std::vector<PreparedOdometry>& relative,
+                                                         std::size_t& added);
+
+/// Returns how far apart samples of an odometry may be without a gap between them: as stated, or the
 /// larger of timeline.gap_s and four usual intervals.
 [[nodiscard]] double longest_interval_s(const DriveDescription& description,
                                         std::span<const OdometrySample> odometry);
+
+/// Returns what is stated for a receiver.
+[[nodiscard]] const GnssConfig& receiver_of(const DriveDescription& description, std::size_t source);
 
 /// Adds logged velocities to the fixes, cleans them, subtracts their delay, drops those outside the
 /// odometry and thins the rest. @throws InputError if no fix is left

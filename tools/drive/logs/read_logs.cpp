@@ -102,7 +102,10 @@ DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistr
   DriveLogs logs;
   if (description.odometry.empty())
     throw InputError(fmt::format("{}: no odometry log is named", description.path));
-  for (const LogConfig& log : description.odometry) logs.odometry.push_back(read_log(log, registry, watch));
+  for (const OdometryConfig& source : description.odometry) {
+    std::vector<DriveLogs::Log>& parts = logs.odometry.emplace_back();
+    for (const LogConfig& log : source.logs) parts.push_back(read_log(log, registry, watch));
+  }
   for (const GnssConfig& log : description.gnss) {
     logs.gnss.push_back(read_log(log, registry, watch));
     logs.velocity.push_back(log.velocity ? read_log(*log.velocity, registry, watch) : DriveLogs::Log{});

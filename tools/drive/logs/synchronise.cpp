@@ -1,5 +1,6 @@
 #include <waymark/tools/drive/logs/synchronise.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -28,14 +29,22 @@ bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity
 
 }  // namespace
 
+OdometryConfig& source_of_nodes(const std::string& name, DriveDescription& description) {
+  const auto found = std::find_if(description.odometry.begin(), description.odometry.end(),
+                                  [&](const OdometryConfig& odometry) { return odometry.name == name; });
+  return found == description.odometry.end() ? description.odometry.emplace_back() : *found;
+}
+
 void synchronise(DriveLogs& logs, DriveDescription& description) {
   std::vector<std::string> notes = put_on_told_time(logs);
-  const SyncReport report = estimate_clock_offsets(prepare_drive(logs, description), {});
-  const bool speed_moved = apply_offset(report.speed, "speed", description.speed_delay_s, notes);
-  (void)apply_offset(report.yaw_rate, "yaw rate", description.yaw_rate_delay_s, notes);
+  const PreparedDrive drive = prepare_drive(logs, description);
+  const SyncReport report = estimate_clock_offsets(drive, {});
+  OdometryConfig& odometry = source_of_nodes(drive.odometry_name, description);
+  const bool speed_moved = apply_offset(report.speed, "speed", odometry.speed_delay_s, notes);
+  (void)apply_offset(report.yaw_rate, "yaw rate", odometry.yaw_rate_delay_s, notes);
   // A log has one clock, so one half of it must not be moved alone.
-  if (description.odometry.size() == 1 && speed_moved && !report.yaw_rate) {
-    description.yaw_rate_delay_s += report.speed->late_s;
+  if (odometry.logs.size() == 1 && speed_moved && !report.yaw_rate) {
+    odometry.yaw_rate_delay_s += report.speed->late_s;
     notes.emplace_back("sync: yaw rate and speed are in one log; both are moved together");
   }
   logs.notes.insert(logs.notes.end(), notes.begin(), notes.end());

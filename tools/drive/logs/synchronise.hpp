@@ -8,6 +8,9 @@ namespace waymark::drive {
 /// An offset within this many of its sigmas counts as zero.
 inline constexpr double kOffsetSigmas = 3;
 
+/// Returns the relative source of a name, such as PreparedDrive::odometry_name.
+[[nodiscard]] OdometryConfig& source_of_nodes(const std::string& name, DriveDescription& description);
+
 /// Moves fixes to the GNSS time in their log. Adds the offsets of speed and yaw rate against the
 /// fixes (clock_sync.hpp) to the delays of the description. The logs receive one note for each
 /// step. The logs are not read again; prepare_drive applies the delays.

@@ -1,5 +1,6 @@
 #include <waymark/tools/drive/model/build.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -35,13 +36,78 @@ FixMoment moment_of_fix(const DriveNodes& nodes, const NodeInTime& moment, const
 
 }  // namespace
 
-GraphBuilder::GraphBuilder(const DriveFacts& facts, std::span<const PreparedSensor> sensors,
+std::vector<AbsoluteGroup> groups_of(const PlacedDrive& placed, const FusionSettings& settings) {
+  std::vector<AbsoluteGroup> groups;
+  for (std::size_t source = 0; source < placed.time_offsets_s.size(); ++source) {
+    const std::string name = group_of(settings, receiver_name(placed, static_cast<int>(source)));
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& known) { return known.name == name; });
+    if (group == groups.end()) {
+      group = groups.insert(groups.end(), AbsoluteGroup{.name = name, .sources = {}});
+      group->time_offset_s = placed.time_offsets_s[source];
+    }
+    group->sources.push_back(static_cast<int>(source));
+  }
+  for (AbsoluteGroup& group : groups) {
+    std::vector<Fix> fixes;
+    for (const Fix& fix : placed.fixes)
+      if (std::find(group.sources.begin(), group.sources.end(), fix.source) != group.sources.end())
+        fixes.push_back(fix);
+    group.median_accuracy_m = median_accuracy(fixes);
+  }
+  return groups;
+}
+
+DriveFacts facts_of(const PlacedDrive& placed, const FusionSettings& settings) {
+  DriveFacts facts{.absolute = groups_of(placed, settings), .relative = {}};
+  for (const PreparedOdometry& source : placed.relative) facts.relative.push_back(source.name);
+  if (facts.relative.empty()) facts.relative.push_back(placed.odometry_name);
+  const auto first = std::find_if(placed.fixes.begin(), placed.fixes.end(),
+                                  [](const Fix& fix) { return fix.source == 0; });
+  if (first != placed.fixes.end()) facts.antenna_m = first->antenna_m;
+  facts.gap_noise_factor = placed.gap_noise_factor;
+  return facts;
+}
+
+GraphBuilder::GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sensors,
                            const FusionSettings& settings, const TypeRegistry& registry)
-    : facts_(facts),
-      loss_(loss_of_fixes(settings.loss, registry)),
-      odometry_(make_odometry_model(settings, facts.gap_noise_factor, registry)),
-      sensors_(sensors, registry),
-      modeling_(registry.make_gnss_modeling(settings.modeling, settings.modeling_options)) {}
+    : facts_(std::move(facts)), sensors_(sensors, registry) {
+  for (const std::string& name : facts_.relative)
+    relative_.push_back(
+        {name, make_odometry_model(for_relative(settings, name), facts_.gap_noise_factor, registry)});
+  for (const AbsoluteGroup& group : facts_.absolute) {
+    const FusionSettings own = for_absolute(settings, group.name, registry);
+    if (group.sources.size() > 1 && !registry.gnss_modeling(own.modeling).shares_errors)
+      throw UsageError("source '" + group.name + "': the modeling '" + own.modeling +
+                       "' has no errors that sources could have in common; leave out 'common'");
+    absolute_.push_back({group, loss_of_fixes(own.loss, registry),
+                         registry.make_gnss_modeling(own.modeling, own.modeling_options)});
+  }
+}
+
+template <typename Step>
+void GraphBuilder::add_for(const std::string& source, const Step& step) {
+  const auto first = static_cast<VertexIndex>(graph_.vertex_count());
+  step();
+  const auto end = static_cast<VertexIndex>(graph_.vertex_count());
+  if (first < end) vertices_[source].push_back({graph_.id(first), graph_.id(end - 1)});
+}
+
+std::vector<std::shared_ptr<const GnssModeling>> GraphBuilder::modelings() const {
+  std::size_t sources = 0;
+  for (const Absolute& absolute : absolute_) sources += absolute.group.sources.size();
+  std::vector<std::shared_ptr<const GnssModeling>> models(sources);
+  for (const Absolute& absolute : absolute_)
+    for (const int source : absolute.group.sources) models[static_cast<std::size_t>(source)] = absolute.model;
+  return models;
+}
+
+std::size_t GraphBuilder::absolute_of(int source) const {
+  for (std::size_t i = 0; i < absolute_.size(); ++i) {
+    const std::vector<int>& sources = absolute_[i].group.sources;
+    if (std::find(sources.begin(), sources.end(), source) != sources.end()) return i;
+  }
+  throw UsageError("a fix names the source " + std::to_string(source) + ", which the drive does not have");
+}
 
 // Each pose gets the next free id: i + 1 for node i if the drive is one part.
 void GraphBuilder::add_nodes(const DrivePart& part) {
@@ -54,41 +120,86 @@ void GraphBuilder::add_nodes(const DrivePart& part) {
   intervals_.insert(intervals_.end(), part.intervals.begin(), part.intervals.end());
 }
 
+void GraphBuilder::add_motion(const DrivePart& part, std::size_t joint) {
+  if (relative_.size() == 1) {
+    const DriveNodes all = nodes();
+    add_for(relative_.front().name, [&] {
+      relative_.front().model->extend(
+          {all.stamps.subspan(joint), all.poses.subspan(joint), all.intervals.subspan(joint)}, graph_);
+    });
+    return;
+  }
+  for (const MotionRun& run : part.runs) {
+    std::vector<Stamp> stamps;
+    std::vector<VertexIndex> poses;
+    for (const std::size_t node : run.nodes) {
+      stamps.push_back(stamps_[node]);
+      poses.push_back(poses_[node]);
+    }
+    const Relative& source = relative_[run.source];
+    add_for(source.name, [&] { source.model->extend({stamps, poses, run.intervals}, graph_); });
+  }
+}
+
+void GraphBuilder::add_fixes(const std::vector<Fix>& fixes, const std::vector<FixMoment>& moments) {
+  std::vector<std::vector<Fix>> own_fixes(absolute_.size());
+  std::vector<std::vector<FixMoment>> own_moments(absolute_.size());
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const std::size_t of = absolute_of(fixes[i].source);
+    own_fixes[of].push_back(fixes[i]);
+    own_moments[of].push_back(moments[i]);
+  }
+  for (std::size_t i = 0; i < absolute_.size(); ++i) {
+    const Absolute& source = absolute_[i];
+    const Eigen::Vector2d antenna =
+        own_fixes[i].empty() ? Eigen::Vector2d(0, 0) : own_fixes[i].front().antenna_m;
+    add_for(source.group.name, [&] {
+      source.model->extend({own_fixes[i], own_moments[i], antenna, source.loss, source.group.median_accuracy_m,
+                            source.group.name},
+                           graph_);
+    });
+  }
+}
+
 void GraphBuilder::extend(const DrivePart& part) {
   if (intervals_.empty() && part.intervals.empty() && !part.fixes.empty())
     throw UsageError("a drive that grows needs its first two nodes before its first fix");
   const std::size_t joint = poses_.empty() ? 0 : poses_.size() - 1;
   add_nodes(part);
+  add_motion(part, joint);
   const DriveNodes all = nodes();
-  odometry_->extend({all.stamps.subspan(joint), all.poses.subspan(joint), all.intervals.subspan(joint)},
-                    graph_);
   std::vector<Fix> fixes(part.fixes.begin(), part.fixes.end());
   std::vector<FixMoment> moments(fixes.size());
   for (std::size_t i = 0; i < fixes.size(); ++i) {
+    const double offset_s = absolute_[absolute_of(fixes[i].source)].group.time_offset_s;
     const Stamp stamp = stamps_[part.fix_nodes[i]];
     const NodeInTime near =
-        *nearest_node(all, stamp.later(-facts_.time_offset_s), std::numeric_limits<double>::infinity());
+        *nearest_node(all, stamp.later(-offset_s), std::numeric_limits<double>::infinity());
     fixes[i].vertex = graph_.id(poses_[near.node]);
-    moments[i] = moment_of_fix(all, near, facts_.antenna_m);
-    moments[i].assumed_offset_s = facts_.time_offset_s;
+    moments[i] = moment_of_fix(all, near, fixes[i].antenna_m);
+    moments[i].assumed_offset_s = offset_s;
   }
-  sensors_.extend(part.sensors, all, fixes, facts_.antenna_m, grid_scale_, graph_);
-  modeling_->extend({fixes, moments, facts_.antenna_m, loss_, facts_.median_accuracy_m}, graph_);
+  for (std::size_t i = 0; i < part.sensors.size(); ++i)
+    add_for(part.sensors[i].source, [&] {
+      sensors_.extend(i, part.sensors[i], all, fixes, facts_.antenna_m, grid_scale_, graph_);
+    });
+  add_fixes(fixes, moments);
   if (!fixes.empty()) grid_scale_ = fixes.back().grid_scale;
 }
 
 BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                        const FusionSettings& settings, const TypeRegistry& registry) {
   const AcceptedFixes accepted = accepted_fixes(placed);
-  const DriveFacts facts{placed.antenna_m, placed.time_offset_s, placed.gap_noise_factor,
-                         median_accuracy(placed.fixes)};
-  GraphBuilder builder(facts, sensors, settings, registry);
+  GraphBuilder builder(facts_of(placed, settings), sensors, settings, registry);
   builder.check_drive(accepted.fixes, sensors);
+  std::vector<MotionRun> runs;
+  if (!placed.relative.empty()) runs = motion_runs(placed.timeline, placed.relative, placed.fixes);
   builder.extend({placed.timeline.stamps, placed.start.poses, placed.timeline.intervals, accepted.fixes,
-                  accepted.nodes, sensors});
+                  accepted.nodes, sensors, runs});
   BuiltGraph built;
   built.warnings = warnings_of_sensors_apart(sensors, builder.nodes());
-  built.modeling = builder.modeling();
+  built.modelings = builder.modelings();
+  built.vertices = builder.vertices();
   built.graph = std::move(builder.graph());
   return built;
 }

@@ -6,6 +6,7 @@
 /// vertices and edges as that of one, in another order (tests/tools/drive/growing_drive_test.cpp).
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,19 +14,38 @@
 #include <vector>
 
 #include <waymark/core/registry/registry.hpp>
+#include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/drive/model/motion_runs.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 #include <waymark/tools/drive/model/sensors.hpp>
 
 namespace waymark::drive {
 
+/// The vertices of each source by its name: ranges of ids, first and last.
+using SourceVertices = std::map<std::string, std::vector<formats::VertexRange>>;
+
+/// Absolute sources that one model serves: one, or several that share their lasting errors.
+struct AbsoluteGroup {
+  std::string name;               ///< of the source that the others of the group name
+  std::vector<int> sources;       ///< Fix::source of its members
+  double time_offset_s = 0;       ///< FixMoment::assumed_offset_s
+  double median_accuracy_m = 0;   ///< for the modeling: GnssInput
+};
+
 /// What the models know of a drive before its first part.
 struct DriveFacts {
-  Eigen::Vector2d antenna_m{0, 0};  ///< body frame
-  double time_offset_s = 0;         ///< FixMoment::assumed_offset_s
-  double gap_noise_factor = 1;      ///< for the odometry model
-  double median_accuracy_m = 0;     ///< for the modeling: GnssInput
+  std::vector<AbsoluteGroup> absolute;
+  std::vector<std::string> relative;  ///< names of the relative sources, the one of the nodes first
+  Eigen::Vector2d antenna_m{0, 0};    ///< of the first receiver, body frame
+  double gap_noise_factor = 1;        ///< for the odometry models
 };
+
+/// Returns the facts of a drive that is known as a whole. @param settings from decided()
+[[nodiscard]] DriveFacts facts_of(const PlacedDrive& placed, const FusionSettings& settings);
+
+/// Returns the groups of the absolute sources, in the order of their first members.
+[[nodiscard]] std::vector<AbsoluteGroup> groups_of(const PlacedDrive& placed, const FusionSettings& settings);
 
 /// The next part of a drive, in order of time. The first part with a fix has an interval, or follows
 /// one: the motion at a fix is that of an interval. The spans are used during the call only.
@@ -40,6 +60,8 @@ struct DrivePart {
   std::span<const std::size_t> fix_nodes;
   /// those of the constructor, each with its next readings
   std::span<const PreparedSensor> sensors = {};
+  /// what the relative sources measured, if there are several; otherwise `intervals` say it
+  std::span<const MotionRun> runs = {};
 };
 
 /// A graph that grows with its drive. Nodes are known by index, so no vertex may leave the graph.
@@ -47,7 +69,7 @@ class GraphBuilder {
  public:
   /// @param settings from decided(), with the estimated noise among the options
   /// @throws UsageError for an unknown modeling, model, sensor or option
-  GraphBuilder(const DriveFacts& facts, std::span<const PreparedSensor> sensors,
+  GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sensors,
                const FusionSettings& settings, const TypeRegistry& registry);
 
   /// Judges a drive that is known as a whole, before its one part. @throws InputError of a sensor
@@ -63,17 +85,34 @@ class GraphBuilder {
   [[nodiscard]] DriveNodes nodes() const { return {stamps_, poses_, intervals_}; }
   /// The graph so far. It may be optimised between two parts, and moved from after the last one.
   [[nodiscard]] Graph& graph() { return graph_; }
-  /// The model of the fixes, with what it keeps of the graph.
-  [[nodiscard]] std::shared_ptr<const GnssModeling> modeling() const { return modeling_; }
+  /// The models of the fixes, with what they keep of the graph: one for each absolute source.
+  [[nodiscard]] std::vector<std::shared_ptr<const GnssModeling>> modelings() const;
+  /// The vertices that each source has added, by its name.
+  [[nodiscard]] const SourceVertices& vertices() const { return vertices_; }
 
  private:
+  struct Relative {
+    std::string name;
+    std::unique_ptr<OdometryModel> model;
+  };
+  struct Absolute {
+    AbsoluteGroup group;
+    std::optional<Loss> loss;
+    std::shared_ptr<GnssModeling> model;
+  };
   void add_nodes(const DrivePart& part);
+  void add_motion(const DrivePart& part, std::size_t joint);
+  void add_fixes(const std::vector<Fix>& fixes, const std::vector<FixMoment>& moments);
+  [[nodiscard]] std::size_t absolute_of(int source) const;
+  /// Runs a step of a source, and keeps which vertices it adds.
+  template <typename Step>
+  void add_for(const std::string& source, const Step& step);
 
   DriveFacts facts_;
-  std::optional<Loss> loss_;
-  std::unique_ptr<OdometryModel> odometry_;
+  std::vector<Relative> relative_;
   SensorModels sensors_;
-  std::shared_ptr<GnssModeling> modeling_;
+  std::vector<Absolute> absolute_;
+  SourceVertices vertices_;
   Graph graph_;
   std::vector<Stamp> stamps_;
   std::vector<VertexIndex> poses_;
@@ -85,7 +124,8 @@ class GraphBuilder {
 struct BuiltGraph {
   Graph graph;                        ///< the pose of node i has the id i + 1
   std::vector<std::string> warnings;  ///< of the sensors
-  std::shared_ptr<const GnssModeling> modeling;
+  std::vector<std::shared_ptr<const GnssModeling>> modelings;  ///< one for each absolute source
+  SourceVertices vertices;
 };
 
 /// Builds the graph of the accepted fixes of a whole drive.

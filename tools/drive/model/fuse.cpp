@@ -1,7 +1,9 @@
 #include <waymark/tools/drive/model/fuse.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/model/build.hpp>
@@ -19,30 +21,86 @@ double distance_of(const Timeline& timeline) {
 
 constexpr const char* kTimeOffset = "time_offset";
 
-/// Takes the fixes as measured when their stamps say. An offset that is not needed costs RTK fixes at
-/// 30 m/s a decimetre.
-void leave_out(const TimeOffset& offset, FusionSettings& settings, ModeledDrive& modeled) {
-  settings.modeling_options[kTimeOffset] = "off";
-  (*settings.calibration)[kTimeOffset] = "off";
-  modeled.placed.time_offset_s = 0;
-  char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "the fixes are taken as not late: the drive says %.3f +- %.3f s, odds of %.3g to 1 for no delay",
-      offset.value_s, offset.sigma_s, offset.odds_of_none());
-  modeled.notes.emplace_back(text);
+/// Takes the fixes of a group as measured when their stamps say. An offset that is not needed costs RTK
+/// fixes at 30 m/s a decimetre.
+void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSettings& settings,
+               ModeledDrive& modeled) {
+  if (modeled.placed.receivers.size() > 1 || settings.sources.contains(group.name)) {
+    settings.sources[group.name].options[kTimeOffset] = "off";
+  } else {
+    settings.modeling_options[kTimeOffset] = "off";
+    (*settings.calibration)[kTimeOffset] = "off";
+  }
+  for (const int source : group.sources) modeled.placed.time_offsets_s[static_cast<std::size_t>(source)] = 0;
+  modeled.notes.push_back(fmt::format(
+      "{}the fixes are taken as not late: the drive says {:.3f} +- {:.3f} s, odds of {:.3g} to 1 for no delay",
+      modeled.placed.receivers.size() > 1 ? group.name + ": " : std::string(), offset.value_s, offset.sigma_s,
+      offset.odds_of_none()));
 }
 
 /// Finds the delay of the fixes, and the noise if it is estimated: each depends on the other.
-/// @returns what the drive says about the delay; empty if the settings estimate none
-std::optional<TimeOffset> estimate(const FusionSettings& settings, const TypeRegistry& registry,
-                                   ModeledDrive& modeled) {
+/// @returns what the drive says about the delay of each group; empty for those that have none
+std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings, const TypeRegistry& registry,
+                                                ModeledDrive& modeled) {
   modeled.settings = settings;
-  const std::optional<TimeOffset> offset = assume_time_offset(modeled.placed, settings, registry);
-  if (!*settings.estimates_noise) return offset;
+  std::vector<std::optional<TimeOffset>> offsets = assume_time_offsets(modeled.placed, settings, registry);
+  if (!*settings.estimates_noise) return offsets;
   modeled.noise = estimate_noise(modeled.placed, settings, registry);
   modeled.settings = with_noise(settings, modeled.noise);
-  return assume_time_offset(modeled.placed, modeled.settings, registry);
+  return assume_time_offsets(modeled.placed, modeled.settings, registry);
+}
+
+/// Leaves out the delays that the drive gives no better odds than their priors, unless they are stated.
+/// @param by_default the calibration of the drive was not stated
+/// @returns whether there was one
+bool leave_out_delays(const std::vector<std::optional<TimeOffset>>& offsets, bool by_default,
+                      const FusionSettings& stated, FusionSettings& decision, ModeledDrive& modeled) {
+  if (!by_default || stated.modeling_options.contains(kTimeOffset)) return false;
+  const std::vector<AbsoluteGroup> groups = groups_of(modeled.placed, decision);
+  bool any = false;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto own = stated.sources.find(groups[g].name);
+    const bool is_stated = own != stated.sources.end() && (own->second.options.contains(kTimeOffset) ||
+                                                           own->second.calibration.contains(kTimeOffset));
+    if (is_stated || !offsets[g] || offsets[g]->odds_of_none() <= 1) continue;
+    leave_out(*offsets[g], groups[g], decision, modeled);
+    any = true;
+  }
+  return any;
+}
+
+/// Returns the sources for the document; empty for one odometry and one receiver.
+std::vector<formats::DocumentSource> sources_of(const PreparedDrive& drive, const PlacedDrive& placed,
+                                                const SourceVertices& vertices) {
+  std::vector<formats::DocumentSource> sources;
+  if (drive.relative.empty() && drive.receivers.size() < 2) return sources;
+  const auto add = [&](const std::string& name, const std::string& kind, const Eigen::Vector2d& antenna_m) {
+    const auto own = vertices.find(name);
+    sources.push_back({name, kind, antenna_m, {}});
+    if (own != vertices.end()) sources.back().vertices = own->second;
+  };
+  if (drive.relative.empty()) add(drive.odometry_name, "odometry", {0, 0});
+  for (const PreparedOdometry& source : drive.relative) add(source.name, "odometry", {0, 0});
+  for (std::size_t i = 0; i < drive.receivers.size(); ++i) {
+    const auto fix = std::find_if(placed.fixes.begin(), placed.fixes.end(),
+                                  [&](const Fix& of) { return of.source == static_cast<int>(i); });
+    add(drive.receivers[i].name, "gnss",
+        fix == placed.fixes.end() ? drive.receivers[i].antenna_m : fix->antenna_m);
+  }
+  for (const PreparedSensor& sensor : drive.sensors) add(sensor.source, sensor.name, {0, 0});
+  return sources;
+}
+
+/// Adapts the settings to the yaw rate of each relative source.
+void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision, const TypeRegistry& registry) {
+  if (drive.relative.empty()) adapt_to_yaw_rate(drive.yaw_rate_at_rest, by_default, decision, registry);
+  for (const PreparedOdometry& source : drive.relative) {
+    FusionSettings own = for_relative(decision, source.name);
+    adapt_to_yaw_rate(source.yaw_rate_at_rest, by_default, own, registry);
+    SourceSettings& kept = decision.sources[source.name];
+    kept.options = own.odometry_options;
+    kept.calibration = *own.calibration;
+  }
 }
 
 }  // namespace
@@ -55,8 +113,11 @@ std::vector<std::string> ModeledDrive::warnings() const {
 
 const PlacedDrive& Fusion::placed(const FusionSettings& settings) {
   const double standstill_mps =
-      make_odometry_model(settings, drive_.timeline.gap_noise_factor, registry_)->standstill_speed();
-  const Key key{settings.gate, settings.initial_guess, settings.lever_arm, standstill_mps};
+      make_odometry_model(for_relative(settings, drive_.odometry_name), drive_.timeline.gap_noise_factor,
+                          registry_)
+          ->standstill_speed();
+  Key key{settings.gate, {}, settings.initial_guess, settings.lever_arm, standstill_mps};
+  for (const auto& [name, source] : settings.sources) key.gates[name] = source.gate;
   for (const auto& [known, placed] : placed_) {
     if (known == key) return placed;
   }
@@ -67,23 +128,22 @@ const PlacedDrive& Fusion::placed(const FusionSettings& settings) {
 ModeledDrive Fusion::model(const FusionSettings& settings) {
   ModeledDrive modeled;
   FusionSettings decision = decided(settings, registry_);
-  adapt_to_yaw_rate(drive_.yaw_rate_at_rest, !settings.calibration, decision, registry_);
+  adapt(drive_, !settings.calibration, decision, registry_);
   modeled.placed = placed(decision);
-  const std::optional<TimeOffset> offset = estimate(decision, registry_, modeled);
-  const bool is_stated = settings.calibration || settings.modeling_options.contains(kTimeOffset);
-  if (offset && !is_stated && offset->odds_of_none() > 1) {
-    leave_out(*offset, decision, modeled);
+  const auto offsets = estimate(decision, registry_, modeled);
+  if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))
     (void)estimate(decision, registry_, modeled);
-  }
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
-  modeled.modeling = std::move(built.modeling);
+  modeled.modelings = std::move(built.modelings);
   modeled.distance_m = distance_of(modeled.placed.timeline);
   formats::GraphDocument& document = modeled.document;
   document.graph = std::move(built.graph);
   document.frame = drive_.frame;
   document.time_scale = drive_.scale;
-  document.antenna_m = modeled.placed.antenna_m;
+  document.sources = sources_of(drive_, modeled.placed, built.vertices);
+  if (document.sources.empty() && !modeled.placed.fixes.empty())
+    document.antenna_m = modeled.placed.fixes.front().antenna_m;
   document.truth_reference_m = drive_.truth_reference_m;
   document.fixes = modeled.placed.fixes;
   document.provenance = provenance_of(drive_, modeled, registry_);

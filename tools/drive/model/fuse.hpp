@@ -23,6 +23,7 @@
 #pragma once
 
 #include <list>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,7 +49,8 @@ struct ModeledDrive {
   std::vector<std::string> notes;                  ///< sentences about what the drive decided
   double distance_m = 0;                           ///< by the odometry
   formats::GraphDocument document{};               ///< with provenance: provenance.hpp
-  std::shared_ptr<const GnssModeling> modeling{};  ///< that built the graph of the document
+  /// that built the graph of the document: one for each absolute source
+  std::vector<std::shared_ptr<const GnssModeling>> modelings{};
 
   /// Returns sentences about suspicious facts in the logs.
   [[nodiscard]] std::vector<std::string> warnings() const;
@@ -83,6 +85,7 @@ class Fusion {
   /// The settings that the placing depends on.
   struct Key {
     GateOptions gate;
+    std::map<std::string, std::optional<GateOptions>> gates;  ///< of sources with one of their own
     StartOptions initial_guess;
     bool lever_arm = true;
     double standstill_mps = 0;

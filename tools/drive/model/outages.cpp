@@ -104,20 +104,39 @@ PosesAtWithheld dead_reckoned_at_withheld(const formats::GraphDocument& document
   return result;
 }
 
-PosesAtWithheld with_lasting_errors(const formats::GraphDocument& document, const GnssModeling& modeling,
-                                    std::span<const Eigen::Vector3d> poses) {
+namespace {
+
+/// Returns the poses at the fixes of a document when they were measured.
+std::vector<Eigen::Vector3d> poses_of_fixes(const formats::GraphDocument& document) {
+  std::vector<Eigen::Vector3d> poses = poses_when_measured(document);
+  if (poses.empty())
+    for (const StampedPose& at : poses_at_fixes(document)) poses.push_back(at.pose);
+  return poses;
+}
+
+}  // namespace
+
+PosesAtWithheld with_lasting_errors(const formats::GraphDocument& document,
+                                    const std::vector<std::shared_ptr<const GnssModeling>>& modelings) {
   PosesAtWithheld result;
-  std::vector<Fix> withheld;
-  for (const Fix& fix : document.fixes)
-    if (fix.status == FixStatus::withheld) withheld.push_back(fix);
-  const std::vector<Eigen::Vector2d> errors = modeling.lasting_errors(withheld, document.graph);
-  if (errors.empty()) return result;
-  result.poses.resize(document.fixes.size());
-  auto error = errors.begin();
-  for (std::size_t i = 0; i < document.fixes.size(); ++i) {
-    if (document.fixes[i].status != FixStatus::withheld) continue;
-    result.poses[i] = poses[i];
-    result.poses[i]->head<2>() += *error++;
+  std::vector<Eigen::Vector3d> poses;
+  for (std::size_t source = 0; source < modelings.size(); ++source) {
+    std::vector<Fix> withheld;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < document.fixes.size(); ++i) {
+      const Fix& fix = document.fixes[i];
+      if (fix.status != FixStatus::withheld || fix.source != static_cast<int>(source)) continue;
+      withheld.push_back(fix);
+      places.push_back(i);
+    }
+    const std::vector<Eigen::Vector2d> errors = modelings[source]->lasting_errors(withheld, document.graph);
+    if (errors.empty()) continue;
+    if (poses.empty()) poses = poses_of_fixes(document);
+    result.poses.resize(document.fixes.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      result.poses[places[k]] = poses[places[k]];
+      result.poses[places[k]]->head<2>() += errors[k];
+    }
   }
   return result;
 }
@@ -138,9 +157,13 @@ PreparedDrive known_until(const PreparedDrive& drive, std::size_t end) {
   known.truth.clear();
   known.fixes.resize(end);
   const Stamp last_fix = known.fixes.back().stamp;
-  const auto last = std::find_if(known.odometry.begin(), known.odometry.end(),
-                                 [&](const OdometrySample& sample) { return sample.stamp >= last_fix; });
-  if (last != known.odometry.end()) known.odometry.erase(last + 1, known.odometry.end());
+  const auto cut = [&](std::vector<OdometrySample>& samples) {
+    const auto last = std::find_if(samples.begin(), samples.end(),
+                                   [&](const OdometrySample& sample) { return sample.stamp >= last_fix; });
+    if (last != samples.end()) samples.erase(last + 1, samples.end());
+  };
+  cut(known.odometry);
+  for (PreparedOdometry& source : known.relative) cut(source.samples);
   for (PreparedSensor& prepared : known.sensors) {
     SensorTable& sensor = prepared.readings;
     const auto first_later = std::upper_bound(sensor.stamps.begin(), sensor.stamps.end(), last_fix);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,11 +35,11 @@ struct PosesAtWithheld {
 /// Predicts what the receiver will say, not where the vehicle is: the poses of the minimum, moved by the
 /// errors that the modeling expects of these fixes. Without poses if it expects none, as for white
 /// noise.
-/// @param document at its minimum @param modeling that built its graph
-/// @param poses at the fixes of the document, in their order
-[[nodiscard]] PosesAtWithheld with_lasting_errors(const formats::GraphDocument& document,
-                                                  const GnssModeling& modeling,
-                                                  std::span<const Eigen::Vector3d> poses);
+/// @param document at its minimum
+/// @param modelings that built its graph, one for each absolute source
+[[nodiscard]] PosesAtWithheld with_lasting_errors(
+    const formats::GraphDocument& document,
+    const std::vector<std::shared_ptr<const GnssModeling>>& modelings);
 
 /// Fixes [begin, end) of a drive, all withheld, between fixes that are not withheld.
 struct WithheldRun {

@@ -1,5 +1,6 @@
 #include <waymark/tools/drive/model/place.hpp>
 
+#include <algorithm>
 #include <utility>
 
 #include <waymark/tools/drive/nodes/plausibility.hpp>
@@ -19,27 +20,57 @@ Timeline timeline_of(const PreparedDrive& drive) {
   return build_timeline(drive.odometry, drive.fixes, drive.timeline);
 }
 
-PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
-                        const TypeRegistry& registry) {
+std::string receiver_name(const PlacedDrive& placed, int source) {
+  const auto index = static_cast<std::size_t>(source);
+  return index < placed.receivers.size() ? placed.receivers[index] : "gnss";
+}
+
+namespace {
+
+/// Takes the sources and the fixes.
+PlacedDrive begun(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
+                  const TypeRegistry& registry) {
   PlacedDrive placed;
   placed.timeline = timeline;
   placed.fixes = drive.fixes;
-  if (settings.lever_arm) placed.antenna_m = drive.antenna_m;
+  if (!settings.lever_arm)
+    for (Fix& fix : placed.fixes) fix.antenna_m.setZero();
+  for (const PreparedReceiver& receiver : drive.receivers) placed.receivers.push_back(receiver.name);
+  placed.time_offsets_s.assign(std::max<std::size_t>(drive.receivers.size(), 1), 0.0);
+  placed.odometry_name = drive.odometry_name;
+  placed.relative = drive.relative;
   placed.gap_noise_factor = drive.timeline.gap_noise_factor;
   placed.standstill_mps =
-      make_odometry_model(settings, placed.gap_noise_factor, registry)->standstill_speed();
+      make_odometry_model(for_relative(settings, drive.odometry_name), placed.gap_noise_factor, registry)
+          ->standstill_speed();
+  return placed;
+}
+
+std::vector<GateOptions> gates_of(const PlacedDrive& placed, const FusionSettings& settings,
+                                  const TypeRegistry& registry) {
+  std::vector<GateOptions> gates;
+  for (std::size_t source = 0; source < placed.time_offsets_s.size(); ++source)
+    gates.push_back(
+        for_absolute(settings, receiver_name(placed, static_cast<int>(source)), registry).gate);
+  return gates;
+}
+
+}  // namespace
+
+PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
+                        const TypeRegistry& registry) {
+  PlacedDrive placed = begun(drive, timeline, settings, registry);
   const std::vector<Eigen::Vector3d> reckoned =
       dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
-  const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.antenna_m);
+  const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.fixes);
   placed.warnings = drive.report.warnings;
   for (std::string& warning : compare_odometry_with_fixes(placed.fixes, antenna))
     placed.warnings.push_back(std::move(warning));
-  placed.gate = apply_gate(placed.fixes, antenna, settings.gate);
+  placed.gate = apply_gate(placed.fixes, antenna, gates_of(placed, settings, registry));
   require_accepted_fix(placed.gate);
   if (std::string warning = warning_of(placed.gate); !warning.empty())
     placed.warnings.push_back(std::move(warning));
-  placed.start =
-      make_start(timeline, placed.fixes, placed.antenna_m, placed.standstill_mps, settings.initial_guess);
+  placed.start = make_start(timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
   for (std::size_t i = 0; i < placed.fixes.size(); ++i)
     placed.fixes[i].vertex = vertex_of(timeline.fix_node[i]);
   return placed;

@@ -27,8 +27,11 @@ struct PlacedDrive {
   std::vector<Fix> fixes;
   GateSummary gate;
   Start start;
-  Eigen::Vector2d antenna_m{0, 0};    ///< body frame
-  double time_offset_s = 0;           ///< how late the graph assumes the fixes to be: latency.hpp
+  std::vector<std::string> receivers;  ///< names of the absolute sources
+  /// how late the graph assumes the fixes of each absolute source to be: latency.hpp
+  std::vector<double> time_offsets_s;
+  std::string odometry_name;                 ///< the relative source that nodes come from
+  std::vector<PreparedOdometry> relative{};  ///< as PreparedDrive::relative
   double standstill_mps = 0;          ///< of the odometry model
   double gap_noise_factor = 1;        ///< for the odometry model, from PreparedDrive::timeline
   std::vector<std::string> warnings;  ///< of the preparation; suspicious units, signs, jumps
@@ -38,6 +41,9 @@ struct PlacedDrive {
 [[nodiscard]] inline VertexId vertex_of(std::size_t node) {
   return VertexId(node + 1);
 }
+
+/// Returns the name of an absolute source; "gnss" if none is known.
+[[nodiscard]] std::string receiver_name(const PlacedDrive& placed, int source);
 
 /// Runs the gate and computes the initial guess.
 /// @param timeline of this drive
@@ -50,6 +56,7 @@ struct PlacedDrive {
 [[nodiscard]] Timeline timeline_of(const PreparedDrive& drive);
 
 /// Returns the odometry model that the settings choose, with its options and calibration states.
+/// @param settings from for_relative()
 /// @param gap_noise_factor for a model with such an option, unless it is stated
 /// @throws UsageError for an unknown model, option or value
 [[nodiscard]] std::unique_ptr<OdometryModel> make_odometry_model(const FusionSettings& settings,

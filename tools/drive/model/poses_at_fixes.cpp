@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
+#include <waymark/types_se2/edge_gnss.hpp>
 #include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
@@ -43,15 +43,37 @@ Eigen::Vector3d pose_at(const std::vector<StampedPose>& nodes, Stamp stamp, doub
 
 }  // namespace
 
+namespace {
+
+/// Returns how late the fixes of each source are; empty if no offset is estimated.
+std::vector<double> delays_of(const formats::GraphDocument& document) {
+  const Graph& graph = document.graph;
+  const std::vector<formats::DocumentSource> receivers = formats::receivers_of(document);
+  std::vector<double> delays_s(std::max<std::size_t>(receivers.size(), 1), 0.0);
+  bool any = false;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (graph.vertex_type(v).tag != VertexTimeOffset::kTag || graph.fixed(v)) continue;
+    const std::string name = formats::source_of(graph.id(v), document);
+    for (std::size_t i = 0; i < delays_s.size(); ++i)
+      if (receivers.empty() || receivers[i].name == name) delays_s[i] = graph.value(v)[0];
+    any = true;
+  }
+  return any ? delays_s : std::vector<double>();
+}
+
+}  // namespace
+
 std::vector<Eigen::Vector3d> poses_when_measured(const formats::GraphDocument& document) {
-  const std::optional<VertexIndex> offset = time_offset_vertex(document.graph);
-  if (!offset) return {};
+  const std::vector<double> delays_s = delays_of(document);
+  if (delays_s.empty()) return {};
   const std::vector<StampedPose> nodes = stamped_poses(document.graph);
   if (nodes.size() < 2)
     throw InputError("a time offset is estimated, but fewer than two poses have stamps of their own");
-  const double late_s = document.graph.value(*offset)[0];
   std::vector<Eigen::Vector3d> poses;
-  for (const Fix& fix : document.fixes) poses.push_back(pose_at(nodes, fix.stamp, -late_s));
+  for (const Fix& fix : document.fixes) {
+    const auto source = std::min(static_cast<std::size_t>(fix.source), delays_s.size() - 1);
+    poses.push_back(pose_at(nodes, fix.stamp, -delays_s[source]));
+  }
   return poses;
 }
 

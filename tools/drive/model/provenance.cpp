@@ -26,7 +26,7 @@ void add_settings(const FusionSettings& settings, const NoiseEstimate& noise, Pr
   if (!settings.loss.empty() && settings.loss != "none") provenance.emplace_back("loss", settings.loss);
   for (const NoiseParameter& parameter : noise.parameters)
     provenance.emplace_back(
-        "noise", parameter.owner + " " + parameter.option + "=" + shortest(parameter.value) + " estimated");
+        "noise", parameter.owner + " " + parameter.name() + "=" + shortest(parameter.value) + " estimated");
   for (const auto& [name, value] : *settings.calibration)
     provenance.emplace_back("calibration", name + "=" + value);
 }

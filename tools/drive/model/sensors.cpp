@@ -30,14 +30,12 @@ void SensorModels::check_drive(std::span<const PreparedSensor> sensors, std::spa
   }
 }
 
-void SensorModels::extend(std::span<const PreparedSensor> sensors, const DriveNodes& nodes,
+void SensorModels::extend(std::size_t index, const PreparedSensor& sensor, const DriveNodes& nodes,
                           std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m, double grid_scale,
                           Graph& graph) {
-  for (std::size_t i = 0; i < sensors.size(); ++i) {
-    at_place_of(sensors[i].place, sensors[i].name, [&] {
-      models_[i]->extend({nodes, fixes, antenna_m, sensors[i].readings, grid_scale}, graph);
-    });
-  }
+  at_place_of(sensor.place, sensor.name, [&] {
+    models_[index]->extend({nodes, fixes, antenna_m, sensor.readings, grid_scale, sensor.source}, graph);
+  });
 }
 
 std::vector<std::string> warnings_of_sensors_apart(std::span<const PreparedSensor> sensors,

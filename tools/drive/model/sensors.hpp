@@ -20,14 +20,15 @@ class SensorModels {
   /// Judges a whole drive. @param fixes accepted ones @throws InputError from a model
   void check_drive(std::span<const PreparedSensor> sensors, std::span<const Fix> fixes) const;
 
-  /// Calls every model to add its vertices and edges.
-  /// @param sensors those of the constructor, with their next readings
+  /// Calls the model of one sensor to add its vertices and edges.
+  /// @param index of the sensor in the constructor's list
+  /// @param sensor the same one, with its next readings
   /// @param fixes the next accepted ones
-  /// @param antenna_m GNSS antenna in the body frame
+  /// @param antenna_m of the first receiver, in the body frame
   /// @param grid_scale at the last fix before these
-  /// @throws InputError from a model
-  void extend(std::span<const PreparedSensor> sensors, const DriveNodes& nodes, std::span<const Fix> fixes,
-              const Eigen::Vector2d& antenna_m, double grid_scale, Graph& graph);
+  /// @throws InputError from the model
+  void extend(std::size_t index, const PreparedSensor& sensor, const DriveNodes& nodes,
+              std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m, double grid_scale, Graph& graph);
 
  private:
   std::vector<std::unique_ptr<SensorModel>> models_;

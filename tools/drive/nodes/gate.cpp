@@ -230,15 +230,24 @@ double GateSummary::rejected_percent() const {
 
 GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned,
                        const GateOptions& options) {
-  check(fixes, dead_reckoned, options);
-  if (options.enabled.value_or(true)) {
-    for (const int source : sources_of(fixes)) judge_source(fixes, dead_reckoned, source, options);
-  } else {
-    for (Fix& fix : fixes)
-      if (fix.status != FixStatus::withheld) apply(fix, Verdict{.reason = "off"});
-  }
-  for (const int source : sources_of(fixes))
+  const std::vector<int> sources = sources_of(fixes);
+  const std::size_t count = sources.empty() ? 1 : static_cast<std::size_t>(sources.back()) + 1;
+  return apply_gate(fixes, dead_reckoned, std::vector<GateOptions>(count, options));
+}
+
+GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned,
+                       std::span<const GateOptions> by_source) {
+  for (const GateOptions& options : by_source) check(fixes, dead_reckoned, options);
+  for (const int source : sources_of(fixes)) {
+    const GateOptions& options = by_source[static_cast<std::size_t>(source)];
+    if (options.enabled.value_or(true)) {
+      judge_source(fixes, dead_reckoned, source, options);
+    } else {
+      for (Fix& fix : fixes)
+        if (fix.source == source && fix.status != FixStatus::withheld) apply(fix, Verdict{.reason = "off"});
+    }
     reject_excursions(fixes, of_receiver(fixes, dead_reckoned, source));
+  }
   reject_frozen(fixes, dead_reckoned);
   return count(fixes);
 }

@@ -69,6 +69,9 @@ struct GateSummary {
 /// It is no error here if all fixes are rejected: see require_accepted_fix.
 GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned,
                        const GateOptions& options);
+/// Does the same with options for each source. @param by_source in the order of Fix::source
+GateSummary apply_gate(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned,
+                       std::span<const GateOptions> by_source);
 
 /// @throws InputError "all N fixes were rejected by the gate; ..." with the remedy if the
 /// gate left no fix

@@ -62,14 +62,13 @@ std::optional<double> heading_from_course(const Timeline& timeline, const Fix& f
 /// Returns the rotation of the dead reckoning that aligns the first chord of at least kMinChord
 /// with its fixes; the longest chord if none is that long.
 double rotation_from_chord(const Timeline& timeline, std::span<const Fix> fixes, std::size_t first,
-                           std::span<const Eigen::Vector3d> poses, const Eigen::Vector2d& antenna_m,
-                           std::string& note) {
+                           std::span<const Eigen::Vector3d> poses, std::string& note) {
   Eigen::Vector2d odometry = Eigen::Vector2d::Zero();
   Eigen::Vector2d gnss = Eigen::Vector2d::Zero();
-  const Eigen::Vector2d origin = antenna_at(poses[timeline.fix_node[first]], antenna_m);
+  const Eigen::Vector2d origin = antenna_at(poses[timeline.fix_node[first]], fixes[first].antenna_m);
   for (std::size_t i = first + 1; i < fixes.size() && odometry.norm() < kMinChord; ++i) {
     if (fixes[i].status != FixStatus::accepted) continue;
-    const Eigen::Vector2d chord = antenna_at(poses[timeline.fix_node[i]], antenna_m) - origin;
+    const Eigen::Vector2d chord = antenna_at(poses[timeline.fix_node[i]], fixes[i].antenna_m) - origin;
     if (chord.norm() <= odometry.norm()) continue;
     odometry = chord;
     gnss = fixes[i].position - fixes[first].position;
@@ -95,7 +94,6 @@ std::vector<double> odometry_headings(const Timeline& timeline, double bias, dou
 struct Drive {
   const Timeline& timeline;
   std::span<const Fix> fixes;
-  Eigen::Vector2d antenna_m;
   double standstill_mps;
   std::vector<double> moving_s;
   std::vector<Anchor> anchors;
@@ -103,7 +101,7 @@ struct Drive {
 
 std::vector<HeadingWindow> windows_along(const Drive& drive, std::span<const double> headings) {
   const auto poses = integrate_along(drive.timeline, headings, drive.standstill_mps);
-  return align_windows(drive.anchors, poses, drive.antenna_m);
+  return align_windows(drive.anchors, poses);
 }
 
 /// Estimates the gyro bias: first the reading at standstill, then twice the remaining slope of the
@@ -157,7 +155,7 @@ std::string turn_as_a_whole(const Drive& drive, std::vector<double>& headings) {
   std::vector<Eigen::Vector2d> to;
   const auto poses = integrate_along(drive.timeline, headings, drive.standstill_mps);
   for (const Anchor& anchor : drive.anchors) {
-    from.push_back(antenna_at(poses[anchor.node], drive.antenna_m));
+    from.push_back(antenna_at(poses[anchor.node], anchor.antenna_m));
     to.push_back(anchor.gnss);
   }
   const auto whole = align_robustly(from, to);
@@ -198,7 +196,7 @@ Knots translation(const Drive& drive, std::span<const Eigen::Vector3d> poses, in
     while (last < anchors.size() && anchors[last].moving_s <= anchor.moving_s + kTranslationHalf) ++last;
     std::vector<double> near;
     for (std::size_t i = first; i < last; ++i)
-      near.push_back(anchors[i].gnss[axis] - antenna_at(poses[anchors[i].node], drive.antenna_m)[axis]);
+      near.push_back(anchors[i].gnss[axis] - antenna_at(poses[anchors[i].node], anchors[i].antenna_m)[axis]);
     knots.at.push_back(anchor.moving_s);
     knots.value.push_back(upper_median(near));
   }
@@ -216,8 +214,7 @@ void turn_about_first(double first_heading_rad, std::vector<Eigen::Vector3d>& po
 
 }  // namespace
 
-Start dead_reckoning_start(const Timeline& timeline, std::span<const Fix> fixes,
-                           const Eigen::Vector2d& antenna_m, double standstill_mps) {
+Start dead_reckoning_start(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps) {
   require_fix(timeline, fixes);
   std::size_t first = 0;
   while (fixes[first].status != FixStatus::accepted) ++first;
@@ -228,8 +225,8 @@ Start dead_reckoning_start(const Timeline& timeline, std::span<const Fix> fixes,
   const auto course = heading_from_course(timeline, fixes[first], node);
   const double rotation =
       course ? *course - anchor[2]
-             : rotation_from_chord(timeline, fixes, first, start.poses, antenna_m, start.note);
-  const Eigen::Vector2d shift = fixes[first].position - rotate(rotation, antenna_at(anchor, antenna_m));
+             : rotation_from_chord(timeline, fixes, first, start.poses, start.note);
+  const Eigen::Vector2d shift = fixes[first].position - rotate(rotation, antenna_at(anchor, fixes[first].antenna_m));
   for (Eigen::Vector3d& pose : start.poses) {
     const Eigen::Vector2d turned = rotate(rotation, Eigen::Vector2d(pose.head<2>()));
     pose << turned + shift, pose[2] + rotation;
@@ -238,10 +235,9 @@ Start dead_reckoning_start(const Timeline& timeline, std::span<const Fix> fixes,
   return start;
 }
 
-Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m,
-                     double standstill_mps) {
+Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps) {
   require_fix(timeline, fixes);
-  Drive drive{timeline, fixes, antenna_m, standstill_mps, moving_time(timeline, standstill_mps), {}};
+  Drive drive{timeline, fixes, standstill_mps, moving_time(timeline, standstill_mps), {}};
   drive.anchors = collect_anchors(timeline, fixes, drive.moving_s);
 
   Start start;
@@ -261,11 +257,11 @@ Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes, const
   return start;
 }
 
-Start make_start(const Timeline& timeline, std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m,
-                 double standstill_mps, const StartOptions& options) {
+Start make_start(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps,
+                 const StartOptions& options) {
   Start start = options.method == StartMethod::anchored
-                    ? anchored_start(timeline, fixes, antenna_m, standstill_mps)
-                    : dead_reckoning_start(timeline, fixes, antenna_m, standstill_mps);
+                    ? anchored_start(timeline, fixes, standstill_mps)
+                    : dead_reckoning_start(timeline, fixes, standstill_mps);
   if (options.first_heading_rad) turn_about_first(*options.first_heading_rad, start.poses);
   return start;
 }

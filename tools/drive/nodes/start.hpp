@@ -44,11 +44,10 @@ struct Start {
 /// chord between accepted fixes of at least 10 m.
 /// @param timeline nodes; fix_node parallel to `fixes`
 /// @param fixes accepted ones are used
-/// @param antenna_m antenna in the body frame (x forward, y left)
 /// @param standstill_mps at a lower speed an interval is the identity, as in the odometry edges
 /// @throws InputError if no fix is accepted
 [[nodiscard]] Start dead_reckoning_start(const Timeline& timeline, std::span<const Fix> fixes,
-                                         const Eigen::Vector2d& antenna_m, double standstill_mps);
+                                         double standstill_mps);
 
 /// The default initial guess. It removes the gyro bias from dead reckoning, and bends it slowly so
 /// that it lies on the fixes. For that, windows of it are aligned rigidly and robustly to the
@@ -57,11 +56,10 @@ struct Start {
 /// matters. tools/drive/README.md, section "The start", describes the method. O(n log n);
 /// deterministic. Parameters and errors are those of dead_reckoning_start.
 [[nodiscard]] Start anchored_start(const Timeline& timeline, std::span<const Fix> fixes,
-                                   const Eigen::Vector2d& antenna_m, double standstill_mps);
+                                   double standstill_mps);
 
 /// Returns the initial guess that the options choose.
 [[nodiscard]] Start make_start(const Timeline& timeline, std::span<const Fix> fixes,
-                               const Eigen::Vector2d& antenna_m, double standstill_mps,
-                               const StartOptions& options);
+                               double standstill_mps, const StartOptions& options);
 
 }  // namespace waymark::drive

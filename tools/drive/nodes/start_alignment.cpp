@@ -75,14 +75,13 @@ double window_length(std::span<const Anchor> anchors) {
 }
 
 std::optional<HeadingWindow> align_window(std::span<const Anchor> anchors,
-                                          std::span<const Eigen::Vector3d> poses,
-                                          const Eigen::Vector2d& antenna_m) {
+                                          std::span<const Eigen::Vector3d> poses) {
   if (anchors.size() < kMinAnchors) return std::nullopt;
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
   for (const Anchor& anchor : anchors) {
     const Eigen::Vector3d& pose = poses[anchor.node];
-    from.push_back(pose.head<2>() + rotate(pose[2], antenna_m));
+    from.push_back(pose.head<2>() + rotate(pose[2], anchor.antenna_m));
     to.push_back(anchor.gnss);
   }
   const std::optional<Alignment> fit = align_robustly(from, to);
@@ -98,10 +97,19 @@ double nearest_turn(double angle, double target) {
   return target + wrap_angle(angle - target);
 }
 
-Anchor stop_anchor(double moving_s, std::size_t node, std::vector<double>& x, std::vector<double>& y) {
-  const Anchor anchor{.moving_s = moving_s, .node = node, .gnss = {upper_median(x), upper_median(y)}};
-  x.clear();
-  y.clear();
+/// The fixes of one stop.
+struct Stop {
+  std::vector<double> x, y;
+  Eigen::Vector2d antennas = Eigen::Vector2d::Zero();  ///< sum
+};
+
+Anchor stop_anchor(double moving_s, std::size_t node, Stop& stop) {
+  const Eigen::Vector2d antenna = stop.antennas / static_cast<double>(stop.x.size());
+  const Anchor anchor{.moving_s = moving_s,
+                      .node = node,
+                      .gnss = {upper_median(stop.x), upper_median(stop.y)},
+                      .antenna_m = antenna};
+  stop = {};
   return anchor;
 }
 
@@ -131,18 +139,18 @@ std::vector<double> moving_time(const Timeline& timeline, double standstill_mps)
 std::vector<Anchor> collect_anchors(const Timeline& timeline, std::span<const Fix> fixes,
                                     std::span<const double> moving_s) {
   std::vector<Anchor> anchors;
-  std::vector<double> x;
-  std::vector<double> y;
+  Stop stop;
   std::size_t node = 0;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (fixes[i].status != FixStatus::accepted) continue;
-    if (!x.empty() && moving_s[timeline.fix_node[i]] > moving_s[node])
-      anchors.push_back(stop_anchor(moving_s[node], node, x, y));
+    if (!stop.x.empty() && moving_s[timeline.fix_node[i]] > moving_s[node])
+      anchors.push_back(stop_anchor(moving_s[node], node, stop));
     node = timeline.fix_node[i];
-    x.push_back(fixes[i].position[0]);
-    y.push_back(fixes[i].position[1]);
+    stop.x.push_back(fixes[i].position[0]);
+    stop.y.push_back(fixes[i].position[1]);
+    stop.antennas += fixes[i].antenna_m;
   }
-  if (!x.empty()) anchors.push_back(stop_anchor(moving_s[node], node, x, y));
+  if (!stop.x.empty()) anchors.push_back(stop_anchor(moving_s[node], node, stop));
   return anchors;
 }
 
@@ -192,8 +200,7 @@ std::optional<Alignment> align_robustly(std::span<const Eigen::Vector2d> from,
 }
 
 std::vector<HeadingWindow> align_windows(std::span<const Anchor> anchors,
-                                         std::span<const Eigen::Vector3d> poses,
-                                         const Eigen::Vector2d& antenna_m) {
+                                         std::span<const Eigen::Vector3d> poses) {
   std::vector<HeadingWindow> windows;
   if (anchors.empty()) return windows;
   const double length = window_length(anchors);
@@ -204,7 +211,7 @@ std::vector<HeadingWindow> align_windows(std::span<const Anchor> anchors,
     while (first < anchors.size() && anchors[first].moving_s < from) ++first;
     last = std::max(last, first);
     while (last < anchors.size() && anchors[last].moving_s < from + length) ++last;
-    const auto window = align_window(anchors.subspan(first, last - first), poses, antenna_m);
+    const auto window = align_window(anchors.subspan(first, last - first), poses);
     // Two windows over the same anchors (around a gap) would count the same vote twice.
     if (window && (windows.empty() || window->moving_s > windows.back().moving_s)) windows.push_back(*window);
     if (last == anchors.size() && from + step + 0.5 * length > anchors.back().moving_s) break;

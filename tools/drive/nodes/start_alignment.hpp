@@ -25,6 +25,7 @@ struct Anchor {
   double moving_s = 0;
   std::size_t node = 0;
   Eigen::Vector2d gnss = Eigen::Vector2d::Zero();
+  Eigen::Vector2d antenna_m = Eigen::Vector2d::Zero();  ///< body frame
 };
 
 /// The rotation that aligns points with others, and its quality.
@@ -69,8 +70,7 @@ struct Knots {
 /// rare). A window is skipped if it has too few anchors, a spread under 15 m, or residuals that
 /// contradict a rigid motion.
 [[nodiscard]] std::vector<HeadingWindow> align_windows(std::span<const Anchor> anchors,
-                                                       std::span<const Eigen::Vector3d> poses,
-                                                       const Eigen::Vector2d& antenna_m);
+                                                       std::span<const Eigen::Vector3d> poses);
 /// Returns the weighted median of the slopes between windows at most `apart_s` apart, rad/s; 0 if
 /// there are none.
 [[nodiscard]] double median_slope(std::span<const HeadingWindow> windows, double apart_s);

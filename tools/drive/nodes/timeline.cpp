@@ -152,12 +152,12 @@ std::vector<Eigen::Vector3d> dead_reckon(const Timeline& timeline, const Eigen::
 
 std::vector<Eigen::Vector3d> antenna_at_fixes(const Timeline& timeline,
                                               std::span<const Eigen::Vector3d> poses,
-                                              const Eigen::Vector2d& antenna_m) {
+                                              std::span<const Fix> fixes) {
   std::vector<Eigen::Vector3d> antennas;
   antennas.reserve(timeline.fix_node.size());
-  for (const std::size_t node : timeline.fix_node) {
-    Eigen::Vector3d pose = poses[node];
-    pose.head<2>() += rotate(pose[2], antenna_m);
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    Eigen::Vector3d pose = poses[timeline.fix_node[i]];
+    pose.head<2>() += rotate(pose[2], fixes[i].antenna_m);
     antennas.push_back(pose);
   }
   return antennas;

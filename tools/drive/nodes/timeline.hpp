@@ -52,11 +52,10 @@ struct Timeline {
 [[nodiscard]] std::vector<Eigen::Vector3d> dead_reckon(const Timeline& timeline, const Eigen::Vector3d& start,
                                                        double standstill_mps);
 
-/// Returns, for each fix of the timeline, the pose of its node moved to the antenna (with the same
-/// heading), for comparison with the fixes in the gate. @param antenna_m antenna in the body frame
-/// (x forward, y left)
+/// Returns, for each fix of the timeline, the pose of its node moved to the antenna of its receiver (with
+/// the same heading), for comparison with the fixes in the gate. @param fixes those of the timeline
 [[nodiscard]] std::vector<Eigen::Vector3d> antenna_at_fixes(const Timeline& timeline,
                                                             std::span<const Eigen::Vector3d> poses,
-                                                            const Eigen::Vector2d& antenna_m);
+                                                            std::span<const Fix> fixes);
 
 }  // namespace waymark::drive

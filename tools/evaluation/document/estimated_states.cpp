@@ -23,24 +23,27 @@ bool is_state(const VertexType& type) {
 /// The estimated vertices of one type, in their order.
 struct StateVertices {
   const VertexType* type = nullptr;
+  std::string source{};  ///< of the drive, if it has several
   std::vector<VertexIndex> vertices;
 };
 
 /// Tells whether a vertex continues a state: it is a later value of the same type.
-bool goes_on(const Graph& graph, const StateVertices& state, VertexIndex v) {
+bool goes_on(const Graph& graph, const StateVertices& state, const std::string& source, VertexIndex v) {
   const auto before = graph.stamp(state.vertices.back());
   const auto now = graph.stamp(v);
-  return state.type->tag == graph.vertex_type(v).tag && before && now && *before < *now;
+  return state.type->tag == graph.vertex_type(v).tag && state.source == source && before && now && *before < *now;
 }
 
-std::vector<StateVertices> states_of(const Graph& graph) {
+std::vector<StateVertices> states_of(const formats::GraphDocument& document) {
+  const Graph& graph = document.graph;
   std::vector<StateVertices> states;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
     const VertexType& type = graph.vertex_type(v);
     if (!is_state(type) || graph.fixed(v)) continue;
+    const std::string source = formats::source_of(graph.id(v), document);
     auto known = std::find_if(states.begin(), states.end(),
-                              [&](const StateVertices& other) { return goes_on(graph, other, v); });
-    if (known == states.end()) known = states.insert(states.end(), {&type, {}});
+                              [&](const StateVertices& other) { return goes_on(graph, other, source, v); });
+    if (known == states.end()) known = states.insert(states.end(), {&type, source, {}});
     known->vertices.push_back(v);
   }
   return states;
@@ -69,7 +72,9 @@ StateReport report(const Graph& graph, const StateVertices& state, int axis,
   const auto less = [&](VertexIndex a, VertexIndex b) { return value(a) < value(b); };
   const auto [smallest, largest] = std::minmax_element(state.vertices.begin(), state.vertices.end(), less);
   StateReport result;
+  result.source = state.source;
   result.name = state.type->value_names[static_cast<std::size_t>(axis)];
+  if (!state.source.empty()) result.name = state.source + "." + result.name;
   result.unit = state.type->value_units[static_cast<std::size_t>(axis)];
   result.values = state.vertices.size();
   result.first = value(state.vertices.front());
@@ -104,7 +109,7 @@ void judge_by_prior(const std::map<VertexIndex, Eigen::MatrixXd>& priors, Vertex
 }  // namespace
 
 std::vector<StateReport> report_states(const formats::GraphDocument& document) {
-  const std::vector<StateVertices> states = states_of(document.graph);
+  const std::vector<StateVertices> states = states_of(document);
   if (states.empty()) return {};
   std::vector<VertexIndex> ends;
   for (const StateVertices& state : states) {

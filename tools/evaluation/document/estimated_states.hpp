@@ -14,7 +14,8 @@ namespace waymark::evaluation {
 
 /// One number of a state. If the state wanders, it has a value for each stamp.
 struct StateReport {
-  std::string name;  ///< name of the number: "gyro_bias"
+  /// name of the number, "gyro_bias"; with its source if the drive has several, "wheels.gyro_bias"
+  std::string name;
   std::string unit;
   std::size_t values = 0;  ///< vertices: 1 for a constant
   double first = 0;
@@ -32,6 +33,7 @@ struct StateReport {
   double surprise = 0;
   std::vector<Stamp> stamps;      ///< of the values of a wandering state; empty for a constant
   std::vector<double> wandering;  ///< one value per stamp
+  std::string source{};           ///< of the drive, if it has several
 };
 
 /// Reports the estimated vertices of types that state units and have no place in the plane, in the

@@ -38,9 +38,7 @@ struct WithheldMetrics {
 [[nodiscard]] std::vector<std::size_t> outage_ends(std::span<const Fix> fixes);
 
 /// @param fixes in order of time
-/// @param antenna_m GNSS antenna in the body frame
 /// @throws UsageError if the prediction does not belong to these fixes
-[[nodiscard]] WithheldMetrics withheld_metrics(const Prediction& prediction, std::span<const Fix> fixes,
-                                               const Eigen::Vector2d& antenna_m);
+[[nodiscard]] WithheldMetrics withheld_metrics(const Prediction& prediction, std::span<const Fix> fixes);
 
 }  // namespace waymark::evaluation

@@ -93,7 +93,9 @@ void add_drive_options(CLI::App& command, DriveChoice& choice) {
       ->check(rule("must be a number of seconds, at least 0", at_least_zero));
   add_edit<int>(command, choice, "--withhold",
                 "Keep the fixes of every N-th epoch out of the graph, for evaluation",
-                [](DriveFile& file, const int& every) { file.description.withhold_every = every; })
+                [](DriveFile& file, const int& every) {
+                  for (drive::GnssConfig& source : file.description.gnss) source.withhold_every = every;
+                })
       ->type_name("N")
       ->check(rule("must be 0 (none) or at least 2", [](double n) { return n == 0 || n >= 2; }));
   add_edit<std::string>(

@@ -7,7 +7,6 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
-#include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/tools/evaluation/output/summary_json.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
@@ -94,22 +93,11 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
   return causal;
 }
 
-/// Predicts what the receiver would have said at the withheld fixes, with the errors that last.
-std::optional<evaluation::Prediction> predict_fixes(const formats::GraphDocument& document,
-                                                    const GnssModeling& modeling) {
-  std::vector<Eigen::Vector3d> poses = drive::poses_when_measured(document);
-  if (poses.empty())
-    for (const StampedPose& at : drive::poses_at_fixes(document)) poses.push_back(at.pose);
-  drive::PosesAtWithheld predicted = drive::with_lasting_errors(document, modeling, poses);
-  if (predicted.poses.empty()) return std::nullopt;
-  return as_prediction("with lasting errors", std::move(predicted));
-}
-
 /// Evaluates a document with the covariances at its fixes. Afterwards the document keeps the
 /// requested ones.
 evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, formats::GraphDocument& document,
                                         const Summary& summary, const drive::FusionSettings& settings,
-                                        const GnssModeling& modeling) {
+                                        const std::vector<std::shared_ptr<const GnssModeling>>& modelings) {
   run.console.progress(settings.modeling + ": covariances");
   const std::vector<formats::VertexCovariance> asked_for = document.covariances;
   if (summary.converged() && document.covariances.empty()) {
@@ -120,7 +108,8 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, formats::GraphDoc
     }
   }
   std::vector<evaluation::Prediction> further;
-  if (auto fixes = predict_fixes(document, modeling)) further.push_back(*std::move(fixes));
+  drive::PosesAtWithheld fixes = drive::with_lasting_errors(document, modelings);
+  if (!fixes.poses.empty()) further.push_back(as_prediction("with lasting errors", std::move(fixes)));
   if (run.options.causal) further.push_back(predict_causally(run, settings, document));
   evaluation::Evaluation evaluation = evaluate_document(document, run.loaded.drive.truth, further);
   run.console.end_progress();
@@ -148,7 +137,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   write(run.folder.fused_graph(modeling));  // the minimum is saved before anything else can fail
   const std::size_t known = document.provenance.size();
   result.states = states_of_minimum(document, summary, console);
-  result.evaluation = {modeling, evaluate_minimum(run, document, summary, settings, *modeled.modeling)};
+  result.evaluation = {modeling, evaluate_minimum(run, document, summary, settings, modeled.modelings)};
   for (const std::string& sentence :
        warnings_of_result(result.states, modeled.settings, result.noise, result.evaluation.evaluation))
     warn(sentence, document, console);

@@ -6,6 +6,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/clock_sync.hpp>
+#include <waymark/tools/drive/logs/synchronise.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -51,7 +52,7 @@ text::Row row_of(const std::string& quantity, const drive::ClockOffset& offset) 
           offset.against};
 }
 
-std::string table_of(const drive::SyncReport& report, const drive::DriveDescription& drive,
+std::string table_of(const drive::SyncReport& report, const drive::OdometryConfig& odometry,
                      const text::TextLook& look) {
   text::Table table{
       .columns = {"odometry's", "late by [s]", "sigma [s]", "correlation", "samples", "against"}};
@@ -66,9 +67,9 @@ std::string table_of(const drive::SyncReport& report, const drive::DriveDescript
       "Positive: the stamps are later than GNSS time. Negative: earlier.\n\n"
       "To apply it: --sync of run and convert, or in the drive.yaml under 'odometry':\n";
   if (report.speed)
-    text += fmt::format("  speed_delay: {:.3f}\n", drive.speed_delay_s + report.speed->late_s);
+    text += fmt::format("  speed_delay: {:.3f}\n", odometry.speed_delay_s + report.speed->late_s);
   if (report.yaw_rate)
-    text += fmt::format("  yaw_rate_delay: {:.3f}\n", drive.yaw_rate_delay_s + report.yaw_rate->late_s);
+    text += fmt::format("  yaw_rate_delay: {:.3f}\n", odometry.yaw_rate_delay_s + report.yaw_rate->late_s);
   return text;
 }
 
@@ -87,7 +88,7 @@ ExitCode synchronise(const SyncCommand& command) {
     console.result(json_document("sync", json_of(report, drive.report.clocks)));
     return kSuccess;
   }
-  std::string text = table_of(report, description, console.look());
+  std::string text = table_of(report, drive::source_of_nodes(drive.odometry_name, description), console.look());
   for (const drive::ClockReport& clock : drive.report.clocks)
     text += fmt::format(
         "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual "

@@ -18,7 +18,9 @@ std::string describe_graph(const ReadInput& input, const TypeRegistry& registry)
 
 std::string describe_drive_file(const drive::DriveFile& file, const TypeRegistry& registry) {
   const drive::DriveDescription& drive = file.description;
-  std::vector<drive::LogConfig> logs = drive.odometry;
+  std::vector<drive::LogConfig> logs;
+  for (const drive::OdometryConfig& odometry : drive.odometry)
+    logs.insert(logs.end(), odometry.logs.begin(), odometry.logs.end());
   logs.insert(logs.end(), drive.gnss.begin(), drive.gnss.end());
   if (drive.truth) logs.push_back(*drive.truth);
   for (const drive::SensorConfig& sensor : drive.sensors) {

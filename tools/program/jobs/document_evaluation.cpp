@@ -35,7 +35,6 @@ evaluation::Evaluation evaluate_document(const formats::GraphDocument& document,
   input.when_measured = drive::poses_when_measured(document);
   input.fixes = document.fixes;
   input.truth = truth;
-  input.antenna_m = document.antenna_m;
   input.truth_reference_m = document.truth_reference_m;
   input.frame = document.frame.value_or(Frame());
   input.max_stamp_offset_s = drive::kLargestSnap;  // a fix may share the node of an odometry sample

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include <fmt/format.h>
@@ -38,17 +39,59 @@ std::optional<std::string> place_of_option(const drive::Places& places, const st
   return std::nullopt;
 }
 
+/// Checks something that the drive.yaml states, and gives errors its place.
+/// @param key of the model in Places
+/// @param options_of key of its options in Places
+/// @throws InputError for the drive.yaml; what `check` throws for the command line
+void check_stated(const drive::Places& places, const std::string& key, const std::string& options_of,
+                  const Options& given, const std::function<void()>& check) {
+  try {
+    check();
+  } catch (const OptionError& error) {
+    const auto place = place_of_option(places, options_of, error.option());
+    if (given.contains(error.option()) || (!place && !places.of.contains(key))) throw;
+    throw InputError(place.value_or(places.at(key)) + error.what());
+  } catch (const UsageError& error) {
+    if (!places.of.contains(key)) throw;
+    throw InputError(places.at(key) + error.what());
+  }
+}
+
+/// Checks what is stated for single sources.
+void check_sources(const drive::FusionSettings& settings, const drive::DriveFile& file,
+                   const TypeRegistry& registry) {
+  for (const drive::GnssConfig& source : file.description.gnss) {
+    const std::string place = "sources." + source.name;
+    check_stated(file.places, place + ".common", "", {}, [&] {
+      const std::string group = drive::group_of(settings, source.name);
+      const auto& all = file.description.gnss;
+      if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return other.name == group; }))
+        throw UsageError("common: there is no absolute source '" + group + "'");
+    });
+    if (!settings.sources.contains(source.name)) continue;
+    check_stated(file.places, place + ".modeling", place + ".options.", {}, [&] {
+      const drive::FusionSettings own = drive::for_absolute(settings, source.name, registry);
+      (void)registry.make_gnss_modeling(own.modeling, own.modeling_options);
+    });
+    check_stated(file.places, place + ".loss", "", {}, [&] {
+      (void)drive::loss_of_fixes(drive::for_absolute(settings, source.name, registry).loss, registry);
+    });
+  }
+  for (const drive::OdometryConfig& source : file.description.odometry) {
+    const std::string place = "sources." + source.name;
+    check_stated(file.places, place + ".model", place + ".options.", {}, [&] {
+      (void)drive::make_odometry_model(drive::for_relative(settings, source.name),
+                                       file.description.timeline.gap_noise_factor, registry);
+    });
+  }
+}
+
 /// @throws InputError for an option of the drive.yaml, with its place
 /// @throws OptionError for an option of the command line
 void check_modeling(const drive::FusionSettings& settings, const Options& given, const drive::Places& places,
                     const TypeRegistry& registry) {
-  try {
-    (void)registry.make_gnss_modeling(settings.modeling, settings.modeling_options);
-  } catch (const OptionError& error) {
-    const auto place = place_of_option(places, "modeling.options.", error.option());
-    if (!place || given.contains(error.option())) throw;
-    throw InputError(*place + error.what());
-  }
+  check_stated(places, "", "modeling.options.", given,
+               [&] { (void)registry.make_gnss_modeling(settings.modeling, settings.modeling_options); });
 }
 
 void check_odometry_model(const drive::FusionSettings& settings, const drive::DriveFile& file,
@@ -116,10 +159,18 @@ std::vector<std::string> chosen_modelings(const drive::DriveFile& file, const Dr
 }
 
 /// Returns the settings of one modeling. Options in the drive.yaml belong to the modeling
-/// that it names.
-drive::FusionSettings settings_of(const std::string& modeling, const drive::DriveFile& file,
+/// that it names. One of the command line is that of all sources.
+/// @param is_chosen on the command line
+drive::FusionSettings settings_of(const std::string& modeling, bool is_chosen, const drive::DriveFile& file,
                                   const Options& given, const TypeRegistry& registry) {
   drive::FusionSettings settings = file.settings;
+  for (const drive::GnssConfig& source : file.description.gnss) {
+    const auto own = settings.sources.find(source.name);
+    if (!is_chosen || own == settings.sources.end()) continue;
+    const std::string& stated = own->second.model.empty() ? file.settings.modeling : own->second.model;
+    if (stated != modeling) own->second.options.clear();
+    own->second.model.clear();
+  }
   if (modeling != settings.modeling) settings.modeling_options.clear();
   settings.modeling = modeling;
   for (const auto& [name, value] : given) {
@@ -176,7 +227,7 @@ std::vector<drive::FusionSettings> chosen_settings(const drive::DriveFile& file,
   const Options given = parse_options(choice.modeling_options);
   std::vector<drive::FusionSettings> all;
   for (const std::string& modeling : modelings) {
-    all.push_back(settings_of(modeling, file, given, registry));
+    all.push_back(settings_of(modeling, !choice.modelings.empty(), file, given, registry));
     check_modeling(drive::decided(all.back(), registry), given, file.places, registry);
   }
   check_options_are_used(modelings, given, registry);
@@ -184,6 +235,8 @@ std::vector<drive::FusionSettings> chosen_settings(const drive::DriveFile& file,
   check_loss(file, registry);
   for (const drive::FusionSettings& settings : all)
     check_odometry_model(drive::decided(settings, registry), file, registry);
+  for (const drive::FusionSettings& settings : all)
+    check_sources(drive::decided(settings, registry), file, registry);
   return all;
 }
 

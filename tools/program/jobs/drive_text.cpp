@@ -42,7 +42,7 @@ std::string describe_model(const drive::ModeledDrive& modeled, const text::TextL
   for (const drive::NoiseParameter& p : modeled.noise.parameters) {
     const bool linear = p.prior.linear;
     const auto moved = [&](double by) { return linear ? p.value + by : p.value * std::exp(by); };
-    table.rows.push_back({p.option, p.unit, fmt::format("{:.3g}", p.value),
+    table.rows.push_back({p.name(), p.unit, fmt::format("{:.3g}", p.value),
                           fmt::format("{:.3g}", moved(-p.deviation)),
                           fmt::format("{:.3g}", moved(p.deviation)),
                           p.observed() ? fmt::format("{:.3g}", p.prior.mean) : "not observed"});
@@ -73,7 +73,8 @@ std::string describe_drive(const drive::PreparedDrive& drive) {
 nlohmann::ordered_json noise_json(const drive::NoiseEstimate& noise) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const drive::NoiseParameter& p : noise.parameters) {
-    json.push_back({{"owner", p.owner},
+    json.push_back({{"source", p.source},
+                    {"owner", p.owner},
                     {"option", p.option},
                     {"unit", p.unit},
                     {"value", p.value},

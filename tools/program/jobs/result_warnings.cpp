@@ -49,7 +49,7 @@ void check_noise(const drive::NoiseEstimate& noise, std::vector<std::string>& wa
     warnings.push_back(
         fmt::format("the estimate of {} {} is {:.3g} {}, {:.0f} times its usual value, where the search "
                     "ends: {}",
-                    parameter.owner, parameter.option, parameter.value, parameter.unit, factor, kRemedy));
+                    parameter.owner, parameter.name(), parameter.value, parameter.unit, factor, kRemedy));
   }
 }
 

@@ -128,7 +128,7 @@ drawing::Figure fix_residuals_over_time(const ReportedDrive& drive) {
     if (!v) continue;
     const auto pose = graph.value(*v);
     const Eigen::Vector2d antenna =
-        Eigen::Vector2d(pose[0], pose[1]) + Eigen::Rotation2Dd(pose[2]) * drive.document.antenna_m;
+        Eigen::Vector2d(pose[0], pose[1]) + Eigen::Rotation2Dd(pose[2]) * fix.antenna_m;
     const double seconds = drive.seconds(fix.stamp);
     series.x.push_back(seconds);
     series.y.push_back((fix.position - antenna).norm());

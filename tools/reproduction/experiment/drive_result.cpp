@@ -30,8 +30,9 @@ DriveResult study_drive(int dataset, StudiedDrive& drive, const std::vector<Sett
   result.dataset = dataset;
   result.name = drive.drive().name;
   result.simulated = dataset > 0 || result.name.starts_with("Simulated");
-  for (const drive::LogConfig& log : drive.description().odometry)
-    result.imitated_odometry = result.imitated_odometry || log.file.find("imitated") != std::string::npos;
+  for (const drive::OdometryConfig& source : drive.description().odometry)
+    for (const drive::LogConfig& log : source.logs)
+      result.imitated_odometry = result.imitated_odometry || log.file.find("imitated") != std::string::npos;
   const auto& odometry = drive.drive().odometry;
   result.duration_s = seconds_between(odometry.front().stamp, odometry.back().stamp);
   for (std::size_t i = 1; i < odometry.size(); ++i) {

@@ -44,7 +44,7 @@ std::size_t run_count(const Experiment& experiment, bool has_truth) {
 
 DriveResult run_experiment(const Experiment& experiment, int dataset, drive::DriveDescription description,
                            const drive::DriveLogs& logs, const Laboratory& laboratory) {
-  description.withhold_every = 0;
+  for (drive::GnssConfig& source : description.gnss) source.withhold_every = 0;
   description.outage = {};
   StudiedDrive drive(description, logs, laboratory.registry);
   const bool has_truth = !drive.drive().truth.empty();
@@ -53,7 +53,7 @@ DriveResult run_experiment(const Experiment& experiment, int dataset, drive::Dri
       study_drive(dataset, drive, whole ? experiment.settings : std::vector<Setting>(), laboratory);
   if (has_truth) return result;
   for (const Way& way : experiment.ways) {
-    description.withhold_every = way.withhold_every;
+    for (drive::GnssConfig& source : description.gnss) source.withhold_every = way.withhold_every;
     description.outage = way.outage;
     StudiedDrive gapped(description, logs, laboratory.registry);
     Laboratory told = laboratory;

@@ -53,7 +53,7 @@ Json outcome_json(const Outcome& outcome) {
   json["accepted"] = outcome.accepted;
   json["rejected"] = outcome.rejected;
   for (const drive::NoiseParameter& parameter : outcome.noise.parameters)
-    json["noise"][parameter.option] = text::number_or_null(parameter.value);
+    json["noise"][parameter.name()] = text::number_or_null(parameter.value);
   if (!outcome.setting.evaluated) return json;
   const evaluation::Evaluation& evaluation = outcome.evaluation;
   if (evaluation.truth) {

@@ -1,0 +1,127 @@
+#include <waymark/tools/drive/description/source_entries.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/description/log_config.hpp>
+
+namespace waymark::drive {
+namespace {
+
+/// Words of the command line and of file names are made of source names.
+bool is_name(const std::string& text) {
+  const auto is_letter = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  return !text.empty() && std::all_of(text.begin(), text.end(), is_letter);
+}
+
+std::vector<std::string_view> odometry_keys() {
+  return log_keys({"kind", "name", "parts", "rate", "speed_from", "yaw_rate_from", "gyro", "vehicle",
+                   "speed_delay", "yaw_rate_delay", "model", "options", "calibration", "nodes"});
+}
+std::vector<std::string_view> gnss_keys() {
+  return log_keys({"kind", "name", "accuracy", "velocity", "antenna", "period", "delay", "withhold_every",
+                   "withheld", "modeling", "calibration", "gate", "common"});
+}
+
+YamlSection section_of(const std::string& kind, const YAML::Node& node, const std::string& name,
+                       const std::string& file) {
+  if (kind == kOdometryKind) return {node, name, file, odometry_keys()};
+  if (kind == kGnssKind) return {node, name, file, gnss_keys()};
+  return {node, name, file, log_keys({"kind", "name", "options"})};
+}
+
+class Entries {
+ public:
+  explicit Entries(const YamlSection& top) : top_(top) {}
+
+  /// Adds the entries of a short form: their key is their kind, and its word is the kind of source.
+  void add_short_form(const std::string& kind) {
+    if (!top_.has(kind)) return;
+    const std::vector<YAML::Node> entries = entries_of(top_.node(kind));
+    if (entries.empty()) top_.fail(kind, "at least one log is needed");
+    for (const YAML::Node& entry : entries) {
+      YamlSection section = section_of(kind, entry, kind, top_.file());
+      refuse(section, "kind");
+      std::string name = numbered(kind);
+      section.read("name", name);
+      add(name, kind, std::move(section));
+    }
+  }
+
+  /// An entry of `sensors` names its kind by `name`.
+  void add_sensors() {
+    if (!top_.has("sensors")) return;
+    for (const YAML::Node& entry : entries_of(top_.node("sensors"))) {
+      YamlSection section = section_of("", entry, "sensors", top_.file());
+      refuse(section, "kind");
+      std::string kind;
+      section.read("name", kind);
+      if (kind.empty()) throw InputError(section.place() + "sensors: 'name' is missing");
+      add(numbered(kind), kind, std::move(section));
+    }
+  }
+
+  void add_sources() {
+    const auto sources = top_.free_section("sources");
+    if (!sources) return;
+    for (const std::string& name : sources->keys()) {
+      std::string kind;
+      const YamlSection any = *sources->free_section(name);
+      any.read("kind", kind);
+      if (kind.empty())
+        throw InputError(any.place() + "sources." + name +
+                         ": 'kind' is missing; use odometry, gnss or a sensor (`waymark info` lists them)");
+      YamlSection section = section_of(kind, sources->node(name), "sources." + name, top_.file());
+      refuse(section, "name");
+      add(name, kind, std::move(section));
+    }
+  }
+
+  [[nodiscard]] std::vector<SourceEntry> taken() { return std::move(found_); }
+
+ private:
+  static void refuse(const YamlSection& section, std::string_view key) {
+    if (section.has(key)) section.fail(key, "has no meaning here");
+  }
+
+  std::string numbered(const std::string& kind) {
+    const int number = ++count_[kind];
+    return number == 1 ? kind : kind + "_" + std::to_string(number);
+  }
+
+  void add(const std::string& name, const std::string& kind, YamlSection section) {
+    if (!is_name(name))
+      throw InputError(section.place() + "the name of a source has letters, digits, '_' and '-', got '" +
+                       name + "'");
+    found_.push_back({name, kind, std::move(section)});
+  }
+
+  const YamlSection& top_;
+  std::map<std::string, int> count_;
+  std::vector<SourceEntry> found_;
+};
+
+}  // namespace
+
+std::vector<YAML::Node> entries_of(const YAML::Node& node) {
+  std::vector<YAML::Node> entries;
+  if (node.IsSequence()) {
+    for (const auto& entry : node) entries.push_back(entry);
+  } else {
+    entries.push_back(node);
+  }
+  return entries;
+}
+
+std::vector<SourceEntry> source_entries(const YamlSection& top) {
+  Entries all(top);
+  all.add_short_form(std::string(kOdometryKind));
+  all.add_short_form(std::string(kGnssKind));
+  all.add_sensors();
+  all.add_sources();
+  return all.taken();
+}
+
+}  // namespace waymark::drive
