@@ -223,17 +223,17 @@ truth: {file: oxts/data, format: kitti_oxts, timestamps: oxts/times.txt}
   CHECK(config.description.odometry.front().logs[1].companions.at("dbc") == "tours/car.dbc");
   CHECK(config.description.odometry.front().logs[1].request.columns.at("gyro_x").column == "IMU.Rate");
   CHECK(config.description.odometry.front().logs[1].request.readings.size() == odometry_channels().size());
-  CHECK(config.description.assembly.rate_hz == 20);
-  CHECK(config.description.assembly.speed_from == "speed");
-  CHECK(config.description.assembly.yaw_rate_from == "gyro");
-  CHECK(config.description.assembly.gyro_axis == "-x");
-  CHECK(config.description.assembly.track_width_m == 1.5);
-  CHECK(config.description.assembly.wheelbase_m == 2.7);
-  CHECK(config.description.assembly.steering_ratio == 15);
-  CHECK(config.description.assembly.metres_per_tick == 0.02);
-  CHECK(config.description.assembly.tick_range == 65536);
-  CHECK(config.description.speed_delay_s == 0.4);
-  CHECK(config.description.yaw_rate_delay_s == -0.1);
+  CHECK(config.description.odometry.front().assembly.rate_hz == 20);
+  CHECK(config.description.odometry.front().assembly.speed_from == "speed");
+  CHECK(config.description.odometry.front().assembly.yaw_rate_from == "gyro");
+  CHECK(config.description.odometry.front().assembly.gyro_axis == "-x");
+  CHECK(config.description.odometry.front().assembly.track_width_m == 1.5);
+  CHECK(config.description.odometry.front().assembly.wheelbase_m == 2.7);
+  CHECK(config.description.odometry.front().assembly.steering_ratio == 15);
+  CHECK(config.description.odometry.front().assembly.metres_per_tick == 0.02);
+  CHECK(config.description.odometry.front().assembly.tick_range == 65536);
+  CHECK(config.description.odometry.front().speed_delay_s == 0.4);
+  CHECK(config.description.odometry.front().yaw_rate_delay_s == -0.1);
   CHECK(config.description.gnss[0].request.date->nanoseconds ==
         1'238'544'000'000'000'000);  // 2009-04-01T00:00:00Z
   CHECK(config.description.gnss[0].request.range_error_m == 5);

@@ -349,10 +349,10 @@ TEST_CASE("inspection: roles are decided and told, and the drive.yaml parses") {
   CHECK(has(yaml, "\n  file: odometry.csv\n"));  // relative to the drive.yaml
   const DriveDescription config = parse_drive_file(yaml, folder + "/drive.yaml").description;
   REQUIRE(config.odometry.size() == 1);
-  CHECK(config.odometry[0].file == folder + "/odometry.csv");
-  CHECK(config.odometry[0].request.columns.at("speed").unit == "km/h");
-  CHECK(config.odometry[0].request.columns.at("yaw_rate").unit == "deg/s");
-  CHECK(config.odometry[0].request.time_scale == TimeScale::unix_time);
+  CHECK(config.odometry[0].logs.front().file == folder + "/odometry.csv");
+  CHECK(config.odometry[0].logs.front().request.columns.at("speed").unit == "km/h");
+  CHECK(config.odometry[0].logs.front().request.columns.at("yaw_rate").unit == "deg/s");
+  CHECK(config.odometry[0].logs.front().request.time_scale == TimeScale::unix_time);
   REQUIRE(config.gnss.size() == 1);
   CHECK(config.gnss[0].request.columns.at("sigma_east").column == "sigma_e_m");
   CHECK(config.time_scale == TimeScale::utc);
@@ -378,8 +378,8 @@ TEST_CASE("inspection: odometry in two logs becomes parts, columns that say the 
   CHECK(has(yaml, "# CHECK: no unit is named; m/s is assumed"));
   CHECK(has(yaml, "gyro: {axis: y}"));  // the one that turns
   const DriveDescription config = parse_drive_file(yaml, path).description;
-  CHECK(config.odometry.size() == 2);
-  CHECK(config.assembly.gyro_axis == "y");
+  CHECK(config.odometry.front().logs.size() == 2);
+  CHECK(config.odometry.front().assembly.gyro_axis == "y");
 }
 
 TEST_CASE("inspection: a drive.yaml without odometry or positions parses and says what to fill in") {
