@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
@@ -69,6 +70,13 @@ void read_frame(const YamlSection& top, DriveDescription& drive) {
   Eigen::Vector2d origin;
   frame->read("origin", origin);
   drive.utm_origin = origin;
+}
+
+/// Returns the frame in which logs may give positions in metres.
+std::optional<Frame> metric_frame(const DriveDescription& drive) {
+  if (!drive.utm_zone) return std::nullopt;
+  const Eigen::Vector2d origin = drive.utm_origin.value_or(Eigen::Vector2d::Zero());
+  return Frame{std::abs(*drive.utm_zone), *drive.utm_zone > 0, origin.x(), origin.y()};
 }
 
 std::vector<YAML::Node> entries_of(const YAML::Node& node) {
@@ -163,6 +171,7 @@ void read_gnss(const YamlSection& top, DriveDescription& drive) {
         log_keys({"accuracy", "velocity", "antenna", "period", "delay", "withhold_every"}));
     LogRequest request;
     request.source = static_cast<int>(drive.gnss.size());
+    request.metric_frame = metric_frame(drive);
     GnssConfig log{read_log_config(section, request, drive.folder, drive.scale()),
                    read_velocity(section, drive)};
     drive.gnss.push_back(std::move(log));
@@ -183,6 +192,7 @@ void read_truth(const YamlSection& top, DriveDescription& drive) {
   const YamlSection section(top.node("truth"), "truth", top.file(), log_keys({"accuracy", "reference"}));
   LogRequest request;
   request.stream = StreamKind::truth;
+  request.metric_frame = metric_frame(drive);
   drive.truth = read_log_config(section, request, drive.folder, drive.scale());
   section.read("reference", drive.truth_reference_m);
 }
