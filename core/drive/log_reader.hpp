@@ -19,6 +19,7 @@
 #include <vector>
 
 #include <waymark/core/base/export.hpp>
+#include <waymark/core/drive/frame.hpp>
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/core/drive/stamp.hpp>
 
@@ -77,6 +78,9 @@ struct LogRequest {
   std::optional<Stamp> date;
   double time_offset_s = 0;  ///< added to every stamp of the log
   int source = 0;            ///< index of the receiver for all samples
+  /// The frame of positions that a log gives in metres (`easting`, `northing`): they are its x
+  /// and y. Empty: such a log cannot be read.
+  std::optional<Frame> metric_frame;
 };
 
 /// One instant on two clocks: when the logger wrote a message, and the GNSS time in the message.

@@ -15,6 +15,7 @@ namespace waymark::formats {
 /// - `wheel_ticks_front_left` .. `_rear_right` and `wheel_ticks` (running counts), `distance`
 ///   (running, m);
 /// - `steering_angle` (of the front wheels or the steering wheel, rad, counter-clockwise);
+/// - `heading` (rad, counter-clockwise from east, true or on the grid: only its changes are used);
 /// - `gyro_x`, `_y`, `_z` (rad/s about the axes of the sensor, right-handed);
 /// - `acceleration_x`, `_y`, `_z` (specific force along these axes, m/s^2);
 /// - `reverse` (not 0: driving backwards; for speeds and ticks without a sign).

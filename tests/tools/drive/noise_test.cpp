@@ -153,7 +153,7 @@ double apart(const NoiseEstimate& one, const NoiseEstimate& other) {
   double largest = 0;
   for (const NoiseParameter& parameter : one.parameters) {
     for (const NoiseParameter& same : other.parameters) {
-      if (same.option != parameter.option) continue;
+      if (same.name() != parameter.name()) continue;
       const double away =
           parameter.prior.linear ? same.value - parameter.value : std::log(same.value / parameter.value);
       largest = std::max(largest, std::abs(away) / parameter.deviation);
@@ -174,13 +174,16 @@ TEST_CASE("noise: a parameter without effect changes nothing, and is not observe
   CHECK(apart(without, with) < 0.01);
 }
 
-TEST_CASE("noise: the frame's origin and the numbers of the receivers change nothing") {
+TEST_CASE("noise: the frame's origin and the order of the receivers change nothing") {
   PreparedDrive drive = make_drive({}, 4);
+  drive.receivers = {{"rear"}, {"front"}};
   for (std::size_t i = 0; i < drive.fixes.size(); i += 2) drive.fixes[i].source = 1;
   const NoiseEstimate here = estimate(drive, complete_settings());
+  CHECK(find(here, "white_sigma").name() == "rear.white_sigma");
   for (Fix& fix : drive.fixes) fix.position += Eigen::Vector2d(1000, -1);
   CHECK(apart(here, estimate(drive, complete_settings())) < 0.01);
   for (Fix& fix : drive.fixes) fix.source = 1 - fix.source;
+  std::swap(drive.receivers[0], drive.receivers[1]);
   CHECK(apart(here, estimate(drive, complete_settings())) < 0.01);
 }
 

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/detail/csv/csv_log.hpp>
 #include <waymark/tools/drive/logs/odometry_parts.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 
@@ -179,6 +181,63 @@ TEST_CASE("parts: the angle of the steering wheel turns the vehicle as the bicyc
   how.wheelbase_m = 2.5;
   how.steering_ratio = 15;
   CHECK(assemble_odometry(parts, how, 0.5).samples[5].yaw_rate_radps == Approx(10 * std::tan(0.1) / 2.5));
+}
+
+TEST_CASE("parts: the change of a heading is the yaw rate, also through half a turn and at other rates") {
+  // A turn by 0.3 rad/s to the left for 30 s, through north, west, south and east; then to the right.
+  const auto turn = [](double t) { return t < 30 ? 0.3 * t : 9 - 0.2 * (t - 30); };
+  const auto wrapped = [&](double t) { return std::remainder(turn(t), 2 * std::numbers::pi); };
+  const auto running_on = GENERATE(true, false);
+  const double rate = GENERATE(5.0, 20.0, 100.0);  // of the clock: below, at and above that of the heading
+  const std::vector<OdometryPart> parts{
+      part("speed", 2, 0, 60, constant(5)),
+      running_on ? part("heading", 20, 0, 60, turn) : part("heading", 20, 0, 60, wrapped)};
+  const AssembledOdometry odometry = assemble_odometry(parts, at_rate(rate), 0.5);
+  REQUIRE(odometry.samples.size() == static_cast<std::size_t>(60 * rate) + 1);
+  CHECK(odometry.notes[1] == "odometry: yaw rate from 'heading', 20 readings a second");
+  double sum = 0;
+  for (const OdometrySample& sample : odometry.samples) {
+    const double t = sample.stamp.seconds();
+    if (t < 29.85) CHECK(sample.yaw_rate_radps == Approx(0.3));
+    if (t > 30.15) CHECK(sample.yaw_rate_radps == Approx(-0.2));
+    const bool at_an_end = t < 0.5 / rate || t > 60 - 0.5 / rate;
+    sum += sample.yaw_rate_radps * (at_an_end ? 0.5 : 1) / rate;
+  }
+  CHECK(sum == Approx(turn(60)));  // no turn is lost between the clocks
+}
+
+TEST_CASE("parts: the clock of a heading is its own, at most 50 Hz, and other sources come before it") {
+  const auto turn = [](double t) { return 0.1 * t; };
+  std::vector<OdometryPart> parts{part("speed", 10, 0, 10, constant(5)), part("heading", 1, 0, 10, turn)};
+  CHECK(assemble_odometry(parts, {}, 0.5).samples.size() == 11);
+  parts[1] = part("heading", 200, 0, 10, turn);
+  CHECK(assemble_odometry(parts, {}, 0.5).samples.size() == 501);
+  parts.push_back(part("yaw_rate", 10, 0, 10, constant(0.7)));
+  CHECK(assemble_odometry(parts, {}, 0.5).samples[50].yaw_rate_radps == Approx(0.7));
+  OdometryAssembly how;
+  how.yaw_rate_from = "heading";
+  CHECK(assemble_odometry(parts, how, 0.5).samples[50].yaw_rate_radps == Approx(0.1));
+}
+
+TEST_CASE("parts: a turn by more than half a round between two headings is taken the short way") {
+  const std::vector<OdometryPart> parts{part("speed", 10, 0, 10, constant(5)),
+                                        part("heading", 1, 0, 10, [](double t) { return 4 * t; })};
+  for (const OdometrySample& sample : assemble_odometry(parts, {}, 0.5).samples)
+    CHECK(sample.yaw_rate_radps == Approx(4 - 2 * std::numbers::pi));
+}
+
+TEST_CASE("parts: a compass that counts clockwise from north in degrees is a heading") {
+  LogRequest request;
+  request.stream = StreamKind::odometry;
+  request.readings = odometry_channels();
+  request.columns["heading"] = {"hdt", "deg", "cw_from_north"};
+  const LogData data =
+      CsvLogReader().read("time,speed,hdt\n0,5,350\n1,5,356\n2,5,2\n3,5,\n4,5,14\n", "imu.csv", request);
+  const std::vector<OdometryPart> parts{{data.readings, "imu.csv"}};
+  const AssembledOdometry odometry = assemble_odometry(parts, {}, 0.5);
+  REQUIRE(odometry.samples.size() == 5);
+  for (const OdometrySample& sample : odometry.samples)  // 6 degrees a second to the right
+    CHECK(sample.yaw_rate_radps == Approx(-6 * std::numbers::pi / 180));
 }
 
 TEST_CASE("parts: where a channel is silent there are no samples, so that the gap is seen") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -61,6 +62,13 @@ void read_frame(const YamlSection& top, DriveDescription& drive) {
   Eigen::Vector2d origin;
   frame->read("origin", origin);
   drive.utm_origin = origin;
+}
+
+/// Returns the frame in which logs may give positions in metres.
+std::optional<Frame> metric_frame(const DriveDescription& drive) {
+  if (!drive.utm_zone) return std::nullopt;
+  const Eigen::Vector2d origin = drive.utm_origin.value_or(Eigen::Vector2d::Zero());
+  return Frame{std::abs(*drive.utm_zone), *drive.utm_zone > 0, origin.x(), origin.y()};
 }
 
 void read_assembly(const YamlSection& section, OdometryAssembly& assembly) {
@@ -127,6 +135,7 @@ std::optional<LogConfig> read_velocity(const YamlSection& section, const DriveDe
 GnssConfig read_gnss(const YamlSection& section, std::string name, const DriveDescription& drive) {
   LogRequest request;
   request.source = static_cast<int>(drive.gnss.size());
+  request.metric_frame = metric_frame(drive);
   GnssConfig gnss{read_log_config(section, request, drive.folder, drive.scale())};
   gnss.velocity = read_velocity(section, drive);
   gnss.name = std::move(name);
@@ -144,6 +153,7 @@ void read_truth(const YamlSection& top, DriveDescription& drive) {
   const YamlSection section(top.node("truth"), "truth", top.file(), log_keys({"accuracy", "reference"}));
   LogRequest request;
   request.stream = StreamKind::truth;
+  request.metric_frame = metric_frame(drive);
   drive.truth = read_log_config(section, request, drive.folder, drive.scale());
   section.read("reference", drive.truth_reference_m);
 }

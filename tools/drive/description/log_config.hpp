@@ -20,7 +20,7 @@ inline constexpr std::array<std::string_view, 3> kTimeScaleWords{"gps", "utc", "
 
 /// Reads file, format, separator, columns, time, accuracy and companions from the section
 /// of a stream.
-/// @param request known members: stream, channels, source
+/// @param request known members: stream, channels, source, metric_frame
 /// @param folder the folder for relative names
 /// @param drive_scale scale of a log that does not state its own
 [[nodiscard]] LogConfig read_log_config(const YamlSection& section, LogRequest request,

@@ -114,9 +114,9 @@ class Assembler {
     speed_ = chosen("speed", kSpeedSources, how_.speed_from,
                     [&](std::string_view source) { return speed(source); });
     flip_in_reverse();
-    TimeSeries yaw_rate = chosen("yaw rate", kYawRateSources, how_.yaw_rate_from,
-                                 [&](std::string_view source) { return this->yaw_rate(source); });
-    sample(yaw_rate);
+    const TimeSeries yaw = chosen("yaw rate", kYawRateSources, how_.yaw_rate_from,
+                                  [&](std::string_view source) { return this->yaw_rate(source); });
+    sample(yaw);
     return std::move(result_);
   }
 
@@ -201,12 +201,15 @@ class Assembler {
     return source == "distance" ? rate_of_count(*channel, 0, gap_s_) : *channel;
   }
 
+  /// Returns the yaw rate; the unwrapped heading if that is the source.
   [[nodiscard]] std::optional<TimeSeries> yaw_rate(std::string_view source) {
+    const TimeSeries* channel = find(source);
+    yaw_is_turn_ = source == "heading";
+    if (yaw_is_turn_ && channel != nullptr) return unwrapped(*channel);
     if (source == "gyro") return gyro();
     if (source == "rear_wheels") return wheels("rear", source, true);
     if (source == "rear_ticks") return ticks("rear", source, true);
     if (source == "steering") return steering();
-    const TimeSeries* channel = find(source);
     return channel == nullptr ? std::nullopt : std::optional(*channel);
   }
 
@@ -312,23 +315,23 @@ class Assembler {
     note(fmt::format("{} readings of speed are negative by 'reverse'", flipped));
   }
 
-  void sample(const TimeSeries& yaw_rate) {
-    const double rate =
-        how_.rate_hz > 0 ? how_.rate_hz : std::min(kLargestRate, 1 / median_interval_s(yaw_rate));
+  void sample(const TimeSeries& yaw) {
+    const double rate = how_.rate_hz > 0 ? how_.rate_hz : std::min(kLargestRate, 1 / median_interval_s(yaw));
     const auto period = static_cast<std::int64_t>(std::llround(1e9 / rate));
-    const std::int64_t first = std::max(speed_.stamps.front(), yaw_rate.stamps.front()).nanoseconds;
-    const std::int64_t last = std::min(speed_.stamps.back(), yaw_rate.stamps.back()).nanoseconds;
+    const std::int64_t first = std::max(speed_.stamps.front(), yaw.stamps.front()).nanoseconds;
+    const std::int64_t last = std::min(speed_.stamps.back(), yaw.stamps.back()).nanoseconds;
     const double speed_gap = longest_silence_s(speed_, gap_s_);
-    const double yaw_gap = longest_silence_s(yaw_rate, gap_s_);
+    const double yaw_gap = longest_silence_s(yaw, gap_s_);
     const SeriesIntegral way(speed_);
-    const SeriesIntegral turn(yaw_rate);
+    const SeriesIntegral turn(yaw);
     std::int64_t t = first - first % period;
     if (t < first) t += period;
     for (; t <= last; t += period) {
-      if (!value_at(speed_, {t}, speed_gap) || !value_at(yaw_rate, {t}, yaw_gap)) continue;
+      if (!value_at(speed_, {t}, speed_gap) || !value_at(yaw, {t}, yaw_gap)) continue;
       const Stamp from{std::max(t - period / 2, first)};
       const Stamp to{std::min(t - period / 2 + period, last)};
-      result_.samples.push_back({{t}, way.mean(from, to), turn.mean(from, to)});
+      const double yaw_rate = yaw_is_turn_ ? mean_slope(yaw, from, to) : turn.mean(from, to);
+      result_.samples.push_back({{t}, way.mean(from, to), yaw_rate});
     }
     if (result_.samples.empty())
       throw InputError(
@@ -342,6 +345,7 @@ class Assembler {
   const OdometryAssembly& how_;
   double gap_s_;
   TimeSeries speed_;
+  bool yaw_is_turn_ = false;  ///< the source of the yaw rate is the heading
   AssembledOdometry result_;
 };
 

@@ -1,5 +1,5 @@
-/// Assembles odometry from parts: speed, yaw rate, wheel speeds, ticks, a gyro on any axis. Each
-/// part has its own times; the result is samples on one clock.
+/// Assembles odometry from parts: speed, yaw rate, wheel speeds, ticks, a gyro on any axis, a
+/// heading. Each part has its own times; the result is samples on one clock.
 #pragma once
 
 #include <array>
@@ -18,9 +18,10 @@ namespace waymark::drive {
 inline constexpr std::array<std::string_view, 7> kSpeedSources{
     "speed", "rear_wheels", "front_wheels", "rear_ticks", "front_ticks", "ticks", "distance"};
 /// The sources of yaw rate. `rear_wheels`, `rear_ticks`: (right - left) / track width. `steering`:
-/// speed times the tangent of the front wheels' angle / wheelbase.
-inline constexpr std::array<std::string_view, 5> kYawRateSources{"yaw_rate", "gyro", "rear_wheels",
-                                                                 "rear_ticks", "steering"};
+/// speed times the tangent of the front wheels' angle / wheelbase. `heading`: its change per time,
+/// the shorter way round between readings.
+inline constexpr std::array<std::string_view, 6> kYawRateSources{"yaw_rate",   "gyro",     "rear_wheels",
+                                                                 "rear_ticks", "steering", "heading"};
 /// The gyro axis that points up; with '-' it points down. `gravity`: it is found with the
 /// accelerometer.
 inline constexpr std::array<std::string_view, 7> kGyroAxes{"x", "-x", "y", "-y", "z", "-z", "gravity"};

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <waymark/core/base/detail/median.hpp>
+#include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -58,6 +59,17 @@ std::optional<double> value_at(const TimeSeries& series, Stamp moment, double ga
   if (i == series.stamps.size() || seconds_between(series.stamps[i - 1], series.stamps[i]) > gap_s)
     return std::nullopt;
   return between(series, i, moment);
+}
+
+TimeSeries unwrapped(TimeSeries angles) {
+  for (std::size_t i = 1; i < angles.values.size(); ++i)
+    angles.values[i] = angles.values[i - 1] + wrap_angle(angles.values[i] - angles.values[i - 1]);
+  return angles;
+}
+
+double mean_slope(const TimeSeries& series, Stamp from, Stamp to) {
+  if (from == to) return 0;
+  return (value_held(series, to) - value_held(series, from)) / seconds_between(from, to);
 }
 
 SeriesIntegral::SeriesIntegral(const TimeSeries& series)

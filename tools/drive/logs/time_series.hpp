@@ -32,6 +32,13 @@ struct TimeSeries {
 /// `gap_s` apart.
 [[nodiscard]] std::optional<double> value_at(const TimeSeries& series, Stamp moment, double gap_s);
 
+/// Returns angles [rad] without jumps by whole turns: each change is the shorter way round.
+[[nodiscard]] TimeSeries unwrapped(TimeSeries angles);
+
+/// Returns the mean slope over [from, to] per second; 0 if both are equal. The series is constant
+/// beyond its ends.
+[[nodiscard]] double mean_slope(const TimeSeries& series, Stamp from, Stamp to);
+
 /// Integrals of a series, each in constant time.
 class SeriesIntegral {
  public:

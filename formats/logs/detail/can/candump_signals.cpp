@@ -204,7 +204,9 @@ std::vector<Quantity> signal_quantities(const LogRequest& request) {
   if (request.stream == StreamKind::odometry && request.readings.empty())
     throw UsageError("a CAN log gives odometry in channels: LogRequest::readings must name them");
   std::vector<Quantity> result = quantities(request);
-  result.erase(result.begin());  // time
+  std::erase_if(result, [](const Quantity& quantity) {
+    return quantity.name == "time" || quantity.name == "easting" || quantity.name == "northing";
+  });
   return result;
 }
 

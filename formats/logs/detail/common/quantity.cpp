@@ -40,6 +40,9 @@ constexpr Quantity kSpeed{"speed", "speed_mps", true, kSpeeds, {}, -150, 150};
 constexpr Quantity kOptionalSpeed{"speed", "speed_mps", false, kSpeeds, {}, -150, 150};
 constexpr Quantity kLatitude{"latitude", "latitude_deg", true, kDegrees, {}, -90, 90};
 constexpr Quantity kLongitude{"longitude", "longitude_deg", true, kDegrees, {}, -180, 360};
+// The frame decides how large coordinates are: its origin may be that of the zone.
+constexpr Quantity kEasting{"easting", "easting_m", false, kLengths, {}, -2e7, 2e7};
+constexpr Quantity kNorthing{"northing", "northing_m", false, kLengths, {}, -2e7, 2e7};
 constexpr Quantity kHeight{"height", "height_m", false, kLengths, {}, -12e3, 100e3};
 
 constexpr std::array kOdometry{kTime, kSpeed,
@@ -48,6 +51,8 @@ constexpr std::array kGnss{
     kTime,
     kLatitude,
     kLongitude,
+    kEasting,
+    kNorthing,
     kHeight,
     Quantity{"accuracy", "accuracy_m", false, kLengths, {}, -kInfinity, 1e6},
     Quantity{"accuracy_east", "accuracy_east_m", false, kLengths, {}, -kInfinity, 1e6},
@@ -63,7 +68,12 @@ constexpr std::array kGnss{
     Quantity{"valid", "valid_flag", false, kFlags, {}, -kInfinity, kInfinity}};
 // References often let the heading run on over full turns.
 constexpr std::array kTruth{
-    kTime, kLatitude, kLongitude, kHeight,
+    kTime,
+    kLatitude,
+    kLongitude,
+    kEasting,
+    kNorthing,
+    kHeight,
     Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -200 * pi, 200 * pi}};
 
 // What a sensor may request: an SI unit, and the sense of an angle or rate (SensorColumn).

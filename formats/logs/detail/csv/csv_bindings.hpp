@@ -13,6 +13,8 @@ struct Bindings {
         yaw_rate(columns.find("yaw_rate")),
         latitude(columns.find("latitude")),
         longitude(columns.find("longitude")),
+        easting(columns.find("easting")),
+        northing(columns.find("northing")),
         height(columns.find("height")),
         heading(columns.find("heading")),
         course(columns.find("course")),
@@ -21,7 +23,8 @@ struct Bindings {
         gnss_time(columns.find("gnss_time")),
         valid(columns.find("valid")) {}
 
-  const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *height, *heading;
+  const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *easting, *northing;
+  const BoundColumn *height, *heading;
   const BoundColumn *course, *course_accuracy, *speed_accuracy, *gnss_time, *valid;
 };
 

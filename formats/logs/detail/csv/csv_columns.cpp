@@ -80,6 +80,7 @@ CsvColumns::CsvColumns(const TableLine& first, const std::string& path, const Lo
   check_request(path + ": ", request);
   find_header(first, path, request);
   const std::string place = fmt::format("{}:{}:1: ", path, first.number);
+  choose_position(request, place);
   for (const Quantity& quantity : quantities_) {
     const auto wanted = request.columns.find(std::string(quantity.name));
     bind(quantity, wanted == request.columns.end() ? nullptr : &wanted->second, place);
@@ -118,6 +119,40 @@ void CsvColumns::find_header(const TableLine& first, const std::string& path, co
   names_.assign(comment.begin(), comment.end());
   notes_.push_back(
       fmt::format("{}: column names were taken from the comment above line {}", path, first.number));
+}
+
+/// Keeps the quantities of one kind of position: latitude and longitude, or easting and northing.
+void CsvColumns::choose_position(const LogRequest& request, const std::string& place) {
+  if (find_quantity(quantities_, "easting") == nullptr) return;
+  const auto states = [&](std::string_view first, std::string_view second) {
+    return request.columns.contains(std::string(first)) || request.columns.contains(std::string(second));
+  };
+  const bool states_degrees = states("latitude", "longitude");
+  const bool states_metres = states("easting", "northing");
+  if (states_degrees && states_metres)
+    throw InputError(
+        place + "columns name two kinds of position: keep latitude and longitude, or easting and northing");
+  const bool metric = states_metres || (!states_degrees && !has_default_columns("latitude", "longitude") &&
+                                        has_default_columns("easting", "northing"));
+  if (metric && request.metric_frame.value_or(Frame{}).zone == 0)
+    throw InputError(place +
+                     "easting and northing are coordinates of a stated frame: the drive needs "
+                     "'frame: {utm_zone: ..., origin: [...]}'");
+  std::erase_if(quantities_, [metric](const Quantity& quantity) {
+    const bool degrees = quantity.name == "latitude" || quantity.name == "longitude";
+    const bool metres = quantity.name == "easting" || quantity.name == "northing";
+    return metric ? degrees : metres;
+  });
+  for (Quantity& quantity : quantities_)
+    quantity.required = quantity.required || quantity.name == "easting" || quantity.name == "northing";
+}
+
+bool CsvColumns::has_default_columns(std::string_view first, std::string_view second) const {
+  const auto has = [&](std::string_view name) {
+    const Quantity* quantity = find_quantity(quantities_, name);
+    return field_named(quantity->name) || field_named(quantity->default_column);
+  };
+  return has(first) && has(second);
 }
 
 void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place) {

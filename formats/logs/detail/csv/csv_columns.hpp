@@ -44,7 +44,9 @@ class CsvColumns {
  private:
   void check_request(const std::string& place, const LogRequest& request) const;
   void find_header(const TableLine& first, const std::string& path, const LogRequest& request);
+  void choose_position(const LogRequest& request, const std::string& place);
   void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
+  [[nodiscard]] bool has_default_columns(std::string_view first, std::string_view second) const;
   [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
   [[nodiscard]] std::string columns_present() const;
   [[nodiscard]] std::vector<std::string> shown_names() const;

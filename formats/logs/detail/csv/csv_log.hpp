@@ -23,6 +23,9 @@ namespace waymark::formats {
 /// it is there. If a figure is missing, NaN, zero or negative, the default sigma replaces it, and
 /// the notes count these lines. Without a default sigma such a line is corrupt.
 ///
+/// Positions are latitude and longitude, or easting and northing in `metric_frame`; figures of
+/// accuracy are then along the grid's axes. A line with neither coordinate is without a fix.
+///
 /// Corrupt lines are counted and skipped. A line is corrupt if it has another number of fields than
 /// the header, a missing or garbled number, a value outside its range (latitude, speed above 150
 /// m/s, yaw rate above 20 rad/s, ...) or a covariance that is not positive definite. `valid` = 0
@@ -30,7 +33,7 @@ namespace waymark::formats {
 ///
 /// @throws InputError (from read) for an empty log, a log without usable lines, a column that does
 /// not exist (the message lists the columns and the nearest name), a quantity, unit or convention
-/// that does not exist, and fixes without any accuracy.
+/// that does not exist, positions in metres without a frame, and fixes without any accuracy.
 class CsvLogReader final : public LogReader {
  public:
   [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,

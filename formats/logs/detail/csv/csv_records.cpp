@@ -64,20 +64,27 @@ void CsvRecords::read_sample() {
     if (complaint_.column == 0) data_.odometry.push_back(sample);
     return;
   }
-  const double latitude = number(bound_.latitude, true);
-  const double longitude = number(bound_.longitude, true);
+  request_.stream == StreamKind::truth ? read_truth(*at) : read_fix(*at);
+}
+
+void CsvRecords::read_truth(Stamp at) {
+  const std::optional<Position> place = position();
+  if (!place) return;
   const double height = number(bound_.height, false);
-  if (request_.stream == StreamKind::truth) {
-    const GeodeticTruth truth{*at, latitude, longitude, height, optional_number(bound_.heading)};
-    if (complaint_.column == 0) data_.truth.push_back(truth);
-    return;
-  }
+  const GeodeticTruth truth{at, place->latitude_deg, place->longitude_deg, height,
+                            optional_number(bound_.heading)};
+  if (complaint_.column == 0) data_.truth.push_back(truth);
+}
+
+void CsvRecords::read_fix(Stamp at) {
+  const std::optional<Position> place = position();
+  if (!place) return;
   GeodeticFix fix;
-  fix.stamp = *at;
-  fix.latitude_deg = latitude;
-  fix.longitude_deg = longitude;
-  fix.height_m = height;
-  set_covariance(fix);
+  fix.stamp = at;
+  fix.latitude_deg = place->latitude_deg;
+  fix.longitude_deg = place->longitude_deg;
+  fix.height_m = number(bound_.height, false);
+  set_covariance(fix, place->axes);
   fix.course_rad = optional_number(bound_.course);
   fix.course_sigma_rad = optional_sigma(bound_.course_accuracy);
   fix.speed_mps = optional_number(bound_.speed);
@@ -86,7 +93,7 @@ void CsvRecords::read_sample() {
   const std::optional<Stamp> told = bound_.gnss_time ? instant(*bound_.gnss_time) : std::nullopt;
   if (complaint_.column != 0) return;
   positions_.give(data_, fix);
-  if (told) data_.clocks.push_back({*at, *told});
+  if (told) data_.clocks.push_back({at, *told});
 }
 
 void CsvRecords::read_readings(Stamp at) {
@@ -188,12 +195,46 @@ bool CsvRecords::has_fix() {
   return fix;
 }
 
-void CsvRecords::set_covariance(GeodeticFix& fix) {
+/// Returns the position of the line. Empty: it has none, or it is corrupt.
+std::optional<CsvRecords::Position> CsvRecords::position() {
+  const bool metric = bound_.easting != nullptr;
+  const BoundColumn* first_column = metric ? bound_.easting : bound_.latitude;
+  const BoundColumn* second_column = metric ? bound_.northing : bound_.longitude;
+  const double first = number(first_column, false);
+  const double second = number(second_column, false);
+  if (complaint_.column != 0) return std::nullopt;
+  if (std::isnan(first) && std::isnan(second)) {
+    ++data_.without_fix;
+    return std::nullopt;
+  }
+  if (std::isnan(first) || std::isnan(second)) {
+    complain(std::isnan(first) ? *first_column : *second_column, "no value");
+    return std::nullopt;
+  }
+  if (metric) return position_on_grid(first, second);
+  return Position{first, second, {}};
+}
+
+std::optional<CsvRecords::Position> CsvRecords::position_on_grid(double easting_m, double northing_m) {
+  const Frame& frame = *request_.metric_frame;
+  const Eigen::Vector2d grid(easting_m + frame.origin_easting_m, northing_m + frame.origin_northing_m);
+  const std::optional<UtmPlace> place = utm_from_grid(grid, frame.zone, frame.north);
+  // The way back has a border of its own, and the drive takes it.
+  if (place && utm_from_geodetic(place->latitude_deg, place->longitude_deg, frame.zone, frame.north))
+    return Position{place->latitude_deg, place->longitude_deg, place->axes};
+  complain(*bound_.easting,
+           fmt::format("UTM easting {}, northing {} are outside zone {}", grid.x(), grid.y(), frame.zone));
+  return std::nullopt;
+}
+
+void CsvRecords::set_covariance(GeodeticFix& fix, const GridAxes& axes) {
   const double east = number(accuracy_east_, false);
   const double north = accuracy_north_ == accuracy_east_ ? east : number(accuracy_north_, false);
   const double root = number(covariance_root_, false);
   if (complaint_.column != 0) return;
-  const char* what = positions_.set_covariance(fix, table_accuracy(east, north, root, accuracy_));
+  StatedAccuracy accuracy = table_accuracy(east, north, root, accuracy_);
+  if (accuracy.squares_en) accuracy.squares_en = covariance_from_grid(*accuracy.squares_en, axes);
+  const char* what = positions_.set_covariance(fix, accuracy);
   if (what == nullptr) return;
   const bool root_is_wrong = east > 0 && north > 0 && covariance_root_ != nullptr;
   complain(*(root_is_wrong ? covariance_root_ : east > 0 ? accuracy_north_ : accuracy_east_), what);

@@ -11,6 +11,7 @@
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
+#include <waymark/formats/logs/detail/common/utm.hpp>
 #include <waymark/formats/logs/detail/csv/csv_bindings.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 
@@ -34,8 +35,17 @@ class CsvRecords {
     std::string what;
   };
 
+  /// A position of the table, and the axes of its accuracy.
+  struct Position {
+    double latitude_deg = 0;
+    double longitude_deg = 0;
+    GridAxes axes{};
+  };
+
   bool check_fields();
   void read_sample();
+  void read_truth(Stamp at);
+  void read_fix(Stamp at);
   void read_readings(Stamp at);
   [[nodiscard]] std::optional<Stamp> instant(const BoundColumn& column);
   [[nodiscard]] std::optional<Stamp> stamp();
@@ -43,7 +53,9 @@ class CsvRecords {
   [[nodiscard]] std::optional<double> optional_number(const BoundColumn* column);
   [[nodiscard]] std::optional<double> optional_sigma(const BoundColumn* column);
   [[nodiscard]] bool has_fix();
-  void set_covariance(GeodeticFix& fix);
+  [[nodiscard]] std::optional<Position> position();
+  [[nodiscard]] std::optional<Position> position_on_grid(double easting_m, double northing_m);
+  void set_covariance(GeodeticFix& fix, const GridAxes& axes);
   void complain(const BoundColumn& column, std::string what);
 
   Bindings bound_;
