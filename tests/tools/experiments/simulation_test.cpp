@@ -337,7 +337,8 @@ TEST_CASE("simulation: recipes that make no sense are refused by name") {
   CHECK_THROWS_AS(simulate(recipe, 1), UsageError);
   CHECK_THROWS_MATCHES(simulation_preset("paper-9"), UsageError,
                        Message("unknown preset 'paper-9'; there are: highway, urban, rural, mixed, varied, "
-                               "paper-1, paper-2, paper-3, paper-4, paper-5, paper-6, paper-7, paper-8"));
+                               "paper-1, paper-2, paper-3, paper-4, paper-5, paper-6, paper-7, paper-8, "
+                               "three-absolute, two-odometries, correlated-receivers"));
 }
 
 }  // namespace simulation_test
