@@ -1,4 +1,6 @@
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
@@ -243,6 +245,97 @@ std::vector<SimulationPreset> paper_presets() {
   return all;
 }
 
+/// Gives a receiver errors with the given position rms: mostly the fast part, over seconds, without
+/// bursts. The stated accuracy is true.
+GnssRecipe receiver(std::string name, double rate_hz, double position_rms_m, double tau_s) {
+  const double per_axis = position_rms_m / std::numbers::sqrt2;
+  GnssRecipe gnss{.name = std::move(name), .rate_hz = rate_hz};
+  gnss.bias_sigma_m = 0.3 * per_axis;
+  gnss.jitter_m = 0.3 * per_axis;
+  gnss.fast_sigma_m = std::sqrt(1 - 2 * 0.3 * 0.3) * per_axis;
+  gnss.fast_tau_s = tau_s;
+  gnss.bursts_per_minute = 0;
+  gnss.stated_95_m = 2 * per_axis;
+  return gnss;
+}
+
+/// Returns a drive of twenty minutes over roads of all kinds.
+SimulationRecipe twenty_minutes(std::string name, OdometryRecipe odometry) {
+  return {.name = std::move(name),
+          .duration_s = 1200,
+          .roads = {urban(), rural(), highway()},
+          .odometry = std::move(odometry)};
+}
+
+OdometryRecipe ordinary_wheels() {
+  OdometryRecipe wheels{.name = "wheels"};
+  wheels.speed_scale_sigma = 0.006;
+  wheels.gyro_bias_sigma_radps = 5e-4;
+  return wheels;
+}
+
+/// Sets the share of epochs with a fix.
+GnssRecipe with_availability(GnssRecipe gnss, double share, double outage_s, double duration_s) {
+  gnss.missing_epochs =
+      static_cast<int>(std::lround((1 - share) * gnss.rate_hz * (duration_s - gnss.first_s)));
+  gnss.outage_s = outage_s;
+  return gnss;
+}
+
+GnssRecipe mounted(GnssRecipe gnss, double first_s, const Eigen::Vector2d& antenna_m) {
+  gnss.first_s = first_s;
+  gnss.antenna_m = antenna_m;
+  return gnss;
+}
+
+/// Availability and position rms are those of the absolute sources that a published framework for
+/// the fusion of any number of sources was tried with.
+SimulationRecipe three_absolute() {
+  SimulationRecipe recipe = twenty_minutes("three-absolute", ordinary_wheels());
+  const double duration_s = recipe.duration_s;
+  recipe.gnss = with_availability(mounted(receiver("front", 1, 1.06, 4), 1, {2.6, 0}), 0.67, 20, duration_s);
+  recipe.further_gnss = {
+      mounted(receiver("rear", 10, 1.23, 4), 1.02, {-0.8, 0}),
+      with_availability(mounted(receiver("roof", 5, 0.28, 4), 1.06, {0.9, 0.4}), 0.98, 8, duration_s)};
+  return recipe;
+}
+
+/// The wheels read a wrong scale and turn poorly. The visual odometry turns well.
+SimulationRecipe two_odometries() {
+  OdometryRecipe wheels{.name = "wheels", .rate_hz = 50};
+  wheels.speed_scale = 0.02;
+  wheels.speed_scale_sigma = 0.005;
+  wheels.gyro_bias_sigma_radps = 3e-3;
+  wheels.yaw_rate_noise_radps = 0.02 * std::sqrt(wheels.rate_hz);
+  wheels.silent_share = 0.1;
+  OdometryRecipe visual{.name = "visual", .rate_hz = 10, .first_s = 0.06};
+  visual.speed_scale_sigma = 0.01;
+  visual.speed_noise_mps = 0.05;
+  visual.speed_step_mps = 0;
+  visual.gyro_bias_sigma_radps = 1e-4;
+  visual.yaw_rate_noise_radps = 5e-4 * std::sqrt(visual.rate_hz);
+  visual.yaw_rate_step_radps = 0;
+  visual.silent_share = 0.15;
+
+  SimulationRecipe recipe = twenty_minutes("two-odometries", std::move(wheels));
+  recipe.further_odometry = {std::move(visual)};
+  recipe.gnss.fast_sigma_m = 1.5;
+  recipe.gnss.bias_sigma_m = 1;
+  recipe.gnss.jitter_m = 0.3;
+  recipe.gnss.stated_95_m = 3;
+  return recipe;
+}
+
+/// Both antennas see the same satellites.
+SimulationRecipe correlated_receivers() {
+  SimulationRecipe recipe = twenty_minutes("correlated-receivers", ordinary_wheels());
+  recipe.gnss = mounted(receiver("rear", 1, 2, 30), 1, {-0.8, 0});
+  recipe.gnss.common_share = 0.8;
+  recipe.further_gnss = {mounted(receiver("front", 1, 2, 30), 1.5, {2.6, 0})};
+  recipe.further_gnss.front().common_share = 0.8;
+  return recipe;
+}
+
 /// Returns one of the values, each as likely.
 template <typename T>
 T one_of(std::initializer_list<T> values, RandomStream& random) {
@@ -309,6 +402,14 @@ const std::vector<SimulationPreset>& simulation_presets() {
                    {.name = "varied", .duration_s = 600, .roads = {rural()}, .varied = true},
                    1});
     for (SimulationPreset& preset : paper_presets()) all.push_back(std::move(preset));
+    all.push_back({"three-absolute",
+                   "20 minutes, three receivers: 67, 100 and 98 % of the time, 1.06, 1.23, 0.28 m",
+                   three_absolute(), 1});
+    all.push_back({"two-odometries", "20 minutes, wheels and visual odometry, each silent at times",
+                   two_odometries(), 1});
+    all.push_back({"correlated-receivers",
+                   "20 minutes, two receivers with 80 % of their lasting errors in common",
+                   correlated_receivers(), 1});
     return all;
   }();
   return presets;

@@ -1,6 +1,7 @@
 #include <waymark/tools/simulation/recipe.hpp>
 
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -39,6 +40,12 @@ void require_rate(const char* parameter, double rate_hz) {
   require(ticks >= 1 && ticks == std::round(ticks), parameter, rate_hz, "a divisor of 100 Hz");
 }
 
+void require_tick(const char* parameter, double value_s) {
+  require_not_negative(parameter, value_s);
+  const double ticks = value_s * kTicksPerSecond;
+  require(std::abs(ticks - std::round(ticks)) < 1e-6, parameter, value_s, "a multiple of 0.01 s");
+}
+
 void check(const RoadRecipe& road) {
   require_positive("road.share", road.share);
   require_positive("road.cruise_min_mps", road.cruise_min_mps);
@@ -63,6 +70,7 @@ void check(const RoadRecipe& road) {
 
 void check(const OdometryRecipe& odometry) {
   require_rate("odometry.rate_hz", odometry.rate_hz);
+  require_tick("odometry.first_s", odometry.first_s);
   require(odometry.speed_scale > -1, "odometry.speed_scale", odometry.speed_scale, "above -1");
   require_not_negative("odometry.speed_scale_sigma", odometry.speed_scale_sigma);
   require_not_negative("odometry.speed_noise_mps", odometry.speed_noise_mps);
@@ -73,9 +81,14 @@ void check(const OdometryRecipe& odometry) {
   require_not_negative("odometry.gyro_bias_walk_radps_sqrts", odometry.gyro_bias_walk_radps_sqrts);
   require_not_negative("odometry.yaw_rate_noise_radps", odometry.yaw_rate_noise_radps);
   require_not_negative("odometry.yaw_rate_step_radps", odometry.yaw_rate_step_radps);
+  require_probability("odometry.silent_share", odometry.silent_share);
+  require_positive("odometry.outage_s", odometry.outage_s);
 }
 
 void check(const GnssRecipe& gnss) {
+  require_rate("gnss.rate_hz", gnss.rate_hz);
+  require_tick("gnss.first_s", gnss.first_s);
+  require(gnss.antenna_m.allFinite(), "gnss.antenna_m", gnss.antenna_m.norm(), "finite");
   require(std::isfinite(gnss.bias_east_m), "gnss.bias_east_m", gnss.bias_east_m, "finite");
   require(std::isfinite(gnss.bias_north_m), "gnss.bias_north_m", gnss.bias_north_m, "finite");
   require_not_negative("gnss.bias_sigma_m", gnss.bias_sigma_m);
@@ -83,6 +96,7 @@ void check(const GnssRecipe& gnss) {
   require_positive("gnss.fast_tau_s", gnss.fast_tau_s);
   require_not_negative("gnss.smoothing_s", gnss.smoothing_s);
   require_not_negative("gnss.jitter_m", gnss.jitter_m);
+  require_probability("gnss.common_share", gnss.common_share);
   require_not_negative("gnss.bursts_per_minute", gnss.bursts_per_minute);
   require_not_negative("gnss.burst_size_m", gnss.burst_size_m);
   require_positive("gnss.burst_duration_s", gnss.burst_duration_s);
@@ -97,13 +111,44 @@ void check(const GnssRecipe& gnss) {
   require_not_negative("gnss.stated_step_m", gnss.stated_step_m);
 }
 
+/// Names of sources are names of files too.
+void check_names(const SimulationRecipe& recipe) {
+  std::set<std::string> names = {"drive", "truth"};
+  const auto check_name = [&names](const std::string& name) {
+    if (!names.insert(name).second || name.empty() ||
+        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+      throw UsageError(
+          "simulation recipe: the name of a source must be lower-case, of its own and not 'drive' "
+          "or 'truth', got '" +
+          name + "'");
+  };
+  for (const OdometryRecipe& odometry : recipe.all_odometry()) check_name(odometry.name);
+  for (const GnssRecipe& gnss : recipe.all_gnss()) check_name(gnss.name);
+}
+
 }  // namespace
+
+std::vector<OdometryRecipe> SimulationRecipe::all_odometry() const {
+  std::vector<OdometryRecipe> all = {odometry};
+  all.insert(all.end(), further_odometry.begin(), further_odometry.end());
+  return all;
+}
+
+std::vector<GnssRecipe> SimulationRecipe::all_gnss() const {
+  std::vector<GnssRecipe> all = {gnss};
+  all.insert(all.end(), further_gnss.begin(), further_gnss.end());
+  return all;
+}
 
 SimulationRecipe with_duration(SimulationRecipe recipe, double duration_s) {
   const double factor = duration_s / recipe.duration_s;
   recipe.duration_s = duration_s;
   recipe.distance_m *= factor;
-  recipe.gnss.missing_epochs = static_cast<int>(std::lround(factor * recipe.gnss.missing_epochs));
+  const auto scale = [factor](GnssRecipe& gnss) {
+    gnss.missing_epochs = static_cast<int>(std::lround(factor * gnss.missing_epochs));
+  };
+  scale(recipe.gnss);
+  for (GnssRecipe& gnss : recipe.further_gnss) scale(gnss);
   return recipe;
 }
 
@@ -115,8 +160,9 @@ void check(const SimulationRecipe& recipe) {
   require_not_negative("distance_m", recipe.distance_m);
   if (recipe.roads.empty()) throw UsageError("simulation recipe: it has no road");
   for (const RoadRecipe& road : recipe.roads) check(road);
-  check(recipe.odometry);
-  check(recipe.gnss);
+  for (const OdometryRecipe& odometry : recipe.all_odometry()) check(odometry);
+  for (const GnssRecipe& gnss : recipe.all_gnss()) check(gnss);
+  check_names(recipe);
   require_rate("truth.rate_hz", recipe.truth.rate_hz);
   require_not_negative("truth.position_noise_m", recipe.truth.position_noise_m);
   require_not_negative("truth.heading_noise_rad", recipe.truth.heading_noise_rad);

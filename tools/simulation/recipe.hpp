@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace waymark::simulation {
 
 /// The layout of one kind of road, and how it is driven. A road is a row of legs, each with its own
@@ -40,7 +42,9 @@ struct RoadRecipe {
 /// Odometry: reading = quantised((1 + scale) speed + noise), quantised(yaw rate + bias + noise). A
 /// vehicle at rest reads speed 0, and a yaw rate of bias and noise.
 struct OdometryRecipe {
+  std::string name = "odometry";       ///< of the source and, with .csv, of its log
   double rate_hz = 25;                 ///< must divide 100 Hz, the clock of the simulation
+  double first_s = 0.01;               ///< instant of the first reading; a multiple of 0.01 s
   double speed_scale = 0;              ///< 0.01: reads 1 % too much
   double speed_scale_sigma = 0;        ///< deviation of a further part that each seed draws
   double speed_noise_mps = 0.02;       ///< of each reading, independent
@@ -50,11 +54,19 @@ struct OdometryRecipe {
   double gyro_bias_walk_radps_sqrts = 2e-6;  ///< its random walk, rad/s per sqrt(s)
   double yaw_rate_noise_radps = 2.6e-3;      ///< of each reading, independent
   double yaw_rate_step_radps = 7e-4;         ///< quantisation; 0: none
+
+  double silent_share = 0;  ///< share of the readings that are missing; exact but for rounding
+  double outage_s = 20;     ///< mean length of the outages that contain them (exponential)
 };
 
 /// The errors of the fixes, true east and north: bias + fast part + jitter + bursts. Also the
 /// accuracy that the receiver states.
 struct GnssRecipe {
+  std::string name = "gnss";        ///< of the source and, with .json, of its log
+  double rate_hz = 1;               ///< must divide 100 Hz
+  double first_s = 1;               ///< instant of the first epoch; a multiple of 0.01 s
+  Eigen::Vector2d antenna_m{0, 0};  ///< in the body frame: x forward, y left
+
   double bias_east_m = 0;  ///< constant over the drive
   double bias_north_m = 0;
   double bias_sigma_m = 0;  ///< per axis, deviation of a further part that each seed draws
@@ -64,6 +76,9 @@ struct GnssRecipe {
   /// filter of the receiver on the fast part: a first-order lag that keeps its sigma
   double smoothing_s = 0;
   double jitter_m = 0.1;  ///< per axis, independent from fix to fix
+  /// share of the variances of drawn bias and fast part that all receivers with a share have in
+  /// common; the common fast part has the times of the first receiver
+  double common_share = 0;
 
   double bursts_per_minute = 1;  ///< multipath bursts, Poisson, in canyons only
   double burst_size_m = 10;      ///< mean of their size (exponential); direction uniform
@@ -76,7 +91,7 @@ struct GnssRecipe {
   /// a fix shows the vehicle as it was so long before its stamp; a multiple of 0.01 s, < 0: early
   double delay_s = 0;
 
-  int missing_epochs = 0;  ///< total number of seconds without a fix; exact
+  int missing_epochs = 0;  ///< total number of epochs without a fix; exact
   double outage_s = 5;     ///< mean length of the outages that contain them (exponential)
 
   double stated_95_m = 2;          ///< mean of epx at 95 %; epy and epv are larger by fixed factors
@@ -100,11 +115,18 @@ struct SimulationRecipe {
   std::vector<RoadRecipe> roads{};  ///< driven one after the other
   OdometryRecipe odometry{};
   GnssRecipe gnss{};
+  std::vector<OdometryRecipe> further_odometry{};
+  std::vector<GnssRecipe> further_gnss{};
   TruthRecipe truth{};
   double start_latitude_deg = 52.27;  ///< a real place; its UTM zone is the frame
   double start_longitude_deg = 10.53;
   /// The seed draws everything but name, duration and place: varied().
   bool varied = false;
+
+  /// The first source of a kind, then the further ones.
+  [[nodiscard]] std::vector<OdometryRecipe> all_odometry() const;
+  [[nodiscard]] std::vector<GnssRecipe> all_gnss() const;
+  [[nodiscard]] bool has_several() const { return !further_odometry.empty() || !further_gnss.empty(); }
 };
 
 /// Returns the drive that a seed draws: kind of road, odometry (1 to 100 Hz, good and poor gyros,

@@ -25,6 +25,7 @@ struct SimulationPreset {
 
 /// Returns the presets. `highway`, `urban`, `rural`, `mixed`: ten minutes each, with new biases for
 /// every seed. `paper-1` ... `paper-8`: like the eight drives of the paper, at their default seed.
+/// `three-absolute`, `two-odometries`, `correlated-receivers`: twenty minutes with several sources.
 [[nodiscard]] const std::vector<SimulationPreset>& simulation_presets();
 /// @throws UsageError for an unknown name; it proposes the nearest one
 [[nodiscard]] const SimulationPreset& simulation_preset(std::string_view name);
@@ -47,8 +48,23 @@ struct SimulatedFix {
   FixErrorParts parts;
 };
 
-/// All stamps are GPS time. Positions of truth and fixes are those of the body point: there are
-/// no lever arms.
+/// The readings of one odometry, without those of its outages.
+struct SimulatedOdometry {
+  std::string name;            ///< of the recipe
+  double speed_scale = 0;      ///< drawn for this seed
+  double gyro_bias_radps = 0;  ///< drawn for this seed, at the start
+  std::vector<OdometrySample> samples;
+};
+
+/// The fixes of one receiver. Their positions are those of the antenna.
+struct SimulatedGnss {
+  std::string name;              ///< of the recipe
+  Eigen::Vector2d bias_m{0, 0};  ///< drawn for this seed, true east and north
+  std::vector<SimulatedFix> fixes;
+};
+
+/// All stamps are GPS time. Positions of the truth are those of the body point, positions of fixes
+/// those of the antenna.
 struct SimulatedDrive {
   std::string name;  ///< begins with "Simulated"
   std::uint64_t seed = 0;
@@ -62,15 +78,18 @@ struct SimulatedDrive {
   std::vector<OdometrySample> odometry;
   std::vector<SimulatedFix> fixes;
   std::vector<GeodeticTruth> truth;
+  /// in the order of the recipe; the members above hold the first odometry and the first receiver
+  std::vector<SimulatedOdometry> further_odometry;
+  std::vector<SimulatedGnss> further_gnss;
 };
 
-/// Simulates a drive. The same recipe and seed give the same drive. Road, odometry and GNSS have
+/// Simulates a drive. The same recipe and seed give the same drive. Road and each source have
 /// their own random streams, so a change of one leaves the others as they were.
 /// @throws UsageError for an impossible recipe
 [[nodiscard]] SimulatedDrive simulate(const SimulationRecipe& recipe, std::uint64_t seed);
 
-/// Writes `odometry.csv`, `gnss.json` (gpsd), `truth.csv` and `drive.yaml` into an existing folder.
-/// Each is labelled as simulated.
+/// Writes a log per source (by default `odometry.csv` and `gnss.json`, which is gpsd's),
+/// `truth.csv` and `drive.yaml` into an existing folder. Each is labelled as simulated.
 /// @throws OutputError
 void write_simulated_drive(const SimulatedDrive& drive, const std::string& folder);
 

@@ -1,5 +1,7 @@
 // `waymark simulate`: raw logs that are read like real ones and are labelled as simulated.
 #include <catch2/catch.hpp>
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "program/support/material.hpp"
@@ -12,10 +14,10 @@ using Json = nlohmann::json;
 TEST_CASE("simulate: lists its presets") {
   const RunResult result = run({"simulate", "--list"});
   CHECK(result.code == 0);
-  for (const char* name : {"highway", "urban", "rural", "mixed", "paper-1", "paper-8"})
+  for (const char* name : {"highway", "urban", "rural", "mixed", "paper-1", "paper-8", "three-absolute"})
     CHECK(contains(result.out, name));
   const Json json = Json::parse(run({"simulate", "--list", "--json"}).out).at("presets");
-  CHECK(json.size() == 13);
+  CHECK(json.size() == 16);
   CHECK(json.at(5).at("name") == "paper-1");
 }
 
@@ -57,6 +59,53 @@ TEST_CASE("simulate: writes a drive that runs, and its logs say that they are si
         Approx(raw.at("precision_m").get<double>()).epsilon(1e-9));
 }
 
+TEST_CASE("simulate: writes a log for each of several sources and tells their availability") {
+  const std::string folder = fresh_folder();
+  const RunResult result = run({"simulate", "--preset", "three-absolute", "-o", folder + "d", "--json"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK(names_in(folder + "d") == std::vector<std::string>{"drive.yaml", "front.json", "rear.json",
+                                                           "roof.json", "truth.csv", "wheels.csv"});
+  const std::string yaml = read_text(folder + "d/drive.yaml");
+  CHECK(contains(yaml, "\nsources:\n  wheels:"));
+  CHECK_FALSE(contains(yaml, "\ngnss:"));
+  CHECK_FALSE(contains(yaml, "\nodometry:"));
+  const Json sources = Json::parse(result.out).at("sources");
+  REQUIRE(sources.size() == 4);
+  CHECK(sources.at(0).at("rms_m").is_null());
+  CHECK(sources.at(1).at("name") == "front");
+  CHECK(sources.at(1).at("availability_percent").get<double>() == Approx(67).margin(0.1));
+  CHECK(contains(run({"simulate", "--preset", "correlated-receivers", "-o", folder + "c"}).out,
+                 "available [%]"));
+  CHECK(contains(read_text(folder + "c/drive.yaml"), "    common: rear\n"));
+}
+
+TEST_CASE(
+    "simulate: every log of several sources is read on its own, with the errors that it was told to have") {
+  const std::string folder = fresh_folder();
+  const RunResult told = run({"simulate", "--preset", "three-absolute", "-o", folder + "d", "--json"});
+  REQUIRE(told.code == 0);
+  const Json sources = Json::parse(told.out).at("sources");
+  const std::vector<std::string> antennas = {"[2.6, 0]", "[-0.8, 0]", "[0.9, 0.4]"};
+  for (std::size_t i = 0; i < antennas.size(); ++i) {
+    const Json& source = sources.at(i + 1);
+    const std::string name = source.at("name");
+    const std::string yaml = write_text(
+        folder + "d/" + name + "_alone.yaml",
+        "time: {scale: gps}\nodometry: {file: wheels.csv}\ngnss: {file: " + name +
+            ".json, format: gpsd_json, period: 0, antenna: " + antennas[i] + "}\ntruth: {file: truth.csv}\n");
+    const RunResult result = run({"inspect", yaml, "--json"});
+    INFO(name << result.err);
+    REQUIRE(result.code == 0);
+    const Json read = Json::parse(result.out);
+    CHECK(read.at("fixes") == source.at("readings"));
+    const double rms =
+        std::hypot(read.at("gnss_accuracy_m").get<double>(), read.at("gnss_precision_m").get<double>());
+    // Simulate compares with exact poses, inspect with a truth that has a noise of 1 cm.
+    CHECK(rms == Approx(source.at("rms_m").get<double>()).epsilon(0.01));
+  }
+}
+
 TEST_CASE("simulate: writes the same bytes for the same seed, others for another") {
   const std::string folder = fresh_folder();
   for (const auto& [name, seed] : {std::pair{"a", "5"}, {"b", "5"}, {"c", "6"}})
@@ -89,6 +138,15 @@ TEST_CASE("inspect: drives without truth have no errors to tell of") {
   const RunResult result = run({"inspect", write_drive(folder, {.with_truth = false})});
   CHECK(result.code == 0);
   CHECK(contains(result.out, "- / - / - m"));
+}
+
+TEST_CASE("simulate: does not overwrite logs of a real drive, whatever the names of the sources") {
+  const std::string folder = fresh_folder();
+  write_text(folder + "visual.csv", "time_s,speed_mps,yaw_rate_radps\n1,2,3\n");
+  const RunResult refused = run({"simulate", "--preset", "two-odometries", "-o", folder});
+  CHECK(refused.code == 2);
+  CHECK(contains(refused.err, "visual.csv: exists and was not written by simulate"));
+  CHECK(names_in(folder) == std::vector<std::string>{"visual.csv"});
 }
 
 TEST_CASE("simulate: refuses what it does not know, with the remedy") {

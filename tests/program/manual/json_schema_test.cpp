@@ -149,6 +149,7 @@ TEST_CASE("json: json of every subcommand is as tools/program/JSON.md documents 
       {"check", {"check", square}},
       {"derivatives", {"check", "--derivatives"}},
       {"drive", {"simulate", "--preset", "rural", "--duration", "60", "-o", folder + "simulated"}},
+      {"sources", {"simulate", "--preset", "two-odometries", "--duration", "60", "-o", folder + "several"}},
       {"drive", {"inspect", drive}},
       {"presets", {"simulate", "--list"}},
       {"reproduction", {"reproduce", drive, "-o", folder + "paper"}}};

@@ -7,7 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/logs/projection.hpp>
-#include <waymark/tools/simulation/sensors.hpp>
+#include <waymark/tools/simulation/sensors/sensors.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 #include <waymark/tools/simulation/statistics.hpp>
 
@@ -184,20 +184,26 @@ TEST_CASE("simulation: bursts come at their rate, only from canyons, with their 
   recipe.burst_rise_s = recipe.burst_decay_s = 1e-3;
   constexpr std::size_t epochs = 300'000;
   double squares = 0;
-  for (const Eigen::Vector2d& burst : draw_bursts(std::vector<bool>(epochs, true), recipe, 1))
+  for (const Eigen::Vector2d& burst : draw_bursts(std::vector<bool>(epochs, true), recipe, {1, 1}))
     squares += burst.squaredNorm();
   // Campbell: rate x E[size^2] x duration, with 2 m^2 for the square of an exponential size.
   CHECK(squares / epochs == Approx(2.0 / 60 * 2 * 9 * 5).epsilon(0.15));
 
+  recipe.rate_hz = 5;
+  squares = 0;
+  for (const Eigen::Vector2d& burst : draw_bursts(std::vector<bool>(5 * epochs, true), recipe, {1, 1}))
+    squares += burst.squaredNorm();
+  CHECK(squares / (5 * epochs) == Approx(2.0 / 60 * 2 * 9 * 5).epsilon(0.15));
+
   std::vector<bool> canyon(1000, false);
-  for (const Eigen::Vector2d& burst : draw_bursts(canyon, recipe, 1)) CHECK(burst.norm() == 0);
+  for (const Eigen::Vector2d& burst : draw_bursts(canyon, recipe, {1, 1})) CHECK(burst.norm() == 0);
   for (std::size_t i = 500; i < 600; ++i) canyon[i] = true;
-  const std::vector<Eigen::Vector2d> some = draw_bursts(canyon, recipe, 1);
+  const std::vector<Eigen::Vector2d> some = draw_bursts(canyon, recipe, {1, 1});
   for (std::size_t i = 0; i < 500; ++i) CHECK(some[i].norm() == 0);
 }
 
 TEST_CASE("simulation: outages miss exactly so many epochs, in pieces of their mean length") {
-  const std::vector<bool> out = draw_outages(1'000'000, 50'000, 10, 1);
+  const std::vector<bool> out = draw_outages(1'000'000, 50'000, 10, {1, 1});
   std::size_t missing = 0;
   std::size_t pieces = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -331,7 +337,8 @@ TEST_CASE("simulation: recipes that make no sense are refused by name") {
   CHECK_THROWS_AS(simulate(recipe, 1), UsageError);
   CHECK_THROWS_MATCHES(simulation_preset("paper-9"), UsageError,
                        Message("unknown preset 'paper-9'; there are: highway, urban, rural, mixed, varied, "
-                               "paper-1, paper-2, paper-3, paper-4, paper-5, paper-6, paper-7, paper-8"));
+                               "paper-1, paper-2, paper-3, paper-4, paper-5, paper-6, paper-7, paper-8, "
+                               "three-absolute, two-odometries, correlated-receivers"));
 }
 
 }  // namespace simulation_test

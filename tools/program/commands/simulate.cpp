@@ -11,6 +11,8 @@
 #include <waymark/tools/program/commands/drive_statistics.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
+#include <waymark/tools/simulation/source_statistics.hpp>
+#include <waymark/tools/text/number_text.hpp>
 #include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
@@ -43,8 +45,11 @@ ExitCode list_presets(const Console& console) {
 
 /// Logs of a real drive must not be overwritten as if they were an old simulation.
 /// @throws UsageError
-void require_no_real_drive(const std::string& folder) {
-  for (const char* name : {"drive.yaml", "odometry.csv", "truth.csv"}) {
+void require_no_real_drive(const std::string& folder, const simulation::SimulationRecipe& recipe) {
+  std::vector<std::string> files = {"drive.yaml", "truth.csv"};
+  for (const simulation::OdometryRecipe& odometry : recipe.all_odometry())
+    files.push_back(odometry.name + ".csv");
+  for (const std::string& name : files) {
     const std::string path = folder + "/" + name;
     if (!std::filesystem::exists(path)) continue;
     std::string first_line;
@@ -52,6 +57,28 @@ void require_no_real_drive(const std::string& folder) {
     if (first_line.find("no vehicle drove this") == std::string::npos)
       throw UsageError(path + ": exists and was not written by simulate; choose another folder");
   }
+}
+
+void print_sources(const simulation::SimulatedDrive& drive, const Console& console) {
+  text::Table table{.title = drive.name,
+                    .columns = {"source", "kind", "rate [Hz]", "readings", "available [%]", "rms [m]"}};
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const simulation::SourceStatistics& source : simulation::source_statistics(drive)) {
+    table.rows.push_back({source.name, source.kind, fmt::format("{:g}", source.rate_hz),
+                          std::to_string(source.readings), text::decimals(source.availability_percent, 2),
+                          text::decimals(source.rms_m, 3)});
+    json.push_back({{"name", source.name},
+                    {"kind", source.kind},
+                    {"rate_hz", source.rate_hz},
+                    {"readings", source.readings},
+                    {"availability_percent", source.availability_percent},
+                    {"rms_m", source.rms_m}});
+  }
+  console.result(console.json() ? json_document("sources", {{"name", drive.name},
+                                                            {"duration_s", drive.recipe.duration_s},
+                                                            {"distance_m", drive.distance_m},
+                                                            {"sources", json}})
+                                : text::table_text(table, console.look()));
 }
 
 ExitCode simulate_drive(const SimulateOptions& options) {
@@ -63,14 +90,19 @@ ExitCode simulate_drive(const SimulateOptions& options) {
   simulation::SimulationRecipe recipe = preset.recipe;
   if (options.duration_s) recipe = simulation::with_duration(recipe, *options.duration_s);
   simulation::check(recipe);
-  require_no_real_drive(options.folder);
+  require_no_real_drive(options.folder, recipe);
   formats::make_folder(options.folder);
   console.progress("simulating " + preset.name);
   const simulation::SimulatedDrive drive =
       simulation::simulate(recipe, options.seed.value_or(preset.default_seed));
   stop_if_interrupted();
   simulation::write_simulated_drive(drive, options.folder);
-  print_drive_statistics(options.folder + "/drive.yaml", options.common, console);
+  if (drive.recipe.has_several()) {
+    console.end_progress();
+    print_sources(drive, console);
+  } else {
+    print_drive_statistics(options.folder + "/drive.yaml", options.common, console);
+  }
   return kSuccess;
 }
 
@@ -91,7 +123,8 @@ void add_simulate(CLI::App& app, Action& action) {
       "Write raw logs of a simulated drive, with truth and drive.yaml\n\n"
       "The errors of the logs are like those of real receivers and wheels, biases and gaps "
       "included. The same seed gives the same logs. Statistics of the drive are printed, as by "
-      "'waymark inspect DRIVE.yaml'.");
+      "'waymark inspect DRIVE.yaml'. For a drive with several odometries or receivers, the "
+      "availability and the error of each are printed.");
   const auto options = std::make_shared<SimulateOptions>();
   auto* list = command->add_flag("--list", options->list, "List the presets");
   auto* preset = command->add_option("--preset", options->preset, "Drive to simulate")->type_name("PRESET");
@@ -102,7 +135,8 @@ void add_simulate(CLI::App& app, Action& action) {
       ->type_name("SECONDS")
       ->needs(preset);
   command
-      ->add_option("-o,--out", options->folder, "Folder for odometry.csv, gnss.json, truth.csv, drive.yaml")
+      ->add_option("-o,--out", options->folder,
+                   "Folder for odometry.csv, gnss.json (or a log per source), truth.csv, drive.yaml")
       ->type_name("DIR")
       ->needs(preset);
   list->excludes(preset);
