@@ -24,6 +24,7 @@
 #include <waymark/tools/evaluation/numbers/metrics.hpp>
 #include <waymark/tools/evaluation/numbers/truth_interpolation.hpp>
 #include <waymark/tools/evaluation/numbers/withheld.hpp>
+#include <waymark/tools/evaluation/source_comparison.hpp>
 
 namespace waymark::evaluation {
 
@@ -104,6 +105,7 @@ struct Evaluation {
   InnovationStatistics prediction;  ///< withheld fixes: true innovations
   Frame frame;
   std::vector<EpochResult> epochs;  ///< one per fix
+  SourceComparison sources;         ///< empty from evaluate(): it takes further fusions
 
   [[nodiscard]] std::size_t fixes() const { return accepted + rejected + withheld; }
 };

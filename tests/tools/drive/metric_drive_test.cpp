@@ -82,9 +82,9 @@ PreparedDrive drive_of(const std::string& table) {
   description.utm_zone = kFrame.zone;
   description.utm_origin = {kFrame.origin_easting_m, kFrame.origin_northing_m};
   DriveLogs logs;
-  logs.odometry.resize(1);
+  logs.odometry.assign(1, std::vector<DriveLogs::Log>(1));
   for (int i = 0; i <= 10 * kSeconds; ++i)
-    logs.odometry[0].data.odometry.push_back({Stamp::from_seconds(0.1 * i), kSpeed, kYawRate});
+    logs.odometry[0][0].data.odometry.push_back({Stamp::from_seconds(0.1 * i), kSpeed, kYawRate});
   logs.gnss.emplace_back();
   logs.gnss[0].data = read_fixes(table);
   return prepare_drive(logs, description);
@@ -143,7 +143,7 @@ TEST_CASE("metric drive: a stated frame reaches the logs of fixes and truth") {
   const DriveDescription stated = parse("frame: {utm_zone: 56S, origin: [300000, 6250000]}\n").description;
   CHECK(stated.gnss[0].request.metric_frame == Frame{56, false, 300'000, 6'250'000});
   CHECK(stated.truth->request.metric_frame == Frame{56, false, 300'000, 6'250'000});
-  CHECK_FALSE(stated.odometry[0].request.metric_frame);
+  CHECK_FALSE(stated.odometry[0].logs[0].request.metric_frame);
   // The origin that the drive chooses later is not that of its logs: they have plain UTM coordinates.
   CHECK(parse("frame: {utm_zone: 17N}\n").description.gnss[0].request.metric_frame == Frame{17, true, 0, 0});
   CHECK_FALSE(parse("").description.gnss[0].request.metric_frame);

@@ -79,6 +79,7 @@ PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_
     coarse.fixes.push_back(placed.fixes[i]);
     coarse.fixes.back().vertex = vertex_of(node);
   }
+  if (!coarse.relative.empty()) coarse.runs = motion_runs(coarse.timeline, coarse.relative, coarse.fixes);
   return coarse;
 }
 

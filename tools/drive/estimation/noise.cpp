@@ -128,7 +128,8 @@ PosteriorBounds bounds_of(const NoiseEstimate& noise) {
   return bounds;
 }
 
-void minimize(Objective& objective, NoiseEstimate& noise) {
+/// @param begins_near whether the values of the noise are near the minimum
+void minimize(Objective& objective, bool begins_near, NoiseEstimate& noise) {
   const PosteriorBounds bounds = bounds_of(noise);
   const Eigen::Index size = bounds.low.size();
   const auto with = [&](const Eigen::VectorXd& coordinates) -> const NoiseEstimate& {
@@ -138,8 +139,13 @@ void minimize(Objective& objective, NoiseEstimate& noise) {
   };
   const PosteriorCost cost{[&](const Eigen::VectorXd& x) { return objective(with(x)); },
                            [&](const Eigen::VectorXd& x) { return objective.begin_at(with(x)); }};
-  const Eigen::VectorXd start = Eigen::VectorXd::Zero(size).cwiseMax(bounds.low).cwiseMin(bounds.high);
-  const Eigen::VectorXd near = search_posterior(cost, start, bounds);
+  Eigen::VectorXd start(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const NoiseParameter& parameter = noise.parameters[static_cast<std::size_t>(i)];
+    start[i] = coordinate_of(parameter.value, parameter.prior);
+  }
+  start = start.cwiseMax(bounds.low).cwiseMin(bounds.high);
+  const Eigen::VectorXd near = begins_near ? start : search_posterior(cost, start, bounds);
   const PosteriorMode mode = find_posterior_mode(cost, near, bounds);
   with(mode.at);
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -148,10 +154,22 @@ void minimize(Objective& objective, NoiseEstimate& noise) {
   }
 }
 
+/// Takes the values of the same parameters. @returns whether all of them are known
+bool take_values(const NoiseEstimate& known, NoiseEstimate& noise) {
+  for (NoiseParameter& parameter : noise.parameters) {
+    const auto same = std::find_if(known.parameters.begin(), known.parameters.end(), [&](const auto& other) {
+      return other.owner == parameter.owner && other.name() == parameter.name();
+    });
+    if (same == known.parameters.end()) return false;
+    parameter.value = same->value;
+  }
+  return true;
+}
+
 }  // namespace
 
 NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
-                             const TypeRegistry& registry) {
+                             const TypeRegistry& registry, const NoiseEstimate& near) {
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
   const DriveFacts facts = facts_of(placed, settings);
@@ -173,7 +191,8 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& se
   }
   if (noise.parameters.empty()) return noise;
   Objective objective(placed, settings, registry);
-  minimize(objective, noise);
+  const bool begins_near = take_values(near, noise);
+  minimize(objective, begins_near, noise);
   noise.evaluations = objective.evaluations();
   noise.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return noise;

@@ -45,10 +45,11 @@ struct NoiseEstimate {
 /// white noise would otherwise come out too small. Nodes are thinned to four per second. Further
 /// sensors are left out.
 /// @param settings from decided()
+/// @param near an estimate of the same parameters for slightly other settings, to begin from
 /// @return no parameters if none is left to estimate
 /// @throws UsageError and InputError as the odometry model and the modeling do
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
-                                           const TypeRegistry& registry);
+                                           const TypeRegistry& registry, const NoiseEstimate& near = {});
 
 /// Returns the settings with the estimates as options of the odometry model and the modeling.
 /// Stated options are kept.

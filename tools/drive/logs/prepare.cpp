@@ -11,6 +11,7 @@
 #include <waymark/tools/drive/logs/projection.hpp>
 #include <waymark/tools/drive/logs/sensor_logs.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/nodes/agreement.hpp>
 #include <waymark/tools/drive/nodes/fix_motion.hpp>
 #include <waymark/tools/drive/nodes/frozen.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
@@ -97,8 +98,29 @@ void leave_out_frozen(PreparedDrive& drive) {
         return sample.stamp >= time.from && sample.stamp <= time.to;
       });
     }
-    if (source.samples.size() < 2) throw InputError(source.name + ": the whole log repeats one reading");
   }
+}
+
+/// Samples of a source that contradicts two others are left out.
+void let_odometries_agree(PreparedDrive& drive) {
+  std::vector<std::vector<OdometrySample>*> sources;
+  for (PreparedOdometry& source : drive.relative) sources.push_back(&source.samples);
+  for (const Disagreement& disagreement : leave_out_contradictions(sources)) {
+    const PreparedOdometry& source = drive.relative[disagreement.source];
+    drive.report.warnings.push_back(warning_of(disagreement, source.name, drive.odometry.front().stamp));
+  }
+}
+
+/// Leaves out relative sources of which no motion is left.
+void drop_silent_sources(PreparedDrive& drive) {
+  std::erase_if(drive.relative, [&](const PreparedOdometry& source) {
+    if (source.samples.size() >= 2) return false;
+    drive.report.warnings.push_back(source.name + ": nothing of it is usable, so it is left out");
+    return true;
+  });
+  if (drive.relative.empty()) throw InputError("no relative source has a usable sample");
+  drive.odometry_name = drive.relative.front().name;
+  drive.yaw_rate_at_rest = drive.relative.front().yaw_rate_at_rest;
 }
 
 void cover_gaps(PreparedDrive& drive) {
@@ -113,7 +135,10 @@ void cover_gaps(PreparedDrive& drive) {
 void judge_odometry(PreparedDrive& drive) {
   if (!drive.relative.empty()) {
     leave_out_frozen(drive);
+    let_odometries_agree(drive);
+    drop_silent_sources(drive);
     cover_gaps(drive);
+    if (drive.relative.size() == 1) drive.relative.clear();
   } else {
     note_yaw_rate("", drive.yaw_rate_at_rest, drive.report);
   }

@@ -192,10 +192,8 @@ BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor
   const AcceptedFixes accepted = accepted_fixes(placed);
   GraphBuilder builder(facts_of(placed, settings), sensors, settings, registry);
   builder.check_drive(accepted.fixes, sensors);
-  std::vector<MotionRun> runs;
-  if (!placed.relative.empty()) runs = motion_runs(placed.timeline, placed.relative, placed.fixes);
   builder.extend({placed.timeline.stamps, placed.start.poses, placed.timeline.intervals, accepted.fixes,
-                  accepted.nodes, sensors, runs});
+                  accepted.nodes, sensors, placed.runs});
   BuiltGraph built;
   built.warnings = warnings_of_sensors_apart(sensors, builder.nodes());
   built.modelings = builder.modelings();

@@ -45,7 +45,7 @@ std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings, 
   modeled.settings = settings;
   std::vector<std::optional<TimeOffset>> offsets = assume_time_offsets(modeled.placed, settings, registry);
   if (!*settings.estimates_noise) return offsets;
-  modeled.noise = estimate_noise(modeled.placed, settings, registry);
+  modeled.noise = estimate_noise(modeled.placed, settings, registry, modeled.noise);
   modeled.settings = with_noise(settings, modeled.noise);
   return assume_time_offsets(modeled.placed, modeled.settings, registry);
 }
@@ -70,7 +70,7 @@ bool leave_out_delays(const std::vector<std::optional<TimeOffset>>& offsets, boo
 }
 
 /// Returns the sources for the document; empty for one odometry and one receiver.
-std::vector<formats::DocumentSource> sources_of(const PreparedDrive& drive, const PlacedDrive& placed,
+std::vector<formats::DocumentSource> document_sources(const PreparedDrive& drive, const PlacedDrive& placed,
                                                 const SourceVertices& vertices) {
   std::vector<formats::DocumentSource> sources;
   if (drive.relative.empty() && drive.receivers.size() < 2) return sources;
@@ -141,7 +141,7 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   document.graph = std::move(built.graph);
   document.frame = drive_.frame;
   document.time_scale = drive_.scale;
-  document.sources = sources_of(drive_, modeled.placed, built.vertices);
+  document.sources = document_sources(drive_, modeled.placed, built.vertices);
   if (document.sources.empty() && !modeled.placed.fixes.empty())
     document.antenna_m = modeled.placed.fixes.front().antenna_m;
   document.truth_reference_m = drive_.truth_reference_m;

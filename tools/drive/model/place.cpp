@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <waymark/tools/drive/nodes/agreement.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
@@ -39,6 +40,7 @@ PlacedDrive begun(const PreparedDrive& drive, const Timeline& timeline, const Fu
   placed.time_offsets_s.assign(std::max<std::size_t>(drive.receivers.size(), 1), 0.0);
   placed.odometry_name = drive.odometry_name;
   placed.relative = drive.relative;
+  if (!placed.relative.empty()) placed.runs = motion_runs(timeline, placed.relative, placed.fixes);
   placed.gap_noise_factor = drive.timeline.gap_noise_factor;
   placed.standstill_mps =
       make_odometry_model(for_relative(settings, drive.odometry_name), placed.gap_noise_factor, registry)
@@ -53,6 +55,35 @@ std::vector<GateOptions> gates_of(const PlacedDrive& placed, const FusionSetting
     gates.push_back(
         for_absolute(settings, receiver_name(placed, static_cast<int>(source)), registry).gate);
   return gates;
+}
+
+std::vector<Eigen::Vector3d> poses_of_fixes(const PlacedDrive& placed) {
+  std::vector<Eigen::Vector3d> poses;
+  for (const std::size_t node : placed.timeline.fix_node) poses.push_back(placed.start.poses[node]);
+  return poses;
+}
+
+/// Rejects fixes of sources that contradict the others, and names these.
+void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
+  std::vector<std::string> names;
+  std::vector<std::size_t> voices;
+  for (std::size_t source = 0; source < placed.time_offsets_s.size(); ++source) {
+    const std::string name = group_of(settings, receiver_name(placed, static_cast<int>(source)));
+    const auto known = std::find(names.begin(), names.end(), name);
+    voices.push_back(static_cast<std::size_t>(known - names.begin()));
+    if (known == names.end()) names.push_back(name);
+  }
+  const std::vector<Disagreement> found =
+      reject_contradictions(placed.fixes, poses_of_fixes(placed), voices);
+  for (const Disagreement& disagreement : found) {
+    placed.gate.accepted -= disagreement.readings;
+    placed.gate.rejected += disagreement.readings;
+    placed.gate.reasons["contradicts"] += disagreement.readings;
+    placed.warnings.push_back(
+        warning_of(disagreement, names[disagreement.source], placed.timeline.stamps.front()));
+  }
+  if (!found.empty())
+    placed.start = make_start(placed.timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
 }
 
 }  // namespace
@@ -71,6 +102,7 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
   if (std::string warning = warning_of(placed.gate); !warning.empty())
     placed.warnings.push_back(std::move(warning));
   placed.start = make_start(timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
+  let_sources_agree(settings, placed);
   for (std::size_t i = 0; i < placed.fixes.size(); ++i)
     placed.fixes[i].vertex = vertex_of(timeline.fix_node[i]);
   return placed;

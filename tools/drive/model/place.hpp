@@ -15,6 +15,7 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/drive/model/motion_runs.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
 #include <waymark/tools/drive/nodes/start.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
@@ -32,6 +33,7 @@ struct PlacedDrive {
   std::vector<double> time_offsets_s;
   std::string odometry_name;                 ///< the relative source that nodes come from
   std::vector<PreparedOdometry> relative{};  ///< as PreparedDrive::relative
+  std::vector<MotionRun> runs{};             ///< what these measured; empty if there is one
   double standstill_mps = 0;          ///< of the odometry model
   double gap_noise_factor = 1;        ///< for the odometry model, from PreparedDrive::timeline
   std::vector<std::string> warnings;  ///< of the preparation; suspicious units, signs, jumps

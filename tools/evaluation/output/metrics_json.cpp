@@ -128,6 +128,23 @@ Json to_json(const Frame& frame) {
           {"origin_northing_m", text::number_or_null(frame.origin_northing_m)}};
 }
 
+Json to_json(const SourceComparison& comparison) {
+  Json sources = Json::array();
+  for (const SourceReport& s : comparison.sources)
+    sources.push_back({{"name", s.name},
+                       {"kind", s.kind},
+                       {"readings", s.readings},
+                       {"accepted", s.accepted},
+                       {"availability", text::number_or_null(s.availability)},
+                       {"raw_rmse_m", text::number_or_null(s.raw_rmse_m)},
+                       {"residual_rms_m", text::number_or_null(s.residual_rms_m)},
+                       {"share", text::number_or_null(s.share)},
+                       {"without_rmse_m", text::number_or_null(s.without_rmse_m)},
+                       {"without_sigma_m", text::number_or_null(s.without_sigma_m)},
+                       {"without_residual_rms_m", text::number_or_null(s.without_residual_rms_m)}});
+  return sources;
+}
+
 Json to_json(const LabelledEvaluation& labelled) {
   const Evaluation& e = labelled.evaluation;
   return {
@@ -142,7 +159,8 @@ Json to_json(const LabelledEvaluation& labelled) {
       {"innovation",
        {{"accepted", to_json(e.post_fit)},
         {"rejected", to_json(e.gated)},
-        {"withheld", to_json(e.prediction)}}}};
+        {"withheld", to_json(e.prediction)}}},
+      {"sources", to_json(e.sources)}};
 }
 
 }  // namespace

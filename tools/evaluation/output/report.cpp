@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -211,13 +212,25 @@ std::string count_block(std::span<const LabelledEvaluation> evaluations, const t
   return table.rows.empty() ? "" : text::table_text(table, look);
 }
 
+/// Compares the sources of each evaluation.
+std::string sources_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
+  text::Table table;
+  for (const auto& [label, evaluation] : evaluations) {
+    if (evaluation.sources.sources.empty()) continue;
+    text::Table part = source_table(evaluation.sources, label);
+    table.columns = std::move(part.columns);
+    table.rows.insert(table.rows.end(), part.rows.begin(), part.rows.end());
+  }
+  return block(table, look);
+}
+
 }  // namespace
 
 std::string metrics_table(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
   return truth_block(evaluations, look) + track_block(evaluations, look) +
          consistency_block(evaluations, look) + autocorrelation_block(evaluations, look) +
          withheld_block(evaluations, look) + innovation_block(evaluations, look) +
-         count_block(evaluations, look);
+         sources_block(evaluations, look) + count_block(evaluations, look);
 }
 
 }  // namespace waymark::evaluation

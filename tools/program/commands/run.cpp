@@ -17,6 +17,7 @@
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/jobs/result_files.hpp>
 #include <waymark/tools/program/jobs/result_warnings.hpp>
+#include <waymark/tools/program/jobs/source_comparison.hpp>
 #include <waymark/tools/program/terminal/iteration_table.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 
@@ -95,9 +96,9 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
 
 /// Evaluates a document with the covariances at its fixes. Afterwards the document keeps the
 /// requested ones.
-evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, formats::GraphDocument& document,
-                                        const Summary& summary, const drive::FusionSettings& settings,
-                                        const std::vector<std::shared_ptr<const GnssModeling>>& modelings) {
+evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDrive& modeled,
+                                        const Summary& summary, const drive::FusionSettings& settings) {
+  formats::GraphDocument& document = modeled.document;
   run.console.progress(settings.modeling + ": covariances");
   const std::vector<formats::VertexCovariance> asked_for = document.covariances;
   if (summary.converged() && document.covariances.empty()) {
@@ -108,11 +109,13 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, formats::GraphDoc
     }
   }
   std::vector<evaluation::Prediction> further;
-  drive::PosesAtWithheld fixes = drive::with_lasting_errors(document, modelings);
+  drive::PosesAtWithheld fixes = drive::with_lasting_errors(document, modeled.modelings);
   if (!fixes.poses.empty()) further.push_back(as_prediction("with lasting errors", std::move(fixes)));
   if (run.options.causal) further.push_back(predict_causally(run, settings, document));
   evaluation::Evaluation evaluation = evaluate_document(document, run.loaded.drive.truth, further);
   run.console.end_progress();
+  if (summary.converged())
+    evaluation.sources = compare_sources(run.loaded.drive, modeled, evaluation, run.registry, run.console);
   document.covariances = asked_for;
   return evaluation;
 }
@@ -137,7 +140,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   write(run.folder.fused_graph(modeling));  // the minimum is saved before anything else can fail
   const std::size_t known = document.provenance.size();
   result.states = states_of_minimum(document, summary, console);
-  result.evaluation = {modeling, evaluate_minimum(run, document, summary, settings, modeled.modelings)};
+  result.evaluation = {modeling, evaluate_minimum(run, modeled, summary, settings)};
   for (const std::string& sentence :
        warnings_of_result(result.states, modeled.settings, result.noise, result.evaluation.evaluation))
     warn(sentence, document, console);

@@ -51,6 +51,18 @@ void add_consistency(const ReportedDrive& drive, drawing::Page& page) {
   page.sections.push_back(std::move(section));
 }
 
+void add_sources(const ReportedDrive& drive, drawing::Page& page) {
+  const evaluation::SourceComparison& comparison = drive.evaluation.sources;
+  if (comparison.sources.empty()) return;
+  drawing::Section section{"sources", "Sources", {}};
+  text::Table table = evaluation::source_table(comparison);
+  table.notes = {
+      "share: of the information about a position, what only this source has. Without: the drive was fused "
+      "again without the source, with the same noise. apart: its fixes from what the others say."};
+  section.blocks.emplace_back(std::move(table));
+  page.sections.push_back(std::move(section));
+}
+
 void add_states(const ReportedDrive& drive, drawing::Page& page) {
   if (drive.states == nullptr || drive.states->empty()) return;
   const auto seconds = [&](Stamp stamp) { return drive.seconds(stamp); };
@@ -110,6 +122,7 @@ drawing::Page drive_page(const ReportedDrive& drive) {
   page.sections.push_back({"trajectory-section", "Trajectory", {trajectory_figure(drive)}});
   page.sections.push_back(error_section(drive));
   add_consistency(drive, page);
+  add_sources(drive, page);
   add_states(drive, page);
   add_residuals(drive, page);
   add_optimization(drive, page);
