@@ -159,6 +159,12 @@ struct OdometryModelType {
   /// The option with the variance factor of bridged intervals (Interval::bridged). Empty: there is
   /// none. A drive sets it from its timeline unless the user states it.
   std::string gap_factor_option = {};
+  /// The options with the standard deviations, in m and rad, of a track beside that of the first relative
+  /// source. Late stamps, smoothing and slow readings move a track to and fro, and do not add up. So the
+  /// poses of every further source are vertices of their own, tied to the nodes with these deviations.
+  /// Empty: the source joins the nodes themselves.
+  std::string track_sigma_option = {};
+  std::string track_heading_option = {};
 };
 
 struct GnssModelingType {

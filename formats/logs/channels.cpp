@@ -18,6 +18,8 @@ const std::vector<SensorColumn>& odometry_channels() {
       {"distance", "m", "", false, "running distance"},
       {"steering_angle", "rad", "ccw", false, "of the front wheels, or of the steering wheel"},
       {"heading", "rad", "ccw_from_east", false, "heading of the vehicle; only its changes are used"},
+      {"course", "rad", "ccw_from_east", false,
+       "direction of motion, such as a receiver's course; only its changes while driving are used"},
       {"gyro_x", "rad/s", "ccw", false, "turning rate about the sensor's x axis"},
       {"gyro_y", "rad/s", "ccw", false, "turning rate about the sensor's y axis"},
       {"gyro_z", "rad/s", "ccw", false, "turning rate about the sensor's z axis"},

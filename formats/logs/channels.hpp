@@ -16,6 +16,7 @@ namespace waymark::formats {
 ///   (running, m);
 /// - `steering_angle` (of the front wheels or the steering wheel, rad, counter-clockwise);
 /// - `heading` (rad, counter-clockwise from east, true or on the grid: only its changes are used);
+/// - `course` (the same of the direction of motion, which says nothing at rest);
 /// - `gyro_x`, `_y`, `_z` (rad/s about the axes of the sensor, right-handed);
 /// - `acceleration_x`, `_y`, `_z` (specific force along these axes, m/s^2);
 /// - `reverse` (not 0: driving backwards; for speeds and ticks without a sign).

@@ -100,6 +100,8 @@ class ConstantTwist final : public OdometryModel {
 };
 
 constexpr const char* kGapFactor = "gap_noise_factor";
+constexpr const char* kTrackSigma = "track_sigma";
+constexpr const char* kTrackHeading = "track_heading_sigma";
 
 std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = {
@@ -139,6 +141,11 @@ std::vector<OptionInfo> options() {
        state_options("yaw_per_speed", "rad/m", "1e-3", "1e-5",
                      "error of a yaw rate from wheels or steering, true yaw rate = reading - this * speed"))
     all.push_back(option);
+  all.push_back({kTrackSigma, "0.2", "m", OptionRange{1e-3, 100},
+                 "how far the track of a further relative source is beside that of the first one, to and fro, "
+                 "independent from second to second"});
+  all.push_back({kTrackHeading, "0.01", "rad", OptionRange{1e-5, 1},
+                 "how far its heading is off, to and fro"});
   all.push_back(
       {"calibration_period", "10", "s", OptionRange{0.1, 1e4}, "time between two values of a random walk"});
   return all;
@@ -189,7 +196,7 @@ void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeSpeedScaleWalk>();
   registry.add_edge<EdgeYawPerSpeedWalk>();
   registry.add_odometry_model({"constant_twist", "exact constant-twist integration of speed and yaw rate",
-                               options(), make, kGapFactor});
+                               options(), make, kGapFactor, kTrackSigma, kTrackHeading});
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ void add_parameters(const std::string& source, const std::string& owner, const s
 /// The function that the noise minimises: -log of prior times marginal likelihood.
 class Objective {
  public:
-  Objective(const PlacedDrive& placed, const FusionSettings& settings, const TypeRegistry& registry)
-      : coarse_(coarsen(placed)),
+  Objective(const PlacedDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry)
+      : coarse_(coarse),
         settings_(settings),
         registry_(registry),
         algorithm_(registry.make_algorithm("dogleg")) {}
@@ -104,7 +104,7 @@ class Objective {
     kept_.build(graph, find_gauge(graph).held);
   }
 
-  PlacedDrive coarse_;
+  const PlacedDrive& coarse_;
   const FusionSettings& settings_;
   const TypeRegistry& registry_;
   std::unique_ptr<Algorithm> algorithm_;
@@ -166,35 +166,60 @@ bool take_values(const NoiseEstimate& known, NoiseEstimate& noise) {
   return true;
 }
 
+/// Returns a coarse drive with one of its relative sources. Where that is silent, the motion is bridged.
+PlacedDrive with_only(std::size_t source, PlacedDrive coarse) {
+  if (coarse.relative.empty()) return coarse;
+  coarse.relative = {coarse.relative[source]};
+  coarse.runs = motion_runs(coarse.timeline, coarse.relative, coarse.fixes);
+  return coarse;
+}
+
+/// Returns what is to be estimated with one relative source: its parameters, and those of the absolute
+/// ones.
+/// @param count of relative sources in the drive @param absolute whether those of absolute sources are open
+NoiseEstimate open_parameters(const PlacedDrive& coarse, std::size_t count, bool absolute,
+                              const FusionSettings& settings, const TypeRegistry& registry) {
+  NoiseEstimate noise;
+  const DriveFacts facts = facts_of(coarse, settings);
+  // What is estimated for the only source of a kind is an option of the drive, unless it states its own.
+  const auto label = [&](const std::string& source, std::size_t sources) {
+    return sources > 1 || settings.sources.contains(source) ? source : std::string();
+  };
+  const std::string& relative = facts.relative.front();
+  const FusionSettings own = for_relative(settings, relative);
+  add_parameters(label(relative, count), own.odometry_model, registry.odometry_model(own.odometry_model).options,
+                 own.odometry_options, 0, noise.parameters);
+  for (const AbsoluteGroup& group : facts.absolute) {
+    if (!absolute) break;
+    const FusionSettings of = for_absolute(settings, group.name, registry);
+    add_parameters(label(group.name, facts.absolute.size()), of.modeling,
+                   registry.gnss_modeling(of.modeling).options, of.modeling_options, group.median_accuracy_m,
+                   noise.parameters);
+  }
+  return noise;
+}
+
 }  // namespace
 
 NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
                              const TypeRegistry& registry, const NoiseEstimate& near) {
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
-  const DriveFacts facts = facts_of(placed, settings);
-  // What is estimated for the only source of a kind is an option of the drive, unless it states its own.
-  const auto label = [&](const std::string& source, std::size_t sources) {
-    return sources > 1 || settings.sources.contains(source) ? source : std::string();
-  };
-  for (const std::string& source : facts.relative) {
-    const FusionSettings own = for_relative(settings, source);
-    add_parameters(label(source, facts.relative.size()), own.odometry_model,
-                   registry.odometry_model(own.odometry_model).options, own.odometry_options, 0,
-                   noise.parameters);
+  FusionSettings known = settings;
+  const std::size_t count = std::max<std::size_t>(placed.relative.size(), 1);
+  for (std::size_t source = 0; source < count; ++source) {
+    const PlacedDrive coarse = with_only(source, coarsen(placed));
+    NoiseEstimate part = open_parameters(coarse, count, source == 0, known, registry);
+    if (part.parameters.empty()) continue;
+    Objective objective(coarse, known, registry);
+    const bool begins_near = take_values(near, part);
+    minimize(objective, begins_near, part);
+    noise.evaluations += objective.evaluations();
+    noise.parameters.insert(noise.parameters.end(), part.parameters.begin(), part.parameters.end());
+    known = with_noise(std::move(known), part);
   }
-  for (const AbsoluteGroup& group : facts.absolute) {
-    const FusionSettings own = for_absolute(settings, group.name, registry);
-    add_parameters(label(group.name, facts.absolute.size()), own.modeling,
-                   registry.gnss_modeling(own.modeling).options, own.modeling_options,
-                   group.median_accuracy_m, noise.parameters);
-  }
-  if (noise.parameters.empty()) return noise;
-  Objective objective(placed, settings, registry);
-  const bool begins_near = take_values(near, noise);
-  minimize(objective, begins_near, noise);
-  noise.evaluations = objective.evaluations();
-  noise.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!noise.parameters.empty())
+    noise.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return noise;
 }
 

@@ -42,7 +42,9 @@ struct NoiseEstimate {
 
 /// Maximises prior times marginal likelihood over the options with a prior that the settings do not
 /// state. Fixes are thinned to one in 7.5 s per receiver: receivers smooth their output, and the
-/// white noise would otherwise come out too small. Nodes are thinned to four per second. Further
+/// white noise would otherwise come out too small. Each relative source is estimated without the others:
+/// over short times they agree better than over long ones, which is what matters. The first one is
+/// estimated with all absolute sources. Nodes are thinned to four per second. Further
 /// sensors are left out.
 /// @param settings from decided()
 /// @param near an estimate of the same parameters for slightly other settings, to begin from

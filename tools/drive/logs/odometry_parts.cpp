@@ -204,13 +204,28 @@ class Assembler {
   /// Returns the yaw rate; the unwrapped heading if that is the source.
   [[nodiscard]] std::optional<TimeSeries> yaw_rate(std::string_view source) {
     const TimeSeries* channel = find(source);
-    yaw_is_turn_ = source == "heading";
+    yaw_is_turn_ = source == "heading" || source == "course";
+    if (source == "course" && channel != nullptr) return unwrapped(while_driving(*channel));
     if (yaw_is_turn_ && channel != nullptr) return unwrapped(*channel);
     if (source == "gyro") return gyro();
     if (source == "rear_wheels") return wheels("rear", source, true);
     if (source == "rear_ticks") return ticks("rear", source, true);
     if (source == "steering") return steering();
     return channel == nullptr ? std::nullopt : std::optional(*channel);
+  }
+
+  /// Returns the readings of a course at speeds at which it is a direction. Receivers repeat or invent one
+  /// at rest, and its jump back would look like a turn. The source is silent there.
+  [[nodiscard]] TimeSeries while_driving(const TimeSeries& course) const {
+    constexpr double kSlowest = 2;
+    TimeSeries driving;
+    for (std::size_t i = 0; i < course.stamps.size(); ++i) {
+      const std::optional<double> v = value_at(speed_, course.stamps[i], longest_silence_s(speed_, gap_s_));
+      if (!v || std::abs(*v) < kSlowest) continue;
+      driving.stamps.push_back(course.stamps[i]);
+      driving.values.push_back(course.values[i]);
+    }
+    return driving;
   }
 
   [[nodiscard]] std::optional<TimeSeries> gyro() {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
@@ -32,6 +33,19 @@ FixMoment moment_of_fix(const DriveNodes& nodes, const NodeInTime& moment, const
   const Pose2<double> moved = se2_exp<double>(way);
   const Eigen::Vector2d velocity(twist[0] - twist[2] * antenna[1], twist[2] * antenna[0]);
   return {moved.position + rotate(moved.heading, antenna), rotate(moved.heading, velocity)};
+}
+
+/// Returns the information of the ties between the track of a further source and the nodes.
+std::optional<Eigen::Matrix3d> tie_of(const FusionSettings& settings, const TypeRegistry& registry) {
+  const OdometryModelType& type = registry.odometry_model(settings.odometry_model);
+  if (type.track_sigma_option.empty()) return std::nullopt;
+  const CheckedOptions options(type.name, with_calibration(settings.odometry_options, settings, type.options),
+                               type.options);
+  const double sigma_m = options.number(type.track_sigma_option);
+  const double sigma_rad = options.number(type.track_heading_option);
+  return Eigen::Matrix3d(Eigen::Vector3d(1 / (sigma_m * sigma_m), 1 / (sigma_m * sigma_m),
+                                         1 / (sigma_rad * sigma_rad))
+                             .asDiagonal());
 }
 
 }  // namespace
@@ -73,7 +87,8 @@ GraphBuilder::GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sen
     : facts_(std::move(facts)), sensors_(sensors, registry) {
   for (const std::string& name : facts_.relative)
     relative_.push_back(
-        {name, make_odometry_model(for_relative(settings, name), facts_.gap_noise_factor, registry)});
+        {name, make_odometry_model(for_relative(settings, name), facts_.gap_noise_factor, registry),
+         tie_of(for_relative(settings, name), registry)});
   for (const AbsoluteGroup& group : facts_.absolute) {
     const FusionSettings own = for_absolute(settings, group.name, registry);
     if (group.sources.size() > 1 && !registry.gnss_modeling(own.modeling).shares_errors)
@@ -121,7 +136,7 @@ void GraphBuilder::add_nodes(const DrivePart& part) {
 }
 
 void GraphBuilder::add_motion(const DrivePart& part, std::size_t joint) {
-  if (relative_.size() == 1) {
+  if (part.runs.empty()) {
     const DriveNodes all = nodes();
     add_for(relative_.front().name, [&] {
       relative_.front().model->extend(
@@ -131,14 +146,31 @@ void GraphBuilder::add_motion(const DrivePart& part, std::size_t joint) {
   }
   for (const MotionRun& run : part.runs) {
     std::vector<Stamp> stamps;
-    std::vector<VertexIndex> poses;
-    for (const std::size_t node : run.nodes) {
-      stamps.push_back(stamps_[node]);
-      poses.push_back(poses_[node]);
-    }
+    for (const std::size_t node : run.nodes) stamps.push_back(stamps_[node]);
     const Relative& source = relative_[run.source];
-    add_for(source.name, [&] { source.model->extend({stamps, poses, run.intervals}, graph_); });
+    add_for(source.name,
+            [&] { source.model->extend({stamps, track_of(run), run.intervals}, graph_); });
   }
+}
+
+std::vector<VertexIndex> GraphBuilder::track_of(const MotionRun& run) {
+  const std::optional<Eigen::Matrix3d>& tie = relative_[run.source].tie_information;
+  std::vector<VertexIndex> track;
+  for (std::size_t i = 0; i < run.nodes.size(); ++i) {
+    const VertexIndex node = poses_[run.nodes[i]];
+    if (!tie || run.beside[i] == 0) {
+      track.push_back(node);
+      continue;
+    }
+    const auto pose = graph_.value(node);
+    const VertexIndex beside =
+        graph_.add_vertex<VertexSe2>(graph_.free_id(), {pose[0], pose[1], pose[2]});
+    // The deviations are those of a mean over a second.
+    const double share_s = std::min(1.0, run.intervals[std::min(i, run.intervals.size() - 1)].dt_s);
+    graph_.add_edge(EdgeSe2{}, {node, beside}, share_s * *tie);
+    track.push_back(beside);
+  }
+  return track;
 }
 
 void GraphBuilder::add_fixes(const std::vector<Fix>& fixes, const std::vector<FixMoment>& moments) {

@@ -94,6 +94,8 @@ class GraphBuilder {
   struct Relative {
     std::string name;
     std::unique_ptr<OdometryModel> model;
+    /// of the ties between its track and the nodes; empty if it joins the nodes themselves
+    std::optional<Eigen::Matrix3d> tie_information;
   };
   struct Absolute {
     AbsoluteGroup group;
@@ -102,6 +104,8 @@ class GraphBuilder {
   };
   void add_nodes(const DrivePart& part);
   void add_motion(const DrivePart& part, std::size_t joint);
+  /// Returns the poses of a run: the nodes, or poses beside them.
+  [[nodiscard]] std::vector<VertexIndex> track_of(const MotionRun& run);
   void add_fixes(const std::vector<Fix>& fixes, const std::vector<FixMoment>& moments);
   [[nodiscard]] std::size_t absolute_of(int source) const;
   /// Runs a step of a source, and keeps which vertices it adds.

@@ -63,6 +63,10 @@ class Coverage {
   [[nodiscard]] bool is_loose(std::size_t node) const {
     return (node > 0 && covered_[node - 1] == 0) || (node < covered_.size() && covered_[node] == 0);
   }
+  /// Tells whether somebody has measured an interval at a node.
+  [[nodiscard]] bool touches(std::size_t node) const {
+    return (node > 0 && covered_[node - 1] != 0) || (node < covered_.size() && covered_[node] != 0);
+  }
   [[nodiscard]] bool covers(std::size_t interval) const { return covered_[interval] != 0; }
   void add(const MotionRun& run) {
     for (std::size_t i = 1; i < run.nodes.size(); ++i)
@@ -111,14 +115,23 @@ class GridScale {
   std::size_t next_ = 0;
 };
 
-/// Gives the intervals that no source has measured to the first one.
+/// Gives the intervals that no source has measured to the first one, as bridged ones.
 void add_bridges(const Timeline& timeline, const Coverage& coverage, std::vector<MotionRun>& runs) {
   for (std::size_t k = 0; k < timeline.intervals.size(); ++k) {
     if (coverage.covers(k)) continue;
-    const bool follows = k > 0 && !coverage.covers(k - 1);
-    if (!follows) runs.push_back({.source = 0, .nodes = {k}, .intervals = {}});
-    runs.back().nodes.push_back(k + 1);
-    runs.back().intervals.push_back(timeline.intervals[k]);
+    MotionRun run{.source = 0, .nodes = {k}, .intervals = {}, .beside = {0}};
+    for (; k < timeline.intervals.size() && !coverage.covers(k); ++k) {
+      run.nodes.push_back(k + 1);
+      run.intervals.push_back(timeline.intervals[k]);
+      run.beside.push_back(0);
+    }
+    const double silent_s =
+        seconds_between(timeline.stamps[run.nodes.front()], timeline.stamps[run.nodes.back()]);
+    for (Interval& interval : run.intervals) {
+      interval.gap_s = interval.bridged ? interval.gap_s : silent_s;
+      interval.bridged = true;
+    }
+    runs.push_back(std::move(run));
   }
 }
 
@@ -141,6 +154,7 @@ std::vector<MotionRun> motion_runs(const Timeline& timeline, std::span<const Pre
         const Stamp to = timeline.stamps[run.nodes[i]];
         run.intervals.push_back(motion.between(from, to, grid_scale.at(from)));
       }
+      for (const std::size_t node : run.nodes) run.beside.push_back(coverage.touches(node) ? 1 : 0);
       coverage.add(run);
       runs.push_back(std::move(run));
     }

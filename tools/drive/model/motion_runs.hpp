@@ -15,6 +15,9 @@ struct MotionRun {
   std::size_t source = 0;          ///< index of the relative source
   std::vector<std::size_t> nodes;  ///< ascending, counted from the first of the drive
   std::vector<Interval> intervals; ///< the motion from each of these nodes to the next
+  /// Whether a source before it joins each of these nodes too. The track of this source then runs beside
+  /// the nodes (track_sigma_option in core/drive/modeling.hpp).
+  std::vector<char> beside{};
 };
 
 /// Returns what the sources measured. The first one joins all nodes. Another one joins the nodes
