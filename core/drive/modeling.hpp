@@ -68,7 +68,8 @@ class OdometryModel {
   virtual ~OdometryModel();
   /// Adds one or more edges per interval, and the states that the model calibrates (ids from
   /// Graph::free_id).
-  /// @param nodes the next part: its first node is the last one of the part before
+  /// @param nodes the next part: its first node is the last one of the part before, or a later one if the
+  /// source was silent in between
   virtual void extend(const DriveNodes& nodes, Graph& graph) = 0;
   /// Returns |speed| in m/s below which the vehicle stands. Its measured motion is then
   /// the identity.
@@ -133,7 +134,7 @@ struct SensorInput {
   Eigen::Vector2d antenna = {0, 0};  ///< antenna of the first receiver in the body frame, m
   /// the next readings of the sensor in SI units; empty if the type has no columns
   const SensorTable& readings;
-  double grid_scale = 1;  ///< grid metres per metre on the ground, at the last fix before these
+  double grid_scale = 1;         ///< grid metres per metre on the ground, at the last fix before these
   std::string_view source = {};  ///< name of the source that the readings are of
 };
 

@@ -17,8 +17,8 @@ constexpr std::size_t kExamples = 10;
 constexpr std::size_t kMostTags = 64;
 constexpr std::int64_t kMaxArity = 1000;  // of a run-time-arity edge: 72 MB of information matrix
 
-constexpr std::string_view kOwnTags[] = {"GRAPH", "FRAME", "TIME", "PROVENANCE", "LEVER",
-                                         "SOURCE", "STATES", "TYPE",  "STAMP", "LOSS", "GNSS",       "COVARIANCE"};
+constexpr std::string_view kOwnTags[] = {"GRAPH",  "FRAME", "TIME",  "PROVENANCE", "LEVER", "SOURCE",
+                                         "STATES", "TYPE",  "STAMP", "LOSS",       "GNSS",  "COVARIANCE"};
 constexpr std::string_view kToroTags[] = {"VERTEX2", "EDGE2", "VERTEX", "EDGE"};
 
 template <std::size_t N>

@@ -38,10 +38,19 @@ void write_header(const GraphDocument& document, TextBuilder& out) {
   write_lever("antenna", document.antenna_m);
   write_lever("truth", document.truth_reference_m);
   for (const DocumentSource& source : document.sources)
-    out.word("SOURCE").word(source.name).word(source.kind).number(source.antenna_m[0]).number(source.antenna_m[1]).end_line();
+    out.word("SOURCE")
+        .word(source.name)
+        .word(source.kind)
+        .number(source.antenna_m[0])
+        .number(source.antenna_m[1])
+        .end_line();
   for (const DocumentSource& source : document.sources)
     for (const VertexRange& range : source.vertices)
-      out.word("STATES").word(source.name).integer(to_number(range.first)).integer(to_number(range.last)).end_line();
+      out.word("STATES")
+          .word(source.name)
+          .integer(to_number(range.first))
+          .integer(to_number(range.last))
+          .end_line();
 }
 
 void write_vertices(const Graph& graph, TextBuilder& out) {

@@ -13,9 +13,9 @@ std::vector<DocumentSource> receivers_of(const GraphDocument& document) {
 
 std::string source_of(VertexId vertex, const GraphDocument& document) {
   for (const DocumentSource& source : document.sources) {
-    const bool has = std::any_of(
-        source.vertices.begin(), source.vertices.end(),
-        [&](const VertexRange& range) { return vertex >= range.first && vertex <= range.last; });
+    const bool has =
+        std::any_of(source.vertices.begin(), source.vertices.end(),
+                    [&](const VertexRange& range) { return vertex >= range.first && vertex <= range.last; });
     if (has) return source.name;
   }
   return {};

@@ -156,10 +156,10 @@ class GnssCorrelated final : public GnssModeling {
       edge.assumed_offset = input.moments[i].assumed_offset_s;
       edge.scale = model_.multipath_m * Eigen::Vector3d(root(0, 0), root(0, 1), root(1, 1));
       const Eigen::Matrix2d information = peak * (model_.white_m * model_.white_m * root * root).inverse();
-      graph.add_edge(
-          edge,
-          {origin, pose, offset, receiver_->bias.at(fix.stamp, graph), receiver_->multipath.at(fix.stamp, graph)},
-          0.5 * (information + information.transpose()), loss);
+      graph.add_edge(edge,
+                     {origin, pose, offset, receiver_->bias.at(fix.stamp, graph),
+                      receiver_->multipath.at(fix.stamp, graph)},
+                     0.5 * (information + information.transpose()), loss);
     }
   }
 

@@ -141,11 +141,12 @@ std::vector<OptionInfo> options() {
        state_options("yaw_per_speed", "rad/m", "1e-3", "1e-5",
                      "error of a yaw rate from wheels or steering, true yaw rate = reading - this * speed"))
     all.push_back(option);
-  all.push_back({kTrackSigma, "0.2", "m", OptionRange{1e-3, 100},
-                 "how far the track of a further relative source is beside that of the first one, to and fro, "
-                 "independent from second to second"});
-  all.push_back({kTrackHeading, "0.01", "rad", OptionRange{1e-5, 1},
-                 "how far its heading is off, to and fro"});
+  all.push_back(
+      {kTrackSigma, "0.2", "m", OptionRange{1e-3, 100},
+       "how far the track of a further relative source is beside that of the first one, to and fro, "
+       "independent from second to second"});
+  all.push_back(
+      {kTrackHeading, "0.01", "rad", OptionRange{1e-5, 1}, "how far its heading is off, to and fro"});
   all.push_back(
       {"calibration_period", "10", "s", OptionRange{0.1, 1e4}, "time between two values of a random walk"});
   return all;

@@ -15,8 +15,8 @@ text::Table source_table(const SourceComparison& comparison, const std::string& 
                           metres(source.raw_rmse_m), metres(source.residual_rms_m), percent(source.share),
                           metres(source.without_rmse_m), metres(source.without_sigma_m),
                           metres(source.without_residual_rms_m)});
-  table.rows.push_back({prefix + "all", "-", "-", "-", "-", "-", metres(comparison.rmse_m),
-                        metres(comparison.sigma_m), "-"});
+  table.rows.push_back(
+      {prefix + "all", "-", "-", "-", "-", "-", metres(comparison.rmse_m), metres(comparison.sigma_m), "-"});
   return table;
 }
 

@@ -14,15 +14,15 @@ namespace waymark::evaluation {
 /// without truth, those without the source if the drive cannot do without it.
 struct SourceReport {
   std::string name;
-  std::string kind;             ///< "odometry", "gnss", or the name of a sensor model
-  std::size_t readings = 0;     ///< samples, fixes, rows
-  std::size_t accepted = 0;     ///< fixes in the graph
-  double availability = kUndefined;      ///< share of the time with readings, 0 to 1
-  double raw_rmse_m = kUndefined;        ///< its fixes against truth, at the body point
-  double residual_rms_m = kUndefined;    ///< its accepted fixes minus the fused antenna
-  double without_rmse_m = kUndefined;    ///< fused without it, against truth at all epochs
+  std::string kind;                            ///< "odometry", "gnss", or the name of a sensor model
+  std::size_t readings = 0;                    ///< samples, fixes, rows
+  std::size_t accepted = 0;                    ///< fixes in the graph
+  double availability = kUndefined;            ///< share of the time with readings, 0 to 1
+  double raw_rmse_m = kUndefined;              ///< its fixes against truth, at the body point
+  double residual_rms_m = kUndefined;          ///< its accepted fixes minus the fused antenna
+  double without_rmse_m = kUndefined;          ///< fused without it, against truth at all epochs
   double without_residual_rms_m = kUndefined;  ///< its fixes minus the antenna that the others fuse
-  double without_sigma_m = kUndefined;   ///< stated for a position without it, median of both axes' rms
+  double without_sigma_m = kUndefined;         ///< stated for a position without it, median of both axes' rms
   /// Share of the information about a position that only this source has: 1 - tr(P W^-1) / 2, the mean over
   /// all fixes. P is the covariance with all sources, W that without this one. 0: nothing is lost.
   double share = kUndefined;

@@ -50,8 +50,7 @@ std::vector<Stamp> fix_stamps(const drive::PreparedDrive& drive) {
 /// taken as the same point.
 Eigen::Vector2d truth_antenna(const TruthPose& truth, const Fix& fix, const drive::PreparedDrive& drive) {
   if (!truth.heading_rad) return truth.position;
-  return truth.position +
-         Eigen::Rotation2Dd(*truth.heading_rad) * (fix.antenna_m - drive.truth_reference_m);
+  return truth.position + Eigen::Rotation2Dd(*truth.heading_rad) * (fix.antenna_m - drive.truth_reference_m);
 }
 
 void judge_gnss(const drive::PreparedDrive& drive, DriveStatistics& statistics) {

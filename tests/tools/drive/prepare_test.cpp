@@ -56,7 +56,8 @@ DriveLogs small_drive() {
   DriveLogs logs;
   logs.odometry.assign(1, std::vector<DriveLogs::Log>(1));
   logs.odometry.front().front().file = "odometry.csv";
-  for (int i = 0; i <= 100; ++i) logs.odometry.front().front().data.odometry.push_back(odometry_at(100 + 0.1 * i));
+  for (int i = 0; i <= 100; ++i)
+    logs.odometry.front().front().data.odometry.push_back(odometry_at(100 + 0.1 * i));
   logs.gnss.emplace_back();
   logs.gnss[0].file = "gnss.csv";
   for (int i = 1; i <= 8; ++i) logs.gnss[0].data.fixes.push_back(fix_at(100 + i));
@@ -234,7 +235,8 @@ TEST_CASE("prepare: logs on other scales are converted, which needs dates") {
   logs.odometry.assign(1, std::vector<DriveLogs::Log>(1));
   logs.odometry.front().front().scale = TimeScale::gps;
   logs.odometry.front().front().file = "odometry.csv";
-  for (int i = 0; i < 30; ++i) logs.odometry.front().front().data.odometry.push_back(odometry_at(1'200'000'000 + i));
+  for (int i = 0; i < 30; ++i)
+    logs.odometry.front().front().data.odometry.push_back(odometry_at(1'200'000'000 + i));
   logs.gnss.emplace_back();
   logs.gnss[0].scale = TimeScale::utc;
   logs.gnss[0].data.fixes.push_back(fix_at(1'200'000'000 + 315'964'800 - 18 + 5));  // 18 leap seconds in 2018

@@ -20,8 +20,9 @@ void decide_gates(FusionSettings& settings, const TypeRegistry& registry) {
   for (auto& [name, source] : settings.sources) {
     if (source.model.empty() || (source.gate && source.gate->enabled)) continue;
     const auto& known = registry.gnss_modelings();
-    const auto type = std::find_if(known.begin(), known.end(),
-                                   [&, model = source.model](const auto& of) { return of.type.name == model; });
+    const auto type = std::find_if(known.begin(), known.end(), [&, model = source.model](const auto& of) {
+      return of.type.name == model;
+    });
     if (type == known.end()) continue;  // an odometry model, or refused when it is made
     if (!source.gate) source.gate = settings.gate;
     source.gate->enabled = !type->type.complete;

@@ -187,8 +187,9 @@ NoiseEstimate open_parameters(const PlacedDrive& coarse, std::size_t count, bool
   };
   const std::string& relative = facts.relative.front();
   const FusionSettings own = for_relative(settings, relative);
-  add_parameters(label(relative, count), own.odometry_model, registry.odometry_model(own.odometry_model).options,
-                 own.odometry_options, 0, noise.parameters);
+  add_parameters(label(relative, count), own.odometry_model,
+                 registry.odometry_model(own.odometry_model).options, own.odometry_options, 0,
+                 noise.parameters);
   for (const AbsoluteGroup& group : facts.absolute) {
     if (!absolute) break;
     const FusionSettings of = for_absolute(settings, group.name, registry);

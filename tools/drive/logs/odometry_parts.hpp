@@ -20,8 +20,8 @@ inline constexpr std::array<std::string_view, 7> kSpeedSources{
 /// The sources of yaw rate. `rear_wheels`, `rear_ticks`: (right - left) / track width. `steering`:
 /// speed times the tangent of the front wheels' angle / wheelbase. `heading`: its change per time,
 /// the shorter way round between readings.
-inline constexpr std::array<std::string_view, 7> kYawRateSources{"yaw_rate",   "gyro",     "rear_wheels",
-                                                                 "rear_ticks", "steering", "heading", "course"};
+inline constexpr std::array<std::string_view, 7> kYawRateSources{
+    "yaw_rate", "gyro", "rear_wheels", "rear_ticks", "steering", "heading", "course"};
 /// The gyro axis that points up; with '-' it points down. `gravity`: it is found with the
 /// accelerometer.
 inline constexpr std::array<std::string_view, 7> kGyroAxes{"x", "-x", "y", "-y", "z", "-z", "gravity"};

@@ -72,7 +72,8 @@ void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description,
     fixes[i].epoch = epoch;
     const GnssConfig& receiver = receiver_of(description, static_cast<std::size_t>(fixes[i].source));
     const bool nth = receiver.withhold_every >= 2 && (epoch + 1) % receiver.withhold_every == 0;
-    if (!nth && !receiver.withheld && !in_outage(description.outage, seconds_between(fixes.front().stamp, fixes[i].stamp)))
+    if (!nth && !receiver.withheld &&
+        !in_outage(description.outage, seconds_between(fixes.front().stamp, fixes[i].stamp)))
       continue;
     fixes[i].status = FixStatus::withheld;
     fixes[i].reason = "withheld";
@@ -201,8 +202,8 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   judge_odometry(drive);
   for (std::size_t i = 0; i < logs.sensors.size(); ++i) {
     const SensorConfig& sensor = description.sensors[i];
-    PreparedSensor& prepared = drive.sensors.emplace_back(
-        PreparedSensor{.name = sensor.name, .options = sensor.options, .place = sensor.place, .source = sensor.source});
+    PreparedSensor& prepared = drive.sensors.emplace_back(PreparedSensor{
+        .name = sensor.name, .options = sensor.options, .place = sensor.place, .source = sensor.source});
     if (sensor.log)
       prepared.readings = prepare_readings(logs.sensors[i], sensor.log->request.readings, drive.scale, fixes,
                                            projection, drive.report);

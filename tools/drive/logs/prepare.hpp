@@ -135,7 +135,7 @@ struct DriveLogs {
   };
   /// in the order of DriveDescription::odometry, and of the logs of each
   std::vector<std::vector<Log>> odometry;
-  std::vector<Log> gnss;      ///< in the order of DriveDescription::gnss
+  std::vector<Log> gnss;  ///< in the order of DriveDescription::gnss
   /// in the order of gnss; readings as in velocity_channels(), empty if there are none
   std::vector<Log> velocity;
   std::vector<Log> truth;  ///< none or one

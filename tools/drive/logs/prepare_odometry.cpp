@@ -176,8 +176,8 @@ std::vector<OdometrySample> covered_by_all(const std::vector<PreparedOdometry>& 
     for (const OdometrySample& sample : relative[i].samples) {
       while (next < all.size() && all[next].stamp < sample.stamp) ++next;
       const bool meets = next < all.size() && all[next].stamp == sample.stamp;
-      const bool covered = next > 0 && next < all.size() &&
-                           seconds_between(all[next - 1].stamp, all[next].stamp) <= gap_s;
+      const bool covered =
+          next > 0 && next < all.size() && seconds_between(all[next - 1].stamp, all[next].stamp) <= gap_s;
       if (!meets && !covered) more.push_back(sample);
     }
     std::vector<OdometrySample> merged;

@@ -43,9 +43,9 @@ std::optional<Eigen::Matrix3d> tie_of(const FusionSettings& settings, const Type
                                type.options);
   const double sigma_m = options.number(type.track_sigma_option);
   const double sigma_rad = options.number(type.track_heading_option);
-  return Eigen::Matrix3d(Eigen::Vector3d(1 / (sigma_m * sigma_m), 1 / (sigma_m * sigma_m),
-                                         1 / (sigma_rad * sigma_rad))
-                             .asDiagonal());
+  return Eigen::Matrix3d(
+      Eigen::Vector3d(1 / (sigma_m * sigma_m), 1 / (sigma_m * sigma_m), 1 / (sigma_rad * sigma_rad))
+          .asDiagonal());
 }
 
 }  // namespace
@@ -54,7 +54,8 @@ std::vector<AbsoluteGroup> groups_of(const PlacedDrive& placed, const FusionSett
   std::vector<AbsoluteGroup> groups;
   for (std::size_t source = 0; source < placed.time_offsets_s.size(); ++source) {
     const std::string name = group_of(settings, receiver_name(placed, static_cast<int>(source)));
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& known) { return known.name == name; });
+    auto group =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& known) { return known.name == name; });
     if (group == groups.end()) {
       group = groups.insert(groups.end(), AbsoluteGroup{.name = name, .sources = {}});
       group->time_offset_s = placed.time_offsets_s[source];
@@ -75,8 +76,8 @@ DriveFacts facts_of(const PlacedDrive& placed, const FusionSettings& settings) {
   DriveFacts facts{.absolute = groups_of(placed, settings), .relative = {}};
   for (const PreparedOdometry& source : placed.relative) facts.relative.push_back(source.name);
   if (facts.relative.empty()) facts.relative.push_back(placed.odometry_name);
-  const auto first = std::find_if(placed.fixes.begin(), placed.fixes.end(),
-                                  [](const Fix& fix) { return fix.source == 0; });
+  const auto first =
+      std::find_if(placed.fixes.begin(), placed.fixes.end(), [](const Fix& fix) { return fix.source == 0; });
   if (first != placed.fixes.end()) facts.antenna_m = first->antenna_m;
   facts.gap_noise_factor = placed.gap_noise_factor;
   return facts;
@@ -86,9 +87,9 @@ GraphBuilder::GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sen
                            const FusionSettings& settings, const TypeRegistry& registry)
     : facts_(std::move(facts)), sensors_(sensors, registry) {
   for (const std::string& name : facts_.relative)
-    relative_.push_back(
-        {name, make_odometry_model(for_relative(settings, name), facts_.gap_noise_factor, registry),
-         tie_of(for_relative(settings, name), registry)});
+    relative_.push_back({name,
+                         make_odometry_model(for_relative(settings, name), facts_.gap_noise_factor, registry),
+                         tie_of(for_relative(settings, name), registry)});
   for (const AbsoluteGroup& group : facts_.absolute) {
     const FusionSettings own = for_absolute(settings, group.name, registry);
     if (group.sources.size() > 1 && !registry.gnss_modeling(own.modeling).shares_errors)
@@ -148,8 +149,7 @@ void GraphBuilder::add_motion(const DrivePart& part, std::size_t joint) {
     std::vector<Stamp> stamps;
     for (const std::size_t node : run.nodes) stamps.push_back(stamps_[node]);
     const Relative& source = relative_[run.source];
-    add_for(source.name,
-            [&] { source.model->extend({stamps, track_of(run), run.intervals}, graph_); });
+    add_for(source.name, [&] { source.model->extend({stamps, track_of(run), run.intervals}, graph_); });
   }
 }
 
@@ -163,8 +163,7 @@ std::vector<VertexIndex> GraphBuilder::track_of(const MotionRun& run) {
       continue;
     }
     const auto pose = graph_.value(node);
-    const VertexIndex beside =
-        graph_.add_vertex<VertexSe2>(graph_.free_id(), {pose[0], pose[1], pose[2]});
+    const VertexIndex beside = graph_.add_vertex<VertexSe2>(graph_.free_id(), {pose[0], pose[1], pose[2]});
     // The deviations are those of a mean over a second.
     const double share_s = std::min(1.0, run.intervals[std::min(i, run.intervals.size() - 1)].dt_s);
     graph_.add_edge(EdgeSe2{}, {node, beside}, share_s * *tie);
@@ -186,8 +185,8 @@ void GraphBuilder::add_fixes(const std::vector<Fix>& fixes, const std::vector<Fi
     const Eigen::Vector2d antenna =
         own_fixes[i].empty() ? Eigen::Vector2d(0, 0) : own_fixes[i].front().antenna_m;
     add_for(source.group.name, [&] {
-      source.model->extend({own_fixes[i], own_moments[i], antenna, source.loss, source.group.median_accuracy_m,
-                            source.group.name},
+      source.model->extend({own_fixes[i], own_moments[i], antenna, source.loss,
+                            source.group.median_accuracy_m, source.group.name},
                            graph_);
     });
   }
@@ -212,9 +211,8 @@ void GraphBuilder::extend(const DrivePart& part) {
     moments[i].assumed_offset_s = offset_s;
   }
   for (std::size_t i = 0; i < part.sensors.size(); ++i)
-    add_for(part.sensors[i].source, [&] {
-      sensors_.extend(i, part.sensors[i], all, fixes, facts_.antenna_m, grid_scale_, graph_);
-    });
+    add_for(part.sensors[i].source,
+            [&] { sensors_.extend(i, part.sensors[i], all, fixes, facts_.antenna_m, grid_scale_, graph_); });
   add_fixes(fixes, moments);
   if (!fixes.empty()) grid_scale_ = fixes.back().grid_scale;
 }

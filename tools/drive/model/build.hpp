@@ -27,10 +27,10 @@ using SourceVertices = std::map<std::string, std::vector<formats::VertexRange>>;
 
 /// Absolute sources that one model serves: one, or several that share their lasting errors.
 struct AbsoluteGroup {
-  std::string name;               ///< of the source that the others of the group name
-  std::vector<int> sources;       ///< Fix::source of its members
-  double time_offset_s = 0;       ///< FixMoment::assumed_offset_s
-  double median_accuracy_m = 0;   ///< for the modeling: GnssInput
+  std::string name;              ///< of the source that the others of the group name
+  std::vector<int> sources;      ///< Fix::source of its members
+  double time_offset_s = 0;      ///< FixMoment::assumed_offset_s
+  double median_accuracy_m = 0;  ///< for the modeling: GnssInput
 };
 
 /// What the models know of a drive before its first part.
@@ -69,8 +69,8 @@ class GraphBuilder {
  public:
   /// @param settings from decided(), with the estimated noise among the options
   /// @throws UsageError for an unknown modeling, model, sensor or option
-  GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sensors,
-               const FusionSettings& settings, const TypeRegistry& registry);
+  GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sensors, const FusionSettings& settings,
+               const TypeRegistry& registry);
 
   /// Judges a drive that is known as a whole, before its one part. @throws InputError of a sensor
   void check_drive(std::span<const Fix> accepted, std::span<const PreparedSensor> sensors) const {
@@ -126,8 +126,8 @@ class GraphBuilder {
 
 /// A graph at its initial guess.
 struct BuiltGraph {
-  Graph graph;                        ///< the pose of node i has the id i + 1
-  std::vector<std::string> warnings;  ///< of the sensors
+  Graph graph;                                                 ///< the pose of node i has the id i + 1
+  std::vector<std::string> warnings;                           ///< of the sensors
   std::vector<std::shared_ptr<const GnssModeling>> modelings;  ///< one for each absolute source
   SourceVertices vertices;
 };

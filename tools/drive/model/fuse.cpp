@@ -71,7 +71,7 @@ bool leave_out_delays(const std::vector<std::optional<TimeOffset>>& offsets, boo
 
 /// Returns the sources for the document; empty for one odometry and one receiver.
 std::vector<formats::DocumentSource> document_sources(const PreparedDrive& drive, const PlacedDrive& placed,
-                                                const SourceVertices& vertices) {
+                                                      const SourceVertices& vertices) {
   std::vector<formats::DocumentSource> sources;
   if (drive.relative.empty() && drive.receivers.size() < 2) return sources;
   const auto add = [&](const std::string& name, const std::string& kind, const Eigen::Vector2d& antenna_m) {
@@ -92,7 +92,8 @@ std::vector<formats::DocumentSource> document_sources(const PreparedDrive& drive
 }
 
 /// Adapts the settings to the yaw rate of each relative source.
-void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision, const TypeRegistry& registry) {
+void adapt(const PreparedDrive& drive, bool by_default, FusionSettings& decision,
+           const TypeRegistry& registry) {
   if (drive.relative.empty()) adapt_to_yaw_rate(drive.yaw_rate_at_rest, by_default, decision, registry);
   for (const PreparedOdometry& source : drive.relative) {
     FusionSettings own = for_relative(decision, source.name);
@@ -112,10 +113,9 @@ std::vector<std::string> ModeledDrive::warnings() const {
 }
 
 const PlacedDrive& Fusion::placed(const FusionSettings& settings) {
-  const double standstill_mps =
-      make_odometry_model(for_relative(settings, drive_.odometry_name), drive_.timeline.gap_noise_factor,
-                          registry_)
-          ->standstill_speed();
+  const double standstill_mps = make_odometry_model(for_relative(settings, drive_.odometry_name),
+                                                    drive_.timeline.gap_noise_factor, registry_)
+                                    ->standstill_speed();
   Key key{settings.gate, {}, settings.initial_guess, settings.lever_arm, standstill_mps};
   for (const auto& [name, source] : settings.sources) key.gates[name] = source.gate;
   for (const auto& [known, placed] : placed_) {

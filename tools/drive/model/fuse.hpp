@@ -46,9 +46,9 @@ struct ModeledDrive {
   PlacedDrive placed;       ///< nodes, gate, initial guess
   NoiseEstimate noise;      ///< without parameters if the noise is as stated
   std::vector<std::string> sensor_warnings;
-  std::vector<std::string> notes;                  ///< sentences about what the drive decided
-  double distance_m = 0;                           ///< by the odometry
-  formats::GraphDocument document{};               ///< with provenance: provenance.hpp
+  std::vector<std::string> notes;     ///< sentences about what the drive decided
+  double distance_m = 0;              ///< by the odometry
+  formats::GraphDocument document{};  ///< with provenance: provenance.hpp
   /// that built the graph of the document: one for each absolute source
   std::vector<std::shared_ptr<const GnssModeling>> modelings{};
 

@@ -12,9 +12,9 @@ namespace waymark::drive {
 
 /// What a relative source measured without a silence in between.
 struct MotionRun {
-  std::size_t source = 0;          ///< index of the relative source
-  std::vector<std::size_t> nodes;  ///< ascending, counted from the first of the drive
-  std::vector<Interval> intervals; ///< the motion from each of these nodes to the next
+  std::size_t source = 0;           ///< index of the relative source
+  std::vector<std::size_t> nodes;   ///< ascending, counted from the first of the drive
+  std::vector<Interval> intervals;  ///< the motion from each of these nodes to the next
   /// Whether a source before it joins each of these nodes too. The track of this source then runs beside
   /// the nodes (track_sigma_option in core/drive/modeling.hpp).
   std::vector<char> beside{};

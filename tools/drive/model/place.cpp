@@ -52,8 +52,7 @@ std::vector<GateOptions> gates_of(const PlacedDrive& placed, const FusionSetting
                                   const TypeRegistry& registry) {
   std::vector<GateOptions> gates;
   for (std::size_t source = 0; source < placed.time_offsets_s.size(); ++source)
-    gates.push_back(
-        for_absolute(settings, receiver_name(placed, static_cast<int>(source)), registry).gate);
+    gates.push_back(for_absolute(settings, receiver_name(placed, static_cast<int>(source)), registry).gate);
   return gates;
 }
 
@@ -73,8 +72,7 @@ void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
     voices.push_back(static_cast<std::size_t>(known - names.begin()));
     if (known == names.end()) names.push_back(name);
   }
-  const std::vector<Disagreement> found =
-      reject_contradictions(placed.fixes, poses_of_fixes(placed), voices);
+  const std::vector<Disagreement> found = reject_contradictions(placed.fixes, poses_of_fixes(placed), voices);
   for (const Disagreement& disagreement : found) {
     placed.gate.accepted -= disagreement.readings;
     placed.gate.rejected += disagreement.readings;

@@ -34,9 +34,9 @@ struct PlacedDrive {
   std::string odometry_name;                 ///< the relative source that nodes come from
   std::vector<PreparedOdometry> relative{};  ///< as PreparedDrive::relative
   std::vector<MotionRun> runs{};             ///< what these measured; empty if there is one
-  double standstill_mps = 0;          ///< of the odometry model
-  double gap_noise_factor = 1;        ///< for the odometry model, from PreparedDrive::timeline
-  std::vector<std::string> warnings;  ///< of the preparation; suspicious units, signs, jumps
+  double standstill_mps = 0;                 ///< of the odometry model
+  double gap_noise_factor = 1;               ///< for the odometry model, from PreparedDrive::timeline
+  std::vector<std::string> warnings;         ///< of the preparation; suspicious units, signs, jumps
 };
 
 /// Returns the vertex of a node.

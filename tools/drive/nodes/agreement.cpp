@@ -221,8 +221,7 @@ std::vector<std::optional<Eigen::Vector2d>> accuracies_by_agreement(std::span<co
       }
     }
     if (count > 0)
-      accuracies[a] = Eigen::Vector2d(
-          (sum / count).cwiseMax(kLeastAccuracy * kLeastAccuracy).cwiseSqrt());
+      accuracies[a] = Eigen::Vector2d((sum / count).cwiseMax(kLeastAccuracy * kLeastAccuracy).cwiseSqrt());
   }
   return accuracies;
 }
@@ -242,9 +241,8 @@ std::vector<std::size_t> contradicting(const Statements& window,
   return agreeing >= 2 ? out : std::vector<std::size_t>();
 }
 
-std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes,
-                                                 std::span<const Eigen::Vector3d> poses,
-                                                 std::span<const std::size_t> voices) {
+std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes, std::span<const Eigen::Vector3d> poses,
+                                                std::span<const std::size_t> voices) {
   const std::size_t sources = voices.empty() ? 0 : *std::max_element(voices.begin(), voices.end()) + 1;
   if (sources < 3) return {};
   const Windows windows = windows_of_fixes(fixes, poses, voices, sources);

@@ -49,7 +49,7 @@ struct Disagreement {
 /// @param voices of each Fix::source: sources with common errors have one voice
 /// @returns Disagreement::source is a voice
 std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes, std::span<const Eigen::Vector3d> poses,
-                                                 std::span<const std::size_t> voices);
+                                                std::span<const std::size_t> voices);
 
 /// Leaves out samples of relative sources that contradict the others.
 /// @param sources samples of each, sorted by stamp

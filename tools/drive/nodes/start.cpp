@@ -224,9 +224,9 @@ Start dead_reckoning_start(const Timeline& timeline, std::span<const Fix> fixes,
   const Eigen::Vector3d anchor = start.poses[node];
   const auto course = heading_from_course(timeline, fixes[first], node);
   const double rotation =
-      course ? *course - anchor[2]
-             : rotation_from_chord(timeline, fixes, first, start.poses, start.note);
-  const Eigen::Vector2d shift = fixes[first].position - rotate(rotation, antenna_at(anchor, fixes[first].antenna_m));
+      course ? *course - anchor[2] : rotation_from_chord(timeline, fixes, first, start.poses, start.note);
+  const Eigen::Vector2d shift =
+      fixes[first].position - rotate(rotation, antenna_at(anchor, fixes[first].antenna_m));
   for (Eigen::Vector3d& pose : start.poses) {
     const Eigen::Vector2d turned = rotate(rotation, Eigen::Vector2d(pose.head<2>()));
     pose << turned + shift, pose[2] + rotation;

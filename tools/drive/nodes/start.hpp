@@ -59,7 +59,7 @@ struct Start {
                                    double standstill_mps);
 
 /// Returns the initial guess that the options choose.
-[[nodiscard]] Start make_start(const Timeline& timeline, std::span<const Fix> fixes,
-                               double standstill_mps, const StartOptions& options);
+[[nodiscard]] Start make_start(const Timeline& timeline, std::span<const Fix> fixes, double standstill_mps,
+                               const StartOptions& options);
 
 }  // namespace waymark::drive

@@ -31,7 +31,8 @@ struct StateVertices {
 bool goes_on(const Graph& graph, const StateVertices& state, const std::string& source, VertexIndex v) {
   const auto before = graph.stamp(state.vertices.back());
   const auto now = graph.stamp(v);
-  return state.type->tag == graph.vertex_type(v).tag && state.source == source && before && now && *before < *now;
+  return state.type->tag == graph.vertex_type(v).tag && state.source == source && before && now &&
+         *before < *now;
 }
 
 std::vector<StateVertices> states_of(const formats::GraphDocument& document) {

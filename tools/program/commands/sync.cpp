@@ -88,7 +88,8 @@ ExitCode synchronise(const SyncCommand& command) {
     console.result(json_document("sync", json_of(report, drive.report.clocks)));
     return kSuccess;
   }
-  std::string text = table_of(report, drive::source_of_nodes(drive.odometry_name, description), console.look());
+  std::string text =
+      table_of(report, drive::source_of_nodes(drive.odometry_name, description), console.look());
   for (const drive::ClockReport& clock : drive.report.clocks)
     text += fmt::format(
         "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual "

@@ -80,7 +80,8 @@ double availability(std::vector<Stamp> stamps, Stamp from, Stamp to) {
   if (stamps.size() < 2) return 0;
   std::sort(stamps.begin(), stamps.end());
   std::vector<double> intervals;
-  for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
   const double usual = upper_median(intervals);
   double covered = usual;
   for (const double interval : intervals) covered += interval <= 2.5 * usual ? interval : usual;
@@ -95,7 +96,8 @@ std::vector<Stamp> stamps_of(const drive::PreparedDrive& drive, const drive::Sou
   if (drive.relative.empty() && source.kind == "odometry")
     for (const OdometrySample& sample : drive.odometry) stamps.push_back(sample.stamp);
   for (const Fix& fix : drive.fixes)
-    if (drive.receivers[static_cast<std::size_t>(fix.source)].name == source.name) stamps.push_back(fix.stamp);
+    if (drive.receivers[static_cast<std::size_t>(fix.source)].name == source.name)
+      stamps.push_back(fix.stamp);
   for (const drive::PreparedSensor& sensor : drive.sensors)
     if (sensor.source == source.name)
       stamps.insert(stamps.end(), sensor.readings.stamps.begin(), sensor.readings.stamps.end());
@@ -157,8 +159,8 @@ evaluation::SourceComparison compare_sources(const drive::PreparedDrive& drive, 
   settings.estimates_noise = false;
   settings.minimization.covariances = "fixes";
   for (const drive::SourceOfDrive& source : sources) {
-    evaluation::SourceReport& report = comparison.sources.emplace_back(
-        report_with(drive, source, modeled.document, evaluated));
+    evaluation::SourceReport& report =
+        comparison.sources.emplace_back(report_with(drive, source, modeled.document, evaluated));
     if (!drive::can_do_without(drive, source) || interrupted) continue;
     console.progress("without " + source.name);
     try {
