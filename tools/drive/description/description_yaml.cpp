@@ -184,6 +184,18 @@ SensorConfig read_sensor(const YamlSection& section, std::string kind, std::stri
   return sensor;
 }
 
+/// Reads the heading of an absolute source that gives poses, from its own log unless another is named: the
+/// sensor `heading`, named after its source.
+std::optional<SensorConfig> read_heading(const YamlSection& section, const std::string& source,
+                                         const DriveDescription& drive) {
+  if (!section.has("heading")) return std::nullopt;
+  YAML::Node heading = YAML::Clone(section.node("heading"));
+  for (const char* key : {"file", "format", "separator", "time"})
+    if (heading.IsMap() && !heading[key] && section.has(key)) heading[key] = section.node(key);
+  const YamlSection own(heading, "gnss.heading", section.file(), log_keys({"options"}));
+  return read_sensor(own, "heading", source + "_heading", drive);
+}
+
 /// Adds every source of the file. @throws InputError for a name that two of them have
 void read_sources(const YamlSection& top, DriveDescription& drive) {
   std::map<std::string, std::string> places;
@@ -197,6 +209,8 @@ void read_sources(const YamlSection& top, DriveDescription& drive) {
       drive.odometry.push_back(read_odometry(section, entry.name, drive));
     } else if (entry.kind == kGnssKind) {
       drive.gnss.push_back(read_gnss(section, entry.name, drive));
+      if (auto heading = read_heading(section, entry.name, drive))
+        drive.sensors.push_back(*std::move(heading));
     } else {
       drive.sensors.push_back(read_sensor(section, entry.kind, entry.name, drive));
     }

@@ -22,7 +22,7 @@ std::vector<std::string_view> odometry_keys() {
 }
 std::vector<std::string_view> gnss_keys() {
   return log_keys({"kind", "name", "accuracy", "velocity", "antenna", "period", "delay", "withhold_every",
-                   "withheld", "modeling", "calibration", "gate", "common"});
+                   "withheld", "heading", "modeling", "calibration", "gate", "common"});
 }
 
 YamlSection section_of(const std::string& kind, const YAML::Node& node, const std::string& name,
