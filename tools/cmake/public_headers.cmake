@@ -84,6 +84,7 @@ set(WAYMARK_PUBLIC_HEADERS
   plugins/lane/lane.hpp
   plugins/odometry/calibration.hpp
   plugins/odometry/edge_odometry.hpp
+  plugins/twist/edge_twist.hpp
 
   tools/drive/description/drive_description.hpp
   tools/drive/description/drive_file.hpp
