@@ -119,7 +119,8 @@ struct SensorColumn {
   std::string name;  ///< the quantity, and the default name of the column
   std::string unit;  ///< SI unit of its numbers: "m", "m/s", "m/s^2", "s", "rad", "rad/s" or "1"
   /// sense of the numbers. For rad: "" is a size, "ccw" an angle or turn, "ccw_from_east" a heading
-  /// (given from true east, delivered in the frame). For rad/s: "ccw". Otherwise ""
+  /// (given from true east, delivered in the frame). For rad/s: "" is a size, "ccw" a turning rate.
+  /// Otherwise ""
   std::string sense;
   bool required = true;     ///< if false, NaN stands for a missing column or value
   std::string description;  ///< one sentence

@@ -8,8 +8,8 @@
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/plugins/odometry/calibration.hpp>
 #include <waymark/plugins/odometry/detail/noise.hpp>
-#include <waymark/plugins/odometry/detail/states.hpp>
 #include <waymark/plugins/odometry/edge_odometry.hpp>
+#include <waymark/types_se2/plugin_kit/state_along_drive.hpp>
 
 namespace waymark::plugins::odometry {
 namespace {
@@ -131,14 +131,14 @@ std::vector<OptionInfo> options() {
        "largest variance of an edge at rest, so that its information is at least 1e5"},
   };
   for (const OptionInfo& option :
-       state_options("gyro_bias", "rad/s", "0.01", "2e-6", "reading of the gyro at rest"))
+       state_options("gyro_bias", "rad/s", "off", "0.01", "2e-6", "reading of the gyro at rest"))
     all.push_back(option);
-  for (const OptionInfo& option : state_options("speed_scale", "1", "0.01", "2e-4",
+  for (const OptionInfo& option : state_options("speed_scale", "1", "off", "0.01", "2e-4",
                                                 "scale error of the speed, true speed = (1 "
                                                 "+ scale) reading"))
     all.push_back(option);
   for (const OptionInfo& option :
-       state_options("yaw_per_speed", "rad/m", "1e-3", "1e-5",
+       state_options("yaw_per_speed", "rad/m", "off", "1e-3", "1e-5",
                      "error of a yaw rate from wheels or steering, true yaw rate = reading - this * speed"))
     all.push_back(option);
   all.push_back(
@@ -147,19 +147,8 @@ std::vector<OptionInfo> options() {
        "independent from second to second"});
   all.push_back(
       {kTrackHeading, "0.01", "rad", OptionRange{1e-5, 1}, "how far its heading is off, to and fro"});
-  all.push_back(
-      {"calibration_period", "10", "s", OptionRange{0.1, 1e4}, "time between two values of a random walk"});
+  all.push_back(calibration_period_option());
   return all;
-}
-
-StateOptions state(const CheckedOptions& options, const std::string& name) {
-  const std::string& model = options.word(name);
-  return {.model = model == "off"        ? StateModel::off
-                   : model == "constant" ? StateModel::constant
-                                         : StateModel::random_walk,
-          .prior_sigma = options.number(name + "_sigma"),
-          .walk_sigma = options.number(name + "_walk"),
-          .period_s = options.number("calibration_period")};
 }
 
 std::unique_ptr<OdometryModel> make(const CheckedOptions& options) {
@@ -178,9 +167,9 @@ std::unique_ptr<OdometryModel> make(const CheckedOptions& options) {
   configuration.gyro_at_rest_per_s = options.number("gyro_at_rest_variance_per_s");
   configuration.standstill_speed = options.number("standstill_speed");
   configuration.paper = options.word("noise") == "paper";
-  configuration.gyro_bias = state(options, "gyro_bias");
-  configuration.speed_scale = state(options, "speed_scale");
-  configuration.yaw_per_speed = state(options, "yaw_per_speed");
+  configuration.gyro_bias = read_state(options, "gyro_bias");
+  configuration.speed_scale = read_state(options, "speed_scale");
+  configuration.yaw_per_speed = read_state(options, "yaw_per_speed");
   return std::make_unique<ConstantTwist>(configuration);
 }
 

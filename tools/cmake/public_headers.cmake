@@ -55,6 +55,7 @@ set(WAYMARK_PUBLIC_HEADERS
   types_se2/g2o_edges.hpp
   types_se2/plugin_kit/gnss_modeling.hpp
   types_se2/plugin_kit/sensor_readings.hpp
+  types_se2/plugin_kit/state_along_drive.hpp
   types_se2/register.hpp
   types_se2/se2.hpp
   types_se2/stamped_pose.hpp
@@ -83,6 +84,7 @@ set(WAYMARK_PUBLIC_HEADERS
   plugins/lane/lane.hpp
   plugins/odometry/calibration.hpp
   plugins/odometry/edge_odometry.hpp
+  plugins/twist/edge_twist.hpp
 
   tools/drive/description/drive_description.hpp
   tools/drive/description/drive_file.hpp

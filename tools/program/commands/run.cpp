@@ -15,9 +15,9 @@
 #include <waymark/tools/program/jobs/drive_text.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
-#include <waymark/tools/program/jobs/result_files.hpp>
-#include <waymark/tools/program/jobs/result_warnings.hpp>
-#include <waymark/tools/program/jobs/source_comparison.hpp>
+#include <waymark/tools/program/jobs/results/result_files.hpp>
+#include <waymark/tools/program/jobs/results/result_warnings.hpp>
+#include <waymark/tools/program/jobs/results/source_comparison.hpp>
 #include <waymark/tools/program/terminal/iteration_table.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 

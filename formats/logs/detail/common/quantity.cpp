@@ -85,15 +85,16 @@ struct SensorKind {
 };
 constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
 constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", kDegree}};
-constexpr std::array<SensorKind, 9> kSensorKinds{{{"1", "", kFlags, {}},
-                                                  {"m", "", kLengths, {}},
-                                                  {"m/s", "", kSpeeds, {}},
-                                                  {"m/s^2", "", kAccelerations, {}},
-                                                  {"s", "", kDurations, {}},
-                                                  {"rad", "", kAngles, {}},
-                                                  {"rad", "ccw_from_east", kHeadings, kHeadingSenses},
-                                                  {"rad", "ccw", kHeadings, kTurns},
-                                                  {"rad/s", "ccw", kRates, kTurns}}};
+constexpr std::array<SensorKind, 10> kSensorKinds{{{"1", "", kFlags, {}},
+                                                   {"m", "", kLengths, {}},
+                                                   {"m/s", "", kSpeeds, {}},
+                                                   {"m/s^2", "", kAccelerations, {}},
+                                                   {"s", "", kDurations, {}},
+                                                   {"rad", "", kAngles, {}},
+                                                   {"rad", "ccw_from_east", kHeadings, kHeadingSenses},
+                                                   {"rad", "ccw", kHeadings, kTurns},
+                                                   {"rad/s", "", kRates, {}},
+                                                   {"rad/s", "ccw", kRates, kTurns}}};
 
 template <typename Item>
 const Item* find_named(std::span<const Item> items, std::string_view name) {

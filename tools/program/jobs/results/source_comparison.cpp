@@ -1,4 +1,4 @@
-#include <waymark/tools/program/jobs/source_comparison.hpp>
+#include <waymark/tools/program/jobs/results/source_comparison.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,16 @@
-/// The calibration states of a drive: the vertex that an interval uses, and the edges between
-/// these vertices.
+/// The calibration states of a drive, such as biases and scales: the vertex that an interval uses,
+/// and the edges between these vertices.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <waymark/core/drive/kept_vertex.hpp>
 #include <waymark/core/drive/modeling.hpp>
 #include <waymark/core/graph/scalar_state.hpp>
+#include <waymark/core/registry/options.hpp>
 
-namespace waymark::plugins::odometry {
+namespace waymark {
 
 /// How a state is estimated.
 enum class StateModel {
@@ -69,8 +71,15 @@ class StateAlongDrive {
 };
 
 /// Returns the options of a state NAME: NAME (off, constant, random_walk), NAME_sigma, NAME_walk.
+/// @param model the default of NAME
 [[nodiscard]] std::vector<OptionInfo> state_options(const std::string& name, const std::string& unit,
-                                                    const std::string& prior_sigma,
+                                                    const std::string& model, const std::string& prior_sigma,
                                                     const std::string& walk_sigma, const std::string& what);
 
-}  // namespace waymark::plugins::odometry
+/// Returns the option calibration_period, which all states of a model share.
+[[nodiscard]] OptionInfo calibration_period_option();
+
+/// Reads the options of a state NAME, and calibration_period.
+[[nodiscard]] StateOptions read_state(const CheckedOptions& options, const std::string& name);
+
+}  // namespace waymark
