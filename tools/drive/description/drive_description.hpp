@@ -41,12 +41,12 @@ struct OdometryConfig {
 /// An absolute source: the log of its positions, and the log of its velocity if that is another one.
 struct GnssConfig : LogConfig {
   std::optional<LogConfig> velocity{};
-  std::string name = "gnss";                ///< of the source
-  Eigen::Vector2d antenna_m{0, 0};          ///< body frame (x forward, y left)
-  double delay_s = 0;                       ///< how late its stamps are; subtracted
-  double period_s = 0;                      ///< its fixes are thinned to one per period (0: keep all)
-  int withhold_every = 0;                   ///< every n-th epoch is left out of the graph (0: none)
-  bool withheld = false;                    ///< all of its fixes are left out of the graph
+  std::string name = "gnss";        ///< of the source
+  Eigen::Vector2d antenna_m{0, 0};  ///< body frame (x forward, y left)
+  double delay_s = 0;               ///< how late its stamps are; subtracted
+  double period_s = 0;              ///< its fixes are thinned to one per period (0: keep all)
+  int withhold_every = 0;           ///< every n-th of its fixes is left out of the graph (0: none)
+  bool withheld = false;            ///< all of its fixes are left out of the graph
 };
 
 /// A further sensor of the vehicle.
@@ -67,9 +67,9 @@ struct OutagePattern {
 
 /// The logs of a drive, their clocks, the frame, and the places of the sensors on the vehicle.
 struct DriveDescription {
-  std::string path;                 ///< of the drive.yaml, for messages; may be empty
-  std::string name;                 ///< default: name of the file without ".yaml"
-  std::string folder;               ///< the folder for relative names of logs
+  std::string path;                      ///< of the drive.yaml, for messages; may be empty
+  std::string name;                      ///< default: name of the file without ".yaml"
+  std::string folder;                    ///< the folder for relative names of logs
   std::vector<OdometryConfig> odometry;  ///< relative sources, at least one
   std::vector<GnssConfig> gnss;          ///< absolute sources, at least one
   std::optional<LogConfig> truth;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -221,8 +222,7 @@ std::vector<std::optional<Eigen::Vector2d>> accuracies_by_agreement(std::span<co
       }
     }
     if (count > 0)
-      accuracies[a] = Eigen::Vector2d(
-          (sum / count).cwiseMax(kLeastAccuracy * kLeastAccuracy).cwiseSqrt());
+      accuracies[a] = Eigen::Vector2d((sum / count).cwiseMax(kLeastAccuracy * kLeastAccuracy).cwiseSqrt());
   }
   return accuracies;
 }
@@ -242,9 +242,8 @@ std::vector<std::size_t> contradicting(const Statements& window,
   return agreeing >= 2 ? out : std::vector<std::size_t>();
 }
 
-std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes,
-                                                 std::span<const Eigen::Vector3d> poses,
-                                                 std::span<const std::size_t> voices) {
+std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes, std::span<const Eigen::Vector3d> poses,
+                                                std::span<const std::size_t> voices) {
   const std::size_t sources = voices.empty() ? 0 : *std::max_element(voices.begin(), voices.end()) + 1;
   if (sources < 3) return {};
   const Windows windows = windows_of_fixes(fixes, poses, voices, sources);
@@ -265,13 +264,16 @@ std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes,
 }
 
 std::vector<Disagreement> leave_out_contradictions(std::span<std::vector<OdometrySample>* const> sources) {
-  if (sources.size() < 3) return {};
-  Stamp first = sources.front()->front().stamp;
-  Stamp last = sources.front()->back().stamp;
+  Stamp first{std::numeric_limits<std::int64_t>::max()};
+  Stamp last{std::numeric_limits<std::int64_t>::min()};
+  std::size_t count = 0;
   for (const std::vector<OdometrySample>* samples : sources) {
+    if (samples->empty()) continue;
+    ++count;
     first = std::min(first, samples->front().stamp);
     last = std::max(last, samples->back().stamp);
   }
+  if (count < 3) return {};
   Windows windows{.start = first, .statements = {}};
   windows.statements.assign(windows.of(last) + 1, Statements(sources.size()));
   for (std::size_t s = 0; s < sources.size(); ++s) add_motion(*sources[s], s, windows);
