@@ -20,8 +20,9 @@ void decide_gates(FusionSettings& settings, const TypeRegistry& registry) {
   for (auto& [name, source] : settings.sources) {
     if (source.model.empty() || (source.gate && source.gate->enabled)) continue;
     const auto& known = registry.gnss_modelings();
-    const auto type = std::find_if(known.begin(), known.end(),
-                                   [&, model = source.model](const auto& of) { return of.type.name == model; });
+    const auto type = std::find_if(known.begin(), known.end(), [&, model = source.model](const auto& of) {
+      return of.type.name == model;
+    });
     if (type == known.end()) continue;  // an odometry model, or refused when it is made
     if (!source.gate) source.gate = settings.gate;
     source.gate->enabled = !type->type.complete;
@@ -70,6 +71,14 @@ FusionSettings for_absolute(const FusionSettings& settings, const std::string& s
     if (!result.gate.enabled) result.gate.enabled = settings.gate.enabled;
   }
   return result;
+}
+
+void require_common_errors(const FusionSettings& settings, const std::string& group,
+                           const TypeRegistry& registry) {
+  const std::string modeling = for_absolute(settings, group, registry).modeling;
+  if (!registry.gnss_modeling(modeling).shares_errors)
+    throw UsageError("source '" + group + "': the modeling '" + modeling +
+                     "' has no errors that sources could have in common; leave out 'common'");
 }
 
 FusionSettings for_relative(const FusionSettings& settings, const std::string& source) {
