@@ -80,7 +80,8 @@ double availability(std::vector<Stamp> stamps, Stamp from, Stamp to) {
   if (stamps.size() < 2) return 0;
   std::sort(stamps.begin(), stamps.end());
   std::vector<double> intervals;
-  for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    intervals.push_back(seconds_between(stamps[i - 1], stamps[i]));
   const double usual = upper_median(intervals);
   double covered = usual;
   for (const double interval : intervals) covered += interval <= 2.5 * usual ? interval : usual;
@@ -95,11 +96,19 @@ std::vector<Stamp> stamps_of(const drive::PreparedDrive& drive, const drive::Sou
   if (drive.relative.empty() && source.kind == "odometry")
     for (const OdometrySample& sample : drive.odometry) stamps.push_back(sample.stamp);
   for (const Fix& fix : drive.fixes)
-    if (drive.receivers[static_cast<std::size_t>(fix.source)].name == source.name) stamps.push_back(fix.stamp);
+    if (drive.receivers[static_cast<std::size_t>(fix.source)].name == source.name)
+      stamps.push_back(fix.stamp);
   for (const drive::PreparedSensor& sensor : drive.sensors)
     if (sensor.source == source.name)
       stamps.insert(stamps.end(), sensor.readings.stamps.begin(), sensor.readings.stamps.end());
   return stamps;
+}
+
+/// Returns Fix::source of a receiver; -1 for another source.
+int index_of(const drive::PreparedDrive& drive, const drive::SourceOfDrive& source) {
+  for (std::size_t i = 0; i < drive.receivers.size(); ++i)
+    if (source.kind == "gnss" && drive.receivers[i].name == source.name) return static_cast<int>(i);
+  return -1;
 }
 
 /// What a source says with all others in the graph.
@@ -116,11 +125,11 @@ evaluation::SourceReport report_with(const drive::PreparedDrive& drive, const dr
     const Fix& fix = document.fixes[i];
     if (drive.receivers[static_cast<std::size_t>(fix.source)].name != source.name) continue;
     report.accepted += fix.status == FixStatus::accepted;
-    report.residual_rms_m = residual_rms(document, fix.source, FixStatus::accepted);
     const auto& offset = evaluated.epochs[i].gnss_offset_m;
     if (offset) raw.push_back(offset->squaredNorm());
   }
   report.raw_rmse_m = rms(raw);
+  report.residual_rms_m = residual_rms(document, index_of(drive, source), FixStatus::accepted);
   return report;
 }
 
@@ -137,9 +146,7 @@ void add_result_without(const drive::PreparedDrive& drive, const drive::SourceOf
   report.share = share_lost(all, covariances);
   const evaluation::Evaluation evaluated = evaluate_document(document, rest.truth, {});
   if (evaluated.truth) report.without_rmse_m = evaluated.truth->fused.position.rmse_m;
-  for (std::size_t i = 0; i < drive.receivers.size(); ++i)
-    if (drive.receivers[i].name == source.name)
-      report.without_residual_rms_m = residual_rms(document, static_cast<int>(i), std::nullopt);
+  report.without_residual_rms_m = residual_rms(document, index_of(drive, source), std::nullopt);
 }
 
 }  // namespace
@@ -157,8 +164,8 @@ evaluation::SourceComparison compare_sources(const drive::PreparedDrive& drive, 
   settings.estimates_noise = false;
   settings.minimization.covariances = "fixes";
   for (const drive::SourceOfDrive& source : sources) {
-    evaluation::SourceReport& report = comparison.sources.emplace_back(
-        report_with(drive, source, modeled.document, evaluated));
+    evaluation::SourceReport& report =
+        comparison.sources.emplace_back(report_with(drive, source, modeled.document, evaluated));
     if (!drive::can_do_without(drive, source) || interrupted) continue;
     console.progress("without " + source.name);
     try {
