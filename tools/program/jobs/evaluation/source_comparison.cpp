@@ -1,4 +1,4 @@
-#include <waymark/tools/program/jobs/source_comparison.hpp>
+#include <waymark/tools/program/jobs/evaluation/source_comparison.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/tools/drive/model/without_source.hpp>
-#include <waymark/tools/program/jobs/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/types_se2/se2.hpp>
 
