@@ -1,6 +1,7 @@
 // The graph of a drive with several receivers and odometries.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -106,6 +107,39 @@ TEST_CASE("source graph: two receivers at their true places give the exact truth
   PreparedDrive swapped = drive;
   for (Fix& fix : swapped.fixes) fix.antenna_m = drive.receivers[fix.source == 0 ? 1 : 0].antenna_m;
   CHECK(fused(swapped, plain("g1")).model.document.graph.chi2() > 1);
+}
+
+TEST_CASE(
+    "source graph: a receiver that contradicts two others is named, and is not in the graph for that time") {
+  PreparedDrive drive = circle(0.55);
+  drive.odometry = circle_samples(10, 0, 400);
+  drive.receivers.push_back({"roof", {0.9, 0.4}});
+  drive.fixes.clear();
+  for (int second = 0; second < 400; ++second) {
+    for (int source = 0; source < 3; ++source) {
+      Fix fix;
+      const double t = second + 0.2 * source;
+      fix.stamp = Stamp::from_seconds(t);
+      fix.source = source;
+      fix.antenna_m = drive.receivers[static_cast<std::size_t>(source)].antenna_m;
+      fix.position = truth_at(t).position + rotate(truth_at(t).heading, fix.antenna_m);
+      // It drifts away by 30 m within 20 s, and back: no jump.
+      if (source == 2)
+        fix.position[0] += 30 * std::clamp(std::min(second - 180, 320 - second) / 20.0, 0.0, 1.0);
+      drive.fixes.push_back(fix);
+    }
+  }
+  const FusedDrive result = fused(drive, plain("g1"));
+  GateSummary gate = result.model.placed.gate;
+  CHECK(gate.reasons["contradicts"] == 140);
+  CHECK(gate.rejected == 140);
+  CHECK(gate.accepted == 1060);
+  const std::vector<std::string> warnings = result.model.warnings();
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0] ==
+        "roof contradicts the others, which agree, from 180 to 320 s after the start: by 30.0 m; its 140 "
+        "readings there are left out");
+  CHECK(result.model.document.graph.chi2() < 1e-9);
 }
 
 TEST_CASE("source graph: two odometries have their own edges and their own states") {
