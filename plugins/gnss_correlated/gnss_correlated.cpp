@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -110,11 +111,8 @@ class ProcessAlongFixes {
   std::vector<State> states_;  ///< in order of time
 };
 
-/// The correlated errors of one receiver, or of several that share them.
-struct Receiver {
-  ProcessAlongFixes<VertexGnssBias, EdgeGnssBiasDecay> bias;
-  ProcessAlongFixes<VertexGnssMultipath, EdgeGnssMultipathDecay> multipath;
-};
+using Bias = ProcessAlongFixes<VertexGnssBias, EdgeGnssBiasDecay>;
+using Multipath = ProcessAlongFixes<VertexGnssMultipath, EdgeGnssMultipathDecay>;
 
 /// measured = antenna + bias + multipath + white noise: see README.md.
 class GnssCorrelated final : public GnssModeling {
@@ -127,10 +125,11 @@ class GnssCorrelated final : public GnssModeling {
     std::vector<Eigen::Vector2d> errors;
     for (const Fix& fix : fixes) {
       errors.emplace_back(Eigen::Vector2d::Zero());
-      if (!receiver_) continue;
+      const auto bias = biases_.find(fix.source);
+      if (!multipath_ || bias == biases_.end()) continue;
       const Eigen::Matrix2d root = relative_root(fix, median_m_, model_.accuracy_exponent);
-      errors.back() = receiver_->bias.expected(fix.stamp, minimum) +
-                      model_.multipath_m * root * receiver_->multipath.expected(fix.stamp, minimum);
+      errors.back() = bias->second.expected(fix.stamp, minimum) +
+                      model_.multipath_m * root * multipath_->expected(fix.stamp, minimum);
     }
     return errors;
   }
@@ -144,10 +143,12 @@ class GnssCorrelated final : public GnssModeling {
     const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
     const double peak = model_.heavy_tails ? kStudentInformation : 1;
     median_m_ = input.median_accuracy_m > 0 ? input.median_accuracy_m : median_accuracy(input.fixes);
-    if (!receiver_) receiver_ = make_receiver(median_m_);
+    if (!multipath_) multipath_ = Multipath(1, model_.multipath_time_s);
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
       const Eigen::Matrix2d root = relative_root(fix, median_m_, model_.accuracy_exponent);
+      Bias& bias =
+          biases_.try_emplace(fix.source, model_.bias_m(median_m_), model_.bias_time_s).first->second;
       const VertexIndex pose = pose_vertex(fix, graph);
       EdgeGnssPositionCorrelated edge;
       edge.measured = fix.position;
@@ -157,8 +158,7 @@ class GnssCorrelated final : public GnssModeling {
       edge.scale = model_.multipath_m * Eigen::Vector3d(root(0, 0), root(0, 1), root(1, 1));
       const Eigen::Matrix2d information = peak * (model_.white_m * model_.white_m * root * root).inverse();
       graph.add_edge(edge,
-                     {origin, pose, offset, receiver_->bias.at(fix.stamp, graph),
-                      receiver_->multipath.at(fix.stamp, graph)},
+                     {origin, pose, offset, bias.at(fix.stamp, graph), multipath_->at(fix.stamp, graph)},
                      0.5 * (information + information.transpose()), loss);
     }
   }
@@ -178,16 +178,15 @@ class GnssCorrelated final : public GnssModeling {
     return none;
   }
 
-  [[nodiscard]] Receiver make_receiver(double median_m) const {
-    return {{model_.bias_m(median_m), model_.bias_time_s}, {1, model_.multipath_time_s}};
-  }
-
   ErrorModel model_;
   double time_offset_sigma_s_;
   double median_m_ = 0;  ///< claimed accuracy
   KeptVertex origin_;
   KeptVertex offset_;
-  std::optional<Receiver> receiver_;
+  /// Sources in a group share the error of the seconds. Each has a bias of its own: a constant difference
+  /// between two antennas would otherwise turn the vehicle.
+  std::optional<Multipath> multipath_;
+  std::map<int, Bias> biases_;
 };
 
 std::vector<OptionInfo> options() {

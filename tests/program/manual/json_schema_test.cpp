@@ -150,6 +150,7 @@ TEST_CASE("json: json of every subcommand is as tools/program/JSON.md documents 
       {"derivatives", {"check", "--derivatives"}},
       {"drive", {"simulate", "--preset", "rural", "--duration", "60", "-o", folder + "simulated"}},
       {"sources", {"simulate", "--preset", "two-odometries", "--duration", "60", "-o", folder + "several"}},
+      {"metrics", {"run", folder + "several/drive.yaml", "-o", folder + "fused", "--noise", "stated"}},
       {"drive", {"inspect", drive}},
       {"presets", {"simulate", "--list"}},
       {"reproduction", {"reproduce", drive, "-o", folder + "paper"}}};

@@ -185,4 +185,20 @@ TEST_CASE("growing drive: sensors keep their states and landmarks from part to p
   check_same(placed, sensors, settings, 333, 1e-6);
 }
 
+TEST_CASE("growing drive: several receivers keep their states apart, or in common, from part to part") {
+  PreparedDrive drive = bundled_drive();
+  drive.receivers = {{"front", {2.6, 0}}, {"rear", {-0.8, 0.3}}};
+  for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
+    drive.fixes[i].source = static_cast<int>(i % 2);
+    drive.fixes[i].antenna_m = drive.receivers[i % 2].antenna_m;
+  }
+  FusionSettings settings = settings_of("correlated", kAllStates);
+  for (const char* common : {"", "front"}) {
+    INFO("common: " << common);
+    settings.sources["rear"].common = common;
+    check_same(place_drive(drive, timeline_of(drive), settings, registry()), {}, settings,
+               timeline_of(drive).stamps.size() / 2 + 1);
+  }
+}
+
 }  // namespace growing_drive_test

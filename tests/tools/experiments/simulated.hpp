@@ -24,6 +24,47 @@ namespace waymark_test {
   return drive;
 }
 
+/// All sources of a simulated drive, as if their logs had been read.
+/// @param period_s to which the fixes of each receiver are thinned; 0: all are kept
+[[nodiscard]] inline waymark::drive::PreparedDrive prepared_sources(
+    const waymark::simulation::SimulatedDrive& simulated, double period_s) {
+  using namespace waymark::drive;
+  DriveLogs logs;
+  DriveDescription description;
+  description.time_scale = waymark::TimeScale::gps;
+  const auto add_odometry = [&](const std::string& name,
+                                const std::vector<waymark::OdometrySample>& samples) {
+    DriveLogs::Log log;
+    log.file = name;
+    log.data.odometry = samples;
+    logs.odometry.push_back({log});
+    description.odometry.emplace_back().name = name;
+  };
+  const auto add_gnss = [&](const waymark::simulation::GnssRecipe& recipe,
+                            const std::vector<waymark::simulation::SimulatedFix>& fixes) {
+    DriveLogs::Log log;
+    log.file = recipe.name;
+    for (const waymark::simulation::SimulatedFix& fix : fixes) {
+      log.data.fixes.push_back(fix.fix);
+      log.data.fixes.back().source = static_cast<int>(logs.gnss.size());
+    }
+    logs.gnss.push_back(log);
+    GnssConfig& receiver = description.gnss.emplace_back();
+    receiver.name = recipe.name;
+    receiver.antenna_m = recipe.antenna_m;
+    receiver.period_s = period_s;
+  };
+  add_odometry(simulated.recipe.odometry.name, simulated.odometry);
+  for (const waymark::simulation::SimulatedOdometry& further : simulated.further_odometry)
+    add_odometry(further.name, further.samples);
+  add_gnss(simulated.recipe.gnss, simulated.fixes);
+  for (std::size_t i = 0; i < simulated.further_gnss.size(); ++i)
+    add_gnss(simulated.recipe.further_gnss[i], simulated.further_gnss[i].fixes);
+  logs.truth.emplace_back();
+  logs.truth.back().data.truth = simulated.truth;
+  return prepare_drive(logs, description);
+}
+
 /// The fused poses at the fixes against the exact truth.
 [[nodiscard]] inline waymark::evaluation::EvaluationInput against_truth(
     const waymark::formats::GraphDocument& document, const waymark::simulation::SimulatedDrive& simulated) {

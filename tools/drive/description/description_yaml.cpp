@@ -203,8 +203,8 @@ void read_sources(const YamlSection& top, DriveDescription& drive) {
     const YamlSection& section = entry.section;
     const auto [known, is_new] = places.try_emplace(entry.name, section.place());
     if (!is_new)
-      throw InputError(section.place() + "there is a source '" + entry.name + "' already (" + known->second +
-                       "); give them different names");
+      throw InputError(section.place() + "there is a source '" + entry.name + "' already (" +
+                       known->second.substr(0, known->second.rfind(": ")) + "); give them different names");
     if (entry.kind == kOdometryKind) {
       drive.odometry.push_back(read_odometry(section, entry.name, drive));
     } else if (entry.kind == kGnssKind) {

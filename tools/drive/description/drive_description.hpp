@@ -45,7 +45,7 @@ struct GnssConfig : LogConfig {
   Eigen::Vector2d antenna_m{0, 0};  ///< body frame (x forward, y left)
   double delay_s = 0;               ///< how late its stamps are; subtracted
   double period_s = 0;              ///< its fixes are thinned to one per period (0: keep all)
-  int withhold_every = 0;           ///< every n-th epoch is left out of the graph (0: none)
+  int withhold_every = 0;           ///< every n-th of its fixes is left out of the graph (0: none)
   bool withheld = false;            ///< all of its fixes are left out of the graph
 };
 

@@ -73,6 +73,14 @@ FusionSettings for_absolute(const FusionSettings& settings, const std::string& s
   return result;
 }
 
+void require_common_errors(const FusionSettings& settings, const std::string& group,
+                           const TypeRegistry& registry) {
+  const std::string modeling = for_absolute(settings, group, registry).modeling;
+  if (!registry.gnss_modeling(modeling).shares_errors)
+    throw UsageError("source '" + group + "': the modeling '" + modeling +
+                     "' has no errors that sources could have in common; leave out 'common'");
+}
+
 FusionSettings for_relative(const FusionSettings& settings, const std::string& source) {
   const SourceSettings& own = stated_for(settings, source);
   FusionSettings result = settings;

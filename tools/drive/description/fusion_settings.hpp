@@ -90,6 +90,10 @@ struct FusionSettings {
 /// @throws UsageError if groups name each other in a ring
 [[nodiscard]] std::string group_of(const FusionSettings& settings, const std::string& source);
 
+/// Checks the modeling of a group of several sources. @throws UsageError for one of white noise only
+void require_common_errors(const FusionSettings& settings, const std::string& group,
+                           const TypeRegistry& registry);
+
 /// Adapts decided settings to the yaw rate at rest, if the odometry model has the options: one from
 /// wheels or steering shows no bias there and errs in proportion to the speed, and a noisy gyro shows
 /// its bias less well. Stated options are kept.

@@ -1,7 +1,11 @@
 #include <waymark/tools/drive/description/settings_yaml.hpp>
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -100,19 +104,21 @@ void read_absolute(const YamlSection& section, const std::string& place, const G
   read_options(modeling, "options", place + ".options.", source.options, places);
 }
 
-/// Reads the settings of single sources. What the short form of one odometry states is stated for the
-/// drive.
+/// Reads the settings of single sources. What the only odometry states is stated for the drive.
 void read_sources(const YamlSection& top, FusionSettings& settings, Places& places) {
-  for (const SourceEntry& entry : source_entries(top)) {
+  const std::vector<SourceEntry> entries = source_entries(top);
+  const auto odometries = std::count_if(entries.begin(), entries.end(),
+                                        [](const SourceEntry& entry) { return entry.kind == kOdometryKind; });
+  for (const SourceEntry& entry : entries) {
     SourceSettings source;
-    const bool is_short = entry.name == kOdometryKind;
-    const std::string place = is_short ? entry.name : "sources." + entry.name;
+    const bool is_only = entry.kind == kOdometryKind && odometries == 1;
+    const std::string place = is_only ? std::string(kOdometryKind) : "sources." + entry.name;
     if (entry.kind == kOdometryKind) {
       read_relative(entry.section, place, source, places);
     } else if (entry.kind == kGnssKind) {
       read_absolute(entry.section, place, settings.gate, source, places);
     }
-    if (is_short) {
+    if (is_only) {
       if (!source.model.empty()) settings.odometry_model = source.model;
       settings.odometry_options = source.options;
       source = {.calibration = source.calibration};

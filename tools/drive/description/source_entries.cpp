@@ -59,6 +59,9 @@ class Entries {
       std::string kind;
       section.read("name", kind);
       if (kind.empty()) throw InputError(section.place() + "sensors: 'name' is missing");
+      if (kind == kOdometryKind || kind == kGnssKind)
+        throw InputError(section.place() + "sensors: '" + kind + "' is no further sensor; state it under '" +
+                         kind + "' or 'sources'");
       add(numbered(kind), kind, std::move(section));
     }
   }

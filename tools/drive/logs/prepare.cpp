@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -64,17 +65,19 @@ bool in_outage(const OutagePattern& outage, double after_first_s) {
   return outage.length_s > 0 && std::fmod(after_first_s, outage.every_s) >= outage.every_s - outage.length_s;
 }
 
-/// Numbers the epochs and withholds the requested ones. Fixes with one stamp are one epoch.
+/// Numbers the epochs and withholds the requested ones. Fixes with one stamp are one epoch. Every receiver
+/// counts its own fixes.
 void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description, PrepareReport& report) {
   int epoch = -1;
+  std::map<int, int> count_of;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (i == 0 || fixes[i].stamp != fixes[i - 1].stamp) ++epoch;
     fixes[i].epoch = epoch;
     const GnssConfig& receiver = receiver_of(description, static_cast<std::size_t>(fixes[i].source));
-    const bool nth = receiver.withhold_every >= 2 && (epoch + 1) % receiver.withhold_every == 0;
-    if (!nth && !receiver.withheld &&
-        !in_outage(description.outage, seconds_between(fixes.front().stamp, fixes[i].stamp)))
-      continue;
+    const int number = ++count_of[fixes[i].source];
+    const bool nth = receiver.withhold_every >= 2 && number % receiver.withhold_every == 0;
+    const double after_first_s = seconds_between(fixes.front().stamp, fixes[i].stamp);
+    if (!nth && !receiver.withheld && !in_outage(description.outage, after_first_s)) continue;
     fixes[i].status = FixStatus::withheld;
     fixes[i].reason = "withheld";
     ++report.fixes_withheld;
@@ -93,8 +96,9 @@ void note_yaw_rate(const std::string& source, const YawRateAtRest& rest, Prepare
 void leave_out_frozen(PreparedDrive& drive) {
   for (PreparedOdometry& source : drive.relative) {
     note_yaw_rate(source.name + ": ", source.yaw_rate_at_rest, drive.report);
+    const Stamp start = source.samples.front().stamp;
     for (const FrozenOdometry& time : find_frozen_odometry(source.samples, drive.fixes)) {
-      drive.report.warnings.push_back(source.name + ": " + warning_of(time, source.samples.front().stamp));
+      drive.report.warnings.push_back(source.name + ": " + warning_of(time, start));
       std::erase_if(source.samples, [&](const OdometrySample& sample) {
         return sample.stamp >= time.from && sample.stamp <= time.to;
       });
@@ -156,6 +160,18 @@ void judge_odometry(PreparedDrive& drive) {
     drive.report.warnings.push_back(std::move(warning));
 }
 
+/// Drops the fixes that no odometry covers any more: parts of it were left out.
+void cut_fixes(PreparedDrive& drive) {
+  const std::size_t before = drive.fixes.size();
+  std::erase_if(drive.fixes, [&](const Fix& fix) {
+    return fix.stamp < drive.odometry.front().stamp || fix.stamp > drive.odometry.back().stamp;
+  });
+  drive.report.fixes_outside_odometry += before - drive.fixes.size();
+  if (drive.fixes.empty()) throw InputError("no fix lies within the usable odometry");
+  const int first = drive.fixes.front().epoch;
+  for (Fix& fix : drive.fixes) fix.epoch -= first;
+}
+
 /// Takes the relative sources: the only one, or all of them.
 void take_odometry(std::vector<PreparedOdometry> relative, PreparedDrive& drive) {
   drive.odometry_name = relative.front().name;
@@ -200,6 +216,7 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection.project(pose));
   number_epochs(drive.fixes, description, drive.report);
   judge_odometry(drive);
+  cut_fixes(drive);
   for (std::size_t i = 0; i < logs.sensors.size(); ++i) {
     const SensorConfig& sensor = description.sensors[i];
     PreparedSensor& prepared = drive.sensors.emplace_back(PreparedSensor{

@@ -156,8 +156,9 @@ struct DriveLogs {
 ///    span of the odometry are dropped.
 /// 5. Fixes are thinned per source to the one nearest to each whole multiple of its period on
 ///    the scale of the drive (the earlier of two equally near ones).
-/// 6. Epochs are numbered; fixes with one stamp are one epoch. For withhold_every = n, epochs n-1,
-///    2n-1, ... are withheld, and so are those in an outage and those of sources that are withheld.
+/// 6. Epochs are numbered; fixes with one stamp are one epoch. For withhold_every = n, the fixes n,
+///    2n, ... of that receiver are withheld, and so are those in an outage and those of sources that are
+///    withheld.
 /// 7. Everything is projected.
 /// 8. Odometry that repeats one reading while the fixes move is replaced (nodes/frozen.hpp).
 /// @throws InputError with the remedy for: fewer than two odometry samples, no fix, no fix within

@@ -59,7 +59,7 @@ void note_gaps(double gap_s, Stamp start, PrepareReport& report) {
       seconds_between(start, longest.start)));
 }
 
-/// Reads one source: cleaned, without its delays.
+/// Reads one source: cleaned, without its delays. Fewer than two samples are no motion.
 std::vector<OdometrySample> samples_of(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& config,
                                        const DriveDescription& description, StreamReport& stream,
                                        PrepareReport& report) {
@@ -74,48 +74,79 @@ std::vector<OdometrySample> samples_of(const std::vector<DriveLogs::Log>& logs, 
       [](const OdometrySample& a, const OdometrySample& b) {
         return a.speed_mps == b.speed_mps && a.yaw_rate_radps == b.yaw_rate_radps;
       });
-  if (samples.size() < 2)
-    throw InputError(fmt::format("{}: {} usable odometry samples; at least 2 are needed", logs.front().file,
-                                 samples.size()));
+  if (samples.size() < 2) return samples;
   if (config.speed_delay_s != 0 || config.yaw_rate_delay_s != 0)
     samples = without_delays(samples, config.speed_delay_s, config.yaw_rate_delay_s);
   return samples;
 }
 
+/// A relative source while it is prepared.
+struct Candidate {
+  PreparedOdometry source;
+  StreamReport stream;
+  std::string file;          ///< its first log
+  bool gives_nodes = false;  ///< stated
+  double length_s = 0;       ///< before it is cut to the window of the drive
+  std::string flaw{};        ///< why it is not usable; empty: it is
+};
+
+Candidate candidate_of(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& config,
+                       const DriveDescription& description, PrepareReport& report) {
+  Candidate candidate{.source = {config.name, {}, 0, {}},
+                      .stream = {},
+                      .file = logs.front().file,
+                      .gives_nodes = config.gives_nodes};
+  std::vector<OdometrySample>& samples = candidate.source.samples;
+  samples = samples_of(logs, config, description, candidate.stream, report);
+  if (samples.size() < 2) {
+    candidate.flaw =
+        fmt::format("{}: {} usable odometry samples; at least 2 are needed", candidate.file, samples.size());
+  } else {
+    candidate.length_s = seconds_between(samples.front().stamp, samples.back().stamp);
+  }
+  return candidate;
+}
+
 /// Cuts samples to the window of the drive. @param first stamp of the drive
-/// @returns how many are outside
-std::size_t cut_to_window(Stamp first, const DriveDescription& description,
-                          std::vector<OdometrySample>& samples) {
-  return std::erase_if(samples, [&](const OdometrySample& s) {
+void cut_to_window(Stamp first, const DriveDescription& description, Candidate& candidate,
+                   PrepareReport& report) {
+  std::vector<OdometrySample>& samples = candidate.source.samples;
+  report.odometry_outside_window += std::erase_if(samples, [&](const OdometrySample& s) {
     const std::int64_t after_first = s.stamp.nanoseconds - first.nanoseconds;
     return (description.from_s && after_first < nanoseconds(*description.from_s)) ||
            (description.to_s && after_first > nanoseconds(*description.to_s));
   });
-}
-
-void require_window(const std::vector<OdometrySample>& samples, double length_s,
-                    const DriveDescription& description) {
   if (samples.size() >= 2) return;
-  throw InputError(fmt::format(
+  candidate.flaw = fmt::format(
       "{}: the window from {} s to {} holds {} odometry samples of a log of {:.6g} s; widen 'time: "
       "{{from, to}}' or --from and --to",
       description.path, description.from_s.value_or(0),
-      description.to_s ? fmt::format("{} s", *description.to_s) : "the end", samples.size(), length_s));
+      description.to_s ? fmt::format("{} s", *description.to_s) : "the end", samples.size(),
+      candidate.length_s);
+}
+
+/// Leaves out the sources without motion. @throws InputError if no other one is left
+void leave_out_unusable(std::vector<Candidate>& candidates, PrepareReport& report) {
+  const auto is_unusable = [](const Candidate& candidate) { return !candidate.flaw.empty(); };
+  if (std::all_of(candidates.begin(), candidates.end(), is_unusable))
+    throw InputError(candidates.front().flaw);
+  for (const Candidate& candidate : candidates)
+    if (is_unusable(candidate))
+      report.warnings.push_back(candidate.source.name + " is left out: " + candidate.flaw);
+  std::erase_if(candidates, is_unusable);
 }
 
 /// Puts the source of the nodes first: the stated one, else the densest.
-void put_first(const DriveDescription& description, std::vector<PreparedOdometry>& relative,
-               std::vector<StreamReport>& streams) {
+void put_first(std::vector<Candidate>& candidates) {
   std::size_t first = 0;
-  for (std::size_t i = 1; i < relative.size(); ++i) {
-    const bool is_denser = streams[i].median_interval_s < streams[first].median_interval_s;
-    const bool stated = description.odometry[first].gives_nodes;
-    if (description.odometry[i].gives_nodes || (is_denser && !stated)) first = i;
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    const bool is_denser =
+        candidates[i].stream.median_interval_s < candidates[first].stream.median_interval_s;
+    if (candidates[i].gives_nodes || (is_denser && !candidates[first].gives_nodes)) first = i;
   }
-  std::rotate(relative.begin(), relative.begin() + static_cast<std::ptrdiff_t>(first),
-              relative.begin() + static_cast<std::ptrdiff_t>(first) + 1);
-  std::rotate(streams.begin(), streams.begin() + static_cast<std::ptrdiff_t>(first),
-              streams.begin() + static_cast<std::ptrdiff_t>(first) + 1);
+  const auto begin = candidates.begin();
+  std::rotate(begin, begin + static_cast<std::ptrdiff_t>(first),
+              begin + static_cast<std::ptrdiff_t>(first) + 1);
 }
 
 }  // namespace
@@ -131,37 +162,39 @@ double longest_interval_s(const DriveDescription& description, std::span<const O
 
 std::vector<PreparedOdometry> prepare_odometry(const DriveLogs& logs, const DriveDescription& description,
                                                PrepareReport& report) {
-  std::vector<PreparedOdometry> relative;
-  std::vector<StreamReport> streams(logs.odometry.size());
+  std::vector<Candidate> candidates;
   Stamp first{std::numeric_limits<std::int64_t>::max()};
   for (std::size_t i = 0; i < logs.odometry.size(); ++i) {
     const OdometryConfig config =
         i < description.odometry.size() ? description.odometry[i] : OdometryConfig();
-    relative.push_back(
-        {config.name, samples_of(logs.odometry[i], config, description, streams[i], report), 0, {}});
-    first = std::min(first, relative.back().samples.front().stamp);
+    candidates.push_back(candidate_of(logs.odometry[i], config, description, report));
+    if (candidates.back().flaw.empty())
+      first = std::min(first, candidates.back().source.samples.front().stamp);
   }
-  for (std::size_t i = 0; i < relative.size(); ++i) {
-    std::vector<OdometrySample>& samples = relative[i].samples;
-    const double length_s = seconds_between(samples.front().stamp, samples.back().stamp);
-    report.odometry_outside_window += cut_to_window(first, description, samples);
-    require_window(samples, length_s, description);
-    relative[i].gap_s = longest_interval_s(description, samples);
-    relative[i].yaw_rate_at_rest = yaw_rate_at_rest(samples);
-    describe_stream(samples, relative[i].gap_s, streams[i]);
+  for (Candidate& candidate : candidates)
+    if (candidate.flaw.empty()) cut_to_window(first, description, candidate, report);
+  leave_out_unusable(candidates, report);
+  for (Candidate& candidate : candidates) {
+    PreparedOdometry& source = candidate.source;
+    source.gap_s = longest_interval_s(description, source.samples);
+    source.yaw_rate_at_rest = yaw_rate_at_rest(source.samples);
+    describe_stream(source.samples, source.gap_s, candidate.stream);
   }
-  put_first(description, relative, streams);
-  for (const OdometrySample& sample : relative.front().samples) report.reversing += sample.speed_mps < 0;
-  report.odometry = streams.front();
-  for (std::size_t i = 1; i < relative.size(); ++i) {
-    report.odometry.corrupt += streams[i].corrupt;
+  put_first(candidates);
+  const PreparedOdometry& main = candidates.front().source;
+  for (const OdometrySample& sample : main.samples) report.reversing += sample.speed_mps < 0;
+  report.odometry = candidates.front().stream;
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    const StreamReport& stream = candidates[i].stream;
+    report.odometry.corrupt += stream.corrupt;
     report.notes.push_back(fmt::format("{}: {} samples, usually {:.3g} s apart; nodes come from {}",
-                                       relative[i].name, streams[i].used, streams[i].median_interval_s,
-                                       relative.front().name));
+                                       candidates[i].source.name, stream.used, stream.median_interval_s,
+                                       main.name));
   }
-  const std::vector<OdometrySample>& main = relative.front().samples;
-  if (relative.size() == 1 && description.timeline.gap_policy == GapPolicy::bridge)
-    note_gaps(relative.front().gap_s, main.front().stamp, report);
+  if (candidates.size() == 1 && description.timeline.gap_policy == GapPolicy::bridge)
+    note_gaps(main.gap_s, main.samples.front().stamp, report);
+  std::vector<PreparedOdometry> relative;
+  for (Candidate& candidate : candidates) relative.push_back(std::move(candidate.source));
   return relative;
 }
 

@@ -10,8 +10,9 @@
 namespace waymark::drive {
 
 /// Assembles each odometry that comes in parts, cleans it, subtracts the delays of its channels and cuts
-/// it to the window of the drive. The source of the nodes is the first one.
-/// @throws InputError for fewer than two usable samples
+/// it to the window of the drive. The source of the nodes is the first one. A source with fewer than two
+/// usable samples is left out with a warning.
+/// @throws InputError if no source is left
 [[nodiscard]] std::vector<PreparedOdometry> prepare_odometry(const DriveLogs& logs,
                                                              const DriveDescription& description,
                                                              PrepareReport& report);

@@ -92,9 +92,7 @@ GraphBuilder::GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sen
                          tie_of(for_relative(settings, name), registry)});
   for (const AbsoluteGroup& group : facts_.absolute) {
     const FusionSettings own = for_absolute(settings, group.name, registry);
-    if (group.sources.size() > 1 && !registry.gnss_modeling(own.modeling).shares_errors)
-      throw UsageError("source '" + group.name + "': the modeling '" + own.modeling +
-                       "' has no errors that sources could have in common; leave out 'common'");
+    if (group.sources.size() > 1) require_common_errors(settings, group.name, registry);
     absolute_.push_back({group, loss_of_fixes(own.loss, registry),
                          registry.make_gnss_modeling(own.modeling, own.modeling_options)});
   }

@@ -1,7 +1,7 @@
 #include <waymark/tools/drive/model/motion_runs.hpp>
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 
 #include <waymark/tools/drive/logs/time_series.hpp>
 
@@ -115,21 +115,30 @@ class GridScale {
   std::size_t next_ = 0;
 };
 
-/// Gives the intervals that no source has measured to the first one, as bridged ones.
-void add_bridges(const Timeline& timeline, const Coverage& coverage, std::vector<MotionRun>& runs) {
-  for (std::size_t k = 0; k < timeline.intervals.size(); ++k) {
-    if (coverage.covers(k)) continue;
-    MotionRun run{.source = 0, .nodes = {k}, .intervals = {}, .beside = {0}};
-    for (; k < timeline.intervals.size() && !coverage.covers(k); ++k) {
-      run.nodes.push_back(k + 1);
-      run.intervals.push_back(timeline.intervals[k]);
-      run.beside.push_back(0);
+/// Gives the intervals that no source has measured to the first one. The gap of the timeline may be that of
+/// a slower source, so a silence that is long for the first one is bridged here.
+/// @param gap_s of the first source
+void add_bridges(const Timeline& timeline, const Coverage& coverage, double gap_s,
+                 std::vector<MotionRun>& runs) {
+  const std::size_t count = timeline.intervals.size();
+  for (std::size_t k = 0; k < count;) {
+    std::size_t end = k;
+    while (end < count && !coverage.covers(end)) ++end;
+    if (end == k) {
+      ++k;
+      continue;
     }
-    const double silent_s =
-        seconds_between(timeline.stamps[run.nodes.front()], timeline.stamps[run.nodes.back()]);
-    for (Interval& interval : run.intervals) {
-      interval.gap_s = interval.bridged ? interval.gap_s : silent_s;
-      interval.bridged = true;
+    const double silent_s = seconds_between(timeline.stamps[k], timeline.stamps[end]);
+    MotionRun run{.source = 0, .nodes = {k}, .intervals = {}, .beside = {0}};
+    for (; k < end; ++k) {
+      run.nodes.push_back(k + 1);
+      run.beside.push_back(0);
+      Interval interval = timeline.intervals[k];
+      if (!interval.bridged && silent_s > gap_s) {
+        interval.bridged = true;
+        interval.gap_s = silent_s;
+      }
+      run.intervals.push_back(interval);
     }
     runs.push_back(std::move(run));
   }
@@ -159,7 +168,7 @@ std::vector<MotionRun> motion_runs(const Timeline& timeline, std::span<const Pre
       runs.push_back(std::move(run));
     }
   }
-  add_bridges(timeline, coverage, runs);
+  if (!relative.empty()) add_bridges(timeline, coverage, relative.front().gap_s, runs);
   std::stable_sort(runs.begin(), runs.end(), [](const MotionRun& a, const MotionRun& b) {
     return std::pair(a.source, a.nodes.front()) < std::pair(b.source, b.nodes.front());
   });

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -97,6 +98,37 @@ std::vector<double> graduated(const Statements& window,
     stretch *= kFactor;
   }
   return weights;
+}
+
+/// Tells whether two sources agree within their accuracies.
+bool agree(const Statements& window, std::span<const std::optional<Eigen::Vector2d>> accuracies,
+           std::size_t a, std::size_t b) {
+  const Eigen::Vector2d sigma = (accuracies[a]->cwiseAbs2() + accuracies[b]->cwiseAbs2()).cwiseSqrt();
+  return squared_distance(*window[a] - *window[b], sigma) <= kWidest * kWidest;
+}
+
+/// Returns the largest set of sources around two that agree; empty if there is none, or another one as large.
+std::vector<char> largest_agreement(const Statements& window,
+                                    std::span<const std::optional<Eigen::Vector2d>> accuracies) {
+  const auto speaks = [&](std::size_t s) { return window[s] && accuracies[s]; };
+  std::vector<char> best;
+  std::ptrdiff_t most = 1;
+  bool is_alone = false;
+  for (std::size_t a = 0; a < window.size(); ++a) {
+    for (std::size_t b = a + 1; b < window.size(); ++b) {
+      if (!speaks(a) || !speaks(b) || !agree(window, accuracies, a, b)) continue;
+      std::vector<char> members(window.size(), 0);
+      for (std::size_t s = 0; s < window.size(); ++s)
+        members[s] = s == a || s == b ||
+                     (speaks(s) && agree(window, accuracies, s, a) && agree(window, accuracies, s, b));
+      const std::ptrdiff_t count = std::count(members.begin(), members.end(), 1);
+      if (count < most || members == best) continue;
+      is_alone = count > most;
+      most = count;
+      best = std::move(members);
+    }
+  }
+  return is_alone ? best : std::vector<char>();
 }
 
 /// The windows of a drive: the statements in each, and who contradicts.
@@ -229,16 +261,14 @@ std::vector<std::optional<Eigen::Vector2d>> accuracies_by_agreement(std::span<co
 std::vector<std::size_t> contradicting(const Statements& window,
                                        std::span<const std::optional<Eigen::Vector2d>> accuracies) {
   const std::vector<double> weights = graduated(window, accuracies);
+  std::vector<char> agreeing(window.size(), 0);
+  for (std::size_t s = 0; s < window.size(); ++s) agreeing[s] = weights[s] > 0.5;
+  // A source that is far more accurate than the others draws the mean to itself, also when it is wrong.
+  if (std::count(agreeing.begin(), agreeing.end(), 1) < 2) agreeing = largest_agreement(window, accuracies);
   std::vector<std::size_t> out;
-  std::size_t agreeing = 0;
-  for (std::size_t s = 0; s < window.size(); ++s) {
-    if (!window[s] || !accuracies[s]) continue;
-    if (weights[s] > 0.5)
-      ++agreeing;
-    else
-      out.push_back(s);
-  }
-  return agreeing >= 2 ? out : std::vector<std::size_t>();
+  for (std::size_t s = 0; s < agreeing.size(); ++s)
+    if (window[s] && accuracies[s] && agreeing[s] == 0) out.push_back(s);
+  return out;
 }
 
 std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes, std::span<const Eigen::Vector3d> poses,
@@ -263,13 +293,16 @@ std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes, std::span<
 }
 
 std::vector<Disagreement> leave_out_contradictions(std::span<std::vector<OdometrySample>* const> sources) {
-  if (sources.size() < 3) return {};
-  Stamp first = sources.front()->front().stamp;
-  Stamp last = sources.front()->back().stamp;
+  Stamp first{std::numeric_limits<std::int64_t>::max()};
+  Stamp last{std::numeric_limits<std::int64_t>::min()};
+  std::size_t count = 0;
   for (const std::vector<OdometrySample>* samples : sources) {
+    if (samples->empty()) continue;
+    ++count;
     first = std::min(first, samples->front().stamp);
     last = std::max(last, samples->back().stamp);
   }
+  if (count < 3) return {};
   Windows windows{.start = first, .statements = {}};
   windows.statements.assign(windows.of(last) + 1, Statements(sources.size()));
   for (std::size_t s = 0; s < sources.size(); ++s) add_motion(*sources[s], s, windows);

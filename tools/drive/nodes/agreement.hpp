@@ -52,7 +52,7 @@ std::vector<Disagreement> reject_contradictions(std::span<Fix> fixes, std::span<
                                                 std::span<const std::size_t> voices);
 
 /// Leaves out samples of relative sources that contradict the others.
-/// @param sources samples of each, sorted by stamp
+/// @param sources samples of each, sorted by stamp; a source may have none
 std::vector<Disagreement> leave_out_contradictions(std::span<std::vector<OdometrySample>* const> sources);
 
 /// Returns the warning. @param name of the source @param start of the drive

@@ -7,10 +7,10 @@
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
-#include <waymark/tools/program/jobs/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
-#include <waymark/tools/program/jobs/results/result_files.hpp>
+#include <waymark/tools/program/jobs/result_files.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 
 namespace waymark::program {

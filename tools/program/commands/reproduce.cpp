@@ -9,7 +9,7 @@
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
-#include <waymark/tools/program/jobs/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/tools/reproduction/experiment/consistency_study.hpp>

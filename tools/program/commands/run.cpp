@@ -10,14 +10,14 @@
 #include <waymark/tools/evaluation/output/summary_json.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
-#include <waymark/tools/program/jobs/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/drive_job.hpp>
 #include <waymark/tools/program/jobs/drive_text.hpp>
+#include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/source_comparison.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
-#include <waymark/tools/program/jobs/results/result_files.hpp>
-#include <waymark/tools/program/jobs/results/result_warnings.hpp>
-#include <waymark/tools/program/jobs/results/source_comparison.hpp>
+#include <waymark/tools/program/jobs/result_files.hpp>
+#include <waymark/tools/program/jobs/result_warnings.hpp>
 #include <waymark/tools/program/terminal/iteration_table.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 

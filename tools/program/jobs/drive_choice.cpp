@@ -28,11 +28,12 @@ void check_loss(const drive::DriveFile& file, const TypeRegistry& registry) {
   }
 }
 
-/// Returns the place of an option. It is among the options of its type or in `calibration`. Empty
-/// if it is in neither.
-std::optional<std::string> place_of_option(const drive::Places& places, const std::string& options_of,
+/// Returns the place of an option. It is among the options of its type, in the `calibration` of its source
+/// or in that of the drive. Empty if it is in none of them.
+/// @param of the key in Places under which the options are
+std::optional<std::string> place_of_option(const drive::Places& places, const std::string& of,
                                            const std::string& option) {
-  for (const std::string& section : {options_of, std::string("calibration.")}) {
+  for (const std::string& section : {of + ".options.", of + ".calibration.", std::string("calibration.")}) {
     const auto place = places.of.find(section + option);
     if (place != places.of.end()) return place->second;
   }
@@ -41,14 +42,14 @@ std::optional<std::string> place_of_option(const drive::Places& places, const st
 
 /// Checks something that the drive.yaml states, and gives errors its place.
 /// @param key of the model in Places
-/// @param options_of key of its options in Places
+/// @param of as for place_of_option()
 /// @throws InputError for the drive.yaml; what `check` throws for the command line
-void check_stated(const drive::Places& places, const std::string& key, const std::string& options_of,
+void check_stated(const drive::Places& places, const std::string& key, const std::string& of,
                   const Options& given, const std::function<void()>& check) {
   try {
     check();
   } catch (const OptionError& error) {
-    const auto place = place_of_option(places, options_of, error.option());
+    const auto place = place_of_option(places, of, error.option());
     if (given.contains(error.option()) || (!place && !places.of.contains(key))) throw;
     throw InputError(place.value_or(places.at(key)) + error.what());
   } catch (const UsageError& error) {
@@ -57,32 +58,61 @@ void check_stated(const drive::Places& places, const std::string& key, const std
   }
 }
 
+/// @throws InputError with its place for a state of one source that nobody knows
+void check_own_calibration(const Options& calibration, const std::string& of, const drive::Places& places,
+                           const std::vector<OptionInfo>& known) {
+  std::vector<std::string_view> names;
+  for (const OptionInfo& option : known) names.push_back(option.name);
+  for (const auto& [name, value] : calibration) {
+    const auto place = places.of.find(of + ".calibration." + name);
+    if (place == places.of.end() || has_option(known, name)) continue;
+    throw InputError(place->second + "calibration: the source has no option '" + name + "'" +
+                     did_you_mean(name, names));
+  }
+}
+
+/// Returns the options of all modelings: another one than the stated may be chosen on the command line.
+std::vector<OptionInfo> options_of_modelings(const TypeRegistry& registry) {
+  std::vector<OptionInfo> all;
+  for (const auto& known : registry.gnss_modelings())
+    all.insert(all.end(), known.type.options.begin(), known.type.options.end());
+  return all;
+}
+
 /// Checks what is stated for single sources.
 void check_sources(const drive::FusionSettings& settings, const drive::DriveFile& file,
                    const TypeRegistry& registry) {
   for (const drive::GnssConfig& source : file.description.gnss) {
     const std::string place = "sources." + source.name;
-    check_stated(file.places, place + ".common", "", {}, [&] {
+    check_stated(file.places, place + ".common", place, {}, [&] {
       const std::string group = drive::group_of(settings, source.name);
       const auto& all = file.description.gnss;
       if (std::none_of(all.begin(), all.end(), [&](const auto& other) { return other.name == group; }))
         throw UsageError("common: there is no absolute source '" + group + "'");
+      if (group != source.name) drive::require_common_errors(settings, group, registry);
     });
     if (!settings.sources.contains(source.name)) continue;
-    check_stated(file.places, place + ".modeling", place + ".options.", {}, [&] {
+    check_own_calibration(settings.sources.at(source.name).calibration, place, file.places,
+                          options_of_modelings(registry));
+    check_stated(file.places, place + ".modeling", place, {}, [&] {
       const drive::FusionSettings own = drive::for_absolute(settings, source.name, registry);
       (void)registry.make_gnss_modeling(own.modeling, own.modeling_options);
     });
-    check_stated(file.places, place + ".loss", "", {}, [&] {
+    check_stated(file.places, place + ".loss", place, {}, [&] {
       (void)drive::loss_of_fixes(drive::for_absolute(settings, source.name, registry).loss, registry);
     });
   }
   for (const drive::OdometryConfig& source : file.description.odometry) {
-    const std::string place = "sources." + source.name;
-    check_stated(file.places, place + ".model", place + ".options.", {}, [&] {
-      (void)drive::make_odometry_model(drive::for_relative(settings, source.name),
-                                       file.description.timeline.gap_noise_factor, registry);
+    const bool is_only = file.description.odometry.size() == 1;
+    const std::string place = is_only ? "odometry" : "sources." + source.name;
+    const drive::FusionSettings own = drive::for_relative(settings, source.name);
+    check_stated(file.places, place + ".model", place, {}, [&] {
+      (void)drive::make_odometry_model(own, file.description.timeline.gap_noise_factor, registry);
     });
+    const auto stated = settings.sources.find(source.name);
+    if (stated == settings.sources.end()) continue;
+    check_own_calibration(stated->second.calibration, place, file.places,
+                          registry.odometry_model(own.odometry_model).options);
   }
 }
 
@@ -90,7 +120,7 @@ void check_sources(const drive::FusionSettings& settings, const drive::DriveFile
 /// @throws OptionError for an option of the command line
 void check_modeling(const drive::FusionSettings& settings, const Options& given, const drive::Places& places,
                     const TypeRegistry& registry) {
-  check_stated(places, "", "modeling.options.", given,
+  check_stated(places, "", "modeling", given,
                [&] { (void)registry.make_gnss_modeling(settings.modeling, settings.modeling_options); });
 }
 
@@ -99,7 +129,7 @@ void check_odometry_model(const drive::FusionSettings& settings, const drive::Dr
   try {
     (void)drive::make_odometry_model(settings, file.description.timeline.gap_noise_factor, registry);
   } catch (const OptionError& error) {
-    const auto place = place_of_option(file.places, "odometry.options.", error.option());
+    const auto place = place_of_option(file.places, "odometry", error.option());
     throw InputError(place.value_or(file.places.at("odometry.model")) + error.what());
   } catch (const UsageError& error) {
     throw InputError(file.places.at("odometry.model") + error.what());

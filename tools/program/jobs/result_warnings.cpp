@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <waymark/tools/program/jobs/results/result_warnings.hpp>
+#include <waymark/tools/program/jobs/result_warnings.hpp>
 
 namespace waymark::program {
 namespace {

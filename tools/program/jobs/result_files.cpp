@@ -4,8 +4,8 @@
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/epochs_csv.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
-#include <waymark/tools/program/jobs/results/result_files.hpp>
-#include <waymark/tools/program/jobs/results/trajectory_files.hpp>
+#include <waymark/tools/program/jobs/result_files.hpp>
+#include <waymark/tools/program/jobs/trajectory_files.hpp>
 #include <waymark/tools/report/comparison/comparison_page.hpp>
 #include <waymark/tools/report/drive/drive_report.hpp>
 #include <waymark/version.hpp>

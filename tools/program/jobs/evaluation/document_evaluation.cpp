@@ -1,4 +1,4 @@
-#include <waymark/tools/program/jobs/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 
 #include <algorithm>
 #include <utility>

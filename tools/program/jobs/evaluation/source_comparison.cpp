@@ -1,4 +1,4 @@
-#include <waymark/tools/program/jobs/results/source_comparison.hpp>
+#include <waymark/tools/program/jobs/evaluation/source_comparison.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/tools/drive/model/without_source.hpp>
-#include <waymark/tools/program/jobs/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -104,6 +104,13 @@ std::vector<Stamp> stamps_of(const drive::PreparedDrive& drive, const drive::Sou
   return stamps;
 }
 
+/// Returns Fix::source of a receiver; -1 for another source.
+int index_of(const drive::PreparedDrive& drive, const drive::SourceOfDrive& source) {
+  for (std::size_t i = 0; i < drive.receivers.size(); ++i)
+    if (source.kind == "gnss" && drive.receivers[i].name == source.name) return static_cast<int>(i);
+  return -1;
+}
+
 /// What a source says with all others in the graph.
 evaluation::SourceReport report_with(const drive::PreparedDrive& drive, const drive::SourceOfDrive& source,
                                      const formats::GraphDocument& document,
@@ -118,11 +125,11 @@ evaluation::SourceReport report_with(const drive::PreparedDrive& drive, const dr
     const Fix& fix = document.fixes[i];
     if (drive.receivers[static_cast<std::size_t>(fix.source)].name != source.name) continue;
     report.accepted += fix.status == FixStatus::accepted;
-    report.residual_rms_m = residual_rms(document, fix.source, FixStatus::accepted);
     const auto& offset = evaluated.epochs[i].gnss_offset_m;
     if (offset) raw.push_back(offset->squaredNorm());
   }
   report.raw_rmse_m = rms(raw);
+  report.residual_rms_m = residual_rms(document, index_of(drive, source), FixStatus::accepted);
   return report;
 }
 
@@ -139,9 +146,7 @@ void add_result_without(const drive::PreparedDrive& drive, const drive::SourceOf
   report.share = share_lost(all, covariances);
   const evaluation::Evaluation evaluated = evaluate_document(document, rest.truth, {});
   if (evaluated.truth) report.without_rmse_m = evaluated.truth->fused.position.rmse_m;
-  for (std::size_t i = 0; i < drive.receivers.size(); ++i)
-    if (drive.receivers[i].name == source.name)
-      report.without_residual_rms_m = residual_rms(document, static_cast<int>(i), std::nullopt);
+  report.without_residual_rms_m = residual_rms(document, index_of(drive, source), std::nullopt);
 }
 
 }  // namespace

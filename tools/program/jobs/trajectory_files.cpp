@@ -1,4 +1,4 @@
-#include <waymark/tools/program/jobs/results/trajectory_files.hpp>
+#include <waymark/tools/program/jobs/trajectory_files.hpp>
 
 #include <optional>
 
