@@ -93,6 +93,7 @@ set(WAYMARK_PUBLIC_HEADERS
   tools/drive/logs/prepare.hpp
   tools/drive/model/fuse.hpp
   tools/drive/model/minimize.hpp
+  tools/drive/model/motion_runs.hpp
   tools/drive/estimation/noise.hpp
   tools/drive/model/place.hpp
   tools/drive/model/poses_at_fixes.hpp

@@ -193,7 +193,7 @@ std::optional<SensorConfig> read_heading(const YamlSection& section, const std::
   for (const char* key : {"file", "format", "separator", "time"})
     if (heading.IsMap() && !heading[key] && section.has(key)) heading[key] = section.node(key);
   const YamlSection own(heading, "gnss.heading", section.file(), log_keys({"options"}));
-  return read_sensor(own, "heading", source + "_heading", drive);
+  return read_sensor(own, "heading", fmt::format("{}_heading", source), drive);
 }
 
 /// Adds every source of the file. @throws InputError for a name that two of them have
