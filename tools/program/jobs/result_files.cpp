@@ -46,6 +46,13 @@ std::string write_comparison(const std::vector<ComparedResult>& results,
   for (const ComparedResult& result : results)
     runs.push_back(report::compared_run(result.evaluated, header, result.optimization));
   drawing::Page page = report::comparison_page(runs, WAYMARK_VERSION);
+  drawing::Section sources{"sources", "Sources", {}};
+  for (const ComparedResult& result : results) {
+    const auto& [label, evaluation] = result.evaluated;
+    if (!evaluation.sources.sources.empty())
+      sources.blocks.emplace_back(evaluation::source_table(evaluation.sources, label));
+  }
+  if (!sources.blocks.empty()) page.sections.push_back(std::move(sources));
   drawing::Section alone{"reports", "One report per modeling", {}};
   for (const ComparedResult& result : results)
     alone.blocks.emplace_back(
