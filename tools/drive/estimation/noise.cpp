@@ -207,9 +207,10 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& se
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
   FusionSettings known = settings;
+  const PlacedDrive all = coarsen(placed);
   const std::size_t count = std::max<std::size_t>(placed.relative.size(), 1);
   for (std::size_t source = 0; source < count; ++source) {
-    const PlacedDrive coarse = with_only(source, coarsen(placed));
+    const PlacedDrive coarse = with_only(source, all);
     NoiseEstimate part = open_parameters(coarse, count, source == 0, known, registry);
     if (part.parameters.empty()) continue;
     Objective objective(coarse, known, registry);

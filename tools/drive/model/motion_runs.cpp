@@ -99,22 +99,6 @@ std::vector<std::size_t> nodes_of(Segment segment, bool all, const std::vector<S
   return nodes;
 }
 
-/// Finds the point scale of the fix nearest in time; the moments that are asked for ascend.
-class GridScale {
- public:
-  explicit GridScale(std::span<const Fix> fixes) : fixes_(fixes) {}
-  [[nodiscard]] double at(Stamp moment) {
-    if (fixes_.empty()) return 1;
-    const auto away = [&](std::size_t i) { return std::abs(seconds_between(fixes_[i].stamp, moment)); };
-    while (next_ + 1 < fixes_.size() && away(next_ + 1) <= away(next_)) ++next_;
-    return fixes_[next_].grid_scale;
-  }
-
- private:
-  std::span<const Fix> fixes_;
-  std::size_t next_ = 0;
-};
-
 /// Gives the intervals that no source has measured to the first one. The gap of the timeline may be that of
 /// a slower source, so a silence that is long for the first one is bridged here.
 /// @param gap_s of the first source
@@ -151,7 +135,7 @@ std::vector<MotionRun> motion_runs(const Timeline& timeline, std::span<const Pre
   std::vector<MotionRun> runs;
   Coverage coverage(timeline);
   for (std::size_t source = 0; source < relative.size(); ++source) {
-    GridScale grid_scale(fixes);
+    std::size_t nearest_fix = 0;
     for (const Segment segment : segments_of(relative[source])) {
       MotionRun run{.source = source,
                     .nodes = nodes_of(segment, source == 0, timeline.stamps, coverage),
@@ -161,7 +145,7 @@ std::vector<MotionRun> motion_runs(const Timeline& timeline, std::span<const Pre
       for (std::size_t i = 1; i < run.nodes.size(); ++i) {
         const Stamp from = timeline.stamps[run.nodes[i - 1]];
         const Stamp to = timeline.stamps[run.nodes[i]];
-        run.intervals.push_back(motion.between(from, to, grid_scale.at(from)));
+        run.intervals.push_back(motion.between(from, to, grid_scale_at(from, fixes, nearest_fix)));
       }
       for (const std::size_t node : run.nodes) run.beside.push_back(coverage.touches(node) ? 1 : 0);
       coverage.add(run);

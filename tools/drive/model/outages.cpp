@@ -104,18 +104,6 @@ PosesAtWithheld dead_reckoned_at_withheld(const formats::GraphDocument& document
   return result;
 }
 
-namespace {
-
-/// Returns the poses at the fixes of a document when they were measured.
-std::vector<Eigen::Vector3d> poses_of_fixes(const formats::GraphDocument& document) {
-  std::vector<Eigen::Vector3d> poses = poses_when_measured(document);
-  if (poses.empty())
-    for (const StampedPose& at : poses_at_fixes(document)) poses.push_back(at.pose);
-  return poses;
-}
-
-}  // namespace
-
 PosesAtWithheld with_lasting_errors(const formats::GraphDocument& document,
                                     const std::vector<std::shared_ptr<const GnssModeling>>& modelings) {
   PosesAtWithheld result;
@@ -183,11 +171,10 @@ PosesAtWithheld causal_at_withheld(const PreparedDrive& drive, const FuseDrive& 
     const std::optional<formats::GraphDocument> document = fuse(known);
     if (!document) continue;
     require_fixes_of(known, *document);
-    const std::vector<StampedPose> at_stamps = poses_at_fixes(*document);
-    const std::vector<Eigen::Vector3d> when_measured = poses_when_measured(*document);
+    const std::vector<Eigen::Vector3d> poses = poses_of_fixes(*document);
     const auto covariances = position_covariances_at_fixes(*document);
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      result.poses[i] = when_measured.empty() ? at_stamps[i].pose : when_measured[i];
+      result.poses[i] = poses[i];
       result.position_covariances[i] = covariances[i];
     }
   }

@@ -112,4 +112,11 @@ std::vector<StampedPose> poses_at_fixes(const formats::GraphDocument& document) 
   return poses;
 }
 
+std::vector<Eigen::Vector3d> poses_of_fixes(const formats::GraphDocument& document) {
+  std::vector<Eigen::Vector3d> poses = poses_when_measured(document);
+  if (poses.empty())
+    for (const StampedPose& at : poses_at_fixes(document)) poses.push_back(at.pose);
+  return poses;
+}
+
 }  // namespace waymark::drive

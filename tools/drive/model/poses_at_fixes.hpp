@@ -24,4 +24,7 @@ namespace waymark::drive {
 /// along the constant twist between the adjacent nodes. Empty if the graph estimates no offset.
 [[nodiscard]] std::vector<Eigen::Vector3d> poses_when_measured(const formats::GraphDocument& document);
 
+/// Returns poses_when_measured; if no offset is estimated, the poses at the stamps of the fixes.
+[[nodiscard]] std::vector<Eigen::Vector3d> poses_of_fixes(const formats::GraphDocument& document);
+
 }  // namespace waymark::drive

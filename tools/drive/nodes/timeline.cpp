@@ -52,15 +52,6 @@ void check_gap(Stamp start, Stamp left, double length_s, const TimelineOptions& 
   throw InputError(text);
 }
 
-/// Returns the grid scale at a stamp: that of the nearest fix in time. `hint` moves forward
-/// with the calls.
-double grid_scale_at(std::int64_t middle_ns, std::span<const Fix> fixes, std::size_t& hint) {
-  if (fixes.empty()) return 1;
-  const auto away = [&](std::size_t i) { return std::abs(fixes[i].stamp.nanoseconds - middle_ns); };
-  while (hint + 1 < fixes.size() && away(hint + 1) <= away(hint)) ++hint;
-  return fixes[hint].grid_scale;
-}
-
 /// Returns the motion between two consecutive odometry samples. dt_s is filled for each part.
 Interval twist_between(const OdometrySample& left, const OdometrySample& right, double grid_scale,
                        double gap_s) {
@@ -93,6 +84,13 @@ void append_node(Timeline& timeline, Stamp stamp, const Interval& whole, Stamp l
 
 }  // namespace
 
+double grid_scale_at(Stamp moment, std::span<const Fix> fixes, std::size_t& hint) {
+  if (fixes.empty()) return 1;
+  const auto away = [&](std::size_t i) { return std::abs(fixes[i].stamp.nanoseconds - moment.nanoseconds); };
+  while (hint + 1 < fixes.size() && away(hint + 1) <= away(hint)) ++hint;
+  return fixes[hint].grid_scale;
+}
+
 Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<const Fix> fixes,
                         const TimelineOptions& options) {
   check_inputs(odometry, fixes, options);
@@ -117,8 +115,7 @@ Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<cons
     const OdometrySample& left = odometry[k - 1];
     const OdometrySample& right = odometry[k];
     check_gap(odometry.front().stamp, left.stamp, seconds_between(left.stamp, right.stamp), options);
-    const std::int64_t middle =
-        left.stamp.nanoseconds + (right.stamp.nanoseconds - left.stamp.nanoseconds) / 2;
+    const Stamp middle{left.stamp.nanoseconds + (right.stamp.nanoseconds - left.stamp.nanoseconds) / 2};
     const Interval twist =
         twist_between(left, right, grid_scale_at(middle, fixes, scale_hint), options.gap_s);
     // Epochs strictly inside, not near either end, split the interval.

@@ -46,6 +46,10 @@ struct Timeline {
 [[nodiscard]] Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<const Fix> fixes,
                                       const TimelineOptions& options);
 
+/// Returns the grid scale at a moment: that of the fix nearest in time; 1 without fixes.
+/// @param hint 0 for the first of several moments that ascend; it moves forward with the calls
+[[nodiscard]] double grid_scale_at(Stamp moment, std::span<const Fix> fixes, std::size_t& hint);
+
 /// Returns poses of all nodes by exact integration of the intervals from `start`. Headings are
 /// *not* wrapped, so they show windings. An interval with |speed| below `standstill_mps` is
 /// the identity.

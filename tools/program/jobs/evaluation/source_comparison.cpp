@@ -55,9 +55,7 @@ double share_lost(const Covariances& all, const Covariances& without) {
 /// Returns the rms distance of fixes of one source from the fused antenna.
 /// @param status only these fixes; empty: all that are not rejected
 double residual_rms(const formats::GraphDocument& document, int source, std::optional<FixStatus> status) {
-  std::vector<Eigen::Vector3d> poses = drive::poses_when_measured(document);
-  if (poses.empty())
-    for (const StampedPose& at : drive::poses_at_fixes(document)) poses.push_back(at.pose);
+  const std::vector<Eigen::Vector3d> poses = drive::poses_of_fixes(document);
   double sum = 0;
   double count = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
