@@ -19,8 +19,8 @@ MultiStartSummary optimize(Graph& graph, const TypeRegistry& registry, const Opt
   if (fastest && registry.linear_solvers().empty())
     throw UsageError("optimize: no linear solver is registered");
   const auto algorithm = registry.make_algorithm(how.algorithm, how.algorithm_options);
-  const auto solver =
-      registry.make_linear_solver(fastest ? registry.linear_solvers().front().type.name : how.solver);
+  const auto solver = registry.make_linear_solver(
+      fastest ? registry.linear_solvers().front().type.name : how.solver, how.solver_options);
   MultiStartSummary result = optimize_from(how.start, graph, registry, *algorithm, *solver, how.limits);
   result.summary.algorithm = how.algorithm;
   return result;

@@ -30,6 +30,7 @@ struct Optimization {
   Options algorithm_options = {};
   /// "auto": the first one registered, which is the fastest in measurements
   std::string solver = "auto";
+  Options solver_options = {};
   OptimizerOptions limits = {};  ///< stopping rules, threads, observer, cancel token
 };
 

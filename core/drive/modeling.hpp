@@ -21,6 +21,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/base/export.hpp>
+#include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/core/graph/loss.hpp>
 #include <waymark/core/graph/vertex.hpp>
@@ -62,15 +63,22 @@ struct MotionFromNode {
 /// the next part of a drive changes nothing. @param nodes with one interval at least
 [[nodiscard]] MotionFromNode motion_from_node(const DriveNodes& nodes, const NodeInTime& moment);
 
+/// The input of an odometry model.
+struct OdometryInput {
+  /// the next part: its first node is the last one of the part before, or a later one if the source was
+  /// silent in between
+  DriveNodes nodes;
+  std::string_view source = {};  ///< name of the source that measured the intervals
+  const DriveContext& context = DriveContext::none();
+};
+
 /// Joins the poses of consecutive nodes.
 class OdometryModel {
  public:
   virtual ~OdometryModel();
   /// Adds one or more edges per interval, and the states that the model calibrates (ids from
   /// Graph::free_id).
-  /// @param nodes the next part: its first node is the last one of the part before, or a later one if the
-  /// source was silent in between
-  virtual void extend(const DriveNodes& nodes, Graph& graph) = 0;
+  virtual void extend(const OdometryInput& input, Graph& graph) = 0;
   /// Returns |speed| in m/s below which the vehicle stands. Its measured motion is then
   /// the identity.
   [[nodiscard]] virtual double standstill_speed() const = 0;
@@ -102,6 +110,7 @@ struct GnssInput {
   double median_accuracy_m = 0;
   /// name of the source of these fixes; of the first one if several share their errors
   std::string_view source = {};
+  const DriveContext& context = DriveContext::none();
 };
 
 /// Returns the median of the accuracies that accepted fixes claim (Fix::accuracy_m), in m. 0 if none
@@ -136,6 +145,7 @@ struct SensorInput {
   const SensorTable& readings;
   double grid_scale = 1;         ///< grid metres per metre on the ground, at the last fix before these
   std::string_view source = {};  ///< name of the source that the readings are of
+  const DriveContext& context = DriveContext::none();
 };
 
 /// Connects poses with the readings of a further sensor: a compass, a scan matcher, a

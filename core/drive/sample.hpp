@@ -120,7 +120,9 @@ struct SensorColumn {
   std::string unit;  ///< SI unit of its numbers: "m", "m/s", "m/s^2", "s", "rad", "rad/s" or "1"
   /// sense of the numbers. For rad: "" is a size, "ccw" an angle or turn, "ccw_from_east" a heading
   /// (given from true east, delivered in the frame). For rad/s: "" is a size, "ccw" a turning rate.
-  /// Otherwise ""
+  /// For m: "x", "y" and "height" are the coordinates of a place, delivered in the frame (x and y
+  /// together). A user may give them as latitude and longitude, as easting and northing, or as ECEF,
+  /// by the unit of the column. Otherwise ""
   std::string sense;
   bool required = true;     ///< if false, NaN stands for a missing column or value
   std::string description;  ///< one sentence

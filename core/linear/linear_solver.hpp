@@ -11,9 +11,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/linear/block_pattern.hpp>
+#include <waymark/core/registry/options.hpp>
 
 namespace WAYMARK_EXPORT waymark {
 
@@ -50,7 +52,8 @@ struct LinearSolverType {
   std::string name;
   std::string description;
   std::string license;  ///< license of the code behind it, if it differs from that of Waymark
-  std::function<std::unique_ptr<LinearSolver>()> make;
+  std::function<std::unique_ptr<LinearSolver>(const CheckedOptions&)> make;
+  std::vector<OptionInfo> options = {};
 };
 
 }  // namespace waymark

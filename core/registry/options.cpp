@@ -2,63 +2,39 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
-#include <waymark/core/base/suggest.hpp>
+#include <waymark/core/registry/detail/option_check.hpp>
+#include <waymark/core/registry/detail/option_rules.hpp>
+#include <waymark/core/registry/flow_text.hpp>
 
 namespace waymark {
 namespace {
 
-/// Returns an exponent without its plus sign and zeros: "1e-06" becomes "1e-6".
-std::string with_short_exponent(std::string number) {
-  const std::size_t exponent = number.find('e');
-  if (exponent == std::string::npos) return number;
-  const std::size_t digits = exponent + 2;
-  number.erase(digits, std::min(number.find_first_not_of('0', digits), number.size() - 1) - digits);
-  if (number[exponent + 1] == '+') number.erase(exponent + 1, 1);
-  return number;
-}
-
-/// Returns a bound as people write it: "1e4", "100", "0.1".
-std::string bound(double value) {
-  if (!std::isfinite(value)) return value < 0 ? "-inf" : "inf";
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::scientific).ptr;
-  const std::string plain = with_short_exponent(shortest(value));
-  const std::string scientific = with_short_exponent({buffer, end});
-  return scientific.size() < plain.size() ? scientific : plain;
-}
-
-/// Returns "'off' or 'constant'".
-std::string quoted(const OptionWords& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "'" : " or '") + word + "'";
-  return text;
-}
-
-std::string problem_with_name(const std::string& name, std::span<const OptionInfo> known) {
-  std::vector<std::string_view> names;
-  for (const OptionInfo& option : known) names.push_back(option.name);
-  std::string hint = did_you_mean(name, names);
-  if (hint.empty()) hint = known.empty() ? "; it has none" : "; it has " + joined(names);
-  return "unknown option '" + name + "'" + hint;
-}
-
-std::optional<double> finite_number(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-template <typename Values>
-const auto& declared(const Values& values, const std::string& owner, std::string_view name) {
-  const auto found = values.find(name);
-  if (found == values.end())
-    throw std::logic_error(owner + ": option '" + std::string(name) +
-                           "' is not declared with the type that is read");
-  return found->second;
+/// Puts the files in a value below a folder.
+void place_files(const std::string& folder, const OptionInfo& option, FlowValue& value) {
+  if (const auto* text = std::get_if<OptionText>(&option.allowed)) {
+    auto* file = std::get_if<std::string>(&value.content);
+    if (text->is_file && file != nullptr && !file->empty())
+      *file = (std::filesystem::path(folder) / *file).lexically_normal().string();
+    return;
+  }
+  if (const auto* list = std::get_if<OptionList>(&option.allowed)) {
+    if (auto* elements = std::get_if<FlowValue::List>(&value.content))
+      for (FlowValue& element : *elements) place_files(folder, list->each.front(), element);
+    return;
+  }
+  auto* entries = std::get_if<FlowValue::Mapping>(&value.content);
+  if (entries == nullptr) return;
+  const auto* mapping = std::get_if<OptionMapping>(&option.allowed);
+  const auto* record = std::get_if<OptionRecord>(&option.allowed);
+  for (auto& [key, entry] : *entries) {
+    if (mapping != nullptr) place_files(folder, mapping->each.front(), entry);
+    if (record == nullptr) continue;
+    for (const OptionInfo& field : record->fields)
+      if (field.name == key) place_files(folder, field, entry);
+  }
 }
 
 }  // namespace
@@ -67,18 +43,9 @@ bool OptionRange::contains(double value) const {
   return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
 }
 
-std::string OptionRange::text() const {
-  std::string text(1, low_open || std::isinf(low) ? '(' : '[');
-  text += bound(low);
-  text += ", ";
-  text += bound(high);
-  text += high_open || std::isinf(high) ? ')' : ']';
-  return text;
-}
-
 std::string OptionInfo::description() const {
-  const auto* range = std::get_if<OptionRange>(&allowed);
-  return range == nullptr ? text : text + "; in " + range->text();
+  const std::string rule = allowed_text(*this);
+  return rule.empty() ? text : text + "; " + rule;
 }
 
 OptionError::OptionError(const std::string& message, std::string owner, std::string option, std::string value)
@@ -90,38 +57,47 @@ CheckedOptions::CheckedOptions(std::string_view owner, const Options& given,
     : owner_(owner) {
   for (const auto& [name, value] : given) {
     if (!has_option(known, name))
-      throw OptionError(owner_ + ": " + problem_with_name(name, known), owner_, name, value);
+      throw OptionError(owner_ + ": " + problem_with_name("option", name, known), owner_, name, value);
   }
   for (const OptionInfo& option : known) {
     const auto stated = given.find(option.name);
-    add(option, stated == given.end() ? option.value : stated->second);
+    if (stated == given.end() && option.required)
+      throw OptionError(owner_ + ": option '" + option.name + "' must be given: " + option.description(),
+                        owner_, option.name, "");
+    values_.emplace(option.name,
+                    checked_value(owner_, option, stated == given.end() ? option.value : stated->second));
   }
-}
-
-void CheckedOptions::add(const OptionInfo& option, const std::string& value) {
-  const auto refuse = [&](const std::string& rule, const std::string& got) {
-    throw OptionError(owner_ + ": option '" + option.name + "' must " + rule + ", got " + got, owner_,
-                      option.name, value);
-  };
-  if (const auto* words = std::get_if<OptionWords>(&option.allowed)) {
-    if (std::find(words->begin(), words->end(), value) == words->end())
-      refuse("be " + quoted(*words), "'" + value + "'");
-    words_[option.name] = value;
-    return;
-  }
-  const OptionRange& range = std::get<OptionRange>(option.allowed);
-  const std::optional<double> number = finite_number(value);
-  if (!number) refuse("be a number", "'" + value + "'");
-  if (!range.contains(*number)) refuse("lie in " + range.text(), value);
-  numbers_[option.name] = *number;
 }
 
 double CheckedOptions::number(std::string_view name) const {
-  return declared(numbers_, owner_, name);
+  return value(name).number();
 }
 
 const std::string& CheckedOptions::word(std::string_view name) const {
-  return declared(words_, owner_, name);
+  return value(name).text();
+}
+
+const OptionValue& CheckedOptions::value(std::string_view name) const {
+  const auto found = values_.find(name);
+  if (found == values_.end())
+    throw std::logic_error(owner_ + ": option '" + std::string(name) +
+                           "' is not declared with the type that is read");
+  return found->second;
+}
+
+Options with_files_below(const std::string& folder, Options options, std::span<const OptionInfo> known) {
+  for (const OptionInfo& option : known) {
+    const auto stated = options.find(option.name);
+    if (stated == options.end()) continue;
+    try {
+      FlowValue value = has_structure(option) ? parse_flow(stated->second) : FlowValue{stated->second};
+      place_files(folder, option, value);
+      stated->second = flow_text(value);
+    } catch (const UsageError&) {
+      continue;  // refused with its place when it is checked
+    }
+  }
+  return options;
 }
 
 std::string shortest(double value) {

@@ -20,7 +20,7 @@
 namespace WAYMARK_EXPORT waymark {
 
 /// Raised if a type that crosses the boundary changes its layout or meaning.
-inline constexpr std::uint32_t kPluginAbi = 8;
+inline constexpr std::uint32_t kPluginAbi = 9;
 inline constexpr std::uint32_t kPluginMagic = 0x57415950;  // "WAYP"
 
 /// The properties of a build that decide whether two binaries may share types.
@@ -57,6 +57,10 @@ constexpr std::uint32_t layout_fingerprint() {
                                  sizeof(OdometryModelType),
                                  sizeof(GnssModelingType),
                                  sizeof(GnssInput),
+                                 sizeof(OdometryInput),
+                                 sizeof(DriveContext),
+                                 sizeof(DriveSource),
+                                 sizeof(OptionValue),
                                  sizeof(SensorModelType),
                                  sizeof(SensorInput),
                                  sizeof(Fix),

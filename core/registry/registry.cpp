@@ -105,8 +105,9 @@ const LogReader* TypeRegistry::find_log_reader(std::string_view name) const {
   return type == nullptr ? nullptr : type->reader;
 }
 
-std::unique_ptr<LinearSolver> TypeRegistry::make_linear_solver(std::string_view name) const {
-  return require(linear_solvers_, name, "linear solver").make();
+std::unique_ptr<LinearSolver> TypeRegistry::make_linear_solver(std::string_view name,
+                                                               const Options& options) const {
+  return make(require(linear_solvers_, name, "linear solver"), options);
 }
 InitialValues TypeRegistry::make_start(std::string_view name, const Graph& graph) const {
   return require(starts_, name, "initial guess").make(graph);

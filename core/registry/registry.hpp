@@ -79,7 +79,8 @@ class TypeRegistry {
 
   /// Each throws UsageError for an unknown name (it lists the names that exist), and OptionError
   /// for options that the type does not have and values that they cannot have.
-  [[nodiscard]] std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) const;
+  [[nodiscard]] std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name,
+                                                                 const Options& options = {}) const;
   [[nodiscard]] InitialValues make_start(std::string_view name, const Graph& graph) const;
   [[nodiscard]] std::unique_ptr<Algorithm> make_algorithm(std::string_view name,
                                                           const Options& options = {}) const;

@@ -53,6 +53,6 @@ class DenseCholesky final : public LinearSolver {
 
 static void register_types(TypeRegistry& registry) {
   registry.add_linear_solver({"dense", "Eigen's dense LL^T, for small graphs", "MPL-2.0",
-                              [] { return std::make_unique<DenseCholesky>(); }});
+                              [](const CheckedOptions&) { return std::make_unique<DenseCholesky>(); }});
 }
 WAYMARK_PLUGIN(dense_solver, "1.0.0", register_types);

@@ -37,12 +37,22 @@ struct VertexRange {
   friend bool operator==(const VertexRange&, const VertexRange&) = default;
 };
 
+/// Edges of one type, by their number among the edges of this type in the graph.
+struct EdgeShare {
+  std::string tag;
+  std::size_t first = 0;
+  std::size_t last = 0;
+
+  friend bool operator==(const EdgeShare&, const EdgeShare&) = default;
+};
+
 /// A source of a drive that has several: a receiver, an odometry, another sensor.
 struct DocumentSource {
   std::string name;
   std::string kind;                   ///< "gnss", "odometry", or the name of a sensor model
   Eigen::Vector2d antenna_m{0, 0};    ///< of a receiver, body frame
   std::vector<VertexRange> vertices;  ///< that it has added: its states
+  std::vector<EdgeShare> edges{};     ///< that it has added
 };
 
 struct GraphDocument {
@@ -63,7 +73,11 @@ struct GraphDocument {
 /// Returns the sources of kind "gnss": Fix::source is the index.
 [[nodiscard]] std::vector<DocumentSource> receivers_of(const GraphDocument& document);
 
-/// Returns the name of the source that a vertex belongs to; empty if it belongs to none.
+/// Tells whether a vertex is among those of a source. Sources that share their errors have vertices in
+/// common.
+[[nodiscard]] bool has_vertex(const DocumentSource& source, VertexId vertex);
+
+/// Returns the name of the first source that a vertex belongs to; empty if it belongs to none.
 [[nodiscard]] std::string source_of(VertexId vertex, const GraphDocument& document);
 
 /// Gives every fix the antenna of its receiver.

@@ -17,8 +17,9 @@ constexpr std::size_t kExamples = 10;
 constexpr std::size_t kMostTags = 64;
 constexpr std::int64_t kMaxArity = 1000;  // of a run-time-arity edge: 72 MB of information matrix
 
-constexpr std::string_view kOwnTags[] = {"GRAPH",  "FRAME", "TIME",  "PROVENANCE", "LEVER", "SOURCE",
-                                         "STATES", "TYPE",  "STAMP", "LOSS",       "GNSS",  "COVARIANCE"};
+constexpr std::string_view kOwnTags[] = {"GRAPH",  "FRAME",  "TIME",      "PROVENANCE", "LEVER",
+                                         "SOURCE", "STATES", "EDGES",     "TYPE",       "STAMP",
+                                         "LOSS",   "GNSS",   "COVARIANCE"};
 constexpr std::string_view kToroTags[] = {"VERTEX2", "EDGE2", "VERTEX", "EDGE"};
 
 template <std::size_t N>
@@ -56,6 +57,10 @@ class GraphReader {
     }
     if (report_.edges_only) place_along_odometry();
     if (document_.graph.vertex_count() == 0) throw InputError(name_ + ": no vertices in it");
+    if (report_.skipped > 0) {
+      for (DocumentSource& source : document_.sources) source.edges.clear();  // their numbers hold no longer
+    }
+    check_edge_shares();
     place_antennas(document_);
     return std::move(document_);
   }
@@ -77,6 +82,21 @@ class GraphReader {
 
   [[nodiscard]] bool is_toro() const {
     return format_ == GraphFormat::toro || format_ == GraphFormat::covariance;
+  }
+
+  void check_edge_shares() const {
+    const Graph& graph = document_.graph;
+    for (const DocumentSource& source : document_.sources) {
+      for (const EdgeShare& share : source.edges) {
+        std::size_t count = 0;
+        for (std::size_t b = 0; b < graph.batch_count(); ++b)
+          if (graph.edge_type(b).tag == share.tag) count = graph.batch(b).size();
+        if (share.last >= count)
+          throw InputError(name_ + ": EDGES " + source.name + " " + share.tag + ": edge " +
+                           std::to_string(share.last) + " does not exist; the file has " +
+                           std::to_string(count) + " of this type, counted from 0");
+      }
+    }
   }
 
   void place_along_odometry() {

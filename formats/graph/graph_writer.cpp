@@ -51,6 +51,14 @@ void write_header(const GraphDocument& document, TextBuilder& out) {
           .integer(to_number(range.first))
           .integer(to_number(range.last))
           .end_line();
+  for (const DocumentSource& source : document.sources)
+    for (const EdgeShare& share : source.edges)
+      out.word("EDGES")
+          .word(source.name)
+          .word(share.tag)
+          .integer(static_cast<std::int64_t>(share.first))
+          .integer(static_cast<std::int64_t>(share.last))
+          .end_line();
 }
 
 void write_vertices(const Graph& graph, TextBuilder& out) {

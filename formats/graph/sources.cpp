@@ -11,13 +11,14 @@ std::vector<DocumentSource> receivers_of(const GraphDocument& document) {
   return receivers;
 }
 
+bool has_vertex(const DocumentSource& source, VertexId vertex) {
+  return std::any_of(source.vertices.begin(), source.vertices.end(),
+                     [&](const VertexRange& range) { return vertex >= range.first && vertex <= range.last; });
+}
+
 std::string source_of(VertexId vertex, const GraphDocument& document) {
-  for (const DocumentSource& source : document.sources) {
-    const bool has =
-        std::any_of(source.vertices.begin(), source.vertices.end(),
-                    [&](const VertexRange& range) { return vertex >= range.first && vertex <= range.last; });
-    if (has) return source.name;
-  }
+  for (const DocumentSource& source : document.sources)
+    if (has_vertex(source, vertex)) return source.name;
   return {};
 }
 

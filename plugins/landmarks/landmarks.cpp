@@ -25,8 +25,8 @@ std::vector<SensorColumn> columns() {
           {"bearing", "rad", "ccw", false, "direction from straight ahead, with range"},
           {"sigma", "m", "", false, "standard deviation of x and y, or of the range"},
           {"sigma_bearing", "rad", "", false, "standard deviation of the bearing"},
-          {"map_x", "m", "", false, "known position of the landmark in the frame: x"},
-          {"map_y", "m", "", false, "known position of the landmark in the frame: y"}};
+          {"map_x", "m", "x", false, "known position of the landmark in the frame: x"},
+          {"map_y", "m", "y", false, "known position of the landmark in the frame: y"}};
 }
 
 std::vector<OptionInfo> options() {

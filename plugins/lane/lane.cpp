@@ -13,10 +13,10 @@ enum Column : std::size_t { kOffset, kAx, kAy, kBx, kBy, kSigma };
 
 std::vector<SensorColumn> columns() {
   return {{"offset", "m", "", true, "distance of the vehicle to the left of the line from a to b"},
-          {"ax", "m", "", true, "point a of the line in the frame: x"},
-          {"ay", "m", "", true, "point a: y"},
-          {"bx", "m", "", true, "point b, from a in the direction of the line: x"},
-          {"by", "m", "", true, "point b: y"},
+          {"ax", "m", "x", true, "point a of the line in the frame: x"},
+          {"ay", "m", "y", true, "point a: y"},
+          {"bx", "m", "x", true, "point b, from a in the direction of the line: x"},
+          {"by", "m", "y", true, "point b: y"},
           {"sigma", "m", "", false, "standard deviation of the offset"}};
 }
 

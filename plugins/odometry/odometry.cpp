@@ -37,7 +37,8 @@ class ConstantTwist final : public OdometryModel {
         scale_(configuration.speed_scale),
         yaw_(configuration.yaw_per_speed) {}
 
-  void extend(const DriveNodes& nodes, Graph& graph) override {
+  void extend(const OdometryInput& input, Graph& graph) override {
+    const DriveNodes& nodes = input.nodes;
     if (nodes.poses.size() != nodes.intervals.size() + 1)
       throw UsageError("odometry: one pose more than intervals is needed");
     const bool calibrates = bias_.is_calibrated() || scale_.is_calibrated();

@@ -113,7 +113,7 @@ class Cholmod final : public LinearSolver {
 
 LinearSolverType solver(const char* name, const char* description, int supernodal) {
   return {name, description, "GPL-2.0-or-later (supernodal module), LGPL-2.1 (simplicial)",
-          [supernodal] { return std::make_unique<Cholmod>(supernodal); }};
+          [supernodal](const CheckedOptions&) { return std::make_unique<Cholmod>(supernodal); }};
 }
 
 }  // namespace

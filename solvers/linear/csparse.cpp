@@ -66,7 +66,7 @@ class Csparse final : public LinearSolver {
 }  // namespace
 
 LinearSolverType csparse_solver() {
-  return {"csparse", "CSparse's up-looking LL^T", "LGPL-2.1", [] { return std::make_unique<Csparse>(); }};
+  return {"csparse", "CSparse's up-looking LL^T", "LGPL-2.1", [](const CheckedOptions&) { return std::make_unique<Csparse>(); }};
 }
 
 }  // namespace waymark::solvers

@@ -57,7 +57,7 @@ class EigenCholesky final : public LinearSolver {
 }  // namespace
 
 LinearSolverType eigen_solver() {
-  return {"eigen", "Eigen's simplicial LL^T", "MPL-2.0", [] { return std::make_unique<EigenCholesky>(); }};
+  return {"eigen", "Eigen's simplicial LL^T", "MPL-2.0", [](const CheckedOptions&) { return std::make_unique<EigenCholesky>(); }};
 }
 
 }  // namespace waymark::solvers

@@ -57,7 +57,7 @@ void add_edge_with_wrong_jacobian(waymark::TypeRegistry& registry) {
 
 void add_refusing_solver(waymark::TypeRegistry& registry) {
   registry.add_linear_solver(
-      {"refusing", "refuses", "BSD-3-Clause", [] { return std::make_unique<Refusing>(); }});
+      {"refusing", "refuses", "BSD-3-Clause", [](const waymark::CheckedOptions&) { return std::make_unique<Refusing>(); }});
 }
 
 }  // namespace waymark_test::modules

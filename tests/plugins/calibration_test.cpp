@@ -93,7 +93,7 @@ struct Simulated {
   }
 
   void solve(const Options& odometry, const Options& modeling, const std::string& name = "g1") {
-    registry().make_odometry_model("constant_twist", odometry)->extend({stamps, poses, intervals}, graph);
+    registry().make_odometry_model("constant_twist", odometry)->extend({{stamps, poses, intervals}}, graph);
     registry().make_gnss_modeling(name, modeling)->extend({fixes, moments, {0, 0}}, graph);
     const Summary summary =
         optimize(graph, *registry().make_algorithm("dogleg"), *registry().make_linear_solver("eigen"), {});
@@ -236,7 +236,7 @@ TEST_CASE("calibration: a standing gyro shows its bias to sqrt(q / T)") {
   graph.set_fixed(poses[0], true);
   registry()
       .make_odometry_model("constant_twist", {{"gyro_bias", "constant"}, {"gyro_bias_sigma", "10"}})
-      ->extend({stamps, poses, intervals}, graph);
+      ->extend({{stamps, poses, intervals}}, graph);
   const Summary summary =
       optimize(graph, *registry().make_algorithm("dogleg"), *registry().make_linear_solver("eigen"), {});
   REQUIRE(summary.converged());

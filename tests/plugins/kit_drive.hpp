@@ -153,7 +153,7 @@ inline waymark::Options odometry_options(const KitRecipe& recipe) {
   }
   registry()
       .make_odometry_model("constant_twist", odometry_options(recipe))
-      ->extend(drive.nodes(), drive.graph);
+      ->extend({drive.nodes()}, drive.graph);
   drive.add_fixes();
   return drive;
 }

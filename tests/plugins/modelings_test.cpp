@@ -158,7 +158,7 @@ TEST_CASE("odometry model: a standing vehicle's measurement is the identity what
   const Interval standing{0.02, 0.006, 0.04, false};
   registry()
       .make_odometry_model("constant_twist")
-      ->extend({std::array{Stamp{0}, Stamp{40'000'000}}, poses, std::array{standing}}, graph);
+      ->extend({{std::array{Stamp{0}, Stamp{40'000'000}}, poses, std::array{standing}}}, graph);
   REQUIRE(graph.batch_count() == 1);
   CHECK(graph.edge_type(0).tag == "EDGE_SE2_STANDSTILL");
   CHECK(graph.chi2() == 0);

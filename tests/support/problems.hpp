@@ -172,7 +172,7 @@ struct Drive {
   }
   std::vector<Stamp> stamps;
   for (int i = 0; i < poses; ++i) stamps.push_back(Stamp{std::int64_t{i} * 40'000'000});
-  registry.make_odometry_model("constant_twist")->extend({stamps, chain, drive.intervals}, drive.graph);
+  registry.make_odometry_model("constant_twist")->extend({{stamps, chain, drive.intervals}}, drive.graph);
   return drive;
 }
 

@@ -109,7 +109,7 @@ TEST_CASE("starts: an edge type of a plugin is followed without knowing it") {
     chain.push_back(i);
     if (i > 0) intervals.push_back({.speed_mps = 8, .yaw_rate_radps = 3.0 + 0.02 * i, .dt_s = 0.4});
   }
-  registry.make_odometry_model("constant_twist")->extend({{}, chain, intervals}, graph);
+  registry.make_odometry_model("constant_twist")->extend({{{}, chain, intervals}}, graph);
   REQUIRE(graph.edge_type(0).tag == "EDGE_SE2_ODOMETRY");
   for (const std::string& name : start_names(registry)) {
     INFO(name);

@@ -8,6 +8,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/base/suggest.hpp
   core/covariance/evidence.hpp
   core/covariance/marginals.hpp
+  core/drive/drive_context.hpp
   core/drive/frame.hpp
   core/drive/kept_vertex.hpp
   core/drive/log_reader.hpp
@@ -36,6 +37,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/optimize/optimizer.hpp
   core/optimize/start.hpp
   core/optimize/summary.hpp
+  core/registry/flow_text.hpp
   core/registry/options.hpp
   core/registry/plugin.hpp
   core/registry/plugin_loader.hpp

@@ -36,6 +36,8 @@ bool OwnStatements::read_header(LineScanner& line, std::string_view tag) {
     read_source(line);
   } else if (tag == "STATES") {
     read_states(line);
+  } else if (tag == "EDGES") {
+    read_edges(line);
   } else if (tag == "TYPE") {
     check_type(line);
   } else {
@@ -84,18 +86,34 @@ void OwnStatements::read_source(LineScanner& line) {
   document_.sources.push_back(std::move(source));
 }
 
-void OwnStatements::read_states(LineScanner& line) {
+DocumentSource& OwnStatements::source_above(LineScanner& line, const std::string& statement) {
   const std::string name(line.word());
   const auto source = std::find_if(document_.sources.begin(), document_.sources.end(),
                                    [&](const DocumentSource& known) { return known.name == name; });
   if (source == document_.sources.end())
-    line.fail("STATES: there is no SOURCE " + quote_word(name) + " above this line");
+    line.fail(statement + ": there is no SOURCE " + quote_word(name) + " above this line");
+  return *source;
+}
+
+void OwnStatements::read_states(LineScanner& line) {
+  DocumentSource& source = source_above(line, "STATES");
   VertexRange range;
   range.first = VertexId{line.integer({"STATES", "first"})};
   range.last = VertexId{line.integer({"STATES", "last"})};
   if (range.last < range.first) line.fail("STATES: the last id is below the first");
   line.end("STATES");
-  source->vertices.push_back(range);
+  source.vertices.push_back(range);
+}
+
+void OwnStatements::read_edges(LineScanner& line) {
+  DocumentSource& source = source_above(line, "EDGES");
+  const std::string tag(line.word());
+  if (registry_.find_edge(tag) == nullptr) line.fail("EDGES: edge type " + quote_word(tag) + " is not known");
+  const std::int64_t first = line.integer({"EDGES", "first"});
+  const std::int64_t last = line.integer({"EDGES", "last"});
+  if (first < 0 || last < first) line.fail("EDGES: expected 0 <= first <= last");
+  line.end("EDGES");
+  source.edges.push_back({tag, static_cast<std::size_t>(first), static_cast<std::size_t>(last)});
 }
 
 void OwnStatements::check_type(LineScanner& line) const {

@@ -33,6 +33,9 @@ class OwnStatements {
   void read_lever(LineScanner& line);
   void read_source(LineScanner& line);
   void read_states(LineScanner& line);
+  void read_edges(LineScanner& line);
+  /// Returns the source that the next word names. @throws InputError if it is not above this line
+  [[nodiscard]] DocumentSource& source_above(LineScanner& line, const std::string& statement);
   void check_type(LineScanner& line) const;
   /// Refuses a second line of a statement that holds for the whole file.
   void only_once(LineScanner& line, const std::string& statement);

@@ -83,7 +83,8 @@ FusionSettings complete_settings(const Options& modeling_options = {}) {
 }
 
 NoiseEstimate estimate(const PreparedDrive& drive, const FusionSettings& settings) {
-  return estimate_noise(place_drive(drive, timeline_of(drive), settings, registry()), settings, registry());
+  return estimate_noise(place_drive(drive, timeline_of(drive), settings, registry()), {}, settings,
+                        registry());
 }
 
 const NoiseParameter& find(const NoiseEstimate& noise, const std::string& option) {
@@ -238,7 +239,7 @@ TEST_CASE("model: a complete error model brings its own defaults, and what is st
 TEST_CASE("coarse: fewer nodes and fixes, the same way and turn") {
   const PreparedDrive drive = make_drive({}, 5);
   const PlacedDrive placed = place_drive(drive, timeline_of(drive), complete_settings(), registry());
-  const PlacedDrive coarse = coarsen(placed);
+  const PlacedDrive coarse = coarsen(placed, {}).drive;
   const auto sum = [](const std::vector<Interval>& intervals, auto quantity) {
     double total = 0;
     for (const Interval& interval : intervals) total += quantity(interval);

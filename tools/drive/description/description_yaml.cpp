@@ -179,7 +179,7 @@ SensorConfig read_sensor(const YamlSection& section, std::string kind, std::stri
   request.stream = StreamKind::sensor;
   if (section.has("file")) sensor.log = read_log_config(section, request, drive.folder, drive.scale());
   if (const auto options = section.free_section("options")) {
-    for (const std::string& option : options->keys()) options->read(option, sensor.options[option]);
+    for (const std::string& option : options->keys()) options->read_option(option, sensor.options[option]);
   }
   return sensor;
 }

@@ -54,6 +54,7 @@ DriveFile parse_drive_file(const std::string& text, const std::string& path, con
   file.places.file = path;
   file.description = read_description(top, data_folder);
   read_settings(top, file.settings, file.places);
+  file.settings.folder = file.description.folder;
   return file;
 }
 

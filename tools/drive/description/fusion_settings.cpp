@@ -29,6 +29,27 @@ void decide_gates(FusionSettings& settings, const TypeRegistry& registry) {
   }
 }
 
+/// Resolves the files that options of the drive and of its sources name.
+void place_files_of_options(FusionSettings& settings, const TypeRegistry& registry) {
+  if (settings.folder.empty()) return;
+  const std::string folder = std::exchange(settings.folder, {});
+  const auto place = [&](Options& options, const std::vector<OptionInfo>& known) {
+    options = with_files_below(folder, std::move(options), known);
+  };
+  const std::vector<OptionInfo>& modeling = registry.gnss_modeling(settings.modeling).options;
+  const std::vector<OptionInfo>& odometry = registry.odometry_model(settings.odometry_model).options;
+  place(settings.modeling_options, modeling);
+  place(settings.odometry_options, odometry);
+  for (auto& [name, source] : settings.sources) {
+    for (const auto& entry : registry.gnss_modelings())
+      if (entry.type.name == (source.model.empty() ? settings.modeling : source.model))
+        place(source.options, entry.type.options);
+    for (const auto& entry : registry.odometry_models())
+      if (entry.type.name == (source.model.empty() ? settings.odometry_model : source.model))
+        place(source.options, entry.type.options);
+  }
+}
+
 Options merged(Options first, const Options& then) {
   for (const auto& [name, value] : then) first[name] = value;
   return first;
@@ -95,6 +116,7 @@ FusionSettings for_relative(const FusionSettings& settings, const std::string& s
 
 FusionSettings decided(FusionSettings settings, const TypeRegistry& registry) {
   const GnssModelingType& modeling = registry.gnss_modeling(settings.modeling);
+  place_files_of_options(settings, registry);
   if (!settings.gate.enabled) decide_gates(settings, registry);
   if (!settings.gate.enabled) settings.gate.enabled = !modeling.complete;
   if (!settings.calibration) settings.calibration = modeling.complete ? default_calibration() : Options();
@@ -112,7 +134,7 @@ void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSetting
   const std::vector<OptionInfo>& known = registry.odometry_model(settings.odometry_model).options;
   const double variance = rest.is_derived() ? kSilent : std::min(rest.variance_per_s, kSilent);
   if (has_option(known, kAtRest) &&
-      variance > CheckedOptions(settings.odometry_model, {}, known).number(kAtRest))
+      variance > CheckedOptions(settings.odometry_model, settings.odometry_options, known).number(kAtRest))
     settings.odometry_options.try_emplace(kAtRest, shortest(variance));
   if (rest.is_derived() && by_default && !settings.calibration->empty() && has_option(known, "yaw_per_speed"))
     settings.calibration->try_emplace("yaw_per_speed", "constant");
@@ -143,6 +165,12 @@ Loss named_loss(const std::string& text, const std::string& place, const TypeReg
     throw UsageError(place + ": expected [TAG=]NAME:SCALE with a scale above 0, got '" + text + "'");
   }
   return Loss{type->name, type->evaluate, scale};
+}
+
+std::optional<Loss> loss_of_source(const FusionSettings& settings, const std::string& source,
+                                   const TypeRegistry& registry) {
+  const std::optional<std::string>& stated = stated_for(settings, source).loss;
+  return stated ? loss_of_fixes(*stated, registry, source + ": loss") : std::nullopt;
 }
 
 std::optional<Loss> loss_of_fixes(const std::string& loss, const TypeRegistry& registry,

@@ -21,6 +21,7 @@ struct Minimization {
   std::string algorithm = "dogleg";
   Options options{};            ///< of the algorithm
   std::string solver = "auto";  ///< auto: the fastest in measurements (solvers/README.md)
+  Options solver_options{};
   int threads = 1;
   int max_iterations = 500;
   double tolerance = 1e-6;  ///< OptimizerOptions::decrement_tolerance
@@ -36,7 +37,7 @@ struct SourceSettings {
   std::string model{};
   Options options{};  ///< of it; those of the drive stay if the model is that of the drive
   Options calibration{};
-  std::optional<std::string> loss{};
+  std::optional<std::string> loss{};  ///< of its measurements, as FusionSettings::loss
   std::optional<GateOptions> gate{};
   /// Another absolute source that has the same lasting errors, such as a receiver that sees the same
   /// satellites. Both are one group, with the settings of the source that is named.
@@ -64,6 +65,9 @@ struct FusionSettings {
   bool lever_arm = true;  ///< false: the antenna is taken as the body point
   Minimization minimization{};
   std::map<std::string, SourceSettings> sources{};  ///< by name of the source
+  /// Files that options of models name are below this folder, unless they are absolute. decided()
+  /// resolves them, and empties it.
+  std::string folder{};
 
   friend bool operator==(const FusionSettings&, const FusionSettings&) = default;
 };
@@ -112,6 +116,11 @@ void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSetting
 /// @throws UsageError for an unknown loss or an impossible scale
 [[nodiscard]] std::optional<Loss> loss_of_fixes(const std::string& loss, const TypeRegistry& registry,
                                                 const std::string& place = "loss");
+
+/// Returns the loss that is stated for the measurements of a relative source or a sensor.
+/// @throws UsageError as loss_of_fixes
+[[nodiscard]] std::optional<Loss> loss_of_source(const FusionSettings& settings, const std::string& source,
+                                                 const TypeRegistry& registry);
 
 /// Converts "NAME:SCALE" to a loss. @throws UsageError as loss_of_fixes
 [[nodiscard]] Loss named_loss(const std::string& text, const std::string& place,

@@ -29,7 +29,7 @@ void read_options(const YamlSection& section, std::string_view key, const std::s
   const auto free = section.free_section(key);
   if (!free) return;
   for (const std::string& option : free->keys()) {
-    free->read(option, options[option]);
+    free->read_option(option, options[option]);
     places.of[name + option] = free->place(option);
   }
 }
@@ -75,6 +75,13 @@ void read_calibration(const YamlSection& top, FusionSettings& settings, Places& 
   if (kSwitchValues[word]) calibration = default_calibration();
 }
 
+/// Reads the loss of the measurements of a source. @param place of the keys in Places
+void read_loss(const YamlSection& section, const std::string& place, SourceSettings& source, Places& places) {
+  if (!section.has("loss")) return;
+  section.read("loss", source.loss.emplace());
+  places.of[place + ".loss"] = section.place("loss");
+}
+
 /// Reads what an odometry states for itself. @param place of the keys in Places
 void read_relative(const YamlSection& section, const std::string& place, SourceSettings& source,
                    Places& places) {
@@ -82,6 +89,7 @@ void read_relative(const YamlSection& section, const std::string& place, SourceS
   if (section.has("model")) places.of[place + ".model"] = section.place("model");
   read_options(section, "options", place + ".options.", source.options, places);
   read_options(section, "calibration", place + ".calibration.", source.calibration, places);
+  read_loss(section, place, source, places);
 }
 
 /// Reads what a receiver states for itself.
@@ -97,10 +105,7 @@ void read_absolute(const YamlSection& section, const std::string& place, const G
   if (!section.node("modeling").IsMap()) return section.read("modeling", source.model);
   const YamlSection modeling = *section.section("modeling", {"name", "loss", "options"});
   modeling.read("name", source.model);
-  if (modeling.has("loss")) {
-    modeling.read("loss", source.loss.emplace());
-    places.of[place + ".loss"] = modeling.place("loss");
-  }
+  read_loss(modeling, place, source, places);
   read_options(modeling, "options", place + ".options.", source.options, places);
 }
 
@@ -117,11 +122,13 @@ void read_sources(const YamlSection& top, FusionSettings& settings, Places& plac
       read_relative(entry.section, place, source, places);
     } else if (entry.kind == kGnssKind) {
       read_absolute(entry.section, place, settings.gate, source, places);
+    } else {
+      read_loss(entry.section, place, source, places);
     }
     if (is_only) {
       if (!source.model.empty()) settings.odometry_model = source.model;
       settings.odometry_options = source.options;
-      source = {.calibration = source.calibration};
+      source = {.calibration = source.calibration, .loss = source.loss};
     }
     if (!(source == SourceSettings{})) settings.sources[entry.name] = std::move(source);
   }

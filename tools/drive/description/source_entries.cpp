@@ -18,7 +18,7 @@ bool is_name(const std::string& text) {
 
 std::vector<std::string_view> odometry_keys() {
   return log_keys({"kind", "name", "parts", "rate", "speed_from", "yaw_rate_from", "gyro", "vehicle",
-                   "speed_delay", "yaw_rate_delay", "model", "options", "calibration", "nodes"});
+                   "speed_delay", "yaw_rate_delay", "model", "options", "calibration", "nodes", "loss"});
 }
 std::vector<std::string_view> gnss_keys() {
   return log_keys({"kind", "name", "accuracy", "velocity", "antenna", "period", "delay", "withhold_every",
@@ -29,7 +29,7 @@ YamlSection section_of(const std::string& kind, const YAML::Node& node, const st
                        const std::string& file) {
   if (kind == kOdometryKind) return {node, name, file, odometry_keys()};
   if (kind == kGnssKind) return {node, name, file, gnss_keys()};
-  return {node, name, file, log_keys({"kind", "name", "options"})};
+  return {node, name, file, log_keys({"kind", "name", "options", "loss"})};
 }
 
 class Entries {

@@ -9,6 +9,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
+#include <waymark/core/registry/flow_text.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -23,6 +24,21 @@ std::string described(const YAML::Node& node) {
   if (node.IsSequence()) return fmt::format("a list of {}", node.size());
   if (node.IsMap()) return "a mapping";
   return "nothing";
+}
+
+/// @throws YAML::Exception for keys that are no scalars
+FlowValue flow_of(const YAML::Node& node) {
+  if (node.IsSequence()) {
+    FlowValue::List list;
+    for (const auto& entry : node) list.push_back(flow_of(entry));
+    return {list};
+  }
+  if (node.IsMap()) {
+    FlowValue::Mapping entries;
+    for (const auto& entry : node) entries.emplace_back(entry.first.as<std::string>(), flow_of(entry.second));
+    return {entries};
+  }
+  return {node.IsScalar() ? node.Scalar() : std::string()};
 }
 
 std::optional<double> number_from(const YAML::Node& node) {
@@ -121,6 +137,13 @@ void YamlSection::read(std::string_view key, Eigen::Vector2d& value) const {
   const std::optional<double> y = number_from(list[1]);
   if (!x || !y) fail_value(key, "two numbers [x, y]");
   value = Eigen::Vector2d(*x, *y);
+}
+
+void YamlSection::read_option(std::string_view key, std::string& value) const {
+  if (!has(key)) return;
+  if (node(key).IsScalar()) return read(key, value);
+  if (!node(key).IsSequence() && !node(key).IsMap()) fail_value(key, "a value, a list or a mapping");
+  value = flow_text(flow_of(node(key)));
 }
 
 std::optional<std::size_t> YamlSection::read_word(std::string_view key,

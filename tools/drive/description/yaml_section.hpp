@@ -54,6 +54,9 @@ class YamlSection {
   void read(std::string_view key, std::optional<double>& value, const NumberRule& rule) const;
   /// Reads two numbers: [x, y].
   void read(std::string_view key, Eigen::Vector2d& value) const;
+  /// Reads the value of an option of a registered type: a word, or a list or mapping as text in flow style
+  /// (core/registry/flow_text.hpp).
+  void read_option(std::string_view key, std::string& value) const;
   /// Reads one of some words. @return its index; empty if the key does not exist
   [[nodiscard]] std::optional<std::size_t> read_word(std::string_view key,
                                                      std::span<const std::string_view> words) const;

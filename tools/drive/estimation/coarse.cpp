@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace waymark::drive {
 namespace {
@@ -34,15 +35,53 @@ void merge(Interval& whole, const Interval& part) {
   whole.dt_s = dt;
 }
 
+/// Returns the node that a reading belongs to; empty outside the drive.
+std::optional<std::size_t> node_of(const Timeline& timeline, Stamp reading) {
+  const auto near = nearest_node({timeline.stamps, {}, timeline.intervals}, reading);
+  return near ? std::optional(near->node) : std::nullopt;
+}
+
+/// Marks the nodes of readings that are a period apart (a tenth less, for jitter).
+void need_nodes_of(const PreparedSensor& sensor, const Timeline& timeline, double period_s,
+                   std::vector<char>& needed) {
+  std::optional<Stamp> last;
+  for (const Stamp stamp : sensor.readings.stamps) {
+    if (last && seconds_between(*last, stamp) < 0.9 * period_s) continue;
+    const auto node = node_of(timeline, stamp);
+    if (!node) continue;
+    needed[*node] = 1;
+    last = stamp;
+  }
+}
+
+/// Returns a sensor with the readings of the nodes that are kept.
+PreparedSensor at_kept_nodes(const PreparedSensor& sensor, const Timeline& timeline,
+                             const std::vector<char>& kept) {
+  PreparedSensor result = sensor;
+  result.readings = {{}, {}, sensor.readings.columns};
+  for (std::size_t row = 0; row < sensor.readings.size(); ++row) {
+    const auto node = node_of(timeline, sensor.readings.stamps[row]);
+    if (!node || kept[*node] == 0) continue;
+    result.readings.stamps.push_back(sensor.readings.stamps[row]);
+    for (std::size_t column = 0; column < sensor.readings.columns; ++column)
+      result.readings.values.push_back(sensor.readings.at(row, column));
+  }
+  return result;
+}
+
 }  // namespace
 
-PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_period_s) {
+CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> sensors, double fix_period_s,
+                    double node_period_s) {
   const Timeline& timeline = placed.timeline;
   const std::vector<std::size_t> kept = kept_fixes(placed.fixes, fix_period_s);
   std::vector<char> needed(timeline.stamps.size(), 0);
   for (const std::size_t fix : kept) needed[timeline.fix_node[fix]] = 1;
+  for (const PreparedSensor& sensor : sensors) need_nodes_of(sensor, timeline, node_period_s, needed);
 
-  PlacedDrive coarse;
+  CoarseDrive result;
+  PlacedDrive& coarse = result.drive;
+  coarse.surroundings = placed.surroundings;
   coarse.gate = placed.gate;
   coarse.receivers = placed.receivers;
   coarse.time_offsets_s = placed.time_offsets_s;
@@ -51,7 +90,9 @@ PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_
   coarse.standstill_mps = placed.standstill_mps;
   coarse.gap_noise_factor = placed.gap_noise_factor;
   std::vector<std::size_t> coarse_node(timeline.stamps.size(), 0);
+  std::vector<char> is_kept(timeline.stamps.size(), 0);
   const auto add_node = [&](std::size_t node) {
+    is_kept[node] = 1;
     coarse_node[node] = coarse.timeline.stamps.size();
     coarse.timeline.stamps.push_back(timeline.stamps[node]);
     coarse.start.poses.push_back(placed.start.poses[node]);
@@ -80,7 +121,9 @@ PlacedDrive coarsen(const PlacedDrive& placed, double fix_period_s, double node_
     coarse.fixes.back().vertex = vertex_of(node);
   }
   if (!coarse.relative.empty()) coarse.runs = motion_runs(coarse.timeline, coarse.relative, coarse.fixes);
-  return coarse;
+  for (const PreparedSensor& sensor : sensors)
+    result.sensors.push_back(at_kept_nodes(sensor, timeline, is_kept));
+  return result;
 }
 
 }  // namespace waymark::drive

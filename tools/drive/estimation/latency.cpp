@@ -66,11 +66,11 @@ struct Round {
   }
 };
 
-Round begin_round(const PlacedDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry) {
-  BuiltGraph built = build_graph(coarse, {}, settings, registry);
-  Round round{.groups = groups_of(coarse, settings), .graph = std::move(built.graph), .offsets = {}};
+Round begin_round(const CoarseDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry) {
+  BuiltGraph built = build_graph(coarse.drive, coarse.sensors, settings, registry);
+  Round round{.groups = groups_of(coarse.drive, settings), .graph = std::move(built.graph), .offsets = {}};
   for (const AbsoluteGroup& group : round.groups)
-    round.offsets.push_back(time_offset_vertex(round.graph, built.vertices[group.name]));
+    round.offsets.push_back(time_offset_vertex(round.graph, built.shares[group.name].vertices));
   return round;
 }
 
@@ -106,9 +106,10 @@ std::vector<std::optional<TimeOffset>> found_in(const Round& round, const Fusion
 }  // namespace
 
 std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
+                                                           std::span<const PreparedSensor> sensors,
                                                            const FusionSettings& settings,
                                                            const TypeRegistry& registry) {
-  PlacedDrive coarse = coarsen(placed, kFixPeriod_s, kNodePeriod_s);
+  CoarseDrive coarse = coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s);
   const auto algorithm = registry.make_algorithm("dogleg");
   BlockCholesky cholesky;
   StructuredSolver solver{cholesky};
@@ -117,12 +118,12 @@ std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
     if (!round.estimates()) return std::vector<std::optional<TimeOffset>>(round.groups.size());
     solver.build(round.graph, find_gauge(round.graph).held);
     optimize(round.graph, solver, *algorithm, {});
-    const double moved_s = take_offsets(round, coarse);
+    const double moved_s = take_offsets(round, coarse.drive);
     if (moved_s < kSettled_s || count == kMostRounds) {
-      placed.time_offsets_s = coarse.time_offsets_s;
+      placed.time_offsets_s = coarse.drive.time_offsets_s;
       return found_in(round, settings, registry);
     }
-    keep_poses(round.graph, coarse.start.poses);
+    keep_poses(round.graph, coarse.drive.start.poses);
   }
 }
 

@@ -30,11 +30,12 @@ struct TimeOffset {
 
 /// Finds PlacedDrive::time_offsets_s. The coarse drive is fused with the offsets of before, and again
 /// with those that this gives, until they no longer move. Nothing changes if the settings
-/// estimate no time offset. Sensors are left out.
+/// estimate no time offset. @param sensors further ones, which take part
 /// @param settings from decided()
 /// @throws UsageError for an unknown modeling or option; errors of the plugins
 /// @returns the offset of each group (groups_of() in build.hpp); empty for one that has none
 std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
+                                                           std::span<const PreparedSensor> sensors,
                                                            const FusionSettings& settings,
                                                            const TypeRegistry& registry);
 

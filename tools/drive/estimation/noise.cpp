@@ -60,7 +60,7 @@ void add_parameters(const std::string& source, const std::string& owner, const s
 /// The function that the noise minimises: -log of prior times marginal likelihood.
 class Objective {
  public:
-  Objective(const PlacedDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry)
+  Objective(const CoarseDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry)
       : coarse_(coarse),
         settings_(settings),
         registry_(registry),
@@ -81,7 +81,7 @@ class Objective {
   /// @param next whether the next minimisation begins at this minimum
   double cost_of(const NoiseEstimate& noise, double decrement_tolerance, bool next) {
     ++evaluations_;
-    Graph graph = build_graph(coarse_, {}, with_noise(settings_, noise), registry_).graph;
+    Graph graph = build_graph(coarse_.drive, coarse_.sensors, with_noise(settings_, noise), registry_).graph;
     prepare(graph);
     OptimizerOptions options;
     options.decrement_tolerance = decrement_tolerance;
@@ -104,7 +104,7 @@ class Objective {
     kept_.build(graph, find_gauge(graph).held);
   }
 
-  const PlacedDrive& coarse_;
+  const CoarseDrive& coarse_;
   const FusionSettings& settings_;
   const TypeRegistry& registry_;
   std::unique_ptr<Algorithm> algorithm_;
@@ -167,20 +167,22 @@ bool take_values(const NoiseEstimate& known, NoiseEstimate& noise) {
 }
 
 /// Returns a coarse drive with one of its relative sources. Where that is silent, the motion is bridged.
-PlacedDrive with_only(std::size_t source, PlacedDrive coarse) {
-  if (coarse.relative.empty()) return coarse;
-  coarse.relative = {coarse.relative[source]};
-  coarse.runs = motion_runs(coarse.timeline, coarse.relative, coarse.fixes);
+CoarseDrive with_only(std::size_t source, CoarseDrive coarse) {
+  PlacedDrive& drive = coarse.drive;
+  if (drive.relative.empty()) return coarse;
+  drive.relative = {drive.relative[source]};
+  drive.runs = motion_runs(drive.timeline, drive.relative, drive.fixes);
   return coarse;
 }
 
 /// Returns what is to be estimated with one relative source: its parameters, and those of the absolute
 /// ones.
-/// @param count of relative sources in the drive @param absolute whether those of absolute sources are open
-NoiseEstimate open_parameters(const PlacedDrive& coarse, std::size_t count, bool absolute,
+/// @param count of relative sources in the drive @param absolute whether those of absolute sources and of
+/// further sensors are open
+NoiseEstimate open_parameters(const CoarseDrive& coarse, std::size_t count, bool absolute,
                               const FusionSettings& settings, const TypeRegistry& registry) {
   NoiseEstimate noise;
-  const DriveFacts facts = facts_of(coarse, settings);
+  const DriveFacts facts = facts_of(coarse.drive, settings);
   // What is estimated for the only source of a kind is an option of the drive, unless it states its own.
   const auto label = [&](const std::string& source, std::size_t sources) {
     return sources > 1 || settings.sources.contains(source) ? source : std::string();
@@ -190,27 +192,31 @@ NoiseEstimate open_parameters(const PlacedDrive& coarse, std::size_t count, bool
   add_parameters(label(relative, count), own.odometry_model,
                  registry.odometry_model(own.odometry_model).options, own.odometry_options, 0,
                  noise.parameters);
+  if (!absolute) return noise;
   for (const AbsoluteGroup& group : facts.absolute) {
-    if (!absolute) break;
     const FusionSettings of = for_absolute(settings, group.name, registry);
     add_parameters(label(group.name, facts.absolute.size()), of.modeling,
                    registry.gnss_modeling(of.modeling).options, of.modeling_options, group.median_accuracy_m,
                    noise.parameters);
   }
+  for (const PreparedSensor& sensor : coarse.sensors)
+    add_parameters(sensor.source, sensor.name, registry.sensor_model(sensor.name).options,
+                   options_of(sensor, settings), 0, noise.parameters);
   return noise;
 }
 
 }  // namespace
 
-NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
-                             const TypeRegistry& registry, const NoiseEstimate& near) {
+NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
+                             const FusionSettings& settings, const TypeRegistry& registry,
+                             const NoiseEstimate& near) {
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
   FusionSettings known = settings;
-  const PlacedDrive all = coarsen(placed);
+  const CoarseDrive all = coarsen(placed, sensors);
   const std::size_t count = std::max<std::size_t>(placed.relative.size(), 1);
   for (std::size_t source = 0; source < count; ++source) {
-    const PlacedDrive coarse = with_only(source, all);
+    const CoarseDrive coarse = with_only(source, all);
     NoiseEstimate part = open_parameters(coarse, count, source == 0, known, registry);
     if (part.parameters.empty()) continue;
     Objective objective(coarse, known, registry);

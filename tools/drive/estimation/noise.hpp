@@ -1,5 +1,5 @@
-/// Estimates the noise of a drive from the drive itself: those options of its odometry model and
-/// its GNSS modeling that have a prior. It uses the marginal likelihood of the fixes
+/// Estimates the noise of a drive from the drive itself: those options of its odometry model, its
+/// GNSS modeling and its further sensors that have a prior. It uses the marginal likelihood of the fixes
 /// (core/covariance/evidence.hpp).
 #pragma once
 
@@ -17,8 +17,8 @@ inline constexpr double kNoiseReach = 4;
 
 /// The estimate of one option.
 struct NoiseParameter {
-  std::string source;  ///< of the drive, if it has several of that kind; otherwise empty
-  std::string owner;   ///< the odometry model or modeling that has the option
+  std::string source;  ///< of the drive, if it has several of that kind or is a sensor; otherwise empty
+  std::string owner;   ///< the odometry model, modeling or sensor model that has the option
   std::string option;
   std::string unit;
   OptionRange range;  ///< what the option allows
@@ -44,16 +44,18 @@ struct NoiseEstimate {
 /// state. Fixes are thinned to one in 7.5 s per receiver: receivers smooth their output, and the
 /// white noise would otherwise come out too small. Each relative source is estimated without the others:
 /// over short times they agree better than over long ones, which is what matters. The first one is
-/// estimated with all absolute sources. Nodes are thinned to four per second. Further
-/// sensors are left out.
+/// estimated with all absolute sources and further sensors. Nodes are thinned to four per second, and
+/// so are the readings of sensors.
+/// @param sensors further ones, which take part
 /// @param settings from decided()
 /// @param near an estimate of the same parameters for slightly other settings, to begin from
 /// @return no parameters if none is left to estimate
 /// @throws UsageError and InputError as the odometry model and the modeling do
-[[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, const FusionSettings& settings,
-                                           const TypeRegistry& registry, const NoiseEstimate& near = {});
+[[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
+                                           const FusionSettings& settings, const TypeRegistry& registry,
+                                           const NoiseEstimate& near = {});
 
-/// Returns the settings with the estimates as options of the odometry model and the modeling.
+/// Returns the settings with the estimates as options of the models.
 /// Stated options are kept.
 [[nodiscard]] FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise);
 

@@ -172,6 +172,12 @@ void cut_fixes(PreparedDrive& drive) {
   for (Fix& fix : drive.fixes) fix.epoch -= first;
 }
 
+Vehicle vehicle_of(const DriveDescription& description) {
+  if (description.odometry.empty()) return {};
+  const OdometryAssembly& stated = description.odometry.front().assembly;
+  return {stated.track_width_m, stated.wheelbase_m, stated.steering_ratio, stated.metres_per_tick};
+}
+
 /// Takes the relative sources: the only one, or all of them.
 void take_odometry(std::vector<PreparedOdometry> relative, PreparedDrive& drive) {
   drive.odometry_name = relative.front().name;
@@ -196,6 +202,7 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   drive.scale = description.scale();
   drive.truth_reference_m = description.truth_reference_m;
   drive.timeline = description.timeline;
+  drive.vehicle = vehicle_of(description);
   drive.inputs = inputs_of(logs);
   take_odometry(prepare_odometry(logs, description, drive.report), drive);
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
@@ -222,8 +229,10 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
     PreparedSensor& prepared = drive.sensors.emplace_back(PreparedSensor{
         .name = sensor.name, .options = sensor.options, .place = sensor.place, .source = sensor.source});
     if (sensor.log)
-      prepared.readings = prepare_readings(logs.sensors[i], sensor.log->request.readings, drive.scale, fixes,
-                                           projection, drive.report);
+      prepared.readings = at_place_of(sensor.place, sensor.name, [&] {
+        return prepare_readings(logs.sensors[i], sensor.log->request, drive.scale, fixes, projection,
+                                drive.report);
+      });
   }
   std::vector<std::string>& notes = drive.report.notes;
   notes.insert(notes.end(), logs.notes.begin(), logs.notes.end());

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/frame.hpp>
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/core/drive/sample.hpp>
@@ -119,6 +120,7 @@ struct PreparedDrive {
   std::vector<TruthPose> truth;             ///< stamps unique; may be empty
   std::vector<PreparedSensor> sensors;      ///< as DriveDescription::sensors
   Eigen::Vector2d truth_reference_m{0, 0};  ///< body frame
+  Vehicle vehicle{};                        ///< as stated for the first relative source
   TimelineOptions timeline;                 ///< how samples become nodes
   /// in the order of the description, each log before its companions
   std::vector<InputFile> inputs;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 
 #include <waymark/core/base/angle.hpp>
@@ -15,6 +16,7 @@ namespace waymark::drive {
 namespace {
 
 using formats::UtmPlace;
+using GeographicLib::Geocentric;
 using GeographicLib::UTMUPS;
 using std::numbers::pi;
 
@@ -66,6 +68,22 @@ GeodeticPoint Projection::to_geodetic(const Eigen::Vector2d& position) const {
     throw InputError(
         fmt::format("easting {}, northing {} are outside UTM zone {}", grid.x(), grid.y(), frame_.zone));
   return {place->latitude_deg, place->longitude_deg};
+}
+
+Eigen::Vector3d Projection::to_ecef(const PointWithHeight& point) const {
+  const GeodeticPoint place = to_geodetic(point.position);
+  Eigen::Vector3d ecef;
+  Geocentric::WGS84().Forward(place.latitude_deg, place.longitude_deg, point.height_m, ecef.x(), ecef.y(),
+                              ecef.z());
+  return ecef;
+}
+
+PointWithHeight Projection::from_ecef(const Eigen::Vector3d& point) const {
+  GeodeticPoint place;
+  double height_m = 0;
+  Geocentric::WGS84().Reverse(point.x(), point.y(), point.z(), place.latitude_deg, place.longitude_deg,
+                              height_m);
+  return {to_grid(place).position, height_m};
 }
 
 Fix Projection::project(const GeodeticFix& fix) const {

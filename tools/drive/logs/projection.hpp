@@ -6,24 +6,11 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/frame.hpp>
 #include <waymark/core/drive/sample.hpp>
 
 namespace waymark::drive {
-
-/// WGS84, degrees.
-struct GeodeticPoint {
-  double latitude_deg = 0;
-  double longitude_deg = 0;
-};
-
-/// A point in the frame, and the orientation of the grid there.
-struct GridPoint {
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< frame coordinates, m
-  /// meridian convergence: bearing of grid north, clockwise from true north
-  double convergence_rad = 0;
-  double scale = 1;  ///< grid metres per metre on the ellipsoid
-};
 
 /// Chooses the frame of a drive. Unless stated, the zone is that of the first fix (with the
 /// exceptions at Norway and Svalbard), and the origin is that fix's easting and northing, rounded
@@ -43,17 +30,16 @@ struct GridPoint {
 /// - b + gamma on the grid, where gamma is the convergence. So grid north (b = gamma) has
 /// heading pi/2. Heights are not reduced to the ellipsoid (at a height of 500 m, lengths are
 /// shorter by 8e-5).
-class Projection {
+class Projection final : public Geodesy {
  public:
   /// @throws InputError if `frame` has no zone
   explicit Projection(const Frame& frame);
 
-  [[nodiscard]] const Frame& frame() const { return frame_; }
-
-  /// @throws InputError as choose_frame
-  [[nodiscard]] GridPoint to_grid(const GeodeticPoint& point) const;
-  /// The inverse of to_grid. @throws InputError far outside the zone
-  [[nodiscard]] GeodeticPoint to_geodetic(const Eigen::Vector2d& position) const;
+  [[nodiscard]] const Frame& frame() const override { return frame_; }
+  [[nodiscard]] GridPoint to_grid(const GeodeticPoint& point) const override;
+  [[nodiscard]] GeodeticPoint to_geodetic(const Eigen::Vector2d& position) const override;
+  [[nodiscard]] Eigen::Vector3d to_ecef(const PointWithHeight& point) const override;
+  [[nodiscard]] PointWithHeight from_ecef(const Eigen::Vector3d& point) const override;
 
   /// Projects position, covariance (turned from true to grid axes, times scale squared), course
   /// (as heading) and scale. Time, height, speed and source are copied. Other members keep

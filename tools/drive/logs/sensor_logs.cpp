@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
+#include <waymark/tools/drive/logs/place_columns.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 
 namespace waymark::drive {
@@ -38,23 +40,28 @@ void resolve_sensors(DriveDescription& description, const TypeRegistry& registry
   for (SensorConfig& sensor : description.sensors) {
     at_place_of(sensor.place, sensor.name, [&] {
       const SensorModelType& type = registry.sensor_model(sensor.name);
+      sensor.options = with_files_below(description.folder, std::move(sensor.options), type.options);
       // errors are found before the work
       (void)registry.make_sensor_model(sensor.name, sensor.options);
       if (type.columns.empty() && sensor.log) throw InputError("takes no log; leave out 'file'");
       if (!type.columns.empty() && !sensor.log)
         throw InputError("needs a log: name it with 'file: ...' (`waymark info` lists its columns)");
-      if (sensor.log) sensor.log->request.readings = type.columns;
+      if (!sensor.log) return;
+      sensor.log->request.readings = type.columns;
+      check_place_columns(sensor.log->request);
     });
   }
 }
 
-SensorTable prepare_readings(const DriveLogs::Log& log, std::span<const SensorColumn> columns,
-                             TimeScale scale, std::span<const GeodeticFix> fixes,
-                             const Projection& projection, PrepareReport& report) {
+SensorTable prepare_readings(const DriveLogs::Log& log, const LogRequest& request, TimeScale scale,
+                             std::span<const GeodeticFix> fixes, const Projection& projection,
+                             PrepareReport& report) {
   SensorTable table = log.data.readings;
   put_on_scale(table.stamps, log, scale, [](Stamp& stamp) -> Stamp& { return stamp; });
   add_log_report(log.data, report.sensor, report);
   table = sorted(table);
+  const std::vector<SensorColumn>& columns = request.readings;
+  place_in_frame(request, &projection, table);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (columns[c].sense != "ccw_from_east") continue;
     for (std::size_t row = 0; row < table.size(); ++row) {

@@ -27,12 +27,13 @@ auto at_place_of(const std::string& place, const std::string& sensor, const Step
 /// log, or a log that is not needed
 void resolve_sensors(DriveDescription& description, const TypeRegistry& registry);
 
-/// Returns the readings of a sensor on the scale of the drive, sorted (stable). Headings from true
-/// east are turned into the frame by the meridian convergence at the fix nearest in time.
-/// @param columns the meaning of the values
+/// Returns the readings of a sensor on the scale of the drive, sorted (stable), with places in the frame
+/// (place_columns.hpp). Headings from true east are turned into the frame by the meridian convergence at
+/// the fix nearest in time.
+/// @param request how the log is read, with the columns of the sensor
 /// @param fixes sorted by stamp, at least one
-/// @throws InputError for a log of seconds of week that would need a date
-[[nodiscard]] SensorTable prepare_readings(const DriveLogs::Log& log, std::span<const SensorColumn> columns,
+/// @throws InputError for a log of seconds of week that would need a date, and for an impossible place
+[[nodiscard]] SensorTable prepare_readings(const DriveLogs::Log& log, const LogRequest& request,
                                            TimeScale scale, std::span<const GeodeticFix> fixes,
                                            const Projection& projection, PrepareReport& report);
 

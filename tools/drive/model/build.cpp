@@ -35,6 +35,17 @@ FixMoment moment_of_fix(const DriveNodes& nodes, const NodeInTime& moment, const
   return {moved.position + rotate(moved.heading, antenna), rotate(moved.heading, velocity)};
 }
 
+/// Adds edges to those of a source; they may continue its last ones of the type.
+void add_share(const formats::EdgeShare& edges, std::vector<formats::EdgeShare>& known) {
+  const auto last = std::find_if(known.rbegin(), known.rend(),
+                                 [&](const formats::EdgeShare& share) { return share.tag == edges.tag; });
+  if (last != known.rend() && last->last + 1 == edges.first) {
+    last->last = edges.last;
+  } else {
+    known.push_back(edges);
+  }
+}
+
 /// Returns the information of the ties between the track of a further source and the nodes.
 std::optional<Eigen::Matrix3d> tie_of(const FusionSettings& settings, const TypeRegistry& registry) {
   const OdometryModelType& type = registry.odometry_model(settings.odometry_model);
@@ -80,16 +91,17 @@ DriveFacts facts_of(const PlacedDrive& placed, const FusionSettings& settings) {
       std::find_if(placed.fixes.begin(), placed.fixes.end(), [](const Fix& fix) { return fix.source == 0; });
   if (first != placed.fixes.end()) facts.antenna_m = first->antenna_m;
   facts.gap_noise_factor = placed.gap_noise_factor;
+  facts.surroundings = placed.surroundings;
   return facts;
 }
 
 GraphBuilder::GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sensors,
                            const FusionSettings& settings, const TypeRegistry& registry)
-    : facts_(std::move(facts)), sensors_(sensors, registry) {
+    : facts_(std::move(facts)), sensors_(sensors, settings, registry) {
   for (const std::string& name : facts_.relative)
-    relative_.push_back({name,
-                         make_odometry_model(for_relative(settings, name), facts_.gap_noise_factor, registry),
-                         tie_of(for_relative(settings, name), registry)});
+    relative_.push_back(
+        {name, make_odometry_model(for_relative(settings, name), facts_.gap_noise_factor, registry),
+         tie_of(for_relative(settings, name), registry), loss_of_source(settings, name, registry)});
   for (const AbsoluteGroup& group : facts_.absolute) {
     const FusionSettings own = for_absolute(settings, group.name, registry);
     if (group.sources.size() > 1) require_common_errors(settings, group.name, registry);
@@ -98,12 +110,36 @@ GraphBuilder::GraphBuilder(DriveFacts facts, std::span<const PreparedSensor> sen
   }
 }
 
+std::vector<std::size_t> GraphBuilder::batch_sizes() const {
+  std::vector<std::size_t> sizes;
+  for (std::size_t b = 0; b < graph_.batch_count(); ++b) sizes.push_back(graph_.batch(b).size());
+  return sizes;
+}
+
+void GraphBuilder::put_loss(const Loss& loss, std::size_t batch, std::size_t first) {
+  for (std::size_t edge = first; edge < graph_.batch(batch).size(); ++edge) {
+    const auto vertices = graph_.batch(batch).vertices(edge);
+    const bool measures = std::any_of(vertices.begin(), vertices.end(), [&](VertexIndex v) {
+      return graph_.vertex_type(v).tag == VertexSe2::kTag;
+    });
+    if (measures && graph_.batch(batch).loss(edge) == nullptr) graph_.set_loss({batch, edge}, loss);
+  }
+}
+
 template <typename Step>
-void GraphBuilder::add_for(const std::string& source, const Step& step) {
+void GraphBuilder::add_for(const std::string& source, const std::optional<Loss>& loss, const Step& step) {
   const auto first = static_cast<VertexIndex>(graph_.vertex_count());
+  const std::vector<std::size_t> before = batch_sizes();
   step();
+  SourceShare& share = shares_[source];
   const auto end = static_cast<VertexIndex>(graph_.vertex_count());
-  if (first < end) vertices_[source].push_back({graph_.id(first), graph_.id(end - 1)});
+  if (first < end) share.vertices.push_back({graph_.id(first), graph_.id(end - 1)});
+  for (std::size_t b = 0; b < graph_.batch_count(); ++b) {
+    const std::size_t known = b < before.size() ? before[b] : 0;
+    if (graph_.batch(b).size() == known) continue;
+    if (loss) put_loss(*loss, b, known);
+    add_share({graph_.edge_type(b).tag, known, graph_.batch(b).size() - 1}, share.edges);
+  }
 }
 
 std::vector<std::shared_ptr<const GnssModeling>> GraphBuilder::modelings() const {
@@ -137,9 +173,12 @@ void GraphBuilder::add_nodes(const DrivePart& part) {
 void GraphBuilder::add_motion(const DrivePart& part, std::size_t joint) {
   if (part.runs.empty()) {
     const DriveNodes all = nodes();
-    add_for(relative_.front().name, [&] {
-      relative_.front().model->extend(
-          {all.stamps.subspan(joint), all.poses.subspan(joint), all.intervals.subspan(joint)}, graph_);
+    const Relative& only = relative_.front();
+    add_for(only.name, only.loss, [&] {
+      only.model->extend({{all.stamps.subspan(joint), all.poses.subspan(joint), all.intervals.subspan(joint)},
+                          only.name,
+                          context_of(facts_.surroundings)},
+                         graph_);
     });
     return;
   }
@@ -147,7 +186,10 @@ void GraphBuilder::add_motion(const DrivePart& part, std::size_t joint) {
     std::vector<Stamp> stamps;
     for (const std::size_t node : run.nodes) stamps.push_back(stamps_[node]);
     const Relative& source = relative_[run.source];
-    add_for(source.name, [&] { source.model->extend({stamps, track_of(run), run.intervals}, graph_); });
+    add_for(source.name, source.loss, [&] {
+      source.model->extend(
+          {{stamps, track_of(run), run.intervals}, source.name, context_of(facts_.surroundings)}, graph_);
+    });
   }
 }
 
@@ -182,10 +224,11 @@ void GraphBuilder::add_fixes(const std::vector<Fix>& fixes, const std::vector<Fi
     const Absolute& source = absolute_[i];
     const Eigen::Vector2d antenna =
         own_fixes[i].empty() ? Eigen::Vector2d(0, 0) : own_fixes[i].front().antenna_m;
-    add_for(source.group.name, [&] {
-      source.model->extend({own_fixes[i], own_moments[i], antenna, source.loss,
-                            source.group.median_accuracy_m, source.group.name},
-                           graph_);
+    add_for(source.group.name, std::nullopt, [&] {
+      source.model->extend(
+          {own_fixes[i], own_moments[i], antenna, source.loss, source.group.median_accuracy_m,
+           source.group.name, context_of(facts_.surroundings)},
+          graph_);
     });
   }
 }
@@ -208,9 +251,15 @@ void GraphBuilder::extend(const DrivePart& part) {
     moments[i] = moment_of_fix(all, near, fixes[i].antenna_m);
     moments[i].assumed_offset_s = offset_s;
   }
-  for (std::size_t i = 0; i < part.sensors.size(); ++i)
-    add_for(part.sensors[i].source,
-            [&] { sensors_.extend(i, part.sensors[i], all, fixes, facts_.antenna_m, grid_scale_, graph_); });
+  for (std::size_t i = 0; i < part.sensors.size(); ++i) {
+    const PreparedSensor& sensor = part.sensors[i];
+    add_for(sensor.source, sensors_.loss(i), [&] {
+      sensors_.extend(i, sensor.place,
+                      {all, fixes, facts_.antenna_m, sensor.readings, grid_scale_, sensor.source,
+                       context_of(facts_.surroundings)},
+                      graph_);
+    });
+  }
   add_fixes(fixes, moments);
   if (!fixes.empty()) grid_scale_ = fixes.back().grid_scale;
 }
@@ -225,7 +274,7 @@ BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor
   BuiltGraph built;
   built.warnings = warnings_of_sensors_apart(sensors, builder.nodes());
   built.modelings = builder.modelings();
-  built.vertices = builder.vertices();
+  built.shares = builder.shares();
   built.graph = std::move(builder.graph());
   return built;
 }

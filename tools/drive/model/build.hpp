@@ -22,8 +22,12 @@
 
 namespace waymark::drive {
 
-/// The vertices of each source by its name: ranges of ids, first and last.
-using SourceVertices = std::map<std::string, std::vector<formats::VertexRange>>;
+/// What a source has added to the graph.
+struct SourceShare {
+  std::vector<formats::VertexRange> vertices;  ///< ranges of ids, first and last
+  std::vector<formats::EdgeShare> edges;
+};
+using SourceShares = std::map<std::string, SourceShare>;  ///< by name of the source
 
 /// Absolute sources that one model serves: one, or several that share their lasting errors.
 struct AbsoluteGroup {
@@ -39,6 +43,7 @@ struct DriveFacts {
   std::vector<std::string> relative;  ///< names of the relative sources, the one of the nodes first
   Eigen::Vector2d antenna_m{0, 0};    ///< of the first receiver, body frame
   double gap_noise_factor = 1;        ///< for the odometry models
+  std::shared_ptr<const DriveSurroundings> surroundings{};  ///< null: plugins see nothing else
 };
 
 /// Returns the facts of a drive that is known as a whole. @param settings from decided()
@@ -87,8 +92,8 @@ class GraphBuilder {
   [[nodiscard]] Graph& graph() { return graph_; }
   /// The models of the fixes, with what they keep of the graph: one for each absolute source.
   [[nodiscard]] std::vector<std::shared_ptr<const GnssModeling>> modelings() const;
-  /// The vertices that each source has added, by its name.
-  [[nodiscard]] const SourceVertices& vertices() const { return vertices_; }
+  /// What each source has added, by its name.
+  [[nodiscard]] const SourceShares& shares() const { return shares_; }
 
  private:
   struct Relative {
@@ -96,6 +101,7 @@ class GraphBuilder {
     std::unique_ptr<OdometryModel> model;
     /// of the ties between its track and the nodes; empty if it joins the nodes themselves
     std::optional<Eigen::Matrix3d> tie_information;
+    std::optional<Loss> loss;
   };
   struct Absolute {
     AbsoluteGroup group;
@@ -108,15 +114,18 @@ class GraphBuilder {
   [[nodiscard]] std::vector<VertexIndex> track_of(const MotionRun& run);
   void add_fixes(const std::vector<Fix>& fixes, const std::vector<FixMoment>& moments);
   [[nodiscard]] std::size_t absolute_of(int source) const;
-  /// Runs a step of a source, and keeps which vertices it adds.
+  /// Runs a step of a source, and keeps which vertices and edges it adds. A loss is put on those
+  /// edges that join a pose: they measure, and others describe how states change.
   template <typename Step>
-  void add_for(const std::string& source, const Step& step);
+  void add_for(const std::string& source, const std::optional<Loss>& loss, const Step& step);
+  [[nodiscard]] std::vector<std::size_t> batch_sizes() const;
+  void put_loss(const Loss& loss, std::size_t batch, std::size_t first);
 
   DriveFacts facts_;
   std::vector<Relative> relative_;
   SensorModels sensors_;
   std::vector<Absolute> absolute_;
-  SourceVertices vertices_;
+  SourceShares shares_;
   Graph graph_;
   std::vector<Stamp> stamps_;
   std::vector<VertexIndex> poses_;
@@ -129,7 +138,7 @@ struct BuiltGraph {
   Graph graph;                                                 ///< the pose of node i has the id i + 1
   std::vector<std::string> warnings;                           ///< of the sensors
   std::vector<std::shared_ptr<const GnssModeling>> modelings;  ///< one for each absolute source
-  SourceVertices vertices;
+  SourceShares shares;
 };
 
 /// Builds the graph of the accepted fixes of a whole drive.

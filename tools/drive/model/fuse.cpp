@@ -40,14 +40,16 @@ void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSetti
 
 /// Finds the delay of the fixes, and the noise if it is estimated: each depends on the other.
 /// @returns what the drive says about the delay of each group; empty for those that have none
-std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings, const TypeRegistry& registry,
-                                                ModeledDrive& modeled) {
+std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings,
+                                                std::span<const PreparedSensor> sensors,
+                                                const TypeRegistry& registry, ModeledDrive& modeled) {
   modeled.settings = settings;
-  std::vector<std::optional<TimeOffset>> offsets = assume_time_offsets(modeled.placed, settings, registry);
+  std::vector<std::optional<TimeOffset>> offsets =
+      assume_time_offsets(modeled.placed, sensors, settings, registry);
   if (!*settings.estimates_noise) return offsets;
-  modeled.noise = estimate_noise(modeled.placed, settings, registry, modeled.noise);
+  modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise);
   modeled.settings = with_noise(settings, modeled.noise);
-  return assume_time_offsets(modeled.placed, modeled.settings, registry);
+  return assume_time_offsets(modeled.placed, sensors, modeled.settings, registry);
 }
 
 /// Leaves out the delays that the drive gives no better odds than their priors, unless they are stated.
@@ -69,15 +71,19 @@ bool leave_out_delays(const std::vector<std::optional<TimeOffset>>& offsets, boo
   return any;
 }
 
-/// Returns the sources for the document; empty for one odometry and one receiver.
+/// Returns the sources for the document; empty for one odometry and one receiver alone.
 std::vector<formats::DocumentSource> document_sources(const PreparedDrive& drive, const PlacedDrive& placed,
-                                                      const SourceVertices& vertices) {
+                                                      const SourceShares& shares,
+                                                      const FusionSettings& settings) {
   std::vector<formats::DocumentSource> sources;
-  if (drive.relative.empty() && drive.receivers.size() < 2) return sources;
+  if (drive.relative.empty() && drive.receivers.size() == 1 && drive.sensors.empty()) return sources;
   const auto add = [&](const std::string& name, const std::string& kind, const Eigen::Vector2d& antenna_m) {
-    const auto own = vertices.find(name);
-    sources.push_back({name, kind, antenna_m, {}});
-    if (own != vertices.end()) sources.back().vertices = own->second;
+    // Members of a group have its states; its edges are counted once.
+    const auto own = shares.find(group_of(settings, name));
+    sources.push_back({name, kind, antenna_m, {}, {}});
+    if (own == shares.end()) return;
+    sources.back().vertices = own->second.vertices;
+    if (own->first == name) sources.back().edges = own->second.edges;
   };
   if (drive.relative.empty()) add(drive.odometry_name, "odometry", {0, 0});
   for (const PreparedOdometry& source : drive.relative) add(source.name, "odometry", {0, 0});
@@ -130,9 +136,9 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   FusionSettings decision = decided(settings, registry_);
   adapt(drive_, !settings.calibration, decision, registry_);
   modeled.placed = placed(decision);
-  const auto offsets = estimate(decision, registry_, modeled);
+  const auto offsets = estimate(decision, drive_.sensors, registry_, modeled);
   if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))
-    (void)estimate(decision, registry_, modeled);
+    (void)estimate(decision, drive_.sensors, registry_, modeled);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);
@@ -141,7 +147,7 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   document.graph = std::move(built.graph);
   document.frame = drive_.frame;
   document.time_scale = drive_.scale;
-  document.sources = document_sources(drive_, modeled.placed, built.vertices);
+  document.sources = document_sources(drive_, modeled.placed, built.shares, modeled.settings);
   if (document.sources.empty() && !modeled.placed.fixes.empty())
     document.antenna_m = modeled.placed.fixes.front().antenna_m;
   document.truth_reference_m = drive_.truth_reference_m;

@@ -43,14 +43,14 @@ OptimizerOptions optimizer_options(const Minimization& how, const MinimizationWa
 
 void check_minimization(const Minimization& how, const TypeRegistry& registry) {
   (void)registry.make_algorithm(how.algorithm, how.options);
-  (void)registry.make_linear_solver(solver_name(how, registry));
+  (void)registry.make_linear_solver(solver_name(how, registry), how.solver_options);
   check_start(how.start, registry);
 }
 
 MultiStartSummary minimize(Graph& graph, const Minimization& how, const TypeRegistry& registry,
                            const MinimizationWatch& watch, const Minimizer& search) {
   const auto algorithm = registry.make_algorithm(how.algorithm, how.options);
-  const auto solver = registry.make_linear_solver(solver_name(how, registry));
+  const auto solver = registry.make_linear_solver(solver_name(how, registry), how.solver_options);
   MultiStartSummary result =
       optimize_from(how.start, graph, registry, *algorithm, *solver, optimizer_options(how, watch), search);
   result.summary.algorithm = how.algorithm;

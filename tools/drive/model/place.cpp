@@ -103,6 +103,7 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
   let_sources_agree(settings, placed);
   for (std::size_t i = 0; i < placed.fixes.size(); ++i)
     placed.fixes[i].vertex = vertex_of(timeline.fix_node[i]);
+  placed.surroundings = std::make_shared<const DriveSurroundings>(drive, placed.fixes);
   return placed;
 }
 

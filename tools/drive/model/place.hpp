@@ -16,6 +16,7 @@
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/motion_runs.hpp>
+#include <waymark/tools/drive/model/surroundings.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
 #include <waymark/tools/drive/nodes/start.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
@@ -37,6 +38,8 @@ struct PlacedDrive {
   double standstill_mps = 0;                 ///< of the odometry model
   double gap_noise_factor = 1;               ///< for the odometry model, from PreparedDrive::timeline
   std::vector<std::string> warnings;         ///< of the preparation; suspicious units, signs, jumps
+  /// what plugins may know of the whole drive; null: nothing
+  std::shared_ptr<const DriveSurroundings> surroundings{};
 };
 
 /// Returns the vertex of a node.

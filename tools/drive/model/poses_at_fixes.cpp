@@ -53,9 +53,9 @@ std::vector<double> delays_of(const formats::GraphDocument& document) {
   bool any = false;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
     if (graph.vertex_type(v).tag != VertexTimeOffset::kTag || graph.fixed(v)) continue;
-    const std::string name = formats::source_of(graph.id(v), document);
     for (std::size_t i = 0; i < delays_s.size(); ++i)
-      if (receivers.empty() || receivers[i].name == name) delays_s[i] = graph.value(v)[0];
+      if (receivers.empty() || formats::has_vertex(receivers[i], graph.id(v)))
+        delays_s[i] = graph.value(v)[0];
     any = true;
   }
   return any ? delays_s : std::vector<double>();

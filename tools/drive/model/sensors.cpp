@@ -16,26 +16,34 @@ bool lie_apart(const SensorTable& readings, const DriveNodes& nodes) {
 
 }  // namespace
 
-SensorModels::SensorModels(std::span<const PreparedSensor> sensors, const TypeRegistry& registry) {
+SensorModels::SensorModels(std::span<const PreparedSensor> sensors, const FusionSettings& settings,
+                           const TypeRegistry& registry) {
   for (const PreparedSensor& sensor : sensors) {
-    at_place_of(sensor.place, sensor.name,
-                [&] { models_.push_back(registry.make_sensor_model(sensor.name, sensor.options)); });
+    at_place_of(sensor.place, sensor.name, [&] {
+      models_.push_back({sensor.name, registry.make_sensor_model(sensor.name, options_of(sensor, settings)),
+                         loss_of_source(settings, sensor.source, registry)});
+    });
   }
 }
 
 void SensorModels::check_drive(std::span<const PreparedSensor> sensors, std::span<const Fix> fixes) const {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     at_place_of(sensors[i].place, sensors[i].name,
-                [&] { models_[i]->check_drive(fixes, sensors[i].readings); });
+                [&] { models_[i].model->check_drive(fixes, sensors[i].readings); });
   }
 }
 
-void SensorModels::extend(std::size_t index, const PreparedSensor& sensor, const DriveNodes& nodes,
-                          std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m, double grid_scale,
+void SensorModels::extend(std::size_t index, const std::string& place, const SensorInput& input,
                           Graph& graph) {
-  at_place_of(sensor.place, sensor.name, [&] {
-    models_[index]->extend({nodes, fixes, antenna_m, sensor.readings, grid_scale, sensor.source}, graph);
-  });
+  at_place_of(place, models_[index].name, [&] { models_[index].model->extend(input, graph); });
+}
+
+Options options_of(const PreparedSensor& sensor, const FusionSettings& settings) {
+  Options options = sensor.options;
+  const auto stated = settings.sources.find(sensor.source);
+  if (stated != settings.sources.end())
+    options.insert(stated->second.options.begin(), stated->second.options.end());
+  return options;
 }
 
 std::vector<std::string> warnings_of_sensors_apart(std::span<const PreparedSensor> sensors,

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <waymark/core/registry/registry.hpp>
+#include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 
 namespace waymark::drive {
@@ -14,25 +16,34 @@ namespace waymark::drive {
 /// The models of the sensors. Errors of a model get the place of its sensor in the drive.yaml.
 class SensorModels {
  public:
-  /// @throws UsageError for an unknown sensor or option
-  SensorModels(std::span<const PreparedSensor> sensors, const TypeRegistry& registry);
+  /// @param settings from decided(), with the estimated noise
+  /// @throws UsageError for an unknown sensor, option or loss
+  SensorModels(std::span<const PreparedSensor> sensors, const FusionSettings& settings,
+               const TypeRegistry& registry);
 
   /// Judges a whole drive. @param fixes accepted ones @throws InputError from a model
   void check_drive(std::span<const PreparedSensor> sensors, std::span<const Fix> fixes) const;
 
   /// Calls the model of one sensor to add its vertices and edges.
   /// @param index of the sensor in the constructor's list
-  /// @param sensor the same one, with its next readings
-  /// @param fixes the next accepted ones
-  /// @param antenna_m of the first receiver, in the body frame
-  /// @param grid_scale at the last fix before these
+  /// @param place of the sensor in the drive.yaml
   /// @throws InputError from the model
-  void extend(std::size_t index, const PreparedSensor& sensor, const DriveNodes& nodes,
-              std::span<const Fix> fixes, const Eigen::Vector2d& antenna_m, double grid_scale, Graph& graph);
+  void extend(std::size_t index, const std::string& place, const SensorInput& input, Graph& graph);
+
+  /// Returns the loss of its measurements, if one is stated.
+  [[nodiscard]] const std::optional<Loss>& loss(std::size_t index) const { return models_[index].loss; }
 
  private:
-  std::vector<std::unique_ptr<SensorModel>> models_;
+  struct Model {
+    std::string name;
+    std::unique_ptr<SensorModel> model;
+    std::optional<Loss> loss;
+  };
+  std::vector<Model> models_;
 };
+
+/// Returns the options of a sensor: its own, and those that are estimated for its source.
+[[nodiscard]] Options options_of(const PreparedSensor& sensor, const FusionSettings& settings);
 
 /// Returns a warning for each sensor without a reading within the drive.
 [[nodiscard]] std::vector<std::string> warnings_of_sensors_apart(std::span<const PreparedSensor> sensors,

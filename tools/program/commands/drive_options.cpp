@@ -130,6 +130,18 @@ void add_drive_options(CLI::App& command, DriveChoice& choice) {
                    "Estimate the delay of speed and yaw rate against the GNSS, and correct it");
 }
 
+/// Adds an option of the command that states options of a registered type.
+static void add_type_options(CLI::App& command, const std::string& name, const std::string& text,
+                             Options& options) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          name, [&options](const std::vector<std::string>& pairs) { options = parse_options(pairs); }, text)
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void add_optimization_options(CLI::App& command, drive::Minimization& minimization) {
   const OptionHeading heading(command, "Optimisation");
   command
@@ -142,17 +154,10 @@ void add_optimization_options(CLI::App& command, drive::Minimization& minimizati
                   "Linear solver, see 'waymark info'; auto: the fastest by measurement")
       ->type_name("SOLVER|auto")
       ->capture_default_str();
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--algorithm-option",
-          [&minimization](const std::vector<std::string>& pairs) {
-            minimization.options = parse_options(pairs);
-          },
-          "Option of the algorithm, see 'waymark info'")
-      ->type_name("NAME=VALUE")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_type_options(command, "--algorithm-option", "Option of the algorithm, see 'waymark info'",
+                   minimization.options);
+  add_type_options(command, "--solver-option", "Option of the linear solver, see 'waymark info'",
+                   minimization.solver_options);
   command
       .add_option("--covariance", minimization.covariances,
                   "Covariances to write: none, of the poses at fixes, or of all poses")

@@ -79,6 +79,13 @@ std::vector<OptionInfo> options_of_modelings(const TypeRegistry& registry) {
   return all;
 }
 
+/// Checks the loss of the measurements of a relative source or a sensor. @param of its place in Places
+void check_loss_of_source(const drive::FusionSettings& settings, const std::string& source,
+                          const std::string& of, const drive::Places& places, const TypeRegistry& registry) {
+  check_stated(places, of + ".loss", of, {},
+               [&] { (void)drive::loss_of_source(settings, source, registry); });
+}
+
 /// Checks what is stated for single sources.
 void check_sources(const drive::FusionSettings& settings, const drive::DriveFile& file,
                    const TypeRegistry& registry) {
@@ -109,11 +116,14 @@ void check_sources(const drive::FusionSettings& settings, const drive::DriveFile
     check_stated(file.places, place + ".model", place, {}, [&] {
       (void)drive::make_odometry_model(own, file.description.timeline.gap_noise_factor, registry);
     });
+    check_loss_of_source(settings, source.name, place, file.places, registry);
     const auto stated = settings.sources.find(source.name);
     if (stated == settings.sources.end()) continue;
     check_own_calibration(stated->second.calibration, place, file.places,
                           registry.odometry_model(own.odometry_model).options);
   }
+  for (const drive::SensorConfig& sensor : file.description.sensors)
+    check_loss_of_source(settings, sensor.source, "sources." + sensor.source, file.places, registry);
 }
 
 /// @throws InputError for an option of the drive.yaml, with its place

@@ -21,7 +21,7 @@ std::vector<formats::FixPoint> fix_points(const formats::GraphDocument& document
                                           const drive::Projection& projection) {
   std::vector<formats::FixPoint> points;
   for (const Fix& fix : document.fixes) {
-    const drive::GeodeticPoint place = projection.to_geodetic(fix.position);
+    const GeodeticPoint place = projection.to_geodetic(fix.position);
     points.push_back({fix.stamp, place.latitude_deg, place.longitude_deg, std::string(to_string(fix.status)),
                       fix.reason, fix.source});
   }
@@ -50,7 +50,7 @@ formats::TrajectoryPoint point_of(const StampedPose& pose, const OfVertex& known
   point.stamp = pose.stamp;
   point.pose = pose.pose;
   if (projection) {
-    const drive::GeodeticPoint place = projection->to_geodetic(point.pose.head<2>());
+    const GeodeticPoint place = projection->to_geodetic(point.pose.head<2>());
     point.latitude_deg = place.latitude_deg;
     point.longitude_deg = place.longitude_deg;
   }

@@ -63,9 +63,9 @@ void place_fix(const PlacedState& state, const drive::Projection& projection,
                const Eigen::Vector2d& velocity_noise, SimulatedFix& simulated) {
   const Eigen::Vector2d error =
       bias_m + simulated.parts.fast + simulated.parts.jitter + simulated.parts.burst;
-  const drive::GridPoint grid = projection.to_grid(projection.to_geodetic(state.pose.head<2>()));
+  const GridPoint grid = projection.to_grid(projection.to_geodetic(state.pose.head<2>()));
   const Eigen::Vector2d from_body = turned(state.pose[2], antenna_m) + turned(grid.convergence_rad, error);
-  const drive::GeodeticPoint place = projection.to_geodetic(state.pose.head<2>() + grid.scale * from_body);
+  const GeodeticPoint place = projection.to_geodetic(state.pose.head<2>() + grid.scale * from_body);
   simulated.fix.stamp = state.stamp;
   simulated.fix.latitude_deg = place.latitude_deg;
   simulated.fix.longitude_deg = place.longitude_deg;
@@ -131,7 +131,7 @@ void sense_truth(std::span<const PlacedState> states, const drive::Projection& p
     drive.poses.push_back({state.stamp, state.pose});
     const Eigen::Vector2d position = state.pose.head<2>() + recipe.position_noise_m * normal_pair(random);
     const double heading = state.pose[2] + recipe.heading_noise_rad * random.normal();
-    const drive::GeodeticPoint place = projection.to_geodetic(position);
+    const GeodeticPoint place = projection.to_geodetic(position);
     const double convergence = projection.to_grid(place).convergence_rad;
     drive.truth.push_back({state.stamp, place.latitude_deg, place.longitude_deg, kHeight,
                            std::remainder(heading - convergence, 2 * std::numbers::pi)});

@@ -85,7 +85,17 @@ struct SensorKind {
 };
 constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
 constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", kDegree}};
-constexpr std::array<SensorKind, 10> kSensorKinds{{{"1", "", kFlags, {}},
+// Coordinates of a place: in the frame, of its UTM zone, WGS84, Earth-centred. The last three are converted
+// when a drive has its frame (tools/drive/logs/place_columns.hpp).
+constexpr std::array kPlaceX{Unit{"m", 1},       Unit{"cm", 1e-2}, Unit{"mm", 1e-3},
+                             Unit{"easting", 1}, Unit{"lon", 1},   Unit{"ecef_x", 1}};
+constexpr std::array kPlaceY{Unit{"m", 1},        Unit{"cm", 1e-2}, Unit{"mm", 1e-3},
+                             Unit{"northing", 1}, Unit{"lat", 1},   Unit{"ecef_y", 1}};
+constexpr std::array kPlaceHeight{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}, Unit{"ecef_z", 1}};
+constexpr std::array<SensorKind, 13> kSensorKinds{{{"1", "", kFlags, {}},
+                                                   {"m", "x", kPlaceX, {}},
+                                                   {"m", "y", kPlaceY, {}},
+                                                   {"m", "height", kPlaceHeight, {}},
                                                    {"m", "", kLengths, {}},
                                                    {"m/s", "", kSpeeds, {}},
                                                    {"m/s^2", "", kAccelerations, {}},
