@@ -73,13 +73,13 @@ struct NoisePrior {
 
 /// An option of a registered type.
 struct OptionInfo {
-  std::string name;
+  std::string name{};
   /// The default, as a user would write it; of lists and mappings in flow style: "[]", "{x: 1}"
   /// (core/registry/flow_text.hpp).
-  std::string value;
-  std::string unit;  ///< empty: none
+  std::string value{};
+  std::string unit{};  ///< empty: none
   std::variant<OptionRange, OptionWords, OptionText, OptionList, OptionMapping, OptionRecord> allowed;
-  std::string text;  ///< meaning of the option; for words it explains each of them
+  std::string text{};  ///< meaning of the option; for words it explains each of them
   /// If given, the option is a noise parameter that can be estimated from a drive
   /// (core/covariance/evidence.hpp).
   std::optional<NoisePrior> prior = {};

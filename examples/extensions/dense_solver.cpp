@@ -9,11 +9,14 @@ using namespace waymark;
 
 class DenseCholesky final : public LinearSolver {
  public:
+  explicit DenseCholesky(const CheckedOptions& options)
+      : most_(static_cast<std::int64_t>(options.number("most"))) {}
+
   /// Once per pattern: everything that does not depend on the numbers.
   void analyze(const BlockPattern& pattern) override {
-    if (pattern.dimension() > kMost)
+    if (pattern.dimension() > most_)
       throw UsageError("dense: " + std::to_string(pattern.dimension()) + " unknowns are too many, at most " +
-                       std::to_string(kMost) + "; use block_cholesky");
+                       std::to_string(most_) + "; use block_cholesky");
     pattern_ = to_scalar<int>(pattern);  // row and column of each number
     matrix_.setZero(pattern.dimension(), pattern.dimension());
   }
@@ -45,14 +48,18 @@ class DenseCholesky final : public LinearSolver {
   [[nodiscard]] std::string description() const override { return "dense"; }
 
  private:
-  static constexpr std::int64_t kMost = 5000;  // 200 MB
+  std::int64_t most_;
   ScalarPattern<int> pattern_;
   Eigen::MatrixXd matrix_;
   Eigen::LLT<Eigen::MatrixXd, Eigen::Upper> factor_;
 };
 
 static void register_types(TypeRegistry& registry) {
-  registry.add_linear_solver({"dense", "Eigen's dense LL^T, for small graphs", "MPL-2.0",
-                              [](const CheckedOptions&) { return std::make_unique<DenseCholesky>(); }});
+  registry.add_linear_solver(
+      {"dense",
+       "Eigen's dense LL^T, for small graphs",
+       "MPL-2.0",
+       [](const CheckedOptions& options) { return std::make_unique<DenseCholesky>(options); },
+       {{"most", "5000", "", OptionRange{1, 1e5}, "unknowns; more are refused (5000: 200 MB)"}}});
 }
 WAYMARK_PLUGIN(dense_solver, "1.0.0", register_types);

@@ -12,9 +12,9 @@ namespace waymark::evaluation {
 namespace {
 
 void check(const EvaluationInput& input) {
-  const std::size_t n = input.fixes.size();
-  if (input.fused.size() != n)
-    throw UsageError(fmt::format("evaluate: {} fused poses for {} fixes", input.fused.size(), n));
+  const std::size_t n = input.fused.size();
+  if (!input.fixes.empty() && input.fixes.size() != n)
+    throw UsageError(fmt::format("evaluate: {} fused poses for {} fixes", n, input.fixes.size()));
   if (!input.when_measured.empty() && input.when_measured.size() != n)
     throw UsageError(fmt::format("evaluate: {} poses at the times of measurement for {} fixes",
                                  input.when_measured.size(), n));
@@ -25,15 +25,17 @@ void check(const EvaluationInput& input) {
                                   [](const Fix& fix) { return fix.antenna_m.allFinite(); });
   if (!levers || !input.truth_reference_m.allFinite())
     throw UsageError("evaluate: a lever arm is not finite");
-  for (std::size_t i = 0; i < n; ++i) {
+  for (const StampedPose& fused : input.fused) {
+    if (!fused.pose.allFinite())
+      throw InputError(
+          fmt::format("evaluate: fused pose at {} s is not finite", formats::decimal_seconds(fused.stamp)));
+  }
+  for (std::size_t i = 0; i < input.fixes.size(); ++i) {
     const Stamp stamp = input.fixes[i].stamp;
     if (std::abs(seconds_between(input.fused[i].stamp, stamp)) > input.max_stamp_offset_s)
       throw UsageError(fmt::format("evaluate: fused pose {} at {} s does not belong to the fix at {} s", i,
                                    formats::decimal_seconds(input.fused[i].stamp),
                                    formats::decimal_seconds(stamp)));
-    if (!input.fused[i].pose.allFinite())
-      throw InputError(
-          fmt::format("evaluate: fused pose at {} s is not finite", formats::decimal_seconds(stamp)));
     if (!input.fixes[i].position.allFinite())
       throw InputError(fmt::format("evaluate: fix at {} s is not finite", formats::decimal_seconds(stamp)));
   }
@@ -91,16 +93,16 @@ void compare_with_truth(const EvaluationInput& input, std::size_t i, const Truth
   const Eigen::Vector3d& fused = input.fused[i].pose;
   const double heading = truth.heading_rad.value_or(fused[2]);
   const Eigen::Vector2d truth_body = truth.position - rotate(heading, input.truth_reference_m);
-  const Eigen::Vector2d gnss_body = input.fixes[i].position - rotate(heading, input.fixes[i].antenna_m);
-  result.gnss_offset_m = gnss_body - truth_body;
+  if (!input.fixes.empty())
+    result.gnss_offset_m = input.fixes[i].position - rotate(heading, input.fixes[i].antenna_m) - truth_body;
   result.fused_offset_m = fused.head<2>() - truth_body;
   if (truth.heading_rad) result.heading_error_rad = wrap_angle(fused[2] - *truth.heading_rad);
 }
 
 TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochResult>& epochs) {
   std::vector<Stamp> stamps;
-  stamps.reserve(input.fixes.size());
-  for (const Fix& fix : input.fixes) stamps.push_back(fix.stamp);
+  stamps.reserve(epochs.size());
+  for (const EpochResult& epoch : epochs) stamps.push_back(epoch.stamp);
 
   TruthEvaluation evaluation;
   evaluation.match = interpolate_truth(input.truth, stamps, input.truth_options);
@@ -108,13 +110,13 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
   Gathered gnss_accepted;
   Gathered fused;
   std::vector<Eigen::Matrix2d> covariances;
-  for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
     const std::optional<TruthAtEpoch>& truth = evaluation.match.at[i];
     if (!truth) continue;
     EpochResult& epoch = epochs[i];
     compare_with_truth(input, i, truth->pose, epoch);
     epoch.direction_rad = truth->pose.heading_rad ? truth->pose.heading_rad : truth->direction_rad;
-    gnss.add(epoch.stamp, *epoch.gnss_offset_m, epoch.direction_rad);
+    if (epoch.gnss_offset_m) gnss.add(epoch.stamp, *epoch.gnss_offset_m, epoch.direction_rad);
     fused.add(epoch.stamp, *epoch.fused_offset_m, epoch.direction_rad);
     if (epoch.position_covariance) {
       covariances.push_back(*epoch.position_covariance);
@@ -138,13 +140,15 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
 /// Fills everything that needs no truth, except `nu`.
 std::vector<EpochResult> epochs_without_truth(const EvaluationInput& input) {
   const std::vector<std::optional<double>> speeds = fused_speeds(input.fused);
-  std::vector<EpochResult> epochs(input.fixes.size());
+  std::vector<EpochResult> epochs(input.fused.size());
   for (std::size_t i = 0; i < epochs.size(); ++i) {
-    const Fix& fix = input.fixes[i];
-    epochs[i].stamp = fix.stamp;
-    epochs[i].status = fix.status;
-    epochs[i].reason = fix.reason;
-    epochs[i].fix_sigma_m = fix.covariance.diagonal().cwiseSqrt();
+    epochs[i].stamp = input.fixes.empty() ? input.fused[i].stamp : input.fixes[i].stamp;
+    if (!input.fixes.empty()) {
+      const Fix& fix = input.fixes[i];
+      epochs[i].status = fix.status;
+      epochs[i].reason = fix.reason;
+      epochs[i].fix_sigma_m = fix.covariance.diagonal().cwiseSqrt();
+    }
     epochs[i].speed_mps = speeds[i];
     if (!input.position_covariances.empty()) epochs[i].position_covariance = input.position_covariances[i];
   }

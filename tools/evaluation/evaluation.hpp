@@ -18,6 +18,7 @@
 
 #include <waymark/core/drive/frame.hpp>
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/evaluation/document/source_residuals.hpp>
 #include <waymark/tools/evaluation/numbers/autocorrelation.hpp>
 #include <waymark/tools/evaluation/numbers/consistency.hpp>
 #include <waymark/tools/evaluation/numbers/innovation.hpp>
@@ -29,7 +30,8 @@
 namespace waymark::evaluation {
 
 struct EvaluationInput {
-  /// The pose at each fix: same length and order as `fixes`, stamps within max_stamp_offset_s.
+  /// The pose at each fix: same length and order as `fixes`, stamps within max_stamp_offset_s. Without
+  /// fixes, the poses to evaluate.
   std::vector<StampedPose> fused;
   /// The pose at the moment when each fix was really measured, if a time offset was estimated.
   /// Empty: `fused`. The residuals of the fixes use it.
@@ -54,11 +56,11 @@ struct SystemMetrics {
   ScalarStatistics heading;  ///< heading error, rad, wrapped; only if the truth has a heading
 };
 
-/// The result at one fix, for plots, reports and PREFIX.epochs.csv (epochs_csv.hpp).
+/// The result at one fix, or at one pose of a drive without receivers, for plots, reports and PREFIX.epochs.csv (epochs_csv.hpp).
 struct EpochResult {
   Stamp stamp;
-  FixStatus status = FixStatus::accepted;
-  std::string reason;  ///< reason for the status
+  std::optional<FixStatus> status;  ///< empty: the drive has no receiver
+  std::string reason;               ///< reason for the status
   /// stated by the receiver: grid east, north
   Eigen::Vector2d fix_sigma_m{kUndefined, kUndefined};
   std::optional<double> speed_mps;                     ///< fused; see fused_speeds
@@ -104,8 +106,9 @@ struct Evaluation {
   InnovationStatistics gated;       ///< rejected fixes
   InnovationStatistics prediction;  ///< withheld fixes: true innovations
   Frame frame;
-  std::vector<EpochResult> epochs;  ///< one per fix
-  SourceComparison sources;         ///< empty from evaluate(): it takes further fusions
+  std::vector<EpochResult> epochs;           ///< one per fused pose
+  SourceComparison sources;                  ///< empty from evaluate(): it takes further fusions
+  std::vector<SourceResiduals> residuals{};  ///< empty from evaluate(): it takes the graph
 
   [[nodiscard]] std::size_t fixes() const { return accepted + rejected + withheld; }
 };

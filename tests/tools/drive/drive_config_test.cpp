@@ -361,7 +361,8 @@ TEST_CASE("drive.yaml: what is missing, doubled or no YAML") {
   CHECK_THROWS_MATCHES(parse("gnss: {file: g.csv}\n"), InputError,
                        Message("tours/drive.yaml:1:1: 'odometry' is missing"));
   CHECK_THROWS_MATCHES(parse("odometry: {file: g.csv}\n"), InputError,
-                       Message("tours/drive.yaml:1:1: 'gnss' is missing"));
+                       Message("tours/drive.yaml:1:1: 'gnss' is missing; a drive without it needs a sensor that sees known "
+                                "places, or 'first_pose'"));
   CHECK_THROWS_MATCHES(parse("odometry: {file: o.csv}\ngnss: []\n"), InputError,
                        Message("tours/drive.yaml:2:7: gnss: at least one log is needed"));
   CHECK(error_of("gate: {}\ngate: {}\n") == "tours/drive.yaml:4:1: key 'gate' is given twice");

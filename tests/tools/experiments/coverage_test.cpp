@@ -92,7 +92,7 @@ StatedError error_in_the_middle(const SimulatedDrive& simulated, const PreparedD
   REQUIRE(fused.minimum.summary.converged());
   const formats::GraphDocument& document = fused.model.document;
   evaluation::EvaluationInput input = waymark_test::against_truth(document, simulated);
-  for (const auto& covariance : position_covariances_at_fixes(document))
+  for (const auto& covariance : evaluated_covariances(document))
     input.position_covariances.push_back(covariance.value());
   const evaluation::EpochResult& epoch = evaluation::evaluate(input).epochs[input.fixes.size() / 2];
   return {epoch.fused_offset_m.value(), epoch.position_covariance.value()};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
@@ -148,6 +150,36 @@ GnssConfig read_gnss(const YamlSection& section, std::string name, const DriveDe
   return gnss;
 }
 
+/// Reads latitude and longitude, or a position in the frame.
+void read_place(const YamlSection& section, StatedPose& pose) {
+  if (section.has("position")) section.read("position", pose.position_m.emplace());
+  if (!section.has("latitude") && !section.has("longitude")) return;
+  if (pose.position_m || !section.has("latitude") || !section.has("longitude"))
+    section.fail(section.has("latitude") ? "latitude" : "longitude",
+                 "a place is latitude and longitude together, or position");
+  GeodeticPoint& place = pose.place.emplace();
+  section.read("latitude", place.latitude_deg, {-90, 90, "degrees from -90 to 90"});
+  section.read("longitude", place.longitude_deg, {-180, 360, "degrees from -180 to 360"});
+}
+
+void read_first_pose(const YamlSection& top, DriveDescription& drive) {
+  const auto section = top.section(
+      "first_pose", {"position", "latitude", "longitude", "heading_deg", "sigma", "heading_sigma_deg"});
+  if (!section) return;
+  StatedPose& pose = drive.first_pose.emplace();
+  read_place(*section, pose);
+  std::optional<double> heading_deg;
+  section->read("heading_deg", heading_deg, kAnyNumber);
+  if (heading_deg) pose.heading_rad = std::remainder(*heading_deg, 360) * kDegree;
+  section->read("sigma", pose.sigma_m, kPositive);
+  double sigma_deg = pose.sigma_rad / kDegree;
+  section->read("heading_sigma_deg", sigma_deg, kPositive);
+  pose.sigma_rad = sigma_deg * kDegree;
+  if (!pose.place && !pose.position_m && !pose.heading_rad)
+    throw InputError(section->place() +
+                     "first_pose: state a place (position, or latitude and longitude) or heading_deg");
+}
+
 void read_truth(const YamlSection& top, DriveDescription& drive) {
   if (!top.has("truth")) return;
   const YamlSection section(top.node("truth"), "truth", top.file(), log_keys({"accuracy", "reference"}));
@@ -216,7 +248,10 @@ void read_sources(const YamlSection& top, DriveDescription& drive) {
     }
   }
   if (drive.odometry.empty()) throw InputError(top.place() + "'odometry' is missing");
-  if (drive.gnss.empty()) throw InputError(top.place() + "'gnss' is missing");
+  if (drive.gnss.empty() && drive.sensors.empty() && !drive.first_pose)
+    throw InputError(
+        top.place() +
+        "'gnss' is missing; a drive without it needs a sensor that sees known places, or 'first_pose'");
   if (std::count_if(drive.odometry.begin(), drive.odometry.end(),
                     [](const OdometryConfig& odometry) { return odometry.gives_nodes; }) > 1)
     throw InputError(top.place() + "'nodes: true' is stated for two sources; nodes come from one");
@@ -250,6 +285,7 @@ DriveDescription read_description(const YamlSection& top, const std::string& dat
   read_folder(top, data_folder, drive);
   read_time(top, drive);
   read_frame(top, drive);
+  read_first_pose(top, drive);
   read_sources(top, drive);
   read_truth(top, drive);
   read_timeline(top, drive);

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/core/drive/stamp.hpp>
 #include <waymark/core/registry/options.hpp>
@@ -58,6 +59,15 @@ struct SensorConfig {
   std::string source = {};  ///< name of the source; that of the sensor model if none is stated
 };
 
+/// The pose of the body point at the first node, as it is stated.
+struct StatedPose {
+  std::optional<GeodeticPoint> place{};         ///< if it is stated as such
+  std::optional<Eigen::Vector2d> position_m{};  ///< in the frame
+  std::optional<double> heading_rad{};          ///< counter-clockwise from true east
+  double sigma_m = 1;                           ///< per axis
+  double sigma_rad = 0.1;
+};
+
 /// Artificial outages. Time after the first fix is divided into periods of `every_s` seconds; the
 /// last `length_s` of each have no fixes.
 struct OutagePattern {
@@ -71,9 +81,10 @@ struct DriveDescription {
   std::string name;                      ///< default: name of the file without ".yaml"
   std::string folder;                    ///< the folder for relative names of logs
   std::vector<OdometryConfig> odometry;  ///< relative sources, at least one
-  std::vector<GnssConfig> gnss;          ///< absolute sources, at least one
+  std::vector<GnssConfig> gnss;          ///< absolute sources; none: further sensors say where it is
   std::optional<LogConfig> truth;
   std::vector<SensorConfig> sensors;
+  std::optional<StatedPose> first_pose;
   /// modules to load, resolved against the folder of the drive.yaml
   std::vector<std::string> plugins;
 

@@ -49,7 +49,7 @@ DriveFile parse_drive_file(const std::string& text, const std::string& path, con
   const YamlSection top(
       load_yaml(text, path), "", path,
       {"name", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap", "snap", "initial_guess",
-       "modeling", "calibration", "noise", "sensors", "sources", "plugins"});
+       "modeling", "calibration", "noise", "sensors", "sources", "plugins", "first_pose"});
   DriveFile file;
   file.places.file = path;
   file.description = read_description(top, data_folder);

@@ -82,6 +82,7 @@ CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> s
   CoarseDrive result;
   PlacedDrive& coarse = result.drive;
   coarse.surroundings = placed.surroundings;
+  coarse.first_pose = placed.first_pose;
   coarse.gate = placed.gate;
   coarse.receivers = placed.receivers;
   coarse.time_offsets_s = placed.time_offsets_s;

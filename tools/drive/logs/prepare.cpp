@@ -8,14 +8,15 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/logs/frame_choice.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/projection.hpp>
-#include <waymark/tools/drive/logs/sensor_logs.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 #include <waymark/tools/drive/nodes/agreement.hpp>
 #include <waymark/tools/drive/nodes/fix_motion.hpp>
 #include <waymark/tools/drive/nodes/frozen.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
+#include <waymark/tools/drive/sensors/sensor_logs.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -137,6 +138,19 @@ void cover_gaps(PreparedDrive& drive) {
                     drive.odometry_name, added));
 }
 
+/// Replaces odometry that is missing, or repeats one reading while the fixes move, by their motion.
+void mend_by_fixes(PreparedDrive& drive) {
+  const bool bridges = drive.timeline.gap_policy == GapPolicy::bridge;
+  const std::size_t filled = bridges ? fill_gaps(drive.odometry, drive.fixes, drive.timeline.gap_s) : 0;
+  if (filled > 0)
+    drive.report.notes.push_back(
+        fmt::format("the motion of the fixes is assumed in {} of these places", filled));
+  const std::vector<FrozenOdometry> frozen = find_frozen_odometry(drive.odometry, drive.fixes);
+  assume_motion_of_fixes(frozen, drive.fixes, drive.odometry);
+  for (const FrozenOdometry& time : frozen)
+    drive.report.warnings.push_back(warning_of(time, drive.odometry.front().stamp));
+}
+
 void judge_odometry(PreparedDrive& drive) {
   if (!drive.relative.empty()) {
     leave_out_frozen(drive);
@@ -147,21 +161,14 @@ void judge_odometry(PreparedDrive& drive) {
   } else {
     note_yaw_rate("", drive.yaw_rate_at_rest, drive.report);
   }
-  const bool bridges = drive.timeline.gap_policy == GapPolicy::bridge;
-  const std::size_t filled = bridges ? fill_gaps(drive.odometry, drive.fixes, drive.timeline.gap_s) : 0;
-  if (filled > 0)
-    drive.report.notes.push_back(
-        fmt::format("the motion of the fixes is assumed in {} of these places", filled));
-  const std::vector<FrozenOdometry> frozen = find_frozen_odometry(drive.odometry, drive.fixes);
-  assume_motion_of_fixes(frozen, drive.fixes, drive.odometry);
-  for (const FrozenOdometry& time : frozen)
-    drive.report.warnings.push_back(warning_of(time, drive.odometry.front().stamp));
+  if (!drive.fixes.empty()) mend_by_fixes(drive);
   if (std::string warning = warning_of_accelerations(drive.odometry); !warning.empty())
     drive.report.warnings.push_back(std::move(warning));
 }
 
 /// Drops the fixes that no odometry covers any more: parts of it were left out.
 void cut_fixes(PreparedDrive& drive) {
+  if (drive.fixes.empty()) return;
   const std::size_t before = drive.fixes.size();
   std::erase_if(drive.fixes, [&](const Fix& fix) {
     return fix.stamp < drive.odometry.front().stamp || fix.stamp > drive.odometry.back().stamp;
@@ -213,14 +220,19 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   const std::vector<GeodeticTruth> truth = clean_truth(logs.truth, drive.scale, drive.report);
   require_overlap(truth, drive.odometry, description);
 
-  drive.frame = choose_frame({fixes.front().latitude_deg, fixes.front().longitude_deg}, description.utm_zone,
-                             description.utm_origin);
-  const Projection projection(drive.frame);
+  drive.frame = frame_of(description, logs, fixes);
+  drive.first_pose = first_pose_in(drive.frame, description);
+  std::optional<Projection> projection;
+  if (drive.frame.zone != 0) projection.emplace(drive.frame);
+  if (!projection && !truth.empty())
+    throw InputError(description.path +
+                     ": the truth is geodetic and the drive has a local frame; state "
+                     "'frame: {utm_zone: ..., origin: [...]}'");
   for (const GeodeticFix& fix : fixes) {
-    drive.fixes.push_back(projection.project(fix));
+    drive.fixes.push_back(projection->project(fix));
     drive.fixes.back().antenna_m = drive.receivers.at(static_cast<std::size_t>(fix.source)).antenna_m;
   }
-  for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection.project(pose));
+  for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection->project(pose));
   number_epochs(drive.fixes, description, drive.report);
   judge_odometry(drive);
   cut_fixes(drive);
@@ -230,8 +242,8 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
         .name = sensor.name, .options = sensor.options, .place = sensor.place, .source = sensor.source});
     if (sensor.log)
       prepared.readings = at_place_of(sensor.place, sensor.name, [&] {
-        return prepare_readings(logs.sensors[i], sensor.log->request, drive.scale, fixes, projection,
-                                drive.report);
+        return prepare_readings(logs.sensors[i], sensor.log->request, drive.scale, fixes,
+                                projection ? &*projection : nullptr, drive.report);
       });
   }
   std::vector<std::string>& notes = drive.report.notes;

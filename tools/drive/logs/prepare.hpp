@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -96,6 +97,14 @@ struct PreparedReceiver {
   Eigen::Vector2d antenna_m{0, 0};  ///< body frame
 };
 
+/// The pose of the body point at the first node, as it is stated; in the frame.
+struct FirstPose {
+  std::optional<Eigen::Vector2d> position;
+  std::optional<double> heading_rad;  ///< counter-clockwise from grid east
+  double sigma_m = 1;                 ///< per axis
+  double sigma_rad = 0.1;
+};
+
 /// A file that a drive was read from.
 struct InputFile {
   std::string path;
@@ -115,12 +124,13 @@ struct PreparedDrive {
   YawRateAtRest yaw_rate_at_rest;             ///< of it
   std::vector<PreparedOdometry> relative{};   ///< all relative sources if there are several; else empty
   std::vector<PreparedReceiver> receivers{};  ///< absolute sources
-  /// stamp and source are unique together; at least 1; `epoch` counts from 0
+  /// stamp and source are unique together; at least 1 if there are receivers; `epoch` counts from 0
   std::vector<Fix> fixes;
   std::vector<TruthPose> truth;             ///< stamps unique; may be empty
   std::vector<PreparedSensor> sensors;      ///< as DriveDescription::sensors
   Eigen::Vector2d truth_reference_m{0, 0};  ///< body frame
   Vehicle vehicle{};                        ///< as stated for the first relative source
+  std::optional<FirstPose> first_pose{};    ///< as stated
   TimelineOptions timeline;                 ///< how samples become nodes
   /// in the order of the description, each log before its companions
   std::vector<InputFile> inputs;
@@ -163,8 +173,8 @@ struct DriveLogs {
 ///    withheld.
 /// 7. Everything is projected.
 /// 8. Odometry that repeats one reading while the fixes move is replaced (nodes/frozen.hpp).
-/// @throws InputError with the remedy for: fewer than two odometry samples, no fix, no fix within
-/// the span of the odometry, truth that does not overlap the odometry, and a log of seconds of week
+/// @throws InputError with the remedy for: fewer than two odometry samples, a receiver without a fix
+/// within the span of the odometry, truth that does not overlap the odometry, and a log of seconds of week
 /// that would need a date
 [[nodiscard]] PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& description);
 

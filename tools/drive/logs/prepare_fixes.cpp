@@ -86,6 +86,7 @@ const GnssConfig& receiver_of(const DriveDescription& description, std::size_t s
 std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescription& description,
                                        const std::vector<OdometrySample>& odometry, PrepareReport& report) {
   std::vector<GeodeticFix> fixes;
+  if (logs.gnss.empty() && description.gnss.empty()) return fixes;
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
     const DriveLogs::Log& log = logs.gnss[i];
     const std::size_t before = fixes.size();

@@ -31,7 +31,7 @@ namespace waymark::drive {
 [[nodiscard]] const GnssConfig& receiver_of(const DriveDescription& description, std::size_t source);
 
 /// Adds logged velocities to the fixes, cleans them, subtracts their delay, drops those outside the
-/// odometry and thins the rest. @throws InputError if no fix is left
+/// odometry and thins the rest. @throws InputError if there are receivers and no fix is left
 [[nodiscard]] std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs,
                                                      const DriveDescription& description,
                                                      const std::vector<OdometrySample>& odometry,

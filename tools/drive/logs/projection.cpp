@@ -113,6 +113,14 @@ TruthPose Projection::project(const GeodeticTruth& truth) const {
   return result;
 }
 
+GeodeticPoint geodetic_from_ecef(const Eigen::Vector3d& point) {
+  GeodeticPoint place;
+  double height_m = 0;
+  Geocentric::WGS84().Reverse(point.x(), point.y(), point.z(), place.latitude_deg, place.longitude_deg,
+                              height_m);
+  return place;
+}
+
 double grid_heading_from_course(double course_rad, double convergence_rad) {
   return wrap_angle(pi / 2 - course_rad + convergence_rad);
 }

@@ -52,6 +52,9 @@ class Projection final : public Geodesy {
   Frame frame_;
 };
 
+/// Returns the place of an Earth-centred, Earth-fixed point, m.
+[[nodiscard]] GeodeticPoint geodetic_from_ecef(const Eigen::Vector3d& point);
+
 /// Returns the heading on the grid for a course (clockwise from true north), in (-pi, pi].
 [[nodiscard]] double grid_heading_from_course(double course_rad, double convergence_rad);
 /// Returns the heading on the grid for a heading counter-clockwise from true east, in (-pi, pi].

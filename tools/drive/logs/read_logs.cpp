@@ -7,7 +7,7 @@
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/text/hash.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
-#include <waymark/tools/drive/logs/sensor_logs.hpp>
+#include <waymark/tools/drive/sensors/sensor_logs.hpp>
 
 namespace waymark::drive {
 namespace {

@@ -91,6 +91,7 @@ DriveFacts facts_of(const PlacedDrive& placed, const FusionSettings& settings) {
       std::find_if(placed.fixes.begin(), placed.fixes.end(), [](const Fix& fix) { return fix.source == 0; });
   if (first != placed.fixes.end()) facts.antenna_m = first->antenna_m;
   facts.gap_noise_factor = placed.gap_noise_factor;
+  facts.first_pose = placed.first_pose;
   facts.surroundings = placed.surroundings;
   return facts;
 }
@@ -170,6 +171,17 @@ void GraphBuilder::add_nodes(const DrivePart& part) {
   intervals_.insert(intervals_.end(), part.intervals.begin(), part.intervals.end());
 }
 
+void GraphBuilder::add_first_pose() {
+  if (!facts_.first_pose) return;
+  const FirstPose& stated = *facts_.first_pose;
+  const auto inverse_square = [](double sigma) { return 1 / (sigma * sigma); };
+  const double at = stated.position ? inverse_square(stated.sigma_m) : 0;
+  const double turned = stated.heading_rad ? inverse_square(stated.sigma_rad) : 0;
+  const Eigen::Vector2d position = stated.position.value_or(Eigen::Vector2d(0, 0));
+  graph_.add_edge(EdgePriorSe2{{position[0], position[1], stated.heading_rad.value_or(0)}}, {poses_.front()},
+                  Eigen::Matrix3d(Eigen::Vector3d(at, at, turned).asDiagonal()));
+}
+
 void GraphBuilder::add_motion(const DrivePart& part, std::size_t joint) {
   if (part.runs.empty()) {
     const DriveNodes all = nodes();
@@ -237,7 +249,9 @@ void GraphBuilder::extend(const DrivePart& part) {
   if (intervals_.empty() && part.intervals.empty() && !part.fixes.empty())
     throw UsageError("a drive that grows needs its first two nodes before its first fix");
   const std::size_t joint = poses_.empty() ? 0 : poses_.size() - 1;
+  const bool begins = poses_.empty();
   add_nodes(part);
+  if (begins && !poses_.empty()) add_first_pose();
   add_motion(part, joint);
   const DriveNodes all = nodes();
   std::vector<Fix> fixes(part.fixes.begin(), part.fixes.end());

@@ -18,7 +18,7 @@
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/model/motion_runs.hpp>
 #include <waymark/tools/drive/model/place.hpp>
-#include <waymark/tools/drive/model/sensors.hpp>
+#include <waymark/tools/drive/sensors/sensor_models.hpp>
 
 namespace waymark::drive {
 
@@ -40,9 +40,10 @@ struct AbsoluteGroup {
 /// What the models know of a drive before its first part.
 struct DriveFacts {
   std::vector<AbsoluteGroup> absolute;
-  std::vector<std::string> relative;  ///< names of the relative sources, the one of the nodes first
-  Eigen::Vector2d antenna_m{0, 0};    ///< of the first receiver, body frame
-  double gap_noise_factor = 1;        ///< for the odometry models
+  std::vector<std::string> relative;      ///< names of the relative sources, the one of the nodes first
+  Eigen::Vector2d antenna_m{0, 0};        ///< of the first receiver, body frame
+  double gap_noise_factor = 1;            ///< for the odometry models
+  std::optional<FirstPose> first_pose{};  ///< of the first node: it becomes a prior
   std::shared_ptr<const DriveSurroundings> surroundings{};  ///< null: plugins see nothing else
 };
 
@@ -109,6 +110,7 @@ class GraphBuilder {
     std::shared_ptr<GnssModeling> model;
   };
   void add_nodes(const DrivePart& part);
+  void add_first_pose();
   void add_motion(const DrivePart& part, std::size_t joint);
   /// Returns the poses of a run: the nodes, or poses beside them.
   [[nodiscard]] std::vector<VertexIndex> track_of(const MotionRun& run);

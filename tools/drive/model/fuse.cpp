@@ -76,7 +76,7 @@ std::vector<formats::DocumentSource> document_sources(const PreparedDrive& drive
                                                       const SourceShares& shares,
                                                       const FusionSettings& settings) {
   std::vector<formats::DocumentSource> sources;
-  if (drive.relative.empty() && drive.receivers.size() == 1 && drive.sensors.empty()) return sources;
+  if (drive.relative.empty() && drive.receivers.size() < 2 && drive.sensors.empty()) return sources;
   const auto add = [&](const std::string& name, const std::string& kind, const Eigen::Vector2d& antenna_m) {
     // Members of a group have its states; its edges are counted once.
     const auto own = shares.find(group_of(settings, name));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <waymark/core/covariance/marginals.hpp>
+#include <waymark/tools/drive/model/poses_at_fixes.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -11,9 +12,8 @@ namespace {
 std::vector<VertexIndex> wanted_vertices(const formats::GraphDocument& document, const std::string& which) {
   std::vector<VertexIndex> vertices;
   if (which == "fixes") {
-    for (const Fix& fix : document.fixes) {  // fixes of several receivers may share a vertex
-      if (const auto vertex = document.graph.find(fix.vertex)) vertices.push_back(*vertex);
-    }
+    vertices = evaluated_vertices(document);
+    std::erase(vertices, -1);  // fixes of several receivers may share a vertex
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   } else if (which == "all") {

@@ -172,7 +172,7 @@ PosesAtWithheld causal_at_withheld(const PreparedDrive& drive, const FuseDrive& 
     if (!document) continue;
     require_fixes_of(known, *document);
     const std::vector<Eigen::Vector3d> poses = poses_of_fixes(*document);
-    const auto covariances = position_covariances_at_fixes(*document);
+    const auto covariances = evaluated_covariances(*document);
     for (std::size_t i = run.begin; i < run.end; ++i) {
       result.poses[i] = poses[i];
       result.position_covariances[i] = covariances[i];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <waymark/tools/drive/model/start_search.hpp>
 #include <waymark/tools/drive/nodes/agreement.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 
@@ -37,7 +38,9 @@ PlacedDrive begun(const PreparedDrive& drive, const Timeline& timeline, const Fu
   if (!settings.lever_arm)
     for (Fix& fix : placed.fixes) fix.antenna_m.setZero();
   for (const PreparedReceiver& receiver : drive.receivers) placed.receivers.push_back(receiver.name);
-  placed.time_offsets_s.assign(std::max<std::size_t>(drive.receivers.size(), 1), 0.0);
+  const bool unnamed = drive.receivers.empty() && !drive.fixes.empty();
+  placed.time_offsets_s.assign(unnamed ? 1 : drive.receivers.size(), 0.0);
+  placed.first_pose = drive.first_pose;
   placed.odometry_name = drive.odometry_name;
   placed.relative = drive.relative;
   if (!placed.relative.empty()) placed.runs = motion_runs(timeline, placed.relative, placed.fixes);
@@ -89,6 +92,12 @@ void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
 PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
                         const TypeRegistry& registry) {
   PlacedDrive placed = begun(drive, timeline, settings, registry);
+  if (drive.fixes.empty()) {
+    placed.warnings = drive.report.warnings;
+    placed.surroundings = std::make_shared<const DriveSurroundings>(drive, placed.fixes);
+    search_start(drive.sensors, settings, registry, placed);
+    return placed;
+  }
   const std::vector<Eigen::Vector3d> reckoned =
       dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
   const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.fixes);

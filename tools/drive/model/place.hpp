@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct PlacedDrive {
   double standstill_mps = 0;                 ///< of the odometry model
   double gap_noise_factor = 1;               ///< for the odometry model, from PreparedDrive::timeline
   std::vector<std::string> warnings;         ///< of the preparation; suspicious units, signs, jumps
+  std::optional<FirstPose> first_pose{};     ///< as PreparedDrive::first_pose
   /// what plugins may know of the whole drive; null: nothing
   std::shared_ptr<const DriveSurroundings> surroundings{};
 };
@@ -53,6 +55,7 @@ struct PlacedDrive {
 /// Runs the gate and computes the initial guess.
 /// @param timeline of this drive
 /// @param settings from decided()
+/// A drive without receivers has no gate, and its initial guess is that of search_start().
 /// @throws InputError if the gate leaves no fix; errors of the steps
 [[nodiscard]] PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline,
                                       const FusionSettings& settings, const TypeRegistry& registry);

@@ -77,20 +77,6 @@ std::vector<Eigen::Vector3d> poses_when_measured(const formats::GraphDocument& d
   return poses;
 }
 
-std::vector<std::optional<Eigen::Matrix2d>> position_covariances_at_fixes(
-    const formats::GraphDocument& document) {
-  std::vector<const formats::VertexCovariance*> of_vertex(document.graph.vertex_count(), nullptr);
-  for (const formats::VertexCovariance& block : document.covariances)
-    of_vertex[static_cast<std::size_t>(block.vertex)] = &block;
-  std::vector<std::optional<Eigen::Matrix2d>> covariances(document.fixes.size());
-  for (std::size_t i = 0; i < document.fixes.size(); ++i) {
-    const auto vertex = document.graph.find(document.fixes[i].vertex);
-    const formats::VertexCovariance* block = vertex ? of_vertex[static_cast<std::size_t>(*vertex)] : nullptr;
-    if (block != nullptr) covariances[i] = block->covariance.topLeftCorner<2, 2>();
-  }
-  return covariances;
-}
-
 std::vector<StampedPose> poses_at_fixes(const formats::GraphDocument& document) {
   std::vector<StampedPose> poses;
   poses.reserve(document.fixes.size());
@@ -110,6 +96,46 @@ std::vector<StampedPose> poses_at_fixes(const formats::GraphDocument& document) 
     poses.push_back({stamp, {value[0], value[1], value[2]}});
   }
   return poses;
+}
+
+std::vector<VertexIndex> evaluated_vertices(const formats::GraphDocument& document) {
+  constexpr double kApart_s = 0.2;
+  const Graph& graph = document.graph;
+  std::vector<VertexIndex> vertices;
+  for (const Fix& fix : document.fixes) vertices.push_back(graph.find(fix.vertex).value_or(-1));
+  if (!vertices.empty()) return vertices;
+  std::optional<Stamp> last;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const std::optional<Stamp> stamp = graph.stamp(v);
+    if (!stamp || graph.vertex_type(v).tag != VertexSe2::kTag) continue;
+    if (last && seconds_between(*last, *stamp) < kApart_s - 1e-9) continue;
+    vertices.push_back(v);
+    last = stamp;
+  }
+  return vertices;
+}
+
+std::vector<StampedPose> evaluated_poses(const formats::GraphDocument& document) {
+  if (!document.fixes.empty()) return poses_at_fixes(document);
+  std::vector<StampedPose> poses;
+  for (const VertexIndex v : evaluated_vertices(document)) {
+    const auto value = document.graph.value(v);
+    poses.push_back({*document.graph.stamp(v), {value[0], value[1], value[2]}});
+  }
+  return poses;
+}
+
+std::vector<std::optional<Eigen::Matrix2d>> evaluated_covariances(const formats::GraphDocument& document) {
+  std::vector<const formats::VertexCovariance*> of_vertex(document.graph.vertex_count(), nullptr);
+  for (const formats::VertexCovariance& block : document.covariances)
+    of_vertex[static_cast<std::size_t>(block.vertex)] = &block;
+  std::vector<std::optional<Eigen::Matrix2d>> covariances;
+  for (const VertexIndex v : evaluated_vertices(document)) {
+    const formats::VertexCovariance* block = v >= 0 ? of_vertex[static_cast<std::size_t>(v)] : nullptr;
+    covariances.emplace_back();
+    if (block != nullptr) covariances.back() = block->covariance.topLeftCorner<2, 2>();
+  }
+  return covariances;
 }
 
 std::vector<Eigen::Vector3d> poses_of_fixes(const formats::GraphDocument& document) {

@@ -15,9 +15,16 @@ namespace waymark::drive {
 /// pose, or has another stamp or none
 [[nodiscard]] std::vector<StampedPose> poses_at_fixes(const formats::GraphDocument& document);
 
-/// Returns the covariances of their positions, m^2, frame axes, in the order of the fixes. Empty if
-/// the document has no covariance of a pose.
-[[nodiscard]] std::vector<std::optional<Eigen::Matrix2d>> position_covariances_at_fixes(
+/// Returns the vertices at which a document is evaluated: those of its fixes, in their order. Without
+/// fixes, the poses with stamps that are 0.2 s or more apart.
+[[nodiscard]] std::vector<VertexIndex> evaluated_vertices(const formats::GraphDocument& document);
+
+/// Returns the poses at these vertices. Errors are those of poses_at_fixes
+[[nodiscard]] std::vector<StampedPose> evaluated_poses(const formats::GraphDocument& document);
+
+/// Returns the covariances of their positions, m^2, frame axes, in the order of evaluated_vertices().
+/// Empty where the document has none.
+[[nodiscard]] std::vector<std::optional<Eigen::Matrix2d>> evaluated_covariances(
     const formats::GraphDocument& document);
 
 /// Returns the poses at the true times of the fixes: their stamps minus the estimated time offset,

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/text/json_number.hpp>
 #include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::evaluation {
@@ -83,11 +84,12 @@ std::vector<SourceResiduals> residuals_by_source(const formats::GraphDocument& d
   return rows;
 }
 
-text::Table source_residuals_table(const std::vector<SourceResiduals>& residuals) {
+text::Table source_residuals_table(const std::vector<SourceResiduals>& residuals, const std::string& label) {
+  const std::string prefix = label.empty() ? "" : label + ", ";
   text::Table table{.columns = {"measurements of", "kind", "edge", "number", "rms (whitened)", "largest",
                                 "down-weighted", "mean weight"}};
   for (const SourceResiduals& row : residuals) {
-    table.rows.push_back({row.source, row.kind, row.tag, fmt::to_string(row.measurements),
+    table.rows.push_back({prefix + row.source, row.kind, row.tag, fmt::to_string(row.measurements),
                           text::readable(row.rms), text::readable(row.largest),
                           row.robust == 0 ? "no loss" : fmt::to_string(row.down_weighted),
                           text::readable(row.weight)});

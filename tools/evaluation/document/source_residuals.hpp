@@ -32,8 +32,10 @@ struct SourceResiduals {
 /// document has no sources of its own.
 [[nodiscard]] std::vector<SourceResiduals> residuals_by_source(const formats::GraphDocument& document);
 
-/// Returns a table for the terminal and for reports; its rows are empty if there are none.
-[[nodiscard]] text::Table source_residuals_table(const std::vector<SourceResiduals>& residuals);
+/// Returns a table for the terminal and for reports; without rows if there are none.
+/// @param label of the result, if there are several
+[[nodiscard]] text::Table source_residuals_table(const std::vector<SourceResiduals>& residuals,
+                                                 const std::string& label = "");
 [[nodiscard]] nlohmann::ordered_json source_residuals_json(const std::vector<SourceResiduals>& residuals);
 
 }  // namespace waymark::evaluation

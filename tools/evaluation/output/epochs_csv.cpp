@@ -40,7 +40,7 @@ void append_epoch(std::string& out, const EpochResult& epoch, Stamp first) {
   // 1.9000000000000001.
   formats::append_csv_number(out, static_cast<double>(epoch.stamp.nanoseconds - first.nanoseconds) / 1e9);
   out += ',';
-  formats::append_csv_text(out, to_string(epoch.status));
+  formats::append_csv_text(out, epoch.status ? to_string(*epoch.status) : "");
   out += ',';
   formats::append_csv_text(out, epoch.reason);
   append_vector(out, epoch.fix_sigma_m);

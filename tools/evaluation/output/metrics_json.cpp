@@ -160,7 +160,8 @@ Json to_json(const LabelledEvaluation& labelled) {
        {{"accepted", to_json(e.post_fit)},
         {"rejected", to_json(e.gated)},
         {"withheld", to_json(e.prediction)}}},
-      {"sources", to_json(e.sources)}};
+      {"sources", to_json(e.sources)},
+      {"residuals", source_residuals_json(e.residuals)}};
 }
 
 }  // namespace

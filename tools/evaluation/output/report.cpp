@@ -224,13 +224,22 @@ std::string sources_block(std::span<const LabelledEvaluation> evaluations, const
   return block(table, look);
 }
 
+/// Says how well the measurements of each source fit.
+std::string residuals_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
+  std::string text;
+  for (const auto& [label, evaluation] : evaluations)
+    text += block(source_residuals_table(evaluation.residuals, evaluations.size() > 1 ? label : ""), look);
+  return text;
+}
+
 }  // namespace
 
 std::string metrics_table(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
   return truth_block(evaluations, look) + track_block(evaluations, look) +
          consistency_block(evaluations, look) + autocorrelation_block(evaluations, look) +
          withheld_block(evaluations, look) + innovation_block(evaluations, look) +
-         sources_block(evaluations, look) + count_block(evaluations, look);
+         sources_block(evaluations, look) + residuals_block(evaluations, look) +
+         count_block(evaluations, look);
 }
 
 }  // namespace waymark::evaluation

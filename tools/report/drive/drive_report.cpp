@@ -63,6 +63,17 @@ void add_sources(const ReportedDrive& drive, drawing::Page& page) {
   page.sections.push_back(std::move(section));
 }
 
+void add_source_residuals(const ReportedDrive& drive, drawing::Page& page) {
+  if (drive.evaluation.residuals.empty()) return;
+  drawing::Section section{"measurements", "Measurements of each source", {}};
+  text::Table table = evaluation::source_residuals_table(drive.evaluation.residuals);
+  table.notes = {
+      "rms: of the whitened residuals after the fit, about 1 or below if the noise is as stated. down-weighted: "
+      "the loss leaves less than half of the weight."};
+  section.blocks.emplace_back(std::move(table));
+  page.sections.push_back(std::move(section));
+}
+
 void add_states(const ReportedDrive& drive, drawing::Page& page) {
   if (drive.states == nullptr || drive.states->empty()) return;
   const auto seconds = [&](Stamp stamp) { return drive.seconds(stamp); };
@@ -123,6 +134,7 @@ drawing::Page drive_page(const ReportedDrive& drive) {
   page.sections.push_back(error_section(drive));
   add_consistency(drive, page);
   add_sources(drive, page);
+  add_source_residuals(drive, page);
   add_states(drive, page);
   add_residuals(drive, page);
   add_optimization(drive, page);

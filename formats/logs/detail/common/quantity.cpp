@@ -86,7 +86,7 @@ struct SensorKind {
 constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
 constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", kDegree}};
 // Coordinates of a place: in the frame, of its UTM zone, WGS84, Earth-centred. The last three are converted
-// when a drive has its frame (tools/drive/logs/place_columns.hpp).
+// when a drive has its frame (tools/drive/sensors/place_columns.hpp).
 constexpr std::array kPlaceX{Unit{"m", 1},       Unit{"cm", 1e-2}, Unit{"mm", 1e-3},
                              Unit{"easting", 1}, Unit{"lon", 1},   Unit{"ecef_x", 1}};
 constexpr std::array kPlaceY{Unit{"m", 1},        Unit{"cm", 1e-2}, Unit{"mm", 1e-3},

@@ -31,20 +31,23 @@ evaluation::Evaluation evaluate_document(const formats::GraphDocument& document,
                                          const std::vector<TruthPose>& truth,
                                          const std::vector<evaluation::Prediction>& further) {
   evaluation::EvaluationInput input;
-  input.fused = drive::poses_at_fixes(document);
+  input.fused = drive::evaluated_poses(document);
   input.when_measured = drive::poses_when_measured(document);
   input.fixes = document.fixes;
   input.truth = truth;
   input.truth_reference_m = document.truth_reference_m;
   input.frame = document.frame.value_or(Frame());
   input.max_stamp_offset_s = drive::kLargestSnap;  // a fix may share the node of an odometry sample
-  const auto covariances = drive::position_covariances_at_fixes(document);
+  const auto covariances = drive::evaluated_covariances(document);
   if (std::all_of(covariances.begin(), covariances.end(), [](const auto& c) { return c.has_value(); })) {
     for (const auto& covariance : covariances) input.position_covariances.push_back(*covariance);
   }
-  input.predictions = {as_prediction("dead reckoning", drive::dead_reckoned_at_withheld(document))};
+  if (!document.fixes.empty())
+    input.predictions = {as_prediction("dead reckoning", drive::dead_reckoned_at_withheld(document))};
   for (const evaluation::Prediction& prediction : further) input.predictions.push_back(prediction);
-  return evaluation::evaluate(input);
+  evaluation::Evaluation evaluation = evaluation::evaluate(input);
+  evaluation.residuals = evaluation::residuals_by_source(document);
+  return evaluation;
 }
 
 std::vector<TruthPose> truth_for(const formats::GraphDocument& document,

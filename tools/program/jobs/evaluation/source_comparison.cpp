@@ -28,7 +28,7 @@ Key key_of(const Fix& fix) {
 
 Covariances covariances_of(const formats::GraphDocument& document) {
   Covariances covariances;
-  const auto at_fixes = drive::position_covariances_at_fixes(document);
+  const auto at_fixes = drive::evaluated_covariances(document);
   for (std::size_t i = 0; i < at_fixes.size(); ++i)
     if (at_fixes[i]) covariances[key_of(document.fixes[i])] = *at_fixes[i];
   return covariances;

@@ -1,6 +1,8 @@
 /// Places among the readings of a sensor: columns of sense x, y and height (SensorColumn).
 #pragma once
 
+#include <optional>
+
 #include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/core/drive/sample.hpp>
@@ -18,5 +20,9 @@ void check_place_columns(const LogRequest& request);
 /// @param geodesy null for a frame without a known place; all units are then m
 /// @throws InputError for an impossible place, or one that needs a known frame
 void place_in_frame(const LogRequest& request, const Geodesy* geodesy, SensorTable& table);
+
+/// Returns the first place among readings as they are in the log, if its columns are geodetic or ECEF.
+[[nodiscard]] std::optional<GeodeticPoint> first_geodetic_place(const LogRequest& request,
+                                                                const SensorTable& readings);
 
 }  // namespace waymark::drive

@@ -1,10 +1,10 @@
-#include <waymark/tools/drive/model/sensors.hpp>
+#include <waymark/tools/drive/sensors/sensor_models.hpp>
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include <waymark/tools/drive/logs/sensor_logs.hpp>
+#include <waymark/tools/drive/sensors/sensor_logs.hpp>
 
 namespace waymark::drive {
 namespace {

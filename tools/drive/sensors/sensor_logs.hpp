@@ -1,5 +1,5 @@
 /// The logs of further sensors: the columns that their models need, and their readings on the clock
-/// and in the frame of the drive. model/sensors.hpp adds them to the graph.
+/// and in the frame of the drive. sensor_models.hpp adds them to the graph.
 #pragma once
 
 #include <span>
@@ -29,12 +29,12 @@ void resolve_sensors(DriveDescription& description, const TypeRegistry& registry
 
 /// Returns the readings of a sensor on the scale of the drive, sorted (stable), with places in the frame
 /// (place_columns.hpp). Headings from true east are turned into the frame by the meridian convergence at
-/// the fix nearest in time.
+/// the fix nearest in time; without fixes, at the origin of the frame.
 /// @param request how the log is read, with the columns of the sensor
-/// @param fixes sorted by stamp, at least one
+/// @param fixes sorted by stamp @param projection null for a local frame
 /// @throws InputError for a log of seconds of week that would need a date, and for an impossible place
 [[nodiscard]] SensorTable prepare_readings(const DriveLogs::Log& log, const LogRequest& request,
                                            TimeScale scale, std::span<const GeodeticFix> fixes,
-                                           const Projection& projection, PrepareReport& report);
+                                           const Projection* projection, PrepareReport& report);
 
 }  // namespace waymark::drive

@@ -1,11 +1,11 @@
-#include <waymark/tools/drive/logs/sensor_logs.hpp>
+#include <waymark/tools/drive/sensors/sensor_logs.hpp>
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include <waymark/tools/drive/logs/place_columns.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/sensors/place_columns.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -17,6 +17,13 @@ const GeodeticFix& nearest_fix(std::span<const GeodeticFix> fixes, Stamp moment)
   const auto before = after - 1;
   if (after == fixes.end()) return *before;
   return seconds_between(before->stamp, moment) < seconds_between(moment, after->stamp) ? *before : *after;
+}
+
+/// Returns where the vehicle was: the fix nearest in time; without fixes, the origin of the frame.
+GeodeticPoint place_at(Stamp moment, std::span<const GeodeticFix> fixes, const Projection& projection) {
+  if (fixes.empty()) return projection.to_geodetic({0, 0});
+  const GeodeticFix& fix = nearest_fix(fixes, moment);
+  return {fix.latitude_deg, fix.longitude_deg};
 }
 
 /// Sorts rows by time.
@@ -54,21 +61,21 @@ void resolve_sensors(DriveDescription& description, const TypeRegistry& registry
 }
 
 SensorTable prepare_readings(const DriveLogs::Log& log, const LogRequest& request, TimeScale scale,
-                             std::span<const GeodeticFix> fixes, const Projection& projection,
+                             std::span<const GeodeticFix> fixes, const Projection* projection,
                              PrepareReport& report) {
   SensorTable table = log.data.readings;
   put_on_scale(table.stamps, log, scale, [](Stamp& stamp) -> Stamp& { return stamp; });
   add_log_report(log.data, report.sensor, report);
   table = sorted(table);
   const std::vector<SensorColumn>& columns = request.readings;
-  place_in_frame(request, &projection, table);
+  place_in_frame(request, projection, table);
+  if (projection == nullptr) return table;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (columns[c].sense != "ccw_from_east") continue;
     for (std::size_t row = 0; row < table.size(); ++row) {
-      const GeodeticFix& fix = nearest_fix(fixes, table.stamps[row]);
       double& heading = table.values[row * table.columns + c];
-      heading = grid_heading_from_true(
-          heading, projection.to_grid({fix.latitude_deg, fix.longitude_deg}).convergence_rad);
+      const GeodeticPoint place = place_at(table.stamps[row], fixes, *projection);
+      heading = grid_heading_from_true(heading, projection->to_grid(place).convergence_rad);
     }
   }
   return table;
