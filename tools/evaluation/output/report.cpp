@@ -81,7 +81,7 @@ void add_raw_rows(text::Table& table, std::span<const LabelledEvaluation> evalua
                   const std::string& name, const MakeRow& make_row) {
   bool any = false;
   for (const auto& [label, evaluation] : evaluations) {
-    if (!evaluation.truth) continue;
+    if (!evaluation.truth || evaluation.fixes() == 0) continue;
     Row row = make_row(any ? name + " (" + label + ")" : name, *evaluation.truth);
     const bool known = std::any_of(table.rows.begin(), table.rows.end(), [&](const Row& other) {
       return std::equal(row.begin() + 1, row.end(), other.begin() + 1, other.end());
@@ -105,7 +105,7 @@ std::string truth_block(std::span<const LabelledEvaluation> evaluations, const t
   for (const auto& [label, evaluation] : evaluations) {
     if (!evaluation.truth) continue;
     table.rows.push_back(position_row(label, evaluation.truth->fused.position));
-    add_improvement(better, label, evaluation.truth->improvement);
+    if (evaluation.fixes() > 0) add_improvement(better, label, evaluation.truth->improvement);
   }
   return block(table, look) + block(better, look);
 }
@@ -201,9 +201,8 @@ std::string count_block(std::span<const LabelledEvaluation> evaluations, const t
   text::Table table{.columns = {"epochs", "fixes", "accepted", "rejected", "withheld", "rejected [%]",
                                 "matched", "unmatched"}};
   for (const auto& [label, e] : evaluations) {
-    const double share =
-        e.fixes() == 0 ? kUndefined
-                       : 100 * static_cast<double>(e.rejected) / static_cast<double>(e.accepted + e.rejected);
+    if (e.fixes() == 0) continue;
+    const double share = 100 * static_cast<double>(e.rejected) / static_cast<double>(e.accepted + e.rejected);
     table.rows.push_back({label, std::to_string(e.fixes()), std::to_string(e.accepted),
                           std::to_string(e.rejected), std::to_string(e.withheld), percent(share),
                           e.truth ? std::to_string(e.truth->match.matched) : "-",

@@ -6,6 +6,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
+#include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
@@ -83,7 +84,8 @@ void judge_coverage(const std::vector<TruthPose>& truth, formats::GraphDocument&
 formats::GraphDocument read_fused(const std::string& input, const EvaluationJob& job) {
   job.console.progress("evaluating " + input);
   formats::GraphDocument document = formats::read_graph(formats::read_text_file(input), input, job.registry);
-  if (document.fixes.empty()) throw InputError(input + ": has no GNSS records to evaluate at");
+  if (drive::evaluated_vertices(document).empty())
+    throw InputError(input + ": has neither GNSS records nor poses with stamps to evaluate at");
   const bool optimised = std::any_of(document.provenance.begin(), document.provenance.end(),
                                      [](const auto& entry) { return entry.first == "optimized"; });
   if (!optimised)

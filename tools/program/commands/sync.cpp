@@ -77,6 +77,8 @@ ExitCode synchronise(const SyncCommand& command) {
   const Console console(command.common);
   drive::DriveDescription description =
       drive::load_drive_file(command.input, command.data_folder).description;
+  if (description.gnss.empty())
+    throw InputError(description.path + ": clocks are compared with GNSS, and the drive has no 'gnss'");
   const TypeRegistry registry = make_registry(command.common, description.plugins);
   description.sensors.clear();  // sensors are not needed
   const drive::PreparedDrive drive = drive::load_drive(description, registry, watch_reading(console));

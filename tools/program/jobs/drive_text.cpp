@@ -22,21 +22,27 @@ double distance_by(const std::vector<OdometrySample>& odometry) {
 
 }  // namespace
 
-std::string describe_model(const drive::ModeledDrive& modeled, const text::TextLook& look) {
-  std::string text;
+namespace {
+
+std::string describe_gate(const drive::ModeledDrive& modeled) {
+  if (modeled.placed.fixes.empty()) return "";
   const drive::GateSummary& gate = modeled.placed.gate;
   std::string reasons;
   for (const auto& [reason, count] : gate.reasons)
     if (reason != "off") reasons += fmt::format(" {} {}", reason, count);
-  if (*modeled.settings.gate.enabled) {
-    text += fmt::format("gate        {} of {} fixes rejected ({:.1f} %):{}\n", gate.rejected,
-                        gate.accepted + gate.rejected, gate.rejected_percent(), reasons);
-  } else if (gate.rejected > 0) {
-    text += fmt::format("gate        off: {} of {} fixes are used:{}\n", gate.accepted,
-                        gate.accepted + gate.rejected, reasons);
-  } else {
-    text += fmt::format("gate        off: all {} fixes are used\n", gate.accepted);
-  }
+  if (*modeled.settings.gate.enabled)
+    return fmt::format("gate        {} of {} fixes rejected ({:.1f} %):{}\n", gate.rejected,
+                       gate.accepted + gate.rejected, gate.rejected_percent(), reasons);
+  if (gate.rejected > 0)
+    return fmt::format("gate        off: {} of {} fixes are used:{}\n", gate.accepted,
+                       gate.accepted + gate.rejected, reasons);
+  return fmt::format("gate        off: all {} fixes are used\n", gate.accepted);
+}
+
+}  // namespace
+
+std::string describe_model(const drive::ModeledDrive& modeled, const text::TextLook& look) {
+  std::string text = describe_gate(modeled);
   if (modeled.noise.parameters.empty()) return text;
   text::Table table{.columns = {"estimated noise", "unit", "value", "68 % between", "and", "known before"}};
   for (const drive::NoiseParameter& p : modeled.noise.parameters) {
@@ -66,7 +72,7 @@ std::string describe_drive(const drive::PreparedDrive& drive) {
   text += fmt::format("drive       {}: {:.0f} s, {:.0f} m by odometry, {} odometry samples, {} fixes\n",
                       drive.name, seconds_between(odometry.front().stamp, odometry.back().stamp),
                       distance_by(odometry), odometry.size(), drive.fixes.size());
-  text += "left out    " + left_out(drive) + "\n";
+  if (!drive.fixes.empty()) text += "left out    " + left_out(drive) + "\n";
   return text;
 }
 
