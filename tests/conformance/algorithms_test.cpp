@@ -29,8 +29,8 @@ void check_all_pairs(const Graph& start) {
     for (const auto& [solver, solver_origin] : registry.linear_solvers()) {
       INFO(algorithm.name << " with " << solver.name);
       Graph graph = start;
-      const Summary summary =
-          optimize(graph, *registry.make_algorithm(algorithm.name), *solver.make(), options);
+      const Summary summary = optimize(graph, *registry.make_algorithm(algorithm.name),
+                                       *registry.make_linear_solver(solver.name), options);
       INFO(summary.message);
       REQUIRE(summary.converged());
       const DenseSystem system = assemble_dense(graph, find_gauge(graph).held);
@@ -110,7 +110,8 @@ TEST_CASE("every algorithm with every solver: noise-free measurements are met ex
         for (int k = 0; k < 3; ++k) z = compose(z, Pose2<double>(1, 0, 0.3));
         graph.add_edge(EdgeSe2Log{z.vector()}, {i - 3, i}, pose_information(0.1, 0.1));
       }
-      const Summary summary = optimize(graph, *registry.make_algorithm(algorithm.name), *solver.make(), {});
+      const Summary summary = optimize(graph, *registry.make_algorithm(algorithm.name),
+                                       *registry.make_linear_solver(solver.name), {});
       INFO(summary.message);
       CHECK(summary.converged());
       CHECK(summary.final_chi2 < 1e-9);

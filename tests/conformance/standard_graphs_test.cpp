@@ -38,7 +38,7 @@ Summary run(Graph& graph, const AlgorithmType& algorithm, const LinearSolverType
   OptimizerOptions options;
   options.max_iterations = iterations;
   return optimize(graph, *algorithm.make(CheckedOptions(algorithm.name, {}, algorithm.options)),
-                  *solver.make(), options);
+                  *solver.make(CheckedOptions(solver.name, {}, solver.options)), options);
 }
 
 /// Runs every algorithm with every solver from this graph. @param check is given each minimum
@@ -172,7 +172,8 @@ TEST_CASE("standard graphs: MIT, dogleg reaches the best known minimum or a bett
     Graph graph = *start;
     OptimizerOptions options;
     options.max_iterations = 500;
-    const Summary summary = optimize(graph, *registry.make_algorithm("dogleg"), *solver.make(), options);
+    const Summary summary = optimize(graph, *registry.make_algorithm("dogleg"),
+                                     *registry.make_linear_solver(solver.name), options);
     INFO(solver.name << ": " << summary.message);
     CHECK(summary.converged());
     CHECK(summary.final_chi2 <= 526.34);
