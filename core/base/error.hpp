@@ -40,4 +40,17 @@ class OutputError : public Error {
   ~OutputError() override;
 };
 
+/// Code of a plugin failed: it threw something that is none of these errors, or returned nothing.
+class PluginError : public Error {
+ public:
+  /// @param type tag or name of the registered type that failed; empty: not known
+  explicit PluginError(const std::string& message, std::string type = {});
+  ~PluginError() override;
+
+  [[nodiscard]] const std::string& type() const { return type_; }
+
+ private:
+  std::string type_;
+};
+
 }  // namespace waymark

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <waymark/core/base/guard.hpp>
 #include <waymark/core/graph/edge_batch.hpp>
 
 namespace waymark {
@@ -30,6 +31,23 @@ void EdgeBatchBase::remove(std::span<const char> gone, std::span<const VertexInd
     if (chosen[e] >= 0) set_loss(kept, losses[static_cast<std::size_t>(chosen[e])]);
     ++kept;
   }
+}
+
+void EdgeBatchBase::throw_edge_error(std::string_view tag, const ValueView& view, EdgeRange range) const {
+  const auto name = [&](std::size_t edge) {
+    return std::string(tag) + " number " + std::to_string(edge + 1);
+  };
+  Eigen::VectorXd error;
+  std::vector<Eigen::MatrixXd> jacobians;
+  for (std::size_t edge = range.first; edge + 1 < range.last; ++edge) {
+    try {
+      linearize_edge(edge, view, error, jacobians);
+      (void)evaluate_loss(edge, error.dot(information(edge) * error));
+    } catch (...) {
+      throw_plugin_error(name(edge), tag);
+    }
+  }
+  throw_plugin_error(range.last > range.first ? name(range.last - 1) : std::string(tag), tag);
 }
 
 const Loss* EdgeBatchBase::loss(std::size_t edge) const {

@@ -154,6 +154,16 @@ class EdgeBatchBase {
   [[nodiscard]] const Loss* batch_loss() const { return batch_loss_.evaluate ? &batch_loss_ : nullptr; }
 
  protected:
+  /// Runs a pass over edges. If one of them throws, it is named by its type and its number.
+  template <typename Pass>
+  auto named(std::string_view tag, const ValueView& view, EdgeRange range, const Pass& pass) const {
+    try {
+      return pass();
+    } catch (...) {
+      throw_edge_error(tag, view, range);
+    }
+  }
+
   EdgeBatchBase() = default;
   EdgeBatchBase(const EdgeBatchBase&) = default;
   EdgeBatchBase& operator=(const EdgeBatchBase&) = default;
@@ -162,6 +172,8 @@ class EdgeBatchBase {
   [[nodiscard]] LossValue evaluate_loss(std::size_t edge, double squared) const;
 
  private:
+  /// Finds the edge that throws again, and throws a PluginError that names it.
+  [[noreturn]] void throw_edge_error(std::string_view tag, const ValueView& view, EdgeRange range) const;
   /// Does the work of remove(), except for the losses.
   virtual void remove_records(std::span<const char> gone, std::span<const VertexIndex> new_index) = 0;
 

@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/graph/edge_type_check.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {
 namespace {
@@ -50,6 +54,58 @@ bool is_finite(const Graph& graph) {
   return finite;
 }
 
+/// Returns the normal equations of the only edge of a graph, from its Jacobians.
+std::pair<Eigen::MatrixXd, Eigen::VectorXd> assembled(const Graph& graph) {
+  Eigen::VectorXd error;
+  std::vector<Eigen::MatrixXd> parts;
+  graph.batch(0).linearize_edge(0, graph.view(), error, parts);
+  Eigen::Index columns = 0;
+  for (const Eigen::MatrixXd& part : parts) columns += part.cols();
+  Eigen::MatrixXd jacobian(error.size(), columns);
+  columns = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    jacobian.middleCols(columns, part.cols()) = part;
+    columns += part.cols();
+  }
+  const Eigen::MatrixXd weighted = jacobian.transpose() * graph.batch(0).information(0);
+  return {weighted * jacobian, weighted * error};
+}
+
+/// Returns the place of each tangent number of the edge's vertices among the unknowns.
+std::vector<Eigen::Index> unknowns_of(const Graph& graph, const Structure& structure) {
+  std::vector<Eigen::Index> places;
+  for (const VertexIndex v : graph.batch(0).vertices(0)) {
+    const auto begin = structure.pattern().start[static_cast<std::size_t>(structure.column_of(v))];
+    for (int i = 0; i < graph.vertex_type(v).tangent_size; ++i)
+      places.push_back(static_cast<Eigen::Index>(begin) + i);
+  }
+  return places;
+}
+
+/// Returns how far the normal equations that the optimizer uses are from those of the Jacobians, relative
+/// to their size.
+double normal_error_of(const Graph& graph) {
+  const auto [hessian, gradient] = assembled(graph);
+  Structure structure;
+  structure.build(graph, std::vector<char>(graph.vertex_count(), 0));
+  NormalEquations equations(graph, structure);
+  (void)equations.linearize(graph.values());
+  const std::vector<Eigen::Index> places = unknowns_of(graph, structure);
+  const auto used = equations.gradient();
+  double worst = 0;
+  Eigen::VectorXd column(used.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto own = static_cast<Eigen::Index>(i);
+    worst = std::max(worst, std::abs(used[places[i]] - gradient[own]) / (1 + gradient.norm()));
+    equations.multiply(Eigen::VectorXd::Unit(used.size(), places[i]), column);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const double difference = column[places[k]] - hessian(static_cast<Eigen::Index>(k), own);
+      worst = std::max(worst, std::abs(difference) / (1 + hessian.norm()));
+    }
+  }
+  return worst;
+}
+
 }  // namespace
 
 std::span<const EdgeScenario> edge_scenarios() {
@@ -93,6 +149,7 @@ EdgeTypeCheck check_edge_type(const TypeRegistry& registry, const EdgeType& type
         ++result.not_finite;
         continue;
       }
+      result.normal_error = std::max(result.normal_error, normal_error_of(graph));
       const GradientCheck found = check_gradients(graph, 0, 1);
       result.judged += found.judged;
       if (!result.scenario.empty() && found.error <= result.worst.error) continue;

@@ -31,6 +31,9 @@ struct EdgeScenario {
 [[nodiscard]] Graph single_edge(const TypeRegistry& registry, const EdgeType& type,
                                 const EdgeScenario& scenario, std::mt19937_64& random);
 
+/// A larger difference of normal equations is a wrong promise: kRelative, or carry() of the vertices.
+inline constexpr double kNormalTolerance = 1e-9;
+
 /// The largest difference between the Jacobians of a type and differences of its error, over
 /// all scenarios.
 struct EdgeTypeCheck {
@@ -40,9 +43,13 @@ struct EdgeTypeCheck {
   std::size_t not_finite = 0;  ///< trials whose error or Jacobians are not finite
   std::size_t trials = 0;
   std::size_t judged = 0;  ///< Jacobians that differences could check
+  /// The largest difference between the normal equations of the edge and those of its Jacobians, relative
+  /// to their size. A type that says kRelative and is not relative has wrong ones.
+  double normal_error = 0;
 
   [[nodiscard]] bool sound() const {
-    return worst.error <= kGradientTolerance && not_finite == 0 && judged > 0;
+    return worst.error <= kGradientTolerance && not_finite == 0 && judged > 0 &&
+           normal_error <= kNormalTolerance;
   }
 };
 

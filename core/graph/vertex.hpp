@@ -15,6 +15,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/base/export.hpp>
+#include <waymark/core/base/guard.hpp>
 
 namespace WAYMARK_EXPORT waymark {
 
@@ -123,6 +124,22 @@ struct VertexType {
                        double* columns) = nullptr;
 };
 
+namespace detail {
+
+/// The chart of a type, guarded for plugins.
+template <Vertex V>
+void retract_guarded(double* value, const double* delta) {
+  guarded([] { return std::string(std::string_view(V::kTag)) + ": retract"; }, V::kTag,
+          [&] { V::retract(value, delta); });
+}
+template <Vertex V>
+void local_guarded(const double* from, const double* to, double* delta) {
+  guarded([] { return std::string(std::string_view(V::kTag)) + ": local"; }, V::kTag,
+          [&] { V::local(from, to, delta); });
+}
+
+}  // namespace detail
+
 template <Vertex V>
 [[nodiscard]] VertexType make_vertex_type() {
   VertexType type;
@@ -135,8 +152,8 @@ template <Vertex V>
   }
   if constexpr (requires { V::kDense; }) type.dense = V::kDense;
   if constexpr (requires { V::kLinearChart; }) type.linear_chart = V::kLinearChart;
-  type.retract = &V::retract;
-  type.local = &V::local;
+  type.retract = &detail::retract_guarded<V>;
+  type.local = &detail::local_guarded<V>;
   if constexpr (requires { V::rigid_motion; }) {
     type.position = &V::position;
     type.rigid_motion = &V::rigid_motion;

@@ -7,6 +7,7 @@
 #include <waymark/core/base/detail/elapsed.hpp>
 #include <waymark/core/base/detail/thread_pool.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/graph/finite_check.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/core/system/normal_equations.hpp>
@@ -72,6 +73,9 @@ class Loop {
   double linearize(const std::vector<double>& values);
   void accept(double trial_chi2);
   std::string singular_message() const;
+  bool not_finite_without_unknowns() const;
+  /// Returns ": " and what is not finite in the graph, if something is.
+  std::string named_flaw() const;
   ThreadPool* pool() { return pool_ ? &*pool_ : nullptr; }
 
   Graph& graph_;
@@ -163,6 +167,11 @@ bool Loop::converged_by(const Step& step, double step_size) {
 
 std::string Loop::singular_message() const {
   const Eigen::VectorXd& diagonal = equations_.diagonal();
+  if (!diagonal.allFinite()) {
+    Graph at_present = graph_;
+    at_present.set_values(values_);
+    return "the normal equations are not finite: " + find_not_finite(at_present).value_or("");
+  }
   Eigen::Index weakest = 0;
   diagonal.minCoeff(&weakest);
   const VertexIndex v = equations_.vertex_of_unknown(weakest);
@@ -244,14 +253,24 @@ void Loop::accept(double trial_chi2) {
   }
 }
 
+/// A graph whose Jacobians are NaN may look as if nothing were to do.
+bool Loop::not_finite_without_unknowns() const {
+  return summary_.unknowns == 0 && find_not_finite(graph_).has_value();
+}
+
+std::string Loop::named_flaw() const {
+  const std::optional<std::string> flaw = find_not_finite(graph_);
+  return flaw ? ": " + *flaw : "";
+}
+
 Summary Loop::run() {
   prepare();
   summary_.records.reserve(static_cast<std::size_t>(std::min(options_.max_iterations, 1000)));
   values_ = graph_.values();
   best_.reserve(values_.size());  // not inside an iteration; untouched pages use no memory yet
   chi2_ = best_chi2_ = summary_.initial_chi2 = linearize(values_);
-  if (!std::isfinite(chi2_)) {
-    finish(Termination::non_finite, "chi2 of the initial guess is not finite");
+  if (!std::isfinite(chi2_) || !equations_.diagonal().allFinite() || not_finite_without_unknowns()) {
+    finish(Termination::non_finite, "chi2 of the initial guess is not finite" + named_flaw());
   } else if (summary_.unknowns == 0) {
     finish(Termination::nothing_to_do, "nothing to do: every vertex is fixed, held or without edges");
   }

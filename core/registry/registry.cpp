@@ -1,6 +1,10 @@
+#include <algorithm>
+
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/base/guard.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
+#include <waymark/core/registry/detail/guarded_models.hpp>
 #include <waymark/core/registry/registry.hpp>
 
 namespace waymark {
@@ -25,8 +29,17 @@ const T* find(const RegistryTable<T>& table, std::string_view name) {
   return nullptr;
 }
 
+/// Names are words in files and on the command line.
+void check_name(const std::string& name, const std::string& origin, const char* kind) {
+  const auto is_wrong = [](unsigned char c) { return c <= ' ' || c == 0x7f; };
+  if (!name.empty() && name.front() != '#' && std::none_of(name.begin(), name.end(), is_wrong)) return;
+  throw UsageError(std::string(kind) + " '" + name + "' of " + origin +
+                   " cannot be registered: a name is a word without blanks that does not begin with '#'");
+}
+
 template <typename T>
 void add(RegistryTable<T>& table, T type, const std::string& origin, const char* kind) {
+  check_name(name_of(type), origin, kind);
   for (const Registered<T>& entry : table) {
     if (name_of(entry.type) != name_of(type)) continue;
     throw UsageError(std::string(kind) + " '" + name_of(type) + "' of " + origin +
@@ -37,16 +50,30 @@ void add(RegistryTable<T>& table, T type, const std::string& origin, const char*
 }
 
 template <typename T>
-const T& require(const RegistryTable<T>& table, std::string_view name, const char* kind) {
-  if (const T* found = find(table, name)) return *found;
+const Registered<T>& require(const RegistryTable<T>& table, std::string_view name, const char* kind) {
+  for (const Registered<T>& entry : table) {
+    if (name_of(entry.type) == name) return entry;
+  }
   std::vector<std::string_view> names;
   for (const Registered<T>& entry : table) names.push_back(name_of(entry.type));
   throw UsageError(std::string("unknown ") + kind + " '" + std::string(name) + "'" + suggestion(name, names));
 }
 
+/// Makes a model, guarded with all of its calls.
 template <typename T>
-auto make(const T& type, const Options& options) {
-  return type.make(CheckedOptions(type.name, options, type.options));
+auto make(const Registered<T>& entry, const char* kind, const Options& options) {
+  const T& type = entry.type;
+  const CheckedOptions checked(type.name, options, type.options);
+  const Guarded who{entry.origin, kind, type.name};
+  return guarded_model(who,
+                       guarded([&] { return who.text(); }, type.name, [&] { return type.make(checked); }));
+}
+
+/// Solvers and algorithms of our own are called in every iteration, and need no guard.
+template <typename T>
+auto make_own(const Registered<T>& entry, const char* kind, const Options& options) {
+  if (entry.origin != "waymark") return make(entry, kind, options);
+  return entry.type.make(CheckedOptions(entry.type.name, options, entry.type.options));
 }
 
 }  // namespace
@@ -107,35 +134,37 @@ const LogReader* TypeRegistry::find_log_reader(std::string_view name) const {
 
 std::unique_ptr<LinearSolver> TypeRegistry::make_linear_solver(std::string_view name,
                                                                const Options& options) const {
-  return make(require(linear_solvers_, name, "linear solver"), options);
+  return make_own(require(linear_solvers_, name, "linear solver"), "linear solver", options);
 }
 InitialValues TypeRegistry::make_start(std::string_view name, const Graph& graph) const {
-  return require(starts_, name, "initial guess").make(graph);
+  const auto& entry = require(starts_, name, "initial guess");
+  const Guarded who{entry.origin, "initial guess", entry.type.name};
+  return guarded([&] { return who.text(); }, entry.type.name, [&] { return entry.type.make(graph); });
 }
 std::unique_ptr<Algorithm> TypeRegistry::make_algorithm(std::string_view name, const Options& options) const {
-  return make(require(algorithms_, name, "algorithm"), options);
+  return make_own(require(algorithms_, name, "algorithm"), "algorithm", options);
 }
 std::unique_ptr<OdometryModel> TypeRegistry::make_odometry_model(std::string_view name,
                                                                  const Options& options) const {
-  return make(odometry_model(name), options);
+  return make(require(odometry_models_, name, "odometry model"), "odometry model", options);
 }
 std::unique_ptr<GnssModeling> TypeRegistry::make_gnss_modeling(std::string_view name,
                                                                const Options& options) const {
-  return make(gnss_modeling(name), options);
+  return make(require(gnss_modelings_, name, "GNSS modeling"), "GNSS modeling", options);
 }
 std::unique_ptr<SensorModel> TypeRegistry::make_sensor_model(std::string_view name,
                                                              const Options& options) const {
-  return make(sensor_model(name), options);
+  return make(require(sensor_models_, name, "sensor model"), "sensor model", options);
 }
 
 const OdometryModelType& TypeRegistry::odometry_model(std::string_view name) const {
-  return require(odometry_models_, name, "odometry model");
+  return require(odometry_models_, name, "odometry model").type;
 }
 const GnssModelingType& TypeRegistry::gnss_modeling(std::string_view name) const {
-  return require(gnss_modelings_, name, "GNSS modeling");
+  return require(gnss_modelings_, name, "GNSS modeling").type;
 }
 const SensorModelType& TypeRegistry::sensor_model(std::string_view name) const {
-  return require(sensor_models_, name, "sensor model");
+  return require(sensor_models_, name, "sensor model").type;
 }
 
 void register_core_types(TypeRegistry& registry) {

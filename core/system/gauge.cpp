@@ -84,6 +84,7 @@ Components describe_components(const Graph& graph) {
 /// Returns how many eigenvalues are above the noise of the largest. 0 if all of them are
 /// only rounding.
 int rank_of(const Eigen::Matrix3d& information) {
+  if (!information.allFinite()) return 3;  // whoever uses the graph finds the edge that is not finite
   const Eigen::Vector3d eigenvalues = symmetric_eigenvalues(information);
   constexpr double kRounding =
       1e-12;  // (J T) of a component without anchor cancels to about 1e-12, squared times Omega
@@ -93,17 +94,20 @@ int rank_of(const Eigen::Matrix3d& information) {
   return rank;
 }
 
+std::string anchored_in_part(const Graph& graph, VertexIndex v, int rank) {
+  return "vertex " + to_string(graph.id(v)) + " and the vertices joined to it are anchored in only " +
+         std::to_string(rank) + " of 3 rigid motions";
+}
+
 [[noreturn]] void refuse(const Graph& graph, VertexIndex v, int rank) {
-  throw InputError(
-      "vertex " + to_string(graph.id(v)) + " and the vertices joined to it are anchored in only " +
-      std::to_string(rank) +
-      " of 3 rigid motions, so the solution is not determined (typical: a single GNSS fix, or fixes "
-      "at one place); add fixes at another place or a heading, or FIX one vertex");
+  throw InputError(anchored_in_part(graph, v, rank) +
+                   ", so the solution is not determined (typical: a single GNSS fix, or fixes "
+                   "at one place); add fixes at another place or a heading, or FIX one vertex");
 }
 
 }  // namespace
 
-Gauge find_gauge(const Graph& graph) {
+Gauge find_gauge(const Graph& graph, PartlyAnchored partly) {
   const Components components = describe_components(graph);
   std::vector<Eigen::Matrix3d> information(components.first.size(), Eigen::Matrix3d::Zero());
   const RigidMotionView motion{components.of.data(), components.places.data(), information.data()};
@@ -115,7 +119,12 @@ Gauge find_gauge(const Graph& graph) {
   for (std::size_t c = 0; c < components.first.size(); ++c) {
     const VertexIndex first = components.first[c];
     const int rank = rank_of(information[c]);
-    if (rank == 1 || rank == 2) refuse(graph, first, rank);
+    if (rank == 1 || rank == 2) {
+      if (partly == PartlyAnchored::refuse) refuse(graph, first, rank);
+      gauge.held[at(first)] = 1;
+      gauge.messages.push_back(anchored_in_part(graph, first, rank) +
+                               ": it is held at its present value until more is measured");
+    }
     if (rank == 0) {
       gauge.held[at(first)] = 1;
       gauge.messages.push_back("nothing anchors vertex " + to_string(graph.id(first)) + " and the " +

@@ -18,6 +18,12 @@ struct Gauge {
   std::vector<std::string> messages;  ///< one sentence per component that was held
 };
 
+/// What to do with a component that is anchored in part.
+enum class PartlyAnchored {
+  refuse,  ///< throw
+  hold     ///< hold its first vertex, with a message: more measurements will come
+};
+
 /// Examines every component of free vertices joined by edges. Its rigid-motion information is M =
 /// sum (J T)^T Omega (J T), where T are the motions along x, along y and about the centre (scaled
 /// by the extent). The rank of M decides:
@@ -25,7 +31,8 @@ struct Gauge {
 ///   message says so.
 /// - 3: the component is anchored, and nothing is held.
 /// - 1 or 2: it is anchored in part (one fix; a parked car).
-/// @throws InputError for rank 1 or 2; it names a vertex and the missing measurement
-[[nodiscard]] Gauge find_gauge(const Graph& graph);
+/// @throws InputError for rank 1 or 2 (unless they are held); it names a vertex and the missing
+/// measurement
+[[nodiscard]] Gauge find_gauge(const Graph& graph, PartlyAnchored partly = PartlyAnchored::refuse);
 
 }  // namespace waymark

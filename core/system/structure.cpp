@@ -83,7 +83,13 @@ void Structure::choose_unknowns(const Graph& graph, std::span<const char> held) 
   }
 }
 
-void Structure::build(const Graph& graph, std::span<const char> held) {
+bool Structure::comes_last(const Graph& graph, VertexIndex v) const {
+  const VertexType& type = graph.vertex_type(v);
+  return type.dense || (growing_ && type.position == nullptr);
+}
+
+void Structure::build(const Graph& graph, std::span<const char> held, bool growing) {
+  growing_ = growing;
   column_of_.clear();
   vertex_of_.clear();
   choose_unknowns(graph, held);
@@ -101,7 +107,7 @@ void Structure::build(const Graph& graph, std::span<const char> held) {
   std::vector<char> dense(at(n), 0);
   dense_columns_ = 0;
   for (int j = 0; j < n; ++j) {
-    dense[at(j)] = graph.vertex_type(vertex_of_[at(j)]).dense || is_dense(degree[at(j)], n);
+    dense[at(j)] = comes_last(graph, vertex_of_[at(j)]) || is_dense(degree[at(j)], n);
     dense_columns_ += dense[at(j)];
   }
   const BlockOrder order = order_blocks(upper.begin, upper.rows, dense);
@@ -126,7 +132,7 @@ void Structure::extend(const Graph& graph, std::span<const char> held) {
   bool append_only = dense_columns_ == 0;
   for (std::size_t v = old_vertices; v < graph.vertex_count(); ++v) {
     // a dense column comes last
-    append_only = append_only && !graph.vertex_type(static_cast<VertexIndex>(v)).dense;
+    append_only = append_only && !comes_last(graph, static_cast<VertexIndex>(v));
   }
   for (std::size_t b = 0; b < graph.batch_count() && append_only; ++b) {
     const std::size_t known = b < scattered_edges_.size() ? scattered_edges_[b] : 0;
@@ -177,7 +183,7 @@ void Structure::keep_order(const Graph& graph, std::span<const VertexIndex> old_
     placed[at(v)] = 1;
   }
   for (const VertexIndex v : vertex_of_) {
-    if (!placed[at(v)]) (graph.vertex_type(v).dense ? dense : vertices).push_back(v);
+    if (!placed[at(v)]) (comes_last(graph, v) ? dense : vertices).push_back(v);
   }
   dense_columns_ = static_cast<int>(dense.size());
   vertices.insert(vertices.end(), dense.begin(), dense.end());

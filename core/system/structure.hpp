@@ -22,7 +22,10 @@ class Structure {
   /// Computes the structure anew: order, pattern, scatter offsets.
   /// @param held per vertex: not zero keeps it out of the unknowns (like the fixed vertices
   /// of the graph)
-  void build(const Graph& graph, std::span<const char> held);
+  /// @param growing the graph will grow at its end. States without a place (calibration) are then
+  /// ordered last, however few edges they touch yet: eliminated before the poses that will join them,
+  /// they would join all of these with each other.
+  void build(const Graph& graph, std::span<const char> held, bool growing = false);
 
   /// Follows a graph that has grown at its end. New vertices are ordered after the old ones (but
   /// before dense columns), and the old order stays. If each new edge has a new vertex and no
@@ -73,6 +76,8 @@ class Structure {
 
   void choose_unknowns(const Graph& graph, std::span<const char> held);
   void keep_order(const Graph& graph, std::span<const VertexIndex> old_order);
+  /// Tells whether the column of a vertex belongs to the last ones, whatever its degree.
+  [[nodiscard]] bool comes_last(const Graph& graph, VertexIndex v) const;
   void make_pattern(const Graph& graph, int first_column, std::span<const std::int64_t> begin,
                     std::span<const int> rows);
   void make_scatter(const Graph& graph, bool only_new);
@@ -86,6 +91,7 @@ class Structure {
   [[nodiscard]] std::int64_t gradient_target(int chunk, int column) const;
   [[nodiscard]] BlockTarget target(int chunk, int first, int second) const;
 
+  bool growing_ = false;
   BlockPattern pattern_;
   std::vector<Scatter> scatters_;
   std::vector<std::size_t> scattered_edges_;  // per batch: edges that have their offsets

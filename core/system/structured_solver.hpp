@@ -18,7 +18,9 @@ class StructuredSolver {
   explicit StructuredSolver(LinearSolver& solver) : solver_(solver) {}
 
   /// These do what the functions of Structure do.
-  void build(const Graph& graph, std::span<const char> held) { structure_.build(graph, held); }
+  void build(const Graph& graph, std::span<const char> held, bool growing = false) {
+    structure_.build(graph, held, growing);
+  }
   void extend(const Graph& graph, std::span<const char> held) { structure_.extend(graph, held); }
   void remove(const Graph& graph, const Removal& removal, std::span<const char> held) {
     structure_.remove(graph, removal, held);

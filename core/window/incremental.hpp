@@ -24,6 +24,14 @@ namespace WAYMARK_EXPORT waymark {
 ///     optimizer.drop_prefix(*graph.find(oldest_id));    // everything before this pose
 ///   }
 ///
+/// **How to begin.** Give the first pose a prior (EDGE_PRIOR_SE2) of what is known about it, with the
+/// standard deviations of a first fix and of an unknown heading if that is all. Everything is determined
+/// then from the first update on, and the covariances say how well. Without a prior the first pose is
+/// held until two fixes at different places are in.
+///
+/// **Calibration states** (vertices without a place, such as biases) are ordered last. drop_prefix()
+/// keeps those that join a pose that stays.
+///
 /// Between calls the caller may append to the graph, set values, and fix new vertices. Only
 /// drop_prefix() may remove. The result of an update is that of optimize() from the same values, up
 /// to the rounding of another order of elimination.
@@ -39,8 +47,9 @@ class IncrementalOptimizer {
   IncrementalOptimizer(Graph& graph, std::unique_ptr<Algorithm> algorithm,
                        std::unique_ptr<LinearSolver> solver, OptimizerOptions options);
 
-  /// Follows the appended vertices and edges, and optimises from the present values.
-  /// @throws InputError if the gauge is undetermined (find_gauge)
+  /// Follows the appended vertices and edges, and optimises from the present values. While the
+  /// measurements do not anchor the graph in all rigid motions (before the second fix), the first vertex
+  /// is held at its present value, and a note of the summary says so.
   Summary update();
 
   /// Marginalises the first vertices at their present values (see marginalize_prefix). Vertices

@@ -24,9 +24,33 @@ struct Factor {
   Eigen::MatrixXd rows;
 };
 
+/// Marks the states of the prefix that stay: those without a stamp, which belong to no time, and those
+/// that join a vertex with a place outside of the prefix. Removed, they would join all of these.
+std::vector<char> states_in_use(const Graph& graph, VertexIndex count) {
+  const auto has_place = [&](VertexIndex v) { return graph.vertex_type(v).position != nullptr; };
+  const bool has_stamps = count > 0 && graph.stamp(0).has_value();
+  std::vector<char> in_use(at(count), 0);
+  for (VertexIndex v = 0; v < count; ++v)
+    in_use[at(v)] = has_stamps && !has_place(v) && !graph.stamp(v).has_value();
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    if (graph.edge_type(b).tag == GaussianPriorBatch::kTag) continue;  // joins what was dropped with all
+    for_each_edge(graph.batch(b), [&](std::span<const VertexIndex> vertices) {
+      const bool stays = std::any_of(vertices.begin(), vertices.end(),
+                                     [&](VertexIndex v) { return v >= count && has_place(v); });
+      if (!stays) return;
+      for (const VertexIndex v : vertices)
+        if (v < count && !has_place(v)) in_use[at(v)] = 1;
+    });
+  }
+  return in_use;
+}
+
 /// Returns not zero for vertices of the prefix that are removed. The header says which ones stay.
 std::vector<char> choose_gone(const Graph& graph, VertexIndex count) {
-  const auto in_prefix = [&](VertexIndex v) { return v < count && !graph.vertex_type(v).dense; };
+  const std::vector<char> in_use = states_in_use(graph, count);
+  const auto in_prefix = [&](VertexIndex v) {
+    return v < count && !graph.vertex_type(v).dense && in_use[at(v)] == 0;
+  };
   std::vector<char> gone(graph.vertex_count(), 0);
   for (VertexIndex v = 0; v < count; ++v) gone[at(v)] = in_prefix(v);
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {

@@ -15,6 +15,7 @@
 #include <zlib.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/base/guard.hpp>
 #include <waymark/formats/text/detail/read_failure.hpp>
 
 namespace waymark::formats {
@@ -170,13 +171,16 @@ std::string read_in_pieces(const std::string& path, const std::function<void(std
 
 LogData read_log_file(const LogReader& reader, const std::string& path, const LogRequest& request,
                       const ReadProgress& progress, const std::function<void(std::string_view)>& seen) {
-  const std::unique_ptr<LogDecoder> decoder = reader.open(path, request);
+  const auto of_reader = [&](const auto& call) {
+    return guarded([&] { return path + ": the log reader"; }, "", call);
+  };
+  const std::unique_ptr<LogDecoder> decoder = of_reader([&] { return reader.open(path, request); });
   const auto take = [&](std::string_view piece) {
     if (seen) seen(piece);
-    decoder->take(piece);
+    of_reader([&] { decoder->take(piece); });
   };
   const std::string trouble = read_in_pieces(path, take, progress);
-  decoder->finish();
+  of_reader([&] { decoder->finish(); });
   LogData& data = decoder->data();
   if (!trouble.empty()) {
     ++data.records;
@@ -192,7 +196,8 @@ Recognised recognise_log(const std::string& path, std::span<const LogReaderType>
   Recognised best;
   std::string rival;
   for (const LogReaderType& entry : readers) {
-    const Recognition why = entry.reader->recognise(head);
+    const Recognition why = guarded([&] { return path + ": log reader '" + entry.name + "'"; }, entry.name,
+                                    [&] { return entry.reader->recognise(head); });
     if (why.certainty <= 0 || why.certainty < best.why.certainty) continue;
     rival = why.certainty == best.why.certainty ? std::string(best.reader.name) : std::string();
     best = {entry, why};

@@ -130,7 +130,8 @@ struct Drive {
 /// A winding drive with stops. The gyro has a bias of 3e-4 rad/s, and the axes of the fixes
 /// are correlated.
 [[nodiscard]] inline Drive make_drive(const waymark::TypeRegistry& registry, int poses,
-                                      Eigen::Vector2d antenna_m = {0, 0}, std::uint64_t seed = 1) {
+                                      Eigen::Vector2d antenna_m = {0, 0}, std::uint64_t seed = 1,
+                                      const waymark::Options& odometry = {}) {
   using namespace waymark;
   constexpr double kDt = 0.04;
   constexpr int kPerFix = 25;
@@ -172,7 +173,8 @@ struct Drive {
   }
   std::vector<Stamp> stamps;
   for (int i = 0; i < poses; ++i) stamps.push_back(Stamp{std::int64_t{i} * 40'000'000});
-  registry.make_odometry_model("constant_twist")->extend({{stamps, chain, drive.intervals}}, drive.graph);
+  registry.make_odometry_model("constant_twist", odometry)
+      ->extend({{stamps, chain, drive.intervals}}, drive.graph);
   return drive;
 }
 

@@ -4,6 +4,7 @@
 set(WAYMARK_PUBLIC_HEADERS
   core/base/angle.hpp
   core/base/error.hpp
+  core/base/guard.hpp
   core/base/export.hpp
   core/base/suggest.hpp
   core/covariance/evidence.hpp
@@ -20,12 +21,14 @@ set(WAYMARK_PUBLIC_HEADERS
   core/graph/edge_batch.hpp
   core/graph/edge_type_check.hpp
   core/graph/fields.hpp
+  core/graph/finite_check.hpp
   core/graph/gaussian_prior.hpp
   core/graph/gradient_check.hpp
   core/graph/graph.hpp
   core/graph/loss.hpp
   core/graph/scalar_state.hpp
   core/graph/vertex.hpp
+  core/graph/vertex_type_check.hpp
   core/linear/block_cholesky.hpp
   core/linear/block_pattern.hpp
   core/linear/block_symbolic.hpp

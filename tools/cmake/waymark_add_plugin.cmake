@@ -1,5 +1,5 @@
 # waymark_add_plugin(NAME SOURCES...): the plugin module NAME.so, for `waymark --plugin`. The same function makes the
-# modules of this repository and is installed for plugins built elsewhere.
+# modules of this repository and is installed for plugins built elsewhere. waymark_install_plugin(NAME) installs one.
 include_guard(GLOBAL)
 cmake_policy(VERSION 3.25)
 
@@ -52,4 +52,13 @@ function(waymark_add_plugin name)
   # Hidden: what the plugin shares with its host is the descriptor, marked in core/registry/plugin.hpp.
   set_target_properties(${name} PROPERTIES
     PREFIX "" CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+
+# waymark_install_plugin(NAME): `cmake --install` puts the module into the folder where the program of the prefix looks.
+# The prefix is that of the found package; CMAKE_INSTALL_PREFIX and `--prefix` say otherwise. Call it after find_package(waymark).
+function(waymark_install_plugin name)
+  if(CMAKE_INSTALL_PREFIX_INITIALIZED_TO_DEFAULT)
+    set(CMAKE_INSTALL_PREFIX "${waymark_PREFIX}" CACHE PATH "Prefix of the found waymark" FORCE)
+  endif()
+  install(TARGETS ${name} LIBRARY DESTINATION "${waymark_PLUGIN_SUBFOLDER}")
 endfunction()

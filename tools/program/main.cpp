@@ -4,6 +4,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/program/command_line.hpp>
+#include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/manual/usage_hints.hpp>
 
 namespace waymark::program {
@@ -48,6 +49,9 @@ ExitCode run(int argc, char** argv) {
     return fail(kInputError, error.what());
   } catch (const OutputError& error) {
     return fail(kOutputError, error.what());
+  } catch (const PluginError& error) {
+    const std::string plugin = plugin_of(error.type());
+    return fail(kPluginError, (plugin.empty() ? "" : "plugin '" + plugin + "': ") + error.what());
   } catch (const std::exception& error) {
     return fail(kInternalError, std::string("internal error, please report: ") + error.what());
   }

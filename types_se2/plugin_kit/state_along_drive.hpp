@@ -48,7 +48,8 @@ class StateAlongDrive {
     const VertexIndex first = graph.add_vertex<V>(graph.free_id(), {0});
     since_ = stamp;
     if (is_calibrated()) {
-      graph.set_stamp(first, stamp);
+      // A constant belongs to no time, so that a sliding window keeps it.
+      if (options_.model == StateModel::random_walk) graph.set_stamp(first, stamp);
       add_prior_about_zero(graph, first, options_.prior_sigma);
     } else {
       graph.set_fixed(first, true);

@@ -1,4 +1,5 @@
 #include <system_error>
+#include <utility>
 
 #include <waymark/core/base/detail/thread_pool.hpp>
 
@@ -34,6 +35,7 @@ void ThreadPool::run(int count, const std::function<void(int)>& work) {
   std::unique_lock lock(mutex_);
   done_.wait(lock, [this] { return busy_ == 0; });
   work_ = nullptr;
+  if (const std::exception_ptr failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
 }
 
 void ThreadPool::take_items() {
@@ -43,8 +45,16 @@ void ThreadPool::take_items() {
     const int item = next_++;
     const auto* work = work_;
     lock.unlock();
-    (*work)(item);
+    std::exception_ptr failure;
+    try {
+      (*work)(item);
+    } catch (...) {
+      failure = std::current_exception();
+    }
     lock.lock();
+    if (!failure) continue;
+    if (!failure_) failure_ = failure;
+    next_ = count_;
   }
   if (--busy_ == 0) done_.notify_all();
 }

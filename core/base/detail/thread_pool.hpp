@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -24,8 +25,8 @@ class ThreadPool {
 
   [[nodiscard]] int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// Calls work(0) ... work(count - 1), each once. Returns after all of them have returned. `work`
-  /// must not throw.
+  /// Calls work(0) ... work(count - 1), each once. Returns after all of them have returned. If some
+  /// throw, the first exception is thrown here, and work that had not begun is left out.
   void run(int count, const std::function<void(int)>& work);
 
  private:
@@ -37,6 +38,7 @@ class ThreadPool {
   std::condition_variable wake_;
   std::condition_variable done_;
   const std::function<void(int)>* work_ = nullptr;
+  std::exception_ptr failure_;
   std::uint64_t round_ = 0;  // number of the current run; a worker joins each round once
   int count_ = 0;
   int next_ = 0;

@@ -80,26 +80,30 @@ class EdgeBatch final : public EdgeBatchBase {
 
   using EdgeBatchBase::chi2;
   [[nodiscard]] double chi2(const ValueView& view, EdgeRange range) const override {
+    return this->named(E::kTag, view, range, [&] {
 #if defined(__x86_64__)
-    if (has_fused_multiply()) return chi2_fused(view, range);
+      if (has_fused_multiply()) return chi2_fused(view, range);
 #endif
-    return chi2_range(view, range);
+      return chi2_range(view, range);
+    });
   }
 
   double linearize(const ValueView& view, const Scatter& scatter, EdgeRange range,
                    const NormalView& normal) const override {
+    return this->named(E::kTag, view, range, [&] {
 #if defined(__x86_64__)
-    if (has_fused_multiply()) return linearize_fused(view, scatter, range, normal);
+      if (has_fused_multiply()) return linearize_fused(view, scatter, range, normal);
 #endif
-    return has_loss() ? linearize_range<true>(view, scatter, range, normal)
-                      : linearize_range<false>(view, scatter, range, normal);
+      return has_loss() ? linearize_range<true>(view, scatter, range, normal)
+                        : linearize_range<false>(view, scatter, range, normal);
+    });
   }
 
   void linearize_edge(std::size_t i, const ValueView& view, Eigen::VectorXd& e,
                       std::vector<Eigen::MatrixXd>& out) const override {
     ErrorVector<kDimension> fixed;
     Jacobians jacobians;
-    derive(records_[i], view, fixed, jacobians);
+    this->named(E::kTag, view, one_edge(i), [&] { derive(records_[i], view, fixed, jacobians); });
     e = fixed;
     to_dynamic(jacobians, out);
   }
@@ -108,7 +112,9 @@ class EdgeBatch final : public EdgeBatchBase {
                           std::vector<Eigen::MatrixXd>& out) const override {
     ErrorVector<kDimension> fixed;
     Jacobians jacobians;
-    differentiate(records_[i], view, fixed, jacobians, std::make_index_sequence<kArity>());
+    this->named(E::kTag, view, one_edge(i), [&] {
+      differentiate(records_[i], view, fixed, jacobians, std::make_index_sequence<kArity>());
+    });
     e = fixed;
     to_dynamic(jacobians, out);
   }
@@ -118,7 +124,8 @@ class EdgeBatch final : public EdgeBatchBase {
       if (is_blind(record, motion)) continue;
       ErrorVector<kDimension> e;
       Jacobians jacobians;
-      derive(record, view, e, jacobians);
+      this->named(E::kTag, view, one_edge(static_cast<std::size_t>(&record - records_.data())),
+                  [&] { derive(record, view, e, jacobians); });
       Eigen::Matrix<double, kDimension, 3> moved = Eigen::Matrix<double, kDimension, 3>::Zero();
       const std::int32_t component =
           add_motion(record, view, jacobians, motion, moved, std::make_index_sequence<kArity>());
@@ -127,6 +134,10 @@ class EdgeBatch final : public EdgeBatchBase {
   }
 
  private:
+  static EdgeRange one_edge(std::size_t edge) {
+    return {static_cast<std::uint32_t>(edge), static_cast<std::uint32_t>(edge + 1)};
+  }
+
   void remove_records(std::span<const char> gone, std::span<const VertexIndex> new_index) override {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < records_.size(); ++i) {

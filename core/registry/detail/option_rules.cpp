@@ -61,7 +61,8 @@ std::string count_text(const OptionList& list) {
 std::string kind_text(const OptionInfo& option) {
   const std::string unit = option.unit.empty() ? std::string() : " " + option.unit;
   if (const auto* range = std::get_if<OptionRange>(&option.allowed))
-    return "number" + unit + (std::isinf(range->low) && std::isinf(range->high) ? "" : " in " + range->text());
+    return "number" + unit +
+           (std::isinf(range->low) && std::isinf(range->high) ? "" : " in " + range->text());
   if (const auto* words = std::get_if<OptionWords>(&option.allowed)) return quoted(*words);
   if (const auto* text = std::get_if<OptionText>(&option.allowed)) return text->is_file ? "file" : "text";
   return allowed_text(option);

@@ -245,6 +245,10 @@ std::optional<ClockOffset> compare(const TimeSeries& odometry, const Comparison&
 
 }  // namespace
 
+bool ClockOffset::is_significant() const {
+  return std::abs(late_s) > kOffsetSigmas * sigma_s;
+}
+
 SyncReport estimate_clock_offsets(const PreparedDrive& drive, const SyncOptions& options) {
   const std::vector<const Fix*> fixes = of_one_receiver(drive.fixes);
   const double length = seconds_between(drive.odometry.front().stamp, drive.odometry.back().stamp);

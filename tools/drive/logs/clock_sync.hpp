@@ -11,6 +11,9 @@
 
 namespace waymark::drive {
 
+/// An offset within this many of its sigmas counts as zero.
+inline constexpr double kOffsetSigmas = 3;
+
 /// The result of one comparison. If the odometry's stamps are reduced by late_s, it agrees
 /// best with GNSS.
 struct ClockOffset {
@@ -20,6 +23,9 @@ struct ClockOffset {
   double sigma_s = 0;      ///< one standard deviation, from the residuals and their autocorrelation
   double correlation = 0;  ///< Pearson's, at late_s
   std::size_t samples = 0;
+
+  /// Tells whether it differs from 0 by more than kOffsetSigmas.
+  [[nodiscard]] bool is_significant() const;
 };
 
 struct SyncReport {

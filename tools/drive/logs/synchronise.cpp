@@ -18,7 +18,7 @@ bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity
         fmt::format("sync: no offset of the {} was found; its stamps stay as they are", quantity));
     return false;
   }
-  const bool is_one = std::abs(offset->late_s) > kOffsetSigmas * offset->sigma_s;
+  const bool is_one = offset->is_significant();
   if (is_one) delay_s += offset->late_s;
   notes.push_back(
       fmt::format("sync: the odometry's {} {} late by {:.3f} s (sigma {:.3f} s, correlation {:.4f}); {}",

@@ -5,9 +5,6 @@
 
 namespace waymark::drive {
 
-/// An offset within this many of its sigmas counts as zero.
-inline constexpr double kOffsetSigmas = 3;
-
 /// Returns the relative source of a name, such as PreparedDrive::odometry_name.
 [[nodiscard]] OdometryConfig& source_of_nodes(const std::string& name, DriveDescription& description);
 

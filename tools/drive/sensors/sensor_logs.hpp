@@ -17,6 +17,8 @@ template <typename Step>
 auto at_place_of(const std::string& place, const std::string& sensor, const Step& step) {
   try {
     return step();
+  } catch (const PluginError& error) {
+    throw PluginError(place + error.what(), error.type());
   } catch (const Error& error) {
     throw InputError(place + "sensor " + sensor + ": " + error.what());
   }

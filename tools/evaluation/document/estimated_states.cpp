@@ -27,23 +27,60 @@ struct StateVertices {
   std::vector<VertexIndex> vertices;
 };
 
-/// Tells whether a vertex continues a state: it is a later value of the same type.
-bool goes_on(const Graph& graph, const StateVertices& state, const std::string& source, VertexIndex v) {
+/// The chains of values that walks and decays join: of each vertex the first one of its chain; -1: none
+/// joins it. Receivers that share their errors have biases of their own, each with its chain.
+std::vector<VertexIndex> chains_of(const Graph& graph) {
+  std::vector<VertexIndex> chain(graph.vertex_count(), -1);
+  const auto root = [&](VertexIndex v) {
+    while (chain[static_cast<std::size_t>(v)] >= 0 && chain[static_cast<std::size_t>(v)] != v)
+      v = chain[static_cast<std::size_t>(v)];
+    return v;
+  };
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    for_each_edge(graph.batch(b), [&](std::span<const VertexIndex> vertices) {
+      if (vertices.size() != 2 || graph.vertex_type(vertices[0]).tag != graph.vertex_type(vertices[1]).tag)
+        return;
+      if (!is_state(graph.vertex_type(vertices[0]))) return;
+      const auto [first, second] = std::minmax(root(vertices[0]), root(vertices[1]));
+      chain[static_cast<std::size_t>(first)] = first;
+      chain[static_cast<std::size_t>(second)] = first;
+    });
+  }
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v)
+    if (chain[static_cast<std::size_t>(v)] >= 0) chain[static_cast<std::size_t>(v)] = root(v);
+  return chain;
+}
+
+/// Tells whether a vertex continues a state: it is a later value of the same type, and in the same chain.
+bool goes_on(const Graph& graph, const StateVertices& state, const std::string& source, VertexIndex v,
+             std::span<const VertexIndex> chains) {
   const auto before = graph.stamp(state.vertices.back());
   const auto now = graph.stamp(v);
   return state.type->tag == graph.vertex_type(v).tag && state.source == source && before && now &&
-         *before < *now;
+         *before < *now &&
+         chains[static_cast<std::size_t>(state.vertices.back())] == chains[static_cast<std::size_t>(v)];
+}
+
+/// Numbers the states that would have the same name: "front.gnss_bias", "front.gnss_bias 2".
+void number_twins(std::vector<StateReport>& reports) {
+  std::map<std::string, int> count;
+  for (StateReport& report : reports) {
+    const int number = ++count[report.name];
+    if (number > 1) report.name += fmt::format(" {}", number);
+  }
 }
 
 std::vector<StateVertices> states_of(const formats::GraphDocument& document) {
   const Graph& graph = document.graph;
+  const std::vector<VertexIndex> chains = chains_of(graph);
   std::vector<StateVertices> states;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
     const VertexType& type = graph.vertex_type(v);
     if (!is_state(type) || graph.fixed(v)) continue;
     const std::string source = formats::source_of(graph.id(v), document);
-    auto known = std::find_if(states.begin(), states.end(),
-                              [&](const StateVertices& other) { return goes_on(graph, other, source, v); });
+    auto known = std::find_if(states.begin(), states.end(), [&](const StateVertices& other) {
+      return goes_on(graph, other, source, v, chains);
+    });
     if (known == states.end()) known = states.insert(states.end(), {&type, source, {}});
     known->vertices.push_back(v);
   }
@@ -126,6 +163,7 @@ std::vector<StateReport> report_states(const formats::GraphDocument& document) {
       judge_by_prior(priors, states[i].vertices.front(), axis, covariances[2 * i], reports.back());
     }
   }
+  number_twins(reports);
   return reports;
 }
 

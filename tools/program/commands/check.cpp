@@ -3,6 +3,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/covariance/marginals.hpp>
+#include <waymark/core/graph/finite_check.hpp>
 #include <waymark/core/graph/gradient_check.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
@@ -12,6 +13,7 @@
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
+#include <waymark/tools/text/json_number.hpp>
 #include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
@@ -66,11 +68,12 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
                           fmt::format("{:.1e}", gradients.error)});
     json["edges"].push_back({{"type", type.tag},
                              {"count", graph.batch(b).size()},
-                             {"chi2", graph.batch(b).chi2(graph.view())},
+                             {"chi2", text::number_or_null(graph.batch(b).chi2(graph.view()))},
                              {"jacobian_error", gradients.error}});
     if (gradients.error > kGradientTolerance) problems.push_back(describe(graph, b, gradients));
   }
   if (!table.rows.empty()) text += text::table_text(table, console.look());
+  if (const auto flaw = find_not_finite(graph)) problems.push_back(*flaw);
   console.progress("factorising");
   try {
     (void)marginal_covariances(graph, {});  // this factorises without damping

@@ -93,9 +93,12 @@ Json registry_json(const TypeRegistry& registry) {
                                   {"options", options_json(type.options)}});
   }
   for (const auto& [type, origin] : registry.linear_solvers()) {
-    json["solvers"].push_back({{"name", type.name},
-                               {"origin", origin},
-                               {"description", type.description + "; licence " + type.license}});
+    json["solvers"].push_back(
+        {{"name", type.name},
+         {"origin", origin},
+         {"description",
+          type.license.empty() ? type.description : type.description + "; licence " + type.license},
+         {"options", options_json(type.options)}});
   }
   for (const auto& [type, origin] : registry.starts()) {
     json["starts"].push_back({{"name", type.name}, {"origin", origin}, {"description", type.description}});

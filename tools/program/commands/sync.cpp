@@ -63,12 +63,15 @@ std::string table_of(const drive::SyncReport& report, const drive::OdometryConfi
   if (!report.yaw_rate)
     text += "yaw rate: no offset found (too few turns, or no correlation beyond chance)\n";
   if (!report.speed && !report.yaw_rate) return text;
-  text +=
-      "Positive: the stamps are later than GNSS time. Negative: earlier.\n\n"
-      "To apply it: --sync of run and convert, or in the drive.yaml under 'odometry':\n";
-  if (report.speed)
+  text += "Positive: the stamps are later than GNSS time. Negative: earlier.\n\n";
+  const bool speed_is_late = report.speed && report.speed->is_significant();
+  const bool yaw_rate_is_late = report.yaw_rate && report.yaw_rate->is_significant();
+  if (!speed_is_late && !yaw_rate_is_late)
+    return text + "Nothing to apply: no offset is larger than three sigmas.\n";
+  text += "To apply it: --sync of run and convert, or in the drive.yaml under 'odometry':\n";
+  if (speed_is_late)
     text += fmt::format("  speed_delay: {:.3f}\n", odometry.speed_delay_s + report.speed->late_s);
-  if (report.yaw_rate)
+  if (yaw_rate_is_late)
     text += fmt::format("  yaw_rate_delay: {:.3f}\n", odometry.yaw_rate_delay_s + report.yaw_rate->late_s);
   return text;
 }

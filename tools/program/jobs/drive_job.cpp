@@ -1,8 +1,8 @@
 #include <waymark/tools/program/jobs/drive_job.hpp>
 
-#include <waymark/tools/drive/sensors/sensor_logs.hpp>
 #include <waymark/tools/drive/logs/synchronise.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
+#include <waymark/tools/drive/sensors/sensor_logs.hpp>
 #include <waymark/version.hpp>
 
 namespace waymark::program {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include <waymark/core/base/error.hpp>
@@ -19,18 +20,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns nothing if the program is not to be installed.
+/// Returns the folder of plugins in the prefix of this program, wherever that was installed to.
 fs::path installed_folder() {
-#ifdef WAYMARK_PLUGIN_FOLDER
-  return WAYMARK_PLUGIN_FOLDER;
-#else
-  return {};
-#endif
+  std::error_code unknown;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+  if (unknown) return WAYMARK_PLUGIN_FOLDER;
+  return (program.parent_path() / WAYMARK_BIN_TO_PLUGINS).lexically_normal();
 }
 
 std::vector<PluginFolder> plugin_folders() {
   std::vector<PluginFolder> folders;
-  if (!installed_folder().empty()) folders.push_back({installed_folder().string(), true, {}});
+  folders.push_back({installed_folder().string(), true, {}});
   const char* variable = std::getenv("WAYMARK_PLUGIN_PATH");
   std::string rest = variable == nullptr ? "" : variable;
   while (!rest.empty()) {
@@ -142,6 +142,25 @@ PluginSearch search_plugins(const std::vector<std::string>& wanted) {
   return search;
 }
 
+namespace {
+
+std::map<std::string, std::string>& origins() {
+  static std::map<std::string, std::string> by_tag;
+  return by_tag;
+}
+
+void keep_origins(const TypeRegistry& registry) {
+  for (const auto& [type, origin] : registry.vertices()) origins()[type.tag] = origin;
+  for (const auto& [type, origin] : registry.edges()) origins()[type.tag] = origin;
+}
+
+}  // namespace
+
+std::string plugin_of(const std::string& type) {
+  const auto found = origins().find(type);
+  return found == origins().end() || found->second == "waymark" ? "" : found->second;
+}
+
 TypeRegistry make_registry(const CommonOptions& options, const std::vector<std::string>& plugins) {
   std::vector<std::string> wanted = options.plugins;
   wanted.insert(wanted.end(), plugins.begin(), plugins.end());
@@ -157,6 +176,7 @@ TypeRegistry make_registry(const CommonOptions& options, const std::vector<std::
   for (const PluginModule& module : search.modules) {  // other shared objects are not ours
     if (module.state == PluginModule::State::refused) console.warning("plugin left out: " + module.problem);
   }
+  keep_origins(search.registry);
   return std::move(search.registry);
 }
 

@@ -10,6 +10,10 @@
 
 namespace waymark::program {
 
+/// Returns the plugin that brought a vertex or edge type into the last registry of this process; empty for
+/// types of Waymark itself and unknown ones. Messages need it where no registry is at hand.
+[[nodiscard]] std::string plugin_of(const std::string& type);
+
 /// Returns a registry with core, SE(2), solvers, built-in plugins and log readers, and then with
 /// these modules, each file once:
 /// 1. the modules of --plugin, then those of a drive.yaml: a file, or a name that is looked up in

@@ -242,7 +242,8 @@ void add_completion(CLI::App& app, Action& action) {
       "the names of solvers and modelings, so those of plugins are completed too. An installed "
       "program has the script in the folder that bash-completion searches.");
   const auto options = std::make_shared<CompletionOptions>();
-  auto* shell = command->add_option("shell", options->shell, "Shell to write for")->check(CLI::IsMember({"bash"}));
+  auto* shell =
+      command->add_option("shell", options->shell, "Shell to write for")->check(CLI::IsMember({"bash"}));
   command->add_option("--values", options->kind)->group("")->excludes(shell);
   add_plugin_option(*command, options->common);
   command->footer("Example:\n  source <(waymark completion bash)");

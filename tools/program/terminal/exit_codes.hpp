@@ -13,6 +13,7 @@ enum ExitCode {
   kInputError = 3,     ///< a file or log is wrong or missing
   kNotConverged = 4,   ///< the result was written, but no minimum was reached
   kOutputError = 5,    ///< a result could not be written
+  kPluginError = 6,    ///< code of a plugin failed
   kInterrupted = 130   ///< Ctrl-C: the best state so far was written
 };
 
@@ -28,6 +29,7 @@ inline constexpr std::array kExitCodeMeanings = {
     ExitCodeMeaning{kInputError, "bad input"},
     ExitCodeMeaning{kNotConverged, "no convergence (the result is written and marked)"},
     ExitCodeMeaning{kOutputError, "output not written"},
+    ExitCodeMeaning{kPluginError, "a plugin failed"},
     ExitCodeMeaning{kInterrupted, "interrupted (the best state so far is written)"}};
 
 }  // namespace waymark::program

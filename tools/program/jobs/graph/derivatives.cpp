@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/graph/edge_type_check.hpp>
+#include <waymark/core/graph/vertex_type_check.hpp>
 #include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
@@ -13,6 +14,12 @@ std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const
     return fmt::format("{} of {}, scenario '{}': {}", tag, origin, check.scenario,
                        describe(check.graph, 0, check.worst));
   }
+  if (check.normal_error > kNormalTolerance) {
+    return fmt::format(
+        "{} of {}: its normal equations differ from those of its Jacobians by {:.1e}: it says kRelative and "
+        "is not unchanged if both vertices move rigidly together, or carry() of their type is wrong",
+        tag, origin, check.normal_error);
+  }
   if (check.not_finite == 0) {
     return fmt::format(
         "{} of {}: no trial has usable differences of the error; make the error smooth "
@@ -21,6 +28,22 @@ std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const
   }
   return fmt::format("{} of {}: error or Jacobian is not finite in {} of {} trials; keep the error finite",
                      tag, origin, check.not_finite, check.trials);
+}
+
+}  // namespace
+
+namespace {
+
+/// Adds what vertex types and losses promise and do not keep.
+void check_promises(const TypeRegistry& registry, DerivativeReport& report) {
+  const auto add = [&](const std::string& name, const std::string& origin,
+                       const std::vector<std::string>& broken) {
+    for (const std::string& promise : broken)
+      report.problems.push_back(fmt::format("{} of {}: {}", name, origin, promise));
+  };
+  for (const auto& [type, origin] : registry.vertices()) add(type.tag, origin, broken_promises(type));
+  for (const auto& [type, origin] : registry.losses())
+    add("loss " + type.name, origin, broken_promises(type));
 }
 
 }  // namespace
@@ -40,9 +63,11 @@ DerivativeReport check_derivatives(const TypeRegistry& registry, const text::Tex
                            {"trials", check.trials},
                            {"not_finite", check.not_finite},
                            {"jacobian_error", check.worst.error},
+                           {"normal_error", check.normal_error},
                            {"sound", check.sound()}});
     if (!check.sound()) report.problems.push_back(problem_of(check, type.tag, origin));
   }
+  check_promises(registry, report);
   if (!table.rows.empty()) report.text += text::table_text(table, look);
   return report;
 }

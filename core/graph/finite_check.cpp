@@ -1,0 +1,56 @@
+#include <waymark/core/graph/finite_check.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+/// Returns what of an edge is not finite; empty: nothing.
+std::string flaw_of(const Graph& graph, const EdgeBatchBase& batch, std::size_t edge) {
+  Eigen::VectorXd error;
+  std::vector<Eigen::MatrixXd> jacobians;
+  const Eigen::MatrixXd information = batch.information(edge);
+  if (!information.allFinite()) return "its information";
+  batch.linearize_edge(edge, graph.view(), error, jacobians);
+  if (!error.allFinite()) return "its error";
+  const bool finite = std::all_of(jacobians.begin(), jacobians.end(),
+                                  [](const Eigen::MatrixXd& jacobian) { return jacobian.allFinite(); });
+  if (!finite) return "its Jacobian";
+  const double squared = error.dot(information * error);
+  if (!std::isfinite(squared)) return "its squared error";
+  const Loss* loss = batch.loss(edge);
+  if (loss == nullptr) return "";
+  const LossValue value = loss->at(std::max(0.0, squared));
+  const bool good = std::isfinite(value.rho) && std::isfinite(value.weight) && std::isfinite(value.curvature);
+  return good ? "" : "its loss '" + loss->name + "'";
+}
+
+std::string joined_ids(const Graph& graph, std::span<const VertexIndex> vertices) {
+  std::string text;
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == vertices.size() ? " and " : ", ") + to_string(graph.id(vertices[k]));
+  return (vertices.size() == 1 ? "vertex " : "vertices ") + text;
+}
+
+}  // namespace
+
+std::optional<std::string> find_not_finite(const Graph& graph) {
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const auto value = graph.value(v);
+    if (!std::all_of(value.begin(), value.end(), [](double x) { return std::isfinite(x); }))
+      return graph.vertex_type(v).tag + " " + to_string(graph.id(v)) + ": its value is not finite";
+  }
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeBatchBase& batch = graph.batch(b);
+    for (std::size_t edge = 0; edge < batch.size(); ++edge) {
+      const std::string flaw = flaw_of(graph, batch, edge);
+      if (flaw.empty()) continue;
+      return graph.edge_type(b).tag + " number " + std::to_string(edge + 1) + " (" +
+             joined_ids(graph, batch.vertices(edge)) + "): " + flaw + " is not finite";
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace waymark

@@ -1,0 +1,219 @@
+// What vertex types, edge types and losses promise, and how a broken promise is found.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/graph/edge_type_check.hpp>
+#include <waymark/core/graph/finite_check.hpp>
+#include <waymark/core/graph/vertex_type_check.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
+
+#include "support/registry.hpp"
+
+namespace promises_test {
+
+using namespace waymark;
+using Catch::Matchers::Contains;
+using waymark_test::full_registry;
+
+namespace {
+
+/// The difference of two positions in the frame changes if both vertices turn together.
+template <bool kSays>
+struct EdgeDifference {
+  static constexpr std::string_view kTag = kSays ? "EDGE_SAYS_RELATIVE" : "EDGE_DIFFERENCE";
+  static constexpr int kErrorDimension = 2;
+  static constexpr bool kRelative = kSays;
+  using Vertices = VertexList<VertexSe2, VertexSe2>;
+  static constexpr auto fields() { return std::array{field<&EdgeDifference::measured>("measured")}; }
+  template <typename T>
+  Vector2<T> error(const Pose2<T>& a, const Pose2<T>& b) const {
+    return b.position - a.position - constant_vector<T>(measured);
+  }
+  Eigen::Vector2d measured{0, 0};
+};
+
+/// Its error has no derivative where both vertices are, and throws beyond a distance.
+struct EdgeFragile {
+  static constexpr std::string_view kTag = "EDGE_FRAGILE";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexSe2>;
+  static constexpr auto fields() { return std::array{field<&EdgeFragile::measured>("measured")}; }
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose) const {
+    using std::sqrt;
+    if (pose.position[0] > T(100.0)) throw std::out_of_range("no such place");
+    return Eigen::Matrix<T, 1, 1>(sqrt(pose.position.squaredNorm()) - T(measured));
+  }
+  double measured = 0;
+};
+
+VertexType of_angle() {
+  VertexType type;
+  type.tag = "VERTEX_TEST_ANGLE";
+  type.value_size = type.tangent_size = 1;
+  type.value_names = {"angle"};
+  type.retract = [](double* value, const double* delta) {
+    value[0] = std::remainder(value[0] + delta[0], 2 * M_PI);
+  };
+  type.local = [](const double* from, const double* to, double* delta) {
+    delta[0] = std::remainder(to[0] - from[0], 2 * M_PI);
+  };
+  return type;
+}
+
+Graph poses_with(double x) {
+  Graph graph;
+  graph.add_vertex<VertexSe2>(VertexId{1}, {5, 5, 0});
+  graph.add_vertex<VertexSe2>(VertexId{2}, {x, 0, 0});
+  graph.set_fixed(0, true);
+  graph.add_edge(EdgeFragile{4}, {0}, Eigen::Matrix<double, 1, 1>(1));
+  graph.add_edge(EdgeFragile{4}, {1}, Eigen::Matrix<double, 1, 1>(1));
+  return graph;
+}
+
+Summary optimise(Graph& graph) {
+  const TypeRegistry registry = full_registry();
+  return optimize(graph, *registry.make_algorithm("dogleg"), *registry.make_linear_solver("eigen"), {});
+}
+
+}  // namespace
+
+TEST_CASE("promises: every registered type and loss keeps them") {
+  const TypeRegistry registry = full_registry();
+  for (const auto& [type, origin] : registry.vertices()) {
+    INFO(type.tag);
+    CHECK(broken_promises(type) == std::vector<std::string>());
+  }
+  for (const auto& [type, origin] : registry.losses()) {
+    INFO(type.name);
+    CHECK(broken_promises(type) == std::vector<std::string>());
+  }
+}
+
+TEST_CASE("promises: an edge that says kRelative and is not is found by its normal equations") {
+  TypeRegistry registry = full_registry();
+  registry.add_edge<EdgeDifference<true>>();
+  registry.add_edge<EdgeDifference<false>>();
+  const EdgeTypeCheck liar = check_edge_type(registry, *registry.find_edge("EDGE_SAYS_RELATIVE"));
+  CHECK(liar.worst.error < kGradientTolerance);  // its Jacobians are right
+  CHECK(liar.normal_error > 0.01);
+  CHECK_FALSE(liar.sound());
+  CHECK(check_edge_type(registry, *registry.find_edge("EDGE_DIFFERENCE")).sound());
+  CHECK(check_edge_type(registry, *registry.find_edge("EDGE_SE2")).normal_error < 1e-12);
+}
+
+TEST_CASE("promises: wrong charts are named") {
+  CHECK(broken_promises(of_angle()).empty());
+  VertexType linear = of_angle();
+  linear.linear_chart = true;  // up to full turns, as for headings
+  CHECK(broken_promises(linear).empty());
+  linear.retract = [](double* value, const double* delta) { value[0] += std::sin(delta[0]); };
+  linear.local = [](const double* from, const double* to, double* delta) {
+    delta[0] = std::asin(to[0] - from[0]);
+  };
+  REQUIRE_FALSE(broken_promises(linear).empty());
+  CHECK_THAT(broken_promises(linear).front(), Contains("kLinearChart"));
+  VertexType turned = of_angle();
+  turned.local = [](const double* from, const double* to, double* delta) { delta[0] = from[0] - to[0]; };
+  CHECK_THAT(broken_promises(turned).front(), Contains("local is not the inverse of retract"));
+  VertexType jumping = of_angle();
+  jumping.retract = [](double* value, const double* delta) { value[0] += delta[0] + 0.1; };
+  CHECK_THAT(broken_promises(jumping).front(), Contains("retract by 0 changes a value"));
+}
+
+TEST_CASE("promises: wrong losses are named") {
+  const auto fair = [](double s, double c) {
+    const double r = std::sqrt(s) / c;
+    const double weight = 1 / (1 + r);
+    const double curvature = s > 0 ? -weight * weight / (2 * c * std::sqrt(s)) : -1e9;
+    return LossValue{2 * c * c * (r - std::log1p(r)), weight, curvature};
+  };
+  CHECK(broken_promises(LossType{"fair", fair, ""}).empty());
+  const auto halved = [](double s, double c) { return LossValue{0.5 * s, 0.5, 0 * c}; };
+  CHECK_THAT(broken_promises(LossType{"halved", halved, ""}).front(), Contains("rho'(0)"));
+  const auto wrong_weight = [](double s, double c) { return LossValue{s, 1 / (1 + s / c), -1 / c}; };
+  CHECK_THAT(broken_promises(LossType{"wrong", wrong_weight, ""}).front(), Contains("rho' by differences"));
+}
+
+TEST_CASE("finite: a Jacobian that is not finite is no minimum, and its edge is named") {
+  Graph graph = poses_with(0);  // the root has no derivative at the origin
+  const Summary summary = optimise(graph);
+  CHECK(summary.termination == Termination::non_finite);
+  CHECK_THAT(summary.message, Contains("EDGE_FRAGILE number 2 (vertex 2): its Jacobian is not finite"));
+}
+
+TEST_CASE("finite: values, information and errors are examined too") {
+  Graph graph = poses_with(1);
+  CHECK_FALSE(find_not_finite(graph).has_value());
+  graph.set_value(1, std::array{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
+  CHECK(find_not_finite(graph) == "VERTEX_SE2 2: its value is not finite");
+  Graph heavy = poses_with(1);
+  heavy.add_edge(EdgeFragile{4}, {1}, Eigen::Matrix<double, 1, 1>(std::numeric_limits<double>::infinity()));
+  CHECK(find_not_finite(heavy) == "EDGE_FRAGILE number 3 (vertex 2): its information is not finite");
+}
+
+TEST_CASE("guard: an error that throws is told with its edge, on any number of threads") {
+  Graph graph = poses_with(200);
+  CHECK_THROWS_MATCHES(optimise(graph), PluginError,
+                       Catch::Matchers::Message("EDGE_FRAGILE number 2: threw: no such place"));
+  CHECK_THROWS_AS(graph.chi2(), PluginError);
+  const TypeRegistry registry = full_registry();
+  OptimizerOptions threads;
+  threads.threads = 3;
+  for (int i = 0; i < 3; ++i)
+    CHECK_THROWS_AS(optimize(graph, *registry.make_algorithm("dogleg"),
+                             *registry.make_linear_solver("block_cholesky"), threads),
+                    PluginError);
+}
+
+TEST_CASE("guard: what a model of a plugin throws is told with plugin and model") {
+  struct Throwing final : SensorModel {
+    explicit Throwing(int what) : what_(what) {}
+    void extend(const SensorInput&, Graph&) override {
+      if (what_ == 0) throw std::runtime_error("no anchor 7");
+      if (what_ == 1) throw 42;
+      throw InputError("row 3 is impossible");
+    }
+    int what_;
+  };
+  TypeRegistry registry = full_registry();
+  registry.set_origin("uwb");
+  const std::vector<OptionInfo> options = {{"what", "0", "", OptionRange{0, 5}, "what is thrown"}};
+  registry.add_sensor_model(
+      {"ranges", "", {}, options, [](const CheckedOptions& given) -> std::unique_ptr<SensorModel> {
+         if (given.number("what") > 3) throw std::bad_alloc();
+         if (given.number("what") > 2) return nullptr;
+         return std::make_unique<Throwing>(static_cast<int>(given.number("what")));
+       }});
+  Graph graph;
+  const SensorTable readings;
+  const auto extend = [&](const char* what) {
+    registry.make_sensor_model("ranges", {{"what", what}})->extend({{}, {}, {0, 0}, readings}, graph);
+  };
+  CHECK_THROWS_MATCHES(extend("0"), PluginError,
+                       Catch::Matchers::Message("plugin 'uwb': sensor model 'ranges': threw: no anchor 7"));
+  CHECK_THROWS_MATCHES(extend("1"), PluginError,
+                       Catch::Matchers::Message(
+                           "plugin 'uwb': sensor model 'ranges': threw something that is no std::exception"));
+  CHECK_THROWS_MATCHES(extend("2"), InputError, Catch::Matchers::Message("row 3 is impossible"));
+  CHECK_THROWS_WITH(extend("3"), "plugin 'uwb': sensor model 'ranges': its factory returned nothing");
+  CHECK_THROWS_WITH(extend("4"), Contains("plugin 'uwb': sensor model 'ranges': threw: "));
+}
+
+TEST_CASE("registration: names are words") {
+  TypeRegistry registry;
+  for (const char* name : {"", "two words", "tab\tbed", "#comment", "line\n"}) {
+    CAPTURE(name);
+    VertexType vertex = of_angle();
+    vertex.tag = name;
+    CHECK_THROWS_WITH(registry.add_vertex(vertex), Contains("cannot be registered"));
+    CHECK_THROWS_WITH(registry.add_loss({name, nullptr, ""}), Contains("cannot be registered"));
+  }
+}
+
+}  // namespace promises_test
