@@ -1,5 +1,6 @@
 # waymark_add_plugin(NAME SOURCES...): the plugin module NAME.so, for `waymark --plugin`. The same function makes the
-# modules of this repository and is installed for plugins built elsewhere. waymark_install_plugin(NAME) installs one.
+# modules of this repository and is installed for plugins built elsewhere. waymark_install_plugin(NAME) installs one,
+# waymark_check_plugin(NAME) tests one.
 include_guard(GLOBAL)
 cmake_policy(VERSION 3.25)
 
@@ -61,4 +62,15 @@ function(waymark_install_plugin name)
     set(CMAKE_INSTALL_PREFIX "${waymark_PREFIX}" CACHE PATH "Prefix of the found waymark" FORCE)
   endif()
   install(TARGETS ${name} LIBRARY DESTINATION "${waymark_PLUGIN_SUBFOLDER}")
+endfunction()
+
+# waymark_check_plugin(NAME): a test that tries everything that the plugin registers, by the program of the found waymark.
+# In a build of waymark itself it is the program of the build.
+function(waymark_check_plugin name)
+  if(TARGET waymark)
+    set(program $<TARGET_FILE:waymark>)
+  else()
+    set(program "${waymark_PREFIX}/bin/waymark")
+  endif()
+  add_test(NAME "${name}: conformance" COMMAND "${program}" check --all --plugin $<TARGET_FILE:${name}>)
 endfunction()

@@ -11,10 +11,13 @@ if [[ -z ${SOURCE_DATE_EPOCH-} ]] && time=$(git log -1 --format=%ct 2>/dev/null)
   export SOURCE_DATE_EPOCH=$time
 fi
 umask 022
-cmake --preset package >/dev/null
-cmake --build --preset package
-cpack --config build/package/CPackConfig.cmake -B build/package/cpack
-mv build/package/cpack/*.deb "$out"
+# Nothing is written into the source tree.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cmake --preset package -B "$work" >/dev/null
+cmake --build "$work"
+cpack --config "$work/CPackConfig.cmake" -B "$work/cpack"
+mv "$work"/cpack/*.deb "$out"
 if command -v lintian >/dev/null; then
   lintian --fail-on error --tag-display-limit 0 "$out"/*.deb 2> >(grep -v "running with root privileges" >&2)
 else

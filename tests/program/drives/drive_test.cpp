@@ -209,7 +209,7 @@ TEST_CASE("drive: evaluate names a graph without fixes, and keeps graphs of one 
   write_text(folder + "plain.graph", square_graph());
   const RunResult plain = run({"evaluate", folder + "plain.graph"});
   CHECK(plain.code == 3);
-  CHECK(contains(plain.err, "plain.graph: has no GNSS records to evaluate at"));
+  CHECK(contains(plain.err, "plain.graph: has neither GNSS records nor poses with stamps to evaluate at"));
 
   const std::string drive = write_drive(folder);
   REQUIRE(run({"run", drive, "-m", "g1", "--out", folder + "x", "-q"}).code == 0);

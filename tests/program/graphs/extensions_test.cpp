@@ -327,4 +327,88 @@ TEST_CASE("extensions: step halving reaches the minimum from where full steps le
   CHECK(contains(refused.err, "option 'least_fraction' must lie in"));
 }
 
+TEST_CASE("extensions: ranges to anchors alone locate a drive without a receiver") {
+  if (!are_built()) return;
+  const std::string folder = fresh_folder();
+  (void)write_drive(folder);
+  // Places of write_drive(): a circle of 200 m that begins at 52.5, 13.4 towards the east.
+  const double per_latitude = 111'270;
+  const double per_longitude = 111'414 * std::cos(52.5 * 3.14159265358979 / 180);
+  const std::vector<std::pair<double, double>> anchors = {{-150, -50}, {250, 60}, {10, 350}};
+  std::string log = "time,anchor,range\n";
+  for (int i = 0; i < 80; ++i) {
+    const double heading = 0.05 * 0.5 * i;
+    const auto [east, north] = anchors[static_cast<std::size_t>(i % 3)];
+    const double range = std::hypot(200 * std::sin(heading) - east, 200 * (1 - std::cos(heading)) - north);
+    log +=
+        std::to_string(1000 + 0.5 * i) + "," + std::to_string(i % 3 + 1) + "," + std::to_string(range) + "\n";
+  }
+  write_text(folder + "ranges.csv", log);
+  std::string yaml =
+      "name: ranges\nodometry: {file: odometry.csv}\ntruth: {file: truth.csv}\n"
+      "frame: {utm_zone: 33N, origin: [391300, 5817800]}\n"
+      "sensors:\n  - name: ranges\n    file: ranges.csv\n    loss: cauchy:2\n    options:\n      places: wgs84\n"
+      "      sigma: 0.3\n      anchors:\n";
+  for (std::size_t i = 0; i < anchors.size(); ++i)
+    yaml += "        " + std::to_string(i + 1) +
+            ": {x: " + std::to_string(13.4 + anchors[i].first / per_longitude) +
+            ", y: " + std::to_string(52.5 + anchors[i].second / per_latitude) + "}\n";
+  const std::string drive = write_text(folder + "ranges.yaml", yaml);
+  const RunResult result = run_with("range_sensor", {"run", drive, "-o", folder + "out"});
+  INFO(result.out << result.err);
+  REQUIRE(result.code == 0);
+  const Json metrics = Json::parse(read_text(folder + "out/metrics.json"));
+  const Json& evaluation = metrics.at("evaluations").at(0);
+  CHECK(evaluation.at("truth").at("fused").at("position").at("rmse_m") < 0.5);
+  CHECK(evaluation.at("residuals").at(1).at("edge") == "EDGE_ANCHOR_RANGE");
+  CHECK(evaluation.at("residuals").at(1).at("measurements") == 80);
+
+  write_text(folder + "ranges.csv", "time,anchor,range\n1001,7,20\n");
+  const RunResult unknown = run_with("range_sensor", {"run", drive, "-o", folder + "out"});
+  CHECK(unknown.code == 3);
+  CHECK(contains(unknown.err, "no anchor '7' in the options"));
+}
+
+TEST_CASE("extensions: an odometry model of a plugin gives the poses of the built-in one") {
+  if (!are_built()) return;
+  const std::string folder = fresh_folder();
+  const std::string drive = write_drive(folder);
+  std::string yaml = read_text(drive);
+  yaml.replace(yaml.find("{file: odometry.csv}"), 20, "{file: odometry.csv, model: plain}");
+  const std::string plain = write_text(folder + "plain.yaml", yaml);
+  const RunResult result = run_with("plain_odometry", {"run", plain, "-m", "g1", "-o", folder + "out"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Json metrics = Json::parse(read_text(folder + "out/metrics.json"));
+  // Odometry and fixes are exact, up to the 0.1 % of the circle's degrees.
+  CHECK(metrics.at("evaluations").at(0).at("truth").at("fused").at("position").at("rmse_m") < 0.3);
+}
+
+TEST_CASE("extensions: the initial guess along the way gives headings to poses that have none") {
+  if (!are_built()) return;
+  const std::string folder = fresh_folder();
+  const std::string graph =
+      write_text(folder + "a.graph",
+                 "GRAPH 1\nVERTEX_SE2 1 0 0 3\nVERTEX_SE2 2 10 0 -2\nVERTEX_SE2 3 10 10 1\nFIX 1\n"
+                 "EDGE_SE2 1 2 10 0 0 1 0 0 1 0 1\nEDGE_SE2 2 3 10 0 1.5707963267948966 1 0 0 1 0 1\n");
+  const RunResult result = run_with("course_start", {"optimize", graph, "-o", folder + "b.graph", "--start",
+                                                     "course", "--max-iterations", "0"});
+  CHECK(result.code == 4);  // no step was allowed
+  check_near(vertices(read_text(folder + "b.graph")).at(2), {10, 0, std::acos(0.0)}, 1e-9);
+  check_near(vertices(read_text(folder + "b.graph")).at(3), {10, 10, std::acos(0.0)}, 1e-9);
+  check_near(vertices(read_text(folder + "b.graph")).at(1), {0, 0, 3}, 1e-9);
+}
+
+TEST_CASE("extensions: check --all passes for every example, and names what is wrong") {
+  if (!are_built()) return;
+  for (const char* name : {"pseudorange", "unary_fixes", "line_log", "pseudo_huber", "dense_solver",
+                           "step_halving", "range_sensor", "plain_odometry", "course_start"}) {
+    const RunResult result = run_with(name, {"check", "--all"});
+    INFO(result.out << result.err);
+    CHECK(result.code == 0);
+    CHECK(contains(result.out, "passed"));
+    CHECK(contains(result.out, "no problems found"));
+  }
+}
+
 }  // namespace extensions_test

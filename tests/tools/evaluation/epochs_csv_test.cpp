@@ -26,6 +26,7 @@ constexpr auto kColumns = 21;
 EpochResult epoch_at(std::int64_t nanoseconds) {
   EpochResult epoch;
   epoch.stamp = Stamp{nanoseconds};
+  epoch.status = FixStatus::accepted;
   return epoch;
 }
 
@@ -55,6 +56,12 @@ TEST_CASE("epochs.csv: numbers, and offsets turned into the direction of travel"
   CHECK(lines[2] ==
         "2900000000,1.9,rejected,\"far, "
         "\"\"very\"\"\",2,3,1,4,-0.5,0.25,1,4,-0.5,0.25,-180,-1.5,4,1,9,0.125,6");
+}
+
+TEST_CASE("epochs.csv: at a pose without a fix the status is empty") {
+  EpochResult epoch = epoch_at(0);
+  epoch.status = std::nullopt;
+  CHECK(lines_of(epochs_csv(std::vector{epoch}))[1] == "0,0," + std::string(kColumns - 3, ','));
 }
 
 TEST_CASE("epochs.csv: without a direction of travel there is no along and across") {

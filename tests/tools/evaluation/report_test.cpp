@@ -94,7 +94,7 @@ TEST_CASE("metrics table: withheld fixes have their own block, without truth too
 
 TEST_CASE("metrics table: tables of nothing do not crash") {
   CHECK(metrics_table({}).empty());
-  CHECK_THAT(metrics_table(std::vector<LabelledEvaluation>{{"g1", Evaluation{}}}), Contains("-"));
+  CHECK(metrics_table(std::vector<LabelledEvaluation>{{"g1", Evaluation{}}}).empty());
 }
 
 TEST_CASE("metrics.json: schema, values, null for undefined, exact doubles") {

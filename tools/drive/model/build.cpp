@@ -1,4 +1,5 @@
 #include <waymark/tools/drive/model/build.hpp>
+#include <waymark/tools/drive/model/surroundings.hpp>
 
 #include <algorithm>
 #include <limits>

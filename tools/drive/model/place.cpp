@@ -1,4 +1,5 @@
 #include <waymark/tools/drive/model/place.hpp>
+#include <waymark/tools/drive/model/surroundings.hpp>
 
 #include <algorithm>
 #include <utility>

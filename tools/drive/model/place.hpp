@@ -17,12 +17,13 @@
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/motion_runs.hpp>
-#include <waymark/tools/drive/model/surroundings.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
 #include <waymark/tools/drive/nodes/start.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
 
 namespace waymark::drive {
+
+class DriveSurroundings;  // surroundings.hpp
 
 struct PlacedDrive {
   Timeline timeline;

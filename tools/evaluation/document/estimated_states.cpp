@@ -41,7 +41,7 @@ std::vector<VertexIndex> chains_of(const Graph& graph) {
       if (vertices.size() != 2 || graph.vertex_type(vertices[0]).tag != graph.vertex_type(vertices[1]).tag)
         return;
       if (!is_state(graph.vertex_type(vertices[0]))) return;
-      const auto [first, second] = std::minmax(root(vertices[0]), root(vertices[1]));
+      const auto [first, second] = std::minmax({root(vertices[0]), root(vertices[1])});
       chain[static_cast<std::size_t>(first)] = first;
       chain[static_cast<std::size_t>(second)] = first;
     });

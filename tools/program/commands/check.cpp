@@ -9,6 +9,7 @@
 #include <waymark/formats/graph/graph_format.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
+#include <waymark/tools/program/jobs/conformance/conformance.hpp>
 #include <waymark/tools/program/jobs/graph/derivatives.hpp>
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
@@ -23,6 +24,7 @@ struct CheckOptions {
   CommonOptions common;
   std::string input;
   bool derivatives = false;
+  bool all = false;
   std::string input_format = "graph";
 };
 
@@ -38,6 +40,16 @@ ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) 
   const nlohmann::ordered_json json = {{"derivatives", report.json}, {"problems", report.problems}};
   console.result(options.common.json ? json_document("derivatives", json) : text);
   return report.problems.empty() ? kSuccess : kInputError;
+}
+
+/// Tries every type of the plugins that are named; without --plugin, of all.
+ExitCode check_kit(const CheckOptions& options, const TypeRegistry& registry) {
+  const Console console(options.common);
+  const ConformanceReport report =
+      check_conformance(registry, options.common.plugins.empty(), console.look());
+  console.result(options.common.json ? json_document("conformance", {{"conformance", report.json}})
+                                     : report.text);
+  return report.passed ? kSuccess : kInputError;
 }
 
 ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
@@ -93,12 +105,18 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
 
 ExitCode check(const CheckOptions& options) {
   const TypeRegistry registry = make_registry(options.common);
+  if (options.all) {
+    if (!options.input.empty())
+      throw UsageError("--all tries the registered types without a graph; leave out " + options.input);
+    return check_kit(options, registry);
+  }
   if (options.derivatives) {
     if (!options.input.empty())
       throw UsageError("--derivatives checks the types without a graph; leave out " + options.input);
     return check_types(options, registry);
   }
-  if (options.input.empty()) throw UsageError("a graph is required (or --derivatives, to check the types)");
+  if (options.input.empty())
+    throw UsageError("a graph is required (or --derivatives or --all, to check types)");
   return check_file(options, registry);
 }
 
@@ -118,8 +136,12 @@ void add_check(CLI::App& app, Action& action) {
   command->add_flag("--derivatives", options->derivatives,
                     "Check the Jacobians of every registered edge type instead of a "
                     "graph, plugins included");
+  command->add_flag("--all", options->all,
+                    "Try everything that the plugins of --plugin register (without --plugin: everything that "
+                    "is registered): derivatives and promises, solvers, algorithms, initial guesses, models, "
+                    "log readers");
   add_common_options(*command, options->common);
-  command->footer("Example:\n  waymark check drive.graph");
+  command->footer("Example:\n  waymark check drive.graph\n  waymark check --plugin ./my_sensor.so --all");
   command->callback([options, &action] { action = [options] { return check(*options); }; });
 }
 

@@ -7,8 +7,6 @@
 #include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
-namespace {
-
 std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const std::string& origin) {
   if (check.worst.error > kGradientTolerance) {
     return fmt::format("{} of {}, scenario '{}': {}", tag, origin, check.scenario,
@@ -29,8 +27,6 @@ std::string problem_of(const EdgeTypeCheck& check, const std::string& tag, const
   return fmt::format("{} of {}: error or Jacobian is not finite in {} of {} trials; keep the error finite",
                      tag, origin, check.not_finite, check.trials);
 }
-
-}  // namespace
 
 namespace {
 

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <waymark/core/graph/edge_type_check.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/text/text_look.hpp>
 
@@ -22,5 +23,9 @@ struct DerivativeReport {
 /// (core/graph/edge_type_check.hpp).
 [[nodiscard]] DerivativeReport check_derivatives(const TypeRegistry& registry,
                                                  const text::TextLook& look = {});
+
+/// Returns a sentence about a type that is not sound.
+[[nodiscard]] std::string problem_of(const EdgeTypeCheck& check, const std::string& tag,
+                                     const std::string& origin);
 
 }  // namespace waymark::program
