@@ -6,6 +6,7 @@
 
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/graph/foreign_poses.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/gauge.hpp>
@@ -99,6 +100,35 @@ std::string anchored_in_part(const Graph& graph, VertexIndex v, int rank) {
          std::to_string(rank) + " of 3 rigid motions";
 }
 
+/// Holds the first vertex of each part of poses that are not of the plane, if only edges between vertices
+/// join them: nothing else can be known about their gauge.
+void hold_foreign_poses(const Graph& graph, Gauge& gauge) {
+  if (find_joined_foreign_pose(graph) < 0) return;
+  const std::vector<std::int32_t> root = find_components(graph);
+  const std::vector<char> has_edge = vertices_with_edges(graph);
+  std::vector<char> anchored(graph.vertex_count(),
+                             0);  // by root: by a fixed vertex, or an edge on one vertex
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    for_each_edge(graph.batch(b), [&](std::span<const VertexIndex> vertices) {
+      const bool has_fixed =
+          std::any_of(vertices.begin(), vertices.end(), [&](VertexIndex v) { return graph.fixed(v); });
+      if (vertices.size() > 1 && !has_fixed) return;
+      for (const VertexIndex v : vertices) anchored[at(root[at(v)])] = 1;
+    });
+  }
+  for (std::size_t v = 0; v < graph.vertex_count(); ++v) {
+    const auto vertex = static_cast<VertexIndex>(v);
+    if (graph.fixed(vertex) || has_edge[v] == 0 || !is_foreign_pose(graph.vertex_type(vertex))) continue;
+    char& is_anchored = anchored[at(root[v])];
+    if (is_anchored == 0) {
+      gauge.held[v] = 1;
+      gauge.messages.push_back(graph.vertex_type(vertex).tag + " " + to_string(graph.id(vertex)) +
+                               " is held at its present value: only edges between vertices are there");
+    }
+    is_anchored = 1;
+  }
+}
+
 [[noreturn]] void refuse(const Graph& graph, VertexIndex v, int rank) {
   throw InputError(anchored_in_part(graph, v, rank) +
                    ", so the solution is not determined (typical: a single GNSS fix, or fixes "
@@ -132,6 +162,7 @@ Gauge find_gauge(const Graph& graph, PartlyAnchored partly) {
                                " vertices joined to it: it is held at its present value");
     }
   }
+  hold_foreign_poses(graph, gauge);
   return gauge;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/graph/foreign_poses.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 #include <waymark/formats/graph/detail/own_statements.hpp>
@@ -102,6 +103,10 @@ class GraphReader {
   void place_along_odometry() {
     InitialValues start = registry_.make_start("odometry", document_.graph);
     report_.apart = start.apart;
+    if (start.values.empty() && find_joined_foreign_pose(document_.graph) >= 0)
+      throw InputError(name_ +
+                       ": the file has edges only, and no start can place their vertices (odometry: " +
+                       start.note + "); add the vertices");
     if (!start.values.empty()) document_.graph.set_values(std::move(start.values));
   }
 

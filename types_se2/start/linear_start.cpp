@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <waymark/core/graph/foreign_poses.hpp>
 #include <waymark/core/system/structure.hpp>
 #include <waymark/types_se2/start/detail/least_squares.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
@@ -62,6 +63,10 @@ class LinearStart {
 
   InitialValues make() {
     InitialValues start;
+    if (const VertexIndex foreign = find_joined_foreign_pose(graph_); foreign >= 0) {
+      start.note = foreign_note(graph_, foreign);
+      return start;
+    }
     find_parts();
     find_order();
     centre_ = find_centre();

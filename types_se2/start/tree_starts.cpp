@@ -2,6 +2,7 @@
 #include <queue>
 #include <tuple>
 
+#include <waymark/core/graph/foreign_poses.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
 #include <waymark/types_se2/start/detail/starts.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
@@ -161,6 +162,10 @@ void spread_by_heading(Tree& tree, VertexIndex root) {
 
 InitialValues grow_tree(const Graph& graph, void (*spread)(Tree&, VertexIndex)) {
   InitialValues start;
+  if (const VertexIndex foreign = find_joined_foreign_pose(graph); foreign >= 0) {
+    start.note = foreign_note(graph, foreign);
+    return start;
+  }
   Tree tree(graph);
   bool first = true;
   for (const VertexIndex root : tree.roots()) {

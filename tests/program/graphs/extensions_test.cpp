@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -402,13 +403,100 @@ TEST_CASE("extensions: the initial guess along the way gives headings to poses t
 TEST_CASE("extensions: check --all passes for every example, and names what is wrong") {
   if (!are_built()) return;
   for (const char* name : {"pseudorange", "unary_fixes", "line_log", "pseudo_huber", "dense_solver",
-                           "step_halving", "range_sensor", "plain_odometry", "course_start"}) {
+                           "step_halving", "range_sensor", "plain_odometry", "course_start", "se3"}) {
     const RunResult result = run_with(name, {"check", "--all"});
     INFO(result.out << result.err);
     CHECK(result.code == 0);
     CHECK(contains(result.out, "passed"));
     CHECK(contains(result.out, "no problems found"));
   }
+}
+
+/// A helix on a sphere of 20 m, 50 poses a turn, with an edge to the pose before and to the turn before.
+/// Every pose but the first is at the origin. @param noise of the measured translations, m
+std::string sphere(int poses, double noise, bool with_vertices = true) {
+  std::ostringstream text;
+  text.precision(15);
+  const auto pose = [&](int i) {
+    const double phi = 2 * M_PI * i / 50;
+    const double theta = M_PI * (i + 10) / (poses + 20);
+    const Eigen::Vector3d place(20 * std::sin(theta) * std::cos(phi), 20 * std::sin(theta) * std::sin(phi),
+                                20 * std::cos(theta));
+    const Eigen::Quaterniond turn =
+        Eigen::AngleAxisd(phi, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitY());
+    return std::pair(place, turn);
+  };
+  const auto write = [&](const Eigen::Vector3d& t, const Eigen::Quaterniond& q) {
+    text << ' ' << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << ' '
+         << q.w();
+  };
+  for (int i = 0; i < poses && with_vertices; ++i) {
+    text << "VERTEX_SE3:QUAT " << i;
+    i == 0 ? write(pose(0).first, pose(0).second)
+           : write(Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity());
+    text << '\n';
+  }
+  for (int i = 0; i < poses; ++i) {
+    for (const int j : {i + 1, i + 50}) {
+      if (j >= poses) continue;
+      const auto [from, turn] = pose(i);
+      const auto [to, other] = pose(j);
+      const Eigen::Vector3d off(std::sin(7.0 * i + j), std::cos(3.0 * i), std::sin(5.0 * j));
+      text << "EDGE_SE3:QUAT " << i << ' ' << j;
+      write(turn.inverse() * (to - from) + noise * off, turn.inverse() * other);
+      for (int row = 0; row < 6; ++row)
+        for (int column = row; column < 6; ++column) text << ' ' << (row != column ? 0 : row < 3 ? 1 : 100);
+      text << '\n';
+    }
+  }
+  return text.str();
+}
+
+TEST_CASE(
+    "extensions: poses in space reach the truth of a sphere by every algorithm, or are refused by name") {
+  if (!are_built()) return;
+  const std::string folder = fresh_folder();
+  const std::string exact = write_text(folder + "exact.g2o", sphere(300, 0));
+  const std::string noisy = write_text(folder + "noisy.g2o", sphere(300, 0.1));
+  double lowest = 0;
+  for (const char* algorithm : {"gauss_newton", "levenberg_marquardt", "dogleg"}) {
+    INFO(algorithm);
+    const RunResult result = run_with("se3", {"optimize", exact, "-o", folder + "out.g2o", "-a", algorithm,
+                                              "--json", "--start", "chain_in_space"});
+    REQUIRE(result.code == 0);
+    CHECK(Json::parse(result.out).at("final_chi2").get<double>() < 1e-12);
+    const RunResult of_noisy =
+        run_with("se3", {"optimize", noisy, "-o", folder + "out.g2o", "-a", algorithm, "--json", "--start",
+                         "chain_in_space", "--tolerance", "1e-12"});
+    REQUIRE(of_noisy.code == 0);
+    const double chi2 = Json::parse(of_noisy.out).at("final_chi2");
+    CHECK(chi2 > 1);
+    if (lowest == 0) lowest = chi2;
+    CHECK(chi2 == Approx(lowest).epsilon(1e-9));
+  }
+  const auto last = [&] {
+    std::istringstream words(read_text(folder + "out.g2o"));
+    std::vector<double> numbers;
+    std::string line;
+    while (std::getline(words, line)) {
+      if (!line.starts_with("VERTEX_SE3:QUAT 299 ")) continue;
+      std::istringstream values(line.substr(20));
+      for (double value = 0; values >> value;) numbers.push_back(value);
+    }
+    return numbers;
+  };
+  CHECK(last().size() == 7);
+  CHECK(std::hypot(last()[0], last()[1], last()[2]) == Approx(20).margin(0.5));  // it is on the sphere
+
+  const std::string edges = write_text(folder + "edges.g2o", sphere(60, 0, false));
+  const RunResult refused = run_with("se3", {"optimize", edges, "-o", folder + "out.g2o"});
+  CHECK(refused.code == 3);
+  CHECK(contains(refused.err, "the file has edges only, and no start can place their vertices"));
+  CHECK(contains(refused.err, "VERTEX_SE3:QUAT"));
+  const RunResult planar =
+      run_with("se3", {"optimize", exact, "-o", folder + "out.g2o", "--start", "spanning_tree"});
+  CHECK(planar.code == 3);
+  CHECK(contains(planar.err, "it is for poses of the plane, and the graph has VERTEX_SE3:QUAT"));
 }
 
 }  // namespace extensions_test

@@ -3,9 +3,17 @@
 /// part, and no other values of the graph.
 #pragma once
 
+#include <string>
+
 #include <waymark/core/optimize/start.hpp>
 
 namespace waymark {
+
+/// Returns why a graph with poses of another space has no start of the plane.
+[[nodiscard]] inline std::string foreign_note(const Graph& graph, VertexIndex foreign) {
+  return "it is for poses of the plane, and the graph has " + graph.vertex_type(foreign).tag +
+         "; begin at the values of the file, or with a start of the plugin that brings the type";
+}
 
 /// Chains poses along consecutive vertices. A vertex that the chain does not reach is placed from
 /// it along the fewest edges.

@@ -166,6 +166,7 @@ double reading_of(const SensorColumn& column, double t) {
   if (column.sense == "y") return pose.position.y();
   if (column.unit == "m/s") return kSpeed;
   if (column.unit == "rad/s") return kYawRate;
+  if (column.unit == "s") return -0.5;  // readings look back
   return column.unit == "1" ? 1 : 0.5;
 }
 
