@@ -11,6 +11,7 @@
 #include "support/problems.hpp"
 #include "support/registry.hpp"
 #include "support/scalar_types.hpp"
+#include "support/vertex_body_pose.hpp"
 
 using namespace waymark;
 using namespace waymark::benchmark;
@@ -52,7 +53,34 @@ Graph graph_of_all_types() {
   return graph;
 }
 
+/// The relative pose of two vertices whose steps are in their own axes.
+struct EdgeBodyPoses {
+  static constexpr std::string_view kTag = "EDGE_BODY_POSES";
+  static constexpr int kErrorDimension = 3;
+  using Vertices = VertexList<waymark_test::VertexBodyPose, waymark_test::VertexBodyPose>;
+  static constexpr auto fields() { return std::array{field<&EdgeBodyPoses::measured>("measured")}; }
+  template <typename T>
+  Vector3<T> error(const Pose2<T>& a, const Pose2<T>& b) const {
+    const Pose2<T> off = between(constant_pose<T>(measured), between(a, b));
+    return Vector3<T>(off.position[0], off.position[1], wrap_angle(off.heading));
+  }
+  Eigen::Vector3d measured{0, 0, 0};
+};
+
 }  // namespace
+
+TEST_CASE("peer: vertices with a chart of their own are updated by it") {
+  Graph graph;
+  constexpr int kPoses = 20;
+  for (int i = 0; i < kPoses; ++i)
+    graph.add_vertex<waymark_test::VertexBodyPose>(VertexId{i}, {1.0 * i, 0.2 * std::sin(i), 0.1 * i});
+  graph.set_fixed(0, true);
+  for (int i = 0; i + 1 < kPoses; ++i)
+    graph.add_edge(EdgeBodyPoses{{1, 0, 0.3}}, {i, i + 1}, Eigen::Vector3d(4, 9, 100).asDiagonal());
+  for (int i = 0; i + 5 < kPoses; i += 5)
+    graph.add_edge(EdgeBodyPoses{{3.5, 2.5, 1.4}}, {i, i + 5}, Eigen::Vector3d(1, 1, 10).asDiagonal());
+  check_same_problem(graph);
+}
 
 TEST_CASE("peer: the measured Ceres solves the same problem with every edge type of the plane") {
   check_same_problem(graph_of_all_types());

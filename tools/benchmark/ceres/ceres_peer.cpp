@@ -156,6 +156,66 @@ std::unique_ptr<ceres::CostFunction> make_typed_cost(const EdgeBatchBase& batch,
 
 // ---- Everything else
 
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+bool is_addition(const VertexType& type) {
+  return type.linear_chart && type.value_size == type.tangent_size;
+}
+
+/// Returns the derivative of a retraction by its step, at step 0: value size x tangent size. It is taken by
+/// differences. Ceres multiplies what tangent_to_value() returns by it, so its rounding cancels.
+RowMajor retraction_jacobian(const VertexType& type, const double* value) {
+  constexpr double kStep = 1e-5;
+  RowMajor jacobian(type.value_size, type.tangent_size);
+  for (int k = 0; k < type.tangent_size; ++k) {
+    std::array<std::vector<double>, 2> moved;
+    for (int side = 0; side < 2; ++side) {
+      std::vector<double> step(static_cast<std::size_t>(type.tangent_size), 0.0);
+      step[static_cast<std::size_t>(k)] = side == 0 ? kStep : -kStep;
+      moved[side].assign(value, value + type.value_size);
+      type.retract(moved[side].data(), step.data());
+    }
+    for (int row = 0; row < type.value_size; ++row)
+      jacobian(row, k) =
+          (moved[0][static_cast<std::size_t>(row)] - moved[1][static_cast<std::size_t>(row)]) / (2 * kStep);
+  }
+  return jacobian;
+}
+
+/// Returns the left inverse of retraction_jacobian().
+RowMajor tangent_to_value(const RowMajor& plus) {
+  return (plus.transpose() * plus).ldlt().solve(plus.transpose());
+}
+
+/// The chart of a vertex type as a manifold of Ceres.
+class ChartManifold final : public ceres::Manifold {
+ public:
+  explicit ChartManifold(const VertexType& type) : type_(type) {}
+  [[nodiscard]] int AmbientSize() const override { return type_.value_size; }
+  [[nodiscard]] int TangentSize() const override { return type_.tangent_size; }
+  bool Plus(const double* x, const double* delta, double* moved) const override {
+    std::copy_n(x, type_.value_size, moved);
+    type_.retract(moved, delta);
+    return true;
+  }
+  bool PlusJacobian(const double* x, double* jacobian) const override {
+    Eigen::Map<RowMajor>(jacobian, type_.value_size, type_.tangent_size) = retraction_jacobian(type_, x);
+    return true;
+  }
+  bool Minus(const double* y, const double* x, double* delta) const override {
+    type_.local(x, y, delta);
+    return true;
+  }
+  bool MinusJacobian(const double* x, double* jacobian) const override {
+    Eigen::Map<RowMajor>(jacobian, type_.tangent_size, type_.value_size) =
+        tangent_to_value(retraction_jacobian(type_, x));
+    return true;
+  }
+
+ private:
+  VertexType type_;
+};
+
 /// Any other edge, through the interface of its batch: one virtual call and some allocations
 /// per evaluation.
 class GenericCost final : public ceres::CostFunction {
@@ -169,7 +229,7 @@ class GenericCost final : public ceres::CostFunction {
         root_(root_of(batch.information(edge))) {
     set_num_residuals(batch.error_dimension(edge));
     for (const VertexIndex v : batch.vertices(edge))
-      mutable_parameter_block_sizes()->push_back(graph.vertex_type(v).tangent_size);
+      mutable_parameter_block_sizes()->push_back(graph.vertex_type(v).value_size);
   }
 
   bool Evaluate(double const* const* parameters, double* residual, double** jacobians) const override {
@@ -185,8 +245,13 @@ class GenericCost final : public ceres::CostFunction {
     Eigen::Map<Eigen::VectorXd>(residual, num_residuals()) = root_ * e;
     for (std::size_t k = 0; jacobians != nullptr && k < vertices.size(); ++k) {
       if (jacobians[k] == nullptr) continue;
-      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      Eigen::Map<RowMajor>(jacobians[k], num_residuals(), parameter_block_sizes()[k]) = root_ * exact[k];
+      const VertexType& type = graph_.vertex_type(vertices[k]);
+      Eigen::Map<RowMajor> out(jacobians[k], num_residuals(), parameter_block_sizes()[k]);
+      if (is_addition(type)) {
+        out = root_ * exact[k];
+      } else {
+        out = root_ * exact[k] * tangent_to_value(retraction_jacobian(type, parameters[k]));
+      }
     }
     return true;
   }
@@ -251,7 +316,7 @@ class CeresProblem {
     std::vector<double*> blocks;
     for (std::size_t i = 0; i < batch.size(); ++i) {
       blocks.clear();
-      for (const VertexIndex v : batch.vertices(i)) blocks.push_back(addition_block(v));
+      for (const VertexIndex v : batch.vertices(i)) blocks.push_back(block_with_chart(v));
       auto cost =
           typed != nullptr ? typed(batch, i) : std::make_unique<GenericCost>(graph_, batch, i, scratch_);
       const Loss* loss = batch.loss(i);
@@ -263,13 +328,14 @@ class CeresProblem {
     }
   }
 
-  /// @throws UsageError if the retraction of the vertex is not plain addition
-  double* addition_block(VertexIndex v) {
+  /// Returns the numbers of a vertex. If its retraction is no plain addition, Ceres knows its chart.
+  double* block_with_chart(VertexIndex v) {
     const VertexType& type = graph_.vertex_type(v);
-    if (type.linear_chart && type.value_size == type.tangent_size) return block(v);
-    throw UsageError("peer 'ceres': vertices " + type.tag +
-                     " are not updated by plain addition, which is the only update that the "
-                     "comparison supports");
+    if (is_addition(type) || problem_.HasParameterBlock(block(v))) return block(v);
+    const auto [chart, is_new] = charts_.try_emplace(type.tag, nullptr);
+    if (is_new) chart->second = std::make_unique<ChartManifold>(type);
+    problem_.AddParameterBlock(block(v), type.value_size, chart->second.get());
+    return block(v);
   }
 
   void hold(const std::vector<char>& held) {
@@ -284,7 +350,12 @@ class CeresProblem {
   std::vector<double> values_;
   std::vector<double> scratch_;
   std::vector<std::string> notes_;
-  ceres::Problem problem_;
+  std::map<std::string, std::unique_ptr<ceres::Manifold>> charts_;  // outlives the problem
+  ceres::Problem problem_{[] {
+    ceres::Problem::Options options;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+  }()};
 };
 
 /// Stops Ceres at Ctrl-C.
