@@ -6,7 +6,7 @@
 
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/foreign_poses.hpp>
+#include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/gauge.hpp>

@@ -84,7 +84,7 @@ static std::vector<OptionInfo> options() {
       {.name = "places",
        .value = "frame",
        .allowed = OptionWords{"frame", "wgs84"},
-       .text = "x and y of the anchors are metres in the frame, or longitude and latitude"},
+       .text = "'frame': x and y of the anchors are metres in the frame; 'wgs84': longitude and latitude"},
       {.name = "sigma",
        .value = "0.1",
        .unit = "m",

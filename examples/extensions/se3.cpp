@@ -48,10 +48,11 @@ Pose3<T> from_numbers(const double* n) {  // x y z qx qy qz qw, as in g2o
   return {Vector3of<T>(T(n[0]), T(n[1]), T(n[2])), T(n[6]), Vector3of<T>(T(n[3]), T(n[4]), T(n[5]))};
 }
 
-/// Normalises the quaternion; one of zeros becomes no rotation.
+/// Normalises the quaternion; one of zeros becomes no rotation. A length that only rounding has changed stays,
+/// so that numbers come back from a file, and from a step of 0, to the bit.
 static void to_numbers(const Pose3<double>& pose, double* n) {
   const double length = std::sqrt(pose.w * pose.w + pose.v.squaredNorm());
-  const double norm = length > 0 ? length : 1;
+  const double norm = length > 0 && std::abs(length - 1) > 1e-15 ? length : 1;
   for (int i = 0; i < 3; ++i) {
     n[i] = pose.translation[i];
     n[3 + i] = pose.v[i] / norm;

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/foreign_poses.hpp>
+#include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 #include <waymark/formats/graph/detail/own_statements.hpp>

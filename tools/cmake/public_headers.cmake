@@ -22,7 +22,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/graph/edge_type_check.hpp
   core/graph/fields.hpp
   core/graph/finite_check.hpp
-  core/graph/foreign_poses.hpp
+  core/system/foreign_poses.hpp
   core/graph/gaussian_prior.hpp
   core/graph/gradient_check.hpp
   core/graph/graph.hpp

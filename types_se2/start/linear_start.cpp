@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <waymark/core/graph/foreign_poses.hpp>
+#include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/system/structure.hpp>
 #include <waymark/types_se2/start/detail/least_squares.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>

@@ -2,7 +2,7 @@
 #include <queue>
 #include <tuple>
 
-#include <waymark/core/graph/foreign_poses.hpp>
+#include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/types_se2/start/detail/relations.hpp>
 #include <waymark/types_se2/start/detail/starts.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
