@@ -67,11 +67,11 @@ struct Vehicle {
 /// have are empty.
 struct DriveSource {
   std::string name;
-  std::string kind;                          ///< "odometry", "gnss", or the name of a sensor model
-  Eigen::Vector2d antenna_m{0, 0};           ///< of a receiver, body frame
-  std::span<const OdometrySample> odometry;  ///< on the clock of the drive, sorted
-  std::span<const Fix> fixes;                ///< in the frame, sorted, with the verdict of the gate
-  const SensorTable* readings = nullptr;     ///< in SI units and the frame; sorted
+  std::string kind;                            ///< "odometry", "gnss", or the name of a sensor model
+  Eigen::Vector2d antenna_m{0, 0};             ///< of a receiver, body frame
+  std::span<const OdometrySample> odometry{};  ///< on the clock of the drive, sorted
+  std::span<const Fix> fixes{};                ///< in the frame, sorted, with the verdict of the gate
+  const SensorTable* readings = nullptr;       ///< in SI units and the frame; sorted
 };
 
 /// The drive around an input.

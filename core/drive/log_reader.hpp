@@ -81,6 +81,9 @@ struct LogRequest {
   /// The frame of positions that a log gives in metres (`easting`, `northing`): they are its x
   /// and y. Empty: such a log cannot be read.
   std::optional<Frame> metric_frame;
+  /// Per-axis sigma, m, of fixes of a quality whose log gives no accuracy. It comes before
+  /// range_error_m and default_sigma_m.
+  std::map<FixQuality, double> sigma_by_quality;
 };
 
 /// One instant on two clocks: when the logger wrote a message, and the GNSS time in the message.
@@ -105,6 +108,8 @@ struct LogData {
   std::vector<std::string> corrupt_examples;  ///< the first few, "file:line:column: the error"
   /// number of messages of each kind: "GPRMC", "NAV-PVT"
   std::map<std::string, std::size_t> kinds;
+  /// number of fixes of each quality
+  std::map<FixQuality, std::size_t> qualities;
 };
 
 /// Decodes one log.

@@ -17,13 +17,36 @@ std::vector<Eigen::Vector2d> GnssModeling::lasting_errors(std::span<const Fix>, 
 SensorModel::~SensorModel() = default;
 void SensorModel::check_drive(std::span<const Fix>, const SensorTable&) const {}
 
-double median_accuracy(std::span<const Fix> fixes) {
-  std::vector<double> ordered;
-  ordered.reserve(fixes.size());
+SolutionKind kind_of(FixQuality quality) {
+  if (quality == FixQuality::fixed) return SolutionKind::fixed;
+  return quality == FixQuality::floating ? SolutionKind::floating : SolutionKind::code;
+}
+
+double ClaimedAccuracies::of(SolutionKind kind) const {
+  return median_m[static_cast<std::size_t>(kind)].value_or(0);
+}
+
+double ClaimedAccuracies::reference_m() const {
+  const auto coarsest = std::find_if(median_m.begin(), median_m.end(), [](const auto& m) { return m; });
+  return coarsest == median_m.end() ? 0 : **coarsest;
+}
+
+int ClaimedAccuracies::kinds() const {
+  return static_cast<int>(std::count_if(median_m.begin(), median_m.end(), [](const auto& m) { return m; }));
+}
+
+ClaimedAccuracies claimed_accuracies(std::span<const Fix> fixes) {
+  ClaimedAccuracies claimed;
+  std::array<std::vector<double>, 3> ordered;
   for (const Fix& fix : fixes) {
-    if (fix.status == FixStatus::accepted && fix.accuracy_claimed) ordered.push_back(fix.accuracy_m());
+    if (fix.status != FixStatus::accepted) continue;
+    const auto kind = static_cast<std::size_t>(kind_of(fix.told.quality));
+    claimed.median_m[kind] = 0;
+    if (fix.accuracy_claimed) ordered[kind].push_back(fix.accuracy_m());
   }
-  return ordered.empty() ? 0 : upper_median(std::move(ordered));
+  for (std::size_t kind = 0; kind < ordered.size(); ++kind)
+    if (!ordered[kind].empty()) claimed.median_m[kind] = upper_median(std::move(ordered[kind]));
+  return claimed;
 }
 
 std::optional<NodeInTime> nearest_node(const DriveNodes& nodes, Stamp moment, double tolerance_s) {

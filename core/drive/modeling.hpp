@@ -10,6 +10,7 @@
 /// to the caller of its factory.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -94,6 +95,28 @@ struct FixMoment {
   double assumed_offset_s = 0;  ///< late: > 0
 };
 
+/// Kinds of solutions, from coarse to fine. Their errors differ by orders of magnitude, and one kind's
+/// bias tells nothing of another's.
+enum class SolutionKind { code, floating, fixed };
+
+/// Returns `floating` and `fixed` for the qualities of these names, else `code`.
+[[nodiscard]] SolutionKind kind_of(FixQuality quality);
+
+/// What the accepted fixes of a drive claim about their accuracy, for each kind of solution.
+struct ClaimedAccuracies {
+  /// by SolutionKind: the median of Fix::accuracy_m, in m; 0 if no fix of the kind claims any
+  /// (Fix::accuracy_claimed); empty if there is no fix of it
+  std::array<std::optional<double>, 3> median_m{};
+
+  /// Returns the median of a kind, 0 if it has none.
+  [[nodiscard]] double of(SolutionKind kind) const;
+  /// Returns the median of the coarsest kind of which there are fixes: parameters of a modeling hold for it.
+  [[nodiscard]] double reference_m() const;
+  /// Returns the number of kinds of which there are fixes.
+  [[nodiscard]] int kinds() const;
+};
+[[nodiscard]] ClaimedAccuracies claimed_accuracies(std::span<const Fix> fixes);
+
 /// The input of a GNSS modeling.
 struct GnssInput {
   /// only accepted ones; Fix::vertex names the pose nearest in time to when it was measured: the
@@ -106,16 +129,12 @@ struct GnssInput {
   Eigen::Vector2d antenna = {0, 0};
   /// robust loss of the edges that carry the information of the fixes
   std::optional<Loss> loss = {};
-  /// median_accuracy() of all fixes of the drive, of the ones so far if it grows; 0: of these fixes
-  double median_accuracy_m = 0;
+  /// claimed_accuracies() of all fixes of the drive, of the ones so far if it grows; none: of these fixes
+  ClaimedAccuracies claimed = {};
   /// name of the source of these fixes; of the first one if several share their errors
   std::string_view source = {};
   const DriveContext& context = DriveContext::none();
 };
-
-/// Returns the median of the accuracies that accepted fixes claim (Fix::accuracy_m), in m. 0 if none
-/// claims any (Fix::accuracy_claimed).
-[[nodiscard]] double median_accuracy(std::span<const Fix> fixes);
 
 /// Connects poses and the fixes of one source (the paper's G1, G2, G3, and those of plugins). Several
 /// sources are served by one object only if they share their errors (GnssModelingType::shares_errors).

@@ -2,6 +2,34 @@
 
 namespace waymark {
 
+std::string_view to_string(FixQuality quality) {
+  switch (quality) {
+    case FixQuality::unknown:
+      break;
+    case FixQuality::single:
+      return "single";
+    case FixQuality::differential:
+      return "differential";
+    case FixQuality::floating:
+      return "float";
+    case FixQuality::fixed:
+      return "fixed";
+    case FixQuality::dead_reckoned:
+      return "dead_reckoned";
+    case FixQuality::manual:
+      return "manual";
+    case FixQuality::simulated:
+      return "simulated";
+  }
+  return "unknown";
+}
+
+std::optional<FixQuality> fix_quality_from_string(std::string_view word) {
+  for (const FixQuality quality : kFixQualities)
+    if (word == to_string(quality)) return quality;
+  return std::nullopt;
+}
+
 std::string_view to_string(FixStatus status) {
   switch (status) {
     case FixStatus::accepted:

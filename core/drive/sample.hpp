@@ -5,6 +5,7 @@
 /// They own their data; copies share nothing.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -43,6 +44,35 @@ struct Interval {
   friend bool operator==(const Interval&, const Interval&) = default;
 };
 
+/// How a receiver computed a fix.
+enum class FixQuality {
+  unknown,        ///< not told
+  single,         ///< from code ranges alone
+  differential,   ///< with corrections for code ranges (SBAS, DGNSS)
+  floating,       ///< RTK or PPP, carrier phases with real-valued ambiguities
+  fixed,          ///< RTK, carrier phases with integer ambiguities
+  dead_reckoned,  ///< extrapolated, by its motion or inertial sensors
+  manual,         ///< entered by hand
+  simulated       ///< by a simulator
+};
+/// Every quality, in the order of the enumeration.
+inline constexpr std::array kFixQualities{
+    FixQuality::unknown, FixQuality::single,        FixQuality::differential, FixQuality::floating,
+    FixQuality::fixed,   FixQuality::dead_reckoned, FixQuality::manual,       FixQuality::simulated};
+
+/// "unknown", "single", "differential", "float", "fixed", "dead_reckoned", "manual", "simulated".
+[[nodiscard]] std::string_view to_string(FixQuality quality);
+[[nodiscard]] std::optional<FixQuality> fix_quality_from_string(std::string_view word);
+
+/// What a receiver tells of a fix besides its accuracy.
+struct FixDetails {
+  FixQuality quality = FixQuality::unknown;
+  int satellites = -1;  ///< used in the fix; -1: not told
+  double hdop = 0;      ///< horizontal dilution of precision; 0: not told
+  /// age of the corrections; NaN: not told, or none were used
+  double correction_age_s = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// One GNSS reading of a receiver: WGS84, true-north axes.
 struct GeodeticFix {
   Stamp stamp;
@@ -57,6 +87,7 @@ struct GeodeticFix {
   std::optional<double> speed_sigma_mps;
   int source = 0;        ///< index of the receiver in the drive
   std::size_t line = 0;  ///< line in its log, 1-based
+  FixDetails told = {};
 };
 
 /// One reading of the reference system.
@@ -104,6 +135,7 @@ struct Fix {
   /// displacement error in the gate; NaN: not computed
   double displacement_m = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector2d antenna_m{0, 0};  ///< of its receiver in the body frame (x forward, y left)
+  FixDetails told = {};
 };
 
 /// A pose of the reference system in the metric frame.

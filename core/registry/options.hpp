@@ -69,6 +69,8 @@ struct NoisePrior {
   /// The mean holds for receivers that claim an accuracy of half a metre or more. Below it shrinks
   /// in proportion: a receiver that claims centimetres has not the errors of a phone.
   bool shrinks_with_claim = false;
+  /// It is estimated only where the fixes are of several kinds (SolutionKind); else it has no effect.
+  bool between_kinds = false;
 };
 
 /// An option of a registered type.

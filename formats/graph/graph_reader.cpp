@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
+#include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 #include <waymark/formats/graph/detail/own_statements.hpp>
 #include <waymark/formats/graph/detail/sensor_offsets.hpp>

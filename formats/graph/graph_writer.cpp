@@ -114,6 +114,7 @@ void write_fix(const Fix& fix, TextBuilder& out) {
   out.word(to_string(fix.status)).word(fix.reason);
   or_dash(fix.chord_angle_rad);
   or_dash(fix.displacement_m);
+  if (fix.told.quality != FixQuality::unknown) out.word(to_string(fix.told.quality));
   out.end_line();
 }
 

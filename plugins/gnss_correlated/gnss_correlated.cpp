@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <waymark/core/base/error.hpp>
@@ -32,26 +33,41 @@ struct ErrorModel {
   double bias_per_accuracy = 0;
   double bias_time_s = 0;
   double accuracy_exponent = 0;
+  double kind_exponent = 0;
   bool heavy_tails = true;
 
-  /// @param median_m of the claimed accuracies; 0: none
-  [[nodiscard]] double bias_m(double median_m) const {
+  /// Returns how much larger the errors of a kind of solution are than those that the sigmas hold for.
+  /// Between kinds the claims count nearly as they are: a fixed ambiguity is worth its centimetres.
+  [[nodiscard]] double kind_scale(const ClaimedAccuracies& claimed, SolutionKind kind) const {
+    const double reference_m = claimed.reference_m();
+    const double median_m = claimed.of(kind);
+    return reference_m > 0 && median_m > 0 ? std::pow(median_m / reference_m, kind_exponent) : 1;
+  }
+
+  /// Returns the sigma of the bias of a kind of solution.
+  [[nodiscard]] double bias_m(const ClaimedAccuracies& claimed, SolutionKind kind) const {
+    const double median_m = claimed.of(kind);
     const double floor_m = median_m > 0 ? std::min(bias_floor_m, bias_per_accuracy * median_m) : bias_floor_m;
-    return std::hypot(floor_m, bias_share * multipath_m);
+    return std::hypot(floor_m, bias_share * multipath_m * kind_scale(claimed, kind));
+  }
+
+  /// Returns the symmetric root of a fix's relative covariance. Within a kind of solution the claimed
+  /// accuracies are used relative to their median: receivers know which fix is worse better than they know
+  /// how bad it is. A stand-in for a claim says nothing.
+  [[nodiscard]] Eigen::Matrix2d relative_root(const Fix& fix, const ClaimedAccuracies& claimed) const {
+    const SolutionKind kind = kind_of(fix.told.quality);
+    const double scale = kind_scale(claimed, kind);
+    const double median_m = claimed.of(kind);
+    if (!fix.accuracy_claimed || !(median_m > 0)) return scale * Eigen::Matrix2d::Identity();
+    constexpr double kSmallest = 0.3;
+    constexpr double kLargest = 30;
+    const auto [variances, directions] = symmetric_eigen(fix.covariance);
+    const Eigen::Vector2d sigma =
+        (variances.cwiseMax(0).cwiseSqrt() / median_m).cwiseMax(kSmallest).cwiseMin(kLargest);
+    return directions * (scale * sigma.array().pow(accuracy_exponent)).matrix().asDiagonal() *
+           directions.transpose();
   }
 };
-
-/// The claimed accuracies are used relative to their median. Receivers know which fix is worse
-/// better than they know how bad it is. A stand-in for a claim says nothing.
-Eigen::Matrix2d relative_root(const Fix& fix, double median_m, double exponent) {
-  if (!fix.accuracy_claimed) return Eigen::Matrix2d::Identity();
-  constexpr double kSmallest = 0.3;
-  constexpr double kLargest = 30;
-  const auto [variances, directions] = symmetric_eigen(fix.covariance);
-  const Eigen::Vector2d sigma =
-      (variances.cwiseMax(0).cwiseSqrt() / median_m).cwiseMax(kSmallest).cwiseMin(kLargest);
-  return directions * sigma.array().pow(exponent).matrix().asDiagonal() * directions.transpose();
-}
 
 /// A Gauss-Markov process along the fixes of one receiver.
 template <Vertex V, Edge Decay>
@@ -125,9 +141,9 @@ class GnssCorrelated final : public GnssModeling {
     std::vector<Eigen::Vector2d> errors;
     for (const Fix& fix : fixes) {
       errors.emplace_back(Eigen::Vector2d::Zero());
-      const auto bias = biases_.find(fix.source);
+      const auto bias = biases_.find({fix.source, kind_of(fix.told.quality)});
       if (!multipath_ || bias == biases_.end()) continue;
-      const Eigen::Matrix2d root = relative_root(fix, median_m_, model_.accuracy_exponent);
+      const Eigen::Matrix2d root = model_.relative_root(fix, claimed_);
       errors.back() = bias->second.expected(fix.stamp, minimum) +
                       model_.multipath_m * root * multipath_->expected(fix.stamp, minimum);
     }
@@ -142,13 +158,14 @@ class GnssCorrelated final : public GnssModeling {
         offset_.in_or(graph, [&] { return make_offset(graph, input.moments.front().assumed_offset_s); });
     const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
     const double peak = model_.heavy_tails ? kStudentInformation : 1;
-    median_m_ = input.median_accuracy_m > 0 ? input.median_accuracy_m : median_accuracy(input.fixes);
+    claimed_ = input.claimed.kinds() > 0 ? input.claimed : claimed_accuracies(input.fixes);
     if (!multipath_) multipath_ = Multipath(1, model_.multipath_time_s);
     for (std::size_t i = 0; i < input.fixes.size(); ++i) {
       const Fix& fix = input.fixes[i];
-      const Eigen::Matrix2d root = relative_root(fix, median_m_, model_.accuracy_exponent);
-      Bias& bias =
-          biases_.try_emplace(fix.source, model_.bias_m(median_m_), model_.bias_time_s).first->second;
+      const Eigen::Matrix2d root = model_.relative_root(fix, claimed_);
+      const SolutionKind kind = kind_of(fix.told.quality);
+      Bias& bias = biases_.try_emplace({fix.source, kind}, model_.bias_m(claimed_, kind), model_.bias_time_s)
+                       .first->second;
       const VertexIndex pose = pose_vertex(fix, graph);
       EdgeGnssPositionCorrelated edge;
       edge.measured = fix.position;
@@ -180,13 +197,13 @@ class GnssCorrelated final : public GnssModeling {
 
   ErrorModel model_;
   double time_offset_sigma_s_;
-  double median_m_ = 0;  ///< claimed accuracy
+  ClaimedAccuracies claimed_;
   KeptVertex origin_;
   KeptVertex offset_;
   /// Sources in a group share the error of the seconds. Each has a bias of its own: a constant difference
-  /// between two antennas would otherwise turn the vehicle.
+  /// between two antennas would otherwise turn the vehicle. So has each kind of solution.
   std::optional<Multipath> multipath_;
-  std::map<int, Bias> biases_;
+  std::map<std::pair<int, SolutionKind>, Bias> biases_;
 };
 
 std::vector<OptionInfo> options() {
@@ -211,6 +228,10 @@ std::vector<OptionInfo> options() {
       {"accuracy_exponent", "0.5", "", OptionRange{0, 1},
        "weight of the claimed accuracies: 0 ignores them, 1 takes them as they are",
        NoisePrior{0.5, 0.3, true}},
+      {"kind_exponent", "1", "", OptionRange{0, 2},
+       "weight of the claims between kinds of solutions (code, float, fixed): the errors of a kind are as "
+       "the ratio of its median claim to that of the coarsest kind, to this power",
+       NoisePrior{1, 0.3, true, false, true}},
       {"time_offset", "off", "", OptionWords{"off", "constant"},
        "delay of the fixes against the odometry: 'off', or 'constant' (estimated)"},
       {"time_offset_sigma", "0.3", "s", OptionRange{1e-6, 100}, "sigma of the prior of time_offset about 0"},
@@ -227,6 +248,7 @@ std::unique_ptr<GnssModeling> make(const CheckedOptions& options) {
   model.bias_share = options.number("bias_share");
   model.bias_time_s = options.number("bias_time");
   model.accuracy_exponent = options.number("accuracy_exponent");
+  model.kind_exponent = options.number("kind_exponent");
   model.heavy_tails = options.word("tails") == "student";
   const bool has_offset = options.word("time_offset") == "constant";
   return std::make_unique<GnssCorrelated>(model, has_offset ? options.number("time_offset_sigma") : 0);

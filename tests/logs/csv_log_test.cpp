@@ -257,7 +257,7 @@ TEST_CASE("csv: a fix without accuracy takes the stated default, or is corrupt")
   CHECK_THROWS_MATCHES(
       read("time,latitude,longitude\n1,50,8\n", gnss(0)), InputError,
       Message("log.csv: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, "
-              "or sigma_east and sigma_north, or state 'default_sigma' (in metres)"));
+              "or sigma_east and sigma_north, or quality, or state 'default_sigma' (in metres)"));
 }
 
 TEST_CASE("csv: a line without a fix is not corrupt") {

@@ -170,10 +170,14 @@ TEST_CASE("rtklib_pos: without a header the default layout is assumed and said")
         "Q, ns and deviations, on GPST");
 }
 
-TEST_CASE("rtklib_pos: no accuracy takes the stated default, truth needs none") {
-  const std::string text =
-      "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n2323 553950.0 35.1 136.8 40.2 1 9\n";
-  CHECK(first_complaint(text) == "run.pos:2:1: the log has no accuracy: state 'default_sigma'");
+TEST_CASE("rtklib_pos: Q stands in for accuracy, for code after the stated default, and truth needs none") {
+  const std::string header = "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n";
+  const std::string text = header + "2323 553950.0 35.1 136.8 40.2 5 9\n";
+  const GeodeticFix fixed = read(header + "2323 553950.0 35.1 136.8 40.2 1 9\n").fixes.at(0);
+  CHECK(fixed.covariance_en(0, 0) == Approx(0.02 * 0.02));
+  CHECK(fixed.told.quality == FixQuality::fixed);
+  CHECK(fixed.told.satellites == 9);
+  CHECK(read(text).fixes.at(0).covariance_en(0, 0) == 9);
   LogRequest request;
   request.default_sigma_m = 3;
   const LogData data = read(text, request);

@@ -30,6 +30,8 @@ namespace {
 #endif
 #if defined(SAMPLE_BROKEN_SOLVER)
   add_refusing_solver(registry);
+#elif defined(SAMPLE_LOCATED)
+  add_located_sensor(registry);
 #elif defined(SAMPLE_THROWS)
   throw std::runtime_error("the sensor is not plugged in");
 #elif defined(SAMPLE_THROWS_NUMBER)

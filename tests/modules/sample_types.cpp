@@ -1,5 +1,6 @@
 #include "sample_types.hpp"
 
+#include <waymark/core/base/error.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
 
 namespace waymark_test::modules {
@@ -11,9 +12,7 @@ struct EdgeSound {
   static constexpr std::string_view kForm = "position";
   static constexpr int kErrorDimension = 2;
   using Vertices = waymark::VertexList<waymark::VertexSe2>;
-  static constexpr auto fields() {
-    return std::array{waymark::field<&EdgeSound::measured>("measured")};
-  }
+  static constexpr auto fields() { return std::array{waymark::field<&EdgeSound::measured>("measured")}; }
 
   template <typename T>
   waymark::Vector2<T> error(const waymark::Pose2<T>& pose) const {
@@ -45,19 +44,40 @@ class Refusing final : public waymark::LinearSolver {
   [[nodiscard]] std::string description() const override { return "refuses"; }
 };
 
+class Located final : public waymark::SensorModel {
+ public:
+  void extend(const waymark::SensorInput& input, waymark::Graph&) override {
+    (void)input.context.require_geodesy().to_ecef({{0, 0}, 100});
+    if (input.context.source("gnss").fixes.empty() || input.context.source("odometry").odometry.empty())
+      throw waymark::UsageError("the sources are empty");
+  }
+};
+
 }  // namespace
 
-void add_sound_edge(waymark::TypeRegistry& registry) { registry.add_edge<EdgeSound>(); }
+void add_located_sensor(waymark::TypeRegistry& registry) {
+  registry.add_sensor_model({"located",
+                             "needs a place",
+                             {{"reading", "1", "", true, "any number"}},
+                             {},
+                             [](const waymark::CheckedOptions&) { return std::make_unique<Located>(); }});
+}
 
-void add_taken_edge(waymark::TypeRegistry& registry) { registry.add_edge<EdgeTaken>(); }
+void add_sound_edge(waymark::TypeRegistry& registry) {
+  registry.add_edge<EdgeSound>();
+}
+
+void add_taken_edge(waymark::TypeRegistry& registry) {
+  registry.add_edge<EdgeTaken>();
+}
 
 void add_edge_with_wrong_jacobian(waymark::TypeRegistry& registry) {
   registry.add_edge<EdgeWithWrongJacobian>();
 }
 
 void add_refusing_solver(waymark::TypeRegistry& registry) {
-  registry.add_linear_solver(
-      {"refusing", "refuses", "BSD-3-Clause", [](const waymark::CheckedOptions&) { return std::make_unique<Refusing>(); }});
+  registry.add_linear_solver({"refusing", "refuses", "BSD-3-Clause",
+                              [](const waymark::CheckedOptions&) { return std::make_unique<Refusing>(); }});
 }
 
 }  // namespace waymark_test::modules

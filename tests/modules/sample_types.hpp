@@ -14,4 +14,7 @@ void add_edge_with_wrong_jacobian(waymark::TypeRegistry& registry);
 /// 'refusing', a linear solver that calls every matrix indefinite.
 void add_refusing_solver(waymark::TypeRegistry& registry);
 
+/// 'located', a sensor that needs the place of the frame and the logs of the other sources.
+void add_located_sensor(waymark::TypeRegistry& registry);
+
 }  // namespace waymark_test::modules

@@ -169,7 +169,7 @@ void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
         input.position_covariances.empty() ? nullptr : &input.position_covariances[i];
     const double nu =
         normalised_innovation_squared(residual, residual_covariance(kind, fix.covariance, pose_covariance));
-    evaluation.epochs[i].nu = nu;
+    if (input.independent_errors) evaluation.epochs[i].nu = nu;
     if (kind == ResidualKind::post_fit) post_fit.push_back(nu);
     if (kind == ResidualKind::gated) gated.push_back(nu);
     if (kind == ResidualKind::prediction) {
@@ -180,10 +180,39 @@ void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
   evaluation.accepted = post_fit.size();
   evaluation.rejected = gated.size();
   evaluation.withheld = prediction.size();
+  if (!withheld.offsets.empty()) evaluation.withheld_fixes = withheld.metrics();
+  if (!input.independent_errors) {
+    post_fit.clear();
+    gated.clear();
+    prediction.clear();
+  }
   evaluation.post_fit = innovation_statistics(ResidualKind::post_fit, post_fit);
   evaluation.gated = innovation_statistics(ResidualKind::gated, gated);
   evaluation.prediction = innovation_statistics(ResidualKind::prediction, prediction);
-  if (!withheld.offsets.empty()) evaluation.withheld_fixes = withheld.metrics();
+}
+
+std::vector<QualityMetrics> metrics_by_quality(const EvaluationInput& input,
+                                               const std::vector<EpochResult>& epochs) {
+  std::vector<QualityMetrics> all;
+  for (const FixQuality quality : kFixQualities) {
+    QualityMetrics metrics{.quality = quality, .gnss = {}, .fused = {}};
+    std::vector<Eigen::Vector2d> gnss;
+    std::vector<Eigen::Vector2d> fused;
+    for (std::size_t i = 0; i < input.fixes.size(); ++i) {
+      if (input.fixes[i].told.quality != quality) continue;
+      ++metrics.fixes;
+      metrics.accepted += input.fixes[i].status == FixStatus::accepted;
+      if (!epochs[i].gnss_offset_m || !epochs[i].fused_offset_m) continue;
+      gnss.push_back(*epochs[i].gnss_offset_m);
+      fused.push_back(*epochs[i].fused_offset_m);
+    }
+    if (metrics.fixes == 0) continue;
+    metrics.gnss = position_metrics(gnss);
+    metrics.fused = position_metrics(fused);
+    all.push_back(metrics);
+  }
+  const bool told = all.size() > 1 || (all.size() == 1 && all[0].quality != FixQuality::unknown);
+  return told ? all : std::vector<QualityMetrics>();
 }
 
 /// Returns the fused poses as one of the predictions.
@@ -239,6 +268,7 @@ Evaluation evaluate(const EvaluationInput& input) {
   evaluate_residuals(input, evaluation);
   compare_at_withheld(input, evaluation);
   if (!input.truth.empty()) evaluation.truth = evaluate_truth(input, evaluation.epochs);
+  evaluation.by_quality = metrics_by_quality(input, evaluation.epochs);
   return evaluation;
 }
 

@@ -41,6 +41,9 @@ struct EvaluationInput {
   Eigen::Vector2d truth_reference_m{0, 0};  ///< truth reference point in the body frame
   /// Covariances of the fused positions, m^2, frame axes; empty or one per pose.
   std::vector<Eigen::Matrix2d> position_covariances;
+  /// The graph takes the errors of the fixes as independent, with the covariances that they claim. Otherwise
+  /// the normalised innovations have no meaning and are left out.
+  bool independent_errors = true;
   std::vector<Prediction> predictions;  ///< compared with the fused poses at withheld fixes
   Frame frame;
   TruthOptions truth_options;
@@ -72,6 +75,15 @@ struct EpochResult {
   std::optional<double> heading_error_rad;  ///< fused - truth
   double nees = kUndefined;                 ///< d^T P^-1 d of the fused offset d
   double nu = kUndefined;                   ///< normalised innovation squared
+};
+
+/// Raw and fused positions at the fixes of one quality.
+struct QualityMetrics {
+  FixQuality quality = FixQuality::unknown;
+  std::size_t fixes = 0;     ///< of this quality
+  std::size_t accepted = 0;  ///< of these
+  PositionMetrics gnss;      ///< at those matched with the truth; no count without truth
+  PositionMetrics fused;     ///< at the same epochs
 };
 
 struct TruthEvaluation {
@@ -109,6 +121,7 @@ struct Evaluation {
   std::vector<EpochResult> epochs;           ///< one per fused pose
   SourceComparison sources;                  ///< empty from evaluate(): it takes further fusions
   std::vector<SourceResiduals> residuals{};  ///< empty from evaluate(): it takes the graph
+  std::vector<QualityMetrics> by_quality{};  ///< of the fixes; empty if no quality is told
 
   [[nodiscard]] std::size_t fixes() const { return accepted + rejected + withheld; }
 };

@@ -99,6 +99,7 @@ LogRequest basic_request(const LogInspection& log, StreamKind stream) {
   request.stream = stream;
   request.time_scale = log.clock.scale;
   request.default_sigma_m = kNoAccuracy;
+  for (const FixQuality quality : kFixQualities) request.sigma_by_quality[quality] = kNoAccuracy;
   if (stream == StreamKind::odometry) request.readings = formats::odometry_channels();
   for (const auto& [key, path] : log.companions) {
     std::string text;

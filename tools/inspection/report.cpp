@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/logs/fix_quality.hpp>
 #include <waymark/tools/inspection/inspection.hpp>
 #include <waymark/tools/text/json_number.hpp>
 #include <waymark/tools/text/table.hpp>
@@ -76,6 +77,45 @@ void add_gaps(Text& text, const StampSeries& stamps, const LogClock& clock) {
     text.line("", fmt::format("{:.3f} s after {}", gap.seconds, date_text(gap.begin, clock)));
 }
 
+void add_quality(Text& text, const FixSummary& fixes) {
+  text.line("  quality", formats::quality_counts(fixes.qualities));
+  std::string told;
+  const auto add = [&](const char* name, const Range& range, const char* unit) {
+    if (range.count == 0) return;
+    told += fmt::format("{}{} {:.3g} .. {:.3g}{}", told.empty() ? "" : ", ", name, range.smallest,
+                        range.largest, unit);
+  };
+  add("satellites", fixes.satellites, "");
+  add("HDOP", fixes.hdop, "");
+  add("age of corrections", fixes.correction_age_s, " s");
+  if (!told.empty()) text.line("", told);
+}
+
+void add_accuracy(Text& text, const FixSummary& fixes) {
+  const std::size_t lacking = fixes.fixes - fixes.with_accuracy;
+  std::string title = "  accuracy";
+  const auto line = [&](const std::string& what) {
+    text.line(title, what);
+    title.clear();
+  };
+  const std::size_t usual = fixes_with_usual_sigma(fixes);
+  if (lacking > usual)
+    line(lacking - usual == fixes.fixes
+             ? "the log has none: state a 'default_sigma' (or, with HDOP, a 'range_error') to use it as gnss"
+             : fmt::format("{} of {} fixes have none: state a 'default_sigma' for them", lacking - usual,
+                           fixes.fixes));
+  if (usual > 0)
+    line(fmt::format("{} of {} fixes have none, their quality stands in: {}", usual, fixes.fixes,
+                     usual_sigmas(fixes)));
+  if (fixes.with_accuracy == 0) return;
+  const auto axis = [](const char* name, const SigmaSummary& sigma) {
+    return fmt::format("sigma {}: median {:.3g} m, 95 % below {:.3g} m, {:.3g} .. {:.3g} m", name,
+                       sigma.median, sigma.percent95, sigma.range.smallest, sigma.range.largest);
+  };
+  line(axis("east", fixes.east));
+  line(axis("north", fixes.north));
+}
+
 void add_fixes(Text& text, const LogInspection& log) {
   const FixSummary& fixes = *log.fixes;
   if (fixes.fixes == 0) {
@@ -98,21 +138,8 @@ void add_fixes(Text& text, const LogInspection& log) {
   text.line("  height", fixes.height.count == 0
                             ? "none"
                             : fmt::format("{:.1f} .. {:.1f} m", fixes.height.smallest, fixes.height.largest));
-  if (fixes.with_accuracy == 0) {
-    text.line("  accuracy",
-              "the log has none: state a 'default_sigma' (or, with HDOP, a 'range_error') to "
-              "use it as gnss");
-  } else {
-    if (fixes.with_accuracy < fixes.fixes)
-      text.line("  accuracy", fmt::format("{} of {} fixes have none: state a 'default_sigma' for them",
-                                          fixes.fixes - fixes.with_accuracy, fixes.fixes));
-    const auto axis = [](const char* name, const SigmaSummary& sigma) {
-      return fmt::format("sigma {}: median {:.3g} m, 95 % below {:.3g} m, {:.3g} .. {:.3g} m", name,
-                         sigma.median, sigma.percent95, sigma.range.smallest, sigma.range.largest);
-    };
-    text.line(fixes.with_accuracy < fixes.fixes ? "" : "  accuracy", axis("east", fixes.east));
-    text.line("", axis("north", fixes.north));
-  }
+  add_quality(text, fixes);
+  add_accuracy(text, fixes);
   text.line("  velocity",
             fmt::format("speed in {} of the fixes{}, course in {}", percent(fixes.with_speed, fixes.fixes),
                         fixes.with_speed == 0 ? "" : fmt::format(" (up to {:.1f} m/s)", fixes.speed.largest),

@@ -47,6 +47,11 @@ Json json_of(const FixSummary& fixes, const LogClock& clock) {
   json["east_m"] = fixes.box.width_m();
   json["height_m"] = json_of(fixes.height);
   json["distance_m"] = fixes.distance_m;
+  for (const auto& [quality, count] : fixes.qualities)
+    json["qualities"][std::string(to_string(quality))] = count;
+  json["satellites"] = json_of(fixes.satellites);
+  json["hdop"] = json_of(fixes.hdop);
+  json["correction_age_s"] = json_of(fixes.correction_age_s);
   json["with_accuracy"] = fixes.with_accuracy;
   if (fixes.with_accuracy > 0) {
     json["sigma_east"] = json_of(fixes.east);

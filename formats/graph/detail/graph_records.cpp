@@ -96,6 +96,12 @@ Fix read_fix(LineScanner& line) {
   if (fix.reason.empty()) line.fail("GNSS: expected a reason, got the end of the line");
   fix.chord_angle_rad = line.optional_number({kTag, "chord_angle"}).value_or(nan);
   fix.displacement_m = line.optional_number({kTag, "displacement"}).value_or(nan);
+  if (const std::string_view quality = line.word(); !quality.empty()) {
+    const auto known_quality = fix_quality_from_string(quality);
+    if (!known_quality)
+      line.fail("GNSS: expected the quality of a fix, such as single or fixed, got " + quote_word(quality));
+    fix.told.quality = *known_quality;
+  }
   line.end(kTag);
   if (!is_positive_semidefinite(fix.covariance)) line.fail("GNSS: the covariance matrix is indefinite");
   return fix;

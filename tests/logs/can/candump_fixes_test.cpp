@@ -105,7 +105,7 @@ TEST_CASE("candump: a fix without accuracy takes the stated default or is corrup
   check_refused(
       request,
       "the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or sigma_east and "
-      "sigma_north, or state 'default_sigma' (in metres)");
+      "sigma_north, or quality, or state 'default_sigma' (in metres)");
 }
 
 TEST_CASE("candump: what receivers send for not available is no value") {

@@ -97,10 +97,41 @@ TEST_CASE("nmea: which accuracy a fix gets") {
   CHECK(read(with_gst, request).notes.front() ==
         "log.nmea: 1 fixes with GST read as 95; 0 of them with the correlation of its error ellipse");
   request.default_sigma_m = 0;
+  CHECK(read(rmc("000001"), request).fixes[0].covariance_en(0, 0) == 9);  // mode A: single
   CHECK_THROWS_MATCHES(
-      read(rmc("000001"), request), InputError,
+      read(line("GPRMC,000001,A,4810.8509,N,01133.9095,E,10,90,010409,,"), request), InputError,
       Message("log.nmea: none of 1 records could be used; first: log.nmea:1:1: the log has no "
               "accuracy: state 'default_sigma'"));
+}
+
+TEST_CASE("nmea: quality, satellites, HDOP and age of corrections are told") {
+  const auto told = [](const std::string& text) { return read(text).fixes.at(0).told; };
+  const auto with = [](const std::string& quality, const std::string& mode) {
+    return line("GPRMC,000001,A,4810.8509,N,01133.9095,E,10,90,010409,,," + mode) +
+           line("GPGGA,000001,4810.8509,N,01133.9095,E," + quality + ",12,0.8,500.5,M,46.5,M,1.5,0001");
+  };
+  using enum FixQuality;
+  CHECK(told(with("1", "A")).quality == single);
+  CHECK(told(with("2", "D")).quality == differential);
+  CHECK(told(with("4", "R")).quality == fixed);
+  CHECK(told(with("5", "F")).quality == floating);
+  CHECK(told(with("5", "D")).quality == floating);  // old receivers know no letter for it: GGA knows best
+  CHECK(told(with("6", "E")).quality == dead_reckoned);
+  CHECK(told(with("1", "E")).quality == dead_reckoned);
+  CHECK(told(with("7", "M")).quality == manual);
+  CHECK(told(with("8", "S")).quality == simulated);
+  CHECK(told(with("4", "R")).satellites == 12);
+  CHECK(told(with("4", "R")).hdop == 0.8);
+  CHECK(told(with("4", "R")).correction_age_s == 1.5);
+  const FixDetails rmc_alone = told(rmc("000001") + line("GPGSA,A,3,01,02,,,,,,,,,,,2.1,1.2,1.7"));
+  CHECK(rmc_alone.quality == single);
+  CHECK(rmc_alone.hdop == 1.2);
+  CHECK(rmc_alone.satellites == -1);
+  const FixDetails gns =
+      told(rmc("000001") + line("GNGNS,000001,4810.8509,N,01133.9095,E,RRN,17,0.6,500.5,46.5,1.0,0001"));
+  CHECK(gns.quality == fixed);
+  CHECK(gns.satellites == 17);
+  CHECK(gns.correction_age_s == 1);
 }
 
 TEST_CASE("nmea: the error ellipse of GST gives the correlation, whatever its scale") {

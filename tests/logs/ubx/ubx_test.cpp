@@ -155,11 +155,10 @@ TEST_CASE("ubx: which fixes are fixes") {
                        Message("log.ubx: not one fix in 1 records (1 are marked as without a fix)"));
 }
 
-TEST_CASE("ubx: a position without accuracy takes the stated default, or is corrupt") {
+TEST_CASE("ubx: a position without accuracy takes the stated default, else what is usual for its quality") {
   for (const std::int64_t none : {0LL, 0xFFFFFFFFLL}) {
     const std::string log = pvt_frame(nav_pvt().u32(40, none));
-    CHECK(decode(log).corrupt_examples ==
-          Notes{"log.ubx:byte 0: the log has no accuracy: state 'default_sigma'"});
+    CHECK(read(log).fixes.at(0).covariance_en(1, 1) == 9);
     LogRequest request;
     request.default_sigma_m = 7;
     const LogData data = read(log, request);

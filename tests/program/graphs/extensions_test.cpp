@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <Eigen/Geometry>
@@ -410,6 +411,17 @@ TEST_CASE("extensions: check --all passes for every example, and names what is w
     CHECK(contains(result.out, "passed"));
     CHECK(contains(result.out, "no problems found"));
   }
+}
+
+TEST_CASE("extensions: check --all tries the named plugin alone") {
+  if (!are_built()) return;
+  const RunResult result =
+      run({"check", "--all", "--plugin", extension("se3"), "--plugin", extension("pseudo_huber"), "--json"});
+  REQUIRE(result.code == 0);
+  std::set<std::string> origins;
+  const Json document = Json::parse(result.out);
+  for (const Json& row : document.at("conformance")) origins.insert(row.at("origin"));
+  CHECK(origins == std::set<std::string>{"pseudo_huber", "se3"});
 }
 
 /// A helix on a sphere of 20 m, 50 poses a turn, with an edge to the pose before and to the turn before.

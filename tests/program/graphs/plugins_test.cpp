@@ -123,6 +123,18 @@ TEST_CASE("plugins: a graph with a plugin's edges is read, optimised and checked
   CHECK(run({"check", graph, "--plugin", module_file("sound")}).code == 0);
 }
 
+TEST_CASE("plugins: check --all gives models a place on the Earth and the other sources") {
+  const RunResult result = run({"check", "--all", "--plugin", module_file("located"), "--json"});
+  INFO(result.out << result.err);
+  CHECK(result.code == 0);
+  const auto rows = nlohmann::json::parse(result.out).at("conformance");
+  REQUIRE(rows.size() == 2);  // what others register is not tried
+  CHECK(rows[0].at("name") == "EDGE_SAMPLE");
+  CHECK(rows[1].at("name") == "located");
+  CHECK(rows[1].at("passed") == true);
+  CHECK(rows[1].at("note") == "");
+}
+
 TEST_CASE("derivatives: every registered type is checked without a graph, and a wrong Jacobian named") {
   const RunResult sound = run({"check", "--derivatives"});
   INFO(sound.out);

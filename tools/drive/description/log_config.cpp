@@ -81,12 +81,23 @@ void read_time(const YamlSection& section, LogRequest& request) {
 }
 
 void read_accuracy(const YamlSection& section, LogRequest& request) {
-  const auto accuracy = section.section("accuracy", {"meaning", "default_sigma", "range_error"});
+  const auto accuracy =
+      section.section("accuracy", {"meaning", "default_sigma", "range_error", "by_quality"});
   if (!accuracy) return;
   if (const auto meaning = accuracy->read_word("meaning", kMeanings))
     request.accuracy = kMeaningValues[*meaning];
   accuracy->read("default_sigma", request.default_sigma_m, kNotNegative);
   accuracy->read("range_error", request.range_error_m, kNotNegative);
+  const auto by_quality = accuracy->free_section("by_quality");
+  if (!by_quality) return;
+  for (const std::string& word : by_quality->keys()) {
+    const std::optional<FixQuality> quality = fix_quality_from_string(word);
+    if (!quality)
+      by_quality->fail(word,
+                       "is no quality of a fix; known: unknown, single, differential, float, fixed, "
+                       "dead_reckoned, manual, simulated");
+    by_quality->read(word, request.sigma_by_quality[*quality], kPositive);
+  }
 }
 
 std::string resolved(const std::string& folder, const std::string& file) {

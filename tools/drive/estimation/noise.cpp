@@ -42,16 +42,18 @@ NoisePrior prior_for(const NoisePrior& general, double accuracy_m) {
 
 /// Adds options with a prior that are not stated.
 void add_parameters(const std::string& source, const std::string& owner, const std::vector<OptionInfo>& known,
-                    const Options& given, double accuracy_m, std::vector<NoiseParameter>& parameters) {
+                    const Options& given, const ClaimedAccuracies& claimed,
+                    std::vector<NoiseParameter>& parameters) {
   for (const OptionInfo& option : known) {
     if (!option.prior || given.contains(option.name)) continue;
+    if (option.prior->between_kinds && claimed.kinds() < 2) continue;
     NoiseParameter parameter;
     parameter.source = source;
     parameter.owner = owner;
     parameter.option = option.name;
     parameter.unit = option.unit;
     parameter.range = std::get<OptionRange>(option.allowed);
-    parameter.prior = prior_for(*option.prior, accuracy_m);
+    parameter.prior = prior_for(*option.prior, claimed.reference_m());
     place(0, parameter);
     parameters.push_back(std::move(parameter));
   }
@@ -190,18 +192,18 @@ NoiseEstimate open_parameters(const CoarseDrive& coarse, std::size_t count, bool
   const std::string& relative = facts.relative.front();
   const FusionSettings own = for_relative(settings, relative);
   add_parameters(label(relative, count), own.odometry_model,
-                 registry.odometry_model(own.odometry_model).options, own.odometry_options, 0,
+                 registry.odometry_model(own.odometry_model).options, own.odometry_options, {},
                  noise.parameters);
   if (!absolute) return noise;
   for (const AbsoluteGroup& group : facts.absolute) {
     const FusionSettings of = for_absolute(settings, group.name, registry);
     add_parameters(label(group.name, facts.absolute.size()), of.modeling,
-                   registry.gnss_modeling(of.modeling).options, of.modeling_options, group.median_accuracy_m,
+                   registry.gnss_modeling(of.modeling).options, of.modeling_options, group.claimed,
                    noise.parameters);
   }
   for (const PreparedSensor& sensor : coarse.sensors)
     add_parameters(sensor.source, sensor.name, registry.sensor_model(sensor.name).options,
-                   options_of(sensor, settings), 0, noise.parameters);
+                   options_of(sensor, settings), {}, noise.parameters);
   return noise;
 }
 

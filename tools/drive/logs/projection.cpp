@@ -100,6 +100,7 @@ Fix Projection::project(const GeodeticFix& fix) const {
   result.height_m = fix.height_m;
   result.grid_scale = grid.scale;
   result.source = fix.source;
+  result.told = fix.told;
   return result;
 }
 

@@ -79,7 +79,7 @@ std::vector<AbsoluteGroup> groups_of(const PlacedDrive& placed, const FusionSett
     for (const Fix& fix : placed.fixes)
       if (std::find(group.sources.begin(), group.sources.end(), fix.source) != group.sources.end())
         fixes.push_back(fix);
-    group.median_accuracy_m = median_accuracy(fixes);
+    group.claimed = claimed_accuracies(fixes);
   }
   return groups;
 }
@@ -238,10 +238,9 @@ void GraphBuilder::add_fixes(const std::vector<Fix>& fixes, const std::vector<Fi
     const Eigen::Vector2d antenna =
         own_fixes[i].empty() ? Eigen::Vector2d(0, 0) : own_fixes[i].front().antenna_m;
     add_for(source.group.name, std::nullopt, [&] {
-      source.model->extend(
-          {own_fixes[i], own_moments[i], antenna, source.loss, source.group.median_accuracy_m,
-           source.group.name, context_of(facts_.surroundings)},
-          graph_);
+      source.model->extend({own_fixes[i], own_moments[i], antenna, source.loss, source.group.claimed,
+                            source.group.name, context_of(facts_.surroundings)},
+                           graph_);
     });
   }
 }

@@ -31,10 +31,10 @@ using SourceShares = std::map<std::string, SourceShare>;  ///< by name of the so
 
 /// Absolute sources that one model serves: one, or several that share their lasting errors.
 struct AbsoluteGroup {
-  std::string name;              ///< of the source that the others of the group name
-  std::vector<int> sources;      ///< Fix::source of its members
-  double time_offset_s = 0;      ///< FixMoment::assumed_offset_s
-  double median_accuracy_m = 0;  ///< for the modeling: GnssInput
+  std::string name;             ///< of the source that the others of the group name
+  std::vector<int> sources;     ///< Fix::source of its members
+  double time_offset_s = 0;     ///< FixMoment::assumed_offset_s
+  ClaimedAccuracies claimed{};  ///< for the modeling: GnssInput
 };
 
 /// What the models know of a drive before its first part.

@@ -46,6 +46,8 @@ Provenance provenance_of(const PreparedDrive& drive, const ModeledDrive& modeled
   for (const InputFile& input : drive.inputs)
     provenance.emplace_back("input", file_name(input.path) + " " + input.fingerprint);
   add_settings(settings, modeled.noise, provenance);
+  if (registry.gnss_modeling(settings.modeling).complete)
+    provenance.emplace_back(std::string(kFixErrors), "correlated");
   for (const PreparedSensor& sensor : drive.sensors) provenance.emplace_back("sensor", sensor.name);
   for (const PluginRecord& plugin : registry.plugins()) {
     if (plugin.place != "built in") provenance.emplace_back("plugin", plugin.name + " " + plugin.version);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,8 +10,11 @@
 
 namespace waymark::drive {
 
+/// Key of a drive whose modeling gives fixes other errors than independent ones of the covariance they claim.
+inline constexpr std::string_view kFixErrors = "fix_errors";
+
 /// Returns key and text in the order of writing: drive, input (name and fingerprint of each
-/// file), modeling, modeling_option, loss, noise, calibration, sensor, plugin, gate, start,
+/// file), modeling, modeling_option, loss, noise, calibration, fix_errors, sensor, plugin, gate, start,
 /// assumed, warning.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(const PreparedDrive& drive,
                                                                              const ModeledDrive& modeled,

@@ -145,6 +145,17 @@ Json to_json(const SourceComparison& comparison) {
   return sources;
 }
 
+Json to_json(std::span<const QualityMetrics> by_quality) {
+  Json list = Json::array();
+  for (const QualityMetrics& m : by_quality)
+    list.push_back({{"quality", to_string(m.quality)},
+                    {"fixes", m.fixes},
+                    {"accepted", m.accepted},
+                    {"gnss", to_json(m.gnss)},
+                    {"fused", to_json(m.fused)}});
+  return list;
+}
+
 Json to_json(const LabelledEvaluation& labelled) {
   const Evaluation& e = labelled.evaluation;
   return {
@@ -160,6 +171,7 @@ Json to_json(const LabelledEvaluation& labelled) {
        {{"accepted", to_json(e.post_fit)},
         {"rejected", to_json(e.gated)},
         {"withheld", to_json(e.prediction)}}},
+      {"by_quality", to_json(e.by_quality)},
       {"sources", to_json(e.sources)},
       {"residuals", source_residuals_json(e.residuals)}};
 }

@@ -231,14 +231,29 @@ std::string residuals_block(std::span<const LabelledEvaluation> evaluations, con
   return text;
 }
 
+/// Counts the fixes of each quality, and compares raw with fused where there is a truth.
+std::string quality_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
+  text::Table table{.columns = {"quality of the fixes", "fixes", "accepted", "matched", "raw median [m]",
+                                "fused median [m]", "raw RMSE [m]", "fused RMSE [m]"}};
+  for (const auto& [label, evaluation] : evaluations) {
+    for (const QualityMetrics& m : evaluation.by_quality) {
+      const std::string name(to_string(m.quality));
+      table.rows.push_back({evaluations.size() > 1 ? label + ", " + name : name, std::to_string(m.fixes),
+                            std::to_string(m.accepted), std::to_string(m.gnss.count), metres(m.gnss.median_m),
+                            metres(m.fused.median_m), metres(m.gnss.rmse_m), metres(m.fused.rmse_m)});
+    }
+  }
+  return block(table, look);
+}
+
 }  // namespace
 
 std::string metrics_table(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
   return truth_block(evaluations, look) + track_block(evaluations, look) +
          consistency_block(evaluations, look) + autocorrelation_block(evaluations, look) +
-         withheld_block(evaluations, look) + innovation_block(evaluations, look) +
-         sources_block(evaluations, look) + residuals_block(evaluations, look) +
-         count_block(evaluations, look);
+         withheld_block(evaluations, look) + quality_block(evaluations, look) +
+         innovation_block(evaluations, look) + sources_block(evaluations, look) +
+         residuals_block(evaluations, look) + count_block(evaluations, look);
 }
 
 }  // namespace waymark::evaluation

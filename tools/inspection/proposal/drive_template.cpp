@@ -41,6 +41,7 @@ gnss:                              # or a list of these: several receivers
 #     meaning: auto                # auto | 95 | 1sigma | drms | cep50
 #     default_sigma: 5             # per axis, where the log gives none
 #     range_error: 5               # sigma = HDOP times this, where the log gives HDOP only
+#     by_quality: {fixed: 0.02, float: 0.4, differential: 1.5, single: 3}
 #   antenna: [1.2, 0]              # in the body frame: x forward, y left
 #   period: 1                      # keep one fix per period; 0: keep all
 #   delay: 0                       # how late the receiver stamps

@@ -319,16 +319,20 @@ class Writer {
   void accuracy(const LogInspection& log, const std::string& indent) {
     const FixSummary& fixes = *log.fixes;
     const std::string meaning = assumed_meaning(log);
-    const bool lacking = fixes.with_accuracy < fixes.fixes;
-    if (meaning.empty() && !lacking) return;
+    const std::size_t usual = fixes_with_usual_sigma(fixes);
+    const std::size_t lacking = fixes.fixes - fixes.with_accuracy - usual;
+    if (usual > 0)
+      line(indent + "# accuracy: {by_quality: {fixed: 0.02, single: 3}}",
+           fmt::format("CHECK: {} of {} fixes have no accuracy, so their quality stands in: {}", usual,
+                       fixes.fixes, usual_sigmas(fixes)));
+    if (meaning.empty() && lacking == 0) return;
     line(indent + "accuracy:");
     if (!meaning.empty())
       line(fmt::format("{}  meaning: {}", indent, meaning), "CHECK: assumed; 95, 1sigma, drms or cep50");
-    if (lacking)
+    if (lacking > 0)
       line(indent + "  default_sigma: 5",
-           fmt::format("CHECK: m per axis, invented: {} of {} fixes have no accuracy",
-                       fixes.fixes - fixes.with_accuracy, fixes.fixes));
-    if (lacking && log.format == "nmea")
+           fmt::format("CHECK: m per axis, invented: {} of {} fixes have no accuracy", lacking, fixes.fixes));
+    if (lacking > 0 && log.format == "nmea")
       line(indent + "  # range_error: 5", "m, for sigma = HDOP times this, if the log has HDOP");
   }
 

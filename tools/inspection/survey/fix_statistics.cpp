@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include <waymark/core/base/angle.hpp>
+#include <waymark/formats/logs/fix_quality.hpp>
 
 namespace waymark::inspection {
 namespace {
@@ -133,7 +136,14 @@ void FixStatistics::add_accuracy(const GeodeticFix& fix) {
   const Eigen::Matrix2d& covariance = fix.covariance_en;
   const double east = std::sqrt(covariance(0, 0));
   const double north = std::sqrt(covariance(1, 1));
-  if (!(east < 0.9999 * kNoAccuracy)) return;
+  ++summary_.qualities[fix.told.quality];
+  if (fix.told.satellites >= 0) summary_.satellites.add(fix.told.satellites);
+  if (fix.told.hdop > 0) summary_.hdop.add(fix.told.hdop);
+  if (fix.told.correction_age_s >= 0) summary_.correction_age_s.add(fix.told.correction_age_s);
+  if (!(east < 0.9999 * kNoAccuracy)) {
+    ++summary_.without_accuracy[fix.told.quality];
+    return;
+  }
   const bool equal = std::abs(east - north) <= 1e-9 * east && covariance(0, 1) == 0;
   if (summary_.with_accuracy++ == 0) {
     summary_.axes_equal = summary_.accuracy_constant = true;
@@ -159,6 +169,24 @@ void FixStatistics::compare_speed(const GeodeticFix& fix) {
     if (way / seconds > 2 && stated > 0.2) speed_factors_.add(stated * seconds / way);
   }
   anchor_ = fix;
+}
+
+std::size_t fixes_with_usual_sigma(const FixSummary& fixes) {
+  std::size_t sum = 0;
+  for (const auto& [quality, count] : fixes.without_accuracy)
+    if (formats::usual_sigma(quality).sigma_m > 0) sum += count;
+  return sum;
+}
+
+std::string usual_sigmas(const FixSummary& fixes) {
+  std::string text;
+  for (const auto& [quality, count] : fixes.without_accuracy) {
+    const formats::UsualSigma usual = formats::usual_sigma(quality);
+    if (usual.sigma_m > 0)
+      text += fmt::format("{}{} {} m{}", text.empty() ? "" : ", ", to_string(quality), usual.sigma_m,
+                          usual.by_hdop && fixes.hdop.count > 0 ? " x HDOP" : "");
+  }
+  return text;
 }
 
 FixSummary FixStatistics::summary() const {

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
@@ -35,6 +37,9 @@ struct FixSummary {
   BoundingBox box;        ///< of the fixes at most 1000 km from the median position and not at 0/0
   Range height;           ///< m
   double distance_m = 0;  ///< sum of the distances between consecutive fixes, noise included
+  std::map<FixQuality, std::size_t> qualities;
+  std::map<FixQuality, std::size_t> without_accuracy;  ///< by quality
+  Range satellites, hdop, correction_age_s;            ///< of the fixes that tell them
   std::size_t with_accuracy = 0;
   SigmaSummary east, north;
   bool accuracy_constant = false;  ///< all fixes have the same accuracy
@@ -56,6 +61,11 @@ struct FixSummary {
   /// step of the positions if it is a decimal one of at least 1 m; else 0
   double resolution_m = 0;
 };
+
+/// Returns the number of fixes without accuracy whose quality has a usual sigma (formats/logs/fix_quality.hpp).
+[[nodiscard]] std::size_t fixes_with_usual_sigma(const FixSummary& fixes);
+/// Returns these sigmas: "fixed 0.02 m, single 3 m x HDOP".
+[[nodiscard]] std::string usual_sigmas(const FixSummary& fixes);
 
 /// Takes fixes in the order of the log. Memory does not grow.
 class FixStatistics {

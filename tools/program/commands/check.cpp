@@ -46,7 +46,7 @@ ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) 
 ExitCode check_kit(const CheckOptions& options, const TypeRegistry& registry) {
   const Console console(options.common);
   const ConformanceReport report =
-      check_conformance(registry, options.common.plugins.empty(), console.look());
+      check_conformance(registry, options.common.plugins, console.look());
   console.result(options.common.json ? json_document("conformance", {{"conformance", report.json}})
                                      : report.text);
   return report.passed ? kSuccess : kInputError;

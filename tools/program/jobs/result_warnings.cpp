@@ -53,6 +53,19 @@ void check_noise(const drive::NoiseEstimate& noise, std::vector<std::string>& wa
   }
 }
 
+/// Fixed ambiguities are so good that a model of errors that last can spoil them.
+void check_qualities(const evaluation::Evaluation& evaluation, std::vector<std::string>& warnings) {
+  constexpr std::size_t kFewest = 30;
+  constexpr double kWorse = 1.1;
+  for (const evaluation::QualityMetrics& m : evaluation.by_quality) {
+    if (m.gnss.count < kFewest || !(m.fused.median_m > kWorse * m.gnss.median_m)) continue;
+    warnings.push_back(fmt::format(
+        "at the {} fixes of quality {} the fused positions are {:.3g} m from the truth in the median, "
+        "the raw ones {:.3g} m: their accuracy may be stated too large (accuracy: by_quality)",
+        m.gnss.count, to_string(m.quality), m.fused.median_m, m.gnss.median_m));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateReport>& states,
@@ -63,6 +76,7 @@ std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateR
   check_states(states, *modeled.calibration, warnings);
   check_noise(noise, warnings);
   if (!evaluation.truth) return warnings;
+  check_qualities(evaluation, warnings);
   const double factor = evaluation.truth->fused.position.rmse_m / evaluation.truth->gnss.position.rmse_m;
   if (factor > kWorseThanRaw)
     warnings.push_back(fmt::format(

@@ -38,9 +38,15 @@ FixAssembler::FixAssembler(const std::vector<Quantity>& quantities, const std::v
       speed_(place_of("speed")),
       speed_accuracy_(place_of("speed_accuracy")),
       valid_(place_of("valid")),
+      quality_(place_of("quality")),
+      hdop_(place_of("hdop")),
+      satellites_(place_of("satellites")),
+      correction_age_(place_of("correction_age")),
       newest_(quantities.size()),
       nearest_(quantities.size()) {
   if (request.stream != StreamKind::gnss) return;
+  const auto wanted = request.columns.find("quality");
+  if (wanted != request.columns.end()) quality_code_ = wanted->second.unit;
   const auto has = [&](std::string_view name) { return place_of(name) != kNowhere; };
   accuracy_ = choose_accuracy(has, path, request, data.notes);
   east_ = place_of(accuracy_.east);
@@ -130,8 +136,27 @@ void FixAssembler::close() {
   add_position();
 }
 
+/// Reads what the signals tell of a fix besides its accuracy. @return false: there is no fix
+bool FixAssembler::read_details(GeodeticFix& fix) {
+  if (const double code = value(quality_); !std::isnan(code)) {
+    const TableQuality told = table_quality(fmt::format("{}", code), quality_code_).value_or(TableQuality{});
+    if (told.no_fix) {
+      ++data_.records;
+      ++data_.without_fix;
+      return false;
+    }
+    fix.told.quality = told.quality;
+  }
+  if (const double hdop = value(hdop_); hdop > 0) fix.told.hdop = hdop;
+  if (const double count = value(satellites_); count >= 0 && count < 1000)
+    fix.told.satellites = static_cast<int>(count);
+  fix.told.correction_age_s = value(correction_age_);
+  return true;
+}
+
 void FixAssembler::add_position() {
   GeodeticFix fix;
+  if (!read_details(fix)) return;
   const StatedAccuracy accuracy =
       table_accuracy(value(east_), value(north_), value(covariance_root_), accuracy_);
   if (const char* what = positions_.set_covariance(fix, accuracy)) return complain(position_.line, what);

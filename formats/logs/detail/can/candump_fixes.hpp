@@ -58,6 +58,7 @@ class FixAssembler {
   void complain(std::size_t line, const std::string& what);
   void open();
   void close();
+  [[nodiscard]] bool read_details(GeodeticFix& fix);
   void add_position();
   [[nodiscard]] double value(std::size_t place) const;
   [[nodiscard]] std::optional<double> optional_value(std::size_t place) const;
@@ -69,7 +70,8 @@ class FixAssembler {
   LogData& data_;
   PositionStream positions_;
   std::size_t latitude_, longitude_, height_, heading_, course_, course_accuracy_, speed_, speed_accuracy_,
-      valid_;
+      valid_, quality_, hdop_, satellites_, correction_age_;
+  std::string quality_code_;  ///< of table_quality()
   AccuracyQuantities accuracy_;
   std::size_t east_ = kNowhere, north_ = kNowhere, covariance_root_ = kNowhere;
 

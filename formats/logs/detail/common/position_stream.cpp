@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <waymark/formats/logs/detail/common/accuracy.hpp>
+#include <waymark/formats/logs/fix_quality.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -25,6 +26,7 @@ PositionStream::PositionStream(const std::string& path, const LogRequest& reques
       stated_(request.accuracy),
       default_sigma_m_(request.default_sigma_m),
       range_error_m_(request.range_error_m),
+      sigma_by_quality_(request.sigma_by_quality),
       source_(request.source),
       truth_(request.stream == StreamKind::truth) {}
 
@@ -36,7 +38,7 @@ std::optional<Stamp> PositionStream::stamp(Stamp given, TimeScale scale) const {
 
 const char* PositionStream::set_covariance(GeodeticFix& fix, const StatedAccuracy& accuracy) {
   if (truth_) return nullptr;
-  if (!accuracy.squares_en) return stand_in(fix, accuracy.hdop);
+  if (!accuracy.squares_en) return stand_in(fix);
   const Eigen::Matrix2d& squares = *accuracy.squares_en;
   // The comparisons fail for NaN.
   if (!(squares(0, 0) > 0 && squares(0, 0) * squares(1, 1) > squares(0, 1) * squares(0, 1)))
@@ -54,22 +56,34 @@ const char* PositionStream::set_covariance(GeodeticFix& fix, const StatedAccurac
 }
 
 /// Sets the covariance of a fix without figures.
-const char* PositionStream::stand_in(GeodeticFix& fix, double hdop) {
-  double sigma = default_sigma_m_;
-  if (hdop > 0 && range_error_m_ > 0) {
-    sigma = hdop * range_error_m_;
-    if (!(sigma <= kLargestSigma)) return kTooLarge;
-    ++from_hdop_;
-  } else if (sigma > 0) {
-    ++defaulted_;
-    fix.accuracy_claimed = false;
-  } else if (hdop > 0) {
-    return "the log has no accuracy but HDOP: state 'range_error', which is multiplied by "
-           "HDOP, or 'default_sigma'";
-  } else {
-    return "the log has no accuracy: state 'default_sigma'";
-  }
-  fix.covariance_en = sigma * sigma * Eigen::Matrix2d::Identity();
+const char* PositionStream::stand_in(GeodeticFix& fix) {
+  const FixQuality quality = fix.told.quality;
+  const auto index = static_cast<std::size_t>(quality);
+  if (const auto stated = sigma_by_quality_.find(quality); stated != sigma_by_quality_.end())
+    return take_sigma(fix, stated->second, true, stated_quality_[index]);
+  const UsualSigma usual = usual_sigma(quality);
+  const bool hdop_told = fix.told.hdop > 0;
+  // What is stated for the log as a whole is meant for code ranges.
+  if (usual.sigma_m > 0 && !usual.by_hdop && !(default_sigma_m_ > 0 && default_sigma_m_ < usual.sigma_m))
+    return take_sigma(fix, usual.sigma_m, true, usual_quality_[index]);
+  if (hdop_told && range_error_m_ > 0)
+    return take_sigma(fix, fix.told.hdop * range_error_m_, true, from_hdop_);
+  if (default_sigma_m_ > 0) return take_sigma(fix, default_sigma_m_, false, defaulted_);
+  if (usual.sigma_m > 0 && hdop_told)
+    return take_sigma(fix, usual.sigma_m * fix.told.hdop, true, usual_hdop_[index]);
+  if (usual.sigma_m > 0) return take_sigma(fix, usual.sigma_m, false, usual_quality_[index]);
+  return hdop_told ? "the log has no accuracy but HDOP: state 'range_error', which is multiplied by "
+                     "HDOP, or 'default_sigma'"
+                   : "the log has no accuracy: state 'default_sigma'";
+}
+
+/// @param claimed the receiver told something about this fix that the sigma comes from
+const char* PositionStream::take_sigma(GeodeticFix& fix, double sigma_m, bool claimed,
+                                       std::size_t& count) const {
+  if (!(sigma_m <= kLargestSigma)) return kTooLarge;
+  ++count;
+  fix.accuracy_claimed = claimed;
+  fix.covariance_en = sigma_m * sigma_m * Eigen::Matrix2d::Identity();
   return nullptr;
 }
 
@@ -80,6 +94,7 @@ void PositionStream::give(LogData& data, const GeodeticFix& fix, std::optional<d
   }
   data.fixes.push_back(fix);
   data.fixes.back().source = source_;
+  ++data.qualities[fix.told.quality];
 }
 
 const char* PositionStream::add(LogData& data, GeodeticFix fix, const StatedAccuracy& accuracy,
@@ -102,6 +117,22 @@ void PositionStream::finish(LogData& data) const {
   if (defaulted_ > 0)
     note(fmt::format("{} fixes have no accuracy; the stated default sigma of {} m is used", defaulted_,
                      default_sigma_m_));
+  const auto list = [&](const char* way, const std::array<std::size_t, kFixQualities.size()>& counts,
+                        const char* factor, const auto& sigma_of) {
+    std::string parts;
+    for (const FixQuality quality : kFixQualities) {
+      const std::size_t count = counts[static_cast<std::size_t>(quality)];
+      if (count > 0)
+        parts += fmt::format("{}{} {} {} m{}", parts.empty() ? "" : ", ", count, to_string(quality),
+                             sigma_of(quality), factor);
+    }
+    if (!parts.empty())
+      note(fmt::format("the sigma of fixes without accuracy is {} for their quality: {}", way, parts));
+  };
+  const auto usual = [](FixQuality quality) { return usual_sigma(quality).sigma_m; };
+  list("that stated", stated_quality_, "", [&](FixQuality quality) { return sigma_by_quality_.at(quality); });
+  list("the usual one (not stated)", usual_quality_, "", usual);
+  list("the usual one (not stated)", usual_hdop_, " x HDOP", usual);
   if (data.without_fix > 0)
     note(fmt::format("{} of {} records are marked as without a fix", data.without_fix, data.records));
 }

@@ -2,8 +2,10 @@
 /// requested accuracy.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -21,7 +23,6 @@ struct StatedAccuracy {
   /// The meaning of the figures if the request does not state one. Empty: 1 sigma, even if the
   /// request states another one.
   std::optional<AccuracyMeaning> usual_meaning = AccuracyMeaning::one_sigma;
-  double hdop = 0;  ///< used if there are no figures; 0: none
 };
 
 /// Positions of a gnss or truth stream. Its counts go into the notes once, at the end.
@@ -35,8 +36,10 @@ class PositionStream {
   [[nodiscard]] std::optional<Stamp> stamp(Stamp given, TimeScale scale) const;
   [[nodiscard]] bool wants_truth() const { return truth_; }
 
-  /// Sets the covariance: from the figures, else from HDOP times the stated range error, else from
-  /// the stated default. Truth needs none. @return null, or the reason why the position is unusable
+  /// Sets the covariance: from the figures; else the sigma stated for the quality; else, for fixed and
+  /// float, the usual sigma; else HDOP times the stated range error; else the stated default; else the
+  /// usual sigma of the quality. Truth needs none.
+  /// @param fix with what is told of it @return null, or the reason why the position is unusable
   [[nodiscard]] const char* set_covariance(GeodeticFix& fix, const StatedAccuracy& accuracy);
   /// Adds a position to data.fixes or data.truth.
   /// @param fix with its covariance
@@ -50,7 +53,9 @@ class PositionStream {
   void finish(LogData& data) const;
 
  private:
-  [[nodiscard]] const char* stand_in(GeodeticFix& fix, double hdop);
+  [[nodiscard]] const char* stand_in(GeodeticFix& fix);
+  [[nodiscard]] const char* take_sigma(GeodeticFix& fix, double sigma_m, bool claimed,
+                                       std::size_t& count) const;
 
   std::string path_;
   const char* figures_;
@@ -59,6 +64,7 @@ class PositionStream {
   AccuracyMeaning stated_;
   double default_sigma_m_;
   double range_error_m_;
+  std::map<FixQuality, double> sigma_by_quality_;  ///< stated
   int source_;
   bool truth_;
   /// those whose meaning a request may state
@@ -67,6 +73,10 @@ class PositionStream {
   bool usual_ = false;                                    ///< the meaning is the usual one
   std::size_t from_hdop_ = 0;
   std::size_t defaulted_ = 0;
+  /// fixes with the sigma stated for their quality, and with the usual one; by FixQuality
+  std::array<std::size_t, kFixQualities.size()> stated_quality_{};
+  std::array<std::size_t, kFixQualities.size()> usual_quality_{};
+  std::array<std::size_t, kFixQualities.size()> usual_hdop_{};  ///< times HDOP
 };
 
 /// Computes speed and course with their sigmas from a velocity (east, north) and its covariance in

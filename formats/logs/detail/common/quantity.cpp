@@ -25,6 +25,10 @@ constexpr std::array kHeadings{Unit{"rad", 1}, Unit{"deg", kDegree}};
 constexpr std::array kAccelerations{Unit{"m/s^2", 1}, Unit{"g", 9.80665}};
 constexpr std::array kFlags{Unit{"1", 1}};
 
+constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
+// The numbers of a quality: GGA's, RTKLIB's Q, or those of ROS's NavSatStatus. Words are the same in all.
+constexpr std::array kQualityCodes{Unit{"gga", 1}, Unit{"rtklib", 1}, Unit{"ros", 1}};
+
 constexpr std::array kTurns{Convention{"ccw", 1, 0}, Convention{"cw", -1, 0}};
 // A course counts clockwise from north, a heading counter-clockwise from east. Each is pi/2
 // minus the other.
@@ -65,7 +69,11 @@ constexpr std::array kGnss{
     kOptionalSpeed,
     Quantity{"speed_accuracy", "speed_accuracy_mps", false, kSpeeds, {}, -kInfinity, kInfinity},
     Quantity{"gnss_time", "gnss_time_s", false, kTimes, {}, -kInfinity, kInfinity},
-    Quantity{"valid", "valid_flag", false, kFlags, {}, -kInfinity, kInfinity}};
+    Quantity{"valid", "valid_flag", false, kFlags, {}, -kInfinity, kInfinity},
+    Quantity{"quality", "fix_quality", false, kQualityCodes, {}, -kInfinity, kInfinity},
+    Quantity{"hdop", "HDOP", false, kFlags, {}, -kInfinity, kInfinity},
+    Quantity{"satellites", "satellites_used", false, kFlags, {}, -kInfinity, kInfinity},
+    Quantity{"correction_age", "correction_age_s", false, kDurations, {}, -kInfinity, kInfinity}};
 // References often let the heading run on over full turns.
 constexpr std::array kTruth{
     kTime,
@@ -83,7 +91,6 @@ struct SensorKind {
   std::span<const Unit> units;
   std::span<const Convention> conventions;
 };
-constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"ns", 1e-9}};
 constexpr std::array kAngles{Unit{"rad", 1}, Unit{"deg", kDegree}};
 // Coordinates of a place: in the frame, of its UTM zone, WGS84, Earth-centred. The last three are converted
 // when a drive has its frame (tools/drive/sensors/place_columns.hpp).

@@ -1,13 +1,118 @@
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/common/accuracy.hpp>
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
 
 namespace waymark::formats {
+namespace {
+
+struct QualityWord {
+  std::string_view word;
+  TableQuality quality;
+};
+constexpr TableQuality kNoFix{FixQuality::unknown, true};
+constexpr std::array<QualityWord, 42> kQualityWords{{
+    {"none", kNoFix},
+    {"nofix", kNoFix},
+    {"invalid", kNoFix},
+    {"single", {FixQuality::single}},
+    {"autonomous", {FixQuality::single}},
+    {"gps", {FixQuality::single}},
+    {"gnss", {FixQuality::single}},
+    {"spp", {FixQuality::single}},
+    {"2d", {FixQuality::single}},
+    {"3d", {FixQuality::single}},
+    {"differential", {FixQuality::differential}},
+    {"dgps", {FixQuality::differential}},
+    {"dgnss", {FixQuality::differential}},
+    {"sbas", {FixQuality::differential}},
+    {"waas", {FixQuality::differential}},
+    {"egnos", {FixQuality::differential}},
+    {"float", {FixQuality::floating}},
+    {"rtkfloat", {FixQuality::floating}},
+    {"floatrtk", {FixQuality::floating}},
+    {"floatingrtk", {FixQuality::floating}},
+    {"frtk", {FixQuality::floating}},
+    {"ppp", {FixQuality::floating}},
+    {"narrowfloat", {FixQuality::floating}},
+    {"fixed", {FixQuality::fixed}},
+    {"rtk", {FixQuality::fixed}},
+    {"rtkfix", {FixQuality::fixed}},
+    {"rtkfixed", {FixQuality::fixed}},
+    {"fixedrtk", {FixQuality::fixed}},
+    {"rtkint", {FixQuality::fixed}},
+    {"integer", {FixQuality::fixed}},
+    {"narrowint", {FixQuality::fixed}},
+    {"dr", {FixQuality::dead_reckoned}},
+    {"deadreckoned", {FixQuality::dead_reckoned}},
+    {"deadreckoning", {FixQuality::dead_reckoned}},
+    {"estimated", {FixQuality::dead_reckoned}},
+    {"manual", {FixQuality::manual}},
+    {"simulated", {FixQuality::simulated}},
+    {"simulator", {FixQuality::simulated}},
+    {"simulation", {FixQuality::simulated}},
+    {"unknown", {FixQuality::unknown}},
+    {"", {FixQuality::unknown}},
+    {"nan", {FixQuality::unknown}},
+}};
+
+template <std::size_t kCount>
+std::optional<TableQuality> at(const std::array<TableQuality, kCount>& qualities, int index) {
+  if (index < 0 || index >= static_cast<int>(kCount)) return std::nullopt;
+  return qualities[static_cast<std::size_t>(index)];
+}
+
+std::optional<TableQuality> of_gga(int index) {
+  if (index == 0) return kNoFix;
+  const FixQuality quality = gga_quality(index);
+  return quality == FixQuality::unknown ? std::nullopt : std::optional(TableQuality{quality});
+}
+
+std::optional<TableQuality> of_rtklib(int index) {
+  if (index == 0) return kNoFix;
+  const FixQuality quality = rtklib_quality(index);
+  return quality == FixQuality::unknown ? std::nullopt : std::optional(TableQuality{quality});
+}
+
+/// sensor_msgs/NavSatStatus: -1 no fix, 0 fix, 1 with satellite corrections, 2 with ground corrections. The
+/// last is often RTK, but does not say so.
+std::optional<TableQuality> of_ros(int index) {
+  return at<4>({kNoFix, {FixQuality::single}, {FixQuality::differential}, {FixQuality::differential}},
+               index + 1);
+}
+
+}  // namespace
+
+FixQuality gga_quality(int number) {
+  constexpr std::array kQualities{
+      FixQuality::unknown,     FixQuality::single,   FixQuality::differential,  FixQuality::single,  // 3: PPS
+      FixQuality::fixed,       FixQuality::floating, FixQuality::dead_reckoned, FixQuality::manual,
+      FixQuality::simulated,
+      FixQuality::differential  // 9: SBAS, in the dialect of NovAtel
+  };
+  return number > 0 && number < static_cast<int>(kQualities.size())
+             ? kQualities[static_cast<std::size_t>(number)]
+             : FixQuality::unknown;
+}
+
+FixQuality rtklib_quality(int number) {
+  // PPP has real-valued ambiguities.
+  constexpr std::array kQualities{FixQuality::unknown,      FixQuality::fixed,        FixQuality::floating,
+                                  FixQuality::differential, FixQuality::differential, FixQuality::single,
+                                  FixQuality::floating,     FixQuality::dead_reckoned};
+  return number > 0 && number < static_cast<int>(kQualities.size())
+             ? kQualities[static_cast<std::size_t>(number)]
+             : FixQuality::unknown;
+}
 
 AccuracyQuantities choose_accuracy(const std::function<bool(std::string_view)>& has, const std::string& path,
                                    const LogRequest& request, std::vector<std::string>& notes) {
@@ -18,12 +123,12 @@ AccuracyQuantities choose_accuracy(const std::function<bool(std::string_view)>& 
     chosen = {"accuracy_east", "accuracy_north", {}, AccuracyMeaning::percent95};
   } else if (has("accuracy")) {
     chosen = {"accuracy", "accuracy", {}, AccuracyMeaning::drms};
-  } else if (request.default_sigma_m > 0) {
+  } else if (request.default_sigma_m > 0 || has("quality") || (has("hdop") && request.range_error_m > 0)) {
     return {};
   } else {
     throw InputError(
         fmt::format("{}: the fixes have no accuracy: map accuracy, accuracy_east and accuracy_north, or "
-                    "sigma_east and sigma_north, or state 'default_sigma' (in metres)",
+                    "sigma_east and sigma_north, or quality, or state 'default_sigma' (in metres)",
                     path));
   }
   if (request.accuracy == AccuracyMeaning::automatic)
@@ -39,6 +144,22 @@ StatedAccuracy table_accuracy(double east, double north, double covariance_root,
   Eigen::Matrix2d squares;
   squares << east * east, common, common, north * north;
   return {squares, quantities.usual_meaning};
+}
+
+std::optional<TableQuality> table_quality(std::string_view field, std::string_view code) {
+  if (const std::optional<double> number = field_number(field)) {
+    if (*number != std::floor(*number)) return std::nullopt;
+    const int index = static_cast<int>(std::clamp(*number, -2.0, 100.0));
+    if (code == "rtklib") return of_rtklib(index);
+    return code == "ros" ? of_ros(index) : of_gga(index);
+  }
+  std::string word;  // "RTK_Fixed" is "rtkfixed"
+  for (const char c : field)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const QualityWord& known : kQualityWords)
+    if (word == known.word) return known.quality;
+  return std::nullopt;
 }
 
 }  // namespace waymark::formats

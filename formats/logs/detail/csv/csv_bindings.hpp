@@ -21,11 +21,16 @@ struct Bindings {
         course_accuracy(columns.find("course_accuracy")),
         speed_accuracy(columns.find("speed_accuracy")),
         gnss_time(columns.find("gnss_time")),
-        valid(columns.find("valid")) {}
+        valid(columns.find("valid")),
+        quality(columns.find("quality")),
+        hdop(columns.find("hdop")),
+        satellites(columns.find("satellites")),
+        correction_age(columns.find("correction_age")) {}
 
   const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *easting, *northing;
   const BoundColumn *height, *heading;
   const BoundColumn *course, *course_accuracy, *speed_accuracy, *gnss_time, *valid;
+  const BoundColumn *quality, *hdop, *satellites, *correction_age;
 };
 
 }  // namespace waymark::formats

@@ -1,5 +1,6 @@
 #include <waymark/formats/logs/detail/csv/csv_records.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -84,6 +85,7 @@ void CsvRecords::read_fix(Stamp at) {
   fix.latitude_deg = place->latitude_deg;
   fix.longitude_deg = place->longitude_deg;
   fix.height_m = number(bound_.height, false);
+  if (!read_details(fix)) return;
   set_covariance(fix, place->axes);
   fix.course_rad = optional_number(bound_.course);
   fix.course_sigma_rad = optional_sigma(bound_.course_accuracy);
@@ -94,6 +96,36 @@ void CsvRecords::read_fix(Stamp at) {
   if (complaint_.column != 0) return;
   positions_.give(data_, fix);
   if (told) data_.clocks.push_back({at, *told});
+}
+
+/// Reads what the line tells of a fix besides its accuracy. @return false: the line is no fix
+bool CsvRecords::read_details(GeodeticFix& fix) {
+  if (bound_.quality != nullptr) {
+    const std::string_view field = fields_[bound_.quality->field];
+    const std::optional<TableQuality> told = table_quality(field, bound_.quality->unit);
+    if (!told) {
+      if (strange_qualities_++ == 0) strange_quality_ = quote_field(field);
+    } else if (told->no_fix) {
+      ++data_.without_fix;
+      return false;
+    } else {
+      fix.told.quality = told->quality;
+    }
+  }
+  fix.told.hdop = optional_sigma(bound_.hdop).value_or(0);
+  fix.told.satellites =
+      static_cast<int>(std::clamp(optional_number(bound_.satellites).value_or(-1), -1.0, 999.0));
+  fix.told.correction_age_s = number(bound_.correction_age, false);
+  return true;
+}
+
+void CsvRecords::finish() {
+  if (strange_qualities_ > 0)
+    data_.notes.push_back(fmt::format(
+        "{}: {} values of quality, such as {}, are none that is known (words, or numbers of the unit gga, rtklib "
+        "or ros); these fixes count as of unknown quality",
+        path_, strange_qualities_, strange_quality_));
+  positions_.finish(data_);
 }
 
 void CsvRecords::read_readings(Stamp at) {

@@ -26,7 +26,7 @@ class CsvRecords {
 
   /// @param line valid only during the call
   void read_line(std::string_view line, std::size_t number);
-  void finish() { positions_.finish(data_); }
+  void finish();
 
  private:
   /// The first error of the current line.
@@ -46,6 +46,7 @@ class CsvRecords {
   void read_sample();
   void read_truth(Stamp at);
   void read_fix(Stamp at);
+  [[nodiscard]] bool read_details(GeodeticFix& fix);
   void read_readings(Stamp at);
   [[nodiscard]] std::optional<Stamp> instant(const BoundColumn& column);
   [[nodiscard]] std::optional<Stamp> stamp();
@@ -69,6 +70,8 @@ class CsvRecords {
   AccuracyQuantities accuracy_;
   const BoundColumn *accuracy_east_ = nullptr, *accuracy_north_ = nullptr, *covariance_root_ = nullptr;
   std::int64_t offset_ = 0;
+  std::size_t strange_qualities_ = 0;
+  std::string strange_quality_;  ///< the first one
 
   std::string_view line_;
   std::size_t number_ = 0;

@@ -48,6 +48,25 @@ std::string release_text(const std::string& text) {
   return plain && text.size() <= kLongest ? text : std::string();
 }
 
+/// Returns the number of a member in a line; NaN: it has none. A SKY has a list of satellites, and reading it
+/// as JSON would take longer than all fixes.
+double member_of(std::string_view line, std::string_view quoted_name) {
+  const std::size_t at = line.find(quoted_name);
+  if (at == std::string_view::npos) return kNoNumber;
+  const std::string_view rest = line.substr(at + quoted_name.size());
+  return field_number(rest.substr(0, rest.find_first_of(",}"))).value_or(kNoNumber);
+}
+
+/// Returns what a SKY tells. gpsd may send the dilutions and the satellites in two of them.
+FixDetails sky_of(std::string_view line, const FixDetails& before) {
+  FixDetails told = before;
+  constexpr double kLargest = 99;  // 99.99: not known
+  if (const double hdop = member_of(line, "\"hdop\":"); hdop > 0 && hdop < kLargest) told.hdop = hdop;
+  if (const double used = member_of(line, "\"uSat\":"); used >= 0 && used < 1000)
+    told.satellites = static_cast<int>(used);
+  return told;
+}
+
 /// Counts for the notes.
 struct Counts {
   std::size_t not_json = 0;
@@ -70,6 +89,7 @@ class GpsdDecoder final : public LineDecoder {
   void end_epoch();
   void add_sample(const GpsdReport& report, Stamp utc);
   void count_status(const GpsdReport& report);
+  [[nodiscard]] FixDetails details_of(const GpsdReport& report) const;
   [[nodiscard]] const GpsdReport* gst_of(const GpsdReport& report) const;
   void add_notes();
 
@@ -86,6 +106,7 @@ class GpsdDecoder final : public LineDecoder {
   /// The last two GST objects. The GST of an epoch comes before or after its TPV. If it comes
   /// after, the next GST may have come too.
   std::array<GpsdReport, 2> gst_;
+  FixDetails sky_;  ///< HDOP and satellites of the last SKY
 };
 
 void GpsdDecoder::take_line(std::string_view line, std::size_t number) {
@@ -99,6 +120,7 @@ void GpsdDecoder::take_line(std::string_view line, std::size_t number) {
   // Most objects of a log are not read. In the form that gpsd writes, their class shows this
   // without parsing.
   const std::string_view named = gpsd_class(line);
+  if (named == "SKY") sky_ = sky_of(line, sky_);
   if (!named.empty() && named != "TPV" && named != "GST" && named != "VERSION") return tally_.add(named);
   try {
     GpsdReport report = read_gpsd_report(line);
@@ -171,11 +193,25 @@ void GpsdDecoder::add_sample(const GpsdReport& report, Stamp utc) {
   fix.speed_mps = report.number(GpsdNumber::speed);
   fix.speed_sigma_mps = scaled_if_positive(report.number(GpsdNumber::eps), 0.5);
   fix.line = epoch_line_;
+  fix.told = details_of(report);
   StatedAccuracy accuracy;
   if (!positions_.wants_truth()) accuracy = accuracy_.of(report, gst_of(report), request().accuracy);
   if (const char* complaint = positions_.add(data_, fix, accuracy))
     throw BadGpsdMember{fmt::format("TPV: {}", complaint)};
   count_status(report);
+}
+
+FixDetails GpsdDecoder::details_of(const GpsdReport& report) const {
+  constexpr std::array kQualities{FixQuality::unknown, FixQuality::single,   FixQuality::differential,
+                                  FixQuality::fixed,   FixQuality::floating, FixQuality::dead_reckoned,
+                                  FixQuality::single,  FixQuality::manual,   FixQuality::simulated};
+  FixDetails told = sky_;
+  // gpsd leaves out a normal fix's status: it is not told.
+  const double status = report.number(GpsdNumber::status).value_or(0);
+  if (status >= 0 && status < kQualities.size()) told.quality = kQualities[static_cast<std::size_t>(status)];
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  told.correction_age_s = report.number(GpsdNumber::dgps_age).value_or(nan);
+  return told;
 }
 
 void GpsdDecoder::count_status(const GpsdReport& report) {

@@ -14,8 +14,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(GpsdNumber::count)> kNumberNames{
-    "mode", "status", "lat", "lon",   "altHAE", "alt",   "epx",   "epy",
-    "eph",  "track",  "epd", "speed", "eps",    "major", "minor", "orient"};
+    "mode",  "status", "lat",   "lon", "altHAE", "alt",   "epx",    "epy",    "eph",
+    "track", "epd",    "speed", "eps", "major",  "minor", "orient", "dgpsAge"};
 
 /// Takes the events of the parser. A tree of objects (json::parse) would allocate for every member,
 /// and copying it would recurse as deep as the text is nested.

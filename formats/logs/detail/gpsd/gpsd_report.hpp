@@ -27,6 +27,7 @@ enum class GpsdNumber {
   major,
   minor,
   orient,
+  dgps_age,
   count
 };
 

@@ -12,6 +12,7 @@
 #include <waymark/formats/logs/detail/common/log_request.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/logs/detail/common/table_accuracy.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 #include <waymark/formats/text/detail/xml_stream.hpp>
 #include <waymark/formats/text/iso8601.hpp>
@@ -31,6 +32,8 @@ enum Item : std::size_t {
   kGeoidHeightItem,
   kHdopItem,
   kFixItem,
+  kSatellitesItem,
+  kAgeItem,
   kSpeedItem,
   kCourseItem,
   kItems
@@ -44,6 +47,8 @@ constexpr std::array<ItemName, kItems> kItemNames{{{"time", false},
                                                    {"geoidheight", false},
                                                    {"hdop", false},
                                                    {"fix", false},
+                                                   {"sat", false},
+                                                   {"ageofdgpsdata", false},
                                                    {"speed", true},
                                                    {"course", true}}};
 
@@ -180,6 +185,8 @@ void GpxDecoder::add_point() {
   const std::optional<double> hdop = number(kHdopItem, 0, kAny);
   const std::optional<double> speed = number(kSpeedItem, 0, 1000);
   const std::optional<double> course = number(kCourseItem, 0, 360);
+  const std::optional<double> satellites = number(kSatellitesItem, 0, 999);
+  const std::optional<double> age_s = number(kAgeItem, 0, kAny);
   const std::string_view time = without_space(point_.items[kTimeItem]);
   if (!latitude || !longitude) complain("without lat and lon");
   if (time.empty()) complain("without a time");
@@ -197,7 +204,13 @@ void GpxDecoder::add_point() {
   fix.speed_mps = speed;
   if (course) fix.course_rad = *course * std::numbers::pi / 180;
   fix.line = point_.line;
-  const char* complaint = positions_.add(data_, fix, {.hdop = hdop.value_or(0)});
+  // none, 2d, 3d, dgps and pps, which is military
+  const std::optional<TableQuality> quality = table_quality(without_space(point_.items[kFixItem]), "gga");
+  if (quality) fix.told.quality = quality->quality;
+  fix.told.hdop = hdop.value_or(0);
+  fix.told.satellites = static_cast<int>(satellites.value_or(-1));
+  fix.told.correction_age_s = age_s.value_or(fix.told.correction_age_s);
+  const char* complaint = positions_.add(data_, fix, {});
   if (complaint != nullptr) return complain(complaint);
   any_height_ = any_height_ || (elevation && !geoid_height);
 }

@@ -109,7 +109,7 @@ bool NmeaDecoder::is_whole(const NmeaSentence& sentence, NmeaKind kind, std::siz
     if (kind != NmeaKind::other) ++counts_.without_checksum;
     return true;
   }
-  if (kind == NmeaKind::other) {
+  if (kind == NmeaKind::other || kind == NmeaKind::gsa) {
     ++counts_.other_wrong_checksums;
     return false;
   }
@@ -154,7 +154,7 @@ void NmeaDecoder::end_epoch() {
 /// position. The receiver in Munich's Petuelring tunnel did so for 19 s before it stated "no fix".
 /// Converters that do not know the number always write 0; for them it means nothing.
 bool NmeaDecoder::rests_on_no_satellite(const NmeaEpoch& epoch) {
-  if (!epoch.satellites || epoch.dead_reckoning || epoch.simulated) return false;
+  if (!epoch.satellites || epoch.quality >= FixQuality::dead_reckoned) return false;
   satellites_told_ = satellites_told_ || *epoch.satellites > 0;
   return satellites_told_ && *epoch.satellites == 0;
 }
@@ -184,6 +184,11 @@ void NmeaDecoder::add_fix(const NmeaEpoch& epoch) {
   if (day_ > kLastNmeaDay || day_ < -kLastNmeaDay)
     return corrupt(epoch.position.line, 1, "so many midnights have passed that the date is after 2200");
   GeodeticFix fix;
+  fix.told.quality = epoch.quality;
+  if (epoch.satellites && *epoch.satellites >= 0 && *epoch.satellites < 1000)
+    fix.told.satellites = static_cast<int>(*epoch.satellites);
+  fix.told.hdop = epoch.hdop.value_or(0);
+  fix.told.correction_age_s = epoch.correction_age_s.value_or(fix.told.correction_age_s);
   if (const char* complaint = positions_.set_covariance(fix, accuracy(epoch)))
     return corrupt(epoch.position.line, 1, complaint);
   fix.stamp.nanoseconds = day_ * kDayNanoseconds + *epoch.time_of_day;
@@ -198,8 +203,8 @@ void NmeaDecoder::add_fix(const NmeaEpoch& epoch) {
   fix.line = epoch.position.line;
 
   ++counts_.fixes;
-  if (epoch.dead_reckoning) ++counts_.dead_reckoning;
-  if (epoch.simulated) ++counts_.simulated;
+  if (epoch.quality == FixQuality::dead_reckoned) ++counts_.dead_reckoning;
+  if (epoch.quality > FixQuality::dead_reckoned) ++counts_.simulated;
   counts_.decimals = std::max(counts_.decimals, epoch.position.decimals);
   if (dated_) return give(fix);
   if (undated_.size() == kMostUndated) fail_undated();
@@ -207,7 +212,7 @@ void NmeaDecoder::add_fix(const NmeaEpoch& epoch) {
 }
 
 StatedAccuracy NmeaDecoder::accuracy(const NmeaEpoch& epoch) {
-  if (!epoch.accuracy || positions_.wants_truth()) return {.hdop = epoch.hdop.value_or(0)};
+  if (!epoch.accuracy || positions_.wants_truth()) return {};
   const NmeaAccuracy& gst = *epoch.accuracy;
   ++counts_.from_gst;
   if (gst.has_ellipse) ++counts_.from_ellipse;

@@ -30,9 +30,12 @@ namespace waymark::formats {
 /// **Height** is above the ellipsoid if altitude and geoid separation are given, or else above
 /// mean sea level.
 ///
+/// **Quality** comes from GGA's number, else from the mode letters of GNS, RMC or GLL; dead reckoned,
+/// manual and simulated from any of them. GGA and GNS give satellites, HDOP and the age of corrections,
+/// GSA the HDOP that they lack.
+///
 /// **Accuracy.** GST fields 6 and 7 are 1 sigma north and east, and `request.accuracy` overrides
-/// this; the error ellipse gives the correlation. Without GST, HDOP times `request.range_error_m`
-/// is used if stated, or else the default sigma. Without that the record is corrupt.
+/// this; the error ellipse gives the correlation. Fixes without GST: see PositionStream::set_covariance.
 class NmeaReader final : public LogReader {
  public:
   /// @throws InputError for the odometry and sensor streams, a column map, or a companion file. The

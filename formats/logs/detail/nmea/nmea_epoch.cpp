@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include <waymark/formats/logs/detail/common/accuracy.hpp>
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/logs/detail/common/table_accuracy.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 
 namespace waymark::formats {
@@ -48,26 +50,55 @@ NmeaEpoch::Position read_position(NmeaKind kind, const NmeaFields& fields, std::
   return {};
 }
 
+/// Returns the quality of a letter of a mode indicator.
+FixQuality letter_quality(char letter) {
+  switch (letter) {
+    case 'A':  // autonomous
+    case 'P':  // precise: without degradation of the signals
+      return FixQuality::single;
+    case 'D':
+      return FixQuality::differential;
+    case 'F':
+      return FixQuality::floating;
+    case 'R':
+      return FixQuality::fixed;
+    case 'E':
+      return FixQuality::dead_reckoned;
+    case 'M':
+      return FixQuality::manual;
+    case 'S':
+      return FixQuality::simulated;
+    default:
+      return FixQuality::unknown;
+  }
+}
+
 /// The mode indicator of RMC, GLL and GNS. GNS has one for each satellite system.
 struct Mode {
   bool none = false;
-  bool dead_reckoning = false;
-  bool simulated = false;
+  FixQuality quality =
+      FixQuality::unknown;  ///< that of the best system; dead reckoned, manual, simulated: of any
 
   explicit Mode(std::string_view letters) {
     none = !letters.empty() && letters.find_first_not_of('N') == std::string_view::npos;
-    dead_reckoning = letters.find('E') != std::string_view::npos;
-    simulated = letters.find_first_of("MS") != std::string_view::npos;
+    for (const char letter : letters) quality = std::max(quality, letter_quality(letter));
   }
 };
 
-void add_quality(const NmeaEpoch::Position& position, const Mode& mode, bool fixed, NmeaEpoch& epoch) {
+void add_quality(const NmeaEpoch::Position& position, FixQuality quality, NmeaKind from, bool fixed,
+                 NmeaEpoch& epoch) {
   if (rank(position.kind) > rank(epoch.position.kind) || position.kind == epoch.position.kind) {
     if (position.kind != NmeaKind::other) epoch.position = position;
   }
   epoch.without_fix = epoch.without_fix || !fixed;
-  epoch.dead_reckoning = epoch.dead_reckoning || mode.dead_reckoning;
-  epoch.simulated = epoch.simulated || mode.simulated;
+  // Dead reckoned, manual and simulated count whoever tells them; else the sentence that knows best.
+  const FixQuality either = std::max(quality, epoch.quality);
+  if (either >= FixQuality::dead_reckoned) {
+    epoch.quality = either;
+  } else if (quality != FixQuality::unknown && rank(from) >= rank(epoch.quality_from)) {
+    epoch.quality = quality;
+    epoch.quality_from = from;
+  }
 }
 
 std::optional<double> speed_from(const NmeaFields& fields, std::size_t index, double unit) {
@@ -99,24 +130,31 @@ void add_rmc(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   }
   if (speed) epoch.speed_mps = speed;
   if (course) epoch.course_deg = course;
-  add_quality(position, mode, fixed, epoch);
+  add_quality(position, mode.quality, NmeaKind::rmc, fixed, epoch);
 }
 
-/// The fields that GGA and GNS share: satellites, dilution of precision and height.
+bool is_hdop(const std::optional<double>& hdop) {
+  return hdop && *hdop > 0 && *hdop < kNoHdop;
+}
+
+/// The fields that GGA and GNS share: satellites, dilution of precision, height and corrections.
 struct Circumstances {
   std::optional<double> satellites;
   std::optional<double> hdop;
   std::optional<double> altitude;
   std::optional<double> separation;
+  std::optional<double> age;
 
-  Circumstances(const NmeaFields& fields, std::size_t separation_field)
+  Circumstances(const NmeaFields& fields, std::size_t separation_field, std::size_t age_field)
       : satellites(fields.number(7, "number of satellites")),
         hdop(fields.number(8, "HDOP")),
         altitude(fields.number(9, "altitude")),
-        separation(fields.number(separation_field, "geoid separation")) {}
+        separation(fields.number(separation_field, "geoid separation")),
+        age(field_number(fields[age_field])) {}  // receivers write anything there
   void add_to(NmeaEpoch& epoch) const {
     if (satellites) epoch.satellites = satellites;
-    if (hdop && *hdop > 0 && *hdop < kNoHdop) epoch.hdop = hdop;
+    if (is_hdop(hdop)) epoch.hdop = hdop;
+    if (age && *age >= 0) epoch.correction_age_s = age;
     if (altitude) {
       epoch.altitude_m = altitude;
       epoch.geoid_separation_m = separation;
@@ -128,24 +166,25 @@ void add_gga(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   const double quality = fields.number(6, "fix quality").value_or(0);
   const bool fixed = quality > 0;
   const NmeaEpoch::Position position = read_position(NmeaKind::gga, fields, 2, line, fixed);
-  const Circumstances circumstances(fields, 11);
+  const Circumstances circumstances(fields, 11, 13);
   circumstances.add_to(epoch);
-  add_quality(position, Mode(quality == 6 ? "E" : quality == 7 || quality == 8 ? "S" : "A"), fixed, epoch);
+  add_quality(position, gga_quality(static_cast<int>(std::min(quality, 100.0))), NmeaKind::gga, fixed, epoch);
 }
 
 void add_gns(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   const Mode mode(fields[6]);
   // A receiver may add one GNS for every satellite system, without a position.
   const NmeaEpoch::Position position = read_position(NmeaKind::gns, fields, 2, line, false);
-  const Circumstances circumstances(fields, 10);
+  const Circumstances circumstances(fields, 10, 11);
   if (position.kind != NmeaKind::other && !epoch.has(NmeaKind::gga)) circumstances.add_to(epoch);
-  add_quality(position, mode, !mode.none, epoch);
+  add_quality(position, mode.quality, NmeaKind::gns, !mode.none, epoch);
 }
 
 void add_gll(const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   const Mode mode(fields[7]);
   const bool fixed = fields[6] != "V" && !mode.none;
-  add_quality(read_position(NmeaKind::gll, fields, 1, line, fixed), mode, fixed, epoch);
+  add_quality(read_position(NmeaKind::gll, fields, 1, line, fixed), mode.quality, NmeaKind::gll, fixed,
+              epoch);
 }
 
 void add_vtg(const NmeaFields& fields, NmeaEpoch& epoch) {
@@ -156,6 +195,12 @@ void add_vtg(const NmeaFields& fields, NmeaEpoch& epoch) {
   if (!speed) speed = speed_from(fields, 7, kKilometrePerHour);
   if (!epoch.course_deg) epoch.course_deg = course;
   if (!epoch.speed_mps) epoch.speed_mps = speed;
+}
+
+/// GSA has no time and no position: it adds HDOP where GGA and GNS have none.
+void add_gsa(const NmeaFields& fields, NmeaEpoch& epoch) {
+  const std::optional<double> hdop = field_number(fields[16]);
+  if (!epoch.hdop && is_hdop(hdop)) epoch.hdop = hdop;
 }
 
 void add_gst(const NmeaFields& fields, NmeaEpoch& epoch) {
@@ -188,11 +233,12 @@ NmeaKind nmea_kind(std::string_view address) {
   if (kind == "VTG") return NmeaKind::vtg;
   if (kind == "ZDA") return NmeaKind::zda;
   if (kind == "GLL") return NmeaKind::gll;
+  if (kind == "GSA") return NmeaKind::gsa;
   return NmeaKind::other;
 }
 
 std::optional<std::int64_t> nmea_time(NmeaKind kind, const NmeaFields& fields) {
-  if (kind == NmeaKind::vtg || kind == NmeaKind::other) return std::nullopt;
+  if (kind == NmeaKind::vtg || kind == NmeaKind::gsa || kind == NmeaKind::other) return std::nullopt;
   return fields.time_of_day(kind == NmeaKind::gll ? 5 : 1);
 }
 
@@ -217,6 +263,9 @@ void add_to_epoch(NmeaKind kind, const NmeaFields& fields, std::size_t line, Nme
       break;
     case NmeaKind::gst:
       add_gst(fields, epoch);
+      break;
+    case NmeaKind::gsa:
+      add_gsa(fields, epoch);
       break;
     case NmeaKind::zda:
       if (const std::optional<std::int64_t> day = fields.long_date(2)) epoch.day = day;

@@ -8,12 +8,13 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/drive/sample.hpp>
 #include <waymark/formats/logs/detail/nmea/nmea_sentence.hpp>
 
 namespace waymark::formats {
 
 /// The kinds of sentences that are read, of any talker.
-enum class NmeaKind { other, rmc, gga, gns, gst, vtg, zda, gll };
+enum class NmeaKind { other, rmc, gga, gns, gst, vtg, zda, gll, gsa };
 /// @param address "GNRMC". Proprietary sentences ("P...") are `other`.
 [[nodiscard]] NmeaKind nmea_kind(std::string_view address);
 
@@ -50,11 +51,13 @@ struct NmeaEpoch {
   std::optional<double> course_deg;  ///< clockwise from true north
   std::optional<double> speed_mps;
   std::optional<NmeaAccuracy> accuracy;
+  std::optional<double> correction_age_s;  ///< GGA, GNS
+  /// From the sentence that knows it best: GGA, then GNS, then the mode indicator of RMC or GLL.
+  FixQuality quality = FixQuality::unknown;
+  NmeaKind quality_from = NmeaKind::other;
 
   /// RMC or GLL status V, GGA quality 0, GNS mode N for all, mode indicator N
   bool without_fix = false;
-  bool dead_reckoning = false;  ///< GGA quality 6, mode indicator E
-  bool simulated = false;       ///< GGA quality 7 (typed in) or 8, mode indicator M or S
 
   [[nodiscard]] bool has(NmeaKind kind) const { return (seen & (1U << static_cast<unsigned>(kind))) != 0; }
   /// Tells whether some sentence states a position, or states that there is none.

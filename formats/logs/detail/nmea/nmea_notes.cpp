@@ -64,8 +64,7 @@ void note_quality(const NmeaCounts& counts, std::vector<std::string>& notes) {
     notes.push_back(fmt::format("{} sentences of unused kinds are damaged (wrong checksum or none)",
                                 counts.other_wrong_checksums));
   if (counts.not_sentences > 0)
-    notes.push_back(
-        fmt::format("{} lines that hold no NMEA sentence were skipped", counts.not_sentences));
+    notes.push_back(fmt::format("{} lines that hold no NMEA sentence were skipped", counts.not_sentences));
 }
 
 }  // namespace

@@ -51,6 +51,7 @@ class NovatelDecoder final : public LineDecoder {
   void take_message(std::size_t line_number);
   void take_velocity(Stamp at);
   void take_position(Stamp at, std::size_t line_number);
+  void read_details(GeodeticFix& fix);
   [[nodiscard]] StatedAccuracy accuracy();
   void set_inertial_velocity(GeodeticFix& fix);
   void hold(const GeodeticFix& fix, const StatedAccuracy& accuracy);
@@ -160,7 +161,11 @@ void NovatelDecoder::take_position(Stamp at, std::size_t line_number) {
   if (layout_->undulation != kNoField) fix.height_m += number(layout_->undulation, "undulation", -kFar, kFar);
   fix.line = line_number;
   if (!is_sound()) return;
-  if (layout_->type != kNoField) types_.add(message_.body[layout_->type]);
+  if (layout_->type != kNoField) {
+    types_.add(message_.body[layout_->type]);
+    fix.told.quality = novatel_quality(message_.body[layout_->type]);
+  }
+  read_details(fix);
   const std::string_view datum = message_.body[layout_->datum];
   if (!datum.empty() && datum != "WGS84" && datum_.empty()) datum_ = quote_field(datum);
   if (positions_.wants_truth()) {
@@ -176,6 +181,16 @@ void NovatelDecoder::take_position(Stamp at, std::size_t line_number) {
   const StatedAccuracy stated = accuracy();
   if (layout_->velocity != kNoField) set_inertial_velocity(fix);
   if (is_sound()) hold(fix, stated);
+}
+
+/// Reads the age of the corrections and the number of satellites of BESTPOS and its relatives.
+void NovatelDecoder::read_details(GeodeticFix& fix) {
+  constexpr std::size_t kAge = 11;
+  constexpr std::size_t kSatellitesUsed = 14;
+  if (layout_->fields != 10 || message_.body.count() <= kSatellitesUsed) return;
+  const std::optional<double> age_s = field_number(message_.body[kAge]);
+  if (age_s && *age_s > 0) fix.told.correction_age_s = *age_s;
+  fix.told.satellites = field_count(message_.body[kSatellitesUsed]).value_or(-1);
 }
 
 StatedAccuracy NovatelDecoder::accuracy() {
@@ -249,8 +264,7 @@ void NovatelDecoder::end() {
     if (data_.records == 0) throw InputError(fmt::format("{}: {}", path(), what));
     note(what);
   }
-  if (other_lines_ > 0)
-    note(fmt::format("{} lines that are no NovAtel messages were skipped", other_lines_));
+  if (other_lines_ > 0) note(fmt::format("{} lines that are no NovAtel messages were skipped", other_lines_));
   std::string types;
   for (const auto& [name, count] : types_.counts())
     types += fmt::format("{}{} {}", types.empty() ? "" : ", ", count, name);

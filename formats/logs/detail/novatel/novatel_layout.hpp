@@ -76,6 +76,18 @@ inline constexpr std::array<NovatelLayout, 7> kNovatelLayouts{{
   return nullptr;
 }
 
+/// Returns the quality of a position type (OEM7 Commands and Logs, "Position or Velocity Type").
+[[nodiscard]] inline FixQuality novatel_quality(std::string_view type) {
+  const auto has = [type](std::string_view part) { return type.find(part) != std::string_view::npos; };
+  if (type.ends_with("_INT") || has("RTKFIXED")) return FixQuality::fixed;
+  if (type.ends_with("_FLOAT") || has("RTKFLOAT") || has("PPP")) return FixQuality::floating;
+  if (has("PSRDIFF") || has("WAAS") || has("SBAS") || has("CDGPS") || has("OMNISTAR"))
+    return FixQuality::differential;
+  if (type == "SINGLE" || has("PSRSP")) return FixQuality::single;
+  if (type == "PROPAGATED" || type == "INS") return FixQuality::dead_reckoned;
+  return type == "FIXEDPOS" ? FixQuality::manual : FixQuality::unknown;
+}
+
 /// Tells whether a solution status, GNSS or inertial, means that there is a position.
 [[nodiscard]] inline bool novatel_has_solution(std::string_view status) {
   for (const std::string_view yes : {"SOL_COMPUTED", "INS_SOLUTION_GOOD", "INS_SOLUTION_FREE",

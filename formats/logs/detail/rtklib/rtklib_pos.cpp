@@ -14,6 +14,7 @@
 #include <waymark/formats/logs/detail/common/log_request.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/logs/detail/common/table_accuracy.hpp>
 #include <waymark/formats/logs/detail/rtklib/rtklib_header.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 #include <waymark/formats/text/iso8601.hpp>
@@ -54,6 +55,7 @@ class RtklibDecoder final : public LineDecoder {
 
   void take_record(std::size_t number);
   [[nodiscard]] bool has_fix();
+  void read_details(GeodeticFix& fix);
   [[nodiscard]] std::optional<Stamp> stamp();
   [[nodiscard]] GeodeticPlace place();
   [[nodiscard]] double angle(std::size_t first, const char* name, double limit);
@@ -109,6 +111,7 @@ void RtklibDecoder::take_record(std::size_t number) {
   fix.longitude_deg = where.longitude_deg;
   fix.height_m = where.height_m;
   fix.line = number;
+  read_details(fix);
   StatedAccuracy accuracy;
   if (!positions_.wants_truth()) {
     choose_axes(where);
@@ -136,6 +139,15 @@ bool RtklibDecoder::has_fix() {
   ++qualities_[static_cast<std::size_t>(*quality)];
   if (*quality == 0) ++data_.without_fix;
   return *quality != 0;
+}
+
+/// Reads Q, the number of satellites after it, and the age of the corrections.
+void RtklibDecoder::read_details(GeodeticFix& fix) {
+  fix.told.quality = rtklib_quality(field_count(fields_[header_.quality]).value_or(0));
+  fix.told.satellites = field_count(fields_[header_.quality + 1]).value_or(-1);
+  if (header_.sigma == 0 || fix.told.quality == FixQuality::single) return;
+  const std::optional<double> age_s = field_number(fields_[header_.sigma + 6]);
+  if (age_s && *age_s >= 0) fix.told.correction_age_s = *age_s;
 }
 
 std::optional<Stamp> RtklibDecoder::stamp() {

@@ -59,7 +59,8 @@ void check_readings(const std::string& path, const LogRequest& request) {
 }
 
 bool holds_position(std::uint16_t key) {
-  return key == ubx::kNavPvt || key == ubx::kNavPosllh || key == ubx::kNavHpposllh || key == ubx::kHnrPvt;
+  return key == ubx::kNavPvt || key == ubx::kNavPosllh || key == ubx::kNavHpposllh ||
+         key == ubx::kNavPosecef || key == ubx::kNavSol || key == ubx::kHnrPvt;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/angle.hpp>
+#include <waymark/formats/logs/detail/nmea/nmea.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -37,6 +38,22 @@ bool has(const UbxEpoch& epoch, std::uint16_t key) {
     default:
       return false;
   }
+}
+
+FixDetails details_of(const UbxEpoch& epoch) {
+  FixDetails told;
+  const std::optional<UbxFixState> state = epoch.solution ? epoch.solution->state : epoch.state;
+  if (state) {
+    told.quality = state->type == 1      ? FixQuality::dead_reckoned
+                   : state->carrier == 2 ? FixQuality::fixed
+                   : state->carrier == 1 ? FixQuality::floating
+                   : state->differential ? FixQuality::differential
+                                         : FixQuality::single;
+    told.satellites = state->satellites;
+    told.correction_age_s = state->correction_age_s;
+  }
+  if (epoch.hdop) told.hdop = *epoch.hdop;
+  return told;
 }
 
 }  // namespace
@@ -87,6 +104,12 @@ void UbxFixDecoder::take_navigation(std::uint16_t key, const UbxPayload& payload
       epoch.plain = read_nav_posllh(payload);
       epoch.number = number();
       break;
+    case ubx::kNavPosecef:
+      take_ecef(key, payload);
+      break;
+    case ubx::kNavVelecef:
+      if (epoch.ecef) epoch.velecef = read_ubx_ecef_velocity(key, payload, *epoch.ecef);
+      break;
     case ubx::kNavVelned:
       epoch.velned = read_nav_velned(payload);
       break;
@@ -105,10 +128,23 @@ void UbxFixDecoder::take_navigation(std::uint16_t key, const UbxPayload& payload
     case ubx::kNavSol:
       epoch.state = read_ubx_state(key, payload);
       if (!epoch.week) epoch.week = read_ubx_week(key, payload);
+      take_ecef(key, payload);
+      if (epoch.ecef && !epoch.velecef) epoch.velecef = read_ubx_ecef_velocity(key, payload, *epoch.ecef);
+      break;
+    case ubx::kNavDop:
+      epoch.hdop = read_nav_dop(payload);
       break;
     default:
       break;
   }
+}
+
+/// Takes the position of NAV-POSECEF or NAV-SOL, whichever comes first: they are the same.
+void UbxFixDecoder::take_ecef(std::uint16_t key, const UbxPayload& payload) {
+  UbxEpoch& epoch = *epoch_;
+  if (epoch.ecef) return;
+  epoch.ecef = read_ubx_ecef(key, payload);
+  if (epoch.number == 0) epoch.number = number();
 }
 
 void UbxFixDecoder::begin_epoch_for(std::uint16_t key, std::uint32_t itow_ms) {
@@ -143,7 +179,8 @@ void UbxFixDecoder::end_epoch() {
                    "there is no valid date and no GPS week yet; state 'gps_week' to use this position");
   const UbxPlace& place = epoch.precise    ? *epoch.precise
                           : epoch.solution ? epoch.solution->place
-                                           : *epoch.plain;
+                          : epoch.plain    ? *epoch.plain
+                                           : *epoch.ecef;
   if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 180)
     return corrupt(epoch.byte, fmt::format("the position {}, {} is outside -90 .. 90, -180 .. 180",
                                            place.latitude_deg, place.longitude_deg));
@@ -163,6 +200,7 @@ std::optional<std::int64_t> UbxFixDecoder::time_of(const UbxEpoch& epoch) {
 
 void UbxFixDecoder::add_sample(const UbxEpoch& epoch, const UbxPlace& place, Stamp stamp) {
   GeodeticFix fix;
+  fix.told = details_of(epoch);
   if (const char* complaint = positions_.set_covariance(fix, accuracy(epoch, place)))
     return corrupt(epoch.byte, complaint);
   count(epoch);
@@ -171,8 +209,10 @@ void UbxFixDecoder::add_sample(const UbxEpoch& epoch, const UbxPlace& place, Sta
   fix.longitude_deg = place.longitude_deg;
   fix.height_m = place.height_m;
   fix.line = epoch.number;
-  if (epoch.solution || epoch.velned) {
-    const UbxMotion& motion = epoch.solution ? epoch.solution->motion : *epoch.velned;
+  if (epoch.solution || epoch.velned || epoch.velecef) {
+    const UbxMotion& motion = epoch.solution ? epoch.solution->motion
+                              : epoch.velned ? *epoch.velned
+                                             : *epoch.velecef;
     fix.speed_mps = motion.speed_mps;
     fix.speed_sigma_mps = if_positive(motion.speed_accuracy_mps);
     fix.course_rad = motion.course_deg * kDegree;
@@ -197,30 +237,68 @@ StatedAccuracy UbxFixDecoder::accuracy(const UbxEpoch& epoch, const UbxPlace& pl
 
 /// Updates the counts for the notes about an epoch that is used.
 void UbxFixDecoder::count(const UbxEpoch& epoch) {
-  ++(epoch.precise ? counts_.precise : epoch.solution ? counts_.solution : counts_.plain);
+  ++(epoch.precise    ? counts_.precise
+     : epoch.solution ? counts_.solution
+     : epoch.plain    ? counts_.plain
+                      : counts_.ecef);
   const std::optional<UbxFixState> state = epoch.solution ? epoch.solution->state : epoch.state;
   if (!state) ++counts_.stateless;
   if (state && state->type == 1) ++counts_.dead_reckoned;
   if (state && state->type == 4) ++counts_.combined;
-  if (epoch.solution && epoch.solution->carrier == 1) ++counts_.carrier_float;
-  if (epoch.solution && epoch.solution->carrier == 2) ++counts_.carrier_fixed;
+  if (state && state->carrier == 1) ++counts_.carrier_float;
+  if (state && state->carrier == 2) ++counts_.carrier_fixed;
+}
+
+void UbxFixDecoder::take_strange(std::string_view bytes) {
+  if (high_rate_) return;
+  if (!nmea_) {
+    if (bytes.find('$') == std::string_view::npos) return;
+    LogRequest request = this->request();
+    request.columns.clear();
+    nmea_ = NmeaReader().open(path(), request);
+  }
+  nmea_->take(bytes);
+}
+
+/// Takes the positions of NMEA sentences between the frames, in a log whose frames have none.
+void UbxFixDecoder::take_nmea() {
+  nmea_->finish();
+  LogData& nmea = nmea_->data();
+  if (nmea.fixes.empty() && nmea.truth.empty()) return;
+  note("no UBX message holds a position; they are those of the NMEA sentences between the frames");
+  data_.fixes = std::move(nmea.fixes);
+  data_.truth = std::move(nmea.truth);
+  data_.qualities = std::move(nmea.qualities);
+  data_.records += nmea.records;
+  data_.without_fix += nmea.without_fix;
+  data_.corrupt += nmea.corrupt;
+  data_.corrupt_examples.insert(data_.corrupt_examples.end(), nmea.corrupt_examples.begin(),
+                                nmea.corrupt_examples.end());
+  data_.notes.insert(data_.notes.end(), nmea.notes.begin(), nmea.notes.end());
+  data_.kinds.merge(nmea.kinds);
 }
 
 void UbxFixDecoder::end() {
   end_epoch();
+  const bool has_positions = counts_.precise + counts_.solution + counts_.plain + counts_.ecef > 0;
+  if (!has_positions && data_.without_fix == 0 && nmea_) return take_nmea();
   note_positions();
   note_time();
   positions_.finish(data_);
 }
 
 void UbxFixDecoder::note_positions() {
-  const std::size_t used = counts_.precise + counts_.solution + counts_.plain;
+  const std::size_t used = counts_.precise + counts_.solution + counts_.plain + counts_.ecef;
   if (used > 0 && high_rate_) {
     note(fmt::format("{} positions of HNR-PVT are dead-reckoned from the last GNSS epoch and share its error",
                      used));
   } else if (used > 0) {
     note(fmt::format("positions: {} of NAV-HPPOSLLH, {} of NAV-PVT, {} of NAV-POSLLH", counts_.precise,
                      counts_.solution, counts_.plain));
+    if (counts_.ecef > 0)
+      note(fmt::format(
+          "{} positions of NAV-POSECEF or NAV-SOL; their accuracy is that of all three dimensions",
+          counts_.ecef));
   }
   if (!high_rate_ && UbxFrameDecoder::count(ubx::kHnrPvt) > 0)
     note(

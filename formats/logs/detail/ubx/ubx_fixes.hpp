@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string_view>
 
 #include <Eigen/Core>
 
@@ -20,7 +22,10 @@ struct UbxEpoch {
   std::optional<UbxSolution> solution;  ///< NAV-PVT (or HNR-PVT)
   std::optional<UbxPlace> precise;      ///< NAV-HPPOSLLH
   std::optional<UbxPlace> plain;        ///< NAV-POSLLH
+  std::optional<UbxPlace> ecef;         ///< NAV-POSECEF, NAV-SOL
   std::optional<UbxMotion> velned;
+  std::optional<UbxMotion> velecef;  ///< NAV-VELECEF, NAV-SOL
+  std::optional<double> hdop;        ///< NAV-DOP
   std::optional<Eigen::Matrix2d> covariance;
   std::optional<UbxFixState> state;  ///< NAV-SOL, NAV-STATUS
   std::optional<UbxDate> utc;        ///< NAV-TIMEUTC
@@ -28,7 +33,7 @@ struct UbxEpoch {
   std::size_t number = 0;            ///< number of the frame with the position
   std::uint64_t byte = 0;            ///< place of the first frame
 
-  [[nodiscard]] bool has_position() const { return solution || precise || plain; }
+  [[nodiscard]] bool has_position() const { return solution || precise || plain || ecef; }
 };
 
 /// Counts for the notes.
@@ -36,6 +41,7 @@ struct UbxFixCounts {
   std::size_t precise = 0;
   std::size_t solution = 0;
   std::size_t plain = 0;
+  std::size_t ecef = 0;
   std::size_t covariance = 0;
   std::size_t bad_covariance = 0;
   std::size_t dead_reckoned = 0;
@@ -54,20 +60,25 @@ class UbxFixDecoder final : public UbxFrameDecoder {
 
  protected:
   void take_frame(const UbxFrame& frame) override;
+  void take_strange(std::string_view bytes) override;
   void end() override;
 
  private:
   void take_navigation(std::uint16_t key, const UbxPayload& payload);
+  void take_ecef(std::uint16_t key, const UbxPayload& payload);
   void begin_epoch_for(std::uint16_t key, std::uint32_t itow_ms);
   void end_epoch();
   [[nodiscard]] std::optional<std::int64_t> time_of(const UbxEpoch& epoch);
   void add_sample(const UbxEpoch& epoch, const UbxPlace& place, Stamp stamp);
   [[nodiscard]] StatedAccuracy accuracy(const UbxEpoch& epoch, const UbxPlace& place);
   void count(const UbxEpoch& epoch);
+  void take_nmea();
   void note_positions();
   void note_time();
 
   bool high_rate_;
+  /// NMEA sentences between the frames: they count in a log whose frames have no position
+  std::unique_ptr<LogDecoder> nmea_;
   PositionStream positions_;
   UbxTime time_;
   UbxFixCounts counts_;

@@ -177,26 +177,32 @@ std::size_t UbxFrameDecoder::scan(std::string_view bytes, bool at_end) {
     const UbxFound found = find_ubx_frame(stretch, done);
     if (found.kind == UbxFound::Kind::incomplete && !at_end) {
       missing_ = found.missing;
-      strange_ += found.begin - done;
+      pass_over(bytes.substr(done, found.begin - done));
       base_ += found.begin;
       return found.begin;
     }
     if (found.kind == UbxFound::Kind::nothing) {
-      strange_ += bytes.size() - done;
+      pass_over(bytes.substr(done));
       base_ += bytes.size();
       return bytes.size();
     }
-    strange_ += found.begin - done;
+    pass_over(bytes.substr(done, found.begin - done));
     if (found.kind == UbxFound::Kind::frame) {
       give(found.frame, base_ + found.begin);
       done = found.end;
     } else {
       give_broken(found, bytes);
       const std::size_t next = std::min(found.begin + 2, bytes.size());
-      strange_ += next - found.begin;
+      pass_over(bytes.substr(found.begin, next - found.begin));
       done = next;
     }
   }
+}
+
+void UbxFrameDecoder::pass_over(std::string_view bytes) {
+  if (bytes.empty()) return;
+  strange_ += bytes.size();
+  take_strange(bytes);
 }
 
 void UbxFrameDecoder::give_broken(const UbxFound& found, std::string_view bytes) {

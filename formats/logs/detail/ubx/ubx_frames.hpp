@@ -83,6 +83,8 @@ class UbxFrameDecoder : public LogDecoder {
   void finish() final;
 
  protected:
+  /// Takes bytes that belong to no frame, in order and in pieces of any size.
+  virtual void take_strange([[maybe_unused]] std::string_view bytes) {}
   virtual void take_frame(const UbxFrame& frame) = 0;
   /// Called after the last frame.
   virtual void end() {}
@@ -108,6 +110,8 @@ class UbxFrameDecoder : public LogDecoder {
   std::string begun_;        ///< bytes from the place where a frame may begin
   std::size_t missing_ = 0;  ///< how many more bytes are needed to judge begun_
   std::uint64_t base_ = 0;   ///< place in the log of the bytes that are searched
+  void pass_over(std::string_view bytes);
+
   std::uint64_t strange_ = 0;
   std::size_t number_ = 0;
   std::uint64_t byte_ = 0;

@@ -1,7 +1,12 @@
 #include <waymark/formats/logs/detail/ubx/ubx_messages.hpp>
 
+#include <array>
 #include <bit>
 #include <chrono>
+#include <cmath>
+
+#include <waymark/core/base/angle.hpp>
+#include <waymark/formats/logs/detail/common/geocentric.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -49,6 +54,17 @@ UbxPlace read_place(const UbxPayload& payload, std::size_t at, std::size_t accur
   return place;
 }
 
+/// Returns the upper end of the interval that NAV-PVT's lastCorrectionAge (flags3) tells.
+double correction_age(unsigned code) {
+  constexpr std::array kUpTo_s{0, 1, 2, 5, 10, 15, 20, 30, 45, 60, 90, 120};
+  if (code == 0) return std::numeric_limits<double>::quiet_NaN();
+  return code < kUpTo_s.size() ? kUpTo_s[code] : 2 * kUpTo_s.back();
+}
+
+Eigen::Vector3d read_vector(const UbxPayload& payload, std::size_t at, double units_per_metre) {
+  return Eigen::Vector3d(payload.i32(at), payload.i32(at + 4), payload.i32(at + 8)) / units_per_metre;
+}
+
 }  // namespace
 
 double UbxPayload::f32(std::size_t at) const {
@@ -58,6 +74,11 @@ double UbxPayload::f32(std::size_t at) const {
 
 std::size_t least_ubx_length(std::uint16_t key) {
   switch (key) {
+    case ubx::kNavPosecef:
+    case ubx::kNavVelecef:
+      return 20;
+    case ubx::kNavDop:
+      return 18;
     case ubx::kNavPosllh:
       return 28;
     case ubx::kNavStatus:
@@ -95,16 +116,18 @@ UbxSolution read_nav_pvt(const UbxPayload& payload) {
   UbxSolution solution;
   solution.date = read_solution_date(payload, 16);
   const unsigned flags = payload.u8(21);
-  const bool invalid_place = payload.size() >= kPvtWithVehicle && (payload.u8(78) & 1U) != 0;
-  solution.state = {payload.u8(20), (flags & 1U) != 0 && !invalid_place};
-  solution.carrier = static_cast<int>(flags >> 6U);
+  const bool has_vehicle = payload.size() >= kPvtWithVehicle;
+  const bool invalid_place = has_vehicle && (payload.u8(78) & 1U) != 0;
+  solution.state = {
+      payload.u8(20),      (flags & 1U) != 0 && !invalid_place,
+      (flags & 2U) != 0,   static_cast<int>(flags >> 6U),
+      int{payload.u8(23)}, has_vehicle ? correction_age(payload.u8(78) >> 1U & 15U) : correction_age(0)};
   solution.place = read_place(payload, 24, 40);
   solution.motion.speed_mps = payload.i32(60) / 1e3;
   solution.motion.course_deg = payload.i32(64) / 1e5;
   solution.motion.speed_accuracy_mps = accuracy(payload.u32(68), 1e3);
   solution.motion.course_accuracy_deg = accuracy(payload.u32(72), 1e5);
-  if (payload.size() >= kPvtWithVehicle && (flags & 0x20U) != 0)
-    solution.vehicle_heading_deg = payload.i32(84) / 1e5;
+  if (has_vehicle && (flags & 0x20U) != 0) solution.vehicle_heading_deg = payload.i32(84) / 1e5;
   return solution;
 }
 
@@ -112,7 +135,7 @@ UbxSolution read_hnr_pvt(const UbxPayload& payload) {
   UbxSolution solution;
   solution.date = read_solution_date(payload, 12);
   const unsigned flags = payload.u8(17);
-  solution.state = {payload.u8(16), (flags & 1U) != 0};
+  solution.state = {.type = payload.u8(16), .ok = (flags & 1U) != 0, .differential = (flags & 2U) != 0};
   solution.place = read_place(payload, 20, 52);
   solution.motion.speed_mps = payload.i32(36) / 1e3;
   solution.motion.course_deg = payload.i32(44) / 1e5;
@@ -137,6 +160,37 @@ std::optional<UbxPlace> read_nav_hpposllh(const UbxPayload& payload) {
   place.height_m = finer(16, 26, 10) / 1e4;
   place.accuracy_m = accuracy(payload.u32(28), 1e4);
   return place;
+}
+
+std::optional<UbxPlace> read_ubx_ecef(std::uint16_t key, const UbxPayload& payload) {
+  const bool is_sol = key == ubx::kNavSol;
+  const Eigen::Vector3d ecef = read_vector(payload, is_sol ? 12 : 4, 1e2);
+  constexpr double kLeast_m = 6.2e6;
+  constexpr double kMost_m = 7.5e6;
+  if (!(ecef.norm() > kLeast_m && ecef.norm() < kMost_m)) return std::nullopt;
+  const GeodeticPlace geodetic = geodetic_from_ecef(ecef);
+  return UbxPlace{geodetic.latitude_deg, geodetic.longitude_deg, geodetic.height_m,
+                  accuracy(payload.u32(is_sol ? 24 : 16), 1e2)};
+}
+
+UbxMotion read_ubx_ecef_velocity(std::uint16_t key, const UbxPayload& payload, const UbxPlace& place) {
+  const bool is_sol = key == ubx::kNavSol;
+  const Eigen::Vector3d enu =
+      enu_from_ecef(place.latitude_deg, place.longitude_deg) * read_vector(payload, is_sol ? 28 : 4, 1e2);
+  UbxMotion motion;
+  motion.speed_mps = enu.head<2>().norm();
+  motion.speed_accuracy_mps = accuracy(payload.u32(is_sol ? 40 : 16), 1e2);
+  motion.course_deg = std::atan2(enu.x(), enu.y()) / kDegree;
+  // Across the course the velocity is as uncertain as along it.
+  if (motion.speed_mps > motion.speed_accuracy_mps)
+    motion.course_accuracy_deg = std::atan2(motion.speed_accuracy_mps, motion.speed_mps) / kDegree;
+  return motion;
+}
+
+double read_nav_dop(const UbxPayload& payload) {
+  constexpr double kNoDop = 99;  // 99.99: not known
+  const double hdop = payload.u16(12) / 1e2;
+  return hdop < kNoDop ? hdop : 0;
 }
 
 UbxMotion read_nav_velned(const UbxPayload& payload) {
@@ -164,8 +218,14 @@ std::optional<UbxWeek> read_ubx_week(std::uint16_t key, const UbxPayload& payloa
 }
 
 UbxFixState read_ubx_state(std::uint16_t key, const UbxPayload& payload) {
-  const std::size_t at = key == ubx::kNavSol ? 10 : 4;
-  return {payload.u8(at), (payload.u8(at + 1) & 1U) != 0};
+  const bool is_sol = key == ubx::kNavSol;
+  const std::size_t at = is_sol ? 10 : 4;
+  const unsigned flags = payload.u8(at + 1);
+  return {.type = payload.u8(at),
+          .ok = (flags & 1U) != 0,
+          .differential = (flags & 2U) != 0,
+          .carrier = is_sol ? 0 : payload.u8(7) >> 6U,  // flags2, since protocol 27; zero before
+          .satellites = is_sol ? int{payload.u8(47)} : -1};
 }
 
 std::optional<Eigen::Matrix2d> read_nav_cov(const UbxPayload& payload) {

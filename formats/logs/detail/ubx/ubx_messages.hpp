@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -15,10 +16,13 @@ namespace waymark::formats {
 
 /// Keys (class * 256 + id) of the messages that are read.
 namespace ubx {
+inline constexpr std::uint16_t kNavPosecef = 0x0101;
 inline constexpr std::uint16_t kNavPosllh = 0x0102;
 inline constexpr std::uint16_t kNavStatus = 0x0103;
+inline constexpr std::uint16_t kNavDop = 0x0104;
 inline constexpr std::uint16_t kNavSol = 0x0106;
 inline constexpr std::uint16_t kNavPvt = 0x0107;
+inline constexpr std::uint16_t kNavVelecef = 0x0111;
 inline constexpr std::uint16_t kNavVelned = 0x0112;
 inline constexpr std::uint16_t kNavHpposllh = 0x0114;
 inline constexpr std::uint16_t kNavTimegps = 0x0120;
@@ -81,7 +85,12 @@ struct UbxMotion {
 struct UbxFixState {
   /// 0 none, 1 dead reckoning, 2 2D, 3 3D, 4 GNSS and dead reckoning, 5 time only
   int type = 0;
-  bool ok = false;  ///< within the receiver's limits (gnssFixOK)
+  bool ok = false;            ///< within the receiver's limits (gnssFixOK)
+  bool differential = false;  ///< diffSoln
+  int carrier = 0;            ///< carrSoln: 1 float, 2 fixed
+  int satellites = -1;        ///< numSV; -1: not told
+  /// upper end of the interval that lastCorrectionAge tells; NaN: not told, or no corrections
+  double correction_age_s = std::numeric_limits<double>::quiet_NaN();
 
   [[nodiscard]] bool usable() const { return ok && type >= 1 && type <= 4; }
 };
@@ -90,7 +99,6 @@ struct UbxFixState {
 struct UbxSolution {
   std::optional<UbxDate> date;
   UbxFixState state;
-  int carrier = 0;  ///< 1 float, 2 fixed
   UbxPlace place;
   UbxMotion motion;
   std::optional<double> vehicle_heading_deg;  ///< clockwise from true north, if its flag says valid
@@ -108,6 +116,14 @@ struct UbxWeek {
 [[nodiscard]] UbxPlace read_nav_posllh(const UbxPayload& payload);
 /// Returns nothing if the message is marked invalid.
 [[nodiscard]] std::optional<UbxPlace> read_nav_hpposllh(const UbxPayload& payload);
+/// Reads NAV-POSECEF or NAV-SOL. Its accuracy is that of all three dimensions. Empty if the point is not near
+/// the surface of the Earth: receivers without a fix write zeros.
+[[nodiscard]] std::optional<UbxPlace> read_ubx_ecef(std::uint16_t key, const UbxPayload& payload);
+/// Reads NAV-VELECEF or NAV-SOL. @param place where the receiver is
+[[nodiscard]] UbxMotion read_ubx_ecef_velocity(std::uint16_t key, const UbxPayload& payload,
+                                               const UbxPlace& place);
+/// Returns the horizontal dilution of precision; 0: not known.
+[[nodiscard]] double read_nav_dop(const UbxPayload& payload);
 [[nodiscard]] UbxMotion read_nav_velned(const UbxPayload& payload);
 [[nodiscard]] std::optional<UbxDate> read_nav_timeutc(const UbxPayload& payload);
 /// Reads NAV-SOL or NAV-TIMEGPS. Empty if week or time of week is not valid.

@@ -1,6 +1,9 @@
 #include <waymark/tools/program/jobs/conformance/conformance.hpp>
 
+#include <algorithm>
+#include <filesystem>
 #include <set>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -13,11 +16,17 @@
 namespace waymark::program {
 namespace {
 
-std::set<std::string> modules_of(const TypeRegistry& registry) {
-  std::set<std::string> modules;
-  for (const PluginRecord& plugin : registry.plugins())
-    if (plugin.place != "built in") modules.insert(plugin.name);
-  return modules;
+/// Returns the names of the plugins that come from some files.
+std::set<std::string> plugins_in(std::span<const std::string> files, const TypeRegistry& registry) {
+  std::set<std::string> names;
+  for (const PluginRecord& plugin : registry.plugins()) {
+    const bool wanted = std::any_of(files.begin(), files.end(), [&](const std::string& file) {
+      std::error_code none;
+      return plugin.name == file || std::filesystem::equivalent(plugin.place, file, none);
+    });
+    if (wanted) names.insert(plugin.name);
+  }
+  return names;
 }
 
 /// Tries what the types of graphs promise.
@@ -43,17 +52,17 @@ std::vector<Trial> try_types(const TypeRegistry& registry, const Wanted& wanted)
 
 }  // namespace
 
-ConformanceReport check_conformance(const TypeRegistry& registry, bool everything,
+ConformanceReport check_conformance(const TypeRegistry& registry, std::span<const std::string> files,
                                     const text::TextLook& look) {
-  const std::set<std::string> modules = modules_of(registry);
-  const Wanted wanted = [&](const std::string& origin) { return everything || modules.contains(origin); };
+  const std::set<std::string> plugins = plugins_in(files, registry);
+  const Wanted wanted = [&](const std::string& origin) { return files.empty() || plugins.contains(origin); };
   std::vector<Trial> trials;
   for (auto* kit : {&try_types, &try_solvers, &try_models, &try_readers})
     for (Trial& trial : (*kit)(registry, wanted)) trials.push_back(std::move(trial));
 
   ConformanceReport report;
   report.json = nlohmann::ordered_json::array();
-  text::Table table{.columns = {"type", "kind", "from", "", "note"}};
+  text::Table table{.columns = {"type", "kind", "from", "result", "note"}};
   std::string problems;
   for (const Trial& trial : trials) {
     const bool passed = trial.problems.empty();
@@ -69,7 +78,8 @@ ConformanceReport check_conformance(const TypeRegistry& registry, bool everythin
                            {"problems", trial.problems},
                            {"note", trial.note}});
   }
-  report.text = trials.empty() ? "nothing to try: no plugin was loaded\n" : text::table_text(table, look);
+  report.text =
+      trials.empty() ? "nothing to try: the plugin registers nothing\n" : text::table_text(table, look);
   report.text += report.passed ? "no problems found\n" : problems;
   return report;
 }

@@ -1,6 +1,7 @@
 /// The report of the conformance kit (trials.hpp).
 #pragma once
 
+#include <span>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -16,9 +17,9 @@ struct ConformanceReport {
   bool passed = true;
 };
 
-/// Tries the types of plugins that are not built in. @param everything those of Waymark and its built-in
-/// plugins too
-[[nodiscard]] ConformanceReport check_conformance(const TypeRegistry& registry, bool everything,
+/// Tries what the modules in some files register. @param files names of files; empty: tries everything
+[[nodiscard]] ConformanceReport check_conformance(const TypeRegistry& registry,
+                                                  std::span<const std::string> files,
                                                   const text::TextLook& look);
 
 }  // namespace waymark::program

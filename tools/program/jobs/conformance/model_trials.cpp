@@ -8,6 +8,7 @@
 #include <waymark/core/graph/finite_check.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/tools/drive/logs/projection.hpp>
 #include <waymark/tools/program/jobs/conformance/trials.hpp>
 #include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
@@ -25,14 +26,22 @@ Pose2<double> truth_at(double t) {
   return compose(Pose2<double>(40, -15, 0.8), se2_exp<double>(Eigen::Vector3d(kSpeed * t, 0, kYawRate * t)));
 }
 
+/// A place that is as good as any: UTM 32, near Heidelberg.
+const drive::Projection& projection() {
+  static const drive::Projection there(Frame{32, true, 477'000, 5'473'000});
+  return there;
+}
+
 /// A minute on a circle, in a graph that models fill.
 struct TrialDrive {
   Graph graph;
   std::vector<Stamp> stamps;
   std::vector<VertexIndex> poses;
   std::vector<Interval> intervals;
+  std::vector<OdometrySample> odometry;
   std::vector<Fix> fixes;
   std::vector<FixMoment> moments;
+  std::vector<DriveSource> sources;
 
   TrialDrive() {
     for (std::size_t i = 0; i < kNodes; ++i) {
@@ -40,9 +49,18 @@ struct TrialDrive {
       stamps.push_back(Stamp::from_seconds(1000 + t));
       poses.push_back(graph.add_vertex<VertexSe2>(graph.free_id(), truth_at(t)));
       graph.set_stamp(poses.back(), stamps.back());
+      odometry.push_back({.stamp = stamps.back(), .speed_mps = kSpeed, .yaw_rate_radps = kYawRate});
       if (i > 0) intervals.push_back({.speed_mps = kSpeed, .yaw_rate_radps = kYawRate, .dt_s = kDt_s});
       if (i % kPerFix == 0) add_fix(i, t);
     }
+    sources = {{.name = "odometry", .kind = "odometry", .odometry = odometry},
+               {.name = "gnss", .kind = "gnss", .fixes = fixes}};
+  }
+  TrialDrive(const TrialDrive&) = delete;
+  TrialDrive& operator=(const TrialDrive&) = delete;
+
+  [[nodiscard]] DriveContext context() const {
+    return {.geodesy = &projection(), .scale = TimeScale::utc, .sources = sources};
   }
 
   /// The nodes of a part: it begins at the last one of the part before.
@@ -132,7 +150,8 @@ void try_odometry(const TypeRegistry& registry, Trial& trial) {
       [&]() -> AddPart {
         std::shared_ptr<OdometryModel> model = registry.make_odometry_model(trial.name);
         return [model](TrialDrive& drive, std::size_t first, std::size_t last) {
-          model->extend({drive.nodes(first, last)}, drive.graph);
+          const DriveContext context = drive.context();
+          model->extend({drive.nodes(first, last), "odometry", context}, drive.graph);
         };
       },
       whole, trial);
@@ -148,8 +167,11 @@ void try_modeling(const TypeRegistry& registry, Trial& trial) {
         return [model](TrialDrive& drive, std::size_t first, std::size_t last) {
           const std::size_t begin = first == 0 ? 0 : TrialDrive::fix_at(first + 1);
           const std::size_t count = TrialDrive::fix_at(last + 1) - begin;
-          model->extend({std::span<const Fix>(drive.fixes).subspan(begin, count),
-                         std::span<const FixMoment>(drive.moments).subspan(begin, count)},
+          const DriveContext context = drive.context();
+          model->extend({.fixes = std::span<const Fix>(drive.fixes).subspan(begin, count),
+                         .moments = std::span<const FixMoment>(drive.moments).subspan(begin, count),
+                         .source = "gnss",
+                         .context = context},
                         drive.graph);
         };
       },
@@ -190,7 +212,13 @@ void try_sensor(const TypeRegistry& registry, const SensorModelType& type, Trial
     std::shared_ptr<SensorModel> model = registry.make_sensor_model(trial.name);
     return [model, &type](TrialDrive& drive, std::size_t first, std::size_t last) {
       const SensorTable table = readings_of(type, drive, first, last);
-      model->extend({drive.nodes(0, last), drive.fixes, {0, 0}, table}, drive.graph);
+      const DriveContext context = drive.context();
+      model->extend({.nodes = drive.nodes(0, last),
+                     .fixes = drive.fixes,
+                     .readings = table,
+                     .source = "sensor",
+                     .context = context},
+                    drive.graph);
     };
   };
   try {

@@ -11,6 +11,7 @@
 #include <waymark/formats/trajectory/trajectory.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
+#include <waymark/tools/drive/model/provenance.hpp>
 
 namespace waymark::program {
 namespace {
@@ -36,6 +37,9 @@ evaluation::Evaluation evaluate_document(const formats::GraphDocument& document,
   input.fixes = document.fixes;
   input.truth = truth;
   input.truth_reference_m = document.truth_reference_m;
+  input.independent_errors =
+      std::none_of(document.provenance.begin(), document.provenance.end(),
+                   [](const auto& entry) { return entry.first == drive::kFixErrors; });
   input.frame = document.frame.value_or(Frame());
   input.max_stamp_offset_s = drive::kLargestSnap;  // a fix may share the node of an odometry sample
   const auto covariances = drive::evaluated_covariances(document);
