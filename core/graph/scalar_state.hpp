@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <vector>
 
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
@@ -27,11 +29,13 @@ struct ScalarState {
   static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
 };
 
-/// Ties such a vertex to 0 with an EDGE_GAUSSIAN_PRIOR. @param sigma in the unit of the
-/// state, above 0
+/// Ties a vertex of plain numbers (a ScalarState, a point or an offset in the plane) to 0 with an
+/// EDGE_GAUSSIAN_PRIOR. @param sigma of each number, in its unit, above 0
 inline void add_prior_about_zero(Graph& graph, VertexIndex state, double sigma) {
-  graph.add_edge(gaussian_prior_type(), std::array{state}, std::array{0.0, 0.0},
-                 Eigen::MatrixXd::Constant(1, 1, 1 / (sigma * sigma)));
+  const VertexType& type = graph.vertex_type(state);
+  const std::vector<double> zeros(static_cast<std::size_t>(type.value_size + type.tangent_size), 0.0);
+  graph.add_edge(gaussian_prior_type(), std::array{state}, zeros,
+                 Eigen::MatrixXd::Identity(type.tangent_size, type.tangent_size) / (sigma * sigma));
 }
 
 }  // namespace waymark

@@ -73,7 +73,7 @@ struct ErrorModel {
 template <Vertex V, Edge Decay>
 class ProcessAlongFixes {
  public:
-  ProcessAlongFixes(double sigma, double time_s) : variance_(sigma * sigma), time_s_(time_s) {}
+  ProcessAlongFixes(double sigma, double time_s) : sigma_(sigma), time_s_(time_s) {}
 
   /// Returns the vertex of a fix. Stamps must not decrease.
   [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
@@ -82,13 +82,12 @@ class ProcessAlongFixes {
     const VertexIndex next = graph.add_vertex<V>(graph.free_id(), {0, 0});
     graph.set_stamp(next, stamp);
     if (last < 0) {
-      graph.add_edge(gaussian_prior_type(), std::array{next}, std::array{0.0, 0.0, 0.0, 0.0},
-                     Eigen::MatrixXd::Identity(2, 2) / variance_);
+      add_prior_about_zero(graph, next, sigma_);
     } else {
       Decay edge;
       edge.decay = decay_to(stamp, states_.back());
       graph.add_edge(edge, {last, next},
-                     Eigen::Matrix2d::Identity() / (variance_ * (1 - edge.decay * edge.decay)));
+                     Eigen::Matrix2d::Identity() / (sigma_ * sigma_ * (1 - edge.decay * edge.decay)));
     }
     states_.push_back({stamp, {}});
     return states_.back().vertex.keep(next, graph);
@@ -122,7 +121,7 @@ class ProcessAlongFixes {
     return {numbers[0], numbers[1]};
   }
 
-  double variance_;
+  double sigma_;
   double time_s_;
   std::vector<State> states_;  ///< in order of time
 };

@@ -62,6 +62,7 @@ install(FILES "${PROJECT_BINARY_DIR}/package/waymark-core.pc" "${PROJECT_BINARY_
 set(WAYMARK_DOC_FOLDER "${CMAKE_INSTALL_DATADIR}/doc/waymark-doc")
 install(DIRECTORY core types_se2 solvers formats plugins tools examples DESTINATION "${WAYMARK_DOC_FOLDER}" COMPONENT doc
   FILES_MATCHING PATTERN "*.md" PATTERN "report.png" PATTERN "setup" EXCLUDE PATTERN "detail" EXCLUDE)
-install(DIRECTORY examples/berlin_potsdamer_platz examples/drives examples/tutorial DESTINATION "${WAYMARK_DOC_FOLDER}/examples" COMPONENT doc)
+install(DIRECTORY examples/berlin_potsdamer_platz examples/drives examples/extensions examples/plugin_template examples/programs
+                  examples/tutorial DESTINATION "${WAYMARK_DOC_FOLDER}/examples" COMPONENT doc)
 install(FILES README.md CONTRIBUTING.md DESTINATION "${WAYMARK_DOC_FOLDER}" COMPONENT doc)
 install(DIRECTORY examples/plugin_template examples/extensions examples/programs DESTINATION "${CMAKE_INSTALL_DATADIR}/waymark" COMPONENT dev)

@@ -25,11 +25,14 @@ std::vector<std::string_view> gnss_keys() {
                    "withheld", "heading", "modeling", "calibration", "gate", "common"});
 }
 
+/// @param without one of the keys, which has no meaning in this form of an entry
 YamlSection section_of(const std::string& kind, const YAML::Node& node, const std::string& name,
-                       const std::string& file) {
-  if (kind == kOdometryKind) return {node, name, file, odometry_keys()};
-  if (kind == kGnssKind) return {node, name, file, gnss_keys()};
-  return {node, name, file, log_keys({"kind", "name", "options", "loss"})};
+                       const std::string& file, std::string_view without) {
+  std::vector<std::string_view> keys = kind == kOdometryKind ? odometry_keys()
+                                       : kind == kGnssKind   ? gnss_keys()
+                                                             : log_keys({"kind", "name", "options", "loss"});
+  std::erase(keys, without);
+  return {node, name, file, keys};
 }
 
 class Entries {
@@ -42,8 +45,7 @@ class Entries {
     const std::vector<YAML::Node> entries = entries_of(top_.node(kind));
     if (entries.empty()) top_.fail(kind, "at least one log is needed");
     for (const YAML::Node& entry : entries) {
-      YamlSection section = section_of(kind, entry, kind, top_.file());
-      refuse(section, "kind");
+      YamlSection section = section_of(kind, entry, kind, top_.file(), "kind");
       std::string name = numbered(kind);
       section.read("name", name);
       add(name, kind, std::move(section));
@@ -54,8 +56,7 @@ class Entries {
   void add_sensors() {
     if (!top_.has("sensors")) return;
     for (const YAML::Node& entry : entries_of(top_.node("sensors"))) {
-      YamlSection section = section_of("", entry, "sensors", top_.file());
-      refuse(section, "kind");
+      YamlSection section = section_of("", entry, "sensors", top_.file(), "kind");
       std::string kind;
       section.read("name", kind);
       if (kind.empty()) throw InputError(section.place() + "sensors: 'name' is missing");
@@ -76,8 +77,7 @@ class Entries {
       if (kind.empty())
         throw InputError(any.place() + "sources." + name +
                          ": 'kind' is missing; use odometry, gnss or a sensor (`waymark info` lists them)");
-      YamlSection section = section_of(kind, sources->node(name), "sources." + name, top_.file());
-      refuse(section, "name");
+      YamlSection section = section_of(kind, sources->node(name), "sources." + name, top_.file(), "name");
       add(name, kind, std::move(section));
     }
   }
@@ -85,10 +85,6 @@ class Entries {
   [[nodiscard]] std::vector<SourceEntry> taken() { return std::move(found_); }
 
  private:
-  static void refuse(const YamlSection& section, std::string_view key) {
-    if (section.has(key)) section.fail(key, "has no meaning here");
-  }
-
   std::string numbered(const std::string& kind) {
     const int number = ++count_[kind];
     return number == 1 ? kind : kind + "_" + std::to_string(number);
