@@ -130,6 +130,8 @@ std::vector<std::string> files_of(const std::string& path) {
   return files;
 }
 
+}  // namespace
+
 std::string read_head(const std::string& path) {
   std::vector<char> buffer(kHead);
   std::string head;
@@ -147,8 +149,6 @@ std::string read_head(const std::string& path) {
   if (head.empty()) throw InputError(path + (trouble.empty() ? ": the log is empty" : ": " + trouble));
   return head;
 }
-
-}  // namespace
 
 std::string read_in_pieces(const std::string& path, const std::function<void(std::string_view)>& take,
                            const ReadProgress& progress) {

@@ -33,6 +33,9 @@ using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t size)>
                                     const LogRequest& request, const ReadProgress& progress = {},
                                     const std::function<void(std::string_view)>& seen = {});
 
+/// Returns the first 64 KiB of a log, uncompressed. @throws InputError if it cannot be read or is empty
+[[nodiscard]] std::string read_head(const std::string& path);
+
 /// A reader that recognises a log.
 struct Recognised {
   LogReaderType reader;

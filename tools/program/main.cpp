@@ -1,10 +1,13 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/program/command_line.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/tools/program/manual/misplaced_file.hpp>
 #include <waymark/tools/program/manual/usage_hints.hpp>
 
 namespace waymark::program {
@@ -29,14 +32,18 @@ ExitCode run(int argc, char** argv) {
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
     return error_line(error.what()) + "Run with --help for more information.\n";
   });
+  if (argc == 1) {  // a newcomer: what there is
+    std::fputs(app.help().c_str(), stdout);
+    return kUsageError;
+  }
+  const std::vector<std::string> words(argv + 1, argv + argc);
   try {
     check_command(app, argc, argv);
+    if (const std::string hint = misplaced_file(app, words); !hint.empty()) return fail(kUsageError, hint);
     app.parse(argc, argv);
     return action();
   } catch (const CLI::ParseError& error) {
-    const std::string unknown = error.get_exit_code() == 0
-                                    ? ""
-                                    : unknown_option(app, std::vector<std::string>(argv + 1, argv + argc));
+    const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_option(app, words);
     if (!unknown.empty()) return fail(kUsageError, unknown);
     if (app.exit(error) != 0) return kUsageError;
     std::cout.flush();

@@ -200,7 +200,7 @@ TEST_CASE("ubx: corrupt and unplaceable measurements") {
   CHECK(data.corrupt_examples ==
         std::vector<std::string>{
             "log.ubx: no navigation message gives a GPS week for 2 ESF-MEAS messages; state "
-            "'gps_week' if navigation messages give the time of week"});
+            "'time: {week: ...}' if navigation messages give the time of week"});
   request.gps_week = 2268;
   CHECK(decode(undated, request).readings.stamps.at(1).nanoseconds == kGps);
 }

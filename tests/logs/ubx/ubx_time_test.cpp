@@ -37,7 +37,7 @@ TEST_CASE("ubx: without a week a position is corrupt, unless one is stated") {
   CHECK_THROWS_MATCHES(
       read(log), InputError,
       Message("log.ubx: none of 1 records could be used; first: log.ubx:byte 0: there is no valid "
-              "date and no GPS week yet; state 'gps_week' to use this position"));
+              "date and no GPS week yet; state 'time: {week: ...}' to use this position"));
   LogRequest request;
   request.gps_week = 2268;
   const LogData data = read(log, request);

@@ -43,6 +43,16 @@ void check_runs(const std::vector<std::string>& logs, double smallest_m, double 
 
 }  // namespace
 
+TEST_CASE("inspect: an area that crosses 180 degrees is as wide as the drive") {
+  std::string log = "time,latitude,longitude,accuracy\n";
+  for (int second = 0; second < 40; ++second)  // 0.04 degrees of longitude at 17 S are 4253 m
+    log += std::to_string(second) + ",-17," + (second < 20 ? "179.9" : "-179.9") +
+           std::to_string(second < 20 ? 80 + second : 99 - (second - 20)) + ",5\n";
+  const RunResult result = run({"inspect", write_text(fresh_folder() + "fiji.csv", log)});
+  INFO(result.out);
+  CHECK(contains(result.out, "longitude 179.98 .. 180.02 deg: 0 m to the north, 4253 m to the east"));
+}
+
 TEST_CASE("inspect: says what is in a log, as text and as JSON") {
   const std::string folder = drive_folder();
   const RunResult text = run({"inspect", folder + "gnss.csv", folder + "odometry.csv"});

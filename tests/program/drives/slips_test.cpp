@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <functional>
 #include <sstream>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -139,10 +140,70 @@ TEST_CASE(
   const std::string late = drive_with(folder, [](double t, double v, double w) { return line(t + 2, v, w); });
   const RunResult moved = run({"convert", late, "--sync", "-o", folder + "late.graph"});
   CHECK(contains(moved.err, "the odometry's speed was late by"));
-  CHECK(contains(moved.err, "yaw rate and speed are in one log; both are moved together"));
+  CHECK(contains(moved.err, "the odometry's yaw rate was late by"));
+  const std::string straight =
+      drive_with(folder, [](double t, double v, double) { return line(t + 2, v, 0); });
+  CHECK(contains(run({"convert", straight, "--sync", "-o", folder + "straight.graph"}).err,
+                 "yaw rate and speed are of one clock; both are moved together"));
   const RunResult sound = run({"convert", drive_with(folder, line), "--sync", "-o", folder + "sound.graph"});
-  CHECK(contains(sound.err, "within three sigmas, so not applied"));
+  CHECK(contains(sound.err, "within what smoothing and three sigmas explain, so not applied"));
   CHECK_FALSE(contains(sound.err, "; applied"));
+}
+
+namespace {
+
+/// A simulated drive whose odometry has another clock.
+std::string drive_off_by(const std::string& folder, double seconds) {
+  REQUIRE(run({"simulate", "--preset", "urban", "--duration", "300", "--seed", "7", "-o", folder + "drive"})
+              .code == 0);
+  std::istringstream log(read_text(folder + "drive/odometry.csv"));
+  std::string text;
+  for (std::string row; std::getline(log, row);) {
+    double time = 0, speed = 0, yaw_rate = 0;
+    if (std::sscanf(row.c_str(), "%lf,%lf,%lf", &time, &speed, &yaw_rate) == 3)
+      text += line(time + seconds, speed, yaw_rate);
+    else
+      text += row + "\n";
+  }
+  write_text(folder + "drive/odometry.csv", text);
+  return folder + "drive/drive.yaml";
+}
+
+}  // namespace
+
+TEST_CASE("slips: a clock off by 1 s or by leap seconds is named before the fusion, and --sync mends it") {
+  const std::string folder = fresh_folder();
+  const RunResult second = run({"run", drive_off_by(folder, 1), "-o", folder + "out"});
+  CHECK(contains(second.err, "warning: the odometry's clock seems 1.00 +- 0.05 s late against the fixes"));
+
+  const std::string drive = drive_off_by(folder, 18);
+  const RunResult leap = run({"run", drive, "-o", folder + "out"});
+  CHECK(
+      contains(leap.err,
+               "the odometry's clock seems 17.99 +- 0.05 s late against the fixes, 18 leap seconds (GPS "
+               "time against UTC), correlation 0.997: --sync applies it; or state 'time: {offset: -17.99}'"));
+  const RunResult mended = run({"run", drive, "--sync", "-o", folder + "out"});
+  CHECK(contains(mended.err, "speed was late by 17.998 s, 18 leap seconds (GPS time against UTC)"));
+  CHECK_FALSE(contains(mended.err, "warning"));
+}
+
+TEST_CASE(
+    "slips: logs whose clocks have nothing in common are refused with the offset, and --sync joins them") {
+  const std::string folder = fresh_folder();
+  for (const auto& [seconds, name] :
+       {std::pair{3600.0, "3600.00 s late, 1 h of a time zone"},
+        {315964782.0, "s late, the GPS epoch against the Unix epoch and 18 leap"},
+        {-1299834018.0, "the odometry's clock is -1299834018.00 s late: --sync"}}) {
+    const std::string drive = drive_off_by(folder, seconds);
+    const RunResult apart = run({"run", drive, "-o", folder + "out"});
+    INFO(apart.err);
+    CHECK(apart.code == 3);
+    CHECK(contains(apart.err, "294 of 294 fixes lie outside the odometry: odometry from "));
+    CHECK(contains(apart.err, name));
+    const RunResult joined = run({"run", drive, "--sync", "-o", folder + "out"});
+    CHECK(joined.code == 0);
+    CHECK_FALSE(contains(joined.err, "warning"));
+  }
 }
 
 TEST_CASE("slips: no command overwrites what it reads, and simulate no drive that it did not make") {

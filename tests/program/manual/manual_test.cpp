@@ -175,7 +175,7 @@ TEST_CASE("completion: closed sets and names of the registry, single and in list
   CHECK(completed({"optimize", "--loss", "huber", ":"}).empty());
   CHECK(completed({"simulate", "--preset", "ur"}) == Words{"urban"});
   CHECK(completed({"run", "--from", ""}).empty());
-  CHECK(completed({"completion", ""}) == Words{"bash"});
+  CHECK(completed({"completion", ""}) == Words{"bash", "fish", "zsh"});
 }
 
 TEST_CASE("completion: files by what a command reads, folders where it writes") {
@@ -205,8 +205,23 @@ TEST_CASE("completion: plugins add names, from the folders and from the command 
   CHECK(plugins == Words{"sound"});
 }
 
+TEST_CASE("completion: zsh and fish ask bash, with the words so far") {
+  if (!has_bash()) return;
+  for (const char* shell : {"zsh", "fish"}) {
+    const std::string script = run({"completion", shell}).out;
+    const auto begin = script.find("bash -c '");
+    REQUIRE(begin != std::string::npos);
+    const std::string question = script.substr(begin, script.find("' bash", begin) + 6 - begin);
+    const std::string program = waymark_test::program_path();
+    const RunResult result =
+        run({"--norc", "-c", question + " " + program + " " + program + " opti"}, {.program = "/bin/bash"});
+    INFO(shell << ": " << result.err);
+    CHECK(result.out == "optimize\n");
+  }
+}
+
 TEST_CASE("completion: other shells are refused, and so is none") {
-  CHECK(run({"completion", "fish"}).code == 2);
+  CHECK(run({"completion", "tcsh"}).code == 2);
   CHECK(contains(run({"completion"}).err, "waymark completion bash"));
   CHECK(contains(run({"completion", "--values", "CAR"}).err,
                  "unknown kind of names 'CAR'; there are: ALGORITHM"));

@@ -43,7 +43,6 @@ TEST_CASE("usage: wrong words on the command line are usage errors that name the
     std::string message;
   };
   const std::vector<Case> cases = {
-      {{}, "A subcommand is required"},
       {{"optimise"}, "unknown subcommand 'optimise'; did you mean 'optimize'?"},
       {{"xyz"},
        "unknown subcommand 'xyz'; there are: inspect, init, sync, convert, optimize, evaluate, run, compare, "
@@ -81,6 +80,45 @@ TEST_CASE("usage: wrong words on the command line are usage errors that name the
     check_refused(run(c.arguments), 2, c.message);
     CHECK_FALSE(exists(out));
   }
+}
+
+TEST_CASE("usage: the program alone lists its subcommands") {
+  const RunResult result = run({});
+  CHECK(result.code == 2);
+  CHECK(contains(result.out, "Subcommands:\n  inspect "));
+  CHECK(result.err.empty());
+}
+
+TEST_CASE("usage: a file of the wrong kind is answered in two lines by the command to type") {
+  const std::string folder = fresh_folder();
+  const std::string drive = write_drive(folder);
+  const std::string graph = write_text(folder + "a.graph", square_graph());
+  const std::string nmea = write_text(
+      folder + "rover.nmea", "$GPGGA,000001,4810.8509,N,01133.9095,E,1,04,2.5,500.5,M,46.5,M,,*4B\n");
+  const auto answer = [](const std::vector<std::string>& arguments) {
+    const RunResult result = run(arguments);
+    CHECK(result.code == 2);
+    return result.err;
+  };
+  CHECK(answer({"run", nmea}) ==
+        "waymark: error: " + nmea +
+            " is a log (nmea), and 'run' wants a drive.yaml, which names the logs of a "
+            "drive; type\n  waymark init " +
+            nmea + " -o drive.yaml\n");
+  CHECK(contains(answer({"sync", folder + "odometry.csv"}), "is a log (csv), and 'sync' wants a drive.yaml"));
+  CHECK(contains(answer({"optimize", nmea, "-o", folder + "x"}),
+                 "is a log (nmea), and 'optimize' wants a graph"));
+  CHECK(contains(answer({"optimize", "-o", folder + "x", drive}),
+                 "describes a drive, and 'optimize' wants a graph; type\n  waymark convert " + drive));
+  CHECK(contains(answer({"check", drive}), "describes a drive, and 'check' wants a graph"));
+  CHECK(contains(answer({"run", graph}), "is a graph, and 'run' wants a drive.yaml"));
+  CHECK(contains(answer({"init", drive}),
+                 "describes a drive, and 'init' wants logs; type\n  waymark inspect "));
+  // A long line of rubbish named as a drive is not printed whole.
+  const std::string rubbish = write_text(folder + "rubbish.yaml", std::string(100'000, 'x') + "\n");
+  const RunResult refused = run({"run", rubbish, "-o", folder + "out"});
+  CHECK(refused.code == 3);
+  CHECK(refused.err.size() < 300 + rubbish.size());
 }
 
 TEST_CASE("usage: what is mistyped is answered by what was meant, before anything is read") {

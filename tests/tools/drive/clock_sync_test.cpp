@@ -5,8 +5,10 @@
 #include <random>
 
 #include <waymark/formats/logs/log_readers.hpp>
+#include <waymark/tools/drive/clocks/clock_check.hpp>
+#include <waymark/tools/drive/clocks/clock_sync.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
-#include <waymark/tools/drive/logs/clock_sync.hpp>
+#include <waymark/tools/drive/logs/clock_offsets.hpp>
 
 #include "support/paths.hpp"
 #include "support/skip.hpp"
@@ -58,10 +60,14 @@ PreparedDrive winding_drive(double speed_late_s, double yaw_late_s, double noise
   return drive;
 }
 
+SyncReport offsets_of(const PreparedDrive& drive) {
+  return estimate_clock_offsets(drive.odometry, drive.fixes, {});
+}
+
 }  // namespace
 
 TEST_CASE("sync: speed and yaw rate are each found as late as they were made, by positions alone") {
-  const SyncReport report = estimate_clock_offsets(winding_drive(0.4, -0.15, 0, false), {});
+  const SyncReport report = offsets_of(winding_drive(0.4, -0.15, 0, false));
   REQUIRE(report.speed);
   CHECK(report.speed->against == "distance between fixes");
   CHECK(report.speed->late_s == Approx(0.4).margin(0.01));
@@ -72,7 +78,7 @@ TEST_CASE("sync: speed and yaw rate are each found as late as they were made, by
 }
 
 TEST_CASE("sync: the receiver's speed and course are used where it gives them") {
-  const SyncReport report = estimate_clock_offsets(winding_drive(1.25, 1.25, 2, true), {});
+  const SyncReport report = offsets_of(winding_drive(1.25, 1.25, 2, true));
   REQUIRE(report.speed);
   CHECK(report.speed->against == "receiver's speed");
   CHECK(report.speed->late_s == Approx(1.25).margin(0.005));
@@ -82,7 +88,7 @@ TEST_CASE("sync: the receiver's speed and course are used where it gives them") 
 }
 
 TEST_CASE("sync: sigma says how far off the offset is, with fixes of 1 m") {
-  const SyncReport report = estimate_clock_offsets(winding_drive(0.4, 0.4, 1, false), {});
+  const SyncReport report = offsets_of(winding_drive(0.4, 0.4, 1, false));
   REQUIRE(report.speed);
   CHECK(report.speed->sigma_s < 0.1);
   CHECK(std::abs(report.speed->late_s - 0.4) < 3 * report.speed->sigma_s);
@@ -92,16 +98,46 @@ TEST_CASE("sync: sigma says how far off the offset is, with fixes of 1 m") {
 }
 
 TEST_CASE("sync: a missing leap second correction of 18 s is found") {
-  const SyncReport report = estimate_clock_offsets(winding_drive(18, 18, 0, false), {});
+  const SyncReport report = offsets_of(winding_drive(18, 18, 0, false));
   REQUIRE(report.speed);
   CHECK(report.speed->late_s == Approx(18).margin(0.02));
+}
+
+TEST_CASE("sync: the name of an offset is what it usually is") {
+  CHECK(name_of_offset(18, 0.5) == "18 leap seconds (GPS time against UTC)");
+  CHECK(name_of_offset(-17.8, 0.5) == "18 leap seconds (GPS time against UTC)");
+  CHECK(name_of_offset(15, 0.5) == "15 leap seconds (GPS time against UTC)");
+  CHECK(name_of_offset(7200.1, 0.5) == "2 h of a time zone");
+  CHECK(name_of_offset(-19'800, 0.5) == "5.5 h of a time zone");
+  CHECK(name_of_offset(3618, 0.5) == "1 h of a time zone and 18 leap seconds (GPS time against UTC)");
+  CHECK(name_of_offset(604'800, 0.5) == "a GPS week");
+  CHECK(name_of_offset(-1'209'600, 0.5) == "2 GPS weeks");
+  CHECK(name_of_offset(619'315'200, 0.5) == "1024 GPS weeks (a rollover of the week number)");
+  CHECK(name_of_offset(315'964'782, 0.5) ==
+        "the GPS epoch against the Unix epoch and 18 leap seconds (GPS time against UTC)");
+  CHECK(name_of_offset(0, 0.5).empty());
+  CHECK(name_of_offset(7, 0.5).empty());
+  CHECK(name_of_offset(300, 0.5).empty());
+}
+
+TEST_CASE("sync: a minute of driving, and a clock of unknown zero, are enough") {
+  PreparedDrive drive = winding_drive(0.4, 0.4, 0.5, true);
+  std::erase_if(drive.odometry, [](const OdometrySample& sample) {
+    return sample.stamp.seconds() < 200 || sample.stamp.seconds() > 260;
+  });
+  for (OdometrySample& sample : drive.odometry) sample.stamp = sample.stamp.later(-1e6);
+  const SyncReport report = offsets_of(drive);
+  REQUIRE(report.speed);
+  CHECK(report.speed->late_s == Approx(-1e6 + 0.4).margin(0.05).epsilon(0));
+  REQUIRE(report.yaw_rate);
+  CHECK(report.yaw_rate->late_s == Approx(-1e6 + 0.4).margin(0.1).epsilon(0));
 }
 
 TEST_CASE("sync: jumps of the receiver do not decide") {
   PreparedDrive drive = winding_drive(0.4, 0.4, 0.5, false);
   for (std::size_t i = 50; i < drive.fixes.size(); i += 40)
     drive.fixes[i].position += Eigen::Vector2d(25, -15);
-  const SyncReport report = estimate_clock_offsets(drive, {});
+  const SyncReport report = offsets_of(drive);
   REQUIRE(report.speed);
   CHECK(std::abs(report.speed->late_s - 0.4) < 0.05);
 }
@@ -109,7 +145,7 @@ TEST_CASE("sync: jumps of the receiver do not decide") {
 TEST_CASE("sync: without motion there is nothing to compare, and nothing is claimed") {
   PreparedDrive drive = winding_drive(0, 0, 0, false);
   for (OdometrySample& sample : drive.odometry) sample.speed_mps = sample.yaw_rate_radps = 0;
-  const SyncReport report = estimate_clock_offsets(drive, {});
+  const SyncReport report = offsets_of(drive);
   CHECK_FALSE(report.speed.has_value());
   CHECK_FALSE(report.yaw_rate.has_value());
 }
@@ -148,7 +184,7 @@ TEST_CASE("sync: Aarhus' fixes lag the speed of its OBD by 0.4 s") {
   description.gnss.front().delay_s = 0;
   TypeRegistry registry;
   register_log_readers(registry);
-  const SyncReport report = estimate_clock_offsets(load_drive(description, registry), {});
+  const SyncReport report = offsets_of(load_drive(description, registry));
   // Both on the logger's clock: the odometry is early by the delay of the fixes. 0.36 s by the receiver's
   // own speeds (gnss_speed_heading.csv against obd_speed.csv by a script of its own), 0.4 s to one digit.
   REQUIRE(report.speed);

@@ -2,8 +2,10 @@
 // the reader refuses none that is there.
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -92,6 +94,29 @@ TEST_CASE("drive.yaml: its page names every key and word that the reader knows")
     INFO("tools/drive/DRIVE_YAML.md lacks '" << word << "'");
     CHECK(named.contains(word));
   }
+}
+
+TEST_CASE("drive.yaml: every key that a message tells the user to state or to check exists") {
+  const std::set<std::string> named = words_of(drive_yaml_page());
+  // Long messages are several literals; a key in them is quoted, with what may stand behind it.
+  const std::regex broken("\"\\s*\n\\s*\"");
+  const std::regex advice("(state|stated|check|leave out|under|widen|map) '([a-z_]+)");
+  std::size_t keys = 0;
+  for (const char* folder : {"formats/logs", "tools/drive", "tools/inspection", "tools/program/jobs"}) {
+    for (const auto& file :
+         std::filesystem::recursive_directory_iterator(waymark_test::source_dir() + "/" + folder)) {
+      if (file.path().extension() != ".cpp") continue;
+      std::ifstream in(file.path());
+      const std::string source =
+          std::regex_replace(std::string(std::istreambuf_iterator<char>(in), {}), broken, "");
+      for (std::sregex_iterator match(source.begin(), source.end(), advice), end; match != end; ++match) {
+        INFO(file.path() << ": " << match->str());
+        CHECK(named.contains((*match)[2]));
+        ++keys;
+      }
+    }
+  }
+  CHECK(keys > 20);
 }
 
 TEST_CASE(

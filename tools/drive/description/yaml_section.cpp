@@ -10,6 +10,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/core/registry/flow_text.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -20,6 +21,9 @@ std::string place_at(const std::string& file, const YAML::Mark& mark) {
 }
 
 std::string described(const YAML::Node& node) {
+  constexpr std::size_t kLongest = 200;  // a log in place of a drive.yaml is one scalar
+  if (node.IsScalar() && node.Scalar().size() > kLongest)
+    return fmt::format("'{}'", formats::shown_name(node.Scalar()));
   if (node.IsScalar()) return fmt::format("'{}'", node.Scalar());
   if (node.IsSequence()) return fmt::format("a list of {}", node.size());
   if (node.IsMap()) return "a mapping";

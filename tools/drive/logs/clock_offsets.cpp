@@ -1,3 +1,5 @@
+#include <waymark/tools/drive/logs/clock_offsets.hpp>
+
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -5,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/detail/median.hpp>
-#include <waymark/tools/drive/logs/clock_sync.hpp>
 #include <waymark/tools/drive/logs/time_series.hpp>
 
 namespace waymark::drive {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/logs/clock_sync.hpp>
+#include <waymark/tools/drive/logs/clock_offsets.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 #include <waymark/tools/drive/logs/velocity.hpp>

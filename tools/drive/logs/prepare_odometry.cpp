@@ -8,7 +8,7 @@
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/logs/clock_sync.hpp>
+#include <waymark/tools/drive/logs/clock_offsets.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 

@@ -189,6 +189,19 @@ std::string usual_sigmas(const FixSummary& fixes) {
   return text;
 }
 
+namespace {
+
+/// Returns longitudes less or plus a full turn, so that they are near a place beyond 180 degrees too.
+Range turned_to(double place_deg, Range longitudes) {
+  const double middle = (longitudes.smallest + longitudes.largest) / 2;
+  const double turns = 360 * std::round((place_deg - middle) / 360);
+  longitudes.smallest += turns;
+  longitudes.largest += turns;
+  return longitudes;
+}
+
+}  // namespace
+
 FixSummary FixStatistics::summary() const {
   FixStatistics done = *this;
   done.end_run();
@@ -213,7 +226,7 @@ FixSummary FixStatistics::summary() const {
     }
     places += cell.count;
     join(result.box.latitude, cell.box.latitude);
-    join(result.box.longitude, cell.box.longitude);
+    join(result.box.longitude, turned_to(longitude, cell.box.longitude));
   }
   const bool moves = result.box.height_m() + result.box.width_m() > 0 && places >= 20;
   for (std::size_t i = 0; moves && i < kSteps.size() && result.resolution_m == 0; ++i) {

@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/clocks/clock_check.hpp>
+#include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/clocks/synchronise.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
-#include <waymark/tools/drive/logs/clock_sync.hpp>
-#include <waymark/tools/drive/logs/synchronise.hpp>
+#include <waymark/tools/drive/logs/clock_offsets.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -67,7 +69,10 @@ std::string table_of(const drive::SyncReport& report, const drive::OdometryConfi
   const bool speed_is_late = report.speed && report.speed->is_significant();
   const bool yaw_rate_is_late = report.yaw_rate && report.yaw_rate->is_significant();
   if (!speed_is_late && !yaw_rate_is_late)
-    return text + "Nothing to apply: no offset is larger than three sigmas.\n";
+    return text + "Nothing to apply: no offset is larger than what smoothing and three sigmas explain.\n";
+  const drive::ClockOffset& one = speed_is_late ? *report.speed : *report.yaw_rate;
+  if (const std::string name = drive::name_of_offset(one.late_s, 0.5); !name.empty())
+    text += "That is " + name + ".\n";
   text += "To apply it: --sync of run and convert, or in the drive.yaml under 'odometry':\n";
   if (speed_is_late)
     text += fmt::format("  speed_delay: {:.3f}\n", odometry.speed_delay_s + report.speed->late_s);
@@ -84,18 +89,22 @@ ExitCode synchronise(const SyncCommand& command) {
     throw InputError(description.path + ": clocks are compared with GNSS, and the drive has no 'gnss'");
   const TypeRegistry registry = make_registry(command.common, description.plugins);
   description.sensors.clear();  // sensors are not needed
-  const drive::PreparedDrive drive = drive::load_drive(description, registry, watch_reading(console));
+  const drive::DriveLogs logs = drive::read_drive_logs(description, registry, watch_reading(console));
   console.progress("comparing clocks");
-  const drive::SyncReport report = drive::estimate_clock_offsets(drive, command.options);
+  const drive::LoggedMotion motion = drive::logged_motion(logs, description);
+  const drive::SyncReport report =
+      drive::estimate_clock_offsets(motion.odometry, motion.fixes, command.options);
+  std::vector<drive::ClockReport> clocks;
+  for (const drive::DriveLogs::Log& log : logs.gnss)
+    if (const auto clock = drive::clock_of(log)) clocks.push_back(*clock);
   console.end_progress();
-  for (const std::string& note : drive.report.notes) console.detail("note: " + note);
+  for (const std::string& note : logs.notes) console.detail("note: " + note);
   if (command.common.json) {
-    console.result(json_document("sync", json_of(report, drive.report.clocks)));
+    console.result(json_document("sync", json_of(report, clocks)));
     return kSuccess;
   }
-  std::string text =
-      table_of(report, drive::source_of_nodes(drive.odometry_name, description), console.look());
-  for (const drive::ClockReport& clock : drive.report.clocks)
+  std::string text = table_of(report, drive::source_of_nodes(motion.source, description), console.look());
+  for (const drive::ClockReport& clock : clocks)
     text += fmt::format(
         "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual "
         "deviation {:.3f} s),\n"
@@ -118,9 +127,11 @@ void add_sync(CLI::App& app, Action& action) {
   command->add_option("drive", options->input, "drive.yaml")->required()->type_name("DRIVE.yaml");
   command->add_option("--data", options->data_folder, "Folder of the logs, instead of the drive.yaml's own")
       ->type_name("DIR");
-  command->add_option("--largest", options->options.largest_s, "Largest offset to look for, in seconds")
+  command
+      ->add_option("--largest", options->options.largest_s,
+                   "Largest offset to look for, in seconds; 0: wherever the logs would overlap")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(CLI::Range(0.0, 1e10))
       ->capture_default_str();
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark sync drive.yaml");

@@ -1,6 +1,7 @@
 #include <waymark/tools/program/jobs/drive_job.hpp>
 
-#include <waymark/tools/drive/logs/synchronise.hpp>
+#include <waymark/tools/drive/clocks/clock_check.hpp>
+#include <waymark/tools/drive/clocks/synchronise.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
 #include <waymark/tools/drive/sensors/sensor_logs.hpp>
 #include <waymark/version.hpp>
@@ -38,7 +39,7 @@ LoadedDrive load_drive_for(const drive::DriveFile& file, const DriveChoice& choi
     console.progress("comparing clocks");
     drive::synchronise(logs, description);
   }
-  loaded.drive = drive::prepare_drive(logs, description);
+  loaded.drive = drive::prepare_on_one_clock(logs, description);
   tell(loaded.drive.report, console);
   for (const drive::InputFile& input : loaded.drive.inputs) loaded.files.push_back(input.path);
   loaded.files.push_back(description.path);

@@ -185,6 +185,33 @@ constexpr const char* kScriptTail = R"bash(    esac
 complete -F _waymark waymark
 )bash";
 
+/// Completes the last of some words in bash, for other shells: program, words.
+constexpr const char* kAskBash =
+    R"(bash -c 'source <("$1" completion bash); shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _waymark; )"
+    R"(printf "%s\n" "${COMPREPLY[@]}"' bash)";
+
+constexpr const char* kZsh = R"zsh(#compdef waymark
+# Completion of waymark {0} for zsh, written by 'waymark completion zsh'.
+_waymark()
+{{
+  local -a found
+  found=(${{(f)"$({1} "${{words[1]}}" "${{(@)words[1,CURRENT]}}" 2>/dev/null)"}})
+  (( ${{#found}} )) || return 1
+  # "huber:" waits for its scale.
+  if [[ ${{found[1]}} == *: ]]; then compadd -S '' -a found; else compadd -f -a found; fi
+}}
+if [[ ${{zsh_eval_context[-1]}} == loadautofunc ]]; then _waymark "$@"; else compdef _waymark waymark; fi
+)zsh";
+
+constexpr const char* kFish =
+    R"fish(# Completion of waymark {0} for fish, written by 'waymark completion fish'.
+function __waymark_complete
+    set -l all (commandline -opc) (commandline -ct)
+    {1} $all[1] $all 2>/dev/null
+end
+complete -c waymark -f -a '(__waymark_complete)'
+)fish";
+
 struct CompletionOptions {
   CommonOptions common;
   std::string shell;
@@ -195,7 +222,7 @@ ExitCode complete(const CLI::App& app, CompletionOptions& options) {
   std::string text;
   if (options.kind.empty()) {
     if (options.shell.empty()) throw UsageError("shell is required: waymark completion bash");
-    text = bash_completion(app);
+    text = options.shell == "bash" ? bash_completion(app) : other_completion(options.shell);
   } else {
     options.common.quiet = true;  // nobody sees warnings while a word is completed
     const TypeRegistry registry = make_registry(options.common);
@@ -234,19 +261,25 @@ std::string bash_completion(const CLI::App& app) {
   return script + kScriptTail;
 }
 
+std::string other_completion(const std::string& shell) {
+  return fmt::format(fmt::runtime(shell == "zsh" ? kZsh : kFish), WAYMARK_VERSION, kAskBash);
+}
+
 void add_completion(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "completion",
       "Print a script that completes the program's words in the shell\n\n"
       "Subcommands, options, their values and files are completed. The script asks the program for "
       "the names of solvers and modelings, so those of plugins are completed too. An installed "
-      "program has the script in the folder that bash-completion searches.");
+      "program has the script in the folder that bash-completion searches. The scripts for zsh and fish "
+      "ask bash.");
   const auto options = std::make_shared<CompletionOptions>();
-  auto* shell =
-      command->add_option("shell", options->shell, "Shell to write for")->check(CLI::IsMember({"bash"}));
+  auto* shell = command->add_option("shell", options->shell, "Shell to write for")
+                    ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->add_option("--values", options->kind)->group("")->excludes(shell);
   add_plugin_option(*command, options->common);
-  command->footer("Example:\n  source <(waymark completion bash)");
+  command->footer(
+      "Example:\n  source <(waymark completion bash)\n  source <(waymark completion zsh)\n  waymark completion fish | source");
   command->callback(
       [options, &app, &action] { action = [options, &app] { return complete(app, *options); }; });
 }

@@ -78,6 +78,23 @@ std::string unknown_option(const CLI::App& app, const std::vector<std::string>& 
   return "";
 }
 
+std::string first_file(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* command = words.empty() ? nullptr : command_or_null(app, words.front());
+  if (command == nullptr) return "";
+  std::string file;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (!looks_like_option(words[i])) {
+      if (file.empty()) file = words[i];
+      continue;
+    }
+    const std::string name = name_of(words[i]);
+    const CLI::Option* option = find_option(*command, name);
+    if (option == nullptr || name == "--input-format" || name == "--help" || name == "-h") return "";
+    if (takes_next_word(option, words[i])) ++i;
+  }
+  return file;
+}
+
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& words) {
   return CLI::Validator(
       [kind, words](const std::string& word) {

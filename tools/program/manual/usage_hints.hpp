@@ -1,5 +1,5 @@
-/// Hints for a mistyped option: the option that was probably meant, or the command that
-/// it belongs to.
+/// Reads a command line as far as hints need it: the option that was probably meant, or the command that
+/// it belongs to; the first file.
 #pragma once
 
 #include <string>
@@ -14,6 +14,10 @@ namespace waymark::program {
 /// option '--withhold'; --withhold belongs to: run, convert". Empty if all such words are known.
 /// @param words words of the command line without the name of the program
 [[nodiscard]] std::string unknown_option(const CLI::App& app, const std::vector<std::string>& words);
+
+/// Returns the first word behind the subcommand that is neither an option nor the value of one. Empty: there is
+/// none, or an option is unknown, or states the format of the input.
+[[nodiscard]] std::string first_file(const CLI::App& app, const std::vector<std::string>& words);
 
 /// Accepts one of these words. Its error is "unknown format 'g20'; did you mean 'g2o'?". @param
 /// kind "format"

@@ -176,7 +176,7 @@ void UbxFixDecoder::end_epoch() {
   }
   if (!gps)
     return corrupt(epoch.byte,
-                   "there is no valid date and no GPS week yet; state 'gps_week' to use this position");
+                   "there is no valid date and no GPS week yet; state 'time: {week: ...}' to use this position");
   const UbxPlace& place = epoch.precise    ? *epoch.precise
                           : epoch.solution ? epoch.solution->place
                           : epoch.plain    ? *epoch.plain

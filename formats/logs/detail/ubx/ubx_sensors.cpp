@@ -235,7 +235,7 @@ void UbxSensorDecoder::end() {
   if (undated_ > 0) {
     data_.corrupt += undated_;
     data_.corrupt_examples.push_back(fmt::format(
-        "{}: no navigation message gives a GPS week for {} ESF-MEAS messages; state 'gps_week' if "
+        "{}: no navigation message gives a GPS week for {} ESF-MEAS messages; state 'time: {{week: ...}}' if "
         "navigation messages give the time of week",
         path(), undated_));
   }

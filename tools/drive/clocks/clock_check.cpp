@@ -1,0 +1,208 @@
+#include <waymark/tools/drive/clocks/clock_check.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/clocks/lag_search.hpp>
+#include <waymark/tools/drive/logs/prepare_steps.hpp>
+#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/logs/streams.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr double kWeek_s = 604'800;
+constexpr double kRollover_s = 1024 * kWeek_s;
+constexpr double kGpsEpoch_s = 315'964'800;
+constexpr double kHalfHour_s = 1800;
+constexpr double kMostZone_s = 14 * 3600;
+
+std::string zone_name(double seconds) {
+  const double hours = std::abs(seconds) / 3600;
+  return fmt::format("{:g} h of a time zone", hours);
+}
+
+/// Large offsets, and what is left of them.
+struct Known {
+  double seconds;
+  std::string name;
+};
+
+std::vector<Known> large_offsets(double seconds) {
+  std::vector<Known> known = {{0, ""}};
+  const double sign = seconds < 0 ? -1 : 1;
+  known.push_back({sign * kGpsEpoch_s, "the GPS epoch against the Unix epoch"});
+  const double weeks = std::round(seconds / kWeek_s);
+  const double rollovers = std::round(seconds / kRollover_s);
+  if (rollovers != 0)
+    known.push_back({rollovers * kRollover_s, fmt::format("{} GPS weeks (a rollover of the week number)",
+                                                          1024 * std::abs(rollovers))});
+  if (weeks != 0 && std::abs(weeks) < 4000)
+    known.push_back({weeks * kWeek_s, std::abs(weeks) == 1 ? std::string("a GPS week")
+                                                           : fmt::format("{} GPS weeks", std::abs(weeks))});
+  const double zone = std::round(seconds / kHalfHour_s) * kHalfHour_s;
+  if (zone != 0 && std::abs(zone) <= kMostZone_s) known.push_back({zone, zone_name(zone)});
+  return known;
+}
+
+/// Empty: it is no number of leap seconds. GPS time has been ahead of UTC by 13 s from 1999, 18 s from 2017.
+std::optional<std::string> leap_name(double seconds, double tolerance_s) {
+  const double count = std::round(std::abs(seconds));
+  if (std::abs(std::abs(seconds) - count) > tolerance_s) return std::nullopt;
+  if (count == 0) return "";
+  if (count < 13 || count > 18) return std::nullopt;
+  return fmt::format("{} leap seconds (GPS time against UTC)", count);
+}
+
+/// The offset at which speed and yaw rate fit best: the one that is known better.
+std::optional<ClockOffset> common_offset(const SyncReport& report) {
+  if (!report.speed) return report.yaw_rate;
+  return report.yaw_rate && report.yaw_rate->sigma_s < report.speed->sigma_s ? report.yaw_rate : report.speed;
+}
+
+std::string named(double seconds, double sigma_s) {
+  const std::string name = name_of_offset(seconds, std::clamp(3 * sigma_s, 0.5, 5.0));
+  return name.empty() ? "" : ", " + name;
+}
+
+std::string remedy(const ClockOffset& offset) {
+  return fmt::format("--sync applies it; or state 'time: {{offset: {:.2f}}}' for the logs of 'odometry'",
+                     -offset.late_s);
+}
+
+/// Returns why no fixes, or few, lie within the odometry. @param apart how far the logs begin apart
+std::string explanation(const LoggedMotion& motion) {
+  if (const auto offset = common_offset(estimate_clock_offsets(motion.odometry, motion.fixes, {})))
+    return fmt::format("the motion of both fits if the odometry's clock is {:.2f} s late{}: {}",
+                       offset->late_s, named(offset->late_s, offset->sigma_s), remedy(*offset));
+  const double apart = seconds_between(motion.fixes.front().stamp, motion.odometry.front().stamp);
+  const std::string name = name_of_offset(apart, 600);
+  if (!name.empty()) return fmt::format("they begin {:.0f} s apart, which is near {}", apart, name);
+  return "their motion fits at no other offset; check 'time: {scale, week, offset}' of both logs and 'time: "
+         "{from, to}'";
+}
+
+bool lies_within(const Fix& fix, const std::vector<OdometrySample>& odometry) {
+  return fix.stamp >= odometry.front().stamp && fix.stamp <= odometry.back().stamp;
+}
+
+[[noreturn]] void refuse(const LoggedMotion& motion, const DriveDescription& description) {
+  const auto outside = std::count_if(motion.fixes.begin(), motion.fixes.end(),
+                                     [&](const Fix& fix) { return !lies_within(fix, motion.odometry); });
+  throw InputError(
+      fmt::format("{}: {} of {} fixes lie outside the odometry: odometry {}, fixes {} on the "
+                  "scale '{}'; {}",
+                  description.path, outside, motion.fixes.size(), span_text(motion.odometry),
+                  span_text(motion.fixes), to_string(description.scale()), explanation(motion)));
+}
+
+/// @throws InputError if no fix lies within the odometry
+void refuse_without_overlap(const DriveLogs& logs, const DriveDescription& description) {
+  const LoggedMotion motion = logged_motion(logs, description);
+  const auto within = [&](const Fix& fix) { return lies_within(fix, motion.odometry); };
+  if (!motion.fixes.empty() && std::none_of(motion.fixes.begin(), motion.fixes.end(), within))
+    refuse(motion, description);
+}
+
+/// @throws InputError if most fixes lie outside the odometry, and the motion of both fits elsewhere
+void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& description) {
+  const LoggedMotion motion = logged_motion(logs, description);
+  const auto offset = common_offset(estimate_clock_offsets(motion.odometry, motion.fixes, {}));
+  constexpr double kOneClock_s = 2;
+  if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(motion, description);
+}
+
+/// Compares half a second about zero with a minute about it, and with everything if nothing fits at zero.
+bool fits_elsewhere(const LagSearch& search) {
+  constexpr double kNear_s = 0.5;
+  constexpr double kFar_s = 60;
+  constexpr double kLead = 12;
+  constexpr double kFits = 0.5;
+  const std::optional<Lag> near = search.best(-kNear_s, kNear_s);
+  const std::optional<Lag> far = search.best(-kFar_s, kFar_s);
+  if (!near || !far) return false;
+  const bool better = std::abs(far->late_s) > kNear_s && far->score > near->score + kLead;
+  const bool fits = std::max(near->speed_correlation, near->turn_correlation) > kFits;
+  return better || !fits;
+}
+
+std::string clock_warning(const PreparedDrive& drive) {
+  constexpr std::size_t kFewest = 30;
+  constexpr double kOneClock_s = 0.5;  // the default model finds less by itself
+  if (drive.fixes.size() < kFewest || drive.odometry.size() < kFewest) return {};
+  const std::vector<const Fix*> receiver = of_one_receiver(drive.fixes);
+  if (!fits_elsewhere(LagSearch(drive.odometry, gnss_speeds(receiver), gnss_turns(receiver)))) return {};
+  const std::optional<ClockOffset> offset =
+      common_offset(estimate_clock_offsets(drive.odometry, drive.fixes, {}));
+  if (!offset || !offset->is_significant() || std::abs(offset->late_s) < kOneClock_s) return {};
+  return fmt::format(
+      "the odometry's clock seems {:.2f} +- {:.2f} s late against the fixes{}, correlation {:.3f}: {}",
+      offset->late_s, std::hypot(offset->sigma_s, kSmoothing_s), named(offset->late_s, offset->sigma_s),
+      offset->correlation, remedy(*offset));
+}
+
+}  // namespace
+
+std::string name_of_offset(double seconds, double tolerance_s) {
+  for (const Known& known : large_offsets(seconds)) {
+    const std::optional<std::string> leap = leap_name(seconds - known.seconds, tolerance_s);
+    if (!leap) {
+      if (known.seconds != 0 && std::abs(seconds - known.seconds) <= tolerance_s) return known.name;
+      continue;
+    }
+    if (known.name.empty() && leap->empty()) continue;
+    return known.name + (known.name.empty() || leap->empty() ? "" : " and ") + *leap;
+  }
+  return {};
+}
+
+LoggedMotion logged_motion(const DriveLogs& logs, const DriveDescription& description) {
+  LoggedMotion motion;
+  PrepareReport unheard;
+  PreparedOdometry odometry = std::move(prepare_odometry(logs, description, unheard).front());
+  motion.source = odometry.name;
+  motion.odometry = std::move(odometry.samples);
+  std::vector<GeodeticFix> fixes;
+  for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
+    const std::size_t before = fixes.size();
+    const DriveLogs::Log& log = logs.gnss[i];
+    append_log(log.data.fixes, log, description.scale(), fixes, unheard.gnss, unheard);
+    const double delay_s = receiver_of(description, i).delay_s;
+    for (GeodeticFix& fix : std::span(fixes).subspan(before)) fix.stamp = fix.stamp.later(-delay_s);
+  }
+  clean_stream(
+      fixes, unheard.gnss, [](const GeodeticFix& fix) { return finite_place(fix); },
+      [](const GeodeticFix&, const GeodeticFix&) { return false; },
+      [](const GeodeticFix&, const GeodeticFix&) { return false; });
+  if (fixes.empty()) return motion;
+  const Projection projection(
+      choose_frame({fixes.front().latitude_deg, fixes.front().longitude_deg}, std::nullopt, std::nullopt));
+  for (const GeodeticFix& fix : fixes) motion.fixes.push_back(projection.project(fix));
+  return motion;
+}
+
+PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description) {
+  PreparedDrive drive;
+  try {
+    drive = prepare_drive(logs, description);
+  } catch (const InputError&) {
+    if (!logs.gnss.empty()) refuse_without_overlap(logs, description);
+    throw;
+  }
+  if (drive.fixes.empty()) return drive;
+  const PrepareReport& report = drive.report;
+  if (report.fixes_outside_odometry > drive.fixes.size() + report.fixes_thinned)
+    refuse_wrong_clock(logs, description);
+  if (std::string warning = clock_warning(drive); !warning.empty())
+    drive.report.warnings.push_back(std::move(warning));
+  return drive;
+}
+
+}  // namespace waymark::drive

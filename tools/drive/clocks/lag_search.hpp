@@ -1,0 +1,60 @@
+/// Finds where odometry and GNSS of one drive fit together, whatever their clocks say.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/drive/clocks/gnss_motion.hpp>
+
+namespace waymark::drive {
+
+/// One alignment of the logs. If the odometry's stamps are reduced by late_s, they fit.
+struct Lag {
+  double late_s = 0;
+  /// -n/2 log(1 - r^2) of speed and of yaw rate, added: the log-likelihood of a common motion against none, as
+  /// if the n readings were independent. A correlation below 0 counts as none.
+  double score = 0;
+  double speed_correlation = 0;
+  double turn_correlation = 0;
+};
+
+/// Compares alignments of odometry and GNSS.
+class LagSearch {
+ public:
+  /// @param odometry sorted, two samples at least
+  LagSearch(const std::vector<OdometrySample>& odometry, const GnssMotion& speeds, const GnssMotion& turns);
+
+  /// Returns the best alignment on a grid of half a second in [from_s, to_s]. Empty if the logs nowhere share
+  /// 20 readings.
+  [[nodiscard]] std::optional<Lag> best(double from_s, double to_s) const;
+  /// Returns the best of all alignments in which the logs share half a minute, if no other one (5 s away) is
+  /// nearly as good. @param largest_s 0: any
+  [[nodiscard]] std::optional<Lag> find(double largest_s) const;
+
+ private:
+  /// Means of the odometry over any time, in constant time.
+  struct Grid {
+    double begin_s = 0;  ///< after the first sample
+    std::vector<double> integral;
+
+    [[nodiscard]] double mean(double from_s, double to_s) const;
+    [[nodiscard]] double at(double time_s) const;
+  };
+  struct Reading {
+    double from_s, to_s, value;  ///< after the first sample of the odometry
+  };
+
+  void add(const GnssMotion& motion, Stamp first, std::vector<Reading>& readings) const;
+  [[nodiscard]] double correlation(const Grid& grid, const std::vector<Reading>& readings, double late_s,
+                                   double& score) const;
+  [[nodiscard]] std::optional<Lag> at(double late_s) const;
+
+  Grid speed_;
+  Grid yaw_rate_;
+  std::vector<Reading> speeds_;
+  std::vector<Reading> turns_;
+  double length_s_ = 0;  ///< of the odometry
+};
+
+}  // namespace waymark::drive

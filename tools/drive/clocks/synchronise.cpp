@@ -1,0 +1,67 @@
+#include <waymark/tools/drive/clocks/synchronise.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/drive/clocks/clock_check.hpp>
+#include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/logs/clock_offsets.hpp>
+
+namespace waymark::drive {
+namespace {
+
+/// Adds an offset to a delay if it is significant. A note is made in either case.
+bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s,
+                  std::vector<std::string>& notes) {
+  if (!offset) {
+    notes.push_back(
+        fmt::format("sync: no offset of the {} was found; its stamps stay as they are", quantity));
+    return false;
+  }
+  const bool is_one = offset->is_significant();
+  if (is_one) delay_s += offset->late_s;
+  const std::string name = name_of_offset(offset->late_s, std::clamp(3 * offset->sigma_s, 0.5, 5.0));
+  notes.push_back(
+      fmt::format("sync: the odometry's {} {} late by {:.3f} s{} (sigma {:.3f} s, correlation {:.4f}); {}",
+                  quantity, is_one ? "was" : "seems", offset->late_s, name.empty() ? "" : ", " + name,
+                  offset->sigma_s, offset->correlation,
+                  is_one ? "applied" : "within what smoothing and three sigmas explain, so not applied"));
+  return is_one;
+}
+
+/// Whether one half of the odometry must not be moved alone: the halves share a log, or the offset is one of
+/// clocks.
+bool share_a_clock(const OdometryConfig& odometry, const ClockOffset& offset) {
+  constexpr double kFilter_s = 1.5;  // no filter is slower
+  return odometry.logs.size() == 1 || std::abs(offset.late_s) > kFilter_s;
+}
+
+}  // namespace
+
+OdometryConfig& source_of_nodes(const std::string& name, DriveDescription& description) {
+  const auto found = std::find_if(description.odometry.begin(), description.odometry.end(),
+                                  [&](const OdometryConfig& odometry) { return odometry.name == name; });
+  return found == description.odometry.end() ? description.odometry.emplace_back() : *found;
+}
+
+void synchronise(DriveLogs& logs, DriveDescription& description) {
+  std::vector<std::string> notes = put_on_told_time(logs);
+  const LoggedMotion motion = logged_motion(logs, description);
+  const SyncReport report = estimate_clock_offsets(motion.odometry, motion.fixes, {});
+  OdometryConfig& odometry = source_of_nodes(motion.source, description);
+  const bool speed_moved = apply_offset(report.speed, "speed", odometry.speed_delay_s, notes);
+  const bool yaw_rate_moved = apply_offset(report.yaw_rate, "yaw rate", odometry.yaw_rate_delay_s, notes);
+  const char* both = "sync: yaw rate and speed are of one clock; both are moved together";
+  if (speed_moved && !report.yaw_rate && share_a_clock(odometry, *report.speed)) {
+    odometry.yaw_rate_delay_s += report.speed->late_s;
+    notes.emplace_back(both);
+  } else if (yaw_rate_moved && !report.speed && share_a_clock(odometry, *report.yaw_rate)) {
+    odometry.speed_delay_s += report.yaw_rate->late_s;
+    notes.emplace_back(both);
+  }
+  logs.notes.insert(logs.notes.end(), notes.begin(), notes.end());
+}
+
+}  // namespace waymark::drive
