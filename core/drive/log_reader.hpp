@@ -48,6 +48,13 @@ struct ColumnRequest {
   std::string convention;
 };
 
+/// The rows of a table that belong to a stream: those whose column has a value, or has another one.
+struct RowFilter {
+  std::string column;  ///< name in the header line, or 1-based number
+  std::string value;   ///< text of the field, without quotes
+  bool equal = true;
+};
+
 /// A file that belongs to a log and defines how it is read.
 struct CompanionFile {
   std::string path;  ///< for messages
@@ -84,6 +91,8 @@ struct LogRequest {
   /// Per-axis sigma, m, of fixes of a quality whose log gives no accuracy. It comes before
   /// range_error_m and default_sigma_m.
   std::map<FixQuality, double> sigma_by_quality;
+  /// of a table (CSV); other rows are not read
+  std::optional<RowFilter> where;
 };
 
 /// One instant on two clocks: when the logger wrote a message, and the GNSS time in the message.

@@ -1,10 +1,10 @@
 #include <waymark/formats/logs/log_file.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,6 +16,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/guard.hpp>
+#include <waymark/formats/logs/detail/foreign_formats.hpp>
 #include <waymark/formats/text/detail/read_failure.hpp>
 
 namespace waymark::formats {
@@ -88,32 +89,6 @@ class LogFile {
   std::uint64_t size_ = 0;
   std::string trouble_;
 };
-
-/// Formats that are not read here: their first bytes, their names, and the programs that
-/// convert them.
-struct ForeignFormat {
-  std::string_view begins;
-  std::string_view name;
-  std::string_view remedy;
-};
-constexpr std::array<ForeignFormat, 5> kForeign{{
-    {"MDF     ", "an MF4 (ASAM MDF) file", "asammdf writes CSV from it"},
-    {"LOGG", "a Vector BLF file", "`python3 -m can.logconvert` writes a candump log from it"},
-    {"#ROSBAG", "a ROS 1 bag", "`rostopic echo -p -b FILE /topic` writes CSV from it"},
-    {std::string_view("\x89MCAP", 5), "an MCAP file", "export its topics as CSV"},
-    {"PK\x03\x04", "a zip archive", "unpack it first"},
-}};
-
-std::string what_it_may_be(std::string_view head) {
-  for (const ForeignFormat& format : kForeign) {
-    if (head.starts_with(format.begins))
-      return fmt::format("it is {}, which is not supported; {}", format.name, format.remedy);
-  }
-  if (head.substr(0, 100).find("RINEX VERSION") != std::string_view::npos)
-    return "it is a RINEX file of raw observations, which is not supported; RTKLIB's rnx2rtkp "
-           "computes positions from it";
-  return "state its 'format'; `waymark info` lists all formats";
-}
 
 /// Returns the file itself. For a folder it returns the files inside, in order of name.
 std::vector<std::string> files_of(const std::string& path) {
@@ -193,6 +168,7 @@ LogData read_log_file(const LogReader& reader, const std::string& path, const Lo
 
 Recognised recognise_log(const std::string& path, std::span<const LogReaderType> readers) {
   const std::string head = read_head(path);
+  const std::optional<std::string> foreign = foreign_format(head);
   Recognised best;
   std::string rival;
   for (const LogReaderType& entry : readers) {
@@ -202,8 +178,11 @@ Recognised recognise_log(const std::string& path, std::span<const LogReaderType>
     rival = why.certainty == best.why.certainty ? std::string(best.reader.name) : std::string();
     best = {entry, why};
   }
+  // Some foreign logs are tables too; only a table is so little of a format that it has to yield.
+  if (foreign && best.why.certainty <= 0.5) best = {};
   if (best.reader.reader == nullptr)
-    throw InputError(fmt::format("{}: the log's format is not recognised: {}", path, what_it_may_be(head)));
+    throw InputError(fmt::format("{}: the log's format is not recognised: {}", path,
+                                 foreign.value_or("state its 'format'; `waymark info` lists all formats")));
   if (!rival.empty())
     throw InputError(
         fmt::format("{}: the log may be '{}' or '{}'; state its 'format'", path, rival, best.reader.name));

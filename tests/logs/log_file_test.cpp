@@ -165,6 +165,30 @@ TEST_CASE("log files: a format that is not read is named with what converts it")
         start +
             "it is a RINEX file of raw observations, which is not supported; RTKLIB's rnx2rtkp "
             "computes positions from it");
+  const auto names = [&](std::string_view head, std::string_view what) {
+    const std::string text = refusal(std::string(head));
+    return text.starts_with(start + "it is " + std::string(what) + ", which is not supported; ");
+  };
+  CHECK(names({"SQLite format 3\0....", 20}, "an SQLite file, such as a ROS 2 bag (db3)"));
+  CHECK(names("BZh91AY", "a bzip2 file, as openpilot's rlog may be"));
+  CHECK(names("$@\x12\x34", "a Septentrio SBF log"));
+  CHECK(names({"\x55\x0a\x02\x00\x01\x02zz..\x55", 11}, "a log of Swift's binary protocol (SBP)"));
+  CHECK(names({"\xD3\x00\x13\x3E", 4}, "a stream of RTCM 3, which has no positions"));
+  CHECK(names({"\xAA\x44\x12\x1C", 4}, "a NovAtel log in binary"));
+  CHECK(names({"\x0E\x20\x00\x00\x00\x00\x00\x00.FIT", 12}, "a Garmin FIT file"));
+  CHECK(names("<?xml version=\"1.0\"?>\n<TrainingCenterDatabase xmlns=", "a TCX file"));
+  CHECK(names("<?xml version=\"1.0\"?>\n<kml xmlns=", "a KML file"));
+  CHECK(names("AXCS001\nHFDTE010420\nB1200004810850N01133909EA0050000550\n", "an IGC flight log"));
+  CHECK(names("MATLAB 5.0 MAT-file, Platform: GLNXA64", "a MATLAB file"));
+  CHECK(names("\x89HDF\r\n\x1A\n", "an HDF5 file (or MATLAB 7.3)"));
+  CHECK(names("PAR1\x15", "a Parquet file"));
+  CHECK(names("Time Stamp,ID,Extended,Dir,Bus,LEN,D1\n1,00000100,false,Rx,0,1,FF\n",
+              "SavvyCAN's table of CAN frames"));
+  CHECK(names("t12340011223\rt1230\r", "an slcan log"));
+  CHECK(names("date Wed Apr 1 12:00:00 2020\nbase hex  timestamps absolute\n", "a Vector trace (ASC)"));
+  CHECK(names(";$FILEVERSION=1.1\n", "a PEAK trace (TRC)"));
+  CHECK(names("[header]\nsatellites\n[column names]\nsats time lat\n[data]\n", "a Racelogic VBO file"));
+  CHECK(names("# \n# Header Description:\n# \n# Raw,utcTimeMillis\n", "an Android GnssLogger file"));
   CHECK(refusal("nothing that anyone knows\n") ==
         start + "state its 'format'; `waymark info` lists all formats");
 }

@@ -116,10 +116,29 @@ TEST_CASE("inspect: init without logs writes a template, and -o - goes to the st
   CHECK(contains(both.err, "no log with odometry was found: fill in odometry"));
 }
 
+TEST_CASE("inspect: a folder, and all files of one, go on after what is no log") {
+  const std::string folder = drive_folder();
+  write_text(folder + "picture.png", "\x89PNG\r\n");
+  write_text(folder + "drive.yaml", "odometry: {file: odometry.csv}\n");
+  const RunResult whole = run({"inspect", folder});
+  INFO(whole.err);
+  CHECK(whole.code == 0);
+  CHECK(contains(whole.out, folder + "gnss.csv\n"));
+  CHECK(contains(whole.err,
+                 "picture.png: the log's format is not recognised: it is a picture, which is not "
+                 "supported; it holds no log; left out"));
+  CHECK(contains(whole.err, "drive.yaml: left out: it describes a drive; inspect it alone"));
+  const RunResult listed = run({"init", folder + "drive.yaml", folder + "picture.png", folder + "gnss.csv",
+                                folder + "odometry.csv", "-o", "-"});
+  CHECK(listed.code == 0);
+  CHECK(contains(listed.out, "gnss.csv"));
+  check_refused(run({"inspect", folder + "picture.png", folder + "drive.yaml"}), 3,
+                "none of the files is a log that is known");
+}
+
 TEST_CASE("inspect: inspect and init refuse what they cannot read, with exit code and remedy") {
   const std::string folder = drive_folder();
   check_refused(run({"inspect"}), 2, "logs is required");
-  check_refused(run({"inspect", folder + "a.yaml", folder + "gnss.csv"}), 2, "a.yaml: it names its own logs");
   check_refused(run({"inspect", folder + "a.yaml", "--dbc", "car.dbc"}), 2,
                 "belong to logs, not to a drive.yaml");
   check_refused(run({"inspect", folder + "nothing.csv"}), 3,

@@ -129,4 +129,44 @@ TEST_CASE("quality: the sigma stated for a quality is that of its fixes") {
       contains(wrong.err, "rtk: is no quality of a fix; known: unknown, single, differential, float, fixed"));
 }
 
+TEST_CASE("quality: two receivers in one log are refused, and 'where' takes one of them") {
+  const std::string folder = fresh_folder();
+  write_rover(folder, "");
+  std::string both;
+  std::string table = "time,latitude,longitude,accuracy,receiver\n";
+  for (int second = 0; second < 300; ++second) {
+    const auto [x, y] = place_at(second);
+    for (const double aside : {0.0, 3.0}) {
+      const double north = 50.05 + (y + aside) / kMetresPerDegree;
+      const double east = 8.05 + x / (kMetresPerDegree * std::cos(50.05 * M_PI / 180));
+      both += sentence(fmt::format("GNGGA,12{:02}{:02}.00,50{:010.7f},N,008{:010.7f},E,4,12,0.8,100,M,45,M,,",
+                                   second / 60, second % 60, (north - 50) * 60, (east - 8) * 60));
+      table += fmt::format("{},{:.9f},{:.9f},0.05,{}\n", 1585742400 + second, north, east,
+                           aside > 0 ? "rear" : "front");
+    }
+  }
+  write_text(folder + "both.nmea", both);
+  write_text(folder + "both.csv", table);
+  const auto run_with = [&](const std::string& gnss) {
+    write_text(folder + "both.yaml",
+               "name: both\ntime: {scale: unix}\nodometry: {file: odometry.csv}\ngnss: " + gnss +
+                   "\ntruth: {file: truth.csv}\n");
+    return run({"run", folder + "both.yaml", "-o", folder + "out"});
+  };
+  for (const char* gnss : {"{file: both.nmea, time: {date: 2020-04-01}}", "{file: both.csv}"}) {
+    const RunResult result = run_with(gnss);
+    INFO(result.err);
+    CHECK(result.code == 3);
+    CHECK(
+        contains(result.err, "several receivers write into this log: 300 of 300 stamps have more than one"));
+  }
+  const RunResult front = run_with("{file: both.csv, where: receiver == front, accuracy: {meaning: 1sigma}}");
+  INFO(front.err);
+  REQUIRE(front.code == 0);
+  CHECK(contains(front.err, "300 rows are left out by 'where'"));
+  CHECK(metrics_of(folder).at("truth").at("gnss").at("position").at("rmse_m") < 0.01);
+  CHECK(contains(run_with("{file: both.csv, where: reciever == front}").err,
+                 "no column 'reciever' for where; did you mean 'receiver'?"));
+}
+
 }  // namespace quality_test

@@ -47,7 +47,7 @@ TEST_CASE("drive.yaml: the least there is, and its defaults") {
   const DriveFile config = parse("odometry: {file: o.csv}\ngnss: {file: g.csv}\n");
   CHECK(config.description.name == "drive");
   CHECK(config.description.odometry.front().logs.front().file == "tours/o.csv");
-  CHECK(config.description.odometry.front().logs.front().format == "csv");
+  CHECK(config.description.odometry.front().logs.front().format == "auto");
   CHECK(config.description.odometry.front().logs.front().request.stream == StreamKind::odometry);
   REQUIRE(config.description.gnss.size() == 1);
   CHECK(config.description.gnss[0].file == "tours/g.csv");

@@ -22,7 +22,7 @@ namespace waymark::drive {
 struct LogConfig {
   std::string file;  ///< resolved against the folder of the logs
   /// name of a registered log reader; "auto": the reader that recognises the content of the log
-  std::string format = "csv";
+  std::string format = "auto";
   LogRequest request;  ///< without the text of companion files
   /// files that belong to the log, resolved, by key ("dbc")
   std::map<std::string, std::string> companions;

@@ -1,5 +1,6 @@
 #include <waymark/tools/drive/description/log_config.hpp>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -100,6 +101,23 @@ void read_accuracy(const YamlSection& section, LogRequest& request) {
   }
 }
 
+/// Reads "receiver == front" or "receiver != front".
+RowFilter read_filter(const YamlSection& section) {
+  std::string text;
+  section.read("where", text);
+  const auto trimmed = [](std::string_view part) {
+    const auto begin = part.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) return std::string();
+    return std::string(part.substr(begin, part.find_last_not_of(" \t") - begin + 1));
+  };
+  const std::size_t at = std::min(text.find("=="), text.find("!="));
+  if (at == std::string::npos) section.fail_value("where", "COLUMN == VALUE or COLUMN != VALUE");
+  RowFilter filter{trimmed(std::string_view(text).substr(0, at)),
+                   trimmed(std::string_view(text).substr(at + 2)), text[at] == '='};
+  if (filter.column.empty()) section.fail_value("where", "COLUMN == VALUE or COLUMN != VALUE");
+  return filter;
+}
+
 std::string resolved(const std::string& folder, const std::string& file) {
   return (std::filesystem::path(folder) / file).lexically_normal().string();
 }
@@ -107,7 +125,7 @@ std::string resolved(const std::string& folder, const std::string& file) {
 }  // namespace
 
 std::vector<std::string_view> log_keys(std::initializer_list<std::string_view> own) {
-  std::vector<std::string_view> keys{"file", "format", "separator", "columns", "time"};
+  std::vector<std::string_view> keys{"file", "format", "separator", "where", "columns", "time"};
   keys.insert(keys.end(), kCompanions.begin(), kCompanions.end());
   keys.insert(keys.end(), own);
   return keys;
@@ -126,14 +144,16 @@ LogConfig read_log_config(const YamlSection& section, LogRequest request, const 
         fmt::format("{}{}: 'file' is missing", log.place, formats::to_string(log.request.stream)));
   log.file = resolved(folder, file);
   section.read("format", log.format);
-  if (section.has("separator") && log.format != "csv" && log.format != "auto")
-    section.fail("separator", fmt::format("belongs to the format csv, not to {}", log.format));
+  for (const char* key : {"separator", "where"})
+    if (section.has(key) && log.format != "csv" && log.format != "auto")
+      section.fail(key, fmt::format("belongs to the format csv, not to {}", log.format));
   for (const std::string_view key : kCompanions) {
     if (!section.has(key)) continue;
     std::string companion;
     section.read(key, companion);
     log.companions[std::string(key)] = resolved(folder, companion);
   }
+  if (section.has("where")) log.request.where = read_filter(section);
   if (const auto separator = section.read_word("separator", kSeparators))
     log.request.separator = kSeparatorValues[*separator];
   read_columns(section, log.format, log.request);

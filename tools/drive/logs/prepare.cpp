@@ -47,6 +47,7 @@ std::vector<GeodeticTruth> clean_truth(const std::vector<DriveLogs::Log>& logs, 
       [](const GeodeticTruth& a, const GeodeticTruth& b) {
         return same_place(a, b) && a.heading_rad == b.heading_rad;
       });
+  note_cleaning("truth poses", report.truth, report);
   describe_stream(truth, 0, report.truth);
   return truth;
 }

@@ -9,6 +9,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/logs/clock_offsets.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
+#include <waymark/tools/drive/logs/shared_stamps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 #include <waymark/tools/drive/logs/velocity.hpp>
 
@@ -90,7 +91,9 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
     const DriveLogs::Log& log = logs.gnss[i];
     const std::size_t before = fixes.size();
-    append_log(log.data.fixes, log, description.scale(), fixes, report.gnss, report);
+    std::vector<GeodeticFix> settled = log.data.fixes;
+    settle_shared_stamps(settled, log.file, report);
+    append_log(settled, log, description.scale(), fixes, report.gnss, report);
     if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)
       add_logged_velocity(logs.velocity[i], description.scale(), std::span(fixes).subspan(before), report);
     report_clock(log, report);
@@ -105,6 +108,7 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
         return same_place(a, b) && a.covariance_en == b.covariance_en && a.course_rad == b.course_rad &&
                a.speed_mps == b.speed_mps;
       });
+  note_cleaning("fixes", report.gnss, report);
   if (fixes.empty())
     throw InputError(fmt::format("{}: the GNSS logs hold no usable fix; a drive needs at least one",
                                  logs.gnss.empty() ? description.path : logs.gnss.front().file));

@@ -74,6 +74,7 @@ std::vector<OdometrySample> samples_of(const std::vector<DriveLogs::Log>& logs, 
       [](const OdometrySample& a, const OdometrySample& b) {
         return a.speed_mps == b.speed_mps && a.yaw_rate_radps == b.yaw_rate_radps;
       });
+  note_cleaning("odometry samples", stream, report);
   if (samples.size() < 2) return samples;
   if (config.speed_delay_s != 0 || config.yaw_rate_delay_s != 0)
     samples = without_delays(samples, config.speed_delay_s, config.yaw_rate_delay_s);

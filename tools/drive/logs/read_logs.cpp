@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -61,15 +63,31 @@ void read_companions(const LogConfig& log, LogRequest& request, std::vector<Inpu
   }
 }
 
+/// Returns the reader that recognises a log. A table that none does is one of Waymark's tables all the same:
+/// its reader knows best what is wrong with it.
+formats::Recognised recognised(const std::string& file, const std::vector<LogReaderType>& readers) {
+  try {
+    return formats::recognise_log(file, readers);
+  } catch (const InputError&) {
+    constexpr std::array<std::string_view, 2> kTables{".csv", ".tsv"};
+    const std::string ending = std::filesystem::path(file).extension().string();
+    const auto csv = std::find_if(readers.begin(), readers.end(),
+                                  [](const LogReaderType& reader) { return reader.name == "csv"; });
+    if (csv == readers.end() || std::find(kTables.begin(), kTables.end(), ending) == kTables.end()) throw;
+    return {*csv, {}};
+  }
+}
+
 DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, const LogWatch& watch) {
   const std::vector<LogReaderType> readers = readers_of(registry);
   LogRequest request = log.request;
   std::vector<std::string> notes;
   LogReaderType reader;
   if (log.format == "auto") {
-    const formats::Recognised found = formats::recognise_log(log.file, readers);
+    const formats::Recognised found = recognised(log.file, readers);
     reader = found.reader;
-    notes.push_back(fmt::format("{}: read as '{}': {}", log.file, reader.name, found.why.evidence));
+    if (reader.name != "csv")
+      notes.push_back(fmt::format("{}: read as '{}': {}", log.file, reader.name, found.why.evidence));
   } else {
     reader = named_reader(log, readers);
   }

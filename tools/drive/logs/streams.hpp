@@ -52,6 +52,17 @@ void clean_stream(std::vector<Sample>& samples, StreamReport& report, IsFinite i
   samples = std::move(kept);
 }
 
+/// Says what clean_stream() has dropped or moved. Nothing is counted in silence.
+inline void note_cleaning(const char* samples, const StreamReport& stream, PrepareReport& report) {
+  const auto note = [&](std::size_t count, const char* what) {
+    if (count > 0) report.notes.push_back(fmt::format("{} {} {}", count, samples, what));
+  };
+  note(stream.non_finite, "have a number that is not finite and are left out");
+  note(stream.out_of_order, "are stamped before the one above them; all are sorted");
+  note(stream.duplicates_identical, "repeat an earlier one and are left out");
+  note(stream.duplicates_conflicting, "contradict an earlier one with the same stamp and are left out");
+}
+
 /// Adds the counts and notes of a log's reader.
 inline void add_log_report(const LogData& data, StreamReport& stream, PrepareReport& report) {
   stream.records += data.records;

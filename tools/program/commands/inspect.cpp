@@ -17,10 +17,8 @@
 namespace waymark::program {
 namespace {
 
-/// Inspects a drive.yaml. It must be the only argument, because it names its logs and how
-/// they are read.
+/// Inspects a drive.yaml, which names its logs and how they are read.
 ExitCode inspect_drive(const InspectCommand& command, const std::string& path, const Console& console) {
-  if (command.logs.size() > 1) throw UsageError(path + ": it names its own logs; inspect it alone");
   if (command.format != "auto" || !command.dbc.empty())
     throw UsageError("--format and --dbc belong to logs, not to a drive.yaml");
   print_drive_statistics(path, command.common, console);
@@ -29,8 +27,8 @@ ExitCode inspect_drive(const InspectCommand& command, const std::string& path, c
 
 ExitCode inspect(const InspectCommand& command) {
   const Console console(command.common);
-  const auto described = std::find_if(command.logs.begin(), command.logs.end(), drive::is_drive_file);
-  if (described != command.logs.end()) return inspect_drive(command, *described, console);
+  if (command.logs.size() == 1 && drive::is_drive_file(command.logs.front()))
+    return inspect_drive(command, command.logs.front(), console);
   const std::vector<inspection::LogInspection> logs = inspect_files(command, console);
   if (command.common.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();

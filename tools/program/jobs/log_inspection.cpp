@@ -1,10 +1,14 @@
 #include <waymark/tools/program/jobs/log_inspection.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <span>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/inspection/proposal/drive_proposal.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -25,6 +29,53 @@ std::vector<LogReaderType> readers_of(const TypeRegistry& registry) {
 
 bool is_dbc(const std::string& path) {
   return path.ends_with(".dbc") || path.ends_with(".DBC");
+}
+
+/// Returns the files in the folders among some paths. A folder that is one log stays.
+std::vector<std::string> files_in(const std::vector<std::string>& paths,
+                                  std::span<const LogReaderType> readers) {
+  const auto is_log = [&](const std::string& folder) {
+    try {
+      return formats::recognise_log(folder, readers).reader.name == "kitti_oxts";
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  std::vector<std::string> files;
+  for (const std::string& path : paths) {
+    if (!std::filesystem::is_directory(path) || is_log(path)) {
+      files.push_back(path);
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (const auto& entry : std::filesystem::directory_iterator(path))
+      if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.'))
+        inside.push_back(entry.path().string());
+    std::sort(inside.begin(), inside.end());
+    files.insert(files.end(), inside.begin(), inside.end());
+  }
+  return files;
+}
+
+/// Leaves out what is no log: `inspect *` meets pictures and drives too.
+std::vector<std::string> logs_among(const std::vector<std::string>& files,
+                                    std::span<const LogReaderType> readers, const Console& console) {
+  if (files.size() < 2) return files;
+  std::vector<std::string> logs;
+  for (const std::string& file : files) {
+    if (drive::is_drive_file(file)) {
+      console.note(file + ": left out: it describes a drive; inspect it alone");
+      continue;
+    }
+    try {
+      (void)formats::recognise_log(file, readers);
+      logs.push_back(file);
+    } catch (const InputError& error) {
+      console.warning(std::string(error.what()) + "; left out");
+    }
+  }
+  if (logs.empty()) throw InputError("none of the files is a log that is known");
+  return logs;
 }
 
 }  // namespace
@@ -50,8 +101,9 @@ std::vector<inspection::LogInspection> inspect_files(const InspectCommand& comma
   options.format = command.format;
   options.dbc = command.dbc;
   options.now = now();
+  const std::vector<LogReaderType> readers = readers_of(registry);
   std::vector<std::string> logs;
-  for (const std::string& path : command.logs) {
+  for (const std::string& path : files_in(command.logs, readers)) {
     if (!is_dbc(path)) {
       logs.push_back(path);
     } else if (options.dbc.empty()) {
@@ -62,8 +114,8 @@ std::vector<inspection::LogInspection> inspect_files(const InspectCommand& comma
   }
   if (logs.empty()) throw UsageError(options.dbc + ": a DBC only describes CAN frames; name a log too");
   options.watch = watch_reading(console);
-  std::vector<inspection::LogInspection> inspected =
-      inspection::inspect_logs(logs, readers_of(registry), options);
+  if (options.format == "auto") logs = logs_among(logs, readers, console);
+  std::vector<inspection::LogInspection> inspected = inspection::inspect_logs(logs, readers, options);
   console.end_progress();
   return inspected;
 }

@@ -89,7 +89,7 @@ std::string wish_of(FileKind wants) {
 }  // namespace
 
 std::string misplaced_file(const CLI::App& app, const std::vector<std::string>& words) {
-  const std::string path = first_file(app, words);
+  const std::string path = only_file(app, words);
   std::error_code none;
   if (path.empty() || !std::filesystem::is_regular_file(path, none)) return {};
   const CLI::App& command = *app.get_subcommand(words.front());

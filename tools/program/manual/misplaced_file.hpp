@@ -9,7 +9,7 @@
 
 namespace waymark::program {
 
-/// Returns two lines: what the first file on the command line is and what its subcommand wants, and the
+/// Returns two lines: what the only file on the command line is and what its subcommand wants, and the
 /// command to type. Empty if there is no such file, or it is of a wanted kind, or of none that is known.
 /// @param words words of the command line without the name of the program
 [[nodiscard]] std::string misplaced_file(const CLI::App& app, const std::vector<std::string>& words);

@@ -78,13 +78,14 @@ std::string unknown_option(const CLI::App& app, const std::vector<std::string>& 
   return "";
 }
 
-std::string first_file(const CLI::App& app, const std::vector<std::string>& words) {
+std::string only_file(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* command = words.empty() ? nullptr : command_or_null(app, words.front());
   if (command == nullptr) return "";
   std::string file;
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (!looks_like_option(words[i])) {
-      if (file.empty()) file = words[i];
+      if (!file.empty()) return "";
+      file = words[i];
       continue;
     }
     const std::string name = name_of(words[i]);

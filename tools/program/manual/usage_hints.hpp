@@ -1,5 +1,5 @@
 /// Reads a command line as far as hints need it: the option that was probably meant, or the command that
-/// it belongs to; the first file.
+/// it belongs to; the file.
 #pragma once
 
 #include <string>
@@ -15,9 +15,9 @@ namespace waymark::program {
 /// @param words words of the command line without the name of the program
 [[nodiscard]] std::string unknown_option(const CLI::App& app, const std::vector<std::string>& words);
 
-/// Returns the first word behind the subcommand that is neither an option nor the value of one. Empty: there is
-/// none, or an option is unknown, or states the format of the input.
-[[nodiscard]] std::string first_file(const CLI::App& app, const std::vector<std::string>& words);
+/// Returns the only word behind the subcommand that is neither an option nor the value of one. Empty: there is
+/// none or several, or an option is unknown, or states the format of the input.
+[[nodiscard]] std::string only_file(const CLI::App& app, const std::vector<std::string>& words);
 
 /// Accepts one of these words. Its error is "unknown format 'g20'; did you mean 'g2o'?". @param
 /// kind "format"

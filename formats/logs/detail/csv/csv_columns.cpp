@@ -80,6 +80,7 @@ CsvColumns::CsvColumns(const TableLine& first, const std::string& path, const Lo
   check_request(path + ": ", request);
   find_header(first, path, request);
   const std::string place = fmt::format("{}:{}:1: ", path, first.number);
+  if (request.where) filtered_ = field_stated(request.where->column, "where", place);
   choose_position(request, place);
   for (const Quantity& quantity : quantities_) {
     const auto wanted = request.columns.find(std::string(quantity.name));
@@ -155,21 +156,26 @@ bool CsvColumns::has_default_columns(std::string_view first, std::string_view se
   return has(first) && has(second);
 }
 
+/// Returns the field of a column that the request names. @param use what it is wanted for, for messages
+std::optional<std::size_t> CsvColumns::field_stated(const std::string& column, std::string_view use,
+                                                    const std::string& place) const {
+  if (const auto field = field_named(column)) return field;
+  if (const auto number = column_number(column)) {
+    if (*number < 1 || *number > field_count_)
+      throw InputError(fmt::format("{}no column {} for {}: the table has columns 1 to {}", place, *number,
+                                   use, field_count_));
+    return *number - 1;
+  }
+  throw InputError(fmt::format("{}no column '{}' for {}{}{}", place, column, use,
+                               did_you_mean(column, views_of(shown_names())), columns_present()));
+}
+
 void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place) {
   BoundColumn bound;
   bound.quantity = &quantity;
   std::optional<std::size_t> field;
   if (wanted != nullptr) {
-    field = field_named(wanted->column);
-    if (const auto number = column_number(wanted->column); !field && number) {
-      if (*number < 1 || *number > field_count_)
-        throw InputError(fmt::format("{}no column {} for {}: the table has columns 1 to {}", place, *number,
-                                     quantity.name, field_count_));
-      field = *number - 1;
-    }
-    if (!field)
-      throw InputError(fmt::format("{}no column '{}' for {}{}{}", place, wanted->column, quantity.name,
-                                   did_you_mean(wanted->column, views_of(shown_names())), columns_present()));
+    field = field_stated(wanted->column, quantity.name, place);
   } else {
     field = field_named(quantity.name);
     if (!field) field = field_named(quantity.default_column);

@@ -40,12 +40,16 @@ class CsvColumns {
   /// Returns null if the table has no such quantity.
   [[nodiscard]] const BoundColumn* find(std::string_view quantity) const;
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  /// Returns the field that LogRequest::where compares; empty: all rows count.
+  [[nodiscard]] std::optional<std::size_t> filtered() const { return filtered_; }
 
  private:
   void check_request(const std::string& place, const LogRequest& request) const;
   void find_header(const TableLine& first, const std::string& path, const LogRequest& request);
   void choose_position(const LogRequest& request, const std::string& place);
   void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
+  [[nodiscard]] std::optional<std::size_t> field_stated(const std::string& column, std::string_view use,
+                                                        const std::string& place) const;
   [[nodiscard]] bool has_default_columns(std::string_view first, std::string_view second) const;
   [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
   [[nodiscard]] std::string columns_present() const;
@@ -57,6 +61,7 @@ class CsvColumns {
   bool first_line_is_header_ = false;
   std::vector<BoundColumn> columns_;
   std::vector<std::string> notes_;
+  std::optional<std::size_t> filtered_;
 };
 
 /// Returns the reason why no table can satisfy a column request ("unknown unit 'kmh' for speed; did

@@ -20,7 +20,8 @@ CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRe
       path_(path),
       request_(std::move(request)),
       data_(data),
-      positions_(path, request_, nullptr) {
+      positions_(path, request_, nullptr),
+      filtered_(columns.filtered()) {
   offset_ = request_.gps_week * kGpsWeekNanoseconds + std::llround(request_.time_offset_s * 1e9);
   if (request_.stream == StreamKind::gnss && request_.readings.empty()) {
     const auto has = [&](std::string_view name) { return columns.find(name) != nullptr; };
@@ -38,7 +39,14 @@ void CsvRecords::read_line(std::string_view line, std::size_t number) {
   line_ = line;
   complaint_ = {};
   number_ = number;
-  if (check_fields()) read_sample();
+  if (check_fields()) {
+    if (!is_wanted()) {
+      --data_.records;
+      ++unwanted_;
+      return;
+    }
+    read_sample();
+  }
   if (complaint_.column != 0) add_corrupt(data_, path_, number_, complaint_.column, complaint_.what);
 }
 
@@ -53,6 +61,10 @@ bool CsvRecords::check_fields() {
       fields_.size() > field_count_ ? column_of(line_, fields_[field_count_]) : line_.size() + 1;
   complaint_ = {column, fmt::format("expected {} fields, got {}", field_count_, fields_.size())};
   return false;
+}
+
+bool CsvRecords::is_wanted() const {
+  return !filtered_ || (fields_[*filtered_] == request_.where->value) == request_.where->equal;
 }
 
 void CsvRecords::read_sample() {
@@ -120,6 +132,8 @@ bool CsvRecords::read_details(GeodeticFix& fix) {
 }
 
 void CsvRecords::finish() {
+  if (unwanted_ > 0)
+    data_.notes.push_back(fmt::format("{}: {} rows are left out by 'where'", path_, unwanted_));
   if (strange_qualities_ > 0)
     data_.notes.push_back(fmt::format(
         "{}: {} values of quality, such as {}, are none that is known (words, or numbers of the unit gga, rtklib "

@@ -43,6 +43,7 @@ class CsvRecords {
   };
 
   bool check_fields();
+  [[nodiscard]] bool is_wanted() const;
   void read_sample();
   void read_truth(Stamp at);
   void read_fix(Stamp at);
@@ -70,6 +71,8 @@ class CsvRecords {
   AccuracyQuantities accuracy_;
   const BoundColumn *accuracy_east_ = nullptr, *accuracy_north_ = nullptr, *covariance_root_ = nullptr;
   std::int64_t offset_ = 0;
+  std::optional<std::size_t> filtered_;  ///< field that decides
+  std::size_t unwanted_ = 0;
   std::size_t strange_qualities_ = 0;
   std::string strange_quality_;  ///< the first one
 

@@ -87,7 +87,7 @@ void NmeaDecoder::take_sentence(const NmeaSentence& sentence, std::string_view l
   const NmeaFields fields(sentence.fields);
   try {
     const std::optional<std::int64_t> time = nmea_time(kind, fields);
-    if (begins_epoch(kind, time)) {
+    if (begins_epoch(kind, time) || places_elsewhere(kind, fields, epoch_)) {
       end_epoch();
       epoch_.time_of_day = time;
     }

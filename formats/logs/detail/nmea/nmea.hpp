@@ -11,7 +11,7 @@ namespace waymark::formats {
 /// **Epochs.** Consecutive sentences with the same time of day are one epoch, in any order. VTG
 /// has no time and belongs to the current epoch. The position comes from GGA, else GNS, RMC, GLL;
 /// speed and course come from RMC, else VTG. Sentences of a fix without a time of day are counted
-/// and not used.
+/// and not used. A second sentence of one kind with another position begins a further epoch of that time.
 ///
 /// **No fix**: RMC or GLL status V, GGA quality 0, or a mode indicator N (GNS: of all systems) in
 /// any sentence of the epoch. 0 satellites in GGA or GNS also mean no fix if an earlier fix had

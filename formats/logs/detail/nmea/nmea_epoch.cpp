@@ -242,6 +242,15 @@ std::optional<std::int64_t> nmea_time(NmeaKind kind, const NmeaFields& fields) {
   return fields.time_of_day(kind == NmeaKind::gll ? 5 : 1);
 }
 
+bool places_elsewhere(NmeaKind kind, const NmeaFields& fields, const NmeaEpoch& epoch) {
+  if (kind != epoch.position.kind || rank(kind) == 0) return false;
+  const std::size_t first = kind == NmeaKind::gll ? 1 : kind == NmeaKind::rmc ? 3 : 2;
+  const std::optional<double> latitude = fields.latitude(first);
+  const std::optional<double> longitude = fields.longitude(first + 2);
+  return latitude && longitude &&
+         (*latitude != epoch.position.latitude_deg || *longitude != epoch.position.longitude_deg);
+}
+
 void add_to_epoch(NmeaKind kind, const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch) {
   switch (kind) {
     case NmeaKind::other:

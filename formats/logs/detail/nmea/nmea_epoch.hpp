@@ -69,6 +69,10 @@ struct NmeaEpoch {
 /// Returns the time of day of a sentence. @throws BadNmeaField
 [[nodiscard]] std::optional<std::int64_t> nmea_time(NmeaKind kind, const NmeaFields& fields);
 
+/// Tells whether the epoch has a position from a sentence of this kind, and this sentence another one: that of
+/// a second receiver, or of the next epoch if the times are cut off. @throws BadNmeaField
+[[nodiscard]] bool places_elsewhere(NmeaKind kind, const NmeaFields& fields, const NmeaEpoch& epoch);
+
 /// Adds a sentence of any kind but `other` to its epoch. A sentence with a bad field adds nothing.
 /// @throws BadNmeaField
 void add_to_epoch(NmeaKind kind, const NmeaFields& fields, std::size_t line, NmeaEpoch& epoch);

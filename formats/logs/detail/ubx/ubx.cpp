@@ -68,8 +68,8 @@ bool holds_position(std::uint16_t key) {
 std::unique_ptr<LogDecoder> UbxReader::open(const std::string& path, const LogRequest& request) const {
   require_companions(path, request, "a UBX log");
   if (request.gps_week < 0 || request.gps_week > kLastGpsWeek)
-    throw InputError(
-        fmt::format("{}: week {} is outside 0 .. {} (time: {{week: ...}})", path, request.gps_week, kLastGpsWeek));
+    throw InputError(fmt::format("{}: week {} is outside 0 .. {} (time: {{week: ...}})", path,
+                                 request.gps_week, kLastGpsWeek));
   if (request.stream == StreamKind::gnss || request.stream == StreamKind::truth)
     return std::make_unique<UbxFixDecoder>(path, request, wants_high_rate(path, request));
   check_readings(path, request);

@@ -175,8 +175,9 @@ void UbxFixDecoder::end_epoch() {
     return;
   }
   if (!gps)
-    return corrupt(epoch.byte,
-                   "there is no valid date and no GPS week yet; state 'time: {week: ...}' to use this position");
+    return corrupt(
+        epoch.byte,
+        "there is no valid date and no GPS week yet; state 'time: {week: ...}' to use this position");
   const UbxPlace& place = epoch.precise    ? *epoch.precise
                           : epoch.solution ? epoch.solution->place
                           : epoch.plain    ? *epoch.plain
