@@ -18,6 +18,7 @@
 #include <waymark/core/base/guard.hpp>
 #include <waymark/formats/logs/detail/foreign_formats.hpp>
 #include <waymark/formats/text/detail/read_failure.hpp>
+#include <waymark/formats/text/detail/utf16.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -113,10 +114,11 @@ std::string read_head(const std::string& path) {
   std::string trouble;
   for (const std::string& name : files_of(path)) {
     LogFile file(name);
+    Utf16Text text;
     while (head.size() < kHead) {
       const std::string_view piece = file.next(buffer);
       if (piece.empty()) break;
-      head += piece;
+      head += text.converted(piece);
     }
     if (trouble.empty()) trouble = file.trouble();
     if (head.size() >= kHead) break;
@@ -132,10 +134,12 @@ std::string read_in_pieces(const std::string& path, const std::function<void(std
   const std::vector<std::string> files = files_of(path);
   for (const std::string& name : files) {
     LogFile file(name);
+    Utf16Text text;
     char last = '\n';
     for (std::string_view piece = file.next(buffer); !piece.empty(); piece = file.next(buffer)) {
+      piece = text.converted(piece);
       take(piece);
-      last = piece.back();
+      if (!piece.empty()) last = piece.back();
       if (progress && files.size() == 1) progress(file.done(), file.size());
     }
     if (trouble.empty()) trouble = file.trouble();

@@ -240,6 +240,30 @@ TEST_CASE("csv: RTKLIB's signed root covariance") {
             "log.csv:3:12: covariance_en_signed_root: the covariance is not positive definite"});
 }
 
+TEST_CASE("csv: numbers may have decimal commas where the separator is another") {
+  const LogData data =
+      read("time;latitude;longitude;accuracy\n10,25;50,5;8,125;2,0\n11,25;50,6;8,126;2,0\n", gnss(0));
+  REQUIRE(data.fixes.size() == 2);
+  CHECK(data.fixes[0].stamp.nanoseconds == 10'250'000'000);
+  CHECK(data.fixes[0].latitude_deg == 50.5);
+  CHECK(data.fixes[1].longitude_deg == 8.126);
+  CHECK(data.corrupt == 0);
+  // With commas as separators nobody can tell a decimal comma from one between thousands.
+  CHECK_THROWS_AS(read("time,latitude,longitude,accuracy\n10,\"50,5\",\"8,1\",2\n", gnss(0)), InputError);
+}
+
+TEST_CASE("csv: a name that the header has twice is refused where it is used, and its number is taken") {
+  const std::string table = "time,latitude,longitude,accuracy,latitude\n1,50,8,2,51\n";
+  CHECK_THROWS_MATCHES(
+      read(table, gnss(0)), InputError,
+      Message("log.csv:1:1: the header has 'latitude' 2 times; name the column of latitude by "
+              "its number"));
+  LogRequest request = gnss(0);
+  request.columns["latitude"] = {"5", "", ""};
+  CHECK(read(table, request).fixes.at(0).latitude_deg == 51);
+  CHECK(read("time,latitude,longitude,accuracy,note,note\n1,50,8,2,a,b\n", gnss(0)).fixes.size() == 1);
+}
+
 TEST_CASE("csv: a fix without accuracy takes the stated default, or is corrupt") {
   const char* text = "time,latitude,longitude,accuracy\n1,50,8,nan\n2,50,8,-1\n3,50,8,2\n";
   const LogData data = read(text, gnss(5));

@@ -193,6 +193,26 @@ TEST_CASE("log files: a format that is not read is named with what converts it")
         start + "state its 'format'; `waymark info` lists all formats");
 }
 
+TEST_CASE("log files: a table in UTF-16 is one in UTF-8") {
+  const std::string table =
+      "time,latitude,longitude,accuracy,Stra\xC3\x9F"
+      "e \xF0\x9F\x9A\x97\n1,50,8,2,a\n";
+  const std::u16string units = u"\uFEFFtime,latitude,longitude,accuracy,Stra\u00DFe \U0001F697\n1,50,8,2,a\n";
+  for (const bool little : {true, false}) {
+    std::string text;
+    for (const char16_t unit : units) {
+      const char low = static_cast<char>(unit & 0xFF);
+      const char high = static_cast<char>(unit >> 8);
+      text += little ? std::string{low, high} : std::string{high, low};
+    }
+    std::string read;
+    const std::string path = file_with("utf16.csv", text);
+    CHECK(read_in_pieces(path, [&](std::string_view piece) { read += piece; }).empty());
+    CHECK(read == table);
+    CHECK(recognise_log(path, builtin_log_readers()).reader.name == "csv");
+  }
+}
+
 TEST_CASE("log files: two readers that are equally sure are both named") {
   class Sure final : public WholeLogReader {
    public:

@@ -63,8 +63,8 @@ TEST_CASE("csv messages: a quoted field of a record is not closed") {
 }
 
 TEST_CASE("csv messages: a decimal comma") {
-  CHECK(complaint("csv", "time;speed;yaw_rate\n1;2,5;3\n", odometry()) ==
-        "run.log:2:3: speed: expected a number with a decimal point, got '2,5'");
+  CHECK(complaint("csv", "time,speed,yaw_rate\n1,\"2,5\",3\n", odometry()) ==
+        "run.log:2:4: speed: expected a number with a decimal point, got '2,5'");
 }
 
 TEST_CASE("csv messages: a time that is no number") {

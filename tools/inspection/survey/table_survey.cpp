@@ -112,8 +112,9 @@ void TableSurvey::begin(std::string_view line) {
   if (!formats::split_fields(line, summary_.separator, fields_)) return;
   width_ = fields_.size();
   columns_.resize(std::min(width_, kMostColumns));
-  const bool numbers = std::all_of(fields_.begin(), fields_.end(), [](std::string_view field) {
-    return formats::number_from_field(field).has_value() || formats::stamp_from_iso8601(field).has_value();
+  const bool numbers = std::all_of(fields_.begin(), fields_.end(), [this](std::string_view field) {
+    return formats::number_from_field(field, summary_.separator).has_value() ||
+           formats::stamp_from_iso8601(field).has_value();
   });
   std::vector<std::string_view> names = fields_;
   if (numbers) {
@@ -137,7 +138,7 @@ void TableSurvey::begin(std::string_view line) {
 
 void TableSurvey::take_field(Column& column, std::string_view field) {
   double value = 0;
-  if (const std::optional<double> number = formats::number_from_field(field)) {
+  if (const std::optional<double> number = formats::number_from_field(field, summary_.separator)) {
     if (std::isnan(*number)) {
       ++column.seen.empty;
       return;

@@ -39,7 +39,9 @@ std::vector<std::string_view> views_of(const std::vector<std::string>& names) {
 /// or if the time column is given by number and its field is a time. The second rule is for
 /// headerless tables with dates and words.
 bool holds_values(const std::vector<std::string_view>& fields, const LogRequest& request) {
-  const auto is_number = [](std::string_view field) { return number_from_field(field).has_value(); };
+  const auto is_number = [&](std::string_view field) {
+    return number_from_field(field, request.separator).has_value();
+  };
   if (std::all_of(fields.begin(), fields.end(), is_number)) return true;
   const auto time = request.columns.find("time");
   if (time == request.columns.end()) return false;
@@ -51,9 +53,22 @@ bool holds_values(const std::vector<std::string_view>& fields, const LogRequest&
 
 }  // namespace
 
-std::optional<double> number_from_field(std::string_view field) {
+std::optional<std::string> with_decimal_point(std::string_view field) {
+  const std::size_t comma = field.find(',');
+  if (comma == std::string_view::npos ||
+      field.find_first_not_of("+-0123456789,eE") != std::string_view::npos ||
+      field.find(',', comma + 1) != std::string_view::npos)
+    return std::nullopt;
+  std::string text(field);
+  text[comma] = '.';
+  return text;
+}
+
+std::optional<double> number_from_field(std::string_view field, char separator) {
   if (field.empty()) return kNoNumber;
   if (const std::optional<double> value = field_number(field)) return value;
+  if (separator != ',')
+    if (const std::optional<std::string> plain = with_decimal_point(field)) return field_number(*plain);
   const std::string word = lower_case(field);
   for (const std::string_view none : {"nan", "na", "n/a", "null", "none"}) {
     if (word == none) return kNoNumber;
@@ -156,9 +171,17 @@ bool CsvColumns::has_default_columns(std::string_view first, std::string_view se
   return has(first) && has(second);
 }
 
+/// @throws InputError if two columns have the name: nobody can tell which is meant
+void CsvColumns::require_one(std::string_view name, std::string_view use, const std::string& place) const {
+  if (std::count(names_.begin(), names_.end(), name) > 1)
+    throw InputError(fmt::format("{}the header has '{}' {} times; name the column of {} by its number", place,
+                                 shown_name(name), std::count(names_.begin(), names_.end(), name), use));
+}
+
 /// Returns the field of a column that the request names. @param use what it is wanted for, for messages
 std::optional<std::size_t> CsvColumns::field_stated(const std::string& column, std::string_view use,
                                                     const std::string& place) const {
+  require_one(column, use, place);
   if (const auto field = field_named(column)) return field;
   if (const auto number = column_number(column)) {
     if (*number < 1 || *number > field_count_)
@@ -187,6 +210,7 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
                           : fmt::format("neither '{}' nor '{}'", quantity.name, quantity.default_column),
                       columns_present()));
     if (!field) return;
+    require_one(names_[*field], quantity.name, place);
     notes_.push_back(fmt::format("{}{} is column '{}' by default", place, quantity.name, names_[*field]));
   }
   const ColumnRequest plain;

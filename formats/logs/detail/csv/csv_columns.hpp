@@ -48,6 +48,7 @@ class CsvColumns {
   void find_header(const TableLine& first, const std::string& path, const LogRequest& request);
   void choose_position(const LogRequest& request, const std::string& place);
   void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
+  void require_one(std::string_view name, std::string_view use, const std::string& place) const;
   [[nodiscard]] std::optional<std::size_t> field_stated(const std::string& column, std::string_view use,
                                                         const std::string& place) const;
   [[nodiscard]] bool has_default_columns(std::string_view first, std::string_view second) const;
@@ -70,7 +71,11 @@ class CsvColumns {
 
 /// Reads a number, also with a leading '+'. NaN if the field is empty, "nan", "na", "n/a",
 /// "null" or "none".
+/// @param separator of the table: if it is no comma, a number may have a decimal comma
 /// @return empty for anything else, also for infinities
-[[nodiscard]] std::optional<double> number_from_field(std::string_view field);
+[[nodiscard]] std::optional<double> number_from_field(std::string_view field, char separator);
+
+/// Returns a number with a decimal comma with a point in its place. Empty for any other text.
+[[nodiscard]] std::optional<std::string> with_decimal_point(std::string_view field);
 
 }  // namespace waymark::formats

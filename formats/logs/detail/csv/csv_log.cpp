@@ -87,8 +87,8 @@ Recognition CsvLogReader::recognise(std::string_view head) const {
   while (lines.next()) {
     ++rows;
     if (!split_fields(lines.line(), separator, fields) || fields.size() != width) continue;
-    good += std::any_of(fields.begin(), fields.end(), [](std::string_view field) {
-      const std::optional<double> number = number_from_field(field);
+    good += std::any_of(fields.begin(), fields.end(), [separator](std::string_view field) {
+      const std::optional<double> number = number_from_field(field, separator);
       return number && !std::isnan(*number);
     });
   }

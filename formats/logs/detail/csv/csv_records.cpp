@@ -153,7 +153,10 @@ void CsvRecords::read_readings(Stamp at) {
 
 /// Returns the instant in a column of times, as the field states it.
 std::optional<Stamp> CsvRecords::instant(const BoundColumn& column) {
-  const std::string_view field = fields_[column.field];
+  std::string_view field = fields_[column.field];
+  std::optional<std::string> plain;
+  if (request_.separator != ',' && column.unit != kIso8601) plain = with_decimal_point(field);
+  if (plain) field = *plain;
   std::optional<Stamp> stamp;
   if (column.unit == kIso8601) {
     stamp = stamp_from_iso8601(field);
@@ -189,7 +192,7 @@ std::optional<Stamp> CsvRecords::stamp() {
 double CsvRecords::number(const BoundColumn* column, bool required) {
   if (column == nullptr) return kNoNumber;
   const std::string_view field = fields_[column->field];
-  const std::optional<double> given = number_from_field(field);
+  const std::optional<double> given = number_from_field(field, request_.separator);
   if (!given) {
     const bool comma = field.find(',') != std::string_view::npos;
     complain(*column, fmt::format("expected a number{}, got {}", comma ? " with a decimal point" : "",
