@@ -105,6 +105,12 @@ TEST_CASE("quality: RTK, single and float in one log: each stretch is as good as
   CHECK(contains(result.err, "100 float 0.4 m, 100 fixed 0.02 m"));
   CHECK(contains(result.out, "quality of the fixes"));
 
+  const std::string report = read_text(folder + "out/report.html");
+  CHECK(contains(report, "raw GNSS, fixed"));
+  CHECK(contains(report, "raw GNSS, float"));
+  CHECK(contains(report, "By quality of the fixes"));
+  CHECK(contains(report, "fused, fixed (100 fixes)"));
+
   const RunResult inspected = run({"inspect", folder + "rover.nmea"});
   CHECK(contains(inspected.out, "100 single, 100 float, 100 fixed"));
   CHECK(contains(inspected.out, "their quality stands in: single 3 m x HDOP, float 0.4 m, fixed 0.02 m"));

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/logs/fix_quality.hpp>
 #include <waymark/tools/report/drive/drive_figures.hpp>
 #include <waymark/tools/report/drive/drive_summary.hpp>
 #include <waymark/tools/report/metric_columns.hpp>
@@ -61,6 +62,23 @@ text::Table withheld_table(const evaluation::Evaluation& evaluation) {
       table.rows.push_back(metrics_row(way.label + ", at the ends of outages", way.at_ends));
   }
   return table;
+}
+
+/// Errors of raw and fused positions where the fixes are of one quality.
+text::Table quality_table(const evaluation::Evaluation& evaluation) {
+  text::Table table{.title = "By quality of the fixes", .columns = metrics_heading()};
+  for (const evaluation::QualityMetrics& of : evaluation.by_quality) {
+    const std::string name = fmt::format("{} ({} fixes)", to_string(of.quality), of.fixes);
+    table.rows.push_back(metrics_row("raw, " + name, of.gnss));
+    table.rows.push_back(metrics_row("fused, " + name, of.fused));
+  }
+  return table;
+}
+
+std::string qualities_of(const ReportedDrive& drive) {
+  std::map<FixQuality, std::size_t> counts;
+  for (const evaluation::QualityMetrics& of : drive.evaluation.by_quality) counts[of.quality] = of.fixes;
+  return formats::quality_counts(counts);
 }
 
 std::string count_of_rejections(const ReportedDrive& drive) {
@@ -142,6 +160,7 @@ text::Table account(const ReportedDrive& drive) {
   if (!model.empty()) table.rows.push_back({"error model", model});
   for (const std::string& assumption : stated(drive, "assumed"))
     table.rows.push_back({"assumed", assumption});
+  if (!drive.evaluation.by_quality.empty()) table.rows.push_back({"quality", qualities_of(drive)});
   table.rows.push_back({"rejected", count_of_rejections(drive)});
   table.rows.push_back({"result", outcome(drive)});
   return table;
@@ -196,6 +215,8 @@ drawing::Section summary_section(const ReportedDrive& drive) {
   if (drive.evaluation.truth) section.blocks.emplace_back(truth_table(drive));
   if (!drive.evaluation.at_withheld.empty() && drive.evaluation.withheld > 0)
     section.blocks.emplace_back(withheld_table(drive.evaluation));
+  if (drive.evaluation.truth && !drive.evaluation.by_quality.empty())
+    section.blocks.emplace_back(quality_table(drive.evaluation));
   section.blocks.emplace_back(account(drive));
   return section;
 }

@@ -77,12 +77,19 @@ std::string describe(const Fix& fix, double seconds, double weight) {
     if (std::isfinite(fix.displacement_m)) text += fmt::format(", displacement {:.2f} m", fix.displacement_m);
   }
   if (weight < 1) text += fmt::format(", weight {:.2f}", weight);
+  if (fix.told.quality != FixQuality::unknown) text += fmt::format(", {}", to_string(fix.told.quality));
   return text + fmt::format(", stated sigma {:.3g} m", std::sqrt(fix.covariance.trace() / 2));
 }
 
-/// The raw fixes by status.
+/// The raw fixes by status, the accepted ones by the quality of their solution.
 struct FixSeries {
   drawing::Series accepted{.name = "raw GNSS", .mark = drawing::Mark::points, .look = drawing::Look::raw};
+  drawing::Series fixed{
+      .name = "raw GNSS, fixed", .mark = drawing::Mark::points, .look = drawing::Look::first};
+  drawing::Series floating{
+      .name = "raw GNSS, float", .mark = drawing::Mark::points, .look = drawing::Look::third};
+  drawing::Series dead_reckoned{
+      .name = "raw GNSS, dead reckoned", .mark = drawing::Mark::points, .look = drawing::Look::fourth};
   drawing::Series light{
       .name = "raw GNSS, weight below 1/3", .mark = drawing::Mark::points, .look = drawing::Look::second};
   drawing::Series rejected{
@@ -93,7 +100,17 @@ struct FixSeries {
   [[nodiscard]] drawing::Series& of(const Fix& fix, double weight) {
     if (fix.status == FixStatus::rejected) return rejected;
     if (fix.status == FixStatus::withheld) return withheld;
-    return weight < kSmallWeight ? light : accepted;
+    if (weight < kSmallWeight) return light;
+    switch (fix.told.quality) {
+      case FixQuality::fixed:
+        return fixed;
+      case FixQuality::floating:
+        return floating;
+      case FixQuality::dead_reckoned:
+        return dead_reckoned;
+      default:
+        return accepted;
+    }
   }
 };
 
@@ -137,9 +154,10 @@ drawing::Figure trajectory_figure(const ReportedDrive& drive) {
   drawing::Series fused = poses(drive);
   const double end_s = fused.time.empty() ? 0 : fused.time.back();
   FixSeries raw = fixes(drive);
-  const std::vector<drawing::Series> layers = {truth(drive, end_s),     std::move(raw.accepted),
-                                               std::move(raw.light),    std::move(raw.rejected),
-                                               std::move(raw.withheld), std::move(fused)};
+  const std::vector<drawing::Series> layers = {
+      truth(drive, end_s),     std::move(raw.accepted), std::move(raw.dead_reckoned),
+      std::move(raw.floating), std::move(raw.fixed),    std::move(raw.light),
+      std::move(raw.rejected), std::move(raw.withheld), std::move(fused)};
   for (const drawing::Series& series : layers) {
     if (!series.x.empty()) figure.series.push_back(series);
   }
