@@ -225,4 +225,18 @@ TEST_CASE("gpx: a real track, its points in order and within its bounds") {
   CHECK(GpxReader().recognise(text.substr(0, 65536)).certainty == 1);
 }
 
+TEST_CASE("gpx: fix, sat, hdop and ageofdgpsdata are told") {
+  const auto told = [](const std::string& members) {
+    const std::string point = replaced(kPoint, "<hdop>", members + "<hdop>");
+    return decode(kOpen + point + kClose).fixes.at(0).told;
+  };
+  CHECK(told("<fix>3d</fix>").quality == FixQuality::single);
+  CHECK(told("<fix>dgps</fix>").quality == FixQuality::differential);
+  CHECK(told("").quality == FixQuality::unknown);
+  CHECK(told("<sat>11</sat>").satellites == 11);
+  CHECK(told("").satellites == -1);
+  CHECK(told("").hdop == 0.8);
+  CHECK(told("<ageofdgpsdata>4</ageofdgpsdata>").correction_age_s == 4);
+}
+
 }  // namespace gpx_test

@@ -210,6 +210,24 @@ TEST_CASE("novatel: what else stands in the log is passed over and counted") {
               "read; let the receiver log BESTPOSA"));
 }
 
+TEST_CASE("novatel: the type of a position tells its quality, BESTPOS satellites and age of corrections") {
+  const auto told = [](const std::string& type) {
+    const std::string body = replaced(replaced(kBody, "SINGLE", type), "\"\",0,0,18,9", "\"\",2.5,0,18,9");
+    return decode(bestpos("10", body)).fixes.at(0).told;
+  };
+  CHECK(told("SINGLE").quality == FixQuality::single);
+  CHECK(told("PSRDIFF").quality == FixQuality::differential);
+  CHECK(told("WAAS").quality == FixQuality::differential);
+  CHECK(told("NARROW_FLOAT").quality == FixQuality::floating);
+  CHECK(told("PPP_CONVERGING").quality == FixQuality::floating);
+  CHECK(told("NARROW_INT").quality == FixQuality::fixed);
+  CHECK(told("INS_RTKFIXED").quality == FixQuality::fixed);
+  CHECK(told("PROPAGATED").quality == FixQuality::dead_reckoned);
+  CHECK(told("FIXEDHEIGHT").quality == FixQuality::unknown);
+  CHECK(told("NARROW_INT").satellites == 9);
+  CHECK(told("NARROW_INT").correction_age_s == 2.5);
+}
+
 TEST_CASE("novatel: what is wrong with a message is said with its place") {
   CHECK(first_complaint(replaced(kManualBestpos, "32.8", "32.9")) ==
         "run.log:1:1: BESTPOSA: its checksum is ecbd3409, that of its text " + [] {

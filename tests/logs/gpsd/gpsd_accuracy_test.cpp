@@ -96,4 +96,25 @@ TEST_CASE("gpsd: version and values tell the dialect") {
   CHECK(note("3.22", equal).empty());
 }
 
+TEST_CASE("gpsd: status, the last SKY and dgpsAge are told") {
+  const auto told = [](const std::string& members) {
+    const std::string text =
+        R"({"class":"SKY","device":"/dev/ttyS0","hdop":0.75,"nSat":20,"uSat":12,"satellites":[{"PRN":1}]})"
+        "\n"
+        R"({"class":"TPV","mode":3,"time":"2005-06-09T14:34:45Z","lat":1,"lon":2,"epx":4,"epy":4)" +
+        members + "}\n";
+    return read(text).fixes.at(0).told;
+  };
+  CHECK(told("").quality == FixQuality::unknown);
+  CHECK(told(R"(,"status":2)").quality == FixQuality::differential);
+  CHECK(told(R"(,"status":3)").quality == FixQuality::fixed);
+  CHECK(told(R"(,"status":4)").quality == FixQuality::floating);
+  CHECK(told(R"(,"status":5)").quality == FixQuality::dead_reckoned);
+  CHECK(told(R"(,"status":8)").quality == FixQuality::simulated);
+  CHECK(told(R"(,"status":77)").quality == FixQuality::unknown);
+  CHECK(told("").hdop == 0.75);
+  CHECK(told("").satellites == 12);
+  CHECK(told(R"(,"dgpsAge":1.5)").correction_age_s == 1.5);
+}
+
 }  // namespace gpsd_accuracy_test

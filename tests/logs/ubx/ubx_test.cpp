@@ -1,5 +1,9 @@
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <numbers>
+
+#include "logs/nmea/nmea_sentences.hpp"
 #include "logs/ubx/ubx_epochs.hpp"
 
 namespace ubx_test {
@@ -208,6 +212,72 @@ TEST_CASE("ubx, by the specification: HNR-PVT is read where it is asked for, and
                  "1 positions of HNR-PVT are dead-reckoned from the last GNSS epoch and share its error"));
   request.stream = StreamKind::truth;
   CHECK(*read(log, request).truth.at(0).heading_rad == Approx(std::numbers::pi / 2));
+}
+
+TEST_CASE("ubx, by the specification: Earth-centred positions and velocities, NAV-POSECEF and NAV-SOL") {
+  // 100 m above the equator at 90 degrees east: there east is -x, and north is z.
+  UbxBytes position(20);
+  position.u32(0, kItowMs).u32(8, 637'823'700).u32(16, 500);
+  UbxBytes velocity(20);
+  velocity.u32(0, kItowMs).u32(4, -300).u32(12, 400).u32(16, 10);
+  UbxBytes week(16);
+  week.u32(0, kItowMs).u16(8, 2268).u8(11, 0x03);
+  UbxBytes solution(52);
+  solution.u32(0, kItowMs).u16(8, 2268).u8(10, 3).u8(11, 0x0D).u32(16, 637'823'700).u32(24, 500);
+  solution.u32(28, -300).u32(36, 400).u32(40, 10).u8(47, 9);
+  const std::string parts = ubx_frame(0x0101, position.bytes()) + ubx_frame(0x0111, velocity.bytes()) +
+                            ubx_frame(0x0120, week.bytes());
+  for (const std::string& log : {parts, ubx_frame(0x0106, solution.bytes())}) {
+    const LogData data = read(log);
+    REQUIRE(data.fixes.size() == 1);
+    const GeodeticFix& fix = data.fixes[0];
+    CHECK(fix.latitude_deg == Approx(0).margin(1e-9));
+    CHECK(fix.longitude_deg == Approx(90).epsilon(1e-12));
+    CHECK(fix.height_m == Approx(100).margin(1e-6));
+    CHECK(*fix.speed_mps == Approx(5));
+    CHECK(*fix.course_rad == Approx(std::atan2(3, 4)));
+    CHECK(fix.covariance_en(0, 0) == Approx(12.5));  // (5 m)^2 / 2
+    CHECK(fix.stamp.nanoseconds == kGps);
+  }
+  CHECK(read(ubx_frame(0x0106, solution.bytes())).fixes[0].told.satellites == 9);
+  solution.u32(16, 0);  // a receiver without a fix writes zeros
+  CHECK(decode(ubx_frame(0x0106, solution.bytes())).fixes.empty());
+}
+
+TEST_CASE("ubx: quality, satellites, HDOP and age of corrections are told") {
+  const auto told = [](int type, int flags) {
+    UbxBytes pvt = nav_pvt();
+    pvt.u8(20, type).u8(21, flags).u8(23, 14).u16(78, 4U << 1U);  // corrections of 5 to 10 s
+    UbxBytes dop(18);
+    dop.u32(0, kItowMs).u16(12, 85);
+    return read(pvt_frame(pvt) + ubx_frame(0x0104, dop.bytes())).fixes.at(0).told;
+  };
+  CHECK(told(3, 0x01).quality == FixQuality::single);
+  CHECK(told(3, 0x03).quality == FixQuality::differential);
+  CHECK(told(3, 0x43).quality == FixQuality::floating);
+  CHECK(told(3, 0x83).quality == FixQuality::fixed);
+  CHECK(told(1, 0x01).quality == FixQuality::dead_reckoned);
+  CHECK(told(3, 0x01).satellites == 14);
+  CHECK(told(3, 0x01).hdop == 0.85);
+  CHECK(told(3, 0x03).correction_age_s == 10);
+}
+
+TEST_CASE("ubx: where no frame has a position, NMEA sentences between the frames have it") {
+  namespace nmea = waymark_test::nmea_samples;
+  const std::string raw = ubx_frame(0x0215, std::string(16, 'r'));
+  const std::string log =
+      raw + nmea::rmc("000001") + nmea::gga("000001") + raw + nmea::rmc("000002") + nmea::gga("000002") + raw;
+  LogRequest request;
+  request.default_sigma_m = 3;
+  const LogData data = read(log, request);
+  REQUIRE(data.fixes.size() == 2);
+  CHECK(data.fixes[1].latitude_deg == Approx(48 + 10.8509 / 60));
+  CHECK(data.kinds.at("RXM-RAWX") == 3);
+  CHECK(data.kinds.at("GPGGA") == 2);
+  CHECK(has_note(data,
+                 "no UBX message holds a position; they are those of the NMEA sentences between the frames"));
+  // Frames with positions come first.
+  CHECK(read(pvt_frame(nav_pvt()) + nmea::rmc("000001") + raw, request).fixes.at(0).latitude_deg == 55.5);
 }
 
 }  // namespace ubx_test
