@@ -87,14 +87,14 @@ const char* PositionStream::take_sigma(GeodeticFix& fix, double sigma_m, bool cl
   return nullptr;
 }
 
-void PositionStream::give(LogData& data, const GeodeticFix& fix, std::optional<double> heading_rad) const {
+void PositionStream::give(LogData& data, const GeodeticFix& fix, std::optional<double> heading_rad) {
   if (truth_) {
     data.truth.push_back({fix.stamp, fix.latitude_deg, fix.longitude_deg, fix.height_m, heading_rad});
     return;
   }
   data.fixes.push_back(fix);
   data.fixes.back().source = source_;
-  ++data.qualities[fix.told.quality];
+  ++qualities_[static_cast<std::size_t>(fix.told.quality)];
 }
 
 const char* PositionStream::add(LogData& data, GeodeticFix fix, const StatedAccuracy& accuracy,
@@ -105,6 +105,9 @@ const char* PositionStream::add(LogData& data, GeodeticFix fix, const StatedAccu
 }
 
 void PositionStream::finish(LogData& data) const {
+  for (const FixQuality quality : kFixQualities)
+    if (const std::size_t count = qualities_[static_cast<std::size_t>(quality)]; count > 0)
+      data.qualities[quality] += count;
   const auto note = [&](const std::string& text) { data.notes.push_back(path_ + ": " + text); };
   // There is no note if the figures are plain standard deviations.
   const bool plain = usual_ && meaning_ == AccuracyMeaning::one_sigma;

@@ -44,7 +44,7 @@ class PositionStream {
   /// Adds a position to data.fixes or data.truth.
   /// @param fix with its covariance
   /// @param heading_rad heading of the truth, counter-clockwise from east
-  void give(LogData& data, const GeodeticFix& fix, std::optional<double> heading_rad = std::nullopt) const;
+  void give(LogData& data, const GeodeticFix& fix, std::optional<double> heading_rad = std::nullopt);
   /// Calls set_covariance and give. @return null, or the reason why the position is unusable (then
   /// nothing was added)
   [[nodiscard]] const char* add(LogData& data, GeodeticFix fix, const StatedAccuracy& accuracy,
@@ -77,6 +77,7 @@ class PositionStream {
   std::array<std::size_t, kFixQualities.size()> stated_quality_{};
   std::array<std::size_t, kFixQualities.size()> usual_quality_{};
   std::array<std::size_t, kFixQualities.size()> usual_hdop_{};  ///< times HDOP
+  std::array<std::size_t, kFixQualities.size()> qualities_{};   ///< of all fixes
 };
 
 /// Computes speed and course with their sigmas from a velocity (east, north) and its covariance in

@@ -50,19 +50,21 @@ std::string release_text(const std::string& text) {
 
 /// Returns the number of a member in a line; NaN: it has none. A SKY has a list of satellites, and reading it
 /// as JSON would take longer than all fixes.
-double member_of(std::string_view line, std::string_view quoted_name) {
-  const std::size_t at = line.find(quoted_name);
+double member_of(std::string_view line, std::string_view name_and_colon) {
+  const std::size_t at = line.find(name_and_colon);
   if (at == std::string_view::npos) return kNoNumber;
-  const std::string_view rest = line.substr(at + quoted_name.size());
+  const std::string_view rest = line.substr(at + name_and_colon.size());
   return field_number(rest.substr(0, rest.find_first_of(",}"))).value_or(kNoNumber);
 }
 
 /// Returns what a SKY tells. gpsd may send the dilutions and the satellites in two of them.
 FixDetails sky_of(std::string_view line, const FixDetails& before) {
   FixDetails told = before;
+  constexpr std::size_t kBeforeSatellites = 300;  // the list follows, and is long
+  line = line.substr(0, kBeforeSatellites);
   constexpr double kLargest = 99;  // 99.99: not known
-  if (const double hdop = member_of(line, "\"hdop\":"); hdop > 0 && hdop < kLargest) told.hdop = hdop;
-  if (const double used = member_of(line, "\"uSat\":"); used >= 0 && used < 1000)
+  if (const double hdop = member_of(line, "hdop\":"); hdop > 0 && hdop < kLargest) told.hdop = hdop;
+  if (const double used = member_of(line, "uSat\":"); used >= 0 && used < 1000)
     told.satellites = static_cast<int>(used);
   return told;
 }

@@ -83,7 +83,7 @@ void NmeaDecoder::take_sentence(const NmeaSentence& sentence, std::string_view l
   const NmeaKind kind = nmea_kind(sentence.address);
   if (!is_whole(sentence, kind, column_of(sentence.address), number)) return;
   tally_.add(sentence.address);
-  if (kind == NmeaKind::other) return;
+  if (kind == NmeaKind::other || (kind == NmeaKind::gsa && epoch_.hdop)) return;
   const NmeaFields fields(sentence.fields);
   try {
     const std::optional<std::int64_t> time = nmea_time(kind, fields);

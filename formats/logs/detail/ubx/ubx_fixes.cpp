@@ -108,7 +108,7 @@ void UbxFixDecoder::take_navigation(std::uint16_t key, const UbxPayload& payload
       take_ecef(key, payload);
       break;
     case ubx::kNavVelecef:
-      if (epoch.ecef) epoch.velecef = read_ubx_ecef_velocity(key, payload, *epoch.ecef);
+      epoch.velecef = read_ubx_ecef_velocity(key, payload);
       break;
     case ubx::kNavVelned:
       epoch.velned = read_nav_velned(payload);
@@ -129,7 +129,7 @@ void UbxFixDecoder::take_navigation(std::uint16_t key, const UbxPayload& payload
       epoch.state = read_ubx_state(key, payload);
       if (!epoch.week) epoch.week = read_ubx_week(key, payload);
       take_ecef(key, payload);
-      if (epoch.ecef && !epoch.velecef) epoch.velecef = read_ubx_ecef_velocity(key, payload, *epoch.ecef);
+      if (!epoch.velecef) epoch.velecef = read_ubx_ecef_velocity(key, payload);
       break;
     case ubx::kNavDop:
       epoch.hdop = read_nav_dop(payload);
@@ -178,10 +178,10 @@ void UbxFixDecoder::end_epoch() {
     return corrupt(
         epoch.byte,
         "there is no valid date and no GPS week yet; state 'time: {week: ...}' to use this position");
-  const UbxPlace& place = epoch.precise    ? *epoch.precise
-                          : epoch.solution ? epoch.solution->place
-                          : epoch.plain    ? *epoch.plain
-                                           : *epoch.ecef;
+  const UbxPlace place = epoch.precise    ? *epoch.precise
+                         : epoch.solution ? epoch.solution->place
+                         : epoch.plain    ? *epoch.plain
+                                          : ubx_place(*epoch.ecef);
   if (std::abs(place.latitude_deg) > 90 || std::abs(place.longitude_deg) > 180)
     return corrupt(epoch.byte, fmt::format("the position {}, {} is outside -90 .. 90, -180 .. 180",
                                            place.latitude_deg, place.longitude_deg));
@@ -211,9 +211,9 @@ void UbxFixDecoder::add_sample(const UbxEpoch& epoch, const UbxPlace& place, Sta
   fix.height_m = place.height_m;
   fix.line = epoch.number;
   if (epoch.solution || epoch.velned || epoch.velecef) {
-    const UbxMotion& motion = epoch.solution ? epoch.solution->motion
-                              : epoch.velned ? *epoch.velned
-                                             : *epoch.velecef;
+    const UbxMotion motion = epoch.solution ? epoch.solution->motion
+                             : epoch.velned ? *epoch.velned
+                                            : ubx_motion(*epoch.velecef, place);
     fix.speed_mps = motion.speed_mps;
     fix.speed_sigma_mps = if_positive(motion.speed_accuracy_mps);
     fix.course_rad = motion.course_deg * kDegree;

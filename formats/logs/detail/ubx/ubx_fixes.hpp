@@ -22,10 +22,10 @@ struct UbxEpoch {
   std::optional<UbxSolution> solution;  ///< NAV-PVT (or HNR-PVT)
   std::optional<UbxPlace> precise;      ///< NAV-HPPOSLLH
   std::optional<UbxPlace> plain;        ///< NAV-POSLLH
-  std::optional<UbxPlace> ecef;         ///< NAV-POSECEF, NAV-SOL
+  std::optional<UbxEcef> ecef;          ///< NAV-POSECEF, NAV-SOL
   std::optional<UbxMotion> velned;
-  std::optional<UbxMotion> velecef;  ///< NAV-VELECEF, NAV-SOL
-  std::optional<double> hdop;        ///< NAV-DOP
+  std::optional<UbxEcef> velecef;  ///< NAV-VELECEF, NAV-SOL
+  std::optional<double> hdop;      ///< NAV-DOP
   std::optional<Eigen::Matrix2d> covariance;
   std::optional<UbxFixState> state;  ///< NAV-SOL, NAV-STATUS
   std::optional<UbxDate> utc;        ///< NAV-TIMEUTC

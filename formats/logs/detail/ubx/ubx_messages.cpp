@@ -162,24 +162,32 @@ std::optional<UbxPlace> read_nav_hpposllh(const UbxPayload& payload) {
   return place;
 }
 
-std::optional<UbxPlace> read_ubx_ecef(std::uint16_t key, const UbxPayload& payload) {
+std::optional<UbxEcef> read_ubx_ecef(std::uint16_t key, const UbxPayload& payload) {
   const bool is_sol = key == ubx::kNavSol;
-  const Eigen::Vector3d ecef = read_vector(payload, is_sol ? 12 : 4, 1e2);
+  const UbxEcef position{read_vector(payload, is_sol ? 12 : 4, 1e2),
+                         accuracy(payload.u32(is_sol ? 24 : 16), 1e2)};
   constexpr double kLeast_m = 6.2e6;
   constexpr double kMost_m = 7.5e6;
-  if (!(ecef.norm() > kLeast_m && ecef.norm() < kMost_m)) return std::nullopt;
-  const GeodeticPlace geodetic = geodetic_from_ecef(ecef);
-  return UbxPlace{geodetic.latitude_deg, geodetic.longitude_deg, geodetic.height_m,
-                  accuracy(payload.u32(is_sol ? 24 : 16), 1e2)};
+  const double squared = position.vector.squaredNorm();
+  if (!(squared > kLeast_m * kLeast_m && squared < kMost_m * kMost_m)) return std::nullopt;
+  return position;
 }
 
-UbxMotion read_ubx_ecef_velocity(std::uint16_t key, const UbxPayload& payload, const UbxPlace& place) {
+UbxEcef read_ubx_ecef_velocity(std::uint16_t key, const UbxPayload& payload) {
   const bool is_sol = key == ubx::kNavSol;
-  const Eigen::Vector3d enu =
-      enu_from_ecef(place.latitude_deg, place.longitude_deg) * read_vector(payload, is_sol ? 28 : 4, 1e2);
+  return {read_vector(payload, is_sol ? 28 : 4, 1e2), accuracy(payload.u32(is_sol ? 40 : 16), 1e2)};
+}
+
+UbxPlace ubx_place(const UbxEcef& position) {
+  const GeodeticPlace geodetic = geodetic_from_ecef(position.vector);
+  return {geodetic.latitude_deg, geodetic.longitude_deg, geodetic.height_m, position.accuracy};
+}
+
+UbxMotion ubx_motion(const UbxEcef& velocity, const UbxPlace& place) {
+  const Eigen::Vector3d enu = enu_from_ecef(place.latitude_deg, place.longitude_deg) * velocity.vector;
   UbxMotion motion;
   motion.speed_mps = enu.head<2>().norm();
-  motion.speed_accuracy_mps = accuracy(payload.u32(is_sol ? 40 : 16), 1e2);
+  motion.speed_accuracy_mps = velocity.accuracy;
   motion.course_deg = std::atan2(enu.x(), enu.y()) / kDegree;
   // Across the course the velocity is as uncertain as along it.
   if (motion.speed_mps > motion.speed_accuracy_mps)

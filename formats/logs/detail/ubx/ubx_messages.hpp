@@ -81,6 +81,12 @@ struct UbxMotion {
   double course_accuracy_deg = 0;
 };
 
+/// A position or a velocity in Earth-centred axes, m or m/s.
+struct UbxEcef {
+  Eigen::Vector3d vector{0, 0, 0};
+  double accuracy = 0;  ///< of all three dimensions; 0: none
+};
+
 /// The state of a fix.
 struct UbxFixState {
   /// 0 none, 1 dead reckoning, 2 2D, 3 3D, 4 GNSS and dead reckoning, 5 time only
@@ -116,12 +122,15 @@ struct UbxWeek {
 [[nodiscard]] UbxPlace read_nav_posllh(const UbxPayload& payload);
 /// Returns nothing if the message is marked invalid.
 [[nodiscard]] std::optional<UbxPlace> read_nav_hpposllh(const UbxPayload& payload);
-/// Reads NAV-POSECEF or NAV-SOL. Its accuracy is that of all three dimensions. Empty if the point is not near
-/// the surface of the Earth: receivers without a fix write zeros.
-[[nodiscard]] std::optional<UbxPlace> read_ubx_ecef(std::uint16_t key, const UbxPayload& payload);
-/// Reads NAV-VELECEF or NAV-SOL. @param place where the receiver is
-[[nodiscard]] UbxMotion read_ubx_ecef_velocity(std::uint16_t key, const UbxPayload& payload,
-                                               const UbxPlace& place);
+/// Reads the position of NAV-POSECEF or NAV-SOL. Empty if the point is not near the surface of the Earth:
+/// receivers without a fix write zeros.
+[[nodiscard]] std::optional<UbxEcef> read_ubx_ecef(std::uint16_t key, const UbxPayload& payload);
+/// Reads the velocity of NAV-VELECEF or NAV-SOL.
+[[nodiscard]] UbxEcef read_ubx_ecef_velocity(std::uint16_t key, const UbxPayload& payload);
+/// Converts them, which takes longer than to read them.
+[[nodiscard]] UbxPlace ubx_place(const UbxEcef& position);
+/// @param place where the receiver is
+[[nodiscard]] UbxMotion ubx_motion(const UbxEcef& velocity, const UbxPlace& place);
 /// Returns the horizontal dilution of precision; 0: not known.
 [[nodiscard]] double read_nav_dop(const UbxPayload& payload);
 [[nodiscard]] UbxMotion read_nav_velned(const UbxPayload& payload);
