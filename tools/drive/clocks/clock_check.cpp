@@ -1,7 +1,6 @@
 #include <waymark/tools/drive/clocks/clock_check.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
 #include <waymark/tools/drive/clocks/lag_search.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
@@ -18,23 +18,19 @@
 namespace waymark::drive {
 namespace {
 
-constexpr double kWeek_s = 604'800;
+constexpr double kWeek_s = formats::kGpsWeekNanoseconds / 1e9;
 constexpr double kRollover_s = 1024 * kWeek_s;
-constexpr double kGpsEpoch_s = 315'964'800;
+constexpr double kGpsEpoch_s = formats::kGpsEpochPosix / 1e9;
 constexpr double kHalfHour_s = 1800;
 constexpr double kMostZone_s = 14 * 3600;
 
-std::string zone_name(double seconds) {
-  const double hours = std::abs(seconds) / 3600;
-  return fmt::format("{:g} h of a time zone", hours);
-}
-
-/// Large offsets, and what is left of them.
+/// An offset that has a name.
 struct Known {
   double seconds;
   std::string name;
 };
 
+/// Returns the large offsets nearest to one, and none at all: leap seconds may be beside each.
 std::vector<Known> large_offsets(double seconds) {
   std::vector<Known> known = {{0, ""}};
   const double sign = seconds < 0 ? -1 : 1;
@@ -48,7 +44,8 @@ std::vector<Known> large_offsets(double seconds) {
     known.push_back({weeks * kWeek_s, std::abs(weeks) == 1 ? std::string("a GPS week")
                                                            : fmt::format("{} GPS weeks", std::abs(weeks))});
   const double zone = std::round(seconds / kHalfHour_s) * kHalfHour_s;
-  if (zone != 0 && std::abs(zone) <= kMostZone_s) known.push_back({zone, zone_name(zone)});
+  if (zone != 0 && std::abs(zone) <= kMostZone_s)
+    known.push_back({zone, fmt::format("{:g} h of a time zone", std::abs(zone) / 3600)});
   return known;
 }
 
@@ -67,21 +64,21 @@ std::optional<ClockOffset> common_offset(const SyncReport& report) {
   return report.yaw_rate && report.yaw_rate->sigma_s < report.speed->sigma_s ? report.yaw_rate : report.speed;
 }
 
-std::string named(double seconds, double sigma_s) {
-  const std::string name = name_of_offset(seconds, std::clamp(3 * sigma_s, 0.5, 5.0));
-  return name.empty() ? "" : ", " + name;
-}
-
 std::string remedy(const ClockOffset& offset) {
   return fmt::format("--sync applies it; or state 'time: {{offset: {:.2f}}}' for the logs of 'odometry'",
                      -offset.late_s);
 }
 
-/// Returns why no fixes, or few, lie within the odometry. @param apart how far the logs begin apart
-std::string explanation(const LoggedMotion& motion) {
-  if (const auto offset = common_offset(estimate_clock_offsets(motion.odometry, motion.fixes, {})))
+/// Returns the offset at which all that is logged fits best. Empty: it fits nowhere.
+std::optional<ClockOffset> logged_offset(const LoggedMotion& motion) {
+  return common_offset(estimate_clock_offsets(motion.odometry, motion.fixes, {}));
+}
+
+/// Returns why no fixes, or few, lie within the odometry.
+std::string explanation(const LoggedMotion& motion, const std::optional<ClockOffset>& offset) {
+  if (offset)
     return fmt::format("the motion of both fits if the odometry's clock is {:.2f} s late{}: {}",
-                       offset->late_s, named(offset->late_s, offset->sigma_s), remedy(*offset));
+                       offset->late_s, offset_in_words(*offset), remedy(*offset));
   const double apart = seconds_between(motion.fixes.front().stamp, motion.odometry.front().stamp);
   const std::string name = name_of_offset(apart, 600);
   if (!name.empty()) return fmt::format("they begin {:.0f} s apart, which is near {}", apart, name);
@@ -93,14 +90,15 @@ bool lies_within(const Fix& fix, const std::vector<OdometrySample>& odometry) {
   return fix.stamp >= odometry.front().stamp && fix.stamp <= odometry.back().stamp;
 }
 
-[[noreturn]] void refuse(const LoggedMotion& motion, const DriveDescription& description) {
+[[noreturn]] void refuse(const LoggedMotion& motion, const std::optional<ClockOffset>& offset,
+                         const DriveDescription& description) {
   const auto outside = std::count_if(motion.fixes.begin(), motion.fixes.end(),
                                      [&](const Fix& fix) { return !lies_within(fix, motion.odometry); });
   throw InputError(
       fmt::format("{}: {} of {} fixes lie outside the odometry: odometry {}, fixes {} on the "
                   "scale '{}'; {}",
                   description.path, outside, motion.fixes.size(), span_text(motion.odometry),
-                  span_text(motion.fixes), to_string(description.scale()), explanation(motion)));
+                  span_text(motion.fixes), to_string(description.scale()), explanation(motion, offset)));
 }
 
 /// @throws InputError if no fix lies within the odometry
@@ -108,15 +106,15 @@ void refuse_without_overlap(const DriveLogs& logs, const DriveDescription& descr
   const LoggedMotion motion = logged_motion(logs, description);
   const auto within = [&](const Fix& fix) { return lies_within(fix, motion.odometry); };
   if (!motion.fixes.empty() && std::none_of(motion.fixes.begin(), motion.fixes.end(), within))
-    refuse(motion, description);
+    refuse(motion, logged_offset(motion), description);
 }
 
 /// @throws InputError if most fixes lie outside the odometry, and the motion of both fits elsewhere
 void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& description) {
   const LoggedMotion motion = logged_motion(logs, description);
-  const auto offset = common_offset(estimate_clock_offsets(motion.odometry, motion.fixes, {}));
+  const std::optional<ClockOffset> offset = logged_offset(motion);
   constexpr double kOneClock_s = 2;
-  if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(motion, description);
+  if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(motion, offset, description);
 }
 
 /// Compares half a second about zero with a minute about it, and with everything if nothing fits at zero.
@@ -144,7 +142,7 @@ std::string clock_warning(const PreparedDrive& drive) {
   if (!offset || !offset->is_significant() || std::abs(offset->late_s) < kOneClock_s) return {};
   return fmt::format(
       "the odometry's clock seems {:.2f} +- {:.2f} s late against the fixes{}, correlation {:.3f}: {}",
-      offset->late_s, std::hypot(offset->sigma_s, kSmoothing_s), named(offset->late_s, offset->sigma_s),
+      offset->late_s, std::hypot(offset->sigma_s, kSmoothing_s), offset_in_words(*offset),
       offset->correlation, remedy(*offset));
 }
 
@@ -161,6 +159,11 @@ std::string name_of_offset(double seconds, double tolerance_s) {
     return known.name + (known.name.empty() || leap->empty() ? "" : " and ") + *leap;
   }
   return {};
+}
+
+std::string offset_in_words(const ClockOffset& offset) {
+  const std::string name = name_of_offset(offset.late_s, std::clamp(3 * offset.sigma_s, 0.5, 5.0));
+  return name.empty() ? "" : ", " + name;
 }
 
 LoggedMotion logged_motion(const DriveLogs& logs, const DriveDescription& description) {

@@ -15,6 +15,10 @@ namespace waymark::drive {
 /// @param tolerance_s how far off it may be
 [[nodiscard]] std::string name_of_offset(double seconds, double tolerance_s);
 
+struct ClockOffset;
+/// Returns ", " and the name of an estimated offset, for messages. Empty: it has none.
+[[nodiscard]] std::string offset_in_words(const ClockOffset& offset);
+
 /// prepare_drive(), and a warning if odometry and fixes fit at another offset of their clocks.
 /// @throws InputError what prepare_drive throws; and if most fixes lie outside the odometry and their motion
 /// fits elsewhere, or nowhere: it names the offset and the remedy

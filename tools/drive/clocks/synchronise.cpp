@@ -22,10 +22,9 @@ bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity
   }
   const bool is_one = offset->is_significant();
   if (is_one) delay_s += offset->late_s;
-  const std::string name = name_of_offset(offset->late_s, std::clamp(3 * offset->sigma_s, 0.5, 5.0));
   notes.push_back(
       fmt::format("sync: the odometry's {} {} late by {:.3f} s{} (sigma {:.3f} s, correlation {:.4f}); {}",
-                  quantity, is_one ? "was" : "seems", offset->late_s, name.empty() ? "" : ", " + name,
+                  quantity, is_one ? "was" : "seems", offset->late_s, offset_in_words(*offset),
                   offset->sigma_s, offset->correlation,
                   is_one ? "applied" : "within what smoothing and three sigmas explain, so not applied"));
   return is_one;

@@ -91,9 +91,8 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
   for (std::size_t i = 0; i < logs.gnss.size(); ++i) {
     const DriveLogs::Log& log = logs.gnss[i];
     const std::size_t before = fixes.size();
-    std::vector<GeodeticFix> settled = log.data.fixes;
-    settle_shared_stamps(settled, log.file, report);
-    append_log(settled, log, description.scale(), fixes, report.gnss, report);
+    append_log(log.data.fixes, log, description.scale(), fixes, report.gnss, report);
+    settle_shared_stamps(std::span(fixes).subspan(before), log.file, report);
     if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)
       add_logged_velocity(logs.velocity[i], description.scale(), std::span(fixes).subspan(before), report);
     report_clock(log, report);

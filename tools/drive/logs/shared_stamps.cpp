@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -29,7 +30,7 @@ bool same_position(const GeodeticFix& a, const GeodeticFix& b) {
   return a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg;
 }
 
-std::vector<Group> groups_of(const std::vector<GeodeticFix>& fixes) {
+std::vector<Group> groups_of(std::span<const GeodeticFix> fixes) {
   std::vector<Group> groups;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (i == 0 || fixes[i].stamp != fixes[i - 1].stamp) groups.push_back({i, i, false});
@@ -57,7 +58,7 @@ struct Pattern {
   double expected_slope = 0;
 };
 
-Pattern pattern_of(const std::vector<GeodeticFix>& fixes, const std::vector<Group>& groups) {
+Pattern pattern_of(std::span<const GeodeticFix> fixes, const std::vector<Group>& groups) {
   constexpr double kMoves_m = 2;
   Pattern pattern;
   double x = 0, y = 0, xx = 0, xy = 0;
@@ -82,7 +83,7 @@ Pattern pattern_of(const std::vector<GeodeticFix>& fixes, const std::vector<Grou
   return pattern;
 }
 
-double median_distance(const std::vector<GeodeticFix>& fixes, const std::vector<Group>& groups) {
+double median_distance(std::span<const GeodeticFix> fixes, const std::vector<Group>& groups) {
   std::vector<double> distances;
   for (const Group& group : groups)
     if (group.differ) distances.push_back(way(fixes[group.begin], fixes[group.end - 1]).norm());
@@ -90,7 +91,7 @@ double median_distance(const std::vector<GeodeticFix>& fixes, const std::vector<
 }
 
 /// Spreads the fixes of a stamp over the time to the next one.
-void spread(const std::vector<Group>& groups, std::vector<GeodeticFix>& fixes) {
+void spread(const std::vector<Group>& groups, std::span<GeodeticFix> fixes) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < groups.size(); ++i)
     intervals.push_back(seconds_between(fixes[groups[i - 1].begin].stamp, fixes[groups[i].begin].stamp));
@@ -102,7 +103,7 @@ void spread(const std::vector<Group>& groups, std::vector<GeodeticFix>& fixes) {
 }
 
 /// The usual case needs no more: fixes that share a stamp follow each other.
-std::size_t adjacent_differences(const std::vector<GeodeticFix>& fixes) {
+std::size_t adjacent_differences(std::span<const GeodeticFix> fixes) {
   std::size_t count = 0;
   for (std::size_t i = 1; i < fixes.size(); ++i)
     count += fixes[i].stamp == fixes[i - 1].stamp && !same_position(fixes[i], fixes[i - 1]);
@@ -111,9 +112,9 @@ std::size_t adjacent_differences(const std::vector<GeodeticFix>& fixes) {
 
 }  // namespace
 
-void settle_shared_stamps(std::vector<GeodeticFix>& fixes, const std::string& file, PrepareReport& report) {
+void settle_shared_stamps(std::span<GeodeticFix> fixes, const std::string& file, PrepareReport& report) {
   if (adjacent_differences(fixes) < kFewest) return;
-  const std::vector<GeodeticFix> as_logged = fixes;
+  const std::vector<GeodeticFix> as_logged(fixes.begin(), fixes.end());
   std::stable_sort(fixes.begin(), fixes.end(),
                    [](const GeodeticFix& a, const GeodeticFix& b) { return a.stamp < b.stamp; });
   const std::vector<Group> groups = groups_of(fixes);
@@ -121,7 +122,7 @@ void settle_shared_stamps(std::vector<GeodeticFix>& fixes, const std::string& fi
       std::count_if(groups.begin(), groups.end(), [](const Group& group) { return group.differ; }));
   const Pattern pattern = pattern_of(fixes, groups);
   if (shared < kFewest || kShareOf * shared < groups.size() || pattern.moving < kFewest / 2) {
-    fixes = as_logged;
+    std::copy(as_logged.begin(), as_logged.end(), fixes.begin());
     return;
   }
   if (pattern.slope < 0.5 * pattern.expected_slope)

@@ -1,8 +1,8 @@
 /// Fixes of one log that share their stamps and differ: seconds without their decimals, or two receivers.
 #pragma once
 
+#include <span>
 #include <string>
-#include <vector>
 
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
@@ -15,6 +15,6 @@ namespace waymark::drive {
 /// @param fixes of one log, in its order; sorted if they were spread
 /// @param file for messages
 /// @throws InputError for two receivers; it names the remedy
-void settle_shared_stamps(std::vector<GeodeticFix>& fixes, const std::string& file, PrepareReport& report);
+void settle_shared_stamps(std::span<GeodeticFix> fixes, const std::string& file, PrepareReport& report);
 
 }  // namespace waymark::drive

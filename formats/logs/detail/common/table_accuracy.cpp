@@ -65,29 +65,19 @@ constexpr std::array<QualityWord, 42> kQualityWords{{
     {"nan", {FixQuality::unknown}},
 }};
 
-template <std::size_t kCount>
-std::optional<TableQuality> at(const std::array<TableQuality, kCount>& qualities, int index) {
-  if (index < 0 || index >= static_cast<int>(kCount)) return std::nullopt;
-  return qualities[static_cast<std::size_t>(index)];
-}
-
-std::optional<TableQuality> of_gga(int index) {
+/// Returns the quality of a number of GGA or RTKLIB, where 0 is no fix.
+std::optional<TableQuality> of_number(int index, FixQuality (*quality_of)(int)) {
   if (index == 0) return kNoFix;
-  const FixQuality quality = gga_quality(index);
-  return quality == FixQuality::unknown ? std::nullopt : std::optional(TableQuality{quality});
-}
-
-std::optional<TableQuality> of_rtklib(int index) {
-  if (index == 0) return kNoFix;
-  const FixQuality quality = rtklib_quality(index);
+  const FixQuality quality = quality_of(index);
   return quality == FixQuality::unknown ? std::nullopt : std::optional(TableQuality{quality});
 }
 
 /// sensor_msgs/NavSatStatus: -1 no fix, 0 fix, 1 with satellite corrections, 2 with ground corrections. The
 /// last is often RTK, but does not say so.
 std::optional<TableQuality> of_ros(int index) {
-  return at<4>({kNoFix, {FixQuality::single}, {FixQuality::differential}, {FixQuality::differential}},
-               index + 1);
+  if (index == -1) return kNoFix;
+  if (index == 0) return TableQuality{FixQuality::single};
+  return index == 1 || index == 2 ? std::optional(TableQuality{FixQuality::differential}) : std::nullopt;
 }
 
 }  // namespace
@@ -150,8 +140,8 @@ std::optional<TableQuality> table_quality(std::string_view field, std::string_vi
   if (const std::optional<double> number = field_number(field)) {
     if (*number != std::floor(*number)) return std::nullopt;
     const int index = static_cast<int>(std::clamp(*number, -2.0, 100.0));
-    if (code == "rtklib") return of_rtklib(index);
-    return code == "ros" ? of_ros(index) : of_gga(index);
+    if (code == "ros") return of_ros(index);
+    return of_number(index, code == "rtklib" ? rtklib_quality : gga_quality);
   }
   std::string word;  // "RTK_Fixed" is "rtkfixed"
   for (const char c : field)
