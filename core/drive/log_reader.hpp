@@ -55,6 +55,15 @@ struct RowFilter {
   bool equal = true;
 };
 
+/// The origin of a local plane of metres: east and north of it are along its tangent (ENU).
+struct LocalOrigin {
+  double latitude_deg = 0;
+  double longitude_deg = 0;
+  double height_m = 0;  ///< above the ellipsoid
+
+  friend bool operator==(const LocalOrigin&, const LocalOrigin&) = default;
+};
+
 /// A file that belongs to a log and defines how it is read.
 struct CompanionFile {
   std::string path;  ///< for messages
@@ -93,6 +102,9 @@ struct LogRequest {
   std::map<FixQuality, double> sigma_by_quality;
   /// of a table (CSV); other rows are not read
   std::optional<RowFilter> where;
+  /// In place of metric_frame: `easting` and `northing` are metres east and north of this place, on its
+  /// tangent plane.
+  std::optional<LocalOrigin> local_origin;
 };
 
 /// One instant on two clocks: when the logger wrote a message, and the GNSS time in the message.

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <waymark/formats/logs/detail/common/geocentric.hpp>
+#include <waymark/formats/logs/detail/place/geocentric.hpp>
 
 namespace geocentric_test {
 

@@ -39,7 +39,7 @@ TEST_CASE("metric positions: easting and northing in the frame are a place on th
   REQUIRE(data.fixes.size() == 1);
   CHECK(data.fixes[0].latitude_deg == Approx(33.3).margin(1e-5));
   CHECK(data.fixes[0].longitude_deg == Approx(44.4).margin(1e-5));
-  CHECK(data.notes[1] == "log.csv:1:1: easting is column 'easting' by default");
+  CHECK(data.notes[0] == "log.csv:1:1: columns by their default names: time, easting, northing");
 }
 
 TEST_CASE("metric positions: columns, units and hemisphere are as stated, for truth too") {
@@ -99,8 +99,8 @@ TEST_CASE("metric positions: without a frame they are no place, and the error sa
   request.metric_frame.reset();
   CHECK_THROWS_MATCHES(
       read("time,easting,northing\n1,5,6\n", request), InputError,
-      Message("log.csv:1:1: easting and northing are coordinates of a stated frame: the drive needs "
-              "'frame: {utm_zone: ..., origin: [...]}'"));
+      Message("log.csv:1:1: easting and northing are coordinates of a stated frame: the log needs "
+              "'frame: {utm_zone: 32N}' or 'frame: {enu_origin: [LATITUDE, LONGITUDE]}'"));
   // A table that has degrees, too, needs no frame.
   CHECK(read("time,easting,northing,latitude,longitude\n1,5,6,50,8\n", request).fixes.at(0).latitude_deg ==
         50);

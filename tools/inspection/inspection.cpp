@@ -101,6 +101,11 @@ LogRequest basic_request(const LogInspection& log, StreamKind stream) {
   request.default_sigma_m = kNoAccuracy;
   for (const FixQuality quality : kFixQualities) request.sigma_by_quality[quality] = kNoAccuracy;
   if (stream == StreamKind::odometry) request.readings = formats::odometry_channels();
+  if (log.table) {
+    request.date = kAnyDate;
+    if (const ColumnSummary* column = receiver_column(log))
+      request.where = RowFilter{column->name, column->receivers.front(), true};
+  }
   for (const auto& [key, path] : log.companions) {
     std::string text;
     const std::string trouble = formats::read_in_pieces(path, [&](std::string_view piece) { text += piece; });
@@ -144,10 +149,12 @@ void survey(LogInspection& log, const InspectionOptions& options) {
   log.kinds = data.kinds;
   if (log.format == "csv") {
     log.table = dynamic_cast<TableSurvey&>(*pass.decoder).summary();
-    const ColumnSummary* time = nullptr;
-    for (const ColumnSummary& column : log.table->columns)
-      if (column.proposal.quantity == "time") time = &column;
-    log.clock = clock_of_column(time, options.now);
+    const auto proposed = [&log](std::string_view quantity) -> const ColumnSummary* {
+      for (const ColumnSummary& column : log.table->columns)
+        if (column.proposal.quantity == quantity) return &column;
+      return nullptr;
+    };
+    log.clock = clock_of_column(proposed("time"), proposed("date"), options.now);
   } else {
     log.can = dynamic_cast<CanSurvey&>(*pass.decoder).summary();
     const bool since_start = log.can->stamps.earliest().seconds() < 0.9e9;
@@ -195,7 +202,7 @@ class StreamReading {
     Pass gnss, odometry;
     LogRequest positions = basic_request(log_, StreamKind::gnss);
     LogRequest motions = basic_request(log_, StreamKind::odometry);
-    positions.date = date;
+    if (date) positions.date = date;
     const bool of_columns = log_.table || log_.can;
     if (!of_columns || map_columns(log_, positions)) open(gnss, reader_, log_.path, positions);
     if (log_.table && has_whole_odometry()) motions.readings.clear();
@@ -323,6 +330,13 @@ const StampSeries* LogInspection::span() const {
   if (fixes && fixes->fixes > 0) return &fixes->stamps;
   if (odometry) return &odometry->stamps;
   if (can && can->frames > 0) return &can->stamps;
+  return nullptr;
+}
+
+const ColumnSummary* receiver_column(const LogInspection& log) {
+  if (!log.table) return nullptr;
+  for (const ColumnSummary& column : log.table->columns)
+    if (!column.receivers.empty()) return &column;
   return nullptr;
 }
 

@@ -79,6 +79,9 @@ struct InspectionOptions {
 /// Returns the columns that are proposed for a stream of a table or a bus, by quantity.
 [[nodiscard]] std::map<std::string, const ColumnSummary*> proposed_columns(const LogInspection& log,
                                                                            StreamKind stream);
+/// Returns the column that tells the receivers of a table apart; null if there is none. Only the rows of the first
+/// one are read.
+[[nodiscard]] const ColumnSummary* receiver_column(const LogInspection& log);
 /// Returns "2021-07-26T04:40:55.124Z", or seconds if the clock has no date.
 [[nodiscard]] std::string date_text(Stamp stamp, const LogClock& clock);
 

@@ -20,23 +20,42 @@ double factor_of(const std::string& unit) {
 
 }  // namespace
 
-LogClock clock_of_column(const ColumnSummary* time, Stamp now) {
+LogClock clock_of_column(const ColumnSummary* time, const ColumnSummary* date, Stamp now) {
   LogClock clock;
   if (time == nullptr)
     return {TimeScale::unix_time, false, false, false, false, "no column of times is known"};
   const std::string column = fmt::format("column '{}'", time->name);
-  if (time->proposal.unit == "iso8601")
+  const std::string& unit = time->proposal.unit;
+  if (unit == "iso8601" || unit == "dmy" || unit == "mdy")
     return {TimeScale::utc, true, true, false, true, column + " holds dates (UTC if they name no zone)"};
+  if (unit == "excel" || unit == "matlab" || unit == "filetime")
+    return {TimeScale::utc, true, true, false, true, column + " holds dates as numbers (taken as UTC)"};
+  if (date != nullptr)
+    return {TimeScale::utc,
+            true,
+            true,
+            false,
+            true,
+            fmt::format("column '{}' holds the dates of {} (UTC if it names no zone)", date->name, column)};
+  if (unit == "hms")
+    return {TimeScale::utc,
+            true,
+            true,
+            false,
+            false,
+            column + " holds times of day; the date shown is invented, state 'date' under 'time'"};
   const std::vector<std::string> words = words_of(time->name);
   const auto says = [&](std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
   };
+  const bool of_gps = std::any_of(words.begin(), words.end(),
+                                  [](const std::string& word) { return word.starts_with("gps"); });
   const double first = time->range.smallest * factor_of(time->proposal.unit);
   const double last = time->range.largest * factor_of(time->proposal.unit);
   const double gps_now = convert(now, TimeScale::utc, TimeScale::gps).seconds();
   if (says("sow") || says("tow") || says("itow") || says("week"))
     return {TimeScale::gps, false, false, true, true, column + " counts seconds of a GPS week"};
-  if (first < 0.3e9 || (first < kEarliestUnix && !says("gps")))
+  if (first < 0.3e9 || (first < kEarliestUnix && !of_gps))
     return {TimeScale::unix_time,
             false,
             false,
@@ -45,16 +64,15 @@ LogClock clock_of_column(const ColumnSummary* time, Stamp now) {
             fmt::format("{} counts from {:.6g}: no date; seconds since an unknown start, or of a week",
                         column, first)};
   if (says("unix") || says("posix") || says("epoch"))
-    return {
-        says("gps") || says("gnss") ? TimeScale::utc : TimeScale::unix_time,
-        false,
-        true,
-        false,
-        true,
-        column + " counts Unix seconds" + (says("gps") || says("gnss") ? " of a clock steered by GNSS" : "")};
-  if (says("gps") && last <= gps_now)
+    return {of_gps || says("gnss") ? TimeScale::utc : TimeScale::unix_time,
+            false,
+            true,
+            false,
+            true,
+            column + " counts Unix seconds" + (of_gps || says("gnss") ? " of a clock steered by GNSS" : "")};
+  if (of_gps && last <= gps_now)
     return {TimeScale::gps, false, true, false, true, column + " counts GPS seconds since 1980"};
-  if (says("gps"))
+  if (of_gps)
     return {TimeScale::utc,
             false,
             true,

@@ -7,7 +7,8 @@ namespace waymark::inspection {
 
 /// Judges by the name of the time column and by its numbers.
 /// @param time null if the table has none
-[[nodiscard]] LogClock clock_of_column(const ColumnSummary* time, Stamp now);
+/// @param date null if it has no column of dates
+[[nodiscard]] LogClock clock_of_column(const ColumnSummary* time, const ColumnSummary* date, Stamp now);
 
 /// Converts an instant to another scale. Stamps near the ends of int64, which only damaged logs
 /// have, stay in range.

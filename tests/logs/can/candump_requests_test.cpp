@@ -47,7 +47,7 @@ TEST_CASE("candump: a column that does not fit the DBC is told with what does") 
                 "'yawrate' is no quantity of the odometry stream; did you mean 'yaw_rate'?");
   LogRequest clock = fixes();
   clock.columns["gnss_time"] = from("Epoch", "iso8601");
-  check_refused(clock, "gnss_time: a signal is a number, not an ISO 8601 date");
+  check_refused(clock, "gnss_time: a signal is a number, never in 'iso8601'; its units are s, ms, us, ns");
   LogRequest without_channels = request_of(StreamKind::odometry, {{"speed", from("FL")}});
   without_channels.readings.clear();
   CHECK_THROWS_MATCHES(CandumpReader().open("car.log", without_channels), UsageError,

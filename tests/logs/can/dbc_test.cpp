@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/can/dbc.hpp>
+#include <waymark/formats/logs/detail/common/unit_words.hpp>
 
 namespace dbc_test {
 

@@ -11,6 +11,8 @@
 #include <numbers>
 #include <string>
 
+#include <fmt/format.h>
+
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/nmea/nmea.hpp>
 #include <waymark/formats/text/iso8601.hpp>
@@ -35,10 +37,10 @@ inline std::string line(const std::string& body) {
 }
 
 inline std::string rmc(const std::string& time, const std::string& date = "010409") {
-  return line("GPRMC," + time + ",A,4810.8509,N,01133.9095,E,10,90," + date + ",,,A");
+  return line(fmt::format("GPRMC,{},A,4810.8509,N,01133.9095,E,10,90,{},,,A", time, date));
 }
 inline std::string gga(const std::string& time) {
-  return line("GPGGA," + time + ",4810.8509,N,01133.9095,E,1,04,2.5,500.5,M,46.5,M,,");
+  return line(fmt::format("GPGGA,{},4810.8509,N,01133.9095,E,1,04,2.5,500.5,M,46.5,M,,", time));
 }
 
 inline LogRequest utc() {

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include <filesystem>
+#include <numbers>
 #include <regex>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "program/support/material.hpp"
@@ -193,6 +195,127 @@ TEST_CASE("inspect: init makes drives that run of raw logs: Potsdamer Platz, Nag
   check_runs(
       {aarhus + "candump.log.gz", aarhus + "canmod-gps.dbc", aarhus + "obd_speed.csv", aarhus + "imu.csv.gz"},
       40e3, 42e3);
+}
+
+namespace {
+
+/// A table of fixes that a program wrote in its own way, on the circle of `write_drive`.
+struct Dialect {
+  const char* name;
+  const char* header;
+  /// @param second since 12:00:00 UTC of the dialect's day, 2020-09-13
+  std::string (*row)(int second, double latitude, double longitude);
+};
+
+int whole(double x) {
+  return static_cast<int>(x);
+}
+double minutes(double degrees) {
+  return 60 * (degrees - whole(degrees));
+}
+
+constexpr double kUnix = 1599998400;  // 2020-09-13T12:00:00Z
+
+const Dialect kDialects[] = {
+    {"german spreadsheet", "date;time;latitude;longitude\n",
+     [](int s, double lat, double lon) {
+       std::string row = fmt::format("13.09.2020;12:00:{:02};{:.9f};{:.9f}", s, lat, lon);
+       for (std::size_t i = row.find(';'); i < row.size(); ++i)
+         if (row[i] == '.') row[i] = ',';
+       return row;
+     }},
+    {"american dates", "Date,Time,Lat (deg),Lon (deg)\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("09/13/2020,12:00:{:02} PM,{:.9f},{:.9f}", s, lat, lon);
+     }},
+    {"days of a spreadsheet", "Time,Latitude,Longitude\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{:.10f},{:.9f},{:.9f}", 44087.5 + s / 86400., lat, lon);
+     }},
+    {"days of MATLAB", "time,lat,lon\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{:.9f},{:.9f},{:.9f}", 738047.5 + s / 86400., lat, lon);
+     }},
+    {"FILETIME", "Timestamp,Latitude,Longitude\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{},{:.9f},{:.9f}", 116444736000000000 + (1599998400LL + s) * 10'000'000, lat, lon);
+     }},
+    {"NMEA's numbers", "UTC date,UTC time,Lat,N/S,Lon,E/W\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("130920,1200{:02}.00,{:02}{:010.7f},N,{:03}{:010.7f},E", s, whole(lat),
+                          minutes(lat), whole(lon), minutes(lon));
+     }},
+    {"degrees, minutes, seconds", "utc,latitude,longitude\n",
+     [](int s, double lat, double lon) {
+       const auto text = [](double x, char side) {
+         return fmt::format("{}°{}'{:.6f}{}", whole(x), whole(minutes(x)), minutes(minutes(x)), side);
+       };
+       return fmt::format("2020/09/13 12:00:{:02},{},{}", s, text(lat, 'N'), text(lon, 'E'));
+     }},
+    {"week and seconds of the week", "gps_week,gps_seconds_of_week,lat,lon\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("2123,{}.000,{:.9f},{:.9f}", 43218 + s, lat, lon);
+     }},
+    {"GPS seconds", "gpstime,lat,lon\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{:.3f},{:.9f},{:.9f}", kUnix + s - 315964800 + 18, lat, lon);
+     }},
+    {"rostopic", "%time,field.latitude,field.longitude,field.position_covariance0\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{}000000000,{:.9f},{:.9f},25", 1599998400 + s, lat, lon);
+     }},
+    {"a row of units", "time,lat,lon\nms,rad,rad\n",
+     [](int s, double lat, double lon) {
+       const double radian = std::numbers::pi / 180;
+       return fmt::format("{}000,{:.12f},{:.12f}", 1599998400 + s, lat * radian, lon * radian);
+     }},
+    {"a month by name", "DateTime,Lat,Lng\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("13-Sep-2020 12:00:{:02},{:.9f},{:.9f}", s, lat, lon);
+     }},
+    {"no names", "",
+     [](int s, double lat, double lon) { return fmt::format("{},{:.9f},{:.9f}", 1599998400 + s, lat, lon); }},
+    {"two receivers", "time_unix,receiver,lat,lon\n",
+     [](int s, double lat, double lon) {
+       return fmt::format("{0},front,{1:.9f},{2:.9f}\n{0},rear,{3:.9f},{2:.9f}", 1599998400 + s, lat, lon,
+                          lat + 0.01);
+     }},
+};
+
+}  // namespace
+
+TEST_CASE("init: tables in the dialects of this world give the same fixes, at the same instants") {
+  for (const Dialect& dialect : kDialects) {
+    INFO(dialect.name);
+    const std::string folder = fresh_folder();
+    std::string fixes = dialect.header;
+    std::string odometry = "time_unix,speed_mps,yaw_rate_radps\n";
+    for (int s = 0; s < 40; ++s) {  // 10 m/s to the north
+      fixes += dialect.row(s, 48.1 + s * 10 / 111200., 11.2 + (s % 2) * 1e-7) + "\n";
+      for (int i = 0; i < 10; ++i) odometry += fmt::format("{:.1f},10,0\n", kUnix + s + 0.1 * i);
+    }
+    write_text(folder + "fixes.csv", fixes);
+    write_text(folder + "odometry.csv", odometry);
+    const RunResult init =
+        run({"init", folder + "fixes.csv", folder + "odometry.csv", "-o", folder + "drive.yaml"});
+    INFO(init.err);
+    REQUIRE(init.code == 0);
+    const RunResult fused = run({"run", folder + "drive.yaml", "-o", folder + "out", "-m", "g2"});
+    INFO(fused.err + fused.out);
+    REQUIRE(fused.code == 0);
+    CHECK(contains(fused.out, "399 m by odometry"));
+    CHECK(contains(fused.out, "40 fixes"));
+    CHECK(contains(fused.out, "0 fixes outside the odometry"));
+  }
+}
+
+TEST_CASE("init: metres in a plane are named with the keys to state") {
+  const std::string folder = fresh_folder();
+  std::string fixes = "t_unix,x,y\n";
+  for (int s = 0; s < 40; ++s) fixes += fmt::format("{},{},{}\n", 1599998400 + s, 10 * s, 2 * s);
+  write_text(folder + "fixes.csv", fixes);
+  const RunResult init = run({"init", folder + "fixes.csv", "-o", "-"});
+  CHECK(contains(init.err, "column 'x' may be metres: state 'easting: x', 'northing: y' under columns"));
 }
 
 }  // namespace inspect_test

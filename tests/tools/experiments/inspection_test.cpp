@@ -312,7 +312,14 @@ TEST_CASE("inspection: names of columns and signals say quantity, unit and sense
   CHECK(told("WHEEL_SPEED_FL") == "wheel_speed_front_left||");
   CHECK(told("rear_right_ticks") == "wheel_ticks_rear_right||");
   CHECK(told("speed_valid") == "||");
-  CHECK(told("nsat") == "||");
+  CHECK(told("nsat") == "satellites||");
+  CHECK(told("gps_seconds_of_week") == "time|s|");
+  CHECK(told("gpstime") == "time||");
+  CHECK(told("gps_week") == "date|gps_week|");
+  CHECK(told("field.position_covariance0") == "sigma_east|m^2|");
+  CHECK(told("field.status.status") == "quality|ros|");
+  CHECK(told("N/S") == "latitude_hemisphere||");
+  CHECK(told("lat (rad)") == "latitude|rad|");
   CHECK_FALSE(propose_quantity("hacc_m_first_60s_only").remark.empty());
 }
 

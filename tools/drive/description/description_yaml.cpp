@@ -14,6 +14,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
+#include <waymark/tools/drive/description/frame_entries.hpp>
 #include <waymark/tools/drive/description/log_config.hpp>
 #include <waymark/tools/drive/description/source_entries.hpp>
 
@@ -36,41 +37,17 @@ void read_time(const YamlSection& top, DriveDescription& drive) {
   if (drive.to_s && *drive.to_s <= drive.from_s.value_or(0)) time->fail("to", "must be greater than 'from'");
 }
 
-/// Reads 32, "32N" or "32S"; a plain number is north.
-int read_zone(const YamlSection& frame) {
-  std::string text;
-  frame.read("utm_zone", text);
-  bool north = true;
-  if (!text.empty() && (text.back() == 'N' || text.back() == 'S')) {
-    north = text.back() == 'N';
-    text.pop_back();
-  }
-  int zone = 0;
-  for (const char c : text) {
-    const bool good = c >= '0' && c <= '9' && zone < 100;
-    zone = good ? 10 * zone + (c - '0') : 100;
-  }
-  if (zone < 1 || zone > 60) frame.fail_value("utm_zone", "a zone such as 32N or 56S");
-  return north ? zone : -zone;
-}
-
 void read_frame(const YamlSection& top, DriveDescription& drive) {
   const auto frame = top.section("frame", {"utm_zone", "origin"});
   if (!frame) return;
-  if (frame->has("utm_zone")) drive.utm_zone = read_zone(*frame);
-  if (!frame->has("origin")) return;
-  if (!drive.utm_zone)
-    frame->fail("origin", "needs a stated utm_zone, because it is in coordinates of that zone");
-  Eigen::Vector2d origin;
-  frame->read("origin", origin);
-  drive.utm_origin = origin;
+  const ZoneAndOrigin read = read_zone_and_origin(*frame);
+  drive.utm_zone = read.zone;
+  drive.utm_origin = read.origin;
 }
 
 /// Returns the frame in which logs may give positions in metres.
 std::optional<Frame> metric_frame(const DriveDescription& drive) {
-  if (!drive.utm_zone) return std::nullopt;
-  const Eigen::Vector2d origin = drive.utm_origin.value_or(Eigen::Vector2d::Zero());
-  return Frame{std::abs(*drive.utm_zone), *drive.utm_zone > 0, origin.x(), origin.y()};
+  return frame_of({drive.utm_zone, drive.utm_origin});
 }
 
 void read_assembly(const YamlSection& section, OdometryAssembly& assembly) {
@@ -182,7 +159,8 @@ void read_first_pose(const YamlSection& top, DriveDescription& drive) {
 
 void read_truth(const YamlSection& top, DriveDescription& drive) {
   if (!top.has("truth")) return;
-  const YamlSection section(top.node("truth"), "truth", top.file(), log_keys({"accuracy", "reference"}));
+  const YamlSection section(top.node("truth"), "truth", top.file(),
+                            log_keys({"accuracy", "frame", "reference"}));
   LogRequest request;
   request.stream = StreamKind::truth;
   request.metric_frame = metric_frame(drive);

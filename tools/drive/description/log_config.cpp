@@ -11,6 +11,7 @@
 #include <waymark/formats/logs/detail/common/quantity.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/text/iso8601.hpp>
+#include <waymark/tools/drive/description/frame_entries.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -144,7 +145,7 @@ LogConfig read_log_config(const YamlSection& section, LogRequest request, const 
         fmt::format("{}{}: 'file' is missing", log.place, formats::to_string(log.request.stream)));
   log.file = resolved(folder, file);
   section.read("format", log.format);
-  for (const char* key : {"separator", "where"})
+  for (const char* key : {"separator", "where", "frame"})
     if (section.has(key) && log.format != "csv" && log.format != "auto")
       section.fail(key, fmt::format("belongs to the format csv, not to {}", log.format));
   for (const std::string_view key : kCompanions) {
@@ -159,6 +160,7 @@ LogConfig read_log_config(const YamlSection& section, LogRequest request, const 
   read_columns(section, log.format, log.request);
   read_time(section, log.request);
   read_accuracy(section, log.request);
+  read_log_frame(section, log.request);
   return log;
 }
 

@@ -21,8 +21,8 @@ std::vector<std::string_view> odometry_keys() {
                    "speed_delay", "yaw_rate_delay", "model", "options", "calibration", "nodes", "loss"});
 }
 std::vector<std::string_view> gnss_keys() {
-  return log_keys({"kind", "name", "accuracy", "velocity", "antenna", "period", "delay", "withhold_every",
-                   "withheld", "heading", "modeling", "calibration", "gate", "common"});
+  return log_keys({"kind", "name", "accuracy", "frame", "velocity", "antenna", "period", "delay",
+                   "withhold_every", "withheld", "heading", "modeling", "calibration", "gate", "common"});
 }
 
 /// @param without one of the keys, which has no meaning in this form of an entry

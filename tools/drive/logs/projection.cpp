@@ -9,7 +9,7 @@
 
 #include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
-#include <waymark/formats/logs/detail/common/utm.hpp>
+#include <waymark/formats/logs/detail/place/utm.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {

@@ -107,6 +107,16 @@ bool same_fixes(const LogInspection& a, const LogInspection& b) {
          near(p.longitude.largest, q.longitude.largest);
 }
 
+/// Why a log without positions or motion is not used; the remark on its metres says what can be stated.
+std::string without_channels(const LogInspection& log) {
+  std::string reason = "it has no channel that a drive needs";
+  if (!log.table) return reason;
+  for (const ColumnSummary& column : log.table->columns)
+    if (column.proposal.quantity.empty() && column.proposal.remark.starts_with("may be metres"))
+      return fmt::format("{}; column '{}' {}", reason, column.name, column.proposal.remark);
+  return reason;
+}
+
 class Deciding {
  public:
   explicit Deciding(const std::vector<LogInspection>& logs) : logs_(logs), used_(logs.size(), false) {}
@@ -121,7 +131,7 @@ class Deciding {
       if (!told_.contains(i))
         say(i, fmt::format("not used: {}", has_positions(logs_[i]) || !channels_of(logs_[i]).empty()
                                                ? "other logs have the same channels"
-                                               : "it has no channel that a drive needs"));
+                                               : without_channels(logs_[i])));
     }
     if (proposal_.gnss.empty())
       proposal_.decisions.emplace_back("no log with positions was found: fill in gnss");

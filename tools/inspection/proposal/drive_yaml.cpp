@@ -2,9 +2,11 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>
 #include <waymark/tools/inspection/log_clock.hpp>
@@ -131,6 +133,14 @@ class Writer {
     }
   }
 
+  /// Returns the day on which another log begins; without one, a day that the user sees to be invented.
+  [[nodiscard]] std::string likely_day(const LogInspection& log) const {
+    for (const LogInspection& other : logs_)
+      if (&other != &log && other.clock.dated && other.clock.known && other.span() != nullptr)
+        return date_text(other.span()->earliest(), other.clock).substr(0, 10);
+    return "2000-01-01";
+  }
+
   /// Writes the clock of the log if it differs from that of the drive.
   void time_of(const LogInspection& log, const std::string& indent) {
     const LogClock& clock = log.clock;
@@ -141,6 +151,9 @@ class Writer {
            fmt::format("{}{}; the week is that of the dated log", check, clock.reason));
     } else if (clock.of_week) {
       line(indent + "# time: {week: 2300}", "fill in the GPS week to get dates");
+    } else if (log.table && clock.dated && !clock.known && clock.names_its_own) {
+      line(fmt::format("{}time: {{date: {}}}", indent, likely_day(log)),
+           "CHECK: the day of the first row; " + clock.reason);
     } else if (log.format == "nmea" && !clock.known) {
       line(indent + "# time: {date: 2000-01-01}", "CHECK: fill in the day of the first fix; " + clock.reason);
     } else if (!clock.dated && dated_) {
@@ -183,7 +196,7 @@ class Writer {
     const bool has_unit = known != nullptr && known->units.size() > 1;
     const bool position = quantity == "latitude" || quantity == "longitude";
     if (has_unit && !position && !from.proposal.unit_known && from.proposal.unit.empty() &&
-        quantity != "time")
+        quantity != "time" && quantity != "quality" && quantity != "date")
       add(fmt::format("no unit is named; {} is assumed", known->units.front().name));
     const std::vector<ColumnSummary>& all = log.table ? log.table->columns : log.can->signals;
     for (const ColumnSummary& other : all) {
@@ -207,6 +220,12 @@ class Writer {
                        log.table->separator == ';'    ? "semicolon"
                        : log.table->separator == '\t' ? "tab"
                                                       : "blank"));
+    if (const ColumnSummary* column = receiver_column(log)) {
+      line(fmt::format("{}where: {}", indent,
+                       scalar(fmt::format("{} == {}", column->name, column->receivers.front()))),
+           fmt::format("CHECK: the rows of one receiver; column '{}' also has {}", column->name,
+                       joined(std::span(column->receivers).subspan(1))));
+    }
     if (log.table || log.can) {
       line(indent + "columns:");
       const auto columns = proposed_columns(log, stream);

@@ -1,3 +1,4 @@
+#include <waymark/formats/logs/detail/common/unit_words.hpp>
 #include <waymark/tools/inspection/survey/can_survey.hpp>
 
 #include <algorithm>

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <span>
 
+#include <waymark/formats/logs/detail/common/unit_words.hpp>
+
 namespace waymark::inspection {
 namespace {
 
@@ -18,9 +20,9 @@ constexpr std::array kKnown{
     Known{
         "time",
         "t|time|timestamp|time stamp|stamp|gps sow|gps tow|gps time|gps seconds|sow|tow|itow|seconds of week|"
-        "time of week|t gps|t gps clock|gps week second|unix|unix time|epoch|posix time|t unix|utc|utc "
+        "time of week|t gps|t gps clock|gps week second|gps second|week second|week seconds|unix|unix time|epoch|posix time|t unix|utc|utc "
         "time|gps time unix|time unix|seconds|secs|sec|datetime|date time|gps timestamp|host time|log time|"
-        "t s|gpst|rostime|ros time|header stamp"},
+        "t s|t utc|gpst|gpstime|gps seconds of week|gps time of week|rostime|ros time|header stamp"},
     Known{"latitude", "lat|latitude|gps lat|gps latitude|gnss lat|gnss latitude"},
     Known{"longitude", "lon|lng|long|longitude|gps lon|gps longitude|gnss lon|gnss longitude|gps lng"},
     Known{
@@ -31,31 +33,45 @@ constexpr std::array kKnown{
           "h|gps accuracy|hpe|epe|accuracy horizontal"},
     Known{"accuracy_east", "epx|accuracy east|acc east|acc e"},
     Known{"accuracy_north", "epy|accuracy north|acc north|acc n"},
-    Known{"sigma_east",
-          "sde|sd e|sd east|std e|std east|sigma e|sigma east|sigma lon|std lon|lon std|lon sigma"},
-    Known{"sigma_north",
-          "sdn|sd n|sd north|std n|std north|sigma n|sigma north|sigma lat|std lat|lat std|lat sigma"},
-    Known{"covariance_en_signed_root", "sdne|sdne signed root"},
+    Known{
+        "sigma_east",
+        "position covariance0|sde|sd e|sd east|std e|std east|sigma e|sigma east|sigma lon|std lon|lon std|lon sigma"},
+    Known{
+        "sigma_north",
+        "position covariance4|sdn|sd n|sd north|std n|std north|sigma n|sigma north|sigma lat|std lat|lat std|lat sigma"},
+    Known{"covariance_en_signed_root", "sdne|sdne signed root|position covariance1"},
     Known{"speed_accuracy", "speed acc|speed accuracy|s acc|sacc|speed sigma|eps"},
     Known{"course_accuracy",
           "heading acc|heading accuracy|course acc|course accuracy|head acc|epd|track accuracy"},
     Known{"course",
           "course|cog|track|bearing|course over ground|head mot|heading motion|gps course|gps heading"},
     Known{"heading", "heading|yaw|azimuth|hdg|psi"},
-    Known{"valid",
-          "valid|fix|fix valid|gps valid|position valid|pos valid|q|quality|fix quality|gga mode|gga "
-          "quality|fix ok"},
+    Known{"valid", "valid|fix|fix valid|gps valid|position valid|pos valid|fix ok"},
+    Known{"quality",
+          "q|quality|fix quality|gga mode|gga quality|gps quality|gnss quality|fix type|fixtype|solution|sol "
+          "type|solution type|rtk|rtk status|rtk state|status status|navsat status|mode"},
+    Known{"hdop", "hdop|gps hdop|gnss hdop|h dop"},
+    Known{
+        "satellites",
+        "satellites|sats|n sats|nsat|nsats|num sats|num sat|numsv|num sv|satellites used|sats used|n sv|sv used|"
+        "number of satellites|siv"},
+    Known{"correction_age", "correction age|age|diff age|dgps age|age of corrections|corr age|diffage"},
+    Known{"date", "date|day|utc date|gps date|gnss date|datum|gps week|week|week number|wn|gpsweek"},
+    Known{"latitude_hemisphere", "ns|n s|lat hemisphere|latitude hemisphere|lat dir|north south|lat ns"},
+    Known{"longitude_hemisphere",
+          "ew|e w|lon hemisphere|longitude hemisphere|lon dir|east west|lon ew|long ew"},
     Known{"gnss_time", "gnss epoch|gps epoch|epoch utc"},
-    Known{"yaw_rate",
-          "yaw rate|yawrate|yaw vel|yaw velocity|yawvel|omega|omega z|w|turn rate|yawrate projected|yaw rate "
-          "projected|yawrate calibrated|yaw rate calibrated|yawrate raw|psi dot|psidot|vehicle yaw rate"},
+    Known{
+        "yaw_rate",
+        "twist twist angular z|twist angular z|yaw rate|yawrate|yaw vel|yaw velocity|yawvel|omega|omega z|w|turn rate|yawrate projected|yaw rate "
+        "projected|yawrate calibrated|yaw rate calibrated|yawrate raw|psi dot|psidot|vehicle yaw rate"},
     Known{"reverse", "reverse|reverse gear|is reverse|backwards|gear reverse"},
     Known{"steering_angle", "steering angle|steering|steer angle|steer|steering wheel angle|swa|steer ang"},
     Known{"distance", "distance|odometer|odo|trip|travelled|distance travelled|mileage"},
     Known{"wheel_ticks", "ticks|wheel ticks|odo count|counts|counter|encoder|odo counter|pulses"},
     Known{
         "speed",
-        "v|speed|velocity|vel|vehicle speed|v fwd|speed fwd|forward speed|forward velocity|ground "
+        "twist twist linear x|twist linear x|v|speed|velocity|vel|vehicle speed|v fwd|speed fwd|forward speed|forward velocity|ground "
         "speed|gspeed|"
         "g speed|sog|speed over ground|wheel speed|obd speed|can speed|gps speed|odo speed|vx|v x|veh speed|"
         "vehspd|vehiclespeed|s1 pid 0 d vehicle speed"}};
@@ -71,24 +87,6 @@ constexpr std::array kInertial{
         "gyro",
         "gyro|gyr|gyroscope|angular rate|angular velocity|angular vel|angularvelocity|rate|omega|w|ang rate"},
     Known{"acceleration", "acceleration|accel|acc|a|accelerometer|linear acceleration|specific force"}};
-
-struct UnitWord {
-  std::string_view word, unit;
-};
-constexpr std::array kUnits{
-    UnitWord{"mps", "m/s"},     UnitWord{"m/s", "m/s"},     UnitWord{"ms-1", "m/s"},
-    UnitWord{"kmh", "km/h"},    UnitWord{"kph", "km/h"},    UnitWord{"kmph", "km/h"},
-    UnitWord{"km/h", "km/h"},   UnitWord{"mph", "mph"},     UnitWord{"kn", "kn"},
-    UnitWord{"kt", "kn"},       UnitWord{"kts", "kn"},      UnitWord{"knots", "kn"},
-    UnitWord{"mm/s", "mm/s"},   UnitWord{"mmps", "mm/s"},   UnitWord{"radps", "rad/s"},
-    UnitWord{"rad/s", "rad/s"}, UnitWord{"rps", "rad/s"},   UnitWord{"degps", "deg/s"},
-    UnitWord{"dps", "deg/s"},   UnitWord{"deg/s", "deg/s"}, UnitWord{"deg", "deg"},
-    UnitWord{"degrees", "deg"}, UnitWord{"rad", "rad"},     UnitWord{"m", "m"},
-    UnitWord{"meters", "m"},    UnitWord{"metres", "m"},    UnitWord{"cm", "cm"},
-    UnitWord{"mm", "mm"},       UnitWord{"s", "s"},         UnitWord{"sec", "s"},
-    UnitWord{"ms", "ms"},       UnitWord{"msec", "ms"},     UnitWord{"us", "us"},
-    UnitWord{"ns", "ns"},       UnitWord{"nsec", "ns"},     UnitWord{"mps2", "m/s^2"},
-    UnitWord{"m/s2", "m/s^2"},  UnitWord{"m/s^2", "m/s^2"}, UnitWord{"g", "g"}};
 
 std::string joined_words(std::span<const std::string> words) {
   std::string text;
@@ -108,13 +106,6 @@ bool has_name(std::string_view names, std::string_view name) {
   }
 }
 
-std::string_view unit_of(std::string_view word) {
-  for (const UnitWord& known : kUnits) {
-    if (known.word == word) return known.unit;
-  }
-  return {};
-}
-
 /// Returns the dimension of a unit.
 std::string_view dimension(std::string_view unit) {
   if (unit == "m/s" || unit == "km/h" || unit == "mph" || unit == "kn" || unit == "mm/s") return "speed";
@@ -126,8 +117,11 @@ std::string_view dimension(std::string_view unit) {
 }
 
 std::string_view dimension_of(std::string_view quantity) {
-  if (quantity == "time" || quantity == "gnss_time") return "time";
-  if (quantity.starts_with("wheel_ticks") || quantity == "valid" || quantity == "reverse") return "";
+  if (quantity == "time" || quantity == "gnss_time" || quantity == "correction_age") return "time";
+  if (quantity.starts_with("wheel_ticks") || quantity == "valid" || quantity == "reverse" ||
+      quantity == "quality" || quantity == "hdop" || quantity == "satellites" || quantity == "date" ||
+      quantity.ends_with("hemisphere"))
+    return "";
   if (quantity.starts_with("acceleration")) return "acceleration";
   if (quantity == "yaw_rate" || quantity.starts_with("gyro")) return "rate";
   if (quantity.starts_with("wheel_speed") || quantity == "speed" || quantity == "speed_accuracy")
@@ -190,7 +184,7 @@ std::string beginning_of(std::span<const std::string> words, std::size_t& used) 
 
 void read_unit(std::span<const std::string> words, ColumnProposal& proposal) {
   for (auto word = words.rbegin(); word != words.rend(); ++word) {
-    const std::string_view unit = unit_of(*word);
+    const std::string_view unit = formats::known_unit(*word);
     if (unit.empty() || dimension(unit) != dimension_of(proposal.quantity)) continue;
     proposal.unit = unit;
     proposal.unit_known = true;
@@ -211,6 +205,28 @@ void read_sense(std::span<const std::string> words, ColumnProposal& proposal) {
   if (proposal.quantity != "heading" && proposal.quantity != "course") return;
   if (counter && has("east")) proposal.convention = "ccw_from_east";
   if (clockwise && has("north")) proposal.convention = "cw_from_north";
+}
+
+bool has_date(std::span<const std::string> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word == "date" || word == "datum"; });
+}
+
+/// The words tell how a status, a date or a variance is coded.
+void read_code(std::span<const std::string> words, ColumnProposal& proposal) {
+  if (proposal.quantity == "quality") {
+    if (words.front() == "status" || words.front() == "navsat")
+      proposal.unit = "ros";
+    else if (words.front() == "q")
+      proposal.unit = "rtklib";
+    else if (words.front() != "gga")
+      proposal.remark = "the numbers of RTKLIB (1 fixed), of ROS or of GGA (4 fixed) are meant";
+  } else if (proposal.quantity == "date" && joined_words(words) != "day" && !has_date(words)) {
+    proposal.unit = "gps_week";
+  } else if (!words.empty() && words.back().starts_with("covariance")) {
+    proposal.unit = "m^2";
+    proposal.unit_known = true;
+  }
 }
 
 }  // namespace
@@ -250,10 +266,22 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
+bool names_receiver(std::string_view name) {
+  static constexpr std::array<std::string_view, 8> kWords{"receiver", "antenna", "rover",    "device",
+                                                          "rx",       "gnss id", "frame id", "source"};
+  std::vector<std::string> words = words_of(name);
+  if (words.size() > 1 && (words.back() == "id" || words.back() == "name") && words.front() != "frame")
+    words.pop_back();
+  const std::string text = joined_words(words);
+  return std::find(kWords.begin(), kWords.end(), text) != kWords.end();
+}
+
 ColumnProposal propose_quantity(std::string_view name) {
   ColumnProposal proposal;
   const std::vector<std::string> all = words_of(name);
   std::span<const std::string> words(all);
+  // rostopic writes "field." before the name of each member.
+  if (words.size() > 1 && words.front() == "field") words = words.subspan(1);
   proposal.quantity = part_of(words);
   std::size_t used = words.size();
   if (proposal.quantity.empty()) proposal.quantity = beginning_of(words, used);
@@ -264,11 +292,13 @@ ColumnProposal propose_quantity(std::string_view name) {
   const auto understood = [](const std::string& word) {
     static constexpr std::array<std::string_view, 12> kHarmless{
         "cw", "ccw", "from", "east", "north", "flag", "raw", "value", "filtered", "clock", "gps", "gnss"};
-    return !unit_of(word).empty() || std::find(kHarmless.begin(), kHarmless.end(), word) != kHarmless.end();
+    return !formats::known_unit(word).empty() ||
+           std::find(kHarmless.begin(), kHarmless.end(), word) != kHarmless.end();
   };
   if (!rest.empty() && !understood(rest.front())) return {};
   read_unit(rest.empty() ? words : rest, proposal);
   read_sense(words, proposal);
+  read_code(words, proposal);
   const auto odd = std::find_if_not(rest.begin(), rest.end(), understood);
   if (odd != rest.end()) proposal.remark = "the name is not known from '" + *odd + "' on";
   return proposal;

@@ -20,6 +20,9 @@ struct ColumnProposal {
 /// become {gyro,x,degps}, {wheel,speed,fl}, {speed,km/h}.
 [[nodiscard]] std::vector<std::string> words_of(std::string_view name);
 
+/// Tells whether a column of this name may tell the receivers of a table apart: "receiver", "antenna_id".
+[[nodiscard]] bool names_receiver(std::string_view name);
+
 /// Reads a name with a table of known words: first its beginning, then its unit and sense.
 [[nodiscard]] ColumnProposal propose_quantity(std::string_view name);
 

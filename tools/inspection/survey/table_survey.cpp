@@ -4,33 +4,73 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/logs/detail/csv/csv_table.hpp>
-#include <waymark/formats/text/iso8601.hpp>
+#include <waymark/formats/logs/detail/csv/table_header.hpp>
 
 namespace waymark::inspection {
 namespace {
 
+/// Tells the unit of times by their size. Seconds since 1970 have ten digits now.
+/// @param step the median of the steps between times
+void check_times(ColumnSummary& column, double largest, double step) {
+  ColumnProposal& proposal = column.proposal;
+  const auto days_of = [&](const char* unit, const char* program) {
+    proposal.unit = unit;
+    proposal.remark = fmt::format("the numbers look like the days of {}", program);
+  };
+  constexpr double kLongestStep = 0.01;  // of a day
+  const bool days = step > 0 && step < kLongestStep && column.range.smallest > 0;
+  if (largest > 1e17 && largest < 1.8e17)
+    proposal.unit = "filetime";
+  else if (largest > 1e17)
+    proposal.unit = "ns";
+  else if (largest > 1e14)
+    proposal.unit = "us";
+  else if (largest > 1e11)
+    proposal.unit = "ms";
+  else if (days && column.range.smallest > 7.2e5 && largest < 8e5)
+    days_of("matlab", "MATLAB");
+  else if (days && column.range.smallest > 3.2e4 && largest < 6e4 && step < 1e-3)
+    days_of("excel", "a spreadsheet");
+}
+
+/// Tells how a date of numbers is written.
+void check_dates(ColumnSummary& column, double largest) {
+  ColumnProposal& proposal = column.proposal;
+  if (proposal.unit == "gps_week") return;
+  if (largest >= 19'800'101 && largest < 21'000'000) {
+    proposal.unit_known = true;  // 20240131
+  } else if (largest > 10'100 && largest < 320'000) {
+    proposal.unit = "dmy";
+    proposal.remark = "six digits are taken as day, month, year, as in NMEA";
+  } else if (largest > 500 && largest < 10'000) {
+    proposal.unit = "gps_week";
+    proposal.remark = "the numbers look like GPS weeks";
+  } else {
+    proposal = {};
+  }
+}
+
 /// Larger angles and times have another unit than the default.
-void check_range(ColumnSummary& column) {
+void check_range(ColumnSummary& column, double step) {
   ColumnProposal& proposal = column.proposal;
   const double largest =
       column.range.count == 0 ? 0 : std::max(std::abs(column.range.smallest), std::abs(column.range.largest));
-  if (proposal.quantity == "time") {
-    // Seconds since 1970 have ten digits now.
-    if (largest > 1e17)
-      proposal.unit = "ns";
-    else if (largest > 1e14)
-      proposal.unit = "us";
-    else if (largest > 1e11)
-      proposal.unit = "ms";
+  if (column.range.count == 0 && proposal.unit_known) return;  // words
+  if (proposal.quantity == "time") return check_times(column, largest, step);
+  if (proposal.quantity == "date") return check_dates(column, largest);
+  const bool position = proposal.quantity == "latitude" || proposal.quantity == "longitude";
+  if (position && largest > 90 && largest < 18'060 && (largest > 360 || proposal.quantity == "latitude")) {
+    proposal.unit = "ddmm";
+    proposal.remark = "the numbers look like degrees and minutes, ddmm.mmmm";
     return;
   }
   if (proposal.unit_known) return;
-  const bool position = proposal.quantity == "latitude" || proposal.quantity == "longitude";
   if (position && largest > 360) {
     proposal.unit = "1e-7deg";
     proposal.remark = "the numbers look like degrees times 10^7";
@@ -54,6 +94,89 @@ void check_range(ColumnSummary& column) {
   }
 }
 
+/// The size of a unit of times in seconds.
+double seconds_of(const std::string& unit) {
+  if (unit == "ms") return 1e-3;
+  if (unit == "us") return 1e-6;
+  if (unit == "ns") return 1e-9;
+  if (unit == "filetime") return 1e-7;
+  return unit == "excel" || unit == "matlab" ? 86400 : 1;
+}
+
+/// Beside a date, numbers such as 120000.25 are times of day as NMEA writes them. A date that stands beside
+/// complete instants has no use.
+void settle_times_of_day(std::vector<ColumnSummary>& columns) {
+  const auto proposed = [&](std::string_view quantity) {
+    return std::find_if(columns.begin(), columns.end(),
+                        [&](const ColumnSummary& column) { return column.proposal.quantity == quantity; });
+  };
+  const auto date = proposed("date");
+  const auto time = proposed("time");
+  if (date == columns.end()) return;
+  if (time == columns.end()) {
+    date->proposal = {};
+    return;
+  }
+  if (time->range.count == 0) {
+    if (time->proposal.unit != "hms") date->proposal = {};
+    return;
+  }
+  if (date->proposal.unit == "gps_week") {
+    if (time->range.largest > 604'800 && time->proposal.unit.empty()) date->proposal = {};
+    return;
+  }
+  if (time->range.largest >= 240'000 || time->range.smallest < 0) {
+    date->proposal = {};
+  } else if (time->range.largest > 86'400) {
+    time->proposal.unit = "hms";
+    time->proposal.remark = "the numbers look like hhmmss";
+  } else {
+    time->proposal.remark = "seconds of the day are assumed; for hhmmss the unit is hms";
+  }
+}
+
+/// Whether the numbers are those of a coordinate in degrees of a drive: not whole, and within a degree.
+bool may_be_degrees(const ColumnSummary& column, double largest) {
+  const Range& range = column.range;
+  return range.count > 0 && column.words == 0 && range.smallest > -largest && range.largest < largest &&
+         range.largest - range.smallest < 1 &&
+         std::min(std::abs(range.smallest), std::abs(range.largest)) > 1 &&
+         std::floor(range.smallest) != range.smallest && std::floor(range.largest) != range.largest;
+}
+
+/// A table without names: the numbers tell the times and the position, if they are where they usually are.
+void propose_by_numbers(std::vector<ColumnSummary>& columns, bool first_rises) {
+  if (columns.empty() || !first_rises) return;
+  const auto propose = [](ColumnSummary& column, const char* quantity) {
+    column.proposal = {quantity, column.proposal.unit, "", false,
+                       fmt::format("the table has no names; its numbers look like a {}", quantity)};
+  };
+  propose(columns.front(), "time");
+  for (std::size_t i = 1; i + 1 < columns.size(); ++i) {
+    if (!may_be_degrees(columns[i], 90) || !may_be_degrees(columns[i + 1], 180)) continue;
+    propose(columns[i], "latitude");
+    propose(columns[i + 1], "longitude");
+    return;
+  }
+}
+
+/// Metres in a plane are named, because only the user knows their origin.
+void remark_on_metres(std::vector<ColumnSummary>& columns) {
+  const auto named = [&](std::initializer_list<std::string_view> names) {
+    return std::find_if(columns.begin(), columns.end(), [&](const ColumnSummary& column) {
+      const std::string name = formats::plain_name(column.name);
+      return column.range.count > 0 && std::find(names.begin(), names.end(), name) != names.end();
+    });
+  };
+  const auto east = named({"x", "x_m", "east", "east_m", "e", "easting", "easting_m", "enu_e", "pos_x"});
+  const auto north = named({"y", "y_m", "north", "north_m", "n", "northing", "northing_m", "enu_n", "pos_y"});
+  if (east == columns.end() || north == columns.end() || !east->proposal.quantity.empty()) return;
+  east->proposal.remark = fmt::format(
+      "may be metres: state 'easting: {}', 'northing: {}' under columns, and a frame: 'frame: {{utm_zone: "
+      "32N}}' or 'frame: {{enu_origin: [latitude, longitude]}}'",
+      east->name, north->name);
+}
+
 /// Removes a proposal if another column has the same one.
 void give_way(ColumnSummary& column, const ColumnSummary& to) {
   const std::string remark =
@@ -63,7 +186,8 @@ void give_way(ColumnSummary& column, const ColumnSummary& to) {
 }
 
 bool names_unit(const ColumnProposal& proposal) {
-  static constexpr std::array<std::string_view, 3> kWithout{"valid", "wheel_ticks", "reverse"};
+  static constexpr std::array<std::string_view, 6> kWithout{"valid",   "wheel_ticks", "reverse",
+                                                            "quality", "hdop",        "satellites"};
   return proposal.unit_known ||
          std::find(kWithout.begin(), kWithout.end(), proposal.quantity) != kWithout.end();
 }
@@ -99,9 +223,15 @@ void TableSurvey::take_line(std::string_view line, std::size_t number) {
   }
   if (number == 1) line = content;
   if (!begun_) return begin(line);
+  const bool whole = formats::split_fields(line, summary_.separator, fields_) && fields_.size() == width_;
+  if (std::exchange(may_have_units_, false) && whole && formats::is_unit_row(fields_, summary_.separator)) {
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      columns_[i].seen.unit = formats::unit_in_row(fields_[i]);
+    return;
+  }
   ++data_.records;
   ++summary_.rows;
-  if (!formats::split_fields(line, summary_.separator, fields_) || fields_.size() != width_)
+  if (!whole)
     return corrupt(number, 1, fmt::format("{} fields, but the header has {}", fields_.size(), width_));
   for (std::size_t i = 0; i < columns_.size(); ++i) take_field(columns_[i], fields_[i]);
 }
@@ -114,7 +244,7 @@ void TableSurvey::begin(std::string_view line) {
   columns_.resize(std::min(width_, kMostColumns));
   const bool numbers = std::all_of(fields_.begin(), fields_.end(), [this](std::string_view field) {
     return formats::number_from_field(field, summary_.separator).has_value() ||
-           formats::stamp_from_iso8601(field).has_value();
+           holds_instants(forms_of(field, kAllForms));
   });
   std::vector<std::string_view> names = fields_;
   if (numbers) {
@@ -129,14 +259,24 @@ void TableSurvey::begin(std::string_view line) {
   for (std::size_t i = 0; i < columns_.size(); ++i)
     columns_[i].seen.name = names[i].empty() ? std::to_string(i + 1) : std::string(names[i]);
   std::size_t times = 0;
-  for (Column& column : columns_)
-    column.is_time = propose_quantity(column.seen.name).quantity == "time" && ++times <= 4;
+  if (!summary_.has_header) columns_.front().is_time = true;
+  for (Column& column : columns_) {
+    column.is_time =
+        column.is_time || (propose_quantity(column.seen.name).quantity == "time" && ++times <= 4);
+    column.tells_receivers = names_receiver(column.seen.name);
+  }
+  may_have_units_ = !numbers;
   if (!numbers) return;
   ++summary_.rows;
   for (std::size_t i = 0; i < columns_.size(); ++i) take_field(columns_[i], fields_[i]);
 }
 
 void TableSurvey::take_field(Column& column, std::string_view field) {
+  constexpr std::size_t kMostReceivers = 5;
+  std::vector<std::string>& names = column.seen.receivers;
+  if (column.tells_receivers && !field.empty() && names.size() < kMostReceivers &&
+      std::find(names.begin(), names.end(), field) == names.end())
+    names.emplace_back(field);
   double value = 0;
   if (const std::optional<double> number = formats::number_from_field(field, summary_.separator)) {
     if (std::isnan(*number)) {
@@ -144,47 +284,47 @@ void TableSurvey::take_field(Column& column, std::string_view field) {
       return;
     }
     value = *number;
-    column.dates = false;
     column.seen.range.add(value);
   } else {
     ++column.seen.words;
-    if (!column.dates) return;
-    const std::optional<Stamp> date = formats::stamp_from_iso8601(field);
-    column.dates = date.has_value();
-    if (!date) return;
-    value = date->seconds();
+    column.forms = forms_of(field, column.forms);
+    if (!holds_instants(column.forms)) return;
+    value = instant_seconds(field, column.forms);
   }
-  if (column.seen.values + (column.dates ? column.seen.words : 0) > 0) {
-    if (column.is_time && value > column.last) column.steps.add(value - column.last);
-  }
+  if (column.seen.values > 0 && column.is_time && value > column.last) column.steps.add(value - column.last);
   column.last = value;
   ++column.seen.values;
 }
 
+/// Returns a column with its proposal.
+ColumnSummary TableSurvey::summary_of(const Column& column) const {
+  ColumnSummary seen = column.seen;
+  if (seen.receivers.size() < 2 || seen.receivers.size() > 4) seen.receivers.clear();
+  if (summary_.has_header)
+    seen.proposal =
+        propose_quantity(seen.unit.empty() ? seen.name : fmt::format("{} [{}]", seen.name, seen.unit));
+  const double step = column.steps.count() > 0 ? column.steps.median() : 0;
+  const bool words = seen.words > 0 && seen.range.count == 0;
+  if (words) seen.values = seen.words;
+  if (words) {
+    seen.proposal = proposal_of_forms(column.forms, seen.proposal);
+  } else if (seen.range.count == 0) {
+    seen.proposal = {};  // nothing: there is no quantity
+  }
+  check_range(seen, step);
+  if (seen.proposal.quantity == "time" && step > 0)
+    seen.rate_hz = 1 / (step * seconds_of(seen.proposal.unit));
+  return seen;
+}
+
 TableSummary TableSurvey::summary() const {
   TableSummary result = summary_;
-  for (const Column& column : columns_) {
-    ColumnSummary seen = column.seen;
-    if (summary_.has_header) seen.proposal = propose_quantity(seen.name);
-    const bool dates = column.dates && seen.words > 0;
-    if (dates) {
-      seen.values = seen.words;
-      if (seen.proposal.quantity.empty()) seen.proposal = {"time", "", "", false, "the column holds dates"};
-      if (seen.proposal.quantity == "time") seen.proposal.unit = "iso8601";
-    } else if (seen.range.count == 0) {
-      seen.proposal = {};  // words or nothing: there is no quantity
-    }
-    check_range(seen);
-    if (seen.proposal.quantity == "time" && column.steps.count() > 0) {
-      const std::string& unit = seen.proposal.unit;
-      const double step = column.steps.median() * (unit == "ms"   ? 1e-3
-                                                   : unit == "us" ? 1e-6
-                                                   : unit == "ns" ? 1e-9
-                                                                  : 1);
-      seen.rate_hz = 1 / step;
-    }
-    result.columns.push_back(std::move(seen));
-  }
+  for (const Column& column : columns_) result.columns.push_back(summary_of(column));
+  if (!summary_.has_header && !columns_.empty())
+    propose_by_numbers(result.columns, columns_.front().steps.count() + 1 == columns_.front().seen.values);
+  else
+    remark_on_metres(result.columns);
+  settle_times_of_day(result.columns);
   keep_one_each(result.columns);
   return result;
 }

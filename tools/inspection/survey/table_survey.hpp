@@ -9,6 +9,7 @@
 
 #include <waymark/core/drive/stamp.hpp>
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
+#include <waymark/tools/inspection/survey/field_forms.hpp>
 #include <waymark/tools/inspection/survey/header_words.hpp>
 #include <waymark/tools/inspection/survey/running_statistics.hpp>
 
@@ -25,6 +26,8 @@ struct ColumnSummary {
   std::string unit;    ///< as the DBC names it
   std::string detail;  ///< of an id: "8 bytes", "2 interfaces"
   ColumnProposal proposal;
+  /// of a column that tells receivers apart: its two to four values; else empty
+  std::vector<std::string> receivers;
 };
 
 struct TableSummary {
@@ -48,14 +51,16 @@ class TableSurvey final : public formats::LineDecoder {
  private:
   struct Column {
     ColumnSummary seen;
-    bool dates = true;  ///< all words so far are ISO 8601 dates
+    FieldForms forms = kAllForms;  ///< those that all words so far may have
     double last = 0;
     bool is_time = false;  ///< by its name; the steps between its values are recorded
     Quantiles steps;
+    bool tells_receivers = false;  ///< by its name
   };
   void take_line(std::string_view line, std::size_t number) override;
   void begin(std::string_view line);
   void take_field(Column& column, std::string_view field);
+  [[nodiscard]] ColumnSummary summary_of(const Column& column) const;
 
   TableSummary summary_;
   std::string comment_;
@@ -63,6 +68,7 @@ class TableSurvey final : public formats::LineDecoder {
   std::size_t width_ = 0;  ///< fields of a line
   std::vector<std::string_view> fields_;
   bool begun_ = false;
+  bool may_have_units_ = false;  ///< the next line is the one below the header
 };
 
 /// Leaves every quantity to one column: the first whose name indicates it. Columns with a known

@@ -1,5 +1,6 @@
 #include <waymark/formats/logs/detail/can/candump_signals.hpp>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -7,6 +8,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/logs/detail/common/unit_words.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 
 namespace waymark::formats {
@@ -170,14 +172,20 @@ void Binder::find(const Quantity& quantity, std::string_view column, BoundSignal
 const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wanted,
                             const DbcSignal& signal) const {
   const std::string_view by_dbc = known_unit(signal.unit);
-  if (wanted.unit == kIso8601)
-    fail(fmt::format("{}: a signal is a number, not an ISO 8601 date", quantity.name));
+  std::vector<std::string_view> units;
+  for (const Unit& known : quantity.units) {
+    if (known.form == UnitForm::number) units.push_back(known.name);
+  }
   if (!wanted.unit.empty()) {
+    const Unit& stated = *find_unit(quantity, wanted.unit);
+    if (stated.form != UnitForm::number)
+      fail(fmt::format("{}: a signal is a number, never in '{}'; its units are {}", quantity.name,
+                       stated.name, joined(units)));
     if (!by_dbc.empty() && by_dbc != wanted.unit)
       notes_.push_back(
           fmt::format("{}{}: signal {} is read in '{}' as stated, though by the DBC it is in '{}'", place_,
                       quantity.name, signal.name, wanted.unit, signal.unit));
-    return *find_unit(quantity, wanted.unit);
+    return stated;
   }
   const Unit& own = quantity.units.front();
   if (own.name == "1") return own;  // flags and counts
@@ -186,10 +194,6 @@ const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wante
     notes_.push_back(fmt::format("{}{}: signal {} is in '{}' by the DBC", place_, quantity.name, signal.name,
                                  signal.unit));
     return *unit;
-  }
-  std::vector<std::string_view> units;
-  for (const Unit& known : quantity.units) {
-    if (known.name != kIso8601) units.push_back(known.name);
   }
   fail(fmt::format("{}: signal {} is {}; state 'unit' for it: {}", quantity.name, signal.name,
                    signal.unit.empty() ? "without a unit in the DBC"
@@ -204,8 +208,10 @@ std::vector<Quantity> signal_quantities(const LogRequest& request) {
   if (request.stream == StreamKind::odometry && request.readings.empty())
     throw UsageError("a CAN log gives odometry in channels: LogRequest::readings must name them");
   std::vector<Quantity> result = quantities(request);
-  std::erase_if(result, [](const Quantity& quantity) {
-    return quantity.name == "time" || quantity.name == "easting" || quantity.name == "northing";
+  constexpr std::array<std::string_view, 6> kOfTables{
+      "time", "date", "easting", "northing", "latitude_hemisphere", "longitude_hemisphere"};
+  std::erase_if(result, [&kOfTables](const Quantity& quantity) {
+    return std::find(kOfTables.begin(), kOfTables.end(), quantity.name) != kOfTables.end();
   });
   return result;
 }

@@ -89,8 +89,4 @@ struct Dbc {
   [[nodiscard]] static Dbc parse(std::string_view text, const std::string& path);
 };
 
-/// Returns this library's name for a unit of a DBC file: "km/h" for "kph". Empty for an
-/// unknown unit.
-[[nodiscard]] std::string_view known_unit(std::string_view dbc_unit);
-
 }  // namespace waymark::formats

@@ -14,6 +14,7 @@ namespace waymark::formats {
 inline constexpr std::int64_t kGpsEpochPosix = 315'964'800'000'000'000;
 
 inline constexpr std::int64_t kSecondNanoseconds = 1'000'000'000;
+inline constexpr std::int64_t kDayNanoseconds = 86'400'000'000'000;
 inline constexpr std::int64_t kGpsWeekNanoseconds = 604'800'000'000'000;
 /// Weeks since 1980-01-06 that are taken for real: the year 2171.
 inline constexpr int kLastGpsWeek = 10'000;

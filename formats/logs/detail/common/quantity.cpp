@@ -1,5 +1,6 @@
 #include <waymark/formats/logs/detail/common/quantity.hpp>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <numbers>
@@ -14,12 +15,22 @@ using std::numbers::pi;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr std::array kTimes{Unit{"s", 0}, Unit{"ms", -3}, Unit{"us", -6}, Unit{"ns", -9}, Unit{kIso8601, 0}};
+constexpr Unit text_unit(std::string_view name) {
+  return {name, 0, UnitForm::text};
+}
+constexpr std::array kTimes{Unit{"s", 0},        Unit{"ms", -3},      Unit{"us", -6},       Unit{"ns", -9},
+                            text_unit(kIso8601), text_unit("dmy"),    text_unit("mdy"),     text_unit("hms"),
+                            text_unit("excel"),  text_unit("matlab"), text_unit("filetime")};
+constexpr std::array kDates{text_unit(kIso8601), text_unit("dmy"), text_unit("mdy"), text_unit("excel"),
+                            text_unit("gps_week")};
 constexpr std::array kSpeeds{Unit{"m/s", 1}, Unit{"km/h", 1 / 3.6}, Unit{"mph", 0.44704},
                              Unit{"kn", 1852 / 3600.0}, Unit{"mm/s", 1e-3}};
 constexpr std::array kRates{Unit{"rad/s", 1}, Unit{"deg/s", kDegree}};
-constexpr std::array kDegrees{Unit{"deg", 1}, Unit{"rad", 1 / kDegree}, Unit{"1e-7deg", 1e-7}};
+constexpr std::array kDegrees{Unit{"deg", 1}, Unit{"rad", 1 / kDegree}, Unit{"1e-7deg", 1e-7},
+                              Unit{"ddmm", 1, UnitForm::text}, Unit{"dms", 1, UnitForm::text}};
 constexpr std::array kLengths{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}};
+constexpr std::array kSigmas{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3},
+                             Unit{"m^2", 1, UnitForm::square}};
 constexpr std::array kCourses{Unit{"deg", kDegree}, Unit{"rad", 1}, Unit{"1e-5deg", 1e-5 * kDegree}};
 constexpr std::array kHeadings{Unit{"rad", 1}, Unit{"deg", kDegree}};
 constexpr std::array kAccelerations{Unit{"m/s^2", 1}, Unit{"g", 9.80665}};
@@ -40,30 +51,36 @@ constexpr std::array kHeadingSenses{Convention{"ccw_from_east", 1, 0},
 // Times and flags are not parsed as bounded numbers. The limits of speed and yaw rate are generous
 // for a road vehicle. A number beyond them is garbage or has another unit.
 constexpr Quantity kTime{"time", "time_s", true, kTimes, {}, -kInfinity, kInfinity};
+constexpr Quantity kDate{"date", "", false, kDates, {}, -kInfinity, kInfinity, true};
 constexpr Quantity kSpeed{"speed", "speed_mps", true, kSpeeds, {}, -150, 150};
 constexpr Quantity kOptionalSpeed{"speed", "speed_mps", false, kSpeeds, {}, -150, 150};
 constexpr Quantity kLatitude{"latitude", "latitude_deg", true, kDegrees, {}, -90, 90};
 constexpr Quantity kLongitude{"longitude", "longitude_deg", true, kDegrees, {}, -180, 360};
+constexpr Quantity kLatitudeSide{"latitude_hemisphere", "lat_hemisphere", false, kFlags, {}, -1, 1};
+constexpr Quantity kLongitudeSide{"longitude_hemisphere", "lon_hemisphere", false, kFlags, {}, -1, 1};
 // The frame decides how large coordinates are: its origin may be that of the zone.
 constexpr Quantity kEasting{"easting", "easting_m", false, kLengths, {}, -2e7, 2e7};
 constexpr Quantity kNorthing{"northing", "northing_m", false, kLengths, {}, -2e7, 2e7};
 constexpr Quantity kHeight{"height", "height_m", false, kLengths, {}, -12e3, 100e3};
 
-constexpr std::array kOdometry{kTime, kSpeed,
+constexpr std::array kOdometry{kTime, kDate, kSpeed,
                                Quantity{"yaw_rate", "yaw_rate_radps", true, kRates, kTurns, -20, 20}};
 constexpr std::array kGnss{
     kTime,
+    kDate,
     kLatitude,
     kLongitude,
+    kLatitudeSide,
+    kLongitudeSide,
     kEasting,
     kNorthing,
     kHeight,
     Quantity{"accuracy", "accuracy_m", false, kLengths, {}, -kInfinity, 1e6},
     Quantity{"accuracy_east", "accuracy_east_m", false, kLengths, {}, -kInfinity, 1e6},
     Quantity{"accuracy_north", "accuracy_north_m", false, kLengths, {}, -kInfinity, 1e6},
-    Quantity{"sigma_east", "sigma_east_m", false, kLengths, {}, -kInfinity, 1e6},
-    Quantity{"sigma_north", "sigma_north_m", false, kLengths, {}, -kInfinity, 1e6},
-    Quantity{"covariance_en_signed_root", "covariance_en_signed_root_m", false, kLengths, {}, -1e6, 1e6},
+    Quantity{"sigma_east", "sigma_east_m", false, kSigmas, {}, -kInfinity, 1e6},
+    Quantity{"sigma_north", "sigma_north_m", false, kSigmas, {}, -kInfinity, 1e6},
+    Quantity{"covariance_en_signed_root", "covariance_en_signed_root_m", false, kSigmas, {}, -1e6, 1e6},
     Quantity{"course", "course_deg", false, kCourses, kCourseSenses, -2 * pi, 2 * pi},
     Quantity{"course_accuracy", "course_accuracy_deg", false, kCourses, {}, -kInfinity, kInfinity},
     kOptionalSpeed,
@@ -76,13 +93,11 @@ constexpr std::array kGnss{
     Quantity{"correction_age", "correction_age_s", false, kDurations, {}, -kInfinity, kInfinity}};
 // References often let the heading run on over full turns.
 constexpr std::array kTruth{
-    kTime,
-    kLatitude,
-    kLongitude,
-    kEasting,
-    kNorthing,
-    kHeight,
-    Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -200 * pi, 200 * pi}};
+    kTime,         kDate,
+    kLatitude,     kLongitude,
+    kLatitudeSide, kLongitudeSide,
+    kEasting,      kNorthing,
+    kHeight,       Quantity{"heading", "heading_rad", false, kHeadings, kHeadingSenses, -200 * pi, 200 * pi}};
 
 // What a sensor may request: an SI unit, and the sense of an angle or rate (SensorColumn).
 struct SensorKind {
@@ -134,7 +149,7 @@ Quantity sensor_quantity(const SensorColumn& column) {
 /// quantity is taken from the stream.
 std::vector<Quantity> channel_quantities(std::span<const Quantity> stream,
                                          std::span<const SensorColumn> channels) {
-  std::vector<Quantity> own{kTime};
+  std::vector<Quantity> own{kTime, kDate};
   for (const SensorColumn& channel : channels) {
     const Quantity* whole = find_named(stream, channel.name);
     own.push_back(whole != nullptr ? *whole : sensor_quantity(channel));
@@ -159,6 +174,10 @@ std::vector<Quantity> quantities(const LogRequest& request) {
       break;
   }
   std::vector<Quantity> own{kTime};
+  // A plugin may mean something else by the word.
+  if (std::none_of(request.readings.begin(), request.readings.end(),
+                   [](const SensorColumn& column) { return column.name == kDate.name; }))
+    own.push_back(kDate);
   for (const SensorColumn& column : request.readings) own.push_back(sensor_quantity(column));
   return own;
 }

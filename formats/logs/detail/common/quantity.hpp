@@ -10,11 +10,19 @@
 
 namespace waymark::formats {
 
+/// How the numbers of a unit are written.
+enum class UnitForm {
+  number,
+  square,  ///< value = factor * the root of the number, with its sign
+  text     ///< a form of its own, such as a date, that only tables have
+};
+
 /// A unit, and its size in the unit of the quantity (SI; degrees for latitude and longitude). For
-/// times `factor` is the power of ten: a decimal text is shifted, never multiplied.
+/// times that count, `factor` is the power of ten: a decimal text is shifted, never multiplied.
 struct Unit {
   std::string_view name;
   double factor = 1;
+  UnitForm form = UnitForm::number;
 };
 
 /// The zero and the positive sense of an angle or a turning rate.
@@ -33,6 +41,7 @@ struct Quantity {
   std::span<const Convention> conventions;  ///< empty if the quantity has no sense
   double smallest = 0;  ///< a value outside [smallest, largest] (unit of the quantity) is corrupt
   double largest = 0;
+  bool by_request = false;  ///< never found by a default name
 };
 
 /// The unit of times that are written as ISO 8601 dates.

@@ -9,10 +9,13 @@ namespace waymark::formats {
 struct Bindings {
   explicit Bindings(const CsvColumns& columns)
       : time(columns.find("time")),
+        date(columns.find("date")),
         speed(columns.find("speed")),
         yaw_rate(columns.find("yaw_rate")),
         latitude(columns.find("latitude")),
         longitude(columns.find("longitude")),
+        latitude_hemisphere(columns.find("latitude_hemisphere")),
+        longitude_hemisphere(columns.find("longitude_hemisphere")),
         easting(columns.find("easting")),
         northing(columns.find("northing")),
         height(columns.find("height")),
@@ -27,7 +30,8 @@ struct Bindings {
         satellites(columns.find("satellites")),
         correction_age(columns.find("correction_age")) {}
 
-  const BoundColumn *time, *speed, *yaw_rate, *latitude, *longitude, *easting, *northing;
+  const BoundColumn *time, *date, *speed, *yaw_rate, *latitude, *longitude;
+  const BoundColumn *latitude_hemisphere, *longitude_hemisphere, *easting, *northing;
   const BoundColumn *height, *heading;
   const BoundColumn *course, *course_accuracy, *speed_accuracy, *gnss_time, *valid;
   const BoundColumn *quality, *hdop, *satellites, *correction_age;

@@ -9,6 +9,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/logs/detail/csv/table_header.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 #include <waymark/formats/text/iso8601.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
@@ -49,6 +50,10 @@ bool holds_values(const std::vector<std::string_view>& fields, const LogRequest&
   if (number < 1 || number > fields.size()) return false;
   const std::string_view field = fields[number - 1];
   return stamp_from_decimal_seconds(field) || stamp_from_iso8601(field);
+}
+
+bool is_default_name(const Quantity& quantity, std::string_view name) {
+  return name == quantity.name || name == lower_case(quantity.default_column);
 }
 
 }  // namespace
@@ -97,10 +102,14 @@ CsvColumns::CsvColumns(const TableLine& first, const std::string& path, const Lo
   const std::string place = fmt::format("{}:{}:1: ", path, first.number);
   if (request.where) filtered_ = field_stated(request.where->column, "where", place);
   choose_position(request, place);
+  const std::size_t before = notes_.size();
   for (const Quantity& quantity : quantities_) {
     const auto wanted = request.columns.find(std::string(quantity.name));
     bind(quantity, wanted == request.columns.end() ? nullptr : &wanted->second, place);
   }
+  if (!by_default_.empty())
+    notes_.insert(notes_.begin() + static_cast<std::ptrdiff_t>(before),
+                  fmt::format("{}columns by their default names: {}", place, joined(by_default_)));
   const bool in_channels = request.stream != StreamKind::sensor && !request.readings.empty();
   if (in_channels && columns_.size() == 1)
     throw InputError(fmt::format("{}no column for {} or another channel: name it under columns{}", place,
@@ -125,16 +134,35 @@ void CsvColumns::find_header(const TableLine& first, const std::string& path, co
     throw InputError(fmt::format("{}:{}:1: a quoted field of the header is not closed", path, first.number));
   field_count_ = fields.size();
   if (!holds_values(fields, request)) {
-    names_.assign(fields.begin(), fields.end());
+    take_names(fields);
     first_line_is_header_ = true;
+    if (!first.units_below.empty() && split_fields(first.units_below, request.separator, fields))
+      take_units(fields);
     return;
   }
   std::vector<std::string_view> comment;
   if (first.comment_above.empty() || !split_fields(first.comment_above, request.separator, comment)) return;
   if (comment.size() != fields.size()) return;
-  names_.assign(comment.begin(), comment.end());
+  take_names(comment);
   notes_.push_back(
       fmt::format("{}: column names were taken from the comment above line {}", path, first.number));
+}
+
+void CsvColumns::take_names(const std::vector<std::string_view>& names) {
+  names_.assign(names.begin(), names.end());
+  for (const std::string_view name : names) {
+    plain_names_.push_back(plain_name(name));
+    units_.push_back(unit_in_name(name));
+  }
+}
+
+void CsvColumns::take_units(const std::vector<std::string_view>& row) {
+  strange_units_.resize(names_.size());
+  for (std::size_t i = 0; i < std::min(row.size(), names_.size()); ++i) {
+    const std::string_view unit = unit_in_row(row[i]);
+    if (!unit.empty()) units_[i] = unit;
+    if (unit.empty() && row[i].size() > 1) strange_units_[i] = row[i];
+  }
 }
 
 /// Keeps the quantities of one kind of position: latitude and longitude, or easting and northing.
@@ -150,10 +178,10 @@ void CsvColumns::choose_position(const LogRequest& request, const std::string& p
         place + "columns name two kinds of position: keep latitude and longitude, or easting and northing");
   const bool metric = states_metres || (!states_degrees && !has_default_columns("latitude", "longitude") &&
                                         has_default_columns("easting", "northing"));
-  if (metric && request.metric_frame.value_or(Frame{}).zone == 0)
+  if (metric && !request.local_origin && request.metric_frame.value_or(Frame{}).zone == 0)
     throw InputError(place +
-                     "easting and northing are coordinates of a stated frame: the drive needs "
-                     "'frame: {utm_zone: ..., origin: [...]}'");
+                     "easting and northing are coordinates of a stated frame: the log needs "
+                     "'frame: {utm_zone: 32N}' or 'frame: {enu_origin: [LATITUDE, LONGITUDE]}'");
   std::erase_if(quantities_, [metric](const Quantity& quantity) {
     const bool degrees = quantity.name == "latitude" || quantity.name == "longitude";
     const bool metres = quantity.name == "easting" || quantity.name == "northing";
@@ -165,8 +193,10 @@ void CsvColumns::choose_position(const LogRequest& request, const std::string& p
 
 bool CsvColumns::has_default_columns(std::string_view first, std::string_view second) const {
   const auto has = [&](std::string_view name) {
-    const Quantity* quantity = find_quantity(quantities_, name);
-    return field_named(quantity->name) || field_named(quantity->default_column);
+    const Quantity& quantity = *find_quantity(quantities_, name);
+    return std::any_of(names_.begin(), names_.end(), [&](const std::string& field) {
+      return is_default_name(quantity, plain_name(field));
+    });
   };
   return has(first) && has(second);
 }
@@ -200,8 +230,7 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
   if (wanted != nullptr) {
     field = field_stated(wanted->column, quantity.name, place);
   } else {
-    field = field_named(quantity.name);
-    if (!field) field = field_named(quantity.default_column);
+    field = field_by_default(quantity, place);
     if (!field && quantity.required)
       throw InputError(
           fmt::format("{}no column for {} ({}): name it under columns{}", place, quantity.name,
@@ -210,20 +239,63 @@ void CsvColumns::bind(const Quantity& quantity, const ColumnRequest* wanted, con
                           : fmt::format("neither '{}' nor '{}'", quantity.name, quantity.default_column),
                       columns_present()));
     if (!field) return;
-    require_one(names_[*field], quantity.name, place);
-    notes_.push_back(fmt::format("{}{} is column '{}' by default", place, quantity.name, names_[*field]));
+    const std::string& name = names_[*field];
+    by_default_.push_back(name == quantity.name ? name
+                                                : fmt::format("{} ('{}')", quantity.name, shown_name(name)));
   }
   const ColumnRequest plain;
   const ColumnRequest& how = wanted != nullptr ? *wanted : plain;
-  const Unit& unit = *find_unit(quantity, how.unit);
+  const Unit& unit = unit_of(quantity, how.unit, *field, place);
   const Convention& convention = *find_convention(quantity, how.convention);
   bound.field = *field;
   bound.unit = unit.name;
+  bound.form = unit.form;
   bound.factor = convention.sign * unit.factor;
   bound.offset = convention.offset;
   if (quantity.name == "time" || quantity.name == "gnss_time")
     bound.time_power = static_cast<int>(unit.factor);
   columns_.push_back(bound);
+}
+
+/// Returns the column that has a default name: exactly, or without its unit and in any letters.
+/// @throws InputError if several columns have it
+std::optional<std::size_t> CsvColumns::field_by_default(const Quantity& quantity,
+                                                        const std::string& place) const {
+  if (quantity.by_request) return std::nullopt;
+  for (const std::string_view name : {quantity.name, quantity.default_column}) {
+    if (const auto field = field_named(name)) {
+      require_one(name, quantity.name, place);
+      return field;
+    }
+  }
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < plain_names_.size(); ++i) {
+    if (!is_default_name(quantity, plain_names_[i])) continue;
+    if (found)
+      throw InputError(fmt::format("{}'{}' and '{}' may both be {}; name the column under columns", place,
+                                   shown_name(names_[*found]), shown_name(names_[i]), quantity.name));
+    found = i;
+  }
+  return found;
+}
+
+/// Returns the unit of a column: as stated, or as the header has it.
+const Unit& CsvColumns::unit_of(const Quantity& quantity, std::string_view stated, std::size_t field,
+                                const std::string& place) {
+  const Unit& usual = *find_unit(quantity, stated);
+  if (field >= units_.size() || quantity.units.size() < 2) return usual;
+  const std::string_view strange = field < strange_units_.size() ? strange_units_[field] : std::string_view();
+  if (stated.empty() && !strange.empty())
+    throw InputError(fmt::format("{}the row of units has {} for {}; state its unit under columns: {}", place,
+                                 quote_field(strange), quantity.name, joined(names_of(quantity.units))));
+  const std::string_view written = units_[field];
+  if (written.empty() || written == usual.name) return usual;
+  const Unit* of_header = find_unit(quantity, written);
+  const bool obeyed = stated.empty() && of_header != nullptr;
+  notes_.push_back(obeyed ? fmt::format("{}{} is in {} by the header", place, quantity.name, written)
+                          : fmt::format("{}{} is read in {}, though the header has {}", place, quantity.name,
+                                        usual.name, written));
+  return obeyed ? *of_header : usual;
 }
 
 const BoundColumn* CsvColumns::find(std::string_view quantity) const {

@@ -19,6 +19,7 @@ struct BoundColumn {
   const Quantity* quantity = nullptr;
   std::size_t field = 0;
   double factor = 1;  ///< value = sign * factor * number + offset
+  UnitForm form = UnitForm::number;
   double offset = 0;
   std::string_view unit;
   int time_power = 0;  ///< power of ten, for times
@@ -27,7 +28,8 @@ struct BoundColumn {
 /// The columns of one stream in one table.
 class CsvColumns {
  public:
-  /// Finds the header and binds the quantities.
+  /// Finds the header and binds the quantities. The unit of a column is the stated one, else that of the row
+  /// of units or of the brackets in its name, else the default.
   /// @param first first line of the table
   /// @param request with the separator
   /// @throws InputError see CsvLogReader
@@ -46,6 +48,8 @@ class CsvColumns {
  private:
   void check_request(const std::string& place, const LogRequest& request) const;
   void find_header(const TableLine& first, const std::string& path, const LogRequest& request);
+  void take_names(const std::vector<std::string_view>& names);
+  void take_units(const std::vector<std::string_view>& row);
   void choose_position(const LogRequest& request, const std::string& place);
   void bind(const Quantity& quantity, const ColumnRequest* wanted, const std::string& place);
   void require_one(std::string_view name, std::string_view use, const std::string& place) const;
@@ -53,15 +57,23 @@ class CsvColumns {
                                                         const std::string& place) const;
   [[nodiscard]] bool has_default_columns(std::string_view first, std::string_view second) const;
   [[nodiscard]] std::optional<std::size_t> field_named(std::string_view name) const;
+  [[nodiscard]] std::optional<std::size_t> field_by_default(const Quantity& quantity,
+                                                            const std::string& place) const;
+  [[nodiscard]] const Unit& unit_of(const Quantity& quantity, std::string_view stated, std::size_t field,
+                                    const std::string& place);
   [[nodiscard]] std::string columns_present() const;
   [[nodiscard]] std::vector<std::string> shown_names() const;
 
   std::vector<Quantity> quantities_;
-  std::vector<std::string> names_;  ///< names in the header; empty if there is no header
+  std::vector<std::string> names_;          ///< names in the header; empty if there is no header
+  std::vector<std::string> plain_names_;    ///< as plain_name() has them
+  std::vector<std::string_view> units_;     ///< of the header, known ones; empty: none
+  std::vector<std::string> strange_units_;  ///< in a row of units, not known
   std::size_t field_count_ = 0;
   bool first_line_is_header_ = false;
   std::vector<BoundColumn> columns_;
   std::vector<std::string> notes_;
+  std::vector<std::string> by_default_;  ///< quantities that were found by their default names
   std::optional<std::size_t> filtered_;
 };
 

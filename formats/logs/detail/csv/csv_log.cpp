@@ -15,6 +15,7 @@
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/logs/detail/csv/csv_records.hpp>
 #include <waymark/formats/logs/detail/csv/csv_table.hpp>
+#include <waymark/formats/logs/detail/csv/table_header.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -39,33 +40,54 @@ class CsvDecoder final : public LineDecoder {
       return;
     }
     if (number == 1) line = content;  // without a byte order mark
-    if (table_) {
-      table_->read_line(line, number);
-    } else {
-      begin(line, number);
+    if (table_) return table_->read_line(line, number);
+    if (first_number_ == 0) {  // the line below it may hold its units
+      first_ = line;
+      first_comment_ = comment_;
+      first_number_ = number;
+      return;
     }
+    const bool has_units = begin(line);
+    if (!has_units) table_->read_line(line, number);
   }
-  void begin(std::string_view line, std::size_t number) {
+  /// Finds the columns in the first line, which waits. @return whether the second line holds units
+  bool begin(std::string_view second) {
+    const std::string_view line = first_;
     LogRequest resolved = request();
     if (resolved.separator == 0) {
       resolved.separator = separator_of(line);
       if (resolved.separator != ',')
         note(fmt::format("fields are separated by {} (not stated)", separator_name(resolved.separator)));
     }
-    columns_.emplace(TableLine{line, number, comment_}, path(), resolved);
+    std::vector<std::string_view> fields;
+    const bool has_units =
+        split_fields(second, resolved.separator, fields) && is_unit_row(fields, resolved.separator);
+    columns_.emplace(TableLine{line, first_number_, first_comment_, has_units ? second : std::string_view()},
+                     path(), resolved);
     data_.notes.insert(data_.notes.end(), columns_->notes().begin(), columns_->notes().end());
     table_.emplace(*columns_, path(), std::move(resolved), data_);
-    if (!columns_->first_line_is_header()) table_->read_line(line, number);
+    if (!columns_->first_line_is_header()) table_->read_line(line, first_number_);
+    return has_units && columns_->first_line_is_header();
   }
   void end() override {
-    if (!table_) throw InputError(fmt::format("{}: the log is empty", path()));
+    if (first_number_ == 0) throw InputError(fmt::format("{}: the log is empty", path()));
+    if (!table_) begin({});
     table_->finish();
   }
 
   std::string comment_;
+  std::string first_, first_comment_;  ///< the first line with content, and the comment above it
+  std::size_t first_number_ = 0;       ///< 0: not met yet
   std::optional<CsvColumns> columns_;
   std::optional<CsvRecords> table_;
 };
+
+/// Tells whether a field holds a number or a date.
+bool holds_value(std::string_view field, char separator) {
+  if (const std::optional<double> number = number_from_field(field, separator)) return !std::isnan(*number);
+  return instant_from_field(field, kIso8601, 0) || instant_from_field(field, "dmy", 0) ||
+         instant_from_field(field, "mdy", 0);
+}
 
 }  // namespace
 
@@ -85,12 +107,12 @@ Recognition CsvLogReader::recognise(std::string_view head) const {
   std::size_t rows = 0;
   std::size_t good = 0;
   while (lines.next()) {
+    if (rows == 0 && split_fields(lines.line(), separator, fields) && is_unit_row(fields, separator))
+      continue;
     ++rows;
     if (!split_fields(lines.line(), separator, fields) || fields.size() != width) continue;
-    good += std::any_of(fields.begin(), fields.end(), [separator](std::string_view field) {
-      const std::optional<double> number = number_from_field(field, separator);
-      return number && !std::isnan(*number);
-    });
+    good += std::any_of(fields.begin(), fields.end(),
+                        [separator](std::string_view field) { return holds_value(field, separator); });
   }
   if (rows == 0 || 10 * good < 9 * rows) return {};
   return {0.5, fmt::format("a table of {} columns separated by {}", width, separator_name(separator))};

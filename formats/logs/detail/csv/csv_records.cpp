@@ -7,11 +7,12 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
 #include <waymark/formats/logs/detail/csv/csv_table.hpp>
-#include <waymark/formats/text/iso8601.hpp>
-#include <waymark/formats/text/stamp_text.hpp>
+#include <waymark/formats/logs/detail/csv/table_angle.hpp>
+#include <waymark/formats/logs/detail/place/local_plane.hpp>
 
 namespace waymark::formats {
 CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data)
@@ -23,6 +24,7 @@ CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRe
       positions_(path, request_, nullptr),
       filtered_(columns.filtered()) {
   offset_ = request_.gps_week * kGpsWeekNanoseconds + std::llround(request_.time_offset_s * 1e9);
+  require_date(path);
   if (request_.stream == StreamKind::gnss && request_.readings.empty()) {
     const auto has = [&](std::string_view name) { return columns.find(name) != nullptr; };
     accuracy_ = choose_accuracy(has, path, request_, data.notes);
@@ -151,27 +153,60 @@ void CsvRecords::read_readings(Stamp at) {
   data_.readings.values.insert(data_.readings.values.end(), row_.begin(), row_.end());
 }
 
-/// Returns the instant in a column of times, as the field states it.
+/// A time of day belongs to a date, and a date to no GPS week.
+void CsvRecords::require_date(const std::string& path) const {
+  const bool of_day = bound_.time != nullptr && bound_.time->unit == kTimeOfDay;
+  if (bound_.date == nullptr && of_day && !request_.date)
+    throw InputError(
+        fmt::format("{}: time is a time of day: name the column of the date under columns, or state that of "
+                    "the first row, 'time: {{date: 2024-01-31}}'",
+                    path));
+  if (bound_.date != nullptr && request_.gps_week != 0)
+    throw InputError(fmt::format("{}: the log has a column of dates; leave out 'time: {{week: ...}}'", path));
+}
+
+/// Returns the instant in a column of times, on the scale of the request.
 std::optional<Stamp> CsvRecords::instant(const BoundColumn& column) {
   std::string_view field = fields_[column.field];
   std::optional<std::string> plain;
-  if (request_.separator != ',' && column.unit != kIso8601) plain = with_decimal_point(field);
+  if (request_.separator != ',') plain = with_decimal_point(field);
   if (plain) field = *plain;
-  std::optional<Stamp> stamp;
-  if (column.unit == kIso8601) {
-    stamp = stamp_from_iso8601(field);
-    if (stamp) stamp = convert(*stamp, TimeScale::utc, request_.time_scale);
-  } else if (column.time_power == 0) {
-    stamp = stamp_from_decimal_seconds(field);
-  } else if (field.find_first_of("eE") == std::string_view::npos) {
-    stamp = stamp_from_decimal_seconds(fmt::format("{}e{}", field, column.time_power));
+  const bool of_day = &column == bound_.time && (bound_.date != nullptr || column.unit == kTimeOfDay);
+  const std::optional<TableInstant> told =
+      of_day ? instant_of_day(column, field) : instant_from_field(field, column.unit, column.time_power);
+  if (told) return told->scale ? convert(told->stamp, *told->scale, request_.time_scale) : told->stamp;
+  complain(column, field.empty()
+                       ? "no value"
+                       : fmt::format("expected {}, got {}", expected_time(column.unit), quote_field(field)));
+  return std::nullopt;
+}
+
+/// Adds the time of day, or the seconds of the day or week, to the date of the row or of the log.
+std::optional<TableInstant> CsvRecords::instant_of_day(const BoundColumn& column, std::string_view field) {
+  const std::optional<TableInstant> time = instant_from_field(field, column.unit, column.time_power);
+  if (!time) return std::nullopt;
+  if (bound_.date != nullptr) {
+    const std::string_view date = fields_[bound_.date->field];
+    const std::optional<TableInstant> begin = date_from_field(date, bound_.date->unit);
+    if (!begin) {
+      complain(*bound_.date,
+               fmt::format("expected {}, got {}", expected_time(bound_.date->unit), quote_field(date)));
+      return std::nullopt;
+    }
+    const std::int64_t length = begin->scale == TimeScale::gps ? kGpsWeekNanoseconds : kDayNanoseconds;
+    if (column.form == UnitForm::number &&
+        (time->stamp.nanoseconds < 0 || time->stamp.nanoseconds > length + kSecondNanoseconds)) {
+      complain(column,
+               fmt::format("{} is no time of the day or week that the date begins", quote_field(field)));
+      return std::nullopt;
+    }
+    return TableInstant{Stamp{begin->stamp.nanoseconds + time->stamp.nanoseconds}, begin->scale};
   }
-  if (!stamp) {
-    const char* expected = column.unit == kIso8601 ? "an ISO 8601 date" : "a decimal number";
-    complain(column,
-             field.empty() ? "no value" : fmt::format("expected {}, got {}", expected, quote_field(field)));
-  }
-  return stamp;
+  constexpr std::int64_t kHalfDay = kDayNanoseconds / 2;
+  if (last_of_day_.nanoseconds - time->stamp.nanoseconds > kHalfDay) ++days_;
+  last_of_day_ = time->stamp;
+  return TableInstant{Stamp{request_.date->nanoseconds + days_ * kDayNanoseconds + time->stamp.nanoseconds},
+                      TimeScale::utc};
 }
 
 std::optional<Stamp> CsvRecords::stamp() {
@@ -189,10 +224,21 @@ std::optional<Stamp> CsvRecords::stamp() {
   return stamp;
 }
 
+/// Returns the number of a field in its unit; NaN: it has none. Empty: it is none.
+std::optional<double> CsvRecords::given_number(const BoundColumn& column, std::string_view field) const {
+  if (column.form == UnitForm::number) return number_from_field(field, request_.separator);
+  const std::optional<double> plain = number_from_field(field, request_.separator);
+  if (column.form == UnitForm::text)
+    return plain && std::isnan(*plain) ? plain : angle_from_field(field, column.unit);
+  return plain ? std::copysign(std::sqrt(std::abs(*plain)), *plain) : plain;
+}
+
 double CsvRecords::number(const BoundColumn* column, bool required) {
   if (column == nullptr) return kNoNumber;
   const std::string_view field = fields_[column->field];
-  const std::optional<double> given = number_from_field(field, request_.separator);
+  std::optional<double> given = given_number(*column, field);
+  if (!given && (column == bound_.latitude || column == bound_.longitude))
+    given = angle_from_field(field, column->unit);
   if (!given) {
     const bool comma = field.find(',') != std::string_view::npos;
     complain(*column, fmt::format("expected a number{}, got {}", comma ? " with a decimal point" : "",
@@ -213,6 +259,19 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
     return kNoNumber;
   }
   return scaled + column->offset;
+}
+
+/// Returns a latitude or longitude, with the sign of the hemisphere in a column of its own.
+double CsvRecords::angle(const BoundColumn* column, const BoundColumn* hemisphere) {
+  const double size = number(column, false);
+  if (hemisphere == nullptr || std::isnan(size)) return size;
+  const std::string_view field = fields_[hemisphere->field];
+  const std::optional<double> sign = hemisphere_from_field(field);
+  if (!sign) {
+    complain(*hemisphere, fmt::format("expected N, S, E or W, got {}", quote_field(field)));
+    return kNoNumber;
+  }
+  return *sign * std::abs(size);
 }
 
 std::optional<double> CsvRecords::optional_number(const BoundColumn* column) {
@@ -249,8 +308,8 @@ std::optional<CsvRecords::Position> CsvRecords::position() {
   const bool metric = bound_.easting != nullptr;
   const BoundColumn* first_column = metric ? bound_.easting : bound_.latitude;
   const BoundColumn* second_column = metric ? bound_.northing : bound_.longitude;
-  const double first = number(first_column, false);
-  const double second = number(second_column, false);
+  const double first = angle(first_column, metric ? nullptr : bound_.latitude_hemisphere);
+  const double second = angle(second_column, metric ? nullptr : bound_.longitude_hemisphere);
   if (complaint_.column != 0) return std::nullopt;
   if (std::isnan(first) && std::isnan(second)) {
     ++data_.without_fix;
@@ -265,6 +324,13 @@ std::optional<CsvRecords::Position> CsvRecords::position() {
 }
 
 std::optional<CsvRecords::Position> CsvRecords::position_on_grid(double easting_m, double northing_m) {
+  if (request_.local_origin) {
+    if (const auto place = place_on_plane({easting_m, northing_m}, *request_.local_origin))
+      return Position{place->latitude_deg, place->longitude_deg, place->axes};
+    complain(*bound_.easting,
+             fmt::format("{}, {} m are 1000 km from the origin or more", easting_m, northing_m));
+    return std::nullopt;
+  }
   const Frame& frame = *request_.metric_frame;
   const Eigen::Vector2d grid(easting_m + frame.origin_easting_m, northing_m + frame.origin_northing_m);
   const std::optional<UtmPlace> place = utm_from_grid(grid, frame.zone, frame.north);

@@ -11,9 +11,10 @@
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
-#include <waymark/formats/logs/detail/common/utm.hpp>
 #include <waymark/formats/logs/detail/csv/csv_bindings.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
+#include <waymark/formats/logs/detail/csv/table_time.hpp>
+#include <waymark/formats/logs/detail/place/utm.hpp>
 
 namespace waymark::formats {
 
@@ -50,8 +51,12 @@ class CsvRecords {
   [[nodiscard]] bool read_details(GeodeticFix& fix);
   void read_readings(Stamp at);
   [[nodiscard]] std::optional<Stamp> instant(const BoundColumn& column);
+  [[nodiscard]] std::optional<TableInstant> instant_of_day(const BoundColumn& column, std::string_view field);
+  void require_date(const std::string& path) const;
   [[nodiscard]] std::optional<Stamp> stamp();
   [[nodiscard]] double number(const BoundColumn* column, bool required);
+  [[nodiscard]] std::optional<double> given_number(const BoundColumn& column, std::string_view field) const;
+  [[nodiscard]] double angle(const BoundColumn* column, const BoundColumn* hemisphere);
   [[nodiscard]] std::optional<double> optional_number(const BoundColumn* column);
   [[nodiscard]] std::optional<double> optional_sigma(const BoundColumn* column);
   [[nodiscard]] bool has_fix();
@@ -71,6 +76,8 @@ class CsvRecords {
   AccuracyQuantities accuracy_;
   const BoundColumn *accuracy_east_ = nullptr, *accuracy_north_ = nullptr, *covariance_root_ = nullptr;
   std::int64_t offset_ = 0;
+  Stamp last_of_day_{};                  ///< of a log without a column of dates
+  std::int64_t days_ = 0;                ///< midnights since its first time of day
   std::optional<std::size_t> filtered_;  ///< field that decides
   std::size_t unwanted_ = 0;
   std::size_t strange_qualities_ = 0;

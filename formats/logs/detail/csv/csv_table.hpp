@@ -14,6 +14,8 @@ struct TableLine {
   std::size_t number = 0;  ///< 1-based
   /// the last comment between the previous line and this one, without its '#'
   std::string_view comment_above;
+  /// the row of units below a header; empty if there is none
+  std::string_view units_below = {};
 };
 
 /// Returns the content of a line without blanks, and of a first line without its byte order mark.

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include <waymark/core/drive/stamp.hpp>
-#include <waymark/formats/logs/detail/common/geocentric.hpp>
+#include <waymark/formats/logs/detail/place/geocentric.hpp>
 
 namespace waymark::formats {
 

@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/formats/logs/detail/common/geocentric.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
 #include <waymark/formats/logs/detail/common/log_request.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
+#include <waymark/formats/logs/detail/place/geocentric.hpp>
 #include <waymark/formats/logs/detail/rtklib/rtklib_header.hpp>
 #include <waymark/formats/text/detail/line_scanner.hpp>
 #include <waymark/formats/text/iso8601.hpp>

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include <waymark/core/base/angle.hpp>
-#include <waymark/formats/logs/detail/common/geocentric.hpp>
+#include <waymark/formats/logs/detail/place/geocentric.hpp>
 
 namespace waymark::formats {
 namespace {

@@ -1,4 +1,4 @@
-#include <waymark/formats/logs/detail/common/geocentric.hpp>
+#include <waymark/formats/logs/detail/place/geocentric.hpp>
 
 #include <cmath>
 

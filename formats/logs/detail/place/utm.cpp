@@ -1,4 +1,4 @@
-#include <waymark/formats/logs/detail/common/utm.hpp>
+#include <waymark/formats/logs/detail/place/utm.hpp>
 
 #include <cmath>
 

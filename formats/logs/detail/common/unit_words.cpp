@@ -1,7 +1,7 @@
+#include <waymark/formats/logs/detail/common/unit_words.hpp>
+
 #include <array>
 #include <string>
-
-#include <waymark/formats/logs/detail/can/dbc.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -10,7 +10,7 @@ struct UnitAlias {
   std::string_view written;  ///< in small letters
   std::string_view name;
 };
-constexpr std::array<UnitAlias, 51> kUnitAliases{{
+constexpr std::array<UnitAlias, 74> kUnitAliases{{
     {"m/s", "m/s"},
     {"mps", "m/s"},
     {"meter/sec", "m/s"},
@@ -61,13 +61,36 @@ constexpr std::array<UnitAlias, 51> kUnitAliases{{
     {"ms", "ms"},
     {"us", "us"},
     {"ns", "ns"},
+    {"ms-1", "m/s"},
+    {"m/sec", "m/s"},
+    {"kmh-1", "km/h"},
+    {"knot", "kn"},
+    {"mmps", "mm/s"},
+    {"radps", "rad/s"},
+    {"rps", "rad/s"},
+    {"degps", "deg/s"},
+    {"degree/sec", "deg/s"},
+    {"radian", "rad"},
+    {"radians", "rad"},
+    {"metres", "m"},
+    {"centimeter", "cm"},
+    {"millimeter", "mm"},
+    {"second", "s"},
+    {"secs", "s"},
+    {"msec", "ms"},
+    {"usec", "us"},
+    {"\xC2\xB5s", "us"},
+    {"nsec", "ns"},
+    {"m^2", "m^2"},
+    {"m2", "m^2"},
+    {"m\xC2\xB2", "m^2"},
     {"1e-7deg", "1e-7deg"},
 }};
 
 }  // namespace
 
-std::string_view known_unit(std::string_view dbc_unit) {
-  std::string written(dbc_unit);
+std::string_view known_unit(std::string_view word) {
+  std::string written(word);
   for (char& c : written) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
