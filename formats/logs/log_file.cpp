@@ -1,21 +1,17 @@
 #include <waymark/formats/logs/log_file.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <zlib.h>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/guard.hpp>
+#include <waymark/formats/logs/detail/compression/byte_source.hpp>
 #include <waymark/formats/logs/detail/foreign_formats.hpp>
 #include <waymark/formats/text/detail/read_failure.hpp>
 #include <waymark/formats/text/detail/utf16.hpp>
@@ -25,71 +21,6 @@ namespace {
 
 constexpr std::size_t kPiece = 1U << 20U;
 constexpr std::size_t kHead = 64U << 10U;
-/// How much is requested from zlib at a time. If a compressed file is damaged, zlib does not
-/// deliver what it decoded for the last request.
-constexpr unsigned kStep = 8U << 10U;
-
-/// A file that zlib reads; it may be compressed or not.
-class LogFile {
- public:
-  explicit LogFile(const std::string& path) : path_(path) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) fail_read(path, errno);
-    struct stat status {};
-    if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode))
-      size_ = static_cast<std::uint64_t>(status.st_size);
-    file_ = ::gzdopen(descriptor, "rb");
-    if (file_ == nullptr) {
-      ::close(descriptor);
-      fail_read(path, ENOMEM);
-    }
-    ::gzbuffer(file_, kStep);
-  }
-  LogFile(const LogFile&) = delete;
-  LogFile& operator=(const LogFile&) = delete;
-  ~LogFile() { ::gzclose_r(file_); }
-
-  /// Returns the next bytes. Empty at the end, and if a compressed file is cut or damaged
-  /// (see trouble()).
-  [[nodiscard]] std::string_view next(std::vector<char>& buffer) {
-    const auto size = static_cast<unsigned>(buffer.size());
-    const unsigned step = ::gzdirect(file_) != 0 ? size : std::min(kStep, size);
-    unsigned filled = 0;
-    while (trouble_.empty() && filled + step <= size) {
-      const int count = ::gzread(file_, buffer.data() + filled, step);
-      if (count > 0) {
-        filled += static_cast<unsigned>(count);
-        continue;
-      }
-      find_trouble();
-      break;
-    }
-    return {buffer.data(), filled};
-  }
-  [[nodiscard]] const std::string& trouble() const { return trouble_; }
-  [[nodiscard]] std::uint64_t done() const { return static_cast<std::uint64_t>(::gzoffset(file_)); }
-  [[nodiscard]] std::uint64_t size() const { return size_; }
-
- private:
-  /// Finds the error that stopped the reading, if it was not the end of the file.
-  void find_trouble() {
-    int code = Z_OK;
-    std::string_view message = ::gzerror(file_, &code);
-    if (code == Z_ERRNO) fail_read(path_, errno);
-    if (code == Z_BUF_ERROR) {
-      trouble_ = "the compressed file is cut off; the part before is used";
-    } else if (code != Z_OK && code != Z_STREAM_END) {
-      if (message.starts_with("<fd:"))
-        message.remove_prefix(std::min(message.find(": ") + 2, message.size()));
-      trouble_ = fmt::format("the compressed file is damaged ({}); the part before is used", message);
-    }
-  }
-
-  const std::string& path_;
-  gzFile file_ = nullptr;
-  std::uint64_t size_ = 0;
-  std::string trouble_;
-};
 
 /// Returns the file itself. For a folder it returns the files inside, in order of name.
 std::vector<std::string> files_of(const std::string& path) {
@@ -113,7 +44,7 @@ std::string read_head(const std::string& path) {
   std::string head;
   std::string trouble;
   for (const std::string& name : files_of(path)) {
-    LogFile file(name);
+    ByteSource file(name);
     Utf16Text text;
     while (head.size() < kHead) {
       const std::string_view piece = file.next(buffer);
@@ -133,7 +64,7 @@ std::string read_in_pieces(const std::string& path, const std::function<void(std
   std::string trouble;
   const std::vector<std::string> files = files_of(path);
   for (const std::string& name : files) {
-    LogFile file(name);
+    ByteSource file(name);
     Utf16Text text;
     char last = '\n';
     for (std::string_view piece = file.next(buffer); !piece.empty(); piece = file.next(buffer)) {

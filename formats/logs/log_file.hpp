@@ -15,8 +15,8 @@ namespace waymark::formats {
 /// Called while a file is read. @param done, size bytes of the file on the disk; size 0: not known
 using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t size)>;
 
-/// Gives the content of a file in pieces of at most 1 MiB. The content of a .gz file (recognised by
-/// its first bytes, not by its name) is uncompressed. Memory does not grow with the file.
+/// Gives the content of a file in pieces of at most 1 MiB. The content of a file that gzip, xz or
+/// zstd compressed (recognised by its first bytes, not by its name) is uncompressed. Memory does not grow with the file.
 /// @return the error that stopped the reading of a compressed file that is cut or damaged; empty if
 /// all of it was read
 /// @throws InputError "gnss.log: cannot read: No such file or directory" and the like

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <lzma.h>
 #include <zlib.h>
+#include <zstd.h>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_file.hpp>
@@ -59,6 +61,32 @@ std::string gzip_of(const std::string& name, const std::string& text) {
   return path;
 }
 
+std::string xz_of(const std::string& text) {
+  std::string packed(::lzma_stream_buffer_bound(text.size()), '\0');
+  std::size_t size = 0;
+  REQUIRE(::lzma_easy_buffer_encode(6, LZMA_CHECK_CRC64, nullptr,
+                                    reinterpret_cast<const std::uint8_t*>(text.data()), text.size(),
+                                    reinterpret_cast<std::uint8_t*>(packed.data()), &size,
+                                    packed.size()) == LZMA_OK);
+  packed.resize(size);
+  return packed;
+}
+
+std::string zstd_of(const std::string& text) {
+  std::string packed(::ZSTD_compressBound(text.size()), '\0');
+  ZSTD_CCtx* const context = ::ZSTD_createCCtx();
+  ::ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);  // as the program zstd does
+  packed.resize(::ZSTD_compress2(context, packed.data(), packed.size(), text.data(), text.size()));
+  ::ZSTD_freeCCtx(context);
+  return packed;
+}
+
+std::string all_of(const std::string& path) {
+  std::string all;
+  CHECK(read_in_pieces(path, [&](std::string_view piece) { all += piece; }).empty());
+  return all;
+}
+
 LogRequest request() {
   LogRequest result;
   result.default_sigma_m = 5;
@@ -104,6 +132,38 @@ TEST_CASE("log files: a damaged compressed log gives what came before, and says 
   CHECK(first.rfind(path + ": the compressed file is damaged (", 0) == 0);
   CHECK(first.find("<fd:") == std::string::npos);
   CHECK(first.ends_with("); the part before is used"));
+}
+
+TEST_CASE("log files: xz and zstd are known by their first bytes too, and their damage is told as that of gzip") {
+  const std::string text = nmea_log(5000);
+  const auto [name, whole] =
+      GENERATE(table<std::string, std::string (*)(const std::string&)>({{"xz", xz_of}, {"zst", zstd_of}}));
+  const std::string packed = whole(text);
+  REQUIRE(packed.size() < text.size() / 2);
+  const std::string path = file_with("packed_" + name, packed);
+  CHECK(all_of(path) == text);
+  CHECK(read(path).fixes.size() == 5000);
+  // Several files of one kind behind each other are one, as their programs have it.
+  CHECK(all_of(file_with("twice_" + name, packed + packed)) == text + text);
+
+  const std::string cut = file_with("cut_" + name, packed.substr(0, packed.size() / 2));
+  const LogData before = read(cut);
+  CHECK(before.fixes.size() > 1000);
+  CHECK(before.fixes.size() < 5000);
+  CHECK(before.corrupt_examples.at(0) == cut + ": the compressed file is cut off; the part before is used");
+
+  std::string bytes = packed;
+  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 40; ++i) bytes[i] = '\xFF';
+  const std::string damaged = file_with("damaged_" + name, bytes);
+  const std::string first = read(damaged).corrupt_examples.at(0);
+  CHECK(first.starts_with(damaged + ": the compressed file is damaged ("));
+}
+
+TEST_CASE("log files: a gzip file of several members is one text, and what follows them is left") {
+  const std::string member = content_of(gzip_of("member.gz", "first\n"));
+  const std::string other = content_of(gzip_of("other.gz", "second\n"));
+  CHECK(all_of(file_with("members.gz", member + other)) == "first\nsecond\n");
+  CHECK(all_of(file_with("padded.gz", member + std::string(100, '\0'))) == "first\n");
 }
 
 TEST_CASE("log files: a compressed log of which nothing is left") {

@@ -22,7 +22,7 @@ struct Signature {
 };
 
 // NUL bytes are part of some signatures, so their lengths are stated.
-constexpr std::array<Signature, 19> kSignatures{{
+constexpr std::array<Signature, 17> kSignatures{{
     {0, "MDF     ", {"an MF4 (ASAM MDF) file", "asammdf writes CSV from it"}},
     {0, "LOGG", {"a Vector BLF file", "`python3 -m can.logconvert` writes a candump log from it"}},
     {0, "#ROSBAG", {"a ROS 1 bag", "`rostopic echo -p -b FILE /topic` writes CSV from it"}},
@@ -33,16 +33,6 @@ constexpr std::array<Signature, 19> kSignatures{{
       "writes CSV while `ros2 bag play` plays it"}},
     {0, {"\x89MCAP", 5}, {"an MCAP file", "export its topics as CSV"}},
     {0, {"PK\x03\x04", 4}, {"a zip archive", "unpack it first"}},
-    {0,
-     {"\xFD"
-      "7zXZ\0",
-      6},
-     {"an xz file", "`xz -dk FILE` unpacks it"}},
-    {0,
-     {"\x28\xB5\x2F\xFD", 4},
-     {"a zstd file, as openpilot's rlog may be",
-      "`zstd -d FILE` unpacks it; "
-      "openpilot's LogReader writes tables from an rlog"}},
     {0,
      "BZh",
      {"a bzip2 file, as openpilot's rlog may be",
