@@ -78,8 +78,8 @@ struct LogRequest {
   /// The quantities of a sensor stream besides `time`. For the odometry stream of a log that holds
   /// odometry in parts, they are its sources (formats/logs/channels.hpp).
   std::vector<SensorColumn> readings;
-  /// "dbc" for CAN frames, "timestamps" for KITTI oxts
-  std::map<std::string, CompanionFile> companions;
+  /// "dbc" for CAN frames (any number), "timestamps" for KITTI oxts (one)
+  std::map<std::string, std::vector<CompanionFile>> companions;
   /// CSV field separator; ' ': any run of blanks and tabs; 0: found in the header and noted
   char separator = 0;
   AccuracyMeaning accuracy = AccuracyMeaning::automatic;

@@ -79,6 +79,13 @@ std::string read_in_pieces(const std::string& path, const std::function<void(std
   return trouble;
 }
 
+CompanionFile read_companion(const std::string& path) {
+  CompanionFile file{path, {}};
+  const std::string trouble = read_in_pieces(path, [&file](std::string_view piece) { file.text += piece; });
+  if (!trouble.empty()) throw InputError(path + ": " + trouble);
+  return file;
+}
+
 LogData read_log_file(const LogReader& reader, const std::string& path, const LogRequest& request,
                       const ReadProgress& progress, const std::function<void(std::string_view)>& seen) {
   const auto of_reader = [&](const auto& call) {

@@ -24,6 +24,9 @@ using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t size)>
                                          const std::function<void(std::string_view)>& take,
                                          const ReadProgress& progress = {});
 
+/// Reads a file that belongs to a log as a whole. @throws InputError if it cannot be read or is damaged
+[[nodiscard]] CompanionFile read_companion(const std::string& path);
+
 /// Reads a log file with a reader. If a compressed file is cut or damaged, the content before the
 /// error is used, and a corrupt record states the error.
 /// @param seen called with every piece of the uncompressed content before it is decoded, for

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <waymark/formats/logs/detail/can/candump.hpp>
+#include <waymark/formats/logs/detail/can/can_log.hpp>
 #include <waymark/formats/logs/detail/csv/csv_log.hpp>
 #include <waymark/formats/logs/detail/gpsd/gpsd_json.hpp>
 #include <waymark/formats/logs/detail/gpx/gpx.hpp>
@@ -10,6 +10,8 @@
 #include <waymark/formats/logs/detail/nmea/nmea.hpp>
 #include <waymark/formats/logs/detail/novatel/novatel.hpp>
 #include <waymark/formats/logs/detail/rtklib/rtklib_pos.hpp>
+#include <waymark/formats/logs/detail/tables/gnss_logger.hpp>
+#include <waymark/formats/logs/detail/tables/vbo.hpp>
 #include <waymark/formats/logs/detail/ubx/ubx.hpp>
 
 namespace waymark::formats {
@@ -17,23 +19,31 @@ namespace waymark::formats {
 std::span<const LogReaderType> builtin_log_readers() {
   static const CsvLogReader csv;
   static const GpsdJsonReader gpsd_json;
-  static const CandumpReader candump;
+  static const CanLogReader candump("candump");
+  static const CanLogReader asc("asc");
+  static const CanLogReader trc("trc");
   static const NmeaReader nmea;
   static const RtklibPosReader rtklib_pos;
   static const KittiOxtsReader kitti_oxts;
   static const GpxReader gpx;
   static const NovatelReader novatel;
   static const UbxReader ubx;
+  static const GnssLoggerReader gnss_logger;
+  static const VboReader vbo;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
       {"candump", "CAN frames (candump) with a DBC: odometry, gnss, truth, sensors", &candump},
+      {"asc", "CAN frames (Vector ASC), as candump", &asc},
+      {"trc", "CAN frames (PEAK TRC), as candump", &trc},
       {"nmea", "NMEA 0183 sentences (RMC, GGA, GNS, GST, VTG, ZDA, GLL): gnss, truth", &nmea},
       {"rtklib_pos", "solutions of RTKLIB (.pos): gnss, truth", &rtklib_pos},
       {"kitti_oxts", "KITTI's oxts records with their time stamps: odometry, gnss, truth", &kitti_oxts},
       {"gpx", "tracks of GPX 1.0 and 1.1: gnss, truth", &gpx},
       {"novatel", "ASCII messages of NovAtel receivers (BESTPOSA, INSPVAXA): gnss, truth", &novatel},
       {"ubx", "u-blox binary messages: gnss, truth, odometry and sensor channels (ESF-MEAS)", &ubx},
+      {"gnss_logger", "text logs of Android's GnssLogger: gnss, truth", &gnss_logger},
+      {"vbo", "Racelogic's VBO files: gnss, truth", &vbo},
   };
   return readers;
 }

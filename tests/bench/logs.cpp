@@ -50,7 +50,7 @@ std::vector<Sample> samples() {
   can.readings = {{"yaw_rate", "rad/s", "ccw", false, ""}};
   can.columns["yaw_rate"] = {"YAW_RATE", "deg/s", ""};
   can.companions["dbc"] = {
-      "car.dbc", "BO_ 36 KINEMATICS: 8 X\n SG_ YAW_RATE : 1|10@0+ (0.244,-125) [0|250] \"deg/s\" X\n"};
+      {"car.dbc", "BO_ 36 KINEMATICS: 8 X\n SG_ YAW_RATE : 1|10@0+ (0.244,-125) [0|250] \"deg/s\" X\n"}};
   const std::string oxts =
       "49.015003823272 8.4342971002335 116.43032836914 0.035752 0.00903 -2.6087069803847 -6.811441479104 "
       "-11.275641809511 13.172716663769 -0.12475264293164 -0.032919903047354 -0.44519814607457 "
@@ -96,7 +96,7 @@ void read_log(benchmark::State& state, const Sample& sample) {
     std::string stamps;
     for (std::size_t size = 0; size < text.size(); size += once.size())
       stamps += "2011-09-26 13:02:25.964389445\n";
-    request.companions["timestamps"] = {"timestamps.txt", stamps};
+    request.companions["timestamps"] = {{"timestamps.txt", stamps}};
   }
   const LogReader& reader = *builtin_log_reader(sample.reader);
   std::size_t taken = 0;

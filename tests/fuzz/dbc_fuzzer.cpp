@@ -38,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
       end < input.log.size()
           ? input.log.substr(end + 1)
           : "(1.5) can0 0AA#0123456789ABCDEF\n(1.6) can0 024#FFFF\n(1.7) can0 003#0011223344556677\n";
-  input.request.companions["dbc"] = {"fuzz.dbc", dbc};
+  input.request.companions["dbc"] = {{"fuzz.dbc", dbc}};
   try {
     read_signals(dbc);
   } catch (const waymark::InputError&) {

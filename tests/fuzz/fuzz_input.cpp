@@ -216,11 +216,11 @@ FuzzInput fuzz_input(std::string_view reader, const std::uint8_t* bytes, std::si
   if (repair && (reader == "nmea" || reader == "novatel"))
     input.log = repair_lines(input.log, reader == "novatel");
   if (reader == "kitti_oxts")
-    request.companions["timestamps"] = {"timestamps.txt", kitti_stamps(input.log, variant, head[3])};
+    request.companions["timestamps"] = {{"timestamps.txt", kitti_stamps(input.log, variant, head[3])}};
   set_readings(request, reader, variant);
   if (reader == "csv" && request.readings.empty()) set_csv_columns(request, variant);
   if (reader == "candump") {
-    request.companions["dbc"] = {"fuzz.dbc", fuzz_dbc()};
+    request.companions["dbc"] = {{"fuzz.dbc", fuzz_dbc()}};
     if (variant != 7 || request.stream != StreamKind::gnss)
       set_can_columns(request, variant);
     else

@@ -87,12 +87,12 @@ std::vector<HostileSample> make() {
   candump.request.readings = {{"yaw_rate", "rad/s", "ccw", false, ""}};
   candump.request.columns["yaw_rate"] = {"KINEMATICS.YAW_RATE", "deg/s", ""};
   candump.request.companions["dbc"] = {
-      "car.dbc", "BO_ 36 KINEMATICS: 8 X\n SG_ YAW_RATE : 1|10@0+ (0.244,-125) [0|250] \"deg/s\" X\n"};
+      {"car.dbc", "BO_ 36 KINEMATICS: 8 X\n SG_ YAW_RATE : 1|10@0+ (0.244,-125) [0|250] \"deg/s\" X\n"}};
   samples.push_back(candump);
   samples.push_back({"nmea", real("logs/nmea/gpsd_ublox-neo-m9n-nmea.log"), gnss(), "$GNRMC,", "0123456789"});
   samples.push_back({"rtklib_pos", real("logs/pos/taroz_rover_1Hz_spp.pos"), gnss(), "20", "/"});
   HostileSample kitti{"kitti_oxts", kitti_log(), gnss(), "49.", "0123456789"};
-  kitti.request.companions["timestamps"] = {"timestamps.txt", kitti_stamps()};
+  kitti.request.companions["timestamps"] = {{"timestamps.txt", kitti_stamps()}};
   samples.push_back(kitti);
   std::string track = real("logs/gpx/gpsbabel_datalog.gpx");
   if (!track.empty()) track = track.substr(0, track.rfind("<trkpt")) + "</trkseg></trk></gpx>\n";

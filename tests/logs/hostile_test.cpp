@@ -328,7 +328,7 @@ TEST_CASE("hostile: messages repeat names and values of a log cut and without co
   can.stream = StreamKind::sensor;
   can.readings = {{"speed", "m/s", "", true, ""}};
   can.columns["speed"] = {"V", "m/s", ""};
-  can.companions["dbc"] = {"car.dbc", "BO_ 1 M: 1 X\n SG_ V : 0|8@1+ (1,0) [0|0] \"m/s\" X\n"};
+  can.companions["dbc"] = {{"car.dbc", "BO_ 1 M: 1 X\n SG_ V : 0|8@1+ (1,0) [0|0] \"m/s\" X\n"}};
   CHECK(first_of("candump", "(1.0) can0 001#07\n(1.\x01) can0 001#07\n", can) ==
         "run.log:2:2: '1.\\x01' is no time in decimal seconds");
   std::string sentence = "GPRMC,12\x7f,A,4807.038,N,01131.000,E,022.4,084.4,230394,,";

@@ -35,7 +35,7 @@ LogRequest request_of(StreamKind stream, const std::string& stamps = kTwoStamps)
   LogRequest request;
   request.stream = stream;
   request.time_scale = TimeScale::unix_time;
-  request.companions["timestamps"] = {"oxts/timestamps.txt", stamps};
+  request.companions["timestamps"] = {{"oxts/timestamps.txt", stamps}};
   return request;
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("kitti_oxts: a request that it cannot meet is refused") {
   CHECK_THROWS_MATCHES(
       read(kFirst, request), InputError,
       Message("oxts/data: a KITTI oxts log holds no time: give its oxts/timestamps.txt as 'timestamps'"));
-  request.companions["dbc"] = {};
+  request.companions["dbc"] = {{}};
   CHECK_THROWS_MATCHES(read(kFirst, request), InputError,
                        Message("oxts/data: a KITTI oxts log takes no 'dbc' file; leave it out"));
   request.columns["latitude"] = {};

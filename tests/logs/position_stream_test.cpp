@@ -183,7 +183,7 @@ TEST_CASE("log requests: what a format cannot give is refused in one way") {
                          Message("run.log: a log " + message));
   };
   CHECK_NOTHROW(require_positions("run.log", request, "a log"));
-  request.companions["dbc"] = {};
+  request.companions["dbc"] = {{}};
   check("takes no 'dbc' file; leave it out");
   CHECK_NOTHROW(require_companions("run.log", request, "a log", "dbc"));
   request.columns["speed"] = {};

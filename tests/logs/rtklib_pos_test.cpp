@@ -241,7 +241,7 @@ TEST_CASE("rtklib_pos: a request that it cannot meet is refused") {
   CHECK_THROWS_MATCHES(read(kFix, request), InputError,
                        Message("run.pos: an RTKLIB solution has no columns to map; leave out 'columns'"));
   request = {};
-  request.companions["dbc"] = {};
+  request.companions["dbc"] = {{}};
   CHECK_THROWS_MATCHES(read(kFix, request), InputError,
                        Message("run.pos: an RTKLIB solution takes no 'dbc' file; leave it out"));
 }

@@ -11,6 +11,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
+#include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
+#include <waymark/formats/logs/detail/can/dbc_set.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/tools/inspection/log_clock.hpp>
@@ -87,11 +89,11 @@ LogReaderType reader_for(const std::string& path, std::span<const LogReaderType>
 
 /// Finds the files that belong to the log: the given DBC, or the stamps beside a KITTI folder.
 void find_companions(LogInspection& log, const InspectionOptions& options) {
-  if (log.format == "candump" && !options.dbc.empty()) log.companions["dbc"] = options.dbc;
+  if (formats::is_can_format(log.format) && !options.dbc.empty()) log.companions["dbc"] = options.dbc;
   const std::filesystem::path beside = std::filesystem::path(log.path).parent_path() / "timestamps.txt";
   if (log.format == "kitti_oxts" && std::filesystem::is_directory(log.path) &&
       std::filesystem::exists(beside))
-    log.companions["timestamps"] = beside.string();
+    log.companions["timestamps"] = {beside.string()};
 }
 
 LogRequest basic_request(const LogInspection& log, StreamKind stream) {
@@ -106,12 +108,8 @@ LogRequest basic_request(const LogInspection& log, StreamKind stream) {
     if (const ColumnSummary* column = receiver_column(log))
       request.where = RowFilter{column->name, column->receivers.front(), true};
   }
-  for (const auto& [key, path] : log.companions) {
-    std::string text;
-    const std::string trouble = formats::read_in_pieces(path, [&](std::string_view piece) { text += piece; });
-    if (!trouble.empty()) throw InputError(path + ": " + trouble);
-    request.companions[key] = {path, std::move(text)};
-  }
+  for (const auto& [key, paths] : log.companions)
+    for (const std::string& path : paths) request.companions[key].push_back(formats::read_companion(path));
   return request;
 }
 
@@ -125,21 +123,14 @@ bool map_columns(const LogInspection& log, LogRequest& request) {
   return columns.size() > (log.table ? 1U : 0U);
 }
 
-std::optional<formats::Dbc> dbc_of(const LogInspection& log) {
-  const auto path = log.companions.find("dbc");
-  if (path == log.companions.end()) return std::nullopt;
-  std::string text;
-  (void)formats::read_in_pieces(path->second, [&](std::string_view piece) { text += piece; });
-  return formats::Dbc::parse(text, path->second);
-}
-
 /// The first pass over a log of columns: it finds the columns.
 void survey(LogInspection& log, const InspectionOptions& options) {
   Pass pass;
   if (log.format == "csv")
     pass.decoder = std::make_unique<TableSurvey>(log.path);
   else
-    pass.decoder = std::make_unique<CanSurvey>(log.path, dbc_of(log));
+    pass.decoder = std::make_unique<CanSurvey>(log.path, log.format,
+                                               formats::dbc_of(basic_request(log, StreamKind::gnss)));
   Pass* const passes[] = {&pass};
   read_passes(log.path, passes, options, log);
   const LogData& data = pass.decoder->data();
@@ -158,13 +149,14 @@ void survey(LogInspection& log, const InspectionOptions& options) {
   } else {
     log.can = dynamic_cast<CanSurvey&>(*pass.decoder).summary();
     const bool since_start = log.can->stamps.earliest().seconds() < 0.9e9;
-    log.clock = {
-        TimeScale::unix_time,
-        false,
-        !since_start,
-        false,
-        !since_start,
-        since_start ? "the logger counts from an unknown start" : "the logger's clock, Unix seconds"};
+    log.clock = {TimeScale::unix_time,
+                 false,
+                 !since_start,
+                 false,
+                 !since_start && log.format == "candump",
+                 since_start               ? "the logger counts from an unknown start"
+                 : log.format == "candump" ? "the logger's clock, Unix seconds"
+                                           : "the date in the log's head, local time of an unknown zone"};
   }
 }
 
@@ -374,9 +366,9 @@ LogInspection inspect_log(const std::string& path, std::span<const LogReaderType
   log.format = reader.name;
   log.clock = {TimeScale::utc, true, true, false, true, "the log names its dates"};
   find_companions(log, options);
-  if (log.format == "csv" || log.format == "candump") survey(log, options);
-  const bool without_dbc = log.format == "candump" && !log.companions.contains("dbc");
-  if (!without_dbc) read_streams(log, *reader.reader, options);
+  if (log.format == "csv" || formats::is_can_format(log.format)) survey(log, options);
+  const bool without_signals = log.can && log.can->signals.empty();
+  if (!without_signals) read_streams(log, *reader.reader, options);
   log.suspicions = suspicions_of(log, options.now);
   return log;
 }

@@ -39,7 +39,7 @@ struct LogInspection {
   std::uint64_t size = 0;  ///< bytes on the disk; for a folder, of all its files
   std::string format;
   std::string evidence;  ///< why this format; empty: the user stated it
-  std::map<std::string, std::string> companions;
+  std::map<std::string, std::vector<std::string>> companions;
   std::map<std::string, std::size_t> kinds;  ///< messages of each kind
   std::size_t records = 0, without_fix = 0, corrupt = 0;
   std::vector<std::string> corrupt_examples;
@@ -59,7 +59,7 @@ struct LogInspection {
 
 struct InspectionOptions {
   std::string format = "auto";
-  std::string dbc;  ///< file; empty: none
+  std::vector<std::string> dbc;  ///< files
   /// Called for each piece that is read: file, bytes done, bytes in all.
   std::function<void(const std::string&, std::uint64_t, std::uint64_t)> watch{};
   Stamp now{};  ///< UTC; later dates are suspicious

@@ -192,7 +192,8 @@ void add_columns(Text& text, const std::vector<ColumnSummary>& columns, bool of_
 
 void add_ids(Text& text, const LogInspection& log) {
   text.line("frames", fmt::format("{} on {}", log.can->frames, log.can->interfaces));
-  if (!log.companions.contains("dbc")) text.line("", "the signals in them need a DBC (--dbc FILE)");
+  if (!log.companions.contains("dbc"))
+    text.line("", "only messages of OBD-II and J1939 are known without a DBC (--dbc FILE)");
   text::Table table{.columns = {"id", "frames", "rate", "length"}};
   std::size_t rest = 0;
   for (std::size_t i = 0; i < log.can->ids.size(); ++i) {
@@ -230,7 +231,8 @@ std::string inspection_text(const LogInspection& log, const text::TextLook& look
   Text text(log.path, look);
   text.line("size", size_text(log.size));
   text.line("format", log.format + (log.evidence.empty() ? " (stated)" : ": " + log.evidence));
-  for (const auto& [key, path] : log.companions) text.line(key, path);
+  for (const auto& [key, paths] : log.companions)
+    for (const std::string& path : paths) text.line(key, path);
   if (const StampSeries* span = log.span())
     text.line("span", fmt::format("{} .. {}, {:.3f} s", date_text(span->earliest(), log.clock),
                                   date_text(span->latest(), log.clock), span->span_s()));

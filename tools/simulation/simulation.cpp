@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/simulation/road.hpp>
 #include <waymark/tools/simulation/sensors/lasting_errors.hpp>
 #include <waymark/tools/simulation/sensors/sensors.hpp>

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/evaluation/numbers/truth_interpolation.hpp>
 
 namespace waymark::simulation {

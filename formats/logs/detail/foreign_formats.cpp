@@ -22,7 +22,7 @@ struct Signature {
 };
 
 // NUL bytes are part of some signatures, so their lengths are stated.
-constexpr std::array<Signature, 17> kSignatures{{
+constexpr std::array<Signature, 16> kSignatures{{
     {0, "MDF     ", {"an MF4 (ASAM MDF) file", "asammdf writes CSV from it"}},
     {0, "LOGG", {"a Vector BLF file", "`python3 -m can.logconvert` writes a candump log from it"}},
     {0, "#ROSBAG", {"a ROS 1 bag", "`rostopic echo -p -b FILE /topic` writes CSV from it"}},
@@ -56,11 +56,6 @@ constexpr std::array<Signature, 17> kSignatures{{
     {0,
      "Time Stamp,ID,Extended,",
      {"SavvyCAN's table of CAN frames", "save it from SavvyCAN as a candump log"}},
-    {0,
-     ";$FILEVERSION=",
-     {"a PEAK trace (TRC)",
-      "`python3 -m can.logconvert FILE.trc drive.log` writes a candump "
-      "log from it"}},
     {0, {"\x89PNG", 4}, {"a picture", "it holds no log"}},
 }};
 
@@ -69,23 +64,11 @@ struct Words {
   std::string_view words;
   ForeignFormat format;
 };
-constexpr std::array<Words, 6> kWords{{
+constexpr std::array<Words, 3> kWords{{
     {"RINEX VERSION", {"a RINEX file of raw observations", "RTKLIB's rnx2rtkp computes positions from it"}},
     {"<TrainingCenterDatabase",
      {"a TCX file", "`gpsbabel -i gtrnctr -f FILE -o gpx -F drive.gpx` writes GPX from it"}},
     {"<kml", {"a KML file", "`gpsbabel -i kml -f FILE -o gpx -F drive.gpx` writes GPX from it"}},
-    {"[column names]",
-     {"a Racelogic VBO file",
-      "its table below '[data]' is a CSV with blanks; save it with the "
-      "column names above it"}},
-    {"base hex  timestamps",
-     {"a Vector trace (ASC)",
-      "`python3 -m can.logconvert FILE.asc drive.log` writes a "
-      "candump log from it"}},
-    {"# Header Description:",
-     {"an Android GnssLogger file",
-      "its lines that begin with 'Fix,' are a CSV; its lines "
-      "with 'NMEA,' hold an NMEA log"}},
 }};
 
 std::string_view first_line(std::string_view head) {

@@ -72,7 +72,7 @@ TEST_CASE("can frame: the console layout of candump -ta") {
   CHECK(split_can_line(" (1.0)  can0  123   [8]  remote request").kind == FrameKind::remote);
   CHECK(split_can_line(" (1.0)  can0  20000080   [8]  00 00 00 00 00 00 00 00   ERRORFRAME").kind ==
         FrameKind::error);
-  CHECK(bytes_of(" (1.0)  can0  123   [3]  41 42").what == "fewer bytes than the length in brackets says");
+  CHECK(bytes_of(" (1.0)  can0  123   [3]  41 42").what == "fewer bytes than the stated length");
 }
 
 TEST_CASE("can frame: stamps are exact to the nanosecond") {

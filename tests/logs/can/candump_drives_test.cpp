@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/detail/can/candump.hpp>
+#include <waymark/formats/logs/detail/can/can_log.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/formats/text/text_file.hpp>
@@ -28,7 +28,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 LogRequest request_with(const std::string& dbc_text, StreamKind stream) {
   LogRequest request;
   request.stream = stream;
-  request.companions["dbc"] = {"the.dbc", dbc_text};
+  request.companions["dbc"] = {{"the.dbc", dbc_text}};
   request.time_scale = TimeScale::unix_time;
   if (stream == StreamKind::odometry) request.readings = odometry_channels();
   return request;
@@ -88,7 +88,7 @@ TEST_CASE("candump: the fixes of Aarhus are those of its table, digit by digit")
   if (!drive) return;
   const auto rows = drive_table(*drive + "/gnss.csv");
   LogRequest request = aarhus_fixes(*drive + kDbc);
-  const LogData all = read_log_file(CandumpReader(), *drive + kCandump, request);
+  const LogData all = read_log_file(CanLogReader(), *drive + kCandump, request);
   REQUIRE(all.fixes.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const GeodeticFix& fix = all.fixes[i];
@@ -98,7 +98,7 @@ TEST_CASE("candump: the fixes of Aarhus are those of its table, digit by digit")
     REQUIRE(std::sqrt(fix.covariance_en(0, 0)) == number(rows[i][3]));
   }
   request.columns["valid"] = {"PositionValid", "", ""};
-  const LogData valid = read_log_file(CandumpReader(), *drive + kCandump, request);
+  const LogData valid = read_log_file(CanLogReader(), *drive + kCandump, request);
   std::vector<Stamp> expected;
   for (const auto& row : rows) {
     if (row[4] == "1") expected.push_back(*stamp_from_decimal_seconds(row[0]));
@@ -112,7 +112,7 @@ TEST_CASE("candump: speed and course of Aarhus come from the frames behind the p
   const auto drive = waymark_test::shared_data(kAarhus);
   if (!drive) return;
   const auto rows = drive_table(*drive + "/gnss_speed_heading.csv");
-  const LogData data = read_log_file(CandumpReader(), *drive + kCandump, aarhus_fixes(*drive + kDbc));
+  const LogData data = read_log_file(CanLogReader(), *drive + kCandump, aarhus_fixes(*drive + kDbc));
   REQUIRE(data.fixes.size() == rows.size());
   int other_headings = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -128,7 +128,7 @@ TEST_CASE("candump: speed and course of Aarhus come from the frames behind the p
 TEST_CASE("candump: the logger of Aarhus is 4.40 s ahead of GNSS time") {
   const auto drive = waymark_test::shared_data(kAarhus);
   if (!drive) return;
-  LogData data = read_log_file(CandumpReader(), *drive + kCandump, aarhus_fixes(*drive + kDbc));
+  LogData data = read_log_file(CanLogReader(), *drive + kCandump, aarhus_fixes(*drive + kDbc));
   REQUIRE(data.clocks.size() == 2272);
   const auto middle = data.clocks.begin() + 1136;
   const auto ahead = [](const ClockPair& pair) { return seconds_between(pair.told, pair.logged); };
@@ -146,7 +146,7 @@ TEST_CASE("candump: the gyro of Aarhus, a quarter of a million rows") {
       {"x", "rad/s", "ccw", true, ""}, {"y", "rad/s", "ccw", true, ""}, {"z", "rad/s", "ccw", true, ""}};
   request.columns = {
       {"x", {"AngularRateX", "", ""}}, {"y", {"AngularRateY", "", ""}}, {"z", {"AngularRateZ", "", ""}}};
-  const LogData data = read_log_file(CandumpReader(), *drive + kCandump, request);
+  const LogData data = read_log_file(CanLogReader(), *drive + kCandump, request);
   REQUIRE(data.readings.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     REQUIRE(data.readings.stamps[i] == *stamp_from_decimal_seconds(rows[i][0]));
@@ -169,7 +169,7 @@ TEST_CASE("candump: the OBD speed of Aarhus by a multiplexed DBC of six lines") 
       "SG_MUL_VAL_ 2024 VehicleSpeed Parameter 13-13;\n";
   LogRequest request = request_with(dbc, StreamKind::odometry);
   request.columns = {{"speed", {"VehicleSpeed", "", ""}}};
-  const LogData data = read_log_file(CandumpReader(), *drive + kCandump, request);
+  const LogData data = read_log_file(CanLogReader(), *drive + kCandump, request);
   REQUIRE(data.readings.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     REQUIRE(data.readings.stamps[i] == *stamp_from_decimal_seconds(rows[i][0]));
@@ -188,8 +188,7 @@ TEST_CASE("candump: wheels and yaw rate of a RAV4 are those of one car that driv
   }
   request.readings.push_back({"yaw_rate", "rad/s", "ccw", false, ""});
   request.columns["yaw_rate"] = {"can0:KINEMATICS.YAW_RATE", "", ""};
-  const LogData data =
-      read_log_file(CandumpReader(), *logs + "/rav4_2019_first_seconds.candump.log", request);
+  const LogData data = read_log_file(CanLogReader(), *logs + "/rav4_2019_first_seconds.candump.log", request);
   REQUIRE(data.corrupt == 0);
   std::vector<double> spreads;  // between the four wheels
   int speeds = 0;
@@ -230,7 +229,7 @@ TEST_CASE("candump: real logs are recognised") {
        {"drives/aarhus_horsens/candump.log.gz", "logs/can/rav4_2019_first_seconds.candump.log"}) {
     const auto log = waymark_test::shared_data(name);
     if (!log) continue;
-    static const CandumpReader reader;
+    static const CanLogReader reader;
     const std::vector<LogReaderType> readers{{"candump", "", &reader}};
     CHECK(recognise_log(*log, readers).why.certainty == 1);
   }

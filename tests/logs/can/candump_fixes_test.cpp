@@ -112,8 +112,9 @@ TEST_CASE("candump: what receivers send for not available is no value") {
   const LogData data = read(motion("1.0", 65535, 65535) + position("1.001", 1, 1), fixes());
   CHECK_FALSE(data.fixes.at(0).course_rad);
   CHECK_FALSE(data.fixes.at(0).speed_mps);
-  CHECK(data.notes.end()[-3] ==
-        "car.log: course: 1 values of signal Heading are outside its range or not finite; they are ignored");
+  CHECK(
+      data.notes.end()[-3] ==
+      "car.log: course: 1 values of signal Heading are outside its range or not available; they are ignored");
   CHECK_THROWS_MATCHES(
       read(position("1.0", 91'000'000, 1), fixes()), InputError,
       Message("car.log: none of 1 records could be used; first: car.log:1:1: latitude: the signal "
@@ -147,7 +148,7 @@ TEST_CASE("candump: the receiver's clock beside the logger's") {
   const LogData none = read(position("1.0", 1, 1) + "(1.1) can0 025#000000\n", request);
   CHECK(none.clocks.empty());  // 0: the receiver does not know the time yet
   CHECK(none.notes.end()[-4] ==
-        "car.log: gnss_time: 1 values of signal COUNT are outside its range or not finite; "
+        "car.log: gnss_time: 1 values of signal COUNT are outside its range or not available; "
         "they are ignored");
 }
 

@@ -10,7 +10,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/detail/can/candump.hpp>
+#include <waymark/formats/logs/detail/can/can_log.hpp>
 
 #include "logs/log_pieces.hpp"
 
@@ -59,7 +59,7 @@ inline LogRequest request_of(StreamKind stream, std::map<std::string, ColumnRequ
   LogRequest request;
   request.stream = stream;
   request.columns = std::move(columns);
-  request.companions["dbc"] = {"car.dbc", kDbc};
+  request.companions["dbc"] = {{"car.dbc", kDbc}};
   request.time_scale = TimeScale::unix_time;
   if (stream == StreamKind::odometry) request.readings = odometry_channels();
   return request;
@@ -75,7 +75,7 @@ inline LogRequest fixes() {
 }
 
 inline LogData read(const std::string& text, const LogRequest& request) {
-  return CandumpReader().read(text, "car.log", request);
+  return CanLogReader().read(text, "car.log", request);
 }
 
 inline std::string hex_bytes(std::uint64_t word, int bytes) {
@@ -110,7 +110,7 @@ inline std::size_t channel(const std::string& name) {
 }
 
 inline void check_refused(const LogRequest& request, const std::string& message) {
-  CHECK_THROWS_MATCHES(CandumpReader().open("car.log", request), InputError, Message("car.log: " + message));
+  CHECK_THROWS_MATCHES(CanLogReader().open("car.log", request), InputError, Message("car.log: " + message));
 }
 
 }  // namespace waymark_test::candump_samples

@@ -10,9 +10,11 @@ using namespace waymark_test::candump_samples;
 TEST_CASE("candump: what a request lacks is told") {
   LogRequest request = fixes();
   request.companions.clear();
-  check_refused(request, "a candump log needs its DBC: state 'dbc: FILE'");
-  request.companions["timestamps"] = {"t.txt", ""};
-  check_refused(request, "a candump log takes no 'timestamps' file; leave it out");
+  check_refused(request,
+                "accuracy: the list of OBD-II and J1939 messages (no 'dbc: FILE' is stated) has no signal "
+                "'Accuracy'");
+  request.companions["timestamps"] = {{"t.txt", ""}};
+  check_refused(request, "a log of CAN frames takes no 'timestamps' file; leave it out");
 
   check_refused(request_of(StreamKind::gnss, {}),
                 "no signal for latitude: state 'columns: {latitude: SIGNAL}'; car.dbc has gnss_pos.Latitude, "
@@ -50,7 +52,7 @@ TEST_CASE("candump: a column that does not fit the DBC is told with what does") 
   check_refused(clock, "gnss_time: a signal is a number, never in 'iso8601'; its units are s, ms, us, ns");
   LogRequest without_channels = request_of(StreamKind::odometry, {{"speed", from("FL")}});
   without_channels.readings.clear();
-  CHECK_THROWS_MATCHES(CandumpReader().open("car.log", without_channels), UsageError,
+  CHECK_THROWS_MATCHES(CanLogReader().open("car.log", without_channels), UsageError,
                        Message("a CAN log gives odometry in channels: LogRequest::readings must name them"));
   check_refused(request_of(StreamKind::gnss, {{"time", from("Epoch")}}),
                 "frames of a candump log are stamped by the logger, so no signal can be their "
@@ -60,7 +62,7 @@ TEST_CASE("candump: a column that does not fit the DBC is told with what does") 
 TEST_CASE("candump: a signal that the DBC spoils is refused where it is asked for, else noted") {
   LogRequest request = request_of(StreamKind::odometry, {{"speed", from("S", "m/s")}});
   request.companions["dbc"] = {
-      "car.dbc", "BO_ 1 M: 1 X\n SG_ S : 1|8@1+ (1,0) [0|0] \"\" X\n SG_ T : 0|8@1+ (1,0) [0|0] \"\" X\n"};
+      {"car.dbc", "BO_ 1 M: 1 X\n SG_ S : 1|8@1+ (1,0) [0|0] \"\" X\n SG_ T : 0|8@1+ (1,0) [0|0] \"\" X\n"}};
   check_refused(
       request,
       "speed: car.dbc:2:10: SG_ S: start 1 and length 8 do not fit into the 1 bytes of M; correct one of "
@@ -74,7 +76,7 @@ TEST_CASE("candump: a signal that the DBC spoils is refused where it is asked fo
 
 TEST_CASE("candump: signals behind a frame's reach are refused") {
   LogRequest request = request_of(StreamKind::odometry, {{"speed", from("S", "m/s")}});
-  request.companions["dbc"] = {"car.dbc", "BO_ 1 LONG: 100 X\n SG_ S : 512|8@1+ (1,0) [0|0] \"\" X\n"};
+  request.companions["dbc"] = {{"car.dbc", "BO_ 1 LONG: 100 X\n SG_ S : 512|8@1+ (1,0) [0|0] \"\" X\n"}};
   check_refused(
       request,
       "speed: LONG.S is behind the first 64 bytes, so its message takes several frames (a transport "
@@ -89,13 +91,6 @@ TEST_CASE("candump: a log without a wanted frame says what was looked for") {
                        Message("car.log: no frame holds a signal that is needed (WHEELS (id AA) on "
                                "can0, MOTION (id 24)); the log has can0 (1 frames), can1 (1 frames)"));
   CHECK_THROWS_MATCHES(read("", fixes()), InputError, Message("car.log: the log holds no records"));
-}
-
-TEST_CASE("candump: Vector ASC logs are refused with the remedy") {
-  CHECK_THROWS_MATCHES(
-      read("date Mon Jul 26 04:40:55.012 am 2021\nbase hex  timestamps absolute\n", fixes()), InputError,
-      Message("car.log: this is a Vector ASC log, which is not supported; `asc2log < car.log > candump.log` "
-              "(can-utils) writes a candump log from it"));
 }
 
 }  // namespace candump_requests_test

@@ -95,11 +95,11 @@ TEST_CASE("candump: pieces of any length give the same") {
   std::string text = "garbage\r\n";
   for (int i = 10; i < 20; ++i)
     text += position(std::to_string(i) + ".0", i, i) + motion(std::to_string(i) + ".01", 100, 10);
-  CHECK(waymark_test::check_pieces(CandumpReader(), text, "car.log", fixes()).fixes.size() == 10);
+  CHECK(waymark_test::check_pieces(CanLogReader(), text, "car.log", fixes()).fixes.size() == 10);
 }
 
 TEST_CASE("candump: is recognised by its lines") {
-  const CandumpReader reader;
+  const CanLogReader reader;
   const Recognition log = reader.recognise("(1.0) can0 0AA#00\n(1.1) can0 17F00010#2010\n(1.2) can0 0AA#0");
   CHECK(log.certainty == 1);
   CHECK(log.evidence == "2 of 2 lines are CAN frames as candump writes them");

@@ -123,7 +123,7 @@ TEST_CASE("gpsd: what cannot be read at all is an error that says why") {
       read(kFix, request), InputError,
       Message("log.json: a gpsd log holds no sensor readings; it gives the streams gnss and truth"));
   request = utc_fixes();
-  request.companions["dbc"] = {"car.dbc", ""};
+  request.companions["dbc"] = {{"car.dbc", ""}};
   CHECK_THROWS_MATCHES(read(kFix, request), InputError,
                        Message("log.json: a gpsd log takes no 'dbc' file; leave it out"));
 }

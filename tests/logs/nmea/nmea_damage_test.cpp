@@ -88,7 +88,7 @@ TEST_CASE("nmea: requests that no NMEA log can meet") {
   CHECK_THROWS_MATCHES(read("", request), InputError,
                        Message("log.nmea: an NMEA log has no columns to map; leave out 'columns'"));
   request = utc();
-  request.companions["dbc"] = {"car.dbc", ""};
+  request.companions["dbc"] = {{"car.dbc", ""}};
   CHECK_THROWS_MATCHES(read("", request), InputError,
                        Message("log.nmea: an NMEA log takes no 'dbc' file; leave it out"));
 }

@@ -70,7 +70,7 @@ TEST_CASE("ubx: what cannot be read at all is an error that says why") {
   CHECK_THROWS_MATCHES(read("", request), InputError,
                        Message("log.ubx: week -1 is outside 0 .. 10000 (time: {week: ...})"));
   request.gps_week = 0;
-  request.companions["dbc"] = {"a.dbc", ""};
+  request.companions["dbc"] = {{"a.dbc", ""}};
   CHECK_THROWS_MATCHES(read("", request), InputError,
                        Message("log.ubx: a UBX log takes no 'dbc' file; leave it out"));
 }

@@ -88,6 +88,52 @@ TEST_CASE("slips: a yaw rate in deg/s read as rad/s, and the reverse, are named"
   CHECK(contains(run({"convert", slow, "-o", folder + "a.graph"}).err, "rad/s are read as deg/s"));
 }
 
+TEST_CASE(
+    "slips: accuracies that are stated far too small or too large are named by the residuals, per modeling") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "urban", "--duration", "120", "--seed", "7", "-o", folder}).code == 0);
+  const auto with_accuracy = [&](const std::string& name, const std::string& column) {
+    std::string text = "time,latitude,longitude,accuracy\n";
+    std::istringstream truth(read_text(folder + "truth.csv"));
+    int row = 0;
+    for (std::string of; std::getline(truth, of);) {
+      double time = 0, latitude = 0, longitude = 0;
+      if (std::sscanf(of.c_str(), "%lf,%lf,%lf", &time, &latitude, &longitude) != 3 || row++ % 5 != 0)
+        continue;
+      // Errors of 2 m to and fro.
+      char line[128];
+      std::snprintf(line, sizeof line, "%.3f,%.9f,%.9f,%s\n", time, latitude + (row % 3 - 1) * 2.4e-5,
+                    longitude, column.c_str());
+      text += line;
+    }
+    write_text(folder + "gnss.csv", text);
+    return write_text(folder + name,
+                      "time: {scale: gps}\nodometry: {file: odometry.csv}\n"
+                      "gnss: {file: gnss.csv, accuracy: {meaning: 1sigma}}\n");
+  };
+  const RunResult small =
+      run({"run", with_accuracy("small.yaml", "0.05"), "-o", folder + "small", "-m", "g1,correlated"});
+  CHECK(contains(small.err, "warning: g1: the residuals of the accepted fixes are "));
+  CHECK(contains(small.err, "2 is expected): the accuracies are stated too small"));
+  CHECK_FALSE(contains(small.err, "correlated: the residuals"));
+  CHECK(contains(run({"run", with_accuracy("large.yaml", "50"), "-o", folder + "large", "-m", "g1"}).err,
+                 "the accuracies are stated too large"));
+  CHECK_FALSE(contains(run({"run", with_accuracy("right.yaml", "2"), "-o", folder + "right", "-m", "g1"}).err,
+                       "the residuals of the accepted fixes"));
+}
+
+TEST_CASE("slips: a truth that cannot be projected is explained by what is written wrong") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "urban", "--duration", "60", "--seed", "7", "-o", folder}).code == 0);
+  std::string drive = read_text(folder + "drive.yaml");
+  const std::size_t at = drive.find("latitude: latitude_deg, longitude: longitude_deg");
+  REQUIRE(at != std::string::npos);
+  drive.replace(at, 48, "latitude: longitude_deg, longitude: latitude_deg");
+  const RunResult result = run({"run", write_text(folder + "drive.yaml", drive), "-o", folder + "out"});
+  CHECK(result.code == 3);
+  CHECK(contains(result.err, "in one of them latitude and longitude are exchanged"));
+}
+
 TEST_CASE("slips: odometry that reads 0 for 30 s of driving is replaced, told once and in the report") {
   const std::string folder = fresh_folder();
   const std::string drive = drive_with(folder, [](double t, double v, double w) {

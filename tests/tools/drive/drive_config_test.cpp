@@ -220,7 +220,7 @@ truth: {file: oxts/data, format: kitti_oxts, timestamps: oxts/times.txt}
   REQUIRE(config.description.odometry.front().logs.size() == 2);
   CHECK(config.description.odometry.front().logs[0].request.time_offset_s == -0.4);
   CHECK(config.description.odometry.front().logs[1].format == "candump");
-  CHECK(config.description.odometry.front().logs[1].companions.at("dbc") == "tours/car.dbc");
+  CHECK(config.description.odometry.front().logs[1].companions.at("dbc") == std::vector<std::string>{"tours/car.dbc"});
   CHECK(config.description.odometry.front().logs[1].request.columns.at("gyro_x").column == "IMU.Rate");
   CHECK(config.description.odometry.front().logs[1].request.readings.size() == odometry_channels().size());
   CHECK(config.description.odometry.front().assembly.rate_hz == 20);
@@ -239,7 +239,8 @@ truth: {file: oxts/data, format: kitti_oxts, timestamps: oxts/times.txt}
   CHECK(config.description.gnss[0].request.range_error_m == 5);
   CHECK(config.description.gnss[0].velocity->file == "tours/doppler.csv");
   CHECK(config.description.gnss[0].velocity->request.readings.size() == velocity_channels().size());
-  CHECK(config.description.truth->companions.at("timestamps") == "tours/oxts/times.txt");
+  CHECK(config.description.truth->companions.at("timestamps") ==
+        std::vector<std::string>{"tours/oxts/times.txt"});
 }
 
 TEST_CASE("drive.yaml: what is wrong with parts, dates and signals is told with its place") {

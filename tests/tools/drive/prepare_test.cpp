@@ -8,7 +8,7 @@
 #include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 
 #include "support/paths.hpp"
 #include "support/skip.hpp"

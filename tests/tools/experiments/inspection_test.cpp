@@ -337,7 +337,7 @@ TEST_CASE("inspection: CAN frames without a DBC are ids with rates and lengths")
   CHECK(log.can->ids[0].rate_hz == Approx(100).epsilon(1e-6));
   CHECK(log.can->ids[0].detail == "2 to 3 bytes");
   CHECK(log.can->ids[1].name == "17F00010");
-  CHECK(has(inspection_text(log), "the signals in them need a DBC (--dbc FILE)"));
+  CHECK(has(inspection_text(log), "only messages of OBD-II and J1939 are known without a DBC (--dbc FILE)"));
 }
 
 TEST_CASE("inspection: roles are decided and told, and the drive.yaml parses") {

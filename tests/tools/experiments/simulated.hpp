@@ -2,7 +2,7 @@
 #pragma once
 
 #include <waymark/tools/drive/logs/prepare.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/tools/evaluation/evaluation.hpp>
 #include <waymark/tools/simulation/simulation.hpp>

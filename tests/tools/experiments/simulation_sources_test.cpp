@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 #include <waymark/tools/simulation/source_statistics.hpp>
 

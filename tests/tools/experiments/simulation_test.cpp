@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/simulation/sensors/sensors.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 #include <waymark/tools/simulation/statistics.hpp>

@@ -12,7 +12,7 @@
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
 #include <waymark/tools/drive/clocks/lag_search.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 
 namespace waymark::drive {

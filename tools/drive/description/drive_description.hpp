@@ -25,7 +25,7 @@ struct LogConfig {
   std::string format = "auto";
   LogRequest request;  ///< without the text of companion files
   /// files that belong to the log, resolved, by key ("dbc")
-  std::map<std::string, std::string> companions;
+  std::map<std::string, std::vector<std::string>> companions;
   std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
 };
 

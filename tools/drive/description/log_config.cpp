@@ -8,6 +8,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>
 #include <waymark/formats/logs/detail/csv/csv_columns.hpp>
 #include <waymark/formats/text/iso8601.hpp>
@@ -45,7 +46,7 @@ void read_columns(const YamlSection& section, const std::string& format, LogRequ
   if (!section.has("columns")) return;
   // Only the plugin of a sensor knows its quantities, and only its reader knows further names
   // of a format.
-  const bool of_table = format == "csv" || format == "candump" || format == "auto";
+  const bool of_table = format == "csv" || format == "auto" || formats::is_can_format(format);
   const bool open = request.stream == StreamKind::sensor || !of_table;
   std::vector<formats::Quantity> known = formats::quantities(request);
   const YamlSection columns =
@@ -146,13 +147,14 @@ LogConfig read_log_config(const YamlSection& section, LogRequest request, const 
   log.file = resolved(folder, file);
   section.read("format", log.format);
   for (const char* key : {"separator", "where", "frame"})
-    if (section.has(key) && log.format != "csv" && log.format != "auto")
+    if (section.has(key) && log.format != "csv" && log.format != "auto" &&
+        !(log.format == "gnss_logger" && key == std::string_view("where")))
       section.fail(key, fmt::format("belongs to the format csv, not to {}", log.format));
   for (const std::string_view key : kCompanions) {
     if (!section.has(key)) continue;
-    std::string companion;
-    section.read(key, companion);
-    log.companions[std::string(key)] = resolved(folder, companion);
+    std::vector<std::string> files;
+    section.read(key, files);
+    for (const std::string& path : files) log.companions[std::string(key)].push_back(resolved(folder, path));
   }
   if (section.has("where")) log.request.where = read_filter(section);
   if (const auto separator = section.read_word("separator", kSeparators))

@@ -143,6 +143,20 @@ void YamlSection::read(std::string_view key, Eigen::Vector2d& value) const {
   value = Eigen::Vector2d(*x, *y);
 }
 
+void YamlSection::read(std::string_view key, std::vector<std::string>& values) const {
+  if (!has(key)) return;
+  const YAML::Node list = node(key);
+  if (list.IsScalar()) {
+    values.emplace_back();
+    return read(key, values.back());
+  }
+  if (!list.IsSequence() || list.size() == 0) fail_value(key, "a text, or a list of texts");
+  for (const YAML::Node& entry : list) {
+    if (!entry.IsScalar() || entry.Scalar().empty()) fail_value(key, "a text, or a list of texts");
+    values.push_back(entry.Scalar());
+  }
+}
+
 void YamlSection::read_option(std::string_view key, std::string& value) const {
   if (!has(key)) return;
   if (node(key).IsScalar()) return read(key, value);

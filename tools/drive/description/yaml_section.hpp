@@ -52,6 +52,8 @@ class YamlSection {
   void read(std::string_view key, double& value, const NumberRule& rule) const;
   void read(std::string_view key, int& value, const NumberRule& rule) const;
   void read(std::string_view key, std::optional<double>& value, const NumberRule& rule) const;
+  /// Reads one text, or a list of texts. Adds them to the values.
+  void read(std::string_view key, std::vector<std::string>& values) const;
   /// Reads two numbers: [x, y].
   void read(std::string_view key, Eigen::Vector2d& value) const;
   /// Reads the value of an option of a registered type: a word, or a list or mapping as text in flow style

@@ -8,9 +8,10 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/logs/frame_choice.hpp>
+#include <waymark/tools/drive/coordinates/frame_choice.hpp>
+#include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 #include <waymark/tools/drive/nodes/agreement.hpp>
 #include <waymark/tools/drive/nodes/fix_motion.hpp>
@@ -186,6 +187,22 @@ Vehicle vehicle_of(const DriveDescription& description) {
   return {stated.track_width_m, stated.wheelbase_m, stated.steering_ratio, stated.metres_per_tick};
 }
 
+/// Truth that is far away is told before it may fail to be projected.
+std::vector<TruthPose> projected_truth(const std::vector<GeodeticTruth>& truth,
+                                       const std::vector<GeodeticFix>& fixes,
+                                       const std::optional<Projection>& projection, PrepareReport& report) {
+  const std::string far_away = warning_of_distance(fixes, truth);
+  if (!far_away.empty()) report.warnings.push_back(far_away);
+  std::vector<TruthPose> result;
+  try {
+    for (const GeodeticTruth& pose : truth) result.push_back(projection->project(pose));
+  } catch (const InputError& error) {
+    if (far_away.empty()) throw;
+    throw InputError(fmt::format("{}; {}", far_away, error.what()));
+  }
+  return result;
+}
+
 /// Takes the relative sources: the only one, or all of them.
 void take_odometry(std::vector<PreparedOdometry> relative, PreparedDrive& drive) {
   drive.odometry_name = relative.front().name;
@@ -233,7 +250,7 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
     drive.fixes.push_back(projection->project(fix));
     drive.fixes.back().antenna_m = drive.receivers.at(static_cast<std::size_t>(fix.source)).antenna_m;
   }
-  for (const GeodeticTruth& pose : truth) drive.truth.push_back(projection->project(pose));
+  drive.truth = projected_truth(truth, fixes, projection, drive.report);
   number_epochs(drive.fixes, description, drive.report);
   judge_odometry(drive);
   cut_fixes(drive);

@@ -46,20 +46,21 @@ LogReaderType named_reader(const LogConfig& log, const std::vector<LogReaderType
 /// are beside it, by the layout of the data set.
 void read_companions(const LogConfig& log, LogRequest& request, std::vector<InputFile>& inputs,
                      std::vector<std::string>& notes) {
-  std::map<std::string, std::string> companions = log.companions;
+  std::map<std::string, std::vector<std::string>> companions = log.companions;
   const std::filesystem::path beside = std::filesystem::path(log.file).parent_path() / "timestamps.txt";
   if (std::filesystem::is_directory(log.file) && !companions.contains("timestamps") &&
       std::filesystem::exists(beside)) {
-    companions["timestamps"] = beside.string();
+    companions["timestamps"] = {beside.string()};
     notes.push_back(
         fmt::format("{}: time stamps are on the scale of {} (not stated)", log.file, beside.string()));
   }
-  for (const auto& [key, path] : companions) {
-    std::string text;
-    const std::string trouble = formats::read_in_pieces(path, [&](std::string_view piece) { text += piece; });
-    if (!trouble.empty()) throw InputError(path + ": " + trouble);
-    if (log.companions.contains(key)) inputs.push_back({path, "fnv1a64:" + formats::fnv1a64_hex(text)});
-    request.companions[key] = {path, std::move(text)};
+  for (const auto& [key, paths] : companions) {
+    for (const std::string& path : paths) {
+      CompanionFile file = formats::read_companion(path);
+      if (log.companions.contains(key))
+        inputs.push_back({path, "fnv1a64:" + formats::fnv1a64_hex(file.text)});
+      request.companions[key].push_back(std::move(file));
+    }
   }
 }
 

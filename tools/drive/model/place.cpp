@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/start_search.hpp>
 #include <waymark/tools/drive/nodes/agreement.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
@@ -88,6 +89,12 @@ void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
     placed.start = make_start(placed.timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
 }
 
+/// Returns where on the Earth the drive is.
+std::optional<GeodeticPoint> place_of(const PreparedDrive& drive) {
+  if (drive.frame.zone == 0) return std::nullopt;
+  return Projection(drive.frame).to_geodetic(drive.fixes.front().position);
+}
+
 }  // namespace
 
 PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, const FusionSettings& settings,
@@ -103,7 +110,7 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
       dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
   const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.fixes);
   placed.warnings = drive.report.warnings;
-  for (std::string& warning : compare_odometry_with_fixes(placed.fixes, antenna))
+  for (std::string& warning : compare_odometry_with_fixes(placed.fixes, antenna, place_of(drive)))
     placed.warnings.push_back(std::move(warning));
   placed.gate = apply_gate(placed.fixes, antenna, gates_of(placed, settings, registry));
   require_accepted_fix(placed.gate);

@@ -9,7 +9,7 @@
 
 #include <waymark/core/drive/drive_context.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 
 namespace waymark::drive {
 

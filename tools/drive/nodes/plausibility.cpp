@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
 #include <waymark/tools/drive/nodes/chords.hpp>
 #include <waymark/tools/drive/nodes/frozen_fixes.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
@@ -117,6 +118,51 @@ std::string small_factor(const ReckonedFixes& receiver) {
       1 / factor.value, factors.size(), factor.sigma);
 }
 
+/// What is wrong with turns and distances.
+struct Shape {
+  std::vector<std::string> sentences;
+  bool spoils_jumps = false;  ///< jumps mean nothing then
+};
+
+Shape shape_of(const ReckonedFixes& receiver) {
+  const std::vector<TurnPair> turns = turns_between(receiver);
+  // Turns of another size distort all lengths, and lengths of another unit all differences of them.
+  if (std::string size = size_of_turns(turns); !size.empty()) return {{std::move(size)}, true};
+  Shape shape;
+  if (std::string sign = sign_of_turns(turns); !sign.empty()) shape.sentences.push_back(std::move(sign));
+  if (std::string factor = large_factor(receiver); !factor.empty()) {
+    shape.sentences.push_back(std::move(factor));
+    shape.spoils_jumps = true;
+  } else if (factor = small_factor(receiver); !factor.empty()) {
+    shape.sentences.push_back(std::move(factor));
+  }
+  return shape;
+}
+
+/// Looks for slips without which nothing is wrong, and names them. A mirror is only one of two reasons
+/// for turns of the other sense.
+void name_slips(const ReckonedFixes& receiver, const GeodeticPoint& place, Shape& shape) {
+  std::string words;
+  bool mirrors = false;
+  for (const CoordinateSlip& slip : coordinate_slips()) {
+    if (mirrors && slip.mirrors) continue;  // north and south, east and west look alike
+    const Eigen::Matrix2d meant = mending(slip, place);
+    ReckonedFixes mended = receiver;
+    for (Fix& fix : mended.fixes) fix.position = meant * fix.position;
+    if (!shape_of(mended).sentences.empty()) continue;
+    mirrors = mirrors || slip.mirrors;
+    words += fmt::format("{}{}", words.empty() ? "" : ", or ",
+                         slip.mirrors ? "the sign of a longitude (W) or latitude (S) is lost" : slip.words);
+  }
+  if (words.empty()) return;
+  if (mirrors) {
+    shape.sentences.front() += ", unless " + words;
+    return;
+  }
+  shape.sentences = {"the odometry does not fit the fixes, but it does if " + words};
+  shape.spoils_jumps = true;
+}
+
 /// Returns 1 for each fix that repeats a position.
 std::vector<char> marked(const std::vector<FrozenFixes>& frozen, std::size_t fixes) {
   std::vector<char> marks(fixes, 0);
@@ -181,30 +227,23 @@ std::string warning_of_accelerations(std::span<const OdometrySample> odometry) {
 }
 
 std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
-                                                     std::span<const Eigen::Vector3d> antenna) {
+                                                     std::span<const Eigen::Vector3d> antenna,
+                                                     const std::optional<GeodeticPoint>& place) {
   std::vector<std::string> warnings;
   std::vector<Fix> live(fixes.begin(), fixes.end());
   std::vector<Eigen::Vector3d> reckoned(antenna.begin(), antenna.end());
   const std::vector<FrozenFixes> frozen = find_frozen_fixes(fixes, antenna);
-  for (const FrozenFixes& place : frozen) warnings.push_back(warning_of(place, fixes.front().stamp));
+  for (const FrozenFixes& one : frozen) warnings.push_back(warning_of(one, fixes.front().stamp));
   const std::vector<char> is_frozen = marked(frozen, fixes.size());
   std::size_t at = 0;
   std::erase_if(live, [&](const Fix&) { return is_frozen[at++] != 0; });
   at = 0;
   std::erase_if(reckoned, [&](const Eigen::Vector3d&) { return is_frozen[at++] != 0; });
   const ReckonedFixes receiver = of_receiver(live, reckoned, fixes.empty() ? 0 : fixes.front().source);
-  const std::vector<TurnPair> turns = turns_between(receiver);
-  // Turns of another size distort all lengths, and lengths of another unit all differences of them.
-  if (std::string size = size_of_turns(turns); !size.empty()) {
-    warnings.push_back(std::move(size));
-    return warnings;
-  }
-  if (std::string sign = sign_of_turns(turns); !sign.empty()) warnings.push_back(std::move(sign));
-  if (std::string factor = large_factor(receiver); !factor.empty()) {
-    warnings.push_back(std::move(factor));
-    return warnings;
-  }
-  if (std::string factor = small_factor(receiver); !factor.empty()) warnings.push_back(std::move(factor));
+  Shape shape = shape_of(receiver);
+  if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
+  warnings.insert(warnings.end(), shape.sentences.begin(), shape.sentences.end());
+  if (shape.spoils_jumps) return warnings;
   for (std::string& jump : jumps_in_words(receiver)) warnings.push_back(std::move(jump));
   return warnings;
 }

@@ -2,12 +2,14 @@
 /// which otherwise only show as rejected fixes or as errors.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/sample.hpp>
 
 namespace waymark::drive {
@@ -19,11 +21,14 @@ namespace waymark::drive {
 ///   chords of 100 m, compared with its own uncertainty).
 /// - Fixes repeat one position while the odometry moves (frozen_fixes.hpp).
 /// - The fixes jump by 50 m or more and stay there for 10 s or more, or by 20 m or more and back.
+/// Where the fixes fit once their coordinates are mended (coordinate_slips.hpp), the sentence names that.
 /// @param fixes those of the first receiver are compared
 /// @param antenna dead-reckoned antenna poses at the fixes, in any frame, with headings that are not
 /// wrapped; same length and order as `fixes`
-[[nodiscard]] std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
-                                                                   std::span<const Eigen::Vector3d> antenna);
+/// @param place of the drive; empty: not known
+[[nodiscard]] std::vector<std::string> compare_odometry_with_fixes(
+    std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
+    const std::optional<GeodeticPoint>& place = {});
 
 /// Returns a warning if the acceleration across the vehicle exceeds 10 m/s^2 in 5 % of the samples above
 /// 2 m/s: a wrong unit of the yaw rate also shows without turns in the fixes. Empty otherwise.

@@ -8,7 +8,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 
 namespace waymark::drive {
 

@@ -214,7 +214,11 @@ class Writer {
     const std::string begin = first_of_list ? indent.substr(2) + "- " : indent;
     line(begin + "file: " + scalar(relative(log.path)));
     line(indent + "format: " + log.format, log.table ? std::string() : log.evidence);
-    for (const auto& [key, path] : log.companions) line(indent + key + ": " + scalar(relative(path)));
+    for (const auto& [key, paths] : log.companions) {
+      std::string files;
+      for (const std::string& path : paths) files += (files.empty() ? "" : ", ") + scalar(relative(path));
+      line(indent + key + ": " + (paths.size() == 1 ? files : "[" + files + "]"));
+    }
     if (log.table && log.table->separator != ',')
       line(fmt::format("{}separator: {}", indent,
                        log.table->separator == ';'    ? "semicolon"

@@ -44,11 +44,13 @@ ColumnProposal propose_signal(const formats::DbcMessage& message, const formats:
 
 }  // namespace
 
-CanSurvey::CanSurvey(const std::string& path, std::optional<formats::Dbc> dbc)
-    : formats::LineDecoder(path, {}), dbc_(std::move(dbc)), standard_(kStandardIds, -1) {
-  if (!dbc_) return;
-  table_.emplace(*dbc_);
-  for (const formats::DbcMessage& message : dbc_->messages) signals_.emplace_back(message.signals.size());
+CanSurvey::CanSurvey(const std::string& path, std::string_view format, formats::Dbc dbc)
+    : formats::LineDecoder(path, {}),
+      layout_(formats::can_layout(format)),
+      dbc_(std::move(dbc)),
+      table_(dbc_),
+      standard_(kStandardIds, -1) {
+  for (const formats::DbcMessage& message : dbc_.messages) signals_.emplace_back(message.signals.size());
 }
 
 CanSurvey::Id* CanSurvey::id_of(std::uint32_t id) {
@@ -62,27 +64,22 @@ CanSurvey::Id* CanSurvey::id_of(std::uint32_t id) {
     if (extended_.size() >= kMostIds) return nullptr;
     extended_.emplace(id, index);
   }
-  ids_.push_back({id,
-                  0,
-                  formats::kMostFrameBytes,
-                  0,
-                  {},
-                  {},
-                  table_ ? table_->find(id) : formats::MessageTable::kUnknown});
+  ids_.push_back({id, 0, formats::kMostFrameBytes, 0, {}, {}, table_.find(id)});
   return &ids_.back();
 }
 
 void CanSurvey::take_line(std::string_view line, std::size_t number) {
   if (line.empty()) return;
+  const formats::CanLine taken = layout_->split(line);
+  if (taken.kind == formats::FrameKind::beside) return;
   ++data_.records;
-  const formats::CanLine taken = formats::split_can_line(line);
   if (taken.kind == formats::FrameKind::none) return corrupt(number, taken.column, std::string(taken.what));
   interfaces_.count(taken.interface);
   if (taken.kind != formats::FrameKind::data) {
     ++data_.kinds[taken.kind == formats::FrameKind::remote ? "remote frames" : "error frames"];
     return;
   }
-  const std::optional<Stamp> stamp = formats::can_stamp(taken.stamp);
+  const std::optional<Stamp> stamp = layout_->stamp(taken);
   if (!stamp) return corrupt(number, 1, fmt::format("'{}' is no time in decimal seconds", taken.stamp));
   if (const std::string_view what = formats::read_can_data(taken, data_bytes_); !what.empty())
     return corrupt(number, 1, std::string(what));
@@ -97,15 +94,16 @@ void CanSurvey::take_line(std::string_view line, std::size_t number) {
   id->last = *stamp;
   id->shortest = std::min(id->shortest, data_bytes_.size);
   id->longest = std::max(id->longest, data_bytes_.size);
-  if (id->message != formats::MessageTable::kUnknown) take_signals(id->message, *stamp);
+  for (std::uint32_t i = id->message; i != formats::MessageTable::kUnknown; i = table_.next(i))
+    take_signals(i, *stamp);
 }
 
 void CanSurvey::take_signals(std::uint32_t message, Stamp stamp) {
-  const formats::DbcMessage& layout = dbc_->messages[message];
+  const formats::DbcMessage& layout = dbc_.messages[message];
   for (std::size_t i = 0; i < layout.signals.size(); ++i) {
     const formats::DbcSignal& signal = layout.signals[i];
     if (!signal.trouble.empty() || !layout.holds(signal, data_bytes_) ||
-        data_bytes_.size < signal.bytes_needed())
+        data_bytes_.size < signal.bytes_needed() || !layout.is_available(signal, data_bytes_))
       continue;
     Signal& seen = signals_[message][i];
     if (seen.values++ == 0) seen.first = stamp;
@@ -121,7 +119,7 @@ std::string CanSurvey::name_of(const Id& id) const {
                                  : fmt::format("{:03X}", id.id);
   return id.message == formats::MessageTable::kUnknown
              ? number
-             : fmt::format("{} {}", number, dbc_->messages[id.message].name);
+             : fmt::format("{} {}", number, dbc_.messages[id.message].name);
 }
 
 CanSummary CanSurvey::summary() const {
@@ -140,9 +138,8 @@ CanSummary CanSurvey::summary() const {
                                               : fmt::format("{} to {} bytes", id.shortest, id.longest);
     result.ids.push_back(std::move(column));
   }
-  if (!dbc_) return result;
-  for (std::size_t m = 0; m < dbc_->messages.size(); ++m) {
-    const formats::DbcMessage& message = dbc_->messages[m];
+  for (std::size_t m = 0; m < dbc_.messages.size(); ++m) {
+    const formats::DbcMessage& message = dbc_.messages[m];
     for (std::size_t s = 0; s < message.signals.size(); ++s) {
       const Signal& seen = signals_[m][s];
       if (seen.values == 0) continue;

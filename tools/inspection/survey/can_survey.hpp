@@ -1,13 +1,15 @@
 /// Finds out what a candump log contains: ids and, with a DBC, signals.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
-#include <waymark/formats/logs/detail/can/candump_tables.hpp>
+#include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
+#include <waymark/formats/logs/detail/can/can_tables.hpp>
 #include <waymark/formats/logs/detail/can/dbc.hpp>
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
 #include <waymark/tools/inspection/survey/table_survey.hpp>
@@ -27,11 +29,12 @@ struct CanSummary {
 /// have any number.
 inline constexpr std::size_t kMostIds = 4096;
 
-/// Takes a candump log line by line. It proposes a signal for every quantity that the name of a
+/// Takes a log of CAN frames line by line. It proposes a signal for every quantity that the name of a
 /// signal indicates.
 class CanSurvey final : public formats::LineDecoder {
  public:
-  CanSurvey(const std::string& path, std::optional<formats::Dbc> dbc);
+  /// @param format of formats::can_layout()
+  CanSurvey(const std::string& path, std::string_view format, formats::Dbc dbc);
   [[nodiscard]] CanSummary summary() const;
 
  private:
@@ -52,8 +55,9 @@ class CanSurvey final : public formats::LineDecoder {
   void take_signals(std::uint32_t message, Stamp stamp);
   [[nodiscard]] std::string name_of(const Id& id) const;
 
-  std::optional<formats::Dbc> dbc_;
-  std::optional<formats::MessageTable> table_;
+  std::unique_ptr<formats::CanLayout> layout_;
+  formats::Dbc dbc_;
+  formats::MessageTable table_;
   std::vector<std::vector<Signal>> signals_;  ///< by message
   std::vector<Id> ids_;
   std::vector<std::int32_t> standard_;  ///< index in ids_ for each id below 2048; -1: none

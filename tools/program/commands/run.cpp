@@ -143,7 +143,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   result.evaluation = {modeling, evaluate_minimum(run, modeled, summary, settings)};
   for (const std::string& sentence :
        warnings_of_result(result.states, modeled.settings, result.noise, result.evaluation.evaluation))
-    warn(sentence, document, console);
+    warn(run.loaded.settings.size() > 1 ? modeling + ": " + sentence : sentence, document, console);
   std::optional<evaluation::Sparsity> sparsity = sparsity_for_report(document, console);
   if (document.provenance.size() > known) write(run.folder.fused_graph(modeling));
   add_provenance(document, modeling, header);

@@ -83,7 +83,9 @@ std::vector<std::string> logs_among(const std::vector<std::string>& files,
 void add_inspection_options(CLI::App& command, InspectCommand& options) {
   command.add_option("--format", options.format, "Format of the logs; default: recognised by their content")
       ->type_name("LOG_FORMAT");
-  command.add_option("--dbc", options.dbc, "Description of the signals in CAN frames")->type_name("FILE.dbc");
+  command.add_option("--dbc", options.dbc, "Description of the signals in CAN frames; may be repeated")
+      ->type_name("FILE.dbc")
+      ->allow_extra_args(false);
   options.common = {};
   add_common_options(command, options.common);
 }
@@ -104,15 +106,10 @@ std::vector<inspection::LogInspection> inspect_files(const InspectCommand& comma
   const std::vector<LogReaderType> readers = readers_of(registry);
   std::vector<std::string> logs;
   for (const std::string& path : files_in(command.logs, readers)) {
-    if (!is_dbc(path)) {
-      logs.push_back(path);
-    } else if (options.dbc.empty()) {
-      options.dbc = path;
-    } else {
-      throw UsageError(path + ": a DBC is already named: " + options.dbc);
-    }
+    (is_dbc(path) ? options.dbc : logs).push_back(path);
   }
-  if (logs.empty()) throw UsageError(options.dbc + ": a DBC only describes CAN frames; name a log too");
+  if (logs.empty())
+    throw UsageError(options.dbc.front() + ": a DBC only describes CAN frames; name a log too");
   options.watch = watch_reading(console);
   if (options.format == "auto") logs = logs_among(logs, readers, console);
   std::vector<inspection::LogInspection> inspected = inspection::inspect_logs(logs, readers, options);

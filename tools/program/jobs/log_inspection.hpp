@@ -13,7 +13,7 @@ struct InspectCommand {
   CommonOptions common;
   std::vector<std::string> logs;  ///< may include DBC files
   std::string format = "auto";
-  std::string dbc;
+  std::vector<std::string> dbc;
   std::string output;  ///< of init: the drive.yaml
   bool force = false;  ///< of init
 };

@@ -66,6 +66,35 @@ void check_qualities(const evaluation::Evaluation& evaluation, std::vector<std::
   }
 }
 
+/// Residuals after the fit are below innovations, so that only a factor of two in the sigma is told, and
+/// one of four below.
+void check_innovations(const evaluation::InnovationStatistics& fixes, std::vector<std::string>& warnings) {
+  constexpr std::size_t kFewest = 30;
+  constexpr double kTooLarge = 4 * evaluation::InnovationStatistics::kExpectedMean;
+  constexpr double kTooSmall = evaluation::InnovationStatistics::kExpectedMean / 16;
+  if (fixes.count < kFewest || (fixes.mean <= kTooLarge && fixes.mean >= kTooSmall)) return;
+  const double factor = std::sqrt(fixes.mean / evaluation::InnovationStatistics::kExpectedMean);
+  warnings.push_back(fmt::format(
+      "the residuals of the accepted fixes are {:.3g} times as large as their accuracies say (mean NIS {:.3g} "
+      "of {} fixes; 2 is expected): the accuracies are stated too {} ('accuracy: {{meaning: ...}}'){}",
+      factor, fixes.mean, fixes.count, factor > 1 ? "small" : "large",
+      factor > 1
+          ? ", or units, signs or clocks are wrong; the modeling correlated estimates how good the fixes are"
+          : ""));
+}
+
+void check_weights(const std::vector<evaluation::SourceResiduals>& sources,
+                   std::vector<std::string>& warnings) {
+  for (const evaluation::SourceResiduals& source : sources) {
+    if (source.robust == 0 || 3 * source.down_weighted <= source.robust) continue;
+    warnings.push_back(fmt::format(
+        "the loss takes more than half of its weight from {} of {} measurements of {} ({:.0f} %): what is left "
+        "may be a chance agreement: {}",
+        source.down_weighted, source.robust, source.source,
+        100.0 * static_cast<double>(source.down_weighted) / static_cast<double>(source.robust), kRemedy));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateReport>& states,
@@ -75,6 +104,8 @@ std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateR
   std::vector<std::string> warnings;
   check_states(states, *modeled.calibration, warnings);
   check_noise(noise, warnings);
+  check_innovations(evaluation.post_fit, warnings);
+  check_weights(evaluation.residuals, warnings);
   if (!evaluation.truth) return warnings;
   check_qualities(evaluation, warnings);
   const double factor = evaluation.truth->fused.position.rmse_m / evaluation.truth->gnss.position.rmse_m;

@@ -14,8 +14,9 @@ namespace waymark::program {
 
 /// Returns a sentence for each fact that a sound drive does not show: a state more than 6 sigmas of
 /// its prior from zero (the mean of the prior), a first value of a calibration state more than 2.5 sigmas from it,
-/// a noise parameter at the upper end of its search (kNoiseReach), and fused positions whose error
-/// exceeds that of the raw fixes by half.
+/// a noise parameter at the upper end of its search (kNoiseReach), residuals of fixes twice as large as
+/// their accuracies say or a quarter of them, a source of which a loss down-weights a third, and fused
+/// positions whose error exceeds that of the raw fixes by half.
 /// @param modeled settings of the modeled drive
 [[nodiscard]] std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateReport>& states,
                                                           const drive::FusionSettings& modeled,

@@ -5,7 +5,7 @@
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/formats/trajectory/map_formats.hpp>
 #include <waymark/formats/trajectory/trajectory.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/types_se2/stamped_pose.hpp>
 
 namespace waymark::program {

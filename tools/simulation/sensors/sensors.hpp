@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/simulation/random.hpp>
 #include <waymark/tools/simulation/road.hpp>
 #include <waymark/tools/simulation/sensors/lasting_errors.hpp>

@@ -2,59 +2,17 @@
 
 #include <algorithm>
 
+#include <waymark/formats/logs/detail/can/layouts/can_cursor.hpp>
 #include <waymark/formats/text/detail/characters.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 
 namespace waymark::formats {
 namespace {
 
-constexpr std::uint32_t kMostStandardId = 0x7FF;
-constexpr std::uint32_t kMostExtendedId = 0x1FFF'FFFF;
 constexpr std::uint32_t kErrorFrame = 0x2000'0000;
 
-/// The value of each hex digit; negative for other characters.
-constexpr auto kHex = [] {
-  std::array<std::int8_t, 256> values{};
-  values.fill(-1);
-  for (int i = 0; i < 10; ++i) values[static_cast<std::size_t>('0' + i)] = static_cast<std::int8_t>(i);
-  for (int i = 0; i < 6; ++i) {
-    values[static_cast<std::size_t>('A' + i)] = static_cast<std::int8_t>(10 + i);
-    values[static_cast<std::size_t>('a' + i)] = static_cast<std::int8_t>(10 + i);
-  }
-  return values;
-}();
-
-int hex(char c) {
-  return kHex[static_cast<unsigned char>(c)];
-}
-
-/// Walks through a line.
-struct Cursor {
-  std::string_view line;
-  std::size_t at = 0;
-
-  [[nodiscard]] bool at_end() const { return at >= line.size(); }
-  [[nodiscard]] char peek() const { return at_end() ? '\0' : line[at]; }
-  [[nodiscard]] std::string_view rest() const { return line.substr(std::min(at, line.size())); }
-  void skip_blanks() {
-    while (at < line.size() && is_blank(line[at])) ++at;
-  }
-  std::string_view word() {
-    const std::size_t begin = at;
-    while (at < line.size() && !is_blank(line[at])) ++at;
-    return line.substr(begin, at - begin);
-  }
-};
-
-CanLine trouble(const Cursor& cursor, std::string_view what) {
-  CanLine result;
-  result.column = cursor.at + 1;
-  result.what = what;
-  return result;
-}
-
 /// With `candump -x`, direction and flags are before the id: "RX - -" or "TX B E".
-void skip_direction(Cursor& cursor) {
+void skip_direction(CanCursor& cursor) {
   const std::string_view rest = cursor.rest();
   if (!rest.starts_with("RX ") && !rest.starts_with("TX ")) return;
   for (int i = 0; i < 3; ++i) {
@@ -67,8 +25,8 @@ void skip_direction(Cursor& cursor) {
 std::size_t read_id(std::string_view text, CanLine& result) {
   std::uint32_t id = 0;
   std::size_t digits = 0;
-  while (digits < text.size() && digits < 9 && hex(text[digits]) >= 0) {
-    id = (id << 4U) | static_cast<std::uint32_t>(hex(text[digits]));
+  while (digits < text.size() && digits < 9 && hex_digit(text[digits]) >= 0) {
+    id = (id << 4U) | static_cast<std::uint32_t>(hex_digit(text[digits]));
     ++digits;
   }
   result.id = id;
@@ -84,9 +42,9 @@ std::size_t read_id(std::string_view text, CanLine& result) {
 
 /// Reads the rest of a line after the id in the console layout: "   [8]  03 41", or "  [08]
 /// ..." for CAN FD.
-CanLine read_console(CanLine result, Cursor cursor) {
+CanLine read_console(CanLine result, CanCursor cursor) {
   cursor.skip_blanks();
-  if (cursor.peek() != '[') return trouble(cursor, "expected '#' or '[' after the id");
+  if (cursor.peek() != '[') return can_trouble(cursor, "expected '#' or '[' after the id");
   ++cursor.at;
   std::size_t size = 0;
   const std::size_t begin = cursor.at;
@@ -95,7 +53,7 @@ CanLine read_console(CanLine result, Cursor cursor) {
     ++cursor.at;
   }
   if (cursor.at == begin || cursor.peek() != ']' || size > kMostFrameBytes)
-    return trouble(cursor, "expected a length of 0 to 64 bytes in brackets");
+    return can_trouble(cursor, "expected a length of 0 to 64 bytes in brackets");
   ++cursor.at;
   cursor.skip_blanks();
   result.listed_size = static_cast<int>(size);
@@ -104,36 +62,54 @@ CanLine read_console(CanLine result, Cursor cursor) {
   return result;
 }
 
+/// Reads bytes as decimal numbers with blanks between them.
+std::string_view read_decimals(const CanLine& line, CanData& data) {
+  const auto wanted = static_cast<std::size_t>(line.listed_size);
+  CanCursor cursor{line.data};
+  for (data.size = 0; data.size < wanted; ++data.size) {
+    cursor.skip_blanks();
+    const std::string_view word = cursor.word();
+    const auto value = unsigned_number(word, 10);
+    if (word.empty()) return "fewer bytes than the stated length";
+    if (!value || *value > 255) return "a byte is no decimal number up to 255";
+    data.bytes[data.size] = static_cast<std::uint8_t>(*value);
+  }
+  return {};
+}
+
 }  // namespace
 
 CanLine split_can_line(std::string_view line) {
-  Cursor cursor{line};
+  CanCursor cursor{line};
   cursor.skip_blanks();
-  if (cursor.peek() != '(') return trouble(cursor, "expected a time stamp in parentheses, as candump writes");
+  if (cursor.peek() != '(')
+    return can_trouble(cursor, "expected a time stamp in parentheses, as candump writes");
   const std::size_t close = line.find(')', ++cursor.at);
-  if (close == std::string_view::npos) return trouble(cursor, "the time stamp's ')' is missing");
+  if (close == std::string_view::npos) return can_trouble(cursor, "the time stamp's ')' is missing");
   CanLine result;
   result.stamp = line.substr(cursor.at, close - cursor.at);
   cursor.at = close + 1;
   cursor.skip_blanks();
   result.interface = cursor.word();
-  if (result.interface.empty()) return trouble(cursor, "expected an interface such as can0");
+  if (result.interface.empty()) return can_trouble(cursor, "expected an interface such as can0");
   cursor.skip_blanks();
   skip_direction(cursor);
 
   result.kind = FrameKind::data;
   const std::size_t digits = read_id(cursor.rest(), result);
-  if (digits == 0) return trouble(cursor, "expected an id of 3 (000 .. 7FF) or 8 (.. 1FFFFFFF) hex digits");
+  if (digits == 0)
+    return can_trouble(cursor, "expected an id of 3 (000 .. 7FF) or 8 (.. 1FFFFFFF) hex digits");
   cursor.at += digits;
   if (cursor.peek() != '#') {
-    if (!is_blank(cursor.peek())) return trouble(cursor, "expected '#' after the id");
+    if (!is_blank(cursor.peek())) return can_trouble(cursor, "expected '#' after the id");
     return read_console(result, cursor);
   }
   ++cursor.at;
   if (cursor.peek() == 'R') result.kind = FrameKind::remote;
   if (cursor.peek() == '#') {  // CAN FD: one digit of flags
     ++cursor.at;
-    if (hex(cursor.peek()) < 0) return trouble(cursor, "expected one hex digit of CAN FD flags after '##'");
+    if (hex_digit(cursor.peek()) < 0)
+      return can_trouble(cursor, "expected one hex digit of CAN FD flags after '##'");
     ++cursor.at;
   }
   result.data = cursor.rest();
@@ -141,13 +117,14 @@ CanLine split_can_line(std::string_view line) {
 }
 
 std::string_view read_can_data(const CanLine& line, CanData& data) {
+  if (line.decimal) return read_decimals(line, data);
   const bool console = line.listed_size >= 0;
   const std::size_t most = console ? static_cast<std::size_t>(line.listed_size) : kMostFrameBytes;
   const std::string_view text = line.data;
   data.size = 0;
   std::size_t at = 0;
   while (at < text.size() && data.size < most) {
-    const int high = hex(text[at]);
+    const int high = hex_digit(text[at]);
     if (high < 0) {
       // In a log, points may separate the bytes. The direction ("R", "T") or a raw length may
       // follow the last byte.
@@ -155,12 +132,12 @@ std::string_view read_can_data(const CanLine& line, CanData& data) {
       ++at;
       continue;
     }
-    const int low = at + 1 < text.size() ? hex(text[at + 1]) : -1;
+    const int low = at + 1 < text.size() ? hex_digit(text[at + 1]) : -1;
     if (low < 0) return "half a byte: the data have an odd number of hex digits";
     data.bytes[data.size++] = static_cast<std::uint8_t>(high * 16 + low);
     at += 2;
   }
-  if (console) return data.size == most ? std::string_view() : "fewer bytes than the length in brackets says";
+  if (console) return data.size == most ? std::string_view() : "fewer bytes than the stated length";
   if (at == text.size() || is_blank(text[at]) || text[at] == '_') return {};
   return data.size == most ? "more than 64 bytes of data" : "expected hex digits as data";
 }

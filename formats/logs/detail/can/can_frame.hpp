@@ -1,4 +1,4 @@
-/// CAN frames as candump (can-utils) writes them, one per line.
+/// CAN frames in lines of text, and the layout of candump (can-utils).
 #pragma once
 
 #include <array>
@@ -14,6 +14,10 @@ namespace waymark::formats {
 /// This bit is set in the id of an extended (29-bit) frame, as in DBC files.
 inline constexpr std::uint32_t kExtendedFrame = 0x8000'0000;
 
+/// Ids of standard frames have 11 bits, those of extended ones 29.
+inline constexpr std::uint32_t kMostStandardId = 0x7FF;
+inline constexpr std::uint32_t kMostExtendedId = 0x1FFF'FFFF;
+
 /// The largest number of bytes in a CAN FD frame.
 inline constexpr std::size_t kMostFrameBytes = 64;
 
@@ -22,6 +26,7 @@ enum class FrameKind {
   data,
   remote,  ///< requests data and holds none
   error,   ///< a bus error, reported by the controller
+  beside,  ///< no frame, and not meant as one: a head, another event
   none     ///< no frame: CanLine::what says why
 };
 
@@ -33,7 +38,8 @@ struct CanLine {
   std::string_view stamp;      ///< "1627274455.012500"
   std::string_view interface;  ///< "can0"
   std::string_view data;       ///< the bytes in hex, and the rest of the line
-  int listed_size = -1;        ///< console layout: the announced number of bytes; -1: log layout
+  int listed_size = -1;        ///< the announced number of bytes; -1: candump's log layout has none
+  bool decimal = false;        ///< the bytes are decimal numbers
   std::size_t column = 0;      ///< 1-based column of the error if kind is `none`
   std::string_view what;       ///< the error
 };

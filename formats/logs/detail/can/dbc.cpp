@@ -163,6 +163,8 @@ void DbcParser::read_message(DbcTokens& tokens, std::size_t number) {
   if (!new_name)
     tokens.fail(fmt::format("the name is already used by the message in line {}; rename one",
                             dbc_.messages[namesake->second].line));
+  constexpr std::uint32_t kNullAddress = 0xFE;
+  message.is_group = (message.id & kExtendedFrame) != 0 && (message.id & 0xFFU) == kNullAddress;
   dbc_.messages.push_back(std::move(message));
 }
 

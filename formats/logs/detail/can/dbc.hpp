@@ -61,6 +61,14 @@ struct DbcSignal {
   std::int64_t numerator = 0, shift = 0, denominator = 0;
 };
 
+/// Returns the parameter group of a J1939 id: without priority and sender, and without the receiver if
+/// the group names one.
+[[nodiscard]] constexpr std::uint32_t parameter_group(std::uint32_t id) {
+  constexpr std::uint32_t kFirstBroadcast = 0xF0;
+  const bool to_one = ((id >> 16U) & 0xFFU) < kFirstBroadcast;
+  return id & (to_one ? 0x03FF'0000U : 0x03FF'FF00U);
+}
+
 /// One message: all frames with one id.
 struct DbcMessage {
   std::uint32_t id = 0;  ///< with kExtendedFrame
@@ -68,11 +76,16 @@ struct DbcMessage {
   std::size_t size = 0;  ///< bytes
   std::vector<DbcSignal> signals;
   std::size_t line = 0;
+  /// a J1939 parameter group, which any sender may send: its id has the null address FE
+  bool is_group = false;
 
   /// Returns null for an unknown name.
   [[nodiscard]] const DbcSignal* find(std::string_view signal) const;
   /// Tells whether a frame holds the signal. It does not if the multiplexer selects another one.
   [[nodiscard]] bool holds(const DbcSignal& signal, const CanData& data) const;
+  /// Tells whether the value of a signal that the frame holds is one. In a J1939 parameter group,
+  /// bytes from FB on (the highest ones of longer numbers) mean "not available" or "error" (J1939-71).
+  [[nodiscard]] bool is_available(const DbcSignal& signal, const CanData& data) const;
 };
 
 /// The messages of a DBC file.

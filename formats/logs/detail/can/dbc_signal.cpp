@@ -113,4 +113,12 @@ bool DbcMessage::holds(const DbcSignal& signal, const CanData& data) const {
   return true;
 }
 
+bool DbcMessage::is_available(const DbcSignal& signal, const CanData& data) const {
+  constexpr unsigned kByte = 8;
+  const bool whole_bytes = signal.length % kByte == 0 && signal.length <= 4 * kByte;
+  if (!is_group || !whole_bytes || signal.number != SignalNumber::unsigned_integer) return true;
+  constexpr std::uint64_t kFirstReserved = 0xFB;
+  return signal.bits(data) >> (signal.length - kByte) < kFirstReserved;
+}
+
 }  // namespace waymark::formats

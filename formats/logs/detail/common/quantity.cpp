@@ -27,6 +27,7 @@ constexpr std::array kSpeeds{Unit{"m/s", 1}, Unit{"km/h", 1 / 3.6}, Unit{"mph", 
                              Unit{"kn", 1852 / 3600.0}, Unit{"mm/s", 1e-3}};
 constexpr std::array kRates{Unit{"rad/s", 1}, Unit{"deg/s", kDegree}};
 constexpr std::array kDegrees{Unit{"deg", 1}, Unit{"rad", 1 / kDegree}, Unit{"1e-7deg", 1e-7},
+                             Unit{"min", 1 / 60.0},
                               Unit{"ddmm", 1, UnitForm::text}, Unit{"dms", 1, UnitForm::text}};
 constexpr std::array kLengths{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3}};
 constexpr std::array kSigmas{Unit{"m", 1}, Unit{"cm", 1e-2}, Unit{"mm", 1e-3},
@@ -40,6 +41,7 @@ constexpr std::array kDurations{Unit{"s", 1}, Unit{"ms", 1e-3}, Unit{"us", 1e-6}
 // The numbers of a quality: GGA's, RTKLIB's Q, or those of ROS's NavSatStatus. Words are the same in all.
 constexpr std::array kQualityCodes{Unit{"gga", 1}, Unit{"rtklib", 1}, Unit{"ros", 1}};
 
+constexpr std::array kSides{Convention{"positive_east", 1, 0}, Convention{"positive_west", -1, 0}};
 constexpr std::array kTurns{Convention{"ccw", 1, 0}, Convention{"cw", -1, 0}};
 // A course counts clockwise from north, a heading counter-clockwise from east. Each is pi/2
 // minus the other.
@@ -55,7 +57,7 @@ constexpr Quantity kDate{"date", "", false, kDates, {}, -kInfinity, kInfinity, t
 constexpr Quantity kSpeed{"speed", "speed_mps", true, kSpeeds, {}, -150, 150};
 constexpr Quantity kOptionalSpeed{"speed", "speed_mps", false, kSpeeds, {}, -150, 150};
 constexpr Quantity kLatitude{"latitude", "latitude_deg", true, kDegrees, {}, -90, 90};
-constexpr Quantity kLongitude{"longitude", "longitude_deg", true, kDegrees, {}, -180, 360};
+constexpr Quantity kLongitude{"longitude", "longitude_deg", true, kDegrees, kSides, -180, 360};
 constexpr Quantity kLatitudeSide{"latitude_hemisphere", "lat_hemisphere", false, kFlags, {}, -1, 1};
 constexpr Quantity kLongitudeSide{"longitude_hemisphere", "lon_hemisphere", false, kFlags, {}, -1, 1};
 // The frame decides how large coordinates are: its origin may be that of the zone.

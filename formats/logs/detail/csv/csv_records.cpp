@@ -253,9 +253,14 @@ double CsvRecords::number(const BoundColumn* column, bool required) {
   // the range is for the given angle, before any offset
   const double scaled = column->factor * *given;
   if (scaled < quantity.smallest || scaled > quantity.largest) {
-    complain(*column, fmt::format("{} {} is outside {:.6g} .. {:.6g}", quote_field(field), column->unit,
+    constexpr double kMinutes = 100;  // ddmm.mmmm has at least three digits beyond one degree
+    const bool is_place = column == bound_.latitude || column == bound_.longitude;
+    complain(*column, fmt::format("{} {} is outside {:.6g} .. {:.6g}{}", quote_field(field), column->unit,
                                   quantity.smallest / std::abs(column->factor),
-                                  quantity.largest / std::abs(column->factor)));
+                                  quantity.largest / std::abs(column->factor),
+                                  is_place && column->unit == "deg" && std::abs(*given) >= kMinutes
+                                      ? "; if these are NMEA's degrees and minutes, state 'unit: ddmm'"
+                                      : ""));
     return kNoNumber;
   }
   return scaled + column->offset;

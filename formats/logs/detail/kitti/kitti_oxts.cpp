@@ -65,10 +65,12 @@ const CompanionFile& stamps_file(const std::string& path, const LogRequest& requ
   require_no_columns(path, request, kOxtsFormat);
   require_companions(path, request, kOxtsFormat, "timestamps");
   const auto file = request.companions.find("timestamps");
-  if (file == request.companions.end())
+  if (file == request.companions.end() || file->second.empty())
     throw InputError(fmt::format(
         "{}: a KITTI oxts log holds no time: give its oxts/timestamps.txt as 'timestamps'", path));
-  return file->second;
+  if (file->second.size() > 1)
+    throw InputError(fmt::format("{}: one file has the stamps; state one as 'timestamps'", path));
+  return file->second.front();
 }
 
 class OxtsDecoder final : public LineDecoder {

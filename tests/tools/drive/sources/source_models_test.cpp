@@ -7,7 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 #include <waymark/tools/drive/sensors/place_columns.hpp>

@@ -8,7 +8,7 @@
 #include <waymark/core/graph/finite_check.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/program/jobs/conformance/trials.hpp>
 #include <waymark/types_se2/se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>

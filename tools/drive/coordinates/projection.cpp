@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 
 #include <cmath>
 #include <numbers>

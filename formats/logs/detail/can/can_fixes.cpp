@@ -1,4 +1,4 @@
-#include <waymark/formats/logs/detail/can/candump_fixes.hpp>
+#include <waymark/formats/logs/detail/can/can_fixes.hpp>
 
 #include <cmath>
 

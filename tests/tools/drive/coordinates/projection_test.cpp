@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 
 namespace projection_test {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <unordered_map>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,33 +23,45 @@ namespace waymark::formats {
 inline constexpr std::size_t kMostInterfaces = 16;
 inline constexpr std::size_t kLongestInterface = 31;
 
-/// Maps the id of a frame to the index of its message in the DBC.
+/// Maps the id of a frame to the indices of its messages in the DBC. Several DBC files may define one id.
 class MessageTable {
  public:
   static constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
 
-  explicit MessageTable(const Dbc& dbc) {
+  explicit MessageTable(const Dbc& dbc) : next_(dbc.messages.size(), kUnknown) {
     standard_.fill(kUnknown);
-    for (std::size_t i = 0; i < dbc.messages.size(); ++i) {
-      const std::uint32_t id = dbc.messages[i].id;
+    // Backwards, so that the first definition of an id is found first.
+    for (std::size_t i = dbc.messages.size(); i-- > 0;) {
+      const DbcMessage& message = dbc.messages[i];
       const auto index = static_cast<std::uint32_t>(i);
-      if (id < standard_.size()) {
-        standard_[id] = index;
-      } else {
-        extended_.emplace_back(id, index);
+      if (message.id < standard_.size()) {
+        next_[i] = standard_[message.id];
+        standard_[message.id] = index;
+        continue;
       }
+      std::uint32_t& entry = (message.is_group ? groups_.try_emplace(parameter_group(message.id), kUnknown)
+                                               : extended_.try_emplace(message.id, kUnknown))
+                                 .first->second;
+      next_[i] = entry;
+      entry = index;
     }
-    std::sort(extended_.begin(), extended_.end());
   }
+  /// Returns the first message of an id; kUnknown: none. A message of a J1939 parameter group comes
+  /// from any sender, with any priority.
   [[nodiscard]] std::uint32_t find(std::uint32_t id) const {
     if (id < standard_.size()) return standard_[id];
-    const auto at = std::lower_bound(extended_.begin(), extended_.end(), std::pair{id, std::uint32_t{0}});
-    return at != extended_.end() && at->first == id ? at->second : kUnknown;
+    const auto exact = extended_.find(id);
+    if (exact != extended_.end()) return exact->second;
+    const auto group = groups_.find(parameter_group(id));
+    return group != groups_.end() && (id & kExtendedFrame) != 0 ? group->second : kUnknown;
   }
+  /// Returns the next message of the same id.
+  [[nodiscard]] std::uint32_t next(std::uint32_t message) const { return next_[message]; }
 
  private:
   std::array<std::uint32_t, 2048> standard_{};
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> extended_;
+  std::unordered_map<std::uint32_t, std::uint32_t> extended_, groups_;
+  std::vector<std::uint32_t> next_;  ///< by message
 };
 
 /// The interfaces of a log and the number of frames from each.

@@ -1,14 +1,15 @@
-/// CAN logs of candump (can-utils) with a DBC file: odometry, fixes and sensor readings by
-/// signal name.
+/// Logs of CAN frames with DBC files: odometry, fixes and sensor readings by signal name.
 #pragma once
+
+#include <string_view>
 
 #include <waymark/core/drive/log_reader.hpp>
 
 namespace waymark::formats {
 
-/// Reader "candump". formats/logs/README.md describes layouts, units and pitfalls.
+/// Readers "candump", "asc" and "trc". formats/logs/README.md describes layouts, units and pitfalls.
 ///
-/// `request.companions["dbc"]` is the DBC file. `request.columns` names the signal of every
+/// The companions "dbc" of the request are the DBC files (see dbc_of()). `request.columns` names the signal of every
 /// quantity: "SIGNAL", "MESSAGE.SIGNAL", or either of them after an interface, "can0:SIGNAL".
 /// Without an interface, frames of all interfaces are read. If the request states no unit, the unit
 /// of the DBC is used, and a note says so.
@@ -30,14 +31,18 @@ namespace waymark::formats {
 /// corrupt. Of frames with other ids only the id is read. Error and remote frames are skipped
 /// and counted.
 ///
-/// @throws InputError from open for a missing or malformed DBC, a column that does not fit it,
-/// other companions, or fixes without any accuracy; from take for a Vector ASC log (the message
-/// names the remedy)
-class CandumpReader final : public LogReader {
+/// @throws InputError from open for a malformed DBC, a column that does not fit it, other companions,
+/// or fixes without any accuracy
+class CanLogReader final : public LogReader {
  public:
+  /// @param format of can_layout()
+  explicit CanLogReader(std::string_view format = "candump") : format_(format) {}
   [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,
                                                  const LogRequest& request) const override;
   [[nodiscard]] Recognition recognise(std::string_view head) const override;
+
+ private:
+  std::string_view format_;
 };
 
 }  // namespace waymark::formats

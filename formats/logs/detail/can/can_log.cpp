@@ -1,4 +1,4 @@
-#include <waymark/formats/logs/detail/can/candump.hpp>
+#include <waymark/formats/logs/detail/can/can_log.hpp>
 
 #include <algorithm>
 #include <array>
@@ -10,11 +10,13 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/can/can_fixes.hpp>
 #include <waymark/formats/logs/detail/can/can_frame.hpp>
-#include <waymark/formats/logs/detail/can/candump_fixes.hpp>
-#include <waymark/formats/logs/detail/can/candump_signals.hpp>
-#include <waymark/formats/logs/detail/can/candump_tables.hpp>
+#include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
+#include <waymark/formats/logs/detail/can/can_signals.hpp>
+#include <waymark/formats/logs/detail/can/can_tables.hpp>
 #include <waymark/formats/logs/detail/can/dbc.hpp>
+#include <waymark/formats/logs/detail/can/dbc_set.hpp>
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
 #include <waymark/formats/logs/detail/common/log_request.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>
@@ -34,11 +36,12 @@ struct MessageUse {
   std::array<std::size_t, kMostInterfaces + 1> by_interface{};
 };
 
-class CandumpDecoder final : public LineDecoder {
+class CanLogDecoder final : public LineDecoder {
  public:
-  CandumpDecoder(const std::string& path, const LogRequest& log_request, Dbc dbc)
+  CanLogDecoder(const std::string& path, const LogRequest& log_request, std::string_view format)
       : LineDecoder(path, log_request),
-        dbc_(std::move(dbc)),
+        layout_(can_layout(format)),
+        dbc_(dbc_of(log_request)),
         table_(dbc_),
         quantities_(signal_quantities(request())),
         bound_(bind_signals(dbc_, quantities_, request(), path + ": ", data_.notes)),
@@ -60,15 +63,15 @@ class CandumpDecoder final : public LineDecoder {
   void take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp);
   [[nodiscard]] double value_of(const DbcSignal& signal, std::size_t index);
   [[nodiscard]] std::string described(const BoundSignal& bound) const;
-  [[nodiscard]] std::optional<Stamp> stamp_of(std::string_view text) const;
+  [[nodiscard]] std::optional<Stamp> stamp_of(const CanLine& line) const;
   void bad_line(std::size_t number, std::size_t column, const std::string& what) {
     ++data_.records;
     corrupt(number, column, what);
   }
-  void refuse_asc(std::string_view line) const;
   void note_interfaces();
   [[noreturn]] void refuse_silence() const;
 
+  std::unique_ptr<CanLayout> layout_;
   Dbc dbc_;
   MessageTable table_;
   std::vector<Quantity> quantities_;
@@ -84,13 +87,11 @@ class CandumpDecoder final : public LineDecoder {
   std::vector<SignalValue> values_;  ///< of the current frame
 };
 
-void CandumpDecoder::take_line(std::string_view line, std::size_t number) {
+void CanLogDecoder::take_line(std::string_view line, std::size_t number) {
   if (line.empty()) return;
-  const CanLine taken = split_can_line(line);
-  if (taken.kind == FrameKind::none) {
-    if (!any_frame_) refuse_asc(line);
-    return bad_line(number, taken.column, std::string(taken.what));
-  }
+  const CanLine taken = layout_->split(line);
+  if (taken.kind == FrameKind::none) return bad_line(number, taken.column, std::string(taken.what));
+  if (taken.kind == FrameKind::beside) return;
   any_frame_ = true;
   const std::size_t interface = interfaces_.count(taken.interface);
   if (taken.kind == FrameKind::remote) {
@@ -101,24 +102,23 @@ void CandumpDecoder::take_line(std::string_view line, std::size_t number) {
     ++errors_;
     return;
   }
-  const std::uint32_t message = table_.find(taken.id);
-  if (message == MessageTable::kUnknown) {
-    ++unknown_;
-    return;
+  std::uint32_t message = table_.find(taken.id);
+  if (message == MessageTable::kUnknown) ++unknown_;
+  for (; message != MessageTable::kUnknown; message = table_.next(message)) {
+    MessageUse& use = uses_[message];
+    ++use.frames;
+    if (use.bound.empty()) continue;
+    ++use.by_interface[interface];
+    take_message(use, taken, line, number);
   }
-  MessageUse& use = uses_[message];
-  ++use.frames;
-  if (use.bound.empty()) return;
-  ++use.by_interface[interface];
-  take_message(use, taken, line, number);
 }
 
-void CandumpDecoder::take_message(const MessageUse& use, const CanLine& line, std::string_view text,
-                                  std::size_t number) {
+void CanLogDecoder::take_message(const MessageUse& use, const CanLine& line, std::string_view text,
+                                 std::size_t number) {
   const auto column = [&](std::string_view part) {
     return static_cast<std::size_t>(part.data() - text.data()) + 1;
   };
-  const std::optional<Stamp> stamp = stamp_of(line.stamp);
+  const std::optional<Stamp> stamp = stamp_of(line);
   if (!stamp)
     return bad_line(number, column(line.stamp),
                     fmt::format("{} is no time in decimal seconds", quote_field(line.stamp)));
@@ -137,14 +137,17 @@ void CandumpDecoder::take_message(const MessageUse& use, const CanLine& line, st
                                   signal.name, signal.bytes_needed()));
     if (quantities_[bound.quantity].name == "gnss_time") {
       take_clock(signal, index, *stamp);
-    } else {
+    } else if (message.is_available(signal, frame_)) {
       values_.push_back({bound.quantity, value_of(signal, index)});
+    } else {
+      ++outside_[index];
+      values_.push_back({bound.quantity, kNoNumber});
     }
   }
   if (!values_.empty()) take_values(*stamp, number);
 }
 
-void CandumpDecoder::take_values(Stamp stamp, std::size_t number) {
+void CanLogDecoder::take_values(Stamp stamp, std::size_t number) {
   if (fixes_) return fixes_->take(stamp, number, values_);
   ++data_.records;
   // The readings have the quantities of these streams except `time`, which comes from the log.
@@ -157,7 +160,7 @@ void CandumpDecoder::take_values(Stamp stamp, std::size_t number) {
 
 /// Returns the quantity in a frame. If it is outside its range, it is counted, and the
 /// result is NaN.
-double CandumpDecoder::value_of(const DbcSignal& signal, std::size_t index) {
+double CanLogDecoder::value_of(const DbcSignal& signal, std::size_t index) {
   const BoundSignal& bound = bound_[index];
   const Quantity& quantity = quantities_[bound.quantity];
   const double value = bound.factor * signal.value(frame_);
@@ -167,7 +170,7 @@ double CandumpDecoder::value_of(const DbcSignal& signal, std::size_t index) {
   return kNoNumber;
 }
 
-void CandumpDecoder::take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp) {
+void CanLogDecoder::take_clock(const DbcSignal& signal, std::size_t index, Stamp stamp) {
   std::int64_t multiplier = 1'000'000'000;
   for (int power = bound_[index].time_power; power < 0; ++power) multiplier /= 10;
   const std::optional<std::int64_t> told = signal.integer(frame_, multiplier);
@@ -178,27 +181,21 @@ void CandumpDecoder::take_clock(const DbcSignal& signal, std::size_t index, Stam
   data_.clocks.push_back({stamp, convert(Stamp{*told}, TimeScale::utc, request().time_scale)});
 }
 
-std::optional<Stamp> CandumpDecoder::stamp_of(std::string_view text) const {
-  std::optional<Stamp> stamp = can_stamp(text);
+std::optional<Stamp> CanLogDecoder::stamp_of(const CanLine& line) const {
+  std::optional<Stamp> stamp = layout_->stamp(line);
   if (stamp && __builtin_add_overflow(stamp->nanoseconds, offset_, &stamp->nanoseconds)) return std::nullopt;
   return stamp;
 }
 
-/// The text logs of Vector begin with "date Mon Jul 26 ..." and "base hex  timestamps absolute".
-void CandumpDecoder::refuse_asc(std::string_view line) const {
-  if (!line.starts_with("date ") && !line.starts_with("base hex") && !line.starts_with("base dec")) return;
-  throw InputError(
-      fmt::format("{}: this is a Vector ASC log, which is not supported; `asc2log < {} > "
-                  "candump.log` (can-utils) writes a candump log from it",
-                  path(), path()));
-}
-
-void CandumpDecoder::end() {
+void CanLogDecoder::end() {
   if (fixes_) fixes_->finish();
+  for (const std::string& text : layout_->notes()) note(text);
+  if (!request().companions.contains("dbc"))
+    note("no DBC is stated: the messages of OBD-II and J1939 are known");
   for (std::size_t i = 0; i < bound_.size(); ++i) {
     if (outside_[i] == 0) continue;
     const Quantity& quantity = quantities_[bound_[i].quantity];
-    note(fmt::format("{}: {} values of signal {} are outside its range or not finite; they are ignored",
+    note(fmt::format("{}: {} values of signal {} are outside its range or not available; they are ignored",
                      quantity.name, outside_[i],
                      dbc_.messages[bound_[i].message].signals[bound_[i].signal].name));
   }
@@ -213,13 +210,13 @@ void CandumpDecoder::end() {
 }
 
 /// "WHEEL_SPEEDS (id AA)", "WHEEL_SPEEDS (id AA) on can0".
-std::string CandumpDecoder::described(const BoundSignal& bound) const {
+std::string CanLogDecoder::described(const BoundSignal& bound) const {
   const DbcMessage& message = dbc_.messages[bound.message];
   return fmt::format("{} (id {:X}){}", message.name, message.id & ~kExtendedFrame,
                      bound.interface.empty() ? std::string() : " on " + bound.interface);
 }
 
-void CandumpDecoder::note_interfaces() {
+void CanLogDecoder::note_interfaces() {
   if (const std::string summary = interfaces_.summary(); !summary.empty()) note("interfaces: " + summary);
   for (const BoundSignal& bound : bound_) {
     const MessageUse& use = uses_[bound.message];
@@ -243,7 +240,7 @@ void CandumpDecoder::note_interfaces() {
 }
 
 /// No frame had a wanted signal: the message lists the signals, and the frames that the log has.
-void CandumpDecoder::refuse_silence() const {
+void CanLogDecoder::refuse_silence() const {
   std::string wanted;
   for (const BoundSignal& bound : bound_) {
     const std::string message = described(bound);
@@ -255,26 +252,13 @@ void CandumpDecoder::refuse_silence() const {
 
 }  // namespace
 
-std::unique_ptr<LogDecoder> CandumpReader::open(const std::string& path, const LogRequest& request) const {
-  require_companions(path, request, "a candump log", "dbc");
-  const auto dbc = request.companions.find("dbc");
-  if (dbc == request.companions.end())
-    throw InputError(fmt::format("{}: a candump log needs its DBC: state 'dbc: FILE'", path));
-  return std::make_unique<CandumpDecoder>(path, request, Dbc::parse(dbc->second.text, dbc->second.path));
+std::unique_ptr<LogDecoder> CanLogReader::open(const std::string& path, const LogRequest& request) const {
+  require_companions(path, request, "a log of CAN frames", "dbc");
+  return std::make_unique<CanLogDecoder>(path, request, format_);
 }
 
-Recognition CandumpReader::recognise(std::string_view head) const {
-  HeadLines lines(head);
-  std::size_t frames = 0;
-  CanData data;
-  while (lines.next()) {
-    const CanLine taken = split_can_line(lines.line());
-    const bool sound = taken.kind == FrameKind::remote || taken.kind == FrameKind::error ||
-                       (taken.kind == FrameKind::data && read_can_data(taken, data).empty());
-    if (sound && can_stamp(taken.stamp)) ++frames;
-  }
-  if (2 * frames <= lines.count()) return {};
-  return lines.share(frames, "are CAN frames as candump writes them");
+Recognition CanLogReader::recognise(std::string_view head) const {
+  return recognise_can(format_, head);
 }
 
 }  // namespace waymark::formats

@@ -1,10 +1,10 @@
-#include <waymark/tools/drive/logs/frame_choice.hpp>
+#include <waymark/tools/drive/coordinates/frame_choice.hpp>
 
 #include <cmath>
 #include <cstdlib>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/logs/projection.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/sensors/place_columns.hpp>
 
 namespace waymark::drive {

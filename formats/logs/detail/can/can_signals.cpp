@@ -1,4 +1,4 @@
-#include <waymark/formats/logs/detail/can/candump_signals.hpp>
+#include <waymark/formats/logs/detail/can/can_signals.hpp>
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <waymark/core/drive/log_reader.hpp>
-#include <waymark/formats/logs/detail/can/candump_signals.hpp>
+#include <waymark/formats/logs/detail/can/can_signals.hpp>
 #include <waymark/formats/logs/detail/common/position_stream.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>
 #include <waymark/formats/logs/detail/common/table_accuracy.hpp>
