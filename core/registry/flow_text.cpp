@@ -67,9 +67,9 @@ class FlowParser {
         fail("':'");
       }
       const bool known =
-          std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return entry.first == key; });
+          std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return entry.name == key; });
       if (known) fail("no second '" + key + "'");
-      entries.emplace_back(key, any(depth + 1));
+      entries.push_back({key, any(depth + 1)});
       if (takes(',')) continue;
       if (!takes('}')) fail("',' or '}'");
       break;

@@ -5,7 +5,6 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -13,14 +12,22 @@
 
 namespace WAYMARK_EXPORT waymark {
 
+struct FlowEntry;
+
 /// A value as it is written: a text, a list, or a mapping in the order of the text.
 struct FlowValue {
   using List = std::vector<FlowValue>;
-  using Mapping = std::vector<std::pair<std::string, FlowValue>>;
+  using Mapping = std::vector<FlowEntry>;
   std::variant<std::string, List, Mapping> content;
 
   /// Returns "'abc'", "a list" or "a mapping", for messages.
   [[nodiscard]] std::string description() const;
+};
+
+/// A name of a mapping, and its value.
+struct FlowEntry {
+  std::string name;
+  FlowValue value;
 };
 
 /// Parses a text that begins with `[` or `{`; any other text is itself the value.

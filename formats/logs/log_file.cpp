@@ -103,6 +103,7 @@ LogData read_log_file(const LogReader& reader, const std::string& path, const Lo
     ++data.records;
     ++data.corrupt;
     data.corrupt_examples.insert(data.corrupt_examples.begin(), path + ": " + trouble);
+    data.corrupt_examples.resize(std::min(data.corrupt_examples.size(), kCorruptExamples));
   }
   require_samples(data, path);
   return std::move(data);

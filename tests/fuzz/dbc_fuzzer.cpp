@@ -14,7 +14,7 @@ namespace {
 
 /// Every signal out of one frame: none may be undefined.
 void read_signals(const std::string& text) {
-  const waymark::formats::Dbc dbc = waymark::Dbc::parse(text, "fuzz.dbc");
+  const waymark::formats::Dbc dbc = waymark::formats::Dbc::parse(text, "fuzz.dbc");
   waymark::formats::CanData frame;
   frame.size = waymark::formats::kMostFrameBytes;
   for (std::size_t i = 0; i < frame.size; ++i) frame.bytes[i] = static_cast<std::uint8_t>(0x9E * i + 7);
@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     // The reader meets the same one below.
   }
   const waymark::LogReader& reader = *waymark::formats::builtin_log_reader("candump");
-  const waymark::reproduction::Outcome whole = read_log(reader, log, input.request, 0);
+  const Outcome whole = read_log(reader, log, input.request, 0);
   if (!whole.refused) check_data(whole.data, input.request);
   check_same(whole, read_log(reader, log, input.request, input.piece));
   return 0;

@@ -19,8 +19,12 @@ using waymark::TimeScale;
 
 constexpr std::size_t kHeader = 4;
 
+bool is_can(std::string_view reader) {
+  return reader == "candump" || reader == "asc" || reader == "trc";
+}
+
 std::vector<StreamKind> streams_of(std::string_view reader) {
-  if (reader == "csv" || reader == "candump" || reader == "ubx")
+  if (reader == "csv" || is_can(reader) || reader == "ubx")
     return {StreamKind::odometry, StreamKind::gnss, StreamKind::truth, StreamKind::sensor};
   if (reader == "kitti_oxts") return {StreamKind::odometry, StreamKind::gnss, StreamKind::truth};
   return {StreamKind::gnss, StreamKind::truth};
@@ -107,6 +111,22 @@ void set_csv_columns(LogRequest& request, unsigned variant) {
   }
 }
 
+/// Times, angles and places as people write them.
+void set_csv_dialect(LogRequest& request, unsigned choice) {
+  constexpr std::array kTimes{"", "ms", "dmy", "mdy", "hms", "excel", "filetime", "matlab"};
+  constexpr std::array kDays{"", "iso8601", "dmy", "gps_week"};
+  if (choice == 0) return;
+  if (request.columns.contains("time")) request.columns["time"].unit = kTimes[choice & 7U];
+  if (choice & 24U) request.columns["date"] = {"2", kDays[choice >> 3U & 3U], ""};
+  if (request.stream != StreamKind::gnss && request.stream != StreamKind::truth) return;
+  const char* const angle = std::array{"deg", "ddmm", "dms", "min"}[choice >> 5U & 3U];
+  if (request.columns.contains("latitude")) {
+    request.columns["latitude"].unit = angle;
+    request.columns["longitude"].unit = angle;
+  }
+  if (choice & 128U) request.where = waymark::RowFilter{"4", "front", true};
+}
+
 /// One stamp for each record, one too few, or the first bytes of the log itself.
 std::string kitti_stamps(std::string& log, unsigned variant, unsigned between) {
   if (variant == 7) {
@@ -136,7 +156,7 @@ void set_readings(LogRequest& request, std::string_view reader, unsigned variant
     }
   } else if (request.stream == StreamKind::odometry && (reader != "csv" || variant == 7)) {
     if (reader != "kitti_oxts") request.readings = waymark::formats::odometry_channels();
-  } else if (request.stream == StreamKind::gnss && variant == 7 && (reader == "csv" || reader == "candump")) {
+  } else if (request.stream == StreamKind::gnss && variant == 7 && (reader == "csv" || is_can(reader))) {
     request.readings = waymark::formats::velocity_channels();
   }
 }
@@ -219,7 +239,8 @@ FuzzInput fuzz_input(std::string_view reader, const std::uint8_t* bytes, std::si
     request.companions["timestamps"] = {{"timestamps.txt", kitti_stamps(input.log, variant, head[3])}};
   set_readings(request, reader, variant);
   if (reader == "csv" && request.readings.empty()) set_csv_columns(request, variant);
-  if (reader == "candump") {
+  if (reader == "csv") set_csv_dialect(request, head[3]);
+  if (is_can(reader)) {
     request.companions["dbc"] = {{"fuzz.dbc", fuzz_dbc()}};
     if (variant != 7 || request.stream != StreamKind::gnss)
       set_can_columns(request, variant);

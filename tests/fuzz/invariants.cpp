@@ -62,9 +62,9 @@ void broken(const std::string& what) {
   std::abort();
 }
 
-waymark::reproduction::Outcome read_log(const waymark::LogReader& reader, std::string_view log,
+Outcome read_log(const waymark::LogReader& reader, std::string_view log,
                                         const waymark::LogRequest& request, std::size_t piece) {
-  waymark::reproduction::Outcome outcome;
+  Outcome outcome;
   try {
     const auto decoder = reader.open("fuzz.log", request);
     if (piece == 0) piece = log.size() + 1;
@@ -107,7 +107,7 @@ void check_data(const LogData& data, const waymark::LogRequest& request) {
   }
 }
 
-void check_same(const waymark::reproduction::Outcome& a, const waymark::reproduction::Outcome& b) {
+void check_same(const Outcome& a, const Outcome& b) {
   hold(a.refused == b.refused, "pieces: refused");
   if (a.refused) return check_text(*a.refused);
   const LogData& x = a.data;

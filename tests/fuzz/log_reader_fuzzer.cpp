@@ -9,7 +9,7 @@ using namespace waymark_fuzz;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const waymark::LogReader& reader = *waymark::formats::builtin_log_reader(WAYMARK_FUZZ_READER);
   const FuzzInput input = fuzz_input(WAYMARK_FUZZ_READER, bytes, size);
-  const waymark::reproduction::Outcome whole = read_log(reader, input.log, input.request, 0);
+  const Outcome whole = read_log(reader, input.log, input.request, 0);
   if (!whole.refused) check_data(whole.data, input.request);
   check_same(whole, read_log(reader, input.log, input.request, input.piece));
   check_recognition(input.log);

@@ -43,7 +43,28 @@ MADE = {
     "candump": [b"(1.5) can0 0AA#0123456789ABCDEF\n (1.6)  can0  024   [2]  FF FF\n(1.7) can0 123##1AABB\n"
                 b"(1.8) can0 003#0011223344556677\n(1.9) can0 007#00112233\n(2.0) can0 002#0011223344\n"
                 b"(2.1) can0 0B4#0100002041000000\n(2.2) can0 123#R\n"],
-    "csv": [b"time,latitude,longitude,height,accuracy,course,speed,valid\n1.5,48.1,11.5,500,3.5,90,4.5,1\n" * 2,
+    "asc": [b"date Mon Jul 26 10:14:15.000 am 2021\nbase hex  timestamps absolute\n"
+            b"Begin Triggerblock Mon Jul 26 10:14:15.000 am 2021\n   0.000000 Start of measurement\n"
+            b"   0.015991 1  0AA             Rx   d 8 01 23 45 67 89 AB CD EF\n   0.02 1  003x  Rx   r\n"
+            b"   0.1 CANFD   1 Rx  7E8  Name    1 0 8  8 03 41 0D 24 00 00 00 00\n   0.6 1  ErrorFrame\n"
+            b"   0.7 1  003             Rx   d 8 00 11 22 33 44 55 66 77\nEnd TriggerBlock\n",
+            b"base dec  timestamps relative\n0.5 1  170             Rx   d 4 1 35 69 103\n" * 3],
+    "trc": [head + row * 3 for head, row in (
+                (b";$STARTTIME=44403.4265625\n", b" 1) 16 00AA 8 03 41 0D 24 00 00 00 00\n"),
+                (b";$FILEVERSION=1.1\n", b" 1) 15.991 Rx 0003 8 03 41 0D 24 00 00 00 00\n"),
+                (b";$FILEVERSION=1.3\n", b" 1) 15.991 1 Rx 00AA - 8 03 41 0D 24 00 00 00 00\n"),
+                (b";$FILEVERSION=2.1\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n",
+                 b" 1 15.991 FD 1 0007 Rx - 9 03 41 0D 24 00 00 00 00 00 00 00 00\n"))],
+    "gnss_logger": [b"# Header Description:\n# Fix,Provider,LatitudeDegrees,LongitudeDegrees,AltitudeMeters,SpeedMps,"
+                    b"AccuracyMeters,BearingDegrees,UnixTimeMillis\nRaw,1,2\n"
+                    b"Fix,GPS,52.27,10.53,120.5,10.0,2.0,90.0,1700000000440\n"
+                    b"Fix,FLP,52.27,10.53,120.5,10.0,2.0,90.0,1700000000440\n"],
+    "vbo": [b"File created on 26/07/2021 at 10:14:15\n[header]\ntime\n[column names]\nsats time lat long velocity "
+            b"heading height\n[data]\n136 101416.00 +03119.09973 -00631.80000 036.000 090.00 +00120.50\n"
+            b"000 101417.00 +00000.00000 +00000.00000 000.000 000.00 +00000.00\n"],
+    "csv": [b"t,day,north,who\n10:00:00,31.01.2024,front,52 16 12.9 N\n" * 2,
+            b"31.01.2024 12:00:00;5216.2147;01031.8;front;3\n" * 2,
+            b"time,latitude,longitude,height,accuracy,course,speed,valid\n1.5,48.1,11.5,500,3.5,90,4.5,1\n" * 2,
             b"time;speed;yaw_rate\n1.5;4.25;0.01\n\"1.6\";4.5;-0.02\n",
             b"2024-05-06T07:08:09.5Z,481234567,111234567,500000,3500\n" * 3],
     "gpx": [b'<?xml version="1.0"?><gpx version="1.1" creator="x"><trk><trkseg><trkpt lat="48.1" lon="11.5">'
@@ -53,11 +74,17 @@ MADE = {
 
 # Stream and pieces; accuracy; week, date, offset, separator; free.
 HEADS = {
-    "csv": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(3) for v in (0, 1, 2, 4, 7)],
+    "csv": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(3) for v in (0, 1, 2, 4, 7)] +
+           [bytes([2 << 5 | 5, 8, 4, d]) for d in (2, 12, 34, 21, 0x62, 0xA1, 28, 5)],
+    "asc": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(4) for v in (0, 3)],
+    "trc": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(4) for v in (0, 3)],
+    "gnss_logger": [bytes([s | 4, 8, 0, 0]) for s in (0, 1)],
+    "vbo": [bytes([s | 4, 8, w, 0]) for s in (0, 1) for w in (0, 4)],
     "candump": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(4) for v in (0, 3)],
     "dbc": [bytes([s | 4, 8, 0, 0]) for s in range(2)],
     "ubx": [bytes([s | v << 5 | r | 4, 8 | 32, 2, 0]) for s in (0, 1) for v in (0, 1) for r in (0, 16)],
-    "log_file": [bytes([0, 0, 0]), bytes([1, 0, 0]), bytes([3, 128, 0]), bytes([5, 0, 100])],
+    "log_file": [bytes([0, 0, 0]), bytes([1, 0, 0]), bytes([3, 128, 0]), bytes([5, 0, 100]), bytes([9, 0, 0]), bytes([17, 0, 0]), bytes([11, 99, 0]),
+                 bytes([21, 0, 120])],
 }
 DEFAULT_HEADS = [bytes([4, 0, 0, 100]), bytes([16 | 5, 8, 4, 100]), bytes([16, 16 | 8 | 32, 5, 10])]
 

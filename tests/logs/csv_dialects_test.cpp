@@ -96,6 +96,24 @@ TEST_CASE("csv dialects: a date that is none is a corrupt row, in its own words"
   CHECK(data.corrupt == 4);
 }
 
+TEST_CASE("csv dialects: instants that 64 bits of nanoseconds do not hold are corrupt rows") {
+  // The years 1678 to 2262; the rows in between are those of kNoon.
+  for (const auto& [unit, fields] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"excel", {"457462944", "132500", "45322.5"}},
+           {"matlab", {"1", "9999999", "739282.5"}},
+           {"filetime", {"1", "300000000000000000", "133511760000000000"}}}) {
+    INFO(unit);
+    LogRequest request = truth();
+    request.columns["time"] = {"t", unit, ""};
+    std::string text = "t,latitude,longitude\n";
+    for (const std::string& field : fields) text += field + ",48,11\n";
+    const LogData data = read(text, request);
+    CHECK(data.corrupt == 2);
+    REQUIRE(data.truth.size() == 1);
+    CHECK(data.truth[0].stamp.nanoseconds == kNoon);
+  }
+}
+
 TEST_CASE("csv dialects: date and time of day stand in two columns") {
   LogRequest request = truth();
   request.columns["date"] = {"day", "dmy", ""};

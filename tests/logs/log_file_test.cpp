@@ -119,6 +119,17 @@ TEST_CASE("log files: a compressed log that is cut gives what came before, and o
   CHECK(data.corrupt >= 1);
 }
 
+TEST_CASE("log files: a cut file with many corrupt lines describes no more of them than others do") {
+  std::string text = nmea_log(2000);
+  for (std::size_t at = text.find('*'); at != std::string::npos; at = text.find('*', at + 500))
+    text[at + 1] = 'Z';
+  const std::string whole = content_of(gzip_of("many.gz", text));
+  const LogData data = read(file_with("many_cut.gz", whole.substr(0, whole.size() * 3 / 4)));
+  CHECK(data.corrupt > kCorruptExamples);
+  REQUIRE(data.corrupt_examples.size() == kCorruptExamples);
+  CHECK(data.corrupt_examples[0].find("cut off") != std::string::npos);
+}
+
 TEST_CASE("log files: a damaged compressed log gives what came before, and says what zlib says") {
   std::string damaged = content_of(gzip_of("sound.gz", nmea_log(5000)));
   for (std::size_t i = damaged.size() / 2; i < damaged.size() / 2 + 40; ++i) damaged[i] = '\xFF';

@@ -89,12 +89,12 @@ class OptionChecker {
     OptionValue::Entries values;
     for (const OptionInfo& field : record.fields) {
       const auto stated = std::find_if(entries.begin(), entries.end(),
-                                       [&](const auto& entry) { return entry.first == field.name; });
+                                       [&](const auto& entry) { return entry.name == field.name; });
       const std::string place = path + "." + field.name;
       if (stated == entries.end() && field.required) refuse(place, "be given", "nothing");
       values.emplace(
           field.name,
-          checked(field, stated == entries.end() ? parse_flow(field.value) : stated->second, place));
+          checked(field, stated == entries.end() ? parse_flow(field.value) : stated->value, place));
     }
     return OptionValue(std::move(values));
   }

@@ -41,8 +41,53 @@ double metres_between(const waymark::GeodeticFix& fix, const json& report) {
   return std::hypot(north, east);
 }
 
-void compare_one(const waymark::GeodeticFix& fix, const json& report, Comparison& result) {
+/// A report, and the SKY objects before and behind it.
+struct Sighting {
+  json report;
+  double hdop_before, hdop_behind;
+};
+
+/// The TPV objects with a fix by their time. gpsd gives SKY objects of NMEA no time.
+std::multimap<std::int64_t, Sighting> sightings(const std::vector<json>& objects) {
+  std::multimap<std::int64_t, Sighting> result;
+  std::vector<Sighting*> waiting;
+  double last = std::nan("");
+  for (const json& object : objects) {
+    if (object.at("class") == "SKY" && object.contains("hdop")) {
+      last = object.at("hdop").get<double>();
+      for (Sighting* sighting : waiting) sighting->hdop_behind = last;
+      waiting.clear();
+    }
+    const bool fix = object.at("class") == "TPV" && object.contains("time") && object.value("mode", 0) >= 2 &&
+                     object.contains("lat");
+    if (!fix) continue;
+    const std::int64_t time = within_rollover(
+        waymark::formats::stamp_from_iso8601(object.at("time").get<std::string>()).value().nanoseconds);
+    waiting.push_back(&result.emplace(time, Sighting{object, last, std::nan("")})->second);
+  }
+  return result;
+}
+
+void compare_details(const waymark::FixDetails& told, const Sighting& sighting, Comparison& result) {
+  if (sighting.report.contains("status")) {
+    ++result.qualities;
+    result.other_qualities += !is_status(told.quality, sighting.report.at("status").get<int>());
+  }
+  if (sighting.report.contains("dgpsAge") && !std::isnan(told.correction_age_s)) {
+    ++result.ages;
+    enlarge(result.age_s, number(sighting.report, "dgpsAge") - told.correction_age_s);
+  }
+  if (told.hdop == 0 || (std::isnan(sighting.hdop_before) && std::isnan(sighting.hdop_behind))) return;
+  constexpr double kRounded = 0.00501;
+  const bool same = std::abs(told.hdop - sighting.hdop_before) < kRounded ||
+                    std::abs(told.hdop - sighting.hdop_behind) < kRounded;
+  ++(same ? result.same_hdop : result.other_hdop);
+}
+
+void compare_one(const waymark::GeodeticFix& fix, const Sighting& sighting, Comparison& result) {
+  const json& report = sighting.report;
   ++result.matched;
+  compare_details(fix.told, sighting, result);
   const std::int64_t theirs =
       waymark::formats::stamp_from_iso8601(report.at("time").get<std::string>()).value().nanoseconds;
   if (std::abs(theirs - fix.stamp.nanoseconds) > kRollover / 2) ++result.other_dates;
@@ -57,6 +102,27 @@ void compare_one(const waymark::GeodeticFix& fix, const json& report, Comparison
 }
 
 }  // namespace
+
+bool is_status(waymark::FixQuality quality, int status) {
+  using waymark::FixQuality;
+  switch (status) {
+    case 2:
+      return quality == FixQuality::differential;
+    case 3:
+      return quality == FixQuality::fixed;
+    case 4:
+      return quality == FixQuality::floating;
+    case 5:
+    case 6:
+      return quality == FixQuality::dead_reckoned;
+    case 7:
+      return quality == FixQuality::manual;
+    case 8:
+      return quality == FixQuality::simulated;
+    default:
+      return quality == FixQuality::single;
+  }
+}
 
 std::vector<json> gpsd_objects(const std::string& text) {
   std::vector<json> objects;
@@ -94,25 +160,22 @@ Comparison compare_with_gpsd(const std::vector<waymark::GeodeticFix>& fixes,
   Comparison result;
   result.ours = fixes.size();
   // A receiver's clock may step back, so that a time comes twice.
-  std::multimap<std::int64_t, json> reports;
+  const std::multimap<std::int64_t, Sighting> reports = sightings(objects);
   std::multimap<std::int64_t, json> accuracies;  // GST objects
   for (const json& object : objects) {
     if (!object.contains("time")) continue;
     const std::int64_t time = within_rollover(
         waymark::formats::stamp_from_iso8601(object.at("time").get<std::string>()).value().nanoseconds);
-    if (object.at("class") == "TPV" && object.value("mode", 0) >= 2 && object.contains("lat")) {
-      reports.emplace(time, object);
-    } else if (object.at("class") == "GST") {
-      accuracies.emplace(time, object);
-    }
+    if (object.at("class") == "GST") accuracies.emplace(time, object);
   }
   result.theirs = reports.size();
   for (const waymark::GeodeticFix& fix : fixes) {
     const std::int64_t time = within_rollover(fix.stamp.nanoseconds);
-    const json* nearest = nullptr;
+    const Sighting* nearest = nullptr;
     const auto end = reports.upper_bound(time + kMillisecond);
     for (auto report = reports.lower_bound(time - kMillisecond); report != end; ++report) {
-      if (nearest == nullptr || metres_between(fix, report->second) < metres_between(fix, *nearest))
+      if (nearest == nullptr ||
+          metres_between(fix, report->second.report) < metres_between(fix, nearest->report))
         nearest = &report->second;
     }
     if (nearest != nullptr) compare_one(fix, *nearest, result);

@@ -34,8 +34,17 @@ struct Comparison {
   double time_s = 0;
   double speed_mps = 0;
   double course_deg = 0;
-  double accuracy_m = 0;  ///< of the sigmas, if gpsd has a GST object with that time
+  double accuracy_m = 0;            ///< of the sigmas, if gpsd has a GST object with that time
+  std::size_t qualities = 0;        ///< matched ones whose status gpsd tells
+  std::size_t other_qualities = 0;  ///< of these, with another quality
+  std::size_t ages = 0;             ///< matched ones with an age of corrections
+  double age_s = 0;                 ///< largest difference
+  /// fixes whose HDOP is that of the SKY object before or behind the report, and those with another one
+  std::size_t same_hdop = 0, other_hdop = 0;
 };
+
+/// Tells whether a quality is what gpsd's `status` means (json, gpsd_json(5)).
+[[nodiscard]] bool is_status(waymark::FixQuality quality, int status);
 
 /// Compares fixes by time of day and week. A fix is matched with the object nearest in time, within
 /// a millisecond, because gpsd gives milliseconds. Dates that differ by whole periods of 1024 weeks

@@ -30,18 +30,19 @@ struct NmeaLog {
   std::size_t only_ours;   ///< fixes that gpsdecode does not report
   std::size_t accuracies;  ///< GST objects with errors and a date
   bool date_moved;         ///< by gpsdecode
+  bool status;             ///< gpsd tells one: corrections, RTK
 };
 constexpr NmeaLog kNmeaLogs[] = {
-    {"genivi_munich_Petuelring_2009.nmea", 26, 0, true},  // 25 of two satellites
-    {"gpsd_gr8013-w.log", 1, 3, true},
-    {"gpsd_mt3339.log", 1, 0, true},
-    {"gpsd_neo-m8n.log", 2, 0, true},  // begins within an epoch, with a GLL
-    {"gpsd_nmea-fuzzy-cases.log", 1, 0, false},
-    {"gpsd_polarx2.log", 1, 4, true},
-    {"gpsd_quectel-L70.log", 1, 16, false},
-    {"gpsd_st-teseo-liv3f.log", 2, 0, false},
-    {"gpsd_ublox-8.log", 1, 0, false},
-    {"gpsd_ublox-neo-m9n-nmea.log", 1, 61, false},
+    {"genivi_munich_Petuelring_2009.nmea", 26, 0, true, false},  // 25 of two satellites
+    {"gpsd_gr8013-w.log", 1, 3, true, false},
+    {"gpsd_mt3339.log", 1, 0, true, true},
+    {"gpsd_neo-m8n.log", 2, 0, true, false},  // begins within an epoch, with a GLL
+    {"gpsd_nmea-fuzzy-cases.log", 1, 0, false, true},
+    {"gpsd_polarx2.log", 1, 4, true, false},
+    {"gpsd_quectel-L70.log", 1, 16, false, true},
+    {"gpsd_st-teseo-liv3f.log", 2, 0, false, true},
+    {"gpsd_ublox-8.log", 1, 0, false, false},
+    {"gpsd_ublox-neo-m9n-nmea.log", 1, 61, false, true},
 };
 
 std::filesystem::path nmea_log(const std::string& name) {
@@ -67,7 +68,9 @@ void check_rounding_only(const Comparison& comparison) {
 
 }  // namespace
 
-TEST_CASE("gpsdecode: NMEA fixes agree to its rounding") {
+TEST_CASE("gpsdecode: NMEA fixes agree to its rounding, and so do quality, HDOP and age of corrections") {
+  std::size_t ages = 0;
+  std::size_t same_hdop = 0;
   for (const NmeaLog& log : kNmeaLogs) {
     const auto objects = run_gpsdecode(nmea_log(log.name));
     if (!objects) return;
@@ -78,7 +81,16 @@ TEST_CASE("gpsdecode: NMEA fixes agree to its rounding") {
     CHECK(comparison.accuracies == log.accuracies);
     CHECK(comparison.other_dates == (log.date_moved ? comparison.matched : 0));
     check_rounding_only(comparison);
+    CHECK(comparison.qualities == (log.status ? comparison.matched : 0));
+    CHECK(comparison.other_qualities == 0);
+    CHECK(comparison.age_s == 0);
+    ages += comparison.ages;
+    same_hdop += comparison.same_hdop;
+    // gpsd has the dilution of GSA, where a log has none of an epoch that of the one before.
+    CHECK(comparison.other_hdop <= 2);
   }
+  CHECK(ages == 13);
+  CHECK(same_hdop > 2000);
 }
 
 TEST_CASE("gpsdecode: gpsd's own regression output of a recording agrees with its NMEA fixes") {

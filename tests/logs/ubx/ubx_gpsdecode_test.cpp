@@ -59,6 +59,47 @@ LogData read_fixes(const std::string& name, const std::string& position = "NAV-P
   return UbxReader().read(read_text_file(log_path("ubx", name)), name, request);
 }
 
+/// By the formulas of the ellipsoid WGS84.
+Eigen::Vector3d ecef_of(const GeodeticFix& fix) {
+  constexpr double kRadius = 6'378'137;
+  constexpr double kFlattening = 1 / 298.257223563;
+  constexpr double kSquare = kFlattening * (2 - kFlattening);
+  const double latitude = fix.latitude_deg * kDegree;
+  const double longitude = fix.longitude_deg * kDegree;
+  const double across = kRadius / std::sqrt(1 - kSquare * std::pow(std::sin(latitude), 2));
+  return {(across + fix.height_m) * std::cos(latitude) * std::cos(longitude),
+          (across + fix.height_m) * std::cos(latitude) * std::sin(longitude),
+          (across * (1 - kSquare) + fix.height_m) * std::sin(latitude)};
+}
+
+/// gpsd's objects of a class at a time, or an epoch before or after it: it gives what it has when the next
+/// message comes.
+std::vector<nlohmann::json> at_time(const std::vector<nlohmann::json>& objects, const char* kind,
+                                    Stamp stamp) {
+  std::vector<nlohmann::json> result;
+  for (const nlohmann::json& object : objects) {
+    if (object.at("class") != kind || !object.contains("time")) continue;
+    const Stamp time = stamp_from_iso8601(object.at("time").get<std::string>()).value();
+    if (std::abs(seconds_between(time, stamp)) < 1.0011) result.push_back(object);
+  }
+  return result;
+}
+
+/// Reads a log after its frames NAV-PVT were taken out.
+LogData read_without_pvt(const std::string& name) {
+  std::string bytes = read_text_file(log_path("ubx", name));
+  constexpr std::string_view kPvt = "\xB5\x62\x01\x07";
+  for (std::size_t at = bytes.find(kPvt); at != std::string::npos; at = bytes.find(kPvt, at)) {
+    const auto length =
+        static_cast<unsigned char>(bytes[at + 4]) + 256U * static_cast<unsigned char>(bytes[at + 5]);
+    bytes.erase(at, length + 8);
+  }
+  LogRequest request;
+  request.time_scale = TimeScale::utc;
+  request.default_sigma_m = 5;
+  return UbxReader().read(bytes, name, request);
+}
+
 /// Largest differences over the epochs that both have.
 struct Differences {
   std::size_t epochs = 0;
@@ -169,6 +210,48 @@ TEST_CASE("ubx: real HNR-PVT agrees with what gpsd 3.25 made of it") {
   CHECK(data.fixes.size() == 189);
   check_agreement(compare(data.fixes, reports_of(waymark_test::gpsd_objects(read_text_file(*reference)))),
                   1e-6, 1e-9);
+}
+
+TEST_CASE("ubx: Earth-centred positions, qualities and HDOP of real logs agree with gpsdecode") {
+  struct Case {
+    const char* name;
+    std::size_t fixes;      ///< of NAV-POSECEF
+    std::size_t qualities;  ///< whose status gpsd tells
+  };
+  for (const Case& log : {Case{"gpsd_navisys-gr8013.log", 34, 35}, Case{"gpsd_ublox-neo-m8l.log", 19, 19}}) {
+    const auto objects = waymark_test::run_gpsdecode(log_path("ubx", log.name));
+    if (!objects) return;
+    INFO(log.name);
+    // NAV-POSECEF counts where the log has no NAV-PVT, which tells the quality.
+    const LogData earth_centred = read_without_pvt(log.name);
+    CHECK(earth_centred.fixes.size() == log.fixes);
+    std::size_t positions = 0;
+    for (const GeodeticFix& fix : earth_centred.fixes) {
+      double nearest_m = std::numeric_limits<double>::infinity();
+      for (const nlohmann::json& tpv : at_time(*objects, "TPV", fix.stamp))
+        if (tpv.contains("ecefx"))
+          nearest_m = std::min(nearest_m, (ecef_of(fix) - Eigen::Vector3d(tpv.at("ecefx").get<double>(),
+                                                                          tpv.at("ecefy").get<double>(),
+                                                                          tpv.at("ecefz").get<double>()))
+                                              .norm());
+      positions += nearest_m < 0.002;  // gpsd repeats the receiver's centimetres
+    }
+    CHECK(positions >= log.fixes - 1);  // gpsd reports the last epoch without them
+    const LogData data = read_fixes(log.name);
+    std::size_t qualities = 0;
+    std::size_t dilutions = 0;
+    for (const GeodeticFix& fix : data.fixes) {
+      for (const nlohmann::json& sky : at_time(*objects, "SKY", fix.stamp))
+        dilutions += sky.contains("hdop") && std::abs(sky.at("hdop").get<double>() - fix.told.hdop) < 1e-9;
+      const std::vector<nlohmann::json> reports = at_time(*objects, "TPV", fix.stamp);
+      qualities += std::any_of(reports.begin(), reports.end(), [&](const nlohmann::json& tpv) {
+        return tpv.contains("status") &&
+               waymark_test::is_status(fix.told.quality, tpv.at("status").get<int>());
+      });
+    }
+    CHECK(qualities == log.qualities);
+    CHECK(dilutions >= log.qualities - 3);
+  }
 }
 
 }  // namespace ubx_gpsdecode_test

@@ -39,7 +39,7 @@ FlowValue flow_of(const YAML::Node& node) {
   }
   if (node.IsMap()) {
     FlowValue::Mapping entries;
-    for (const auto& entry : node) entries.emplace_back(entry.first.as<std::string>(), flow_of(entry.second));
+    for (const auto& entry : node) entries.push_back({entry.first.as<std::string>(), flow_of(entry.second)});
     return {entries};
   }
   return {node.IsScalar() ? node.Scalar() : std::string()};

@@ -35,15 +35,20 @@ std::optional<Stamp> of_days(std::string_view field, std::int64_t day_1970) {
   constexpr std::int64_t kScaledDay = 10'000 * kSecondNanoseconds;
   const std::int64_t days = scaled->nanoseconds / kScaledDay;
   const std::int64_t rest = scaled->nanoseconds % kScaledDay;
-  return Stamp{(days - day_1970) * 86400 * kSecondNanoseconds + (rest * 864 + 50) / 100};
+  std::int64_t whole = 0;  // 64 bits of nanoseconds hold 106,751 days
+  if (__builtin_mul_overflow(days - day_1970, 86400 * kSecondNanoseconds, &whole)) return std::nullopt;
+  Stamp stamp;
+  if (__builtin_add_overflow(whole, (rest * 864 + 50) / 100, &stamp.nanoseconds)) return std::nullopt;
+  return stamp;
 }
 
 std::optional<Stamp> of_filetime(std::string_view field) {
   std::int64_t count = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), count);
   // 64 bits of nanoseconds hold the years 1678 to 2262.
-  if (error != std::errc() || end != field.data() + field.size() || count < 0 ||
-      count > 200'000'000'000'000'000)
+  constexpr std::int64_t kFirst = 25'000'000'000'000'000;
+  constexpr std::int64_t kLast = 200'000'000'000'000'000;
+  if (error != std::errc() || end != field.data() + field.size() || count < kFirst || count > kLast)
     return std::nullopt;
   return Stamp{(count - kFiletime1970) * 100};
 }
