@@ -11,8 +11,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
-#include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
 #include <waymark/formats/logs/detail/can/dbc_set.hpp>
+#include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>
 #include <waymark/formats/logs/log_file.hpp>
 #include <waymark/tools/inspection/log_clock.hpp>
@@ -289,12 +289,6 @@ bool heading_is_course(const ColumnSummary& column) {
   const double turn = column.proposal.unit == "rad" ? 6.2832 : 360;
   return column.proposal.convention != "ccw_from_east" && column.range.smallest >= -turn &&
          column.range.largest <= turn;
-}
-
-bool is_of_receiver(const std::string& signal) {
-  const std::vector<std::string> words = words_of(signal);
-  return std::any_of(words.begin(), words.end(),
-                     [](const std::string& word) { return word == "gnss" || word == "gps"; });
 }
 
 /// Reads an undated table as seconds of the week of another log, if the numbers fit.

@@ -221,6 +221,22 @@ TEST_CASE("can: a DBC of J1939 holds for every sender, an exact id comes before"
   CHECK(data.kinds.at("OTHER") == 1);
 }
 
+TEST_CASE("can: the messages of the standards stand behind those of a DBC file") {
+  LogRequest request = speed_request("OBD2.VehicleSpeed");
+  request.columns["yaw_rate"] = {"R", "", ""};
+  request.companions["dbc"] = {{"gyro.dbc", "BO_ 17 GYRO: 2 X\n SG_ R : 0|8@1+ (0.1,0) [0|0] \"rad/s\" X\n"}};
+  const std::string log = "(1.0) can0 7E8#03410D2400000000\n(1.0) can0 011#0200\n";
+  const LogData data = read("candump", log, request);
+  CHECK(data.readings.at(0, 0) == 10);
+  CHECK(data.readings.at(1, 1) == Approx(0.2));
+  // A file that has the id, or the name, comes first.
+  request.columns["speed"] = {"VehicleSpeed", "", ""};
+  request.companions["dbc"] = {{"car.dbc",
+                                "BO_ 2024 OBD: 8 X\n SG_ VehicleSpeed : 24|8@1+ (1,0) [0|0] \"m/s\" X\n"
+                                "BO_ 17 GYRO: 2 X\n SG_ R : 0|8@1+ (0.1,0) [0|0] \"rad/s\" X\n"}};
+  CHECK(read("candump", log, request).readings.at(0, 0) == 36);
+}
+
 TEST_CASE("can: several DBC files are one, and what two of them define differently stays apart by name") {
   LogRequest request = speed_request("V");
   const CompanionFile wheels{"wheels.dbc", "BO_ 16 WHEELS: 2 X\n SG_ V : 0|8@1+ (1,0) [0|0] \"m/s\" X\n"};

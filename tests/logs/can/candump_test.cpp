@@ -29,9 +29,8 @@ TEST_CASE("candump: every frame with a wanted signal is a row") {
   CHECK(data.kinds ==
         std::map<std::string, std::size_t>{{"MOTION", 1}, {"WHEELS", 1}, {"not in the DBC", 1}});
   CHECK(data.notes ==
-        std::vector<std::string>{"car.log: yaw_rate: signal YAW_RATE is in 'deg/s' by the DBC",
-                                 "car.log: wheel_speed_front_left: signal FL is in 'kph' by the DBC",
-                                 "car.log: wheel_speed_front_right: signal FR is in 'kph' by the DBC",
+        std::vector<std::string>{"car.log: units by the DBC: yaw_rate 'deg/s' (YAW_RATE), "
+                                 "wheel_speed_front_left 'kph' (FL), wheel_speed_front_right 'kph' (FR)",
                                  "car.log: interfaces: can0 (3 frames)"});
 }
 

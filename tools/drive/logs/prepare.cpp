@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/coordinates/frame_choice.hpp>
 #include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
-#include <waymark/tools/drive/logs/prepare_steps.hpp>
+#include <waymark/tools/drive/coordinates/frame_choice.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
+#include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 #include <waymark/tools/drive/nodes/agreement.hpp>
 #include <waymark/tools/drive/nodes/fix_motion.hpp>

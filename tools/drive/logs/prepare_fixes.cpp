@@ -93,6 +93,8 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
     const std::size_t before = fixes.size();
     append_log(log.data.fixes, log, description.scale(), fixes, report.gnss, report);
     settle_shared_stamps(std::span(fixes).subspan(before), log.file, report);
+    if (std::string warning = warning_of_turns(std::span(fixes).subspan(before), log.file); !warning.empty())
+      report.warnings.push_back(std::move(warning));
     if (i < logs.velocity.size() && logs.velocity[i].data.readings.size() > 0)
       add_logged_velocity(logs.velocity[i], description.scale(), std::span(fixes).subspan(before), report);
     report_clock(log, report);

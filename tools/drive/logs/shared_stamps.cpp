@@ -110,7 +110,53 @@ std::size_t adjacent_differences(std::span<const GeodeticFix> fixes) {
   return count;
 }
 
+/// Tells whether the intervals are a, b, a, b, ...
+bool intervals_alternate(std::span<const GeodeticFix> fixes) {
+  std::vector<double> of[2];
+  for (std::size_t i = 1; i < fixes.size(); ++i)
+    of[i % 2].push_back(seconds_between(fixes[i - 1].stamp, fixes[i].stamp));
+  const double usual[2] = {upper_median(std::vector<double>(of[0])),
+                           upper_median(std::vector<double>(of[1]))};
+  constexpr double kDiffer = 0.9;  // 6 Hz in stamps of a tenth are 0.1 and 0.2 s apart
+  constexpr double kRegular = 0.1;
+  const double mean = (usual[0] + usual[1]) / 2;
+  if (!(std::abs(usual[0] - usual[1]) > kDiffer * mean)) return false;
+  std::size_t regular = 0;
+  for (const std::size_t parity : {0U, 1U})
+    for (const double interval : of[parity]) regular += std::abs(interval - usual[parity]) < kRegular * mean;
+  return 10 * regular >= 9 * (fixes.size() - 1);
+}
+
+/// Tells whether every second position lies aside of those around it.
+bool positions_alternate(std::span<const GeodeticFix> fixes) {
+  constexpr double kCorrelated = 0.7;
+  std::vector<Eigen::Vector2d> seconds;
+  for (std::size_t i = 1; i + 1 < fixes.size(); ++i)
+    seconds.push_back(way(fixes[i], fixes[i - 1]) + way(fixes[i], fixes[i + 1]));
+  double variance = 0;
+  double next = 0;
+  double behind = 0;
+  for (std::size_t i = 0; i + 2 < seconds.size(); ++i) {
+    variance += seconds[i].squaredNorm();
+    next += seconds[i].dot(seconds[i + 1]);
+    behind += seconds[i].dot(seconds[i + 2]);
+  }
+  return next < -kCorrelated * variance && behind > kCorrelated * variance;
+}
+
 }  // namespace
+
+std::string warning_of_turns(std::span<const GeodeticFix> fixes, const std::string& file) {
+  constexpr std::size_t kFewestTurns = 40;
+  if (fixes.size() < kFewestTurns) return {};
+  const bool in_time = intervals_alternate(fixes);
+  if (!in_time && !positions_alternate(fixes)) return {};
+  return fmt::format(
+      "{}: two receivers seem to write into this log in turn, because {}; give each its own entry of 'gnss', with "
+      "'where: COLUMN == VALUE' for a table, or with the sentences of one receiver in a log of their own",
+      file,
+      in_time ? "the intervals of its stamps alternate" : "its positions go to and fro from fix to fix");
+}
 
 void settle_shared_stamps(std::span<GeodeticFix> fixes, const std::string& file, PrepareReport& report) {
   if (adjacent_differences(fixes) < kFewest) return;

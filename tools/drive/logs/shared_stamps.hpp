@@ -17,4 +17,11 @@ namespace waymark::drive {
 /// @throws InputError for two receivers; it names the remedy
 void settle_shared_stamps(std::span<GeodeticFix> fixes, const std::string& file, PrepareReport& report);
 
+/// Returns a warning if two receivers seem to write into a log in turn: the intervals of the stamps
+/// alternate, or the positions go to and fro from fix to fix (the second differences have correlations
+/// below -0.7 and above 0.7 with the next and the one behind it; independent errors have -2/3 and 1/6).
+/// Empty otherwise, and below 40 fixes.
+/// @param fixes of one log, sorted by stamp
+[[nodiscard]] std::string warning_of_turns(std::span<const GeodeticFix> fixes, const std::string& file);
+
 }  // namespace waymark::drive

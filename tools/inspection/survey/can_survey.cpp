@@ -153,7 +153,7 @@ CanSummary CanSurvey::summary() const {
       result.signals.push_back(std::move(column));
     }
   }
-  keep_one_each(result.signals);
+  keep_one_each(result.signals, true);
   return result;
 }
 

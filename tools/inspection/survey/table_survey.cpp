@@ -194,15 +194,22 @@ bool names_unit(const ColumnProposal& proposal) {
 
 }  // namespace
 
-void keep_one_each(std::vector<ColumnSummary>& columns) {
+bool is_of_receiver(const std::string& signal) {
+  const std::vector<std::string> words = words_of(signal);
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word == "gnss" || word == "gps"; });
+}
+
+void keep_one_each(std::vector<ColumnSummary>& columns, bool of_bus) {
   const auto better = [](const ColumnProposal& a, const ColumnProposal& b) {
     if (a.remark.empty() != b.remark.empty()) return a.remark.empty();
     return names_unit(a) && !names_unit(b);
   };
-  std::map<std::string, ColumnSummary*> owner;
+  std::map<std::pair<std::string, bool>, ColumnSummary*> owner;
   for (ColumnSummary& column : columns) {
     if (column.proposal.quantity.empty()) continue;
-    ColumnSummary*& first = owner[column.proposal.quantity];
+    const bool receiver = of_bus && column.proposal.quantity == "speed" && is_of_receiver(column.name);
+    ColumnSummary*& first = owner[{column.proposal.quantity, receiver}];
     if (first == nullptr) {
       first = &column;
     } else if (better(column.proposal, first->proposal)) {

@@ -71,8 +71,12 @@ class TableSurvey final : public formats::LineDecoder {
   bool may_have_units_ = false;  ///< the next line is the one below the header
 };
 
+/// Tells whether a signal of a bus is that of a receiver, by the names of signal and message.
+[[nodiscard]] bool is_of_receiver(const std::string& signal);
+
 /// Leaves every quantity to one column: the first whose name indicates it. Columns with a known
 /// unit come before others.
-void keep_one_each(std::vector<ColumnSummary>& columns);
+/// @param of_bus the columns are signals: the speed of a receiver and that of the vehicle may both stay
+void keep_one_each(std::vector<ColumnSummary>& columns, bool of_bus = false);
 
 }  // namespace waymark::inspection

@@ -12,11 +12,11 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/can/can_fixes.hpp>
 #include <waymark/formats/logs/detail/can/can_frame.hpp>
-#include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
 #include <waymark/formats/logs/detail/can/can_signals.hpp>
 #include <waymark/formats/logs/detail/can/can_tables.hpp>
 #include <waymark/formats/logs/detail/can/dbc.hpp>
 #include <waymark/formats/logs/detail/can/dbc_set.hpp>
+#include <waymark/formats/logs/detail/can/layouts/can_layout.hpp>
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
 #include <waymark/formats/logs/detail/common/log_request.hpp>
 #include <waymark/formats/logs/detail/common/quantity.hpp>

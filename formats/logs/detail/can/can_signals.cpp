@@ -34,7 +34,9 @@ std::vector<std::string> likely_signals(const Dbc& dbc, StreamKind stream) {
   const std::span<const std::string_view> words =
       position ? std::span<const std::string_view>(kPosition) : std::span<const std::string_view>(kMotion);
   std::vector<std::string> names;
+  const bool of_file = !dbc.messages.front().is_standard;
   for (const DbcMessage& message : dbc.messages) {
+    if (of_file && message.is_standard) continue;
     for (const DbcSignal& signal : message.signals) {
       const std::string name = lower_case(signal.name);
       for (const std::string_view word : words) {
@@ -70,18 +72,23 @@ class Binder {
       : dbc_(dbc), request_(request), place_(place), notes_(notes) {}
 
   void check_request(const std::vector<Quantity>& quantities) const;
-  [[nodiscard]] BoundSignal bind(const Quantity& quantity, const ColumnRequest& wanted) const;
+  [[nodiscard]] BoundSignal bind(const Quantity& quantity, const ColumnRequest& wanted);
+  /// Notes the units that nobody stated.
+  void note_units() const {
+    if (!by_dbc_.empty()) notes_.push_back(fmt::format("{}units by the DBC: {}", place_, by_dbc_));
+  }
 
  private:
   [[noreturn]] void fail(const std::string& what) const { throw InputError(place_ + what); }
   void find(const Quantity& quantity, std::string_view column, BoundSignal& bound) const;
   [[nodiscard]] const Unit& unit_of(const Quantity& quantity, const ColumnRequest& wanted,
-                                    const DbcSignal& signal) const;
+                                    const DbcSignal& signal);
 
   const Dbc& dbc_;
   const LogRequest& request_;
   const std::string& place_;
   std::vector<std::string>& notes_;
+  std::string by_dbc_;
 };
 
 void Binder::check_request(const std::vector<Quantity>& quantities) const {
@@ -110,7 +117,7 @@ void Binder::check_request(const std::vector<Quantity>& quantities) const {
                                   : fmt::format("{} has {}", dbc_.path, listed(likely))));
 }
 
-BoundSignal Binder::bind(const Quantity& quantity, const ColumnRequest& wanted) const {
+BoundSignal Binder::bind(const Quantity& quantity, const ColumnRequest& wanted) {
   BoundSignal bound;
   find(quantity, wanted.column, bound);
   const DbcMessage& message = dbc_.messages[bound.message];
@@ -150,8 +157,10 @@ void Binder::find(const Quantity& quantity, std::string_view column, BoundSignal
     messages.push_back(message.name);
     if (has_message && message.name != message_name) continue;
     for (std::size_t j = 0; j < message.signals.size(); ++j) {
-      signals.push_back(message.signals[j].name);
+      if (!message.is_standard || dbc_.messages.front().is_standard)
+        signals.push_back(message.signals[j].name);
       if (message.signals[j].name != signal_name) continue;
+      if (message.is_standard && !found.empty()) continue;  // a DBC file comes first
       bound.message = i;
       bound.signal = j;
       found.push_back(message.name + "." + message.signals[j].name);
@@ -169,8 +178,7 @@ void Binder::find(const Quantity& quantity, std::string_view column, BoundSignal
                    did_you_mean(signal_name, signals)));
 }
 
-const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wanted,
-                            const DbcSignal& signal) const {
+const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wanted, const DbcSignal& signal) {
   const std::string_view by_dbc = known_unit(signal.unit);
   std::vector<std::string_view> units;
   for (const Unit& known : quantity.units) {
@@ -191,8 +199,8 @@ const Unit& Binder::unit_of(const Quantity& quantity, const ColumnRequest& wante
   if (own.name == "1") return own;  // flags and counts
   const Unit* unit = by_dbc.empty() ? nullptr : find_unit(quantity, by_dbc);
   if (unit != nullptr) {
-    notes_.push_back(fmt::format("{}{}: signal {} is in '{}' by the DBC", place_, quantity.name, signal.name,
-                                 signal.unit));
+    by_dbc_ +=
+        fmt::format("{}{} '{}' ({})", by_dbc_.empty() ? "" : ", ", quantity.name, signal.unit, signal.name);
     return *unit;
   }
   fail(fmt::format("{}: signal {} is {}; state 'unit' for it: {}", quantity.name, signal.name,
@@ -219,7 +227,7 @@ std::vector<Quantity> signal_quantities(const LogRequest& request) {
 std::vector<BoundSignal> bind_signals(const Dbc& dbc, const std::vector<Quantity>& quantities,
                                       const LogRequest& request, const std::string& place,
                                       std::vector<std::string>& notes) {
-  const Binder binder(dbc, request, place, notes);
+  Binder binder(dbc, request, place, notes);
   binder.check_request(quantities);
   note_troubles(dbc, place, notes);
   std::vector<BoundSignal> result;
@@ -229,6 +237,7 @@ std::vector<BoundSignal> bind_signals(const Dbc& dbc, const std::vector<Quantity
     result.push_back(binder.bind(quantities[i], wanted->second));
     result.back().quantity = i;
   }
+  binder.note_units();
   return result;
 }
 

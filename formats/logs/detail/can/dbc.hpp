@@ -78,6 +78,7 @@ struct DbcMessage {
   std::size_t line = 0;
   /// a J1939 parameter group, which any sender may send: its id has the null address FE
   bool is_group = false;
+  bool is_standard = false;  ///< of standard_messages(), not of a file
 
   /// Returns null for an unknown name.
   [[nodiscard]] const DbcSignal* find(std::string_view signal) const;

@@ -1,7 +1,9 @@
 #include <waymark/formats/logs/detail/can/dbc_set.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 namespace waymark::formats {
 namespace {
@@ -61,8 +63,11 @@ void append(Dbc& all, Dbc further) {
 }  // namespace
 
 const Dbc& standard_messages() {
-  static const Dbc standard =
-      Dbc::parse(kStandard, "the list of OBD-II and J1939 messages (no 'dbc: FILE' is stated)");
+  static const Dbc standard = [] {
+    Dbc dbc = Dbc::parse(kStandard, "the list of OBD-II and J1939 messages (no 'dbc: FILE' is stated)");
+    for (DbcMessage& message : dbc.messages) message.is_standard = true;
+    return dbc;
+  }();
   return standard;
 }
 
@@ -71,7 +76,16 @@ Dbc dbc_of(const LogRequest& request) {
   const auto files = request.companions.find("dbc");
   if (files != request.companions.end())
     for (const CompanionFile& file : files->second) append(all, Dbc::parse(file.text, file.path));
-  return all.messages.empty() ? standard_messages() : all;
+  if (all.messages.empty()) return standard_messages();
+  std::vector<DbcMessage> further = standard_messages().messages;
+  std::erase_if(further, [&all](const DbcMessage& standard) {
+    return std::any_of(all.messages.begin(), all.messages.end(), [&](const DbcMessage& stated) {
+      return stated.id == standard.id || (standard.is_group && (stated.id & kExtendedFrame) != 0 &&
+                                          parameter_group(stated.id) == parameter_group(standard.id));
+    });
+  });
+  std::move(further.begin(), further.end(), std::back_inserter(all.messages));
+  return all;
 }
 
 }  // namespace waymark::formats

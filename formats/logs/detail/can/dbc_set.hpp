@@ -8,7 +8,7 @@ namespace waymark::formats {
 
 /// Joins the DBC files among the companions of a request, in their order. A message that a file has
 /// like one before it (id, name and signals) counts once; two different ones of an id stay both.
-/// Without a DBC it is that of standard_messages().
+/// The messages of standard_messages() follow whose ids no file defines.
 /// @throws InputError as Dbc::parse()
 [[nodiscard]] Dbc dbc_of(const LogRequest& request);
 
