@@ -310,6 +310,26 @@ void adopt_week(LogInspection& log, const LogInspection& other) {
                                  std::filesystem::path(other.path).filename().string());
 }
 
+/// Reads assumed Unix seconds of a table as GPS seconds since 1980 if only they fit the dates of another log.
+void adopt_gps_epoch(LogInspection& log, const LogInspection& other) {
+  const bool assumed =
+      log.table && !log.clock.known && log.clock.dated && log.clock.scale == TimeScale::unix_time;
+  if (!assumed || !other.clock.dated || !other.clock.known) return;
+  if (log.span() == nullptr || other.span() == nullptr) return;
+  const auto overlaps = [&](TimeScale scale) {
+    const auto seconds = [&](Stamp stamp) { return on_scale(stamp, scale, TimeScale::utc).seconds(); };
+    const auto told = [&](Stamp stamp) {
+      return on_scale(stamp, other.clock.scale, TimeScale::utc).seconds();
+    };
+    return seconds(log.span()->earliest()) <= told(other.span()->latest()) &&
+           seconds(log.span()->latest()) >= told(other.span()->earliest());
+  };
+  if (overlaps(TimeScale::unix_time) || !overlaps(TimeScale::gps)) return;
+  log.clock.scale = TimeScale::gps;
+  log.clock.reason = fmt::format("its numbers are GPS seconds since 1980 by the dates of {}",
+                                 std::filesystem::path(other.path).filename().string());
+}
+
 }  // namespace
 
 const StampSeries* LogInspection::span() const {
@@ -374,7 +394,10 @@ std::vector<LogInspection> inspect_logs(const std::vector<std::string>& paths,
   for (const std::string& path : paths) logs.push_back(inspect_log(path, readers, options));
   for (LogInspection& log : logs) {
     for (const LogInspection& other : logs)
-      if (&other != &log) adopt_week(log, other);
+      if (&other != &log) {
+        adopt_week(log, other);
+        adopt_gps_epoch(log, other);
+      }
   }
   for (std::size_t i = 1; i < logs.size(); ++i) {
     std::string sentence;

@@ -184,6 +184,14 @@ TEST_CASE("trc: warnings, errors, remote frames and status lines are no frames o
   CHECK(data.corrupt == 0);
 }
 
+TEST_CASE("trc: a head without a column of times leaves no frame with a stamp") {
+  CHECK_THROWS_MATCHES(
+      CanLogReader("trc").read(";$COLUMNS=N,T,B,I,d,R,L,D\n1 DT 1 07E8 Rx - 8 03 41 0D 24 00 00 00 00\n", "car.log",
+                               speed_request()),
+      InputError, Catch::Matchers::Message("car.log: none of 1 records could be used; first: car.log:2:1: '' is no "
+                                           "time in decimal seconds"));
+}
+
 TEST_CASE("can: speed of OBD-II and J1939 without a DBC") {
   // J1939-71 by hand: CCVS1 bytes 2 and 3, 1/256 km/h a bit: 0x2400 = 36 km/h. Sender 00, priority 6.
   // FF: not available. VDC2 bytes 4 and 5, 1/8192 rad/s a bit from -3.92.

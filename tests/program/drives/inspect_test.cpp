@@ -309,6 +309,56 @@ TEST_CASE("init: tables in the dialects of this world give the same fixes, at th
   }
 }
 
+TEST_CASE("init: a trace of CAN, a phone's log and a VBO file are a drive without a word typed") {
+  // Minute 0 of 2020-09-13 12:00 UTC; 36 km/h to the north, by OBD (24 hex) and a J1939 yaw rate of 0.
+  std::string trace = "date Sun Sep 13 12:00:00.000 pm 2020\nbase hex  timestamps absolute\n";
+  std::string phone =
+      "# Header Description:\n# Fix,Provider,LatitudeDegrees,LongitudeDegrees,AccuracyMeters,UnixTimeMillis\n";
+  std::string race =
+      "File created on 13/09/2020 at 12:00:00\n[header]\ntime\n[column names]\nsats time lat long\n[data]\n";
+  for (int s = 0; s < 40; ++s) {
+    const double latitude = 48.1 + s * 10 / 111200.;
+    phone += fmt::format("Raw,1\nFix,GPS,{:.9f},11.2,4,{}440\n", latitude, 1599998400 + s);
+    race += fmt::format("008 1200{:02}.44 {:+012.7f} -00672.00000\n", s, 60 * latitude);
+    for (int i = 0; i < 10; ++i)
+      trace += fmt::format(
+          "{0:11.6f} 1  7E8  Rx   d 8 03 41 0D 24 00 00 00 00\n"
+          "{0:11.6f} 1  18F0090Bx  Rx   d 8 FF FF FF 71 7D FF FF FF\n",
+          s + 0.1 * i);
+  }
+  for (const auto& [name, fixes] : {std::pair{"phone.txt", phone}, std::pair{"race.vbo", race}}) {
+    INFO(name);
+    const std::string folder = fresh_folder();
+    write_text(folder + "trace.asc", trace);
+    write_text(folder + name, fixes);
+    const RunResult init = run({"init", folder + "trace.asc", folder + name, "-o", folder + "drive.yaml"});
+    INFO(init.err);
+    REQUIRE(init.code == 0);
+    const RunResult fused = run({"run", folder + "drive.yaml", "-o", folder + "out", "-m", "g2"});
+    INFO(fused.err + fused.out);
+    REQUIRE(fused.code == 0);
+    CHECK(contains(fused.out, "399 m by odometry"));
+    CHECK(contains(fused.out, "40 fixes"));
+  }
+}
+
+TEST_CASE("init: a table of GPS seconds without a name for them takes its epoch from the other log") {
+  const std::string folder = fresh_folder();
+  std::string fixes = "time_utc,lat,lon\n";
+  std::string odometry = "time_s,speed,yaw_rate\n";
+  for (int s = 0; s < 40; ++s) {
+    fixes += fmt::format("{},{:.9f},11.2\n", 1599998400 + s, 48.1 + s * 10 / 111200.);
+    for (int i = 0; i < 10; ++i)
+      odometry += fmt::format("{:.1f},10,0\n", 1599998400. - 315964800 + 18 + s + 0.1 * i);
+  }
+  write_text(folder + "fixes.csv", fixes);
+  write_text(folder + "odometry.csv", odometry);
+  REQUIRE(run({"init", folder + "fixes.csv", folder + "odometry.csv", "-o", folder + "drive.yaml"}).code ==
+          0);
+  CHECK(contains(read_text(folder + "drive.yaml"), "CHECK: its numbers are GPS seconds since 1980"));
+  CHECK(contains(run({"run", folder + "drive.yaml", "-o", folder + "out"}).out, "40 fixes"));
+}
+
 TEST_CASE("init: metres in a plane are named with the keys to state") {
   const std::string folder = fresh_folder();
   std::string fixes = "t_unix,x,y\n";

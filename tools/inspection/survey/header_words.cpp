@@ -21,7 +21,7 @@ constexpr std::array kKnown{
         "time",
         "t|time|timestamp|time stamp|stamp|gps sow|gps tow|gps time|gps seconds|sow|tow|itow|seconds of week|"
         "time of week|t gps|t gps clock|gps week second|gps second|week second|week seconds|unix|unix time|epoch|posix time|t unix|utc|utc "
-        "time|gps time unix|time unix|seconds|secs|sec|datetime|date time|gps timestamp|host time|log time|"
+        "time|gps time unix|time unix|time utc|time gps|time epoch|seconds|secs|sec|datetime|date time|gps timestamp|host time|log time|"
         "t s|t utc|gpst|gpstime|gps seconds of week|gps time of week|rostime|ros time|header stamp"},
     Known{"latitude", "lat|latitude|gps lat|gps latitude|gnss lat|gnss latitude"},
     Known{"longitude", "lon|lng|long|longitude|gps lon|gps longitude|gnss lon|gnss longitude|gps lng"},
@@ -74,13 +74,13 @@ constexpr std::array kKnown{
         "twist twist linear x|twist linear x|v|speed|velocity|vel|vehicle speed|v fwd|speed fwd|forward speed|forward velocity|ground "
         "speed|gspeed|"
         "g speed|sog|speed over ground|wheel speed|obd speed|can speed|gps speed|odo speed|vx|v x|veh speed|"
-        "vehspd|vehiclespeed|s1 pid 0 d vehicle speed"}};
+        "vehspd|vehiclespeed|s1 pid 0 d vehicle speed|wheel based vehicle speed|tachograph vehicle speed"}};
 
 /// Words that name a wheel.
-constexpr std::array kWheels{Known{"front_left", "fl|lf|front left|left front|vl"},
-                             Known{"front_right", "fr|rf|front right|right front|vr"},
-                             Known{"rear_left", "rl|lr|rear left|left rear|hl"},
-                             Known{"rear_right", "rr|rear right|right rear|hr"}};
+constexpr std::array kWheels{Known{"front_left", "fl|lf|front left|left front|vl|front axle left"},
+                             Known{"front_right", "fr|rf|front right|right front|vr|front axle right"},
+                             Known{"rear_left", "rl|lr|rear left|left rear|hl|rear axle left"},
+                             Known{"rear_right", "rr|rear right|right rear|hr|rear axle right"}};
 /// Axes of an inertial unit.
 constexpr std::array kInertial{
     Known{
@@ -144,7 +144,7 @@ std::string part_of(std::span<const std::string> words) {
   const bool speeds = any_of({"speed", "speeds", "spd", "v", "wheelspeed", "ws", "whl", "wheelspd"});
   for (const Known& wheel : kWheels) {
     for (std::size_t first = 0; first < words.size(); ++first) {
-      for (const std::size_t length : {2U, 1U}) {
+      for (const std::size_t length : {3U, 2U, 1U}) {
         if (first + length > words.size()) continue;
         if (!has_name(wheel.names, joined_words(words.subspan(first, length)))) continue;
         if (ticks) return "wheel_ticks_" + std::string(wheel.quantity);

@@ -13,6 +13,7 @@
 #include <waymark/formats/logs/detail/csv/csv_table.hpp>
 #include <waymark/formats/logs/detail/csv/table_angle.hpp>
 #include <waymark/formats/logs/detail/place/local_plane.hpp>
+#include <waymark/formats/text/stamp_text.hpp>
 
 namespace waymark::formats {
 CsvRecords::CsvRecords(const CsvColumns& columns, const std::string& path, LogRequest request, LogData& data)
@@ -172,6 +173,9 @@ std::optional<Stamp> CsvRecords::instant(const BoundColumn& column) {
   if (request_.separator != ',') plain = with_decimal_point(field);
   if (plain) field = *plain;
   const bool of_day = &column == bound_.time && (bound_.date != nullptr || column.unit == kTimeOfDay);
+  // The usual case: a count of seconds.
+  if (!of_day && column.form == UnitForm::number && column.time_power == 0)
+    if (const std::optional<Stamp> stamp = stamp_from_decimal_seconds(field)) return stamp;
   const std::optional<TableInstant> told =
       of_day ? instant_of_day(column, field) : instant_from_field(field, column.unit, column.time_power);
   if (told) return told->scale ? convert(told->stamp, *told->scale, request_.time_scale) : told->stamp;

@@ -57,6 +57,7 @@ CanLine PeakTrc::split(std::string_view line) {
     return result;
   }
   result.kind = FrameKind::data;
+  result.stamp = line.substr(0, 0);  // a damaged head may name no column of times
   for (const char column : columns_) {
     if (column == 'D') break;
     const std::string_view word = cursor.next_word();
