@@ -282,6 +282,17 @@ const Dialect kDialects[] = {
      }},
 };
 
+/// Proposes a drive from two logs and fuses it as it is.
+RunResult fused_after_init(const std::string& folder, const std::string& first, const std::string& second) {
+  const RunResult init = run({"init", folder + first, folder + second, "-o", folder + "drive.yaml"});
+  INFO(init.err);
+  REQUIRE(init.code == 0);
+  RunResult fused = run({"run", folder + "drive.yaml", "-o", folder + "out", "-m", "g2"});
+  INFO(fused.err);
+  REQUIRE(fused.code == 0);
+  return fused;
+}
+
 }  // namespace
 
 TEST_CASE("init: tables in the dialects of this world give the same fixes, at the same instants") {
@@ -296,13 +307,8 @@ TEST_CASE("init: tables in the dialects of this world give the same fixes, at th
     }
     write_text(folder + "fixes.csv", fixes);
     write_text(folder + "odometry.csv", odometry);
-    const RunResult init =
-        run({"init", folder + "fixes.csv", folder + "odometry.csv", "-o", folder + "drive.yaml"});
-    INFO(init.err);
-    REQUIRE(init.code == 0);
-    const RunResult fused = run({"run", folder + "drive.yaml", "-o", folder + "out", "-m", "g2"});
+    const RunResult fused = fused_after_init(folder, "fixes.csv", "odometry.csv");
     INFO(fused.err + fused.out);
-    REQUIRE(fused.code == 0);
     CHECK(contains(fused.out, "399 m by odometry"));
     CHECK(contains(fused.out, "40 fixes"));
     CHECK(contains(fused.out, "0 fixes outside the odometry"));
@@ -331,12 +337,8 @@ TEST_CASE("init: a trace of CAN, a phone's log and a VBO file are a drive withou
     const std::string folder = fresh_folder();
     write_text(folder + "trace.asc", trace);
     write_text(folder + name, fixes);
-    const RunResult init = run({"init", folder + "trace.asc", folder + name, "-o", folder + "drive.yaml"});
-    INFO(init.err);
-    REQUIRE(init.code == 0);
-    const RunResult fused = run({"run", folder + "drive.yaml", "-o", folder + "out", "-m", "g2"});
+    const RunResult fused = fused_after_init(folder, "trace.asc", name);
     INFO(fused.err + fused.out);
-    REQUIRE(fused.code == 0);
     CHECK(contains(fused.out, "399 m by odometry"));
     CHECK(contains(fused.out, "40 fixes"));
   }

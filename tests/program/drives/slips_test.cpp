@@ -222,6 +222,12 @@ TEST_CASE("slips: a clock off by 1 s or by leap seconds is named before the fusi
   const RunResult second = run({"run", drive_off_by(folder, 1), "-o", folder + "out"});
   CHECK(contains(second.err, "warning: the odometry's clock seems 1.00 +- 0.05 s late against the fixes"));
 
+  CHECK(contains(run({"run", drive_off_by(folder, 0.3), "-o", folder + "out"}).err,
+                 "warning: the odometry's clock seems 0.30 +- 0.05 s late against the fixes"));
+  CHECK(contains(run({"run", drive_off_by(folder, -0.4), "-o", folder + "out"}).err,
+                 "warning: the odometry's clock seems -0.40 +- 0.05 s late against the fixes"));
+  CHECK_FALSE(contains(run({"run", drive_off_by(folder, 0.1), "-o", folder + "out"}).err, "warning"));
+
   const std::string drive = drive_off_by(folder, 18);
   const RunResult leap = run({"run", drive, "-o", folder + "out"});
   CHECK(

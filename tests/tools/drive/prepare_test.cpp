@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 
 #include <waymark/core/base/error.hpp>
@@ -10,7 +9,6 @@
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
-#include <waymark/tools/drive/logs/shared_stamps.hpp>
 
 #include "support/paths.hpp"
 #include "support/skip.hpp"
@@ -136,33 +134,6 @@ TEST_CASE("prepare: two receivers may speak at one stamp: one epoch, two fixes")
   CHECK(drive.fixes[3].epoch == 1);
   CHECK(drive.fixes[3].source == 1);
   CHECK(drive.report.gnss.duplicates_identical == 0);
-}
-
-TEST_CASE("prepare: two receivers that write into one log in turn are told by stamps or by positions") {
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal(0, 1);
-  constexpr double kDegreesPerMetre = 1 / 111'195.0;
-  // Along a circle of 50 m radius at 10 m/s; every second fix is aside and later.
-  const auto said = [&](double aside_m, double later_s, double noise_m) {
-    std::vector<GeodeticFix> fixes;
-    for (int k = 0; k < 100; ++k) {
-      const double time_s = 0.5 * k + (k % 2 == 0 ? 0 : later_s);
-      const double radius_m = 50 + (k % 2 == 0 ? 0 : aside_m);
-      GeodeticFix fix;
-      fix.stamp = Stamp::from_seconds(time_s);
-      fix.latitude_deg = kDegreesPerMetre * (radius_m * std::sin(time_s / 5) + noise_m * normal(random));
-      fix.longitude_deg = kDegreesPerMetre * (radius_m * std::cos(time_s / 5) + noise_m * normal(random));
-      fixes.push_back(fix);
-    }
-    return warning_of_turns(fixes, "both.nmea");
-  };
-  CHECK(said(0, 0, 0).empty());
-  CHECK(said(0, 0, 2).empty());
-  CHECK(said(1, 0, 2).empty());  // the noise hides it
-  CHECK_THAT(said(1.2, 0, 0.1),
-             Catch::StartsWith("both.nmea: two receivers seem to write into this log in turn") &&
-                 Catch::Contains("its positions go to and fro from fix to fix"));
-  CHECK_THAT(said(1, 0.3, 2), Catch::Contains("the intervals of its stamps alternate"));
 }
 
 TEST_CASE("prepare: a gap is longer than four usual intervals of the odometry, unless its length is stated") {

@@ -11,8 +11,8 @@
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
 #include <waymark/tools/drive/clocks/lag_search.hpp>
-#include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
+#include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
 
 namespace waymark::drive {
@@ -117,29 +117,36 @@ void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& descripti
   if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(motion, offset, description);
 }
 
-/// Compares half a second about zero with a minute about it, and with everything if nothing fits at zero.
+/// The default model finds fixes that are late by less than the first of these itself. Odometry that is late it
+/// finds in part only, because receivers are not early.
+constexpr double kLateFixes_s = 0.3;
+constexpr double kLateOdometry_s = 0.2;
+
+bool is_near_zero(double late_s) {
+  return late_s > -kLateFixes_s && late_s < kLateOdometry_s;
+}
+
+/// Compares the neighbourhood of zero with a minute about it, and with everything if nothing fits at zero.
 bool fits_elsewhere(const LagSearch& search) {
-  constexpr double kNear_s = 0.5;
   constexpr double kFar_s = 60;
   constexpr double kLead = 12;
   constexpr double kFits = 0.5;
-  const std::optional<Lag> near = search.best(-kNear_s, kNear_s);
+  const std::optional<Lag> near = search.best(-kLateFixes_s, kLateOdometry_s);
   const std::optional<Lag> far = search.best(-kFar_s, kFar_s);
   if (!near || !far) return false;
-  const bool better = std::abs(far->late_s) > kNear_s && far->score > near->score + kLead;
+  const bool better = !is_near_zero(far->late_s) && far->score > near->score + kLead;
   const bool fits = std::max(near->speed_correlation, near->turn_correlation) > kFits;
   return better || !fits;
 }
 
 std::string clock_warning(const PreparedDrive& drive) {
   constexpr std::size_t kFewest = 30;
-  constexpr double kOneClock_s = 0.5;  // the default model finds less by itself
   if (drive.fixes.size() < kFewest || drive.odometry.size() < kFewest) return {};
   const std::vector<const Fix*> receiver = of_one_receiver(drive.fixes);
   if (!fits_elsewhere(LagSearch(drive.odometry, gnss_speeds(receiver), gnss_turns(receiver)))) return {};
   const std::optional<ClockOffset> offset =
       common_offset(estimate_clock_offsets(drive.odometry, drive.fixes, {}));
-  if (!offset || !offset->is_significant() || std::abs(offset->late_s) < kOneClock_s) return {};
+  if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return {};
   return fmt::format(
       "the odometry's clock seems {:.2f} +- {:.2f} s late against the fixes{}, correlation {:.3f}: {}",
       offset->late_s, std::hypot(offset->sigma_s, kSmoothing_s), offset_in_words(*offset),

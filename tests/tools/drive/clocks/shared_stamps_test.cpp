@@ -1,5 +1,6 @@
 // Fixes that share their stamps: seconds without decimals are spread, two receivers are refused.
 #include <cmath>
+#include <random>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -80,6 +81,33 @@ TEST_CASE("shared stamps: single contradictions, repetitions and standing fixes 
     for (std::size_t i = 0; i < before.size(); ++i) CHECK((*each)[i].stamp == before[i].stamp);
     CHECK(report.notes.empty());
   }
+}
+
+TEST_CASE("shared stamps: two receivers that write into one log in turn are told by stamps or by positions") {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 1);
+  constexpr double kDegreesPerMetre = 1 / 111'195.0;
+  // Along a circle of 50 m radius at 10 m/s; every second fix is aside and later.
+  const auto said = [&](double aside_m, double later_s, double noise_m) {
+    std::vector<GeodeticFix> fixes;
+    for (int k = 0; k < 100; ++k) {
+      const double time_s = 0.5 * k + (k % 2 == 0 ? 0 : later_s);
+      const double radius_m = 50 + (k % 2 == 0 ? 0 : aside_m);
+      GeodeticFix fix;
+      fix.stamp = Stamp::from_seconds(time_s);
+      fix.latitude_deg = kDegreesPerMetre * (radius_m * std::sin(time_s / 5) + noise_m * normal(random));
+      fix.longitude_deg = kDegreesPerMetre * (radius_m * std::cos(time_s / 5) + noise_m * normal(random));
+      fixes.push_back(fix);
+    }
+    return warning_of_turns(fixes, "both.nmea");
+  };
+  CHECK(said(0, 0, 0).empty());
+  CHECK(said(0, 0, 2).empty());
+  CHECK(said(1, 0, 2).empty());  // the noise hides it
+  CHECK_THAT(said(1.2, 0, 0.1),
+             Catch::StartsWith("both.nmea: two receivers seem to write into this log in turn") &&
+                 Catch::Contains("its positions go to and fro from fix to fix"));
+  CHECK_THAT(said(1, 0.3, 2), Catch::Contains("the intervals of its stamps alternate"));
 }
 
 }  // namespace shared_stamps_test
