@@ -9,6 +9,7 @@ namespace waymark {
 Error::~Error() = default;
 UsageError::~UsageError() = default;
 InputError::~InputError() = default;
+EmptyLogError::~EmptyLogError() = default;
 OutputError::~OutputError() = default;
 
 PluginError::PluginError(const std::string& message, std::string type)

@@ -33,6 +33,13 @@ class InputError : public Error {
   ~InputError() override;
 };
 
+/// A log is sound and holds nothing that counts: it is empty, or all of it is without a fix.
+class EmptyLogError : public InputError {
+ public:
+  using InputError::InputError;
+  ~EmptyLogError() override;
+};
+
 /// An output could not be written completely. No partial file is left under the final name.
 class OutputError : public Error {
  public:

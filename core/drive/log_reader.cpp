@@ -46,12 +46,12 @@ void add_corrupt(LogData& data, const std::string& path, std::size_t line, std::
 
 void require_samples(const LogData& data, const std::string& path) {
   if (data.odometry.size() + data.fixes.size() + data.truth.size() + data.readings.size() > 0) return;
-  if (data.records == 0) throw InputError(path + ": the log holds no records");
+  if (data.records == 0) throw EmptyLogError(path + ": the log holds no records");
   const std::string records = std::to_string(data.records) + " records";
   if (data.corrupt > 0)
     throw InputError(path + ": none of " + records +
                      " could be used; first: " + data.corrupt_examples.front());
-  throw InputError(path + ": not one fix in " + records + " (" + std::to_string(data.without_fix) +
+  throw EmptyLogError(path + ": not one fix in " + records + " (" + std::to_string(data.without_fix) +
                    " are marked as without a fix)");
 }
 

@@ -54,7 +54,8 @@ std::string read_head(const std::string& path) {
     if (trouble.empty()) trouble = file.trouble();
     if (head.size() >= kHead) break;
   }
-  if (head.empty()) throw InputError(path + (trouble.empty() ? ": the log is empty" : ": " + trouble));
+  if (head.empty() && trouble.empty()) throw EmptyLogError(path + ": the log is empty");
+  if (head.empty()) throw InputError(path + ": " + trouble);
   return head;
 }
 

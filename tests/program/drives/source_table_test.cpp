@@ -99,6 +99,31 @@ TEST_CASE("sources: what is stated wrongly for a source is refused with its plac
     CHECK(contains(run_with(folder, wrong).err, "drive.yaml:"));
 }
 
+TEST_CASE(
+    "sources: one of several whose log holds nothing is left out with a warning, the only one is an error") {
+  const std::string folder = fresh_folder();
+  const std::string drive = several_sources(folder);
+  write_text(folder + "d/front.json", "{\"class\":\"TPV\",\"mode\":1,\"time\":\"2021-01-01T00:00:00Z\"}\n");
+  const RunResult result = run({"convert", drive, "-o", folder + "a.graph", "--noise", "stated"});
+  INFO(result.err);
+  CHECK(result.code == 0);
+  CHECK(contains(result.err,
+                 "front.json: not one fix in 1 records (1 are marked as without a fix); front is left out"));
+  std::string text = read_text(drive);
+  text.replace(
+      text.find("  front:"), 0,
+      "  other: {kind: odometry, file: other.csv, columns: {time: time_s, speed: speed_mps, yaw_rate: "
+      "yaw_rate_radps}}\n");
+  write_text(drive, text);
+  write_text(folder + "d/other.csv", "time_s,speed_mps,yaw_rate_radps\n");
+  const RunResult silent = run({"convert", drive, "-o", folder + "b.graph", "--noise", "stated"});
+  CHECK(silent.code == 0);
+  CHECK(contains(silent.err, "other is left out: "));
+  // A file that is wrong is an error all the same.
+  write_text(folder + "d/front.json", "{\"class\":\"TPV\",\"mode\":3,\"time\":\"garbage\"}\n");
+  CHECK(run({"convert", drive, "-o", folder + "c.graph"}).code == 3);
+}
+
 TEST_CASE("sources: receivers of a modeling without common errors are refused") {
   const std::string folder = fresh_folder();
   const RunResult result =

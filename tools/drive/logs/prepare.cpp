@@ -264,6 +264,7 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
                                 projection ? &*projection : nullptr, drive.report);
       });
   }
+  drive.report.warnings.insert(drive.report.warnings.end(), logs.warnings.begin(), logs.warnings.end());
   std::vector<std::string>& notes = drive.report.notes;
   notes.insert(notes.end(), logs.notes.begin(), logs.notes.end());
   if (!description.time_scale)

@@ -154,6 +154,8 @@ struct DriveLogs {
   /// in the order of DriveDescription::sensors; empty for one without a log
   std::vector<Log> sensors;
   std::vector<std::string> notes;  ///< steps that concern all logs (synchronise.hpp)
+  /// of sources that are left out because their logs hold nothing
+  std::vector<std::string> warnings{};
 };
 
 /// Puts logs on one clock and into one frame. This is a pure function.

@@ -114,6 +114,22 @@ DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, cons
   return result;
 }
 
+/// Reads the log of one of several sources. If it holds nothing, the others go on without it.
+/// @param nothing set to the reason in that case
+DriveLogs::Log read_log_of_many(const LogConfig& log, const TypeRegistry& registry, const LogWatch& watch,
+                                std::string& nothing) {
+  try {
+    return read_log(log, registry, watch);
+  } catch (const EmptyLogError& error) {
+    nothing = error.what();
+    DriveLogs::Log empty;
+    empty.scale = log.request.time_scale;
+    empty.file = log.file;
+    empty.data.readings.columns = log.request.readings.size();
+    return empty;
+  }
+}
+
 }  // namespace
 
 DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistry& registry,
@@ -123,10 +139,17 @@ DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistr
     throw InputError(fmt::format("{}: no odometry log is named", description.path));
   for (const OdometryConfig& source : description.odometry) {
     std::vector<DriveLogs::Log>& parts = logs.odometry.emplace_back();
-    for (const LogConfig& log : source.logs) parts.push_back(read_log(log, registry, watch));
+    const bool one_of_many = description.odometry.size() > 1 && source.logs.size() == 1;
+    std::string unheard;  // prepare_odometry() tells that a source has no sample
+    for (const LogConfig& log : source.logs)
+      parts.push_back(one_of_many ? read_log_of_many(log, registry, watch, unheard)
+                                  : read_log(log, registry, watch));
   }
   for (const GnssConfig& log : description.gnss) {
-    logs.gnss.push_back(read_log(log, registry, watch));
+    std::string nothing;
+    logs.gnss.push_back(description.gnss.size() > 1 ? read_log_of_many(log, registry, watch, nothing)
+                                                    : read_log(log, registry, watch));
+    if (!nothing.empty()) logs.warnings.push_back(fmt::format("{}; {} is left out", nothing, log.name));
     logs.velocity.push_back(log.velocity ? read_log(*log.velocity, registry, watch) : DriveLogs::Log{});
   }
   if (description.truth) logs.truth.push_back(read_log(*description.truth, registry, watch));

@@ -70,7 +70,7 @@ class CsvDecoder final : public LineDecoder {
     return has_units && columns_->first_line_is_header();
   }
   void end() override {
-    if (first_number_ == 0) throw InputError(fmt::format("{}: the log is empty", path()));
+    if (first_number_ == 0) throw EmptyLogError(fmt::format("{}: the log is empty", path()));
     if (!table_) begin({});
     table_->finish();
   }

@@ -232,7 +232,7 @@ const GpsdReport* GpsdDecoder::gst_of(const GpsdReport& report) const {
 }
 
 void GpsdDecoder::end() {
-  if (empty_) throw InputError(fmt::format("{}: the log is empty", path()));
+  if (empty_) throw EmptyLogError(fmt::format("{}: the log is empty", path()));
   end_epoch();
   data_.kinds = tally_.counts();
   add_notes();
