@@ -11,6 +11,7 @@
 #include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
+#include <waymark/core/window/detail/time_order.hpp>
 #include <waymark/core/window/marginalization.hpp>
 
 namespace waymark {
@@ -68,15 +69,24 @@ std::vector<char> choose_gone(const Graph& graph, VertexIndex count) {
   return gone;
 }
 
-/// Eliminates vertices from a sum of factors, one after the other. Each of them leaves one factor
+/// Eliminates vertices from a sum of factors, one after the other, in the order of time. Each of them leaves
+/// one factor
 /// over its neighbours.
 class Elimination {
  public:
   Elimination(const Graph& graph, VertexIndex count, std::span<const char> gone, std::span<const char> held)
-      : graph_(graph), gone_(gone), held_(held), factors_of_(at(count)) {}
+      : graph_(graph), gone_(gone), held_(held), order_(detail::time_order(graph)), factors_of_(at(count)) {
+    position_of_.assign(graph.vertex_count(), order_.size());
+    for (std::size_t position = 0; position < order_.size(); ++position)
+      position_of_[at(order_[position])] = position;
+  }
 
   void add_edge(const EdgeBatchBase& batch, const EdgeType& type, std::size_t edge);
-  void eliminate(VertexIndex v);
+  /// Eliminates all vertices that are gone, in the order of time.
+  void run() {
+    for (const VertexIndex v : order_)
+      if (gone_[at(v)] != 0) eliminate(v);
+  }
   /// Returns the remaining factors, over vertices that stay.
   [[nodiscard]] const std::vector<Factor>& rest() const { return rest_; }
   [[nodiscard]] double constant() const { return constant_; }
@@ -84,6 +94,7 @@ class Elimination {
   [[nodiscard]] Eigen::VectorXd scale(VertexIndex v) const { return squares_.at(v).cwiseSqrt(); }
 
  private:
+  void eliminate(VertexIndex v);
   void add(Factor factor);
   [[nodiscard]] int size_of(VertexIndex v) const { return graph_.vertex_type(v).tangent_size; }
   [[nodiscard]] Factor stack(VertexIndex first, std::span<const Factor> parts) const;
@@ -92,6 +103,8 @@ class Elimination {
   const Graph& graph_;
   std::span<const char> gone_;
   std::span<const char> held_;
+  std::vector<VertexIndex> order_;
+  std::vector<std::size_t> position_of_;
   // by the first vertex of the prefix that is eliminated
   std::vector<std::vector<Factor>> factors_of_;
   std::vector<Factor> rest_;
@@ -104,12 +117,13 @@ void Elimination::add(Factor factor) {
     constant_ += factor.rows.squaredNorm();
     return;
   }
-  const auto first = std::find_if(factor.vertices.begin(), factor.vertices.end(),
-                                  [&](VertexIndex v) { return gone_[at(v)] != 0; });
-  if (first == factor.vertices.end()) {
+  VertexIndex first = -1;
+  for (const VertexIndex v : factor.vertices)
+    if (gone_[at(v)] != 0 && (first < 0 || position_of_[at(v)] < position_of_[at(first)])) first = v;
+  if (first < 0) {
     rest_.push_back(std::move(factor));
   } else {
-    factors_of_[at(*first)].push_back(std::move(factor));
+    factors_of_[at(first)].push_back(std::move(factor));
   }
 }
 
@@ -292,9 +306,7 @@ Marginalization marginalize_prefix(Graph& graph, VertexIndex count, std::span<co
       ++edge;
     });
   }
-  for (VertexIndex v = 0; v < count; ++v) {
-    if (gone[at(v)] != 0) elimination.eliminate(v);
-  }
+  elimination.run();
 
   Marginalization result;
   result.constant = elimination.constant();

@@ -30,7 +30,7 @@ struct Marginalization {
 /// It is added as EDGE_GAUSSIAN_PRIOR with the present values as reference and offset d = -Lambda^+
 /// h, one edge for each group of vertices that the removed edges join. If Lambda is singular (no
 /// removed edge knows the position), the pseudo-inverse still keeps form and gradient, because h is
-/// in its range. The prior is computed from square roots (QR), vertex by vertex in their order, so
+/// in its range. The prior is computed from square roots (QR), vertex by vertex in the order of time, so
 /// that nothing is squared before it cancels. The cost does not grow with the remaining graph,
 /// except for a pass over the vertices of every edge and for moving the rest.
 ///

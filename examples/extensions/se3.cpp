@@ -51,7 +51,7 @@ Pose3<T> from_numbers(const double* n) {  // x y z qx qy qz qw, as in g2o
 /// Normalises the quaternion; one of zeros becomes no rotation. A length that only rounding has changed stays,
 /// so that numbers come back from a file, and from a step of 0, to the bit.
 static void to_numbers(const Pose3<double>& pose, double* n) {
-  const double length = std::sqrt(pose.w * pose.w + pose.v.squaredNorm());
+  const double length = Eigen::Vector4d(pose.w, pose.v[0], pose.v[1], pose.v[2]).stableNorm();
   const double norm = length > 0 && std::abs(length - 1) > 1e-15 ? length : 1;
   for (int i = 0; i < 3; ++i) {
     n[i] = pose.translation[i];

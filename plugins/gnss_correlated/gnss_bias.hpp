@@ -49,6 +49,38 @@ struct EdgeGnssMultipathDecay : EdgeGnssBiasDecay {
   }
 };
 
+/// The same process at a moment between two others, for a fix that arrives after a later one:
+///   e = x - (before x_before + after x_after).
+/// Given its neighbours, a Gauss-Markov process has no memory.
+struct EdgeGnssBiasBetween {
+  static constexpr std::string_view kTag = "EDGE_GNSS_BIAS_BETWEEN";
+  static constexpr std::string_view kForm = "difference";
+  static constexpr int kErrorDimension = 2;
+  using Vertices = VertexList<VertexGnssBias, VertexGnssBias, VertexGnssBias>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeGnssBiasBetween::before>("before"),
+                      field<&EdgeGnssBiasBetween::after>("after")};
+  }
+
+  template <typename T>
+  Vector2<T> error(const Vector2<T>& earlier, const Vector2<T>& later, const Vector2<T>& between) const {
+    return between - earlier * T(before) - later * T(after);
+  }
+
+  double before = 0.5;
+  double after = 0.5;
+};
+
+/// The same for the part of the error that lasts for seconds.
+struct EdgeGnssMultipathBetween : EdgeGnssBiasBetween {
+  static constexpr std::string_view kTag = "EDGE_GNSS_MULTIPATH_BETWEEN";
+  using Vertices = VertexList<VertexGnssMultipath, VertexGnssMultipath, VertexGnssMultipath>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeGnssBiasBetween::before, EdgeGnssMultipathBetween>("before"),
+                      field<&EdgeGnssBiasBetween::after, EdgeGnssMultipathBetween>("after")};
+  }
+};
+
 /// EDGE_GNSS_POSITION_LATE with the correlated errors in the measurement:
 ///   e = R_from^T (p_to + R_to antenna - p_from) - (offset - assumed_offset) velocity
 ///       + bias + scale multipath - measured.

@@ -70,13 +70,15 @@ struct ErrorModel {
 };
 
 /// A Gauss-Markov process along the fixes of one receiver.
-template <Vertex V, Edge Decay>
+template <Vertex V, Edge Decay, Edge Between>
 class ProcessAlongFixes {
  public:
   ProcessAlongFixes(double sigma, double time_s) : sigma_(sigma), time_s_(time_s) {}
 
-  /// Returns the vertex of a fix. Stamps must not decrease.
+  /// Returns the vertex of a fix.
   [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
+    forget_dropped(graph);
+    if (!states_.empty() && stamp < states_.back().stamp) return between(stamp, graph);
     const VertexIndex last = states_.empty() ? -1 : states_.back().vertex.in(graph);
     if (last >= 0 && states_.back().stamp == stamp) return last;
     const VertexIndex next = graph.add_vertex<V>(graph.free_id(), {0, 0});
@@ -96,9 +98,7 @@ class ProcessAlongFixes {
   /// Returns the expectation between the states of the fixes, given all of them: the process has no
   /// memory beyond its neighbours.
   [[nodiscard]] Eigen::Vector2d expected(Stamp stamp, const Graph& minimum) const {
-    const auto after =
-        std::lower_bound(states_.begin(), states_.end(), stamp,
-                         [](const State& state, Stamp moment) { return state.stamp < moment; });
+    const auto after = first_not_before(stamp);
     if (after == states_.begin()) return decay_to(stamp, *after) * value(*after, minimum);
     const auto before = std::prev(after);
     if (after == states_.end()) return decay_to(stamp, *before) * value(*before, minimum);
@@ -113,6 +113,46 @@ class ProcessAlongFixes {
     Stamp stamp;
     KeptVertex vertex;
   };
+  /// Returns the vertex of a fix that is older than the last one. The states around it stay as they are.
+  [[nodiscard]] VertexIndex between(Stamp stamp, Graph& graph) {
+    const auto after = first_not_before(stamp);
+    const VertexIndex later = after->vertex.in(graph);
+    if (after->stamp == stamp) return later;
+    const VertexIndex own = graph.add_vertex<V>(graph.free_id(), {0, 0});
+    graph.set_stamp(own, stamp);
+    const double b = decay_to(stamp, *after);
+    if (after == states_.begin()) {
+      Decay edge;
+      edge.decay = b;
+      graph.add_edge(edge, {later, own}, Eigen::Matrix2d::Identity() / (sigma_ * sigma_ * (1 - b * b)));
+    } else {
+      const auto before = std::prev(after);
+      const double a = decay_to(stamp, *before);
+      const double share = 1 - a * a * b * b;
+      Between edge;
+      edge.before = a * (1 - b * b) / share;
+      edge.after = b * (1 - a * a) / share;
+      const double variance = sigma_ * sigma_ * (1 - a * a) * (1 - b * b) / share;
+      graph.add_edge(edge, {before->vertex.in(graph), later, own}, Eigen::Matrix2d::Identity() / variance);
+    }
+    State state{stamp, {}};
+    state.vertex.keep(own, graph);
+    states_.insert(after, state);
+    return own;
+  }
+
+  /// Forgets states that have left the graph, but for the last one.
+  void forget_dropped(const Graph& graph) {
+    std::size_t gone = 0;
+    while (gone + 1 < states_.size() && states_[gone].vertex.in(graph) < 0) ++gone;
+    states_.erase(states_.begin(), states_.begin() + static_cast<std::ptrdiff_t>(gone));
+  }
+
+  [[nodiscard]] auto first_not_before(Stamp stamp) const {
+    return std::lower_bound(states_.begin(), states_.end(), stamp,
+                            [](const State& state, Stamp moment) { return state.stamp < moment; });
+  }
+
   [[nodiscard]] double decay_to(Stamp stamp, const State& state) const {
     return std::exp(-std::abs(seconds_between(state.stamp, stamp)) / time_s_);
   }
@@ -126,8 +166,8 @@ class ProcessAlongFixes {
   std::vector<State> states_;  ///< in order of time
 };
 
-using Bias = ProcessAlongFixes<VertexGnssBias, EdgeGnssBiasDecay>;
-using Multipath = ProcessAlongFixes<VertexGnssMultipath, EdgeGnssMultipathDecay>;
+using Bias = ProcessAlongFixes<VertexGnssBias, EdgeGnssBiasDecay, EdgeGnssBiasBetween>;
+using Multipath = ProcessAlongFixes<VertexGnssMultipath, EdgeGnssMultipathDecay, EdgeGnssMultipathBetween>;
 
 /// measured = antenna + bias + multipath + white noise: see README.md.
 class GnssCorrelated final : public GnssModeling {
@@ -258,6 +298,8 @@ void register_types(TypeRegistry& registry) {
   registry.add_vertex<VertexGnssMultipath>();
   registry.add_edge<EdgeGnssBiasDecay>();
   registry.add_edge<EdgeGnssMultipathDecay>();
+  registry.add_edge<EdgeGnssBiasBetween>();
+  registry.add_edge<EdgeGnssMultipathBetween>();
   registry.add_edge<EdgeGnssPositionCorrelated>();
   registry.add_gnss_modeling({"correlated",
                               "fixes with biases that last, heavy-tailed noise and a latency (the default)",

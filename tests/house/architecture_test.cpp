@@ -30,6 +30,7 @@ const std::map<std::string, Rooms> kArrows = {
     {"tools/text", {"core", "formats"}},
     {"tools/drawing", {"core", "formats", "tools/text"}},
     {"tools/drive", {"core", "types_se2", "formats"}},
+    {"tools/live", {"core", "types_se2", "formats", "tools/drive"}},
     {"tools/evaluation", {"core", "types_se2", "formats", "tools/text"}},
     {"tools/report", {"core", "types_se2", "formats", "tools/text", "tools/drawing", "tools/evaluation"}},
     {"tools/benchmark", {"core", "types_se2", "plugins", "formats", "tools/text", "tools/drawing"}},

@@ -55,6 +55,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/system/structured_solver.hpp
   core/window/incremental.hpp
   core/window/marginalization.hpp
+  core/window/window_solver.hpp
 
   types_se2/edge_gnss.hpp
   types_se2/edge_se2.hpp

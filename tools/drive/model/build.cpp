@@ -235,14 +235,32 @@ void GraphBuilder::add_fixes(const std::vector<Fix>& fixes, const std::vector<Fi
   }
   for (std::size_t i = 0; i < absolute_.size(); ++i) {
     const Absolute& source = absolute_[i];
-    const Eigen::Vector2d antenna =
-        own_fixes[i].empty() ? Eigen::Vector2d(0, 0) : own_fixes[i].front().antenna_m;
+    // A fix between two nodes has its antenna moved, for a modeling without a time offset too.
+    const Eigen::Vector2d antenna = own_fixes[i].empty()       ? Eigen::Vector2d(0, 0)
+                                    : own_fixes[i].size() == 1 ? own_moments[i].front().antenna
+                                                               : own_fixes[i].front().antenna_m;
     add_for(source.group.name, std::nullopt, [&] {
       source.model->extend({own_fixes[i], own_moments[i], antenna, source.loss, source.group.claimed,
                             source.group.name, context_of(facts_.surroundings)},
                            graph_);
     });
   }
+}
+
+void GraphBuilder::dropped(const Removal& removal) {
+  std::size_t gone = 0;
+  while (gone < poses_.size() && removal.new_index[static_cast<std::size_t>(poses_[gone])] < 0) ++gone;
+  const auto count = static_cast<std::ptrdiff_t>(gone);
+  stamps_.erase(stamps_.begin(), stamps_.begin() + count);
+  poses_.erase(poses_.begin(), poses_.begin() + count);
+  intervals_.erase(intervals_.begin(),
+                   intervals_.begin() + std::min<std::ptrdiff_t>(count, std::ssize(intervals_)));
+  for (VertexIndex& pose : poses_) pose = removal.new_index[static_cast<std::size_t>(pose)];
+  shares_.clear();
+}
+
+void GraphBuilder::set_claimed(int source, const ClaimedAccuracies& claimed) {
+  absolute_[absolute_of(source)].group.claimed = claimed;
 }
 
 void GraphBuilder::extend(const DrivePart& part) {
@@ -258,7 +276,7 @@ void GraphBuilder::extend(const DrivePart& part) {
   std::vector<FixMoment> moments(fixes.size());
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const double offset_s = absolute_[absolute_of(fixes[i].source)].group.time_offset_s;
-    const Stamp stamp = stamps_[part.fix_nodes[i]];
+    const Stamp stamp = part.fix_nodes.empty() ? fixes[i].stamp : stamps_[part.fix_nodes[i]];
     const NodeInTime near =
         *nearest_node(all, stamp.later(-offset_s), std::numeric_limits<double>::infinity());
     fixes[i].vertex = graph_.id(poses_[near.node]);

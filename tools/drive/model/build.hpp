@@ -62,7 +62,8 @@ struct DrivePart {
   std::span<const Interval> intervals;
   std::span<const Fix> fixes;  ///< accepted ones
   /// The node at the stamp of each fix, counted from the first of the drive. If fixes are assumed
-  /// to be early, the nodes up to when they were measured must be there.
+  /// to be early, the nodes up to when they were measured must be there. Empty: fixes lie between
+  /// nodes, and belong to the nearest ones.
   std::span<const std::size_t> fix_nodes;
   /// those of the constructor, each with its next readings
   std::span<const PreparedSensor> sensors = {};
@@ -70,7 +71,7 @@ struct DrivePart {
   std::span<const MotionRun> runs = {};
 };
 
-/// A graph that grows with its drive. Nodes are known by index, so no vertex may leave the graph.
+/// A graph that grows with its drive. Vertices may leave it if dropped() is told so.
 class GraphBuilder {
  public:
   /// @param settings from decided(), with the estimated noise among the options
@@ -87,7 +88,13 @@ class GraphBuilder {
   /// @throws UsageError for fixes before the first interval; errors of the plugins
   void extend(const DrivePart& part);
 
-  /// The nodes so far. The view is valid until the next part.
+  /// Follows a graph that has lost its oldest vertices. What sources have added is forgotten.
+  /// @param removal the result of Graph::remove_vertices
+  void dropped(const Removal& removal);
+  /// Tells what the fixes of an absolute source claim, of the ones so far. @param source Fix::source
+  void set_claimed(int source, const ClaimedAccuracies& claimed);
+
+  /// The nodes so far, without those that were dropped. The view is valid until the next part.
   [[nodiscard]] DriveNodes nodes() const { return {stamps_, poses_, intervals_}; }
   /// The graph so far. It may be optimised between two parts, and moved from after the last one.
   [[nodiscard]] Graph& graph() { return graph_; }

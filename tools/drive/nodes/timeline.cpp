@@ -52,20 +52,6 @@ void check_gap(Stamp start, Stamp left, double length_s, const TimelineOptions& 
   throw InputError(text);
 }
 
-/// Returns the motion between two consecutive odometry samples. dt_s is filled for each part.
-Interval twist_between(const OdometrySample& left, const OdometrySample& right, double grid_scale,
-                       double gap_s) {
-  Interval twist;
-  twist.speed_mps = 0.5 * (left.speed_mps + right.speed_mps) * grid_scale;
-  twist.yaw_rate_radps = 0.5 * (left.yaw_rate_radps + right.yaw_rate_radps);
-  twist.speed_change_mps = (right.speed_mps - left.speed_mps) * grid_scale;
-  twist.yaw_rate_change_radps = right.yaw_rate_radps - left.yaw_rate_radps;
-  const double apart_s = seconds_between(left.stamp, right.stamp);
-  twist.bridged = left.assumed || right.assumed || apart_s > gap_s;
-  if (twist.bridged) twist.gap_s = apart_s;
-  return twist;
-}
-
 /// Appends a node at `stamp`, which ends a part of the motion between two samples. dt is the
 /// difference of stamps, so that the parts add up to the whole.
 void append_node(Timeline& timeline, Stamp stamp, const Interval& whole, Stamp left, Stamp right) {
@@ -83,6 +69,19 @@ void append_node(Timeline& timeline, Stamp stamp, const Interval& whole, Stamp l
 }
 
 }  // namespace
+
+Interval motion_between(const OdometrySample& left, const OdometrySample& right, double grid_scale,
+                        double gap_s) {
+  Interval twist;
+  twist.dt_s = seconds_between(left.stamp, right.stamp);
+  twist.speed_mps = 0.5 * (left.speed_mps + right.speed_mps) * grid_scale;
+  twist.yaw_rate_radps = 0.5 * (left.yaw_rate_radps + right.yaw_rate_radps);
+  twist.speed_change_mps = (right.speed_mps - left.speed_mps) * grid_scale;
+  twist.yaw_rate_change_radps = right.yaw_rate_radps - left.yaw_rate_radps;
+  twist.bridged = left.assumed || right.assumed || twist.dt_s > gap_s;
+  if (twist.bridged) twist.gap_s = twist.dt_s;
+  return twist;
+}
 
 double grid_scale_at(Stamp moment, std::span<const Fix> fixes, std::size_t& hint) {
   if (fixes.empty()) return 1;
@@ -117,7 +116,7 @@ Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<cons
     check_gap(odometry.front().stamp, left.stamp, seconds_between(left.stamp, right.stamp), options);
     const Stamp middle{left.stamp.nanoseconds + (right.stamp.nanoseconds - left.stamp.nanoseconds) / 2};
     const Interval twist =
-        twist_between(left, right, grid_scale_at(middle, fixes, scale_hint), options.gap_s);
+        motion_between(left, right, grid_scale_at(middle, fixes, scale_hint), options.gap_s);
     // Epochs strictly inside, not near either end, split the interval.
     while (fix < fixes.size() && fixes[fix].stamp < right.stamp &&
            !shares_node(fixes[fix].stamp, right.stamp, options.snap_s)) {

@@ -46,6 +46,12 @@ struct Timeline {
 [[nodiscard]] Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<const Fix> fixes,
                                       const TimelineOptions& options);
 
+/// Returns the motion between two consecutive odometry samples: the mean of their twists.
+/// @param grid_scale grid metres per metre on the ground
+/// @param gap_s a longer interval is bridged
+[[nodiscard]] Interval motion_between(const OdometrySample& left, const OdometrySample& right,
+                                      double grid_scale, double gap_s);
+
 /// Returns the grid scale at a moment: that of the fix nearest in time; 1 without fixes.
 /// @param hint 0 for the first of several moments that ascend; it moves forward with the calls
 [[nodiscard]] double grid_scale_at(Stamp moment, std::span<const Fix> fixes, std::size_t& hint);

@@ -1,0 +1,115 @@
+#include <waymark/tools/live/estimator/intake.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace waymark::live {
+namespace {
+
+constexpr double kFuture = 60;         // s: a stamp that is further ahead of the odometry cannot be
+constexpr std::size_t kConvinced = 3;  // so many samples in a row tell that the clock has jumped
+constexpr std::size_t kMostWaiting = 100'000;
+
+bool is_finite(const OdometrySample& sample) {
+  return std::isfinite(sample.speed_mps) && std::isfinite(sample.yaw_rate_radps);
+}
+bool is_finite(const GeodeticFix& fix) {
+  return std::isfinite(fix.latitude_deg) && std::isfinite(fix.longitude_deg) && fix.covariance_en.allFinite();
+}
+bool is_finite(const SensorReading&) {
+  return true;  // NaN stands for a value that a row does not have
+}
+
+std::size_t order_of(const Sample& sample) {
+  if (std::holds_alternative<OdometrySample>(sample)) return 0;
+  if (const auto* reading = std::get_if<SensorReading>(&sample)) return 1 + reading->sensor;
+  return 1000 + static_cast<std::size_t>(std::get<GeodeticFix>(sample).source);
+}
+
+}  // namespace
+
+Stamp stamp_of(const Sample& sample) {
+  return std::visit([](const auto& of) { return of.stamp; }, sample);
+}
+
+bool Intake::is_duplicate(const Sample& sample, std::size_t order) const {
+  const Stamp stamp = stamp_of(sample);
+  return std::any_of(waiting_.begin(), waiting_.end(),
+                     [&](const Waiting& other) { return other.stamp == stamp && other.order == order; });
+}
+
+void Intake::insert(Sample sample, std::size_t order) {
+  const Stamp stamp = stamp_of(sample);
+  const auto place = std::upper_bound(waiting_.begin(), waiting_.end(), std::pair(stamp, order),
+                                      [](const std::pair<Stamp, std::size_t>& own, const Waiting& other) {
+                                        return own < std::pair(other.stamp, other.order);
+                                      });
+  waiting_.insert(place, Waiting{std::move(sample), stamp, order});
+}
+
+// A step of the clock is believed when some samples in a row follow one another on the new one.
+Arrival Intake::take_odometry(const OdometrySample& sample) {
+  const double ahead_s = newest_ ? seconds_between(*newest_, sample.stamp) : 0;
+  const bool plausible = !newest_ || (ahead_s <= longest_gap_s_ && ahead_s > -std::max(1.0, reorder_s_));
+  if (plausible) {
+    suspended_.clear();
+    if (released_ && sample.stamp <= *released_)
+      return sample.stamp == *released_ ? Arrival::duplicate : Arrival::late;
+    if (is_duplicate(sample, 0)) return Arrival::duplicate;
+    insert(sample, 0);
+    newest_ = newest_ ? std::max(*newest_, sample.stamp) : sample.stamp;
+    return Arrival::taken;
+  }
+  if (!suspended_.empty()) {
+    const double step_s = seconds_between(suspended_.back().stamp, sample.stamp);
+    if (step_s <= 0 || step_s > longest_gap_s_) suspended_.clear();
+  }
+  suspended_.push_back(sample);
+  if (suspended_.size() < kConvinced) return Arrival::suspended;
+  jump_ = ClockJump{*newest_, suspended_.front().stamp};
+  // What waits on the old clock is of no use; what was too early for it may be of the new one.
+  std::erase_if(waiting_, [&](const Waiting& other) { return other.order == 0 || other.stamp < jump_->to; });
+  late_.clear();
+  released_.reset();
+  newest_ = suspended_.back().stamp;
+  for (const OdometrySample& kept : std::exchange(suspended_, {})) insert(kept, 0);
+  return Arrival::taken;
+}
+
+Arrival Intake::take(Sample sample) {
+  if (!std::visit([](const auto& of) { return is_finite(of); }, sample)) return Arrival::not_finite;
+  if (const auto* odometry = std::get_if<OdometrySample>(&sample)) return take_odometry(*odometry);
+  const Stamp stamp = stamp_of(sample);
+  const std::size_t order = order_of(sample);
+  if (newest_ && seconds_between(*newest_, stamp) > kFuture) return Arrival::future;
+  if (is_duplicate(sample, order)) return Arrival::duplicate;
+  if (released_ && stamp <= *released_) {
+    if (std::holds_alternative<GeodeticFix>(sample)) late_.push_back(std::move(sample));
+    return Arrival::late;
+  }
+  insert(std::move(sample), order);
+  if (waiting_.size() > kMostWaiting) waiting_.pop_front();
+  return Arrival::taken;
+}
+
+std::optional<ClockJump> Intake::jump() {
+  return std::exchange(jump_, std::nullopt);
+}
+
+// A fix waits for the odometry around it: an odometry sample of the same stamp or a later one.
+std::optional<Sample> Intake::next() {
+  if (!late_.empty()) {
+    Sample sample = std::move(late_.front());
+    late_.pop_front();
+    return sample;
+  }
+  if (waiting_.empty() || (!finished_ && !newest_)) return std::nullopt;
+  if (!finished_ && seconds_between(waiting_.front().stamp, *newest_) < reorder_s_) return std::nullopt;
+  Waiting first = std::move(waiting_.front());
+  waiting_.pop_front();
+  released_ = first.stamp;
+  return std::move(first.sample);
+}
+
+}  // namespace waymark::live

@@ -1,0 +1,163 @@
+#include <waymark/tools/live/estimator/window.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/window/marginalization.hpp>
+#include <waymark/tools/drive/model/minimize.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark::live {
+
+Window::Window(drive::DriveFacts facts, std::vector<drive::PreparedSensor> sensors,
+               const drive::FusionSettings& settings, const TypeRegistry& registry)
+    : sensors_(std::move(sensors)),
+      registry_(registry),
+      builder_(std::move(facts), sensors_, settings, registry),
+      graph_(builder_.graph()),
+      solver_(graph_) {}
+
+bool Window::begin(const PlacedStretch& stretch) {
+  builder_.extend({.stamps = stretch.stamps,
+                   .poses = stretch.poses,
+                   .intervals = stretch.intervals,
+                   .fixes = {},
+                   .fix_nodes = {}});
+  for (const Fix& fix : stretch.fixes) add_fix(fix, claimed_accuracies(stretch.fixes));
+  drive::Minimization how;
+  const std::unique_ptr<Algorithm> algorithm = registry_.make_algorithm(how.algorithm, how.options);
+  const std::unique_ptr<LinearSolver> solver =
+      registry_.make_linear_solver(drive::solver_name(how, registry_), how.solver_options);
+  const Summary summary = optimize(graph_, *algorithm, *solver, drive::optimizer_options(how));
+  return summary.converged() && solve();
+}
+
+void Window::add_known(std::span<const KnownState> states) {
+  for (const VertexId id : predictor_.vertices()) {
+    const VertexIndex v = graph_.find(id).value_or(-1);
+    if (v < 0 || graph_.vertex_type(v).position != nullptr) continue;
+    const auto known = std::find_if(states.begin(), states.end(), [&](const KnownState& state) {
+      return state.tag == graph_.vertex_type(v).tag;
+    });
+    if (known == states.end()) continue;
+    std::vector<double> fields = known->value;
+    fields.resize(fields.size() + static_cast<std::size_t>(known->covariance.rows()), 0.0);
+    const Eigen::MatrixXd information = known->covariance.inverse();
+    graph_.add_edge(gaussian_prior_type(), std::span(&v, 1), fields,
+                    0.5 * (information + information.transpose()));
+  }
+}
+
+void Window::extend(const drive::DrivePart& part) {
+  drive::DrivePart whole = part;
+  if (readings_wait_) whole.sensors = sensors_;
+  builder_.extend(whole);
+  if (!readings_wait_) return;
+  for (drive::PreparedSensor& sensor : sensors_) {
+    sensor.readings.stamps.clear();
+    sensor.readings.values.clear();
+  }
+  readings_wait_ = false;
+}
+
+void Window::add_node(Stamp stamp, const Interval& interval) {
+  const Eigen::Vector3d from = newest_pose();
+  const Eigen::Vector3d twist(interval.speed_mps * interval.dt_s, 0, interval.yaw_rate_radps * interval.dt_s);
+  const Eigen::Vector3d to = compose(Pose2<double>(from[0], from[1], from[2]), se2_exp(twist)).vector();
+  predictor_.mark(graph_);
+  extend({.stamps = std::span(&stamp, 1),
+          .poses = std::span(&to, 1),
+          .intervals = std::span(&interval, 1),
+          .fixes = {},
+          .fix_nodes = {}});
+  predictor_.follow(graph_, builder_.nodes().poses.back());
+}
+
+void Window::add_fix(const Fix& fix, const ClaimedAccuracies& claimed) {
+  builder_.set_claimed(fix.source, claimed);
+  extend({.stamps = {}, .poses = {}, .intervals = {}, .fixes = std::span(&fix, 1), .fix_nodes = {}});
+}
+
+void Window::add_reading(std::size_t sensor, Stamp stamp, std::span<const double> values) {
+  SensorTable& table = sensors_[sensor].readings;
+  const auto place = std::upper_bound(table.stamps.begin(), table.stamps.end(), stamp);
+  const auto row = place - table.stamps.begin();
+  table.stamps.insert(place, stamp);
+  table.values.insert(table.values.begin() + row * static_cast<std::ptrdiff_t>(table.columns), values.begin(),
+                      values.end());
+  readings_wait_ = true;
+}
+
+bool Window::solve() {
+  constexpr WindowOptions kLive{.max_iterations = 4, .decrement_tolerance = 1e-3};
+  const WindowSummary summary = solver_.update(kLive);
+  if (!summary.solved) return false;
+  const VertexIndex pose = builder_.nodes().poses.back();
+  predictor_.begin(graph_, solver_.tail(pose), pose);
+  return true;
+}
+
+std::vector<StampedPose> Window::drop_before(Stamp moment) {
+  const DriveNodes nodes = builder_.nodes();
+  std::size_t count = 0;
+  while (count + 2 < nodes.stamps.size() && nodes.stamps[count] < moment) ++count;
+  std::vector<StampedPose> settled;
+  if (count == 0) return settled;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto pose = graph_.value(nodes.poses[i]);
+    settled.push_back({nodes.stamps[i], {pose[0], pose[1], pose[2]}});
+  }
+  try {
+    const Marginalization dropped = marginalize_prefix(graph_, nodes.poses[count]);
+    builder_.dropped(dropped.removal);
+  } catch (const InputError&) {
+    settled.clear();  // the removed edges do not determine a pose: it stays until more are removed
+  }
+  predictor_.mark(graph_);
+  return settled;
+}
+
+Eigen::Vector3d Window::newest_pose() const {
+  const auto pose = graph_.value(builder_.nodes().poses.back());
+  return {pose[0], pose[1], pose[2]};
+}
+
+Eigen::Vector2d Window::antenna_at(const Fix& fix) const {
+  const DriveNodes nodes = builder_.nodes();
+  const NodeInTime near = *nearest_node(nodes, fix.stamp, std::numeric_limits<double>::infinity());
+  const auto at_node = graph_.value(nodes.poses[near.node]);
+  const Pose2<double> moved = compose(Pose2<double>(at_node[0], at_node[1], at_node[2]),
+                                      se2_exp<double>(motion_from_node(nodes, near).way));
+  return moved.position + rotate(moved.heading, fix.antenna_m);
+}
+
+std::vector<KnownState> Window::open_states() const {
+  std::vector<KnownState> states;
+  Eigen::Index row = 0;
+  for (const VertexId id : predictor_.vertices()) {
+    const VertexIndex v = graph_.find(id).value_or(-1);
+    if (v < 0) continue;
+    const Eigen::Index size = graph_.vertex_type(v).tangent_size;
+    if (graph_.vertex_type(v).position == nullptr)
+      states.push_back({graph_.vertex_type(v).tag,
+                        {graph_.value(v).begin(), graph_.value(v).end()},
+                        predictor_.joint().block(row, row, size, size)});
+    row += size;
+  }
+  return states;
+}
+
+std::vector<StampedPose> Window::remaining() const {
+  const DriveNodes nodes = builder_.nodes();
+  std::vector<StampedPose> poses;
+  for (std::size_t i = 0; i < nodes.stamps.size(); ++i) {
+    const auto pose = graph_.value(nodes.poses[i]);
+    poses.push_back({nodes.stamps[i], {pose[0], pose[1], pose[2]}});
+  }
+  return poses;
+}
+
+}  // namespace waymark::live

@@ -1,0 +1,90 @@
+/// The graph of the last minute: it takes nodes, fixes and readings, finds its minimum, and loses its
+/// oldest poses, of which a prior remains.
+///
+/// It is built by the same builder as the graph of a whole drive, with the same plugins and settings.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <waymark/core/registry/registry.hpp>
+#include <waymark/core/window/window_solver.hpp>
+#include <waymark/tools/drive/model/build.hpp>
+#include <waymark/tools/live/estimator/predictor.hpp>
+
+namespace waymark::live {
+
+/// A stretch of a drive that is placed in the frame: what a window begins with.
+struct PlacedStretch {
+  std::vector<Stamp> stamps;
+  std::vector<Eigen::Vector3d> poses;
+  std::vector<Interval> intervals;
+  std::vector<Fix> fixes;  ///< accepted ones, in order of time
+};
+
+/// What is known of states before the first measurement, from a former run.
+struct KnownState {
+  std::string tag;  ///< of the vertex type
+  std::vector<double> value;
+  Eigen::MatrixXd covariance;  ///< of its tangent
+};
+
+class Window {
+ public:
+  /// @param settings from decided(), with the noise among the options
+  /// @param registry must outlive the object
+  Window(drive::DriveFacts facts, std::vector<drive::PreparedSensor> sensors,
+         const drive::FusionSettings& settings, const TypeRegistry& registry);
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// Begins with a stretch of at least two nodes, and finds its minimum from its poses.
+  /// @returns false if there is none
+  [[nodiscard]] bool begin(const PlacedStretch& stretch);
+  /// Adds what is known of the open states. Call it after begin().
+  void add_known(std::span<const KnownState> states);
+
+  /// Adds a node at the end of an interval, at its predicted pose.
+  void add_node(Stamp stamp, const Interval& interval);
+  /// Adds a fix to the nearest node. Its stamp may be any within the window.
+  void add_fix(const Fix& fix, const ClaimedAccuracies& claimed);
+  /// Adds readings of a sensor. @param sensor index in those of the constructor
+  void add_reading(std::size_t sensor, Stamp stamp, std::span<const double> values);
+
+  /// Finds the minimum of everything so far. @returns false if that failed; the values are then those
+  /// before
+  [[nodiscard]] bool solve();
+  /// Removes the poses before a moment. Those that the removed edges alone do not determine stay.
+  /// @returns the removed ones at their last values
+  [[nodiscard]] std::vector<StampedPose> drop_before(Stamp moment);
+
+  [[nodiscard]] Stamp oldest() const { return builder_.nodes().stamps.front(); }
+  [[nodiscard]] Stamp newest() const { return builder_.nodes().stamps.back(); }
+  [[nodiscard]] Eigen::Vector3d newest_pose() const;
+  [[nodiscard]] Eigen::Matrix3d covariance() const { return predictor_.covariance(); }
+  /// Returns where the antenna of a fix was at its stamp, as far as is known.
+  [[nodiscard]] Eigen::Vector2d antenna_at(const Fix& fix) const;
+  /// Returns the states that the newest pose shares with others, for a later start.
+  [[nodiscard]] std::vector<KnownState> open_states() const;
+  [[nodiscard]] std::size_t poses() const { return builder_.nodes().stamps.size(); }
+  [[nodiscard]] const Graph& graph() const { return graph_; }
+  [[nodiscard]] std::vector<StampedPose> remaining() const;
+
+ private:
+  void extend(const drive::DrivePart& part);
+
+  std::vector<drive::PreparedSensor> sensors_;  // each with the readings that wait for the next part
+  const TypeRegistry& registry_;
+  drive::GraphBuilder builder_;
+  Graph& graph_;
+  WindowSolver solver_;
+  Predictor predictor_;
+  bool readings_wait_ = false;
+};
+
+}  // namespace waymark::live
