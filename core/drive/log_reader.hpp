@@ -142,6 +142,9 @@ class LogDecoder {
   virtual void take(std::string_view piece) = 0;
   /// Call this after the last piece. It adds the samples that were held back, and the last notes.
   virtual void finish() = 0;
+  /// The sender of a live stream pauses: a record that waits for its next part, as an epoch of NMEA for its
+  /// next sentence, is complete. A decoder whose records are complete at once does nothing.
+  virtual void pause() {}
   /// Returns the result so far. A caller with little memory takes the samples out between pieces;
   /// counts and notes stay.
   [[nodiscard]] LogData& data() { return data_; }

@@ -120,7 +120,13 @@ RowFilter read_filter(const YamlSection& section) {
   return filter;
 }
 
+/// Addresses of live sources ("gpsd://localhost", "-") are no files of a folder.
+bool is_address(const std::string& file) {
+  return file == "-" || file.find("://") != std::string::npos;
+}
+
 std::string resolved(const std::string& folder, const std::string& file) {
+  if (is_address(file)) return file;
   return (std::filesystem::path(folder) / file).lexically_normal().string();
 }
 

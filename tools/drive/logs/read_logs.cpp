@@ -8,6 +8,7 @@
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/formats/logs/channels.hpp>
 #include <waymark/formats/text/hash.hpp>
+#include <waymark/tools/drive/logs/open_log.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/sensors/sensor_logs.hpp>
 
@@ -80,36 +81,21 @@ formats::Recognised recognised(const std::string& file, const std::vector<LogRea
 }
 
 DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, const LogWatch& watch) {
-  const std::vector<LogReaderType> readers = readers_of(registry);
-  LogRequest request = log.request;
-  std::vector<std::string> notes;
-  LogReaderType reader;
-  if (log.format == "auto") {
-    const formats::Recognised found = recognised(log.file, readers);
-    reader = found.reader;
-    if (reader.name != "csv")
-      notes.push_back(fmt::format("{}: read as '{}': {}", log.file, reader.name, found.why.evidence));
-  } else {
-    reader = named_reader(log, readers);
-  }
-  // The columns of a table tell whether it holds channels of odometry. Other logs are
-  // asked for both.
-  if (request.stream == StreamKind::odometry && reader.name != "csv")
-    request.readings = formats::odometry_channels();
+  ChosenReader chosen = choose_reader(log, registry);
   std::vector<InputFile> inputs{{log.file, {}}};
-  read_companions(log, request, inputs, notes);
+  inputs.insert(inputs.end(), chosen.inputs.begin(), chosen.inputs.end());
   const formats::ReadProgress progress = [&](std::uint64_t done, std::uint64_t size) {
     if (watch) watch(log.file, done, size);
   };
   formats::Fnv1a64 hash;
   const auto seen = [&](std::string_view piece) { hash.add(piece); };
-  DriveLogs::Log result{formats::read_log_file(*reader.reader, log.file, request, progress, seen),
-                        request.time_scale,
+  DriveLogs::Log result{formats::read_log_file(*chosen.type.reader, log.file, chosen.request, progress, seen),
+                        chosen.request.time_scale,
                         log.file,
                         {}};
   inputs.front().fingerprint = "fnv1a64:" + hash.hex();
   result.inputs = std::move(inputs);
-  result.data.notes.insert(result.data.notes.begin(), notes.begin(), notes.end());
+  result.data.notes.insert(result.data.notes.begin(), chosen.notes.begin(), chosen.notes.end());
   if (log.request.stream == StreamKind::sensor) check_readings(result.data.readings, log);
   return result;
 }
@@ -131,6 +117,27 @@ DriveLogs::Log read_log_of_many(const LogConfig& log, const TypeRegistry& regist
 }
 
 }  // namespace
+
+ChosenReader choose_reader(const LogConfig& log, const TypeRegistry& registry) {
+  const std::vector<LogReaderType> readers = readers_of(registry);
+  ChosenReader chosen;
+  chosen.request = log.request;
+  if (log.format == "auto") {
+    const formats::Recognised found = recognised(log.file, readers);
+    chosen.type = found.reader;
+    if (chosen.type.name != "csv")
+      chosen.notes.push_back(
+          fmt::format("{}: read as '{}': {}", log.file, chosen.type.name, found.why.evidence));
+  } else {
+    chosen.type = named_reader(log, readers);
+  }
+  // The columns of a table tell whether it holds channels of odometry. Other logs are
+  // asked for both.
+  if (log.request.stream == StreamKind::odometry && chosen.type.name != "csv")
+    chosen.request.readings = formats::odometry_channels();
+  read_companions(log, chosen.request, chosen.inputs, chosen.notes);
+  return chosen;
+}
 
 DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistry& registry,
                           const LogWatch& watch) {

@@ -45,8 +45,7 @@ ExitCode check_types(const CheckOptions& options, const TypeRegistry& registry) 
 /// Tries every type of the plugins that are named; without --plugin, of all.
 ExitCode check_kit(const CheckOptions& options, const TypeRegistry& registry) {
   const Console console(options.common);
-  const ConformanceReport report =
-      check_conformance(registry, options.common.plugins, console.look());
+  const ConformanceReport report = check_conformance(registry, options.common.plugins, console.look());
   console.result(options.common.json ? json_document("conformance", {{"conformance", report.json}})
                                      : report.text);
   return report.passed ? kSuccess : kInputError;

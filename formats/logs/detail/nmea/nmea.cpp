@@ -34,6 +34,7 @@ class NmeaDecoder final : public LineDecoder {
 
  private:
   void take_line(std::string_view line, std::size_t number) override;
+  void pause() override { end_epoch(); }
   void end() override;
   void take_sentence(const NmeaSentence& sentence, std::string_view line, std::size_t number);
   [[nodiscard]] bool is_whole(const NmeaSentence& sentence, NmeaKind kind, std::size_t column,

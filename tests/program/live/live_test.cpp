@@ -1,0 +1,202 @@
+// `waymark live`: replays, streams, recordings, signals, and what goes wrong with them.
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "../support/material.hpp"
+#include "../support/program.hpp"
+#include "support/paths.hpp"
+
+namespace live_program_test {
+
+using Json = nlohmann::json;
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<Json> objects_of(const std::string& text, const std::string& kind) {
+  std::vector<Json> objects;
+  for (const std::string& line : lines_of(text)) {
+    const Json object = Json::parse(line, nullptr, false);
+    REQUIRE(object.is_object());
+    if (object.at("kind") == kind) objects.push_back(object);
+  }
+  return objects;
+}
+
+/// Runs a script of the shell in a folder; "$WAYMARK" is the program.
+RunResult script(const std::string& folder, const std::string& text) {
+  const std::string file = write_text(folder + "script.sh", "set -u\n" + text);
+  RunOptions options;
+  options.program = "/bin/bash";
+  options.folder = folder;
+  return run({file, waymark_test::program_path()}, options);
+}
+
+/// A drive whose logs are named pipes, beside the logs of a simulated one.
+std::string piped_drive(const std::string& folder) {
+  REQUIRE(run({"simulate", "--preset", "rural", "--duration", "60", "-o", folder + "d"}).code == 0);
+  return write_text(folder + "live.yaml",
+                    "folder: .\n"
+                    "odometry: {file: odometry.pipe, format: csv}\n"
+                    "gnss: {file: gnss.pipe, format: gpsd_json}\n");
+}
+
+}  // namespace
+
+TEST_CASE("live: a replay says the same at any speed") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "urban", "--duration", "60", "-o", folder + "d"}).code == 0);
+  const std::string drive = folder + "d/drive.yaml";
+  REQUIRE(run({"live", drive, "-o", "json:" + folder + "max.jsonl"}).code == 0);
+  REQUIRE(run({"live", drive, "-o", "json:" + folder + "paced.jsonl", "--speed", "50"}).code == 0);
+  const std::string lines = read_text(folder + "max.jsonl");
+  CHECK(read_text(folder + "paced.jsonl") == lines);
+  CHECK(objects_of(lines, "frame").size() == 1);
+  const std::vector<Json> poses = objects_of(lines, "pose");
+  CHECK(poses.size() > 1100);  // from the alignment on
+  CHECK(poses.back().at("state") == "tracking");
+  CHECK(objects_of(lines, "settled").size() > 1300);
+  for (const Json& pose : poses) {
+    REQUIRE(pose.at("covariance").size() == 6);
+    CHECK(pose.at("covariance")[0].get<double>() > 0);
+  }
+}
+
+TEST_CASE("live: sentences of NMEA have right checksums and the places of the poses") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "urban", "--duration", "40", "-o", folder + "d"}).code == 0);
+  REQUIRE(run({"live", folder + "d/drive.yaml", "-o", "nmea:" + folder + "a.nmea?rate=1", "-o",
+               "csv:" + folder + "a.csv?rate=1", "--talker", "II"})
+              .code == 0);
+  const std::vector<std::string> table = lines_of(read_text(folder + "a.csv"));
+  const std::vector<std::string> sentences = lines_of(read_text(folder + "a.nmea"));
+  REQUIRE(sentences.size() == 3 * (table.size() - 1));
+  for (const std::string& sentence : sentences) {
+    const std::size_t star = sentence.find('*');
+    REQUIRE(star != std::string::npos);
+    unsigned sum = 0;
+    for (std::size_t i = 1; i < star; ++i) sum ^= static_cast<unsigned char>(sentence[i]);
+    CHECK(std::stoul(sentence.substr(star + 1, 2), nullptr, 16) == sum);
+    CHECK(sentence.substr(0, 3) == "$II");
+  }
+  // The reader of logs finds the same places, to the 0.1 mm that seven decimals of a minute hold.
+  const RunResult seen = run({"inspect", folder + "a.nmea", "--json"});
+  REQUIRE(seen.code == 0);
+  CHECK(contains(seen.out, "\"format\": \"nmea\""));
+}
+
+TEST_CASE("live: pipes, a recording, and its repetition to the bit") {
+  const std::string folder = fresh_folder();
+  (void)piped_drive(folder);
+  const RunResult result =
+      script(folder,
+             "mkfifo odometry.pipe gnss.pipe\n"
+             "$1 live live.yaml -o json:live.jsonl --record take 2> log & pid=$!\n"
+             "exec 3> odometry.pipe 4> gnss.pipe\n"
+             // alternately, in pieces that end anywhere
+             "for part in 1 2 3 4 5 6; do\n"
+             "  split -n $part/6 d/odometry.csv >&3; split -n $part/6 d/gnss.json >&4; sleep 0.1\n"
+             "done\n"
+             "sleep 0.5; kill -TERM $pid; wait $pid; echo code $?\n"
+             "$1 live live.yaml -o json:again.jsonl --play take\n"
+             "cmp live.jsonl again.jsonl && echo same\n");
+  CHECK(contains(result.out, "code 0"));
+  CHECK(contains(result.out, "same"));
+  CHECK(objects_of(read_text(folder + "live.jsonl"), "pose").size() > 1000);
+}
+
+TEST_CASE("live: a state file is kept, survives a kill, and begins the next run warm") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "rural", "--duration", "90", "-o", folder + "d"}).code == 0);
+  const RunResult result =
+      script(folder,
+             "$1 live d/drive.yaml -o json:a.jsonl --state state.json --speed 60 2> log & pid=$!\n"
+             "sleep 1.2; kill -9 $pid; wait $pid 2> /dev/null; ls\n");
+  CHECK(contains(result.out, "state.json"));
+  const Json state = Json::parse(read_text(folder + "state.json"), nullptr, false);
+  REQUIRE(state.is_object());
+  CHECK(state.at("schema") == "waymark-live-state");
+  CHECK(!state.at("states").empty());
+  // From this state on the same drive: the vehicle is elsewhere now, so only its calibration is used.
+  const RunResult next =
+      run({"live", folder + "d/drive.yaml", "-o", "json:-", "--state", folder + "state.json"});
+  CHECK(next.code == 0);
+  check_refused(
+      run({"live", folder + "d/drive.yaml", "--state", write_text(folder + "bad.json", "{\"schema\":1}")}), 3,
+      "bad.json");
+}
+
+TEST_CASE("live: a disk that is full ends the recording, not the run") {
+  const std::string folder = fresh_folder();
+  (void)piped_drive(folder);
+  const RunResult result =
+      script(folder,
+             "mkfifo odometry.pipe gnss.pipe\n"
+             "$1 live live.yaml -o json:live.jsonl --record /dev/full 2> log & pid=$!\n"
+             "cat d/odometry.csv > odometry.pipe & cat d/gnss.json > gnss.pipe; wait $!\n"
+             "sleep 1.5; kill -HUP $pid; sleep 0.2; kill -TERM $pid; wait $pid; echo code $?; cat log\n");
+  CHECK(contains(result.out, "code 0"));
+  CHECK(contains(result.out, "the recording ends here"));
+  CHECK(contains(result.out, "solutions"));
+}
+
+TEST_CASE("live: clients of TCP come and go, and a slow one holds nothing up") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "rural", "--duration", "40", "-o", folder + "d"}).code == 0);
+  const RunResult result =
+      script(folder,
+             "$1 live d/drive.yaml -o nmea:tcp://localhost:47811?rate=5 --speed 20 2> log & pid=$!\n"
+             "sleep 0.6; exec 3<> /dev/tcp/localhost/47811; timeout 0.5 cat <&3 > heard; exec 3>&-\n"
+             "exec 4<> /dev/tcp/localhost/47811\n"  // never reads
+             "wait $pid; echo code $?; head -c 6 heard\n");
+  CHECK(contains(result.out, "code 0"));
+  CHECK(contains(result.out, "$GN"));
+}
+
+TEST_CASE("live: what cannot be is refused with its remedy") {
+  const std::string folder = fresh_folder();
+  const std::string drive = bundled_drive();
+  check_refused(run({"live", drive, "-o", "xml:-"}), 2, "known are json, nmea, csv");
+  check_refused(run({"live", drive, "-o", "json:gopher://x"}), 2, "unknown scheme 'gopher'");
+  check_refused(run({"live", drive, "-o", "json:tcp://host"}), 2, "the port is missing");
+  check_refused(run({"live", drive, "-o", "nmea:-", "--talker", "x"}), 2, "a talker has two capital letters");
+  check_refused(run({"live", drive, "--speed", "fast"}), 2, "--speed fast");
+  check_refused(run({"live", drive, "--noise-from", folder}), 3, "summary.json");
+  check_refused(run({"live", drive, "--play", drive}), 3, "no recording");
+  check_refused(run({"live", write_text(folder + "live.yaml",
+                                        "odometry: {file: \"tcp://localhost:1\"}\n"
+                                        "gnss: {file: \"gpsd://localhost\"}\n")}),
+                3, "the format of a live source must be stated");
+  check_refused(run({"live", drive, "-o", "json:" + folder + "no/such/place"}), 5, "cannot write");
+}
+
+TEST_CASE("live: every key of its lines is documented") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "rural", "--duration", "40", "-o", folder + "d"}).code == 0);
+  REQUIRE(run({"live", folder + "d/drive.yaml", "-o", "json:" + folder + "a.jsonl", "--window", "20"}).code ==
+          0);
+  const std::string page = read_text(waymark_test::source_dir() + "/tools/program/JSON.md");
+  const std::string table =
+      page.substr(page.find("### LIVE"), page.find("## waymark-convert") - page.find("### LIVE"));
+  std::set<std::string> keys;
+  for (const std::string& line : lines_of(read_text(folder + "a.jsonl"))) {
+    const Json object = Json::parse(line, nullptr, false);
+    for (const auto& [key, value] : object.items()) keys.insert(key);
+  }
+  for (const std::string& key : keys) CHECK(contains(table, "| `" + key + "` |"));
+  CHECK(keys.size() > 20);
+}
+
+}  // namespace live_program_test

@@ -1,0 +1,72 @@
+#include <waymark/tools/live/inputs/channel.hpp>
+
+#include <span>
+#include <utility>
+
+#include <waymark/tools/drive/sensors/sensor_logs.hpp>
+
+namespace waymark::live {
+
+Channel::Channel(Role role, const drive::LogConfig& log, std::size_t index, TimeScale scale,
+                 OdometryStream& parts, const TypeRegistry& registry)
+    : role_(role),
+      log_(log),
+      index_(index),
+      scale_(scale),
+      parts_(parts),
+      chosen_(drive::choose_reader(log, registry)),
+      decoder_(chosen_.type.reader->open(log.file, chosen_.request)) {}
+
+std::vector<Sample> Channel::take(std::string_view piece, const drive::Projection* projection) {
+  decoder_->take(piece);
+  return collect(projection);
+}
+
+std::vector<Sample> Channel::finish(const drive::Projection* projection) {
+  decoder_->finish();
+  return collect(projection);
+}
+
+std::vector<Sample> Channel::pause(const drive::Projection* projection) {
+  decoder_->pause();
+  return collect(projection);
+}
+
+std::vector<Sample> Channel::collect(const drive::Projection* projection) {
+  LogData& data = decoder_->data();
+  const TimeScale own = chosen_.request.time_scale;
+  std::vector<Sample> samples;
+  for (OdometrySample& sample : std::exchange(data.odometry, {})) {
+    sample.stamp = convert(sample.stamp, own, scale_);
+    samples.emplace_back(sample);
+  }
+  for (GeodeticFix& fix : std::exchange(data.fixes, {})) {
+    fix.stamp = convert(fix.stamp, own, scale_);
+    samples.emplace_back(fix);
+  }
+  data.clocks.clear();
+  if (data.readings.size() == 0) return samples;
+  SensorTable rows;
+  rows.columns = data.readings.columns;
+  std::swap(rows, data.readings);
+  if (role_ == Role::odometry) {
+    for (Stamp& stamp : rows.stamps) stamp = convert(stamp, own, scale_);
+    for (const OdometrySample& sample : parts_.take(index_, rows)) samples.emplace_back(sample);
+  } else if (role_ == Role::sensor && projection != nullptr) {
+    drive::DriveLogs::Log log;
+    log.scale = own;
+    log.file = log_.file;
+    log.data.readings = std::move(rows);
+    drive::PrepareReport report;
+    const SensorTable ready = drive::prepare_readings(log, chosen_.request, scale_, {}, projection, report);
+    for (std::size_t row = 0; row < ready.size(); ++row) {
+      SensorReading reading{ready.stamps[row], index_, {}};
+      for (std::size_t column = 0; column < ready.columns; ++column)
+        reading.values.push_back(ready.at(row, column));
+      samples.emplace_back(std::move(reading));
+    }
+  }
+  return samples;
+}
+
+}  // namespace waymark::live

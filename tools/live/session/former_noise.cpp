@@ -1,0 +1,41 @@
+#include <waymark/tools/live/session/former_noise.hpp>
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/estimation/noise.hpp>
+
+namespace waymark::live {
+
+void use_former_noise(const std::string& path, const TypeRegistry& registry,
+                      drive::FusionSettings& settings) {
+  (void)registry.gnss_modeling(settings.modeling);  // names an unknown one
+  const std::string file =
+      std::filesystem::is_directory(path) ? (std::filesystem::path(path) / "summary.json").string() : path;
+  const std::string text = formats::read_text_file(file);
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains(settings.modeling) || !json[settings.modeling].contains("noise"))
+    throw InputError(fmt::format(
+        "{}: there is no noise of the modeling '{}'; take the summary.json of a 'waymark run' that estimated it",
+        file, settings.modeling));
+  drive::NoiseEstimate noise;
+  try {
+    for (const nlohmann::json& entry : json[settings.modeling]["noise"]) {
+      drive::NoiseParameter parameter;
+      parameter.source = entry.at("source").get<std::string>();
+      parameter.owner = entry.at("owner").get<std::string>();
+      parameter.option = entry.at("option").get<std::string>();
+      parameter.value = entry.at("value").get<double>();
+      noise.parameters.push_back(parameter);
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: noise: {}", file, error.what()));
+  }
+  settings = drive::with_noise(std::move(settings), noise);
+}
+
+}  // namespace waymark::live

@@ -1,0 +1,221 @@
+#include <waymark/tools/live/session/session.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/log_file.hpp>
+#include <waymark/tools/drive/sensors/sensor_logs.hpp>
+#include <waymark/tools/live/session/state_file.hpp>
+
+namespace waymark::live {
+namespace {
+
+constexpr double kSaveEvery = 30;       // s on the clock of the drive
+constexpr std::size_t kEventsKept = 8;  // for the dashboard
+
+double microseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+}
+
+drive::DriveFile resolved(drive::DriveFile file, const TypeRegistry& registry) {
+  drive::resolve_sensors(file.description, registry);
+  return file;
+}
+
+const drive::OdometryConfig& odometry_of(const drive::DriveFile& file) {
+  if (file.description.odometry.empty())
+    throw InputError(file.description.path + ": no odometry log is named");
+  return file.description.odometry.front();
+}
+
+}  // namespace
+
+Session::Session(drive::DriveFile file, const LiveSettings& settings, const TypeRegistry& registry)
+    : file_(resolved(std::move(file), registry)),
+      registry_(registry),
+      parts_(odometry_of(file_).logs.size(), odometry_of(file_).assembly, file_.description.timeline.gap_s),
+      estimator_(file_.description, file_.settings, settings, registry) {
+  const drive::DriveDescription& description = file_.description;
+  channels_.reserve(description.gnss.size() + description.sensors.size() + odometry_of(file_).logs.size());
+  for (std::size_t i = 0; i < odometry_of(file_).logs.size(); ++i)
+    add_channel(Channel::Role::odometry, odometry_of(file_).logs[i], i);
+  for (std::size_t i = 0; i < description.gnss.size(); ++i) {
+    if (description.gnss[i].velocity)
+      throw UsageError(description.gnss[i].place + "live fusion does not read a 'velocity' beside the fixes");
+    add_channel(Channel::Role::gnss, description.gnss[i], i);
+  }
+  for (std::size_t i = 0; i < description.sensors.size(); ++i)
+    if (description.sensors[i].log) add_channel(Channel::Role::sensor, *description.sensors[i].log, i);
+}
+
+void Session::add_channel(Channel::Role role, const drive::LogConfig& stated, std::size_t index) {
+  drive::LogConfig log = stated;
+  const bool live = log.file == "-" || log.file.find("://") != std::string::npos;
+  if (live && log.format == "auto") {
+    if (log.file.rfind("gpsd://", 0) == 0) {
+      log.format = "gpsd_json";
+    } else if (log.file.rfind("can://", 0) == 0) {
+      log.format = "candump";
+    } else {
+      throw InputError(log.place + log.file + ": the format of a live source must be stated: 'format: nmea'");
+    }
+  }
+  const std::size_t channel = channels_.size();
+  channels_.emplace_back(role, log, index, file_.description.scale(), parts_, registry_);
+  const auto known = std::find_if(inputs_.begin(), inputs_.end(),
+                                  [&](const Input& input) { return input.file == log.file; });
+  if (known == inputs_.end()) {
+    inputs_.push_back({log.file, {channel}});
+  } else {
+    known->channels.push_back(channel);
+  }
+}
+
+void Session::add_output(std::unique_ptr<ReportWriter> writer, std::unique_ptr<ByteOutput> output,
+                         double rate_hz) {
+  outputs_.push_back({std::move(writer), std::move(output), rate_hz, std::nullopt});
+}
+
+void Session::use_state_file(const std::string& path) {
+  state_file_ = path;
+  if (std::filesystem::exists(path)) estimator_.begin_with(read_state_file(path));
+}
+
+const drive::Projection* Session::projection() {
+  if (!projection_ && estimator_.frame()) projection_.emplace(*estimator_.frame());
+  return projection_ ? &*projection_ : nullptr;
+}
+
+void Session::take(std::size_t input, std::string_view bytes) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (const std::size_t channel : inputs_[input].channels) {
+    std::vector<Sample> samples;
+    try {
+      samples = bytes.empty() ? channels_[channel].pause(projection())
+                              : channels_[channel].take(bytes, projection());
+    } catch (const InputError& error) {
+      tell("unreadable", error.what());
+      continue;
+    }
+    const std::uint64_t solutions = estimator_.counts().solutions;
+    const bool any = !samples.empty();
+    hand_over(std::move(samples));
+    if (!any) continue;
+    (estimator_.counts().solutions > solutions ? latencies_.solve : latencies_.predict)
+        .add(microseconds_since(begin));
+  }
+}
+
+void Session::hand_over(std::vector<Sample> samples) {
+  for (Sample& sample : samples) {
+    estimator_.take(std::move(sample));
+    say();
+  }
+}
+
+void Session::take(const Sample& sample) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::uint64_t solutions = estimator_.counts().solutions;
+  estimator_.take(sample);
+  say();
+  (estimator_.counts().solutions > solutions ? latencies_.solve : latencies_.predict)
+      .add(microseconds_since(begin));
+}
+
+std::vector<Sample> Session::decode_file(std::size_t input) {
+  std::vector<Sample> samples;
+  const auto append = [&](std::vector<Sample> more) {
+    samples.insert(samples.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  };
+  const std::string error = formats::read_in_pieces(inputs_[input].file, [&](std::string_view piece) {
+    for (const std::size_t channel : inputs_[input].channels)
+      append(channels_[channel].take(piece, projection()));
+  });
+  for (const std::size_t channel : inputs_[input].channels) append(channels_[channel].finish(projection()));
+  if (!error.empty()) tell("unreadable", error);
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const Sample& a, const Sample& b) { return stamp_of(a) < stamp_of(b); });
+  return samples;
+}
+
+void Session::say_to(Output& output, const Report& report, const Surroundings& around) {
+  if (const auto* pose = std::get_if<LivePose>(&report); pose != nullptr && output.rate_hz > 0) {
+    if (output.last && *output.last <= pose->stamp &&
+        seconds_between(*output.last, pose->stamp) < 1 / output.rate_hz - 1e-6)
+      return;
+    output.last = pose->stamp;
+  }
+  output.bytes->write(output.writer->write(report, around));
+}
+
+void Session::say() {
+  const std::vector<Report> reports = estimator_.reports();
+  if (reports.empty()) return;
+  const Surroundings around{projection(), file_.description.scale()};
+  for (const Report& report : reports) {
+    for (Output& output : outputs_) say_to(output, report, around);
+    if (const auto* pose = std::get_if<LivePose>(&report)) last_pose_ = *pose;
+    if (const auto* event = std::get_if<Event>(&report)) {
+      last_events_.push_back(*event);
+      if (last_events_.size() > kEventsKept) last_events_.erase(last_events_.begin());
+    }
+  }
+  if (state_file_.empty() || !last_pose_) return;
+  if (saved_ && std::abs(seconds_between(*saved_, last_pose_->stamp)) < kSaveEvery) return;
+  saved_ = last_pose_->stamp;
+  save_state();
+}
+
+void Session::save_state() const {
+  if (const std::optional<WarmStart> state = estimator_.warm_start()) write_state_file(state_file_, *state);
+}
+
+void Session::tell(const std::string& kind, const std::string& text) {
+  const Event event{last_pose_ ? last_pose_->stamp : Stamp{}, kind, "", text};
+  const Surroundings around{projection(), file_.description.scale()};
+  for (Output& output : outputs_) say_to(output, event, around);
+  last_events_.push_back(event);
+  if (last_events_.size() > kEventsKept) last_events_.erase(last_events_.begin());
+}
+
+void Session::work() {
+  for (Output& output : outputs_) {
+    output.bytes->work();
+    if (const std::string news = output.bytes->news(); !news.empty()) tell("output", news);
+  }
+}
+
+void Session::reopen() {
+  for (Output& output : outputs_) output.bytes->reopen();
+}
+
+void Session::finish() {
+  estimator_.finish();
+  say();
+  if (!state_file_.empty()) save_state();
+  for (Output& output : outputs_) output.bytes->flush();
+}
+
+std::size_t Session::lines_dropped() const {
+  std::size_t dropped = 0;
+  for (const Output& output : outputs_) dropped += output.bytes->dropped();
+  return dropped;
+}
+
+std::vector<int> Session::listeners() const {
+  std::vector<int> descriptors;
+  for (const Output& output : outputs_)
+    if (output.bytes->listener() >= 0) descriptors.push_back(output.bytes->listener());
+  return descriptors;
+}
+
+std::size_t Session::corrupt() const {
+  std::size_t count = 0;
+  for (const Channel& channel : channels_) count += channel.data().corrupt;
+  return count;
+}
+
+}  // namespace waymark::live
