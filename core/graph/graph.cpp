@@ -19,7 +19,7 @@ VertexIndex VertexIds::find_in_map(VertexId id) const {
 
 void VertexIds::insert(VertexId id, VertexIndex index) {
   if (in_array(id)) {
-    const auto place = static_cast<std::size_t>(id);
+    const auto place = static_cast<std::size_t>(to_number(id) - first_);
     if (place >= array_.size()) array_.resize(std::max(place + 1, array_.size() * 2), -1);
     array_[place] = index;
   } else {
@@ -29,10 +29,33 @@ void VertexIds::insert(VertexId id, VertexIndex index) {
 
 void VertexIds::erase(VertexId id) {
   if (in_array(id)) {
-    array_[static_cast<std::size_t>(id)] = -1;
+    array_[static_cast<std::size_t>(to_number(id) - first_)] = -1;
+    ++erased_;
+    follow_ids();
   } else {
     map_.erase(id);
   }
+}
+
+// In a sliding window only few of the older ids stay in use: they move to the map.
+void VertexIds::follow_ids() {
+  constexpr std::size_t kWorthIt = 4096;
+  constexpr std::ptrdiff_t kFew = 64;
+  if (erased_ < std::max(kWorthIt, array_.size() / 2)) return;
+  erased_ = 0;
+  const auto half = static_cast<std::ptrdiff_t>(array_.size() / 2);
+  const auto used =
+      std::count_if(array_.begin(), array_.begin() + half, [](VertexIndex v) { return v >= 0; });
+  if (used > kFew) return;
+  std::vector<std::pair<VertexId, VertexIndex>> moved(map_.begin(), map_.end());
+  for (std::ptrdiff_t place = 0; place < half; ++place) {
+    const VertexIndex index = array_[static_cast<std::size_t>(place)];
+    if (index >= 0) moved.emplace_back(VertexId{first_ + place}, index);
+  }
+  array_.erase(array_.begin(), array_.begin() + half);
+  first_ += half;
+  map_.clear();
+  for (const auto& [id, index] : moved) insert(id, index);
 }
 
 Graph::Graph(const Graph& other)

@@ -30,20 +30,26 @@
 namespace WAYMARK_EXPORT waymark {
 
 /// Maps ids to indices. Ids from 0 up are looked up in an array, all others in a hash map (which is
-/// never iterated).
+/// never iterated). The array follows the ids in use, so it does not grow with the life of a sliding
+/// window.
 class VertexIds {
  public:
   [[nodiscard]] VertexIndex find(VertexId id) const {  ///< -1: absent
     if (!in_array(id)) return find_in_map(id);
-    const auto place = static_cast<std::size_t>(id);
+    const auto place = static_cast<std::size_t>(to_number(id) - first_);
     return place < array_.size() ? array_[place] : -1;
   }
   void insert(VertexId id, VertexIndex index);
   void erase(VertexId id);
 
  private:
-  static bool in_array(VertexId id) { return id >= VertexId{0} && to_number(id) < (std::int64_t{1} << 24); }
+  [[nodiscard]] bool in_array(VertexId id) const {
+    return to_number(id) >= first_ && to_number(id) - first_ < (std::int64_t{1} << 24);
+  }
+  void follow_ids();
   [[nodiscard]] VertexIndex find_in_map(VertexId id) const;
+  std::int64_t first_ = 0;  // id of the first element of the array; earlier ids are in the map
+  std::size_t erased_ = 0;  // so many ids since the array was looked at
   std::vector<VertexIndex> array_;
   std::unordered_map<VertexId, VertexIndex> map_;
 };

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/detail/processor.hpp>
@@ -32,6 +33,8 @@ template <int kSize>
 [[gnu::always_inline]] inline void subtract(double* to, const double* from, const double* rows, int stride,
                                             const double* factors, int size, int count) {
   const int n = kSize > 0 ? kSize : size;
+  // `to` may lie before `from` in the same column: each number is read before its place is written.
+#pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     double sum = from[i];
     for (int k = 0; k < n; ++k) sum -= rows[k * stride + i] * factors[k];
@@ -47,8 +50,15 @@ void FrontPanels::clear() {
   others_.clear();
 }
 
-void FrontPanels::solve(std::span<double> step) const {
-  for (std::size_t p = panels_.size(); p-- > 0;) {
+void FrontPanels::cut(std::size_t first) {
+  if (first >= panels_.size()) return;
+  numbers_.resize(at(panels_[first].numbers));
+  others_.resize(at(panels_[first].others));
+  panels_.resize(first);
+}
+
+void FrontPanels::solve(std::size_t first, std::size_t last, std::span<double> step) const {
+  for (std::size_t p = last; p-- > first;) {
     const Panel& panel = panels_[p];
     const int size = panel.size;
     const double* lower = numbers_.data() + panel.numbers;
@@ -68,9 +78,9 @@ void FrontPanels::solve(std::span<double> step) const {
   }
 }
 
-double FrontPanels::decrement() const {
+double FrontPanels::decrement(std::size_t first) const {
   double sum = 0;
-  for (const Panel& panel : panels_) {
+  for (const Panel& panel : std::span(panels_).subspan(first)) {
     const double* y = numbers_.data() + panel.numbers + panel.size * panel.size;
     for (int k = 0; k < panel.size; ++k) sum += y[k] * y[k];
   }
@@ -78,22 +88,46 @@ double FrontPanels::decrement() const {
 }
 
 Eigen::MatrixXd FrontPanels::triangle(std::size_t first) const {
+  std::map<std::int32_t, Eigen::Index> column_of;  // by place in the step
   Eigen::Index dimension = 0;
-  for (std::size_t p = first; p < panels_.size(); ++p) dimension += panels_[p].size;
-  const std::int32_t begin = first < panels_.size() ? panels_[first].own : 0;
+  for (std::size_t p = first; p < panels_.size(); ++p)
+    for (std::int32_t k = 0; k < panels_[p].size; ++k) column_of[panels_[p].own + k] = dimension++;
   Eigen::MatrixXd root = Eigen::MatrixXd::Zero(dimension, dimension);
   for (std::size_t p = first; p < panels_.size(); ++p) {
     const Panel& panel = panels_[p];
     const double* lower = numbers_.data() + panel.numbers;
     const double* w = lower + panel.size * panel.size + panel.size;
+    const Eigen::Index own = column_of.at(panel.own);
     for (int k = 0; k < panel.size; ++k) {
-      for (int r = k; r < panel.size; ++r)
-        root(panel.own - begin + k, panel.own - begin + r) = lower[k * panel.size + r];
+      for (int r = k; r < panel.size; ++r) root(own + k, own + r) = lower[k * panel.size + r];
       for (int i = 0; i < panel.rest; ++i)
-        root(panel.own - begin + k, others_[at(panel.others + i)] - begin) = w[k * panel.rest + i];
+        root(own + k, column_of.at(others_[at(panel.others + i)])) = w[k * panel.rest + i];
     }
   }
   return root;
+}
+
+Front::Saved Front::save() const {
+  Saved saved{members_, {}, {gradient_.begin(), gradient_.begin() + dimension_}};
+  saved.lower.reserve(at(dimension_ * dimension_));
+  for (int c = 0; c < dimension_; ++c)
+    saved.lower.insert(saved.lower.end(), number(0, c), number(0, c) + dimension_);
+  return saved;
+}
+
+void Front::restore(const Saved& saved) {
+  members_ = saved.members;
+  dimension_ = static_cast<int>(saved.gradient.size());
+  if (dimension_ > capacity_) grow();
+  for (int c = 0; c < dimension_; ++c)
+    std::copy_n(saved.lower.data() + at(c) * at(dimension_), dimension_, number(0, c));
+  std::copy(saved.gradient.begin(), saved.gradient.end(), gradient_.begin());
+}
+
+void Front::move_reference(std::span<const double> step) {
+  for (int r = 0; r < dimension_; ++r)
+    for (int c = 0; c < dimension_; ++c)
+      gradient_[at(r)] += (r >= c ? *number(r, c) : *number(c, r)) * step[at(c)];
 }
 
 void Front::clear() {
@@ -125,7 +159,8 @@ void Front::grow() {
 }
 
 template <int kSize>
-bool Front::eliminate_rows(int first, FrontPanels& panels, FrontPanels::Panel& panel) {
+[[gnu::always_inline]] inline bool Front::eliminate_rows(int first, FrontPanels& panels,
+                                                         FrontPanels::Panel& panel) {
   const int size = kSize > 0 ? kSize : panel.size;
   const int rest = panel.rest;
   if (factors_.size() < at(size)) factors_.resize(at(size));
@@ -165,6 +200,32 @@ bool Front::eliminate_rows(int first, FrontPanels& panels, FrontPanels::Panel& p
   return true;
 }
 
+[[gnu::always_inline]] inline bool Front::eliminate_any(int first, FrontPanels& panels,
+                                                        FrontPanels::Panel& panel) {
+  switch (panel.size) {
+    case 1:
+      return eliminate_rows<1>(first, panels, panel);
+    case 2:
+      return eliminate_rows<2>(first, panels, panel);
+    case 3:
+      return eliminate_rows<3>(first, panels, panel);
+    default:
+      return eliminate_rows<0>(first, panels, panel);
+  }
+}
+
+bool Front::eliminate_plain(int first, FrontPanels& panels, FrontPanels::Panel& panel) {
+  return eliminate_any(first, panels, panel);
+}
+
+#if defined(__x86_64__)
+// The same, compiled for processors with fused multiply-add.
+[[gnu::target("avx2,fma")]] bool Front::eliminate_fused(int first, FrontPanels& panels,
+                                                        FrontPanels::Panel& panel) {
+  return eliminate_any(first, panels, panel);
+}
+#endif
+
 bool Front::eliminate(VertexIndex v, FrontPanels& panels) {
   const auto own = std::find_if(members_.begin(), members_.end(),
                                 [&](const Member& member) { return member.vertex == v; });
@@ -180,11 +241,13 @@ bool Front::eliminate(VertexIndex v, FrontPanels& panels) {
     if (member.vertex == v) continue;
     for (int i = 0; i < member.size; ++i) panels.others_.push_back(member.step + i);
   }
-  const bool positive = gone.size == 3   ? eliminate_rows<3>(gone.row, panels, panel)
-                        : gone.size == 2 ? eliminate_rows<2>(gone.row, panels, panel)
-                        : gone.size == 1 ? eliminate_rows<1>(gone.row, panels, panel)
-                                         : eliminate_rows<0>(gone.row, panels, panel);
-  if (!positive) return false;
+#if defined(__x86_64__)
+  if (!(has_fused_multiply() ? eliminate_fused(gone.row, panels, panel)
+                             : eliminate_plain(gone.row, panels, panel)))
+    return false;
+#else
+  if (!eliminate_plain(gone.row, panels, panel)) return false;
+#endif
   panels.panels_.push_back(panel);
   members_.erase(own);
   for (Member& member : members_)

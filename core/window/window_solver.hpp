@@ -9,8 +9,9 @@
 /// Graphs of any kind give right results. If the front grows (loop closures in the window), the cost is
 /// that of the front, and IncrementalOptimizer is the better choice.
 ///
-/// It refers to the graph, which must outlive it; between calls the caller may change the graph at will.
-/// One thread at a time may use it and its graph. The results do not depend on anything but the graph.
+/// It refers to the graph, which must outlive it; between calls the caller may change the graph at will. If
+/// vertices were removed, or values or edges were changed, restart() must be called. One thread at a time may
+/// use it and its graph. Equal graphs with equal histories give equal bits.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +30,11 @@ struct WindowOptions {
   int max_iterations = 5;
   /// stop below this decrement of chi2, as the quadratic model predicts it
   double decrement_tolerance = 1e-4;
+  /// a step that promises less is taken without a look at chi2 afterwards
+  double safe_decrement = 1e-2;
+  /// so many calls in a row may begin with a step that linearises anew only what has changed since the last
+  /// one; the next call linearises everything. 0: each call linearises everything
+  int partial_updates = 0;
 };
 
 /// The result of a call of WindowSolver::update().
@@ -58,6 +64,9 @@ class WindowSolver {
   /// component must be anchored, by a prior or by fixes.
   /// @throws PluginError from edges
   WindowSummary update(const WindowOptions& options = {});
+
+  /// Forgets former steps: the next one linearises everything.
+  void restart();
 
   /// Returns the joint covariance of a vertex and of all that were eliminated after it, as of the last
   /// step of update(). Precondition: update() solved, and the graph has the same vertices since then.

@@ -74,4 +74,22 @@ TEST_CASE("graph: the library says the version of its headers") {
                               std::to_string(WAYMARK_VERSION_MINOR)));
 }
 
+TEST_CASE("vertices are found by their ids, however many others have come and gone") {
+  Graph graph;
+  const std::vector<std::int64_t> lasting{2, 7, 20'000'000, 40'000'000'000, -5};
+  for (const std::int64_t id : lasting) graph.add_vertex<VertexXy>(VertexId{id}, {double(id), 0});
+  std::int64_t next = 100;
+  for (int round = 0; round < 40; ++round) {
+    for (int k = 0; k < 1000; ++k, ++next) graph.add_vertex<VertexXy>(VertexId{next}, {double(next), 0});
+    if (graph.vertex_count() < 3000) continue;
+    std::vector<char> gone(graph.vertex_count(), 0);
+    std::fill(gone.begin() + 5, gone.begin() + 1005, 1);
+    (void)graph.remove_vertices(gone);
+    for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v)
+      REQUIRE(graph.find(graph.id(v)) == v);
+    CHECK_FALSE(graph.find(VertexId{100}));
+  }
+  for (const std::int64_t id : lasting) CHECK(graph.value(graph.find(VertexId{id}).value())[0] == double(id));
+}
+
 }  // namespace graph_test

@@ -16,12 +16,15 @@ namespace waymark::detail {
 class FrontPanels {
  public:
   void clear();
-  /// Solves for all steps, from the last vertex to the first. @param step by the numbers of the panels
-  void solve(std::span<double> step) const;
-  /// Returns how much less chi2 is at the minimum of the quadratic model.
-  [[nodiscard]] double decrement() const;
+  /// Solves for the panels [first, last), from the last one to the first.
+  void solve(std::size_t first, std::size_t last, std::span<double> step) const;
+  /// Returns how much less chi2 is at the minimum of the quadratic model, by the panels from one on.
+  [[nodiscard]] double decrement(std::size_t first) const;
   /// Returns the triangle of the last panels, from one on, in their order.
   [[nodiscard]] Eigen::MatrixXd triangle(std::size_t first) const;
+  /// Forgets the panels from one on.
+  void cut(std::size_t first);
+  [[nodiscard]] std::size_t size() const { return panels_.size(); }
 
  private:
   friend class Front;
@@ -41,7 +44,26 @@ class FrontPanels {
 /// themselves. It takes their edges, and eliminates vertex by vertex.
 class Front {
  public:
+  struct Member {
+    VertexIndex vertex;
+    int row;
+    int size;
+    std::int32_t step;
+  };
+  /// A front as it was before a vertex was eliminated.
+  struct Saved {
+    std::vector<Member> members;
+    std::vector<double> lower;  // column by column
+    std::vector<double> gradient;
+  };
+
   void clear();
+  [[nodiscard]] Saved save() const;
+  void restore(const Saved& saved);
+  [[nodiscard]] const std::vector<Member>& members() const { return members_; }
+  /// Moves the reference of the quadratic model by a step: g += H step. @param step of all members
+  void move_reference(std::span<const double> step);
+
   [[nodiscard]] int dimension() const { return dimension_; }
 
   /// Returns the first row of a vertex. It enters the front if it is new. @param step its place in the step
@@ -72,19 +94,19 @@ class Front {
   [[nodiscard]] bool eliminate(VertexIndex v, FrontPanels& panels);
 
  private:
-  struct Member {
-    VertexIndex vertex;
-    int row;
-    int size;
-    std::int32_t step;
-  };
   [[nodiscard]] int enter(VertexIndex v, int size, std::int32_t step);
+  [[nodiscard]] const double* number(int row, int column) const {
+    return lower_.data() + static_cast<std::ptrdiff_t>(column) * capacity_ + row;
+  }
   [[nodiscard]] double* number(int row, int column) {
     return lower_.data() + static_cast<std::ptrdiff_t>(column) * capacity_ + row;
   }
   void grow();
   template <int kSize>
   [[nodiscard]] bool eliminate_rows(int first, FrontPanels& panels, FrontPanels::Panel& panel);
+  [[nodiscard]] bool eliminate_any(int first, FrontPanels& panels, FrontPanels::Panel& panel);
+  [[nodiscard]] bool eliminate_plain(int first, FrontPanels& panels, FrontPanels::Panel& panel);
+  [[nodiscard]] bool eliminate_fused(int first, FrontPanels& panels, FrontPanels::Panel& panel);
 
   std::vector<Member> members_;  // in the order of their rows
   std::vector<double> lower_;    // lower triangle, column by column

@@ -18,6 +18,7 @@ namespace waymark::live {
 namespace {
 
 constexpr double kSecondsWithoutFix = 1;  // then a solution moves the window on
+constexpr double kLongestStretch = 10;    // s of poses that leave the window together
 constexpr double kFixIsOld = 1.5;         // s, unless fixes usually are rarer
 constexpr std::size_t kClaims = 300;
 
@@ -416,7 +417,9 @@ void Estimator::cycle() {
 }
 
 void Estimator::drop() {
-  if (!window_ || seconds_between(window_->oldest(), now_) < live_.window_s + kSecondsWithoutFix) return;
+  // A stretch at a time: after it everything is linearised anew.
+  const double stretch_s = std::clamp(live_.window_s / 6, kSecondsWithoutFix, kLongestStretch);
+  if (!window_ || seconds_between(window_->oldest(), now_) < live_.window_s + stretch_s) return;
   for (const StampedPose& pose : window_->drop_before(now_.later(-live_.window_s)))
     reports_.emplace_back(SettledPose{pose.stamp, pose.pose, counts_.resets});
 }
