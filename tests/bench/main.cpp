@@ -16,6 +16,7 @@
 #include <waymark/core/window/incremental.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 
+#include "bench/live.hpp"
 #include "bench/logs.hpp"
 #include "support/problems.hpp"
 #include "support/registry.hpp"
@@ -165,6 +166,7 @@ void register_all() {
 int main(int argc, char** argv) {
   register_all();
   waymark_bench::register_log_benchmarks();
+  waymark_bench::register_live_benchmarks();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

@@ -62,7 +62,9 @@ install(FILES "${PROJECT_BINARY_DIR}/package/waymark-core.pc" "${PROJECT_BINARY_
 set(WAYMARK_DOC_FOLDER "${CMAKE_INSTALL_DATADIR}/doc/waymark-doc")
 install(DIRECTORY core types_se2 solvers formats plugins tools examples DESTINATION "${WAYMARK_DOC_FOLDER}" COMPONENT doc
   FILES_MATCHING PATTERN "*.md" PATTERN "report.png" PATTERN "setup" EXCLUDE PATTERN "detail" EXCLUDE)
-install(DIRECTORY examples/berlin_potsdamer_platz examples/drives examples/extensions examples/plugin_template examples/programs
+install(DIRECTORY examples/berlin_potsdamer_platz examples/drives examples/extensions examples/plugin_template examples/programs examples/live
                   examples/tutorial DESTINATION "${WAYMARK_DOC_FOLDER}/examples" COMPONENT doc)
+# As `systemctl enable --now waymark-live` wants it; it is off until then.
+install(FILES examples/live/waymark-live.service DESTINATION lib/systemd/system COMPONENT runtime)
 install(FILES README.md CONTRIBUTING.md DESTINATION "${WAYMARK_DOC_FOLDER}" COMPONENT doc)
 install(DIRECTORY examples/plugin_template examples/extensions examples/programs DESTINATION "${CMAKE_INSTALL_DATADIR}/waymark" COMPONENT dev)

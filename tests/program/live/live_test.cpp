@@ -182,6 +182,34 @@ TEST_CASE("live: what cannot be is refused with its remedy") {
   check_refused(run({"live", drive, "-o", "json:" + folder + "no/such/place"}), 5, "cannot write");
 }
 
+TEST_CASE("run --window: a live run loses little beside the batch run, and less with a longer lag") {
+  const std::string folder = fresh_folder();
+  REQUIRE(
+      run({"simulate", "--preset", "mixed", "--duration", "240", "--seed", "3", "-o", folder + "d"}).code ==
+      0);
+  const std::string drive = folder + "d/drive.yaml";
+  const RunResult result =
+      run({"run", drive, "-o", folder + "out", "--noise", "stated", "--window", "1,30,1000"});
+  REQUIRE(result.code == 0);
+  CHECK(contains(result.out, "RMSE at the lag [m]"));
+  const std::vector<std::string> rows = lines_of(read_text(folder + "out/correlated.windows.csv"));
+  REQUIRE(rows.size() == 4);
+  std::vector<std::vector<double>> table;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    table.emplace_back();
+    std::istringstream cells(rows[i]);
+    for (std::string cell; std::getline(cells, cell, ',');) table.back().push_back(std::stod(cell));
+    REQUIRE(table.back().size() == 9);
+    CHECK(table.back()[1] > 5000);  // poses, at 25 Hz
+  }
+  // What comes later helps.
+  const double live_rmse = table[2][2];
+  const double lag_rmse = table[2][6];
+  CHECK(lag_rmse < table[0][6]);
+  CHECK(lag_rmse < live_rmse);
+  check_refused(run({"run", drive, "-o", folder + "out", "--window", "0"}), 2, "--window");
+}
+
 TEST_CASE("live: every key of its lines is documented") {
   const std::string folder = fresh_folder();
   REQUIRE(run({"simulate", "--preset", "rural", "--duration", "40", "-o", folder + "d"}).code == 0);

@@ -17,9 +17,10 @@
 namespace waymark::live {
 namespace {
 
-constexpr double kSecondsWithoutFix = 1;  // then a solution moves the window on
+constexpr double kSecondsWithoutFix = 2;  // then a solution moves the window on
 constexpr double kLongestStretch = 10;    // s of poses that leave the window together
 constexpr double kFixIsOld = 1.5;         // s, unless fixes usually are rarer
+constexpr double kLooksBack = 60;         // s, for the alignment
 constexpr std::size_t kClaims = 300;
 
 Pose2<double> to_pose(const Eigen::Vector3d& numbers) {
@@ -186,7 +187,6 @@ void Estimator::use_pending() {
     if (stamp_of(sample) > now_) {
       later.push_back(std::move(sample));
     } else if (const auto* fix = std::get_if<GeodeticFix>(&sample)) {
-      counts_.taken[source_of(sample)] += 1;
       use(*fix);
     } else {
       counts_.taken[source_of(sample)] += 1;
@@ -210,7 +210,9 @@ void Estimator::advance(const OdometrySample& sample) {
   } else {
     add_motion(sample);
   }
-  while (odometry_.size() > 2 && seconds_between(odometry_[1].sample.stamp, now_) > live_.window_s)
+  // A short window is no reason to look back less for the heading.
+  const double kept_s = window_ ? live_.window_s + kLongestStretch : std::max(live_.window_s, kLooksBack);
+  while (odometry_.size() > 2 && seconds_between(odometry_[1].sample.stamp, now_) > kept_s)
     odometry_.pop_front();
   use_pending();
   if (!window_) {
@@ -374,6 +376,7 @@ void Estimator::use(const GeodeticFix& geodetic) {
     return;
   }
   absurd_.clear();
+  counts_.taken[source_of(geodetic)] += 1;
   const bool is_late = last_fix_ && fix.stamp < *last_fix_;
   if (is_late) ++counts_.late_fixes;
   if (last_fix_ && !is_late) {

@@ -122,6 +122,24 @@ void Predictor::follow(Graph& graph, VertexIndex pose) {
   mark(graph);
 }
 
+void Predictor::settle(Graph& graph, VertexIndex first) const {
+  Joint joint;
+  for (auto v = first; v < static_cast<VertexIndex>(graph.vertex_count()); ++v)
+    if (!graph.fixed(v)) joint.add(graph, v);
+  for (std::size_t b = 0; b < graph.batch_count(); ++b)
+    for (std::size_t e = b < edges_.size() ? edges_[b] : 0; e < graph.batch(b).size(); ++e)
+      add_edge(graph, b, e, joint);
+  const Eigen::LDLT<Eigen::MatrixXd> factor(joint.information);
+  if (joint.vertices.empty() || factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return;
+  const Eigen::VectorXd step = factor.solve(-joint.gradient);
+  for (std::size_t k = 0; k < joint.vertices.size(); ++k) {
+    const VertexIndex v = joint.vertices[k];
+    std::vector<double> value(graph.value(v).begin(), graph.value(v).end());
+    graph.vertex_type(v).retract(value.data(), step.data() + joint.rows[k]);
+    graph.set_value(v, value);
+  }
+}
+
 Eigen::Matrix3d Predictor::covariance() const {
   if (covariance_.rows() < 3) return Eigen::Matrix3d::Zero();
   return covariance_.topLeftCorner<3, 3>();

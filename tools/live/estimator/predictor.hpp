@@ -25,6 +25,10 @@ class Predictor {
   /// expectation, and the pose is now the given one.
   void follow(Graph& graph, VertexIndex pose);
 
+  /// Sets vertices that were added since mark() to their expectation if all others are as they are: the states
+  /// of a new fix begin where the former ones lead them. @param first of them
+  void settle(Graph& graph, VertexIndex first) const;
+
   /// Returns the covariance of the newest pose: x, y, heading.
   [[nodiscard]] Eigen::Matrix3d covariance() const;
   /// Returns the joint Gaussian: the pose first, then the states.

@@ -78,7 +78,10 @@ void Window::add_node(Stamp stamp, const Interval& interval) {
 
 void Window::add_fix(const Fix& fix, const ClaimedAccuracies& claimed) {
   builder_.set_claimed(fix.source, claimed);
+  const auto first = static_cast<VertexIndex>(graph_.vertex_count());
+  predictor_.mark(graph_);
   extend({.stamps = {}, .poses = {}, .intervals = {}, .fixes = std::span(&fix, 1), .fix_nodes = {}});
+  predictor_.settle(graph_, first);
 }
 
 void Window::add_reading(std::size_t sensor, Stamp stamp, std::span<const double> values) {
@@ -92,9 +95,9 @@ void Window::add_reading(std::size_t sensor, Stamp stamp, std::span<const double
 }
 
 bool Window::solve() {
-  // A fix that promises less than this changes nothing that one step does not see.
+  // One step does if it promises less than this.
   constexpr WindowOptions kLive{
-      .max_iterations = 4, .decrement_tolerance = 4, .safe_decrement = 10, .partial_updates = 9};
+      .max_iterations = 4, .decrement_tolerance = 1, .safe_decrement = 10, .partial_updates = 9};
   const WindowSummary summary = solver_.update(kLive);
   if (!summary.solved) return false;
   const VertexIndex pose = builder_.nodes().poses.back();

@@ -8,6 +8,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/summary_json.hpp>
+#include <waymark/tools/live/session/lag_study.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
 #include <waymark/tools/program/jobs/drive_job.hpp>
@@ -20,6 +21,7 @@
 #include <waymark/tools/program/jobs/result_warnings.hpp>
 #include <waymark/tools/program/terminal/iteration_table.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 namespace {
@@ -31,6 +33,7 @@ struct RunOptions {
   std::string input;
   std::string folder;
   bool causal = false;
+  std::vector<double> windows_s;  ///< of live runs to compare with
 };
 
 /// One modeling of the drive: graph, optimum, evaluation, files.
@@ -231,6 +234,36 @@ std::string run_text(const RunOfDrive& run, const std::vector<ModelingRun>& runs
   return text + "  and the figures of the report as SVG and CSV in " + run.folder.figures() + "\n";
 }
 
+/// Compares live runs with the batch run: text for people, and a table in the folder of the results.
+std::string compare_windows(const RunOfDrive& run, const drive::DriveFile& file,
+                            const drive::FusionSettings& settings) {
+  const std::vector<live::LagResult> results = live::study_lags(
+      file, settings, run.loaded.drive, run.options.windows_s, run.registry, [&](double window_s) {
+        stop_if_interrupted();
+        run.console.progress(fmt::format("{}: live, window of {} s", settings.modeling, window_s));
+      });
+  run.console.end_progress();
+  text::Table table{.title = "live, " + settings.modeling,
+                    .columns = {"window [s]", "poses", "RMSE [m]", "Max [m]", "inside 95 % [%]", "NEES",
+                                "RMSE at the lag [m]", "Max at the lag [m]", "cycle [us]"}};
+  std::string csv = "window_s,poses,rmse_m,max_m,inside95,nees,settled_rmse_m,settled_max_m,cycle_us\n";
+  for (const live::LagResult& result : results) {
+    table.rows.push_back(
+        {fmt::format("{}", result.window_s), fmt::format("{}", result.live.poses),
+         fmt::format("{:.3f}", result.live.rmse_m), fmt::format("{:.2f}", result.live.max_m),
+         fmt::format("{:.1f}", 100 * result.live.inside95), fmt::format("{:.2f}", result.live.nees),
+         fmt::format("{:.3f}", result.settled.rmse_m), fmt::format("{:.2f}", result.settled.max_m),
+         fmt::format("{:.0f}", result.cycle_us)});
+    csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", result.window_s, result.live.poses, result.live.rmse_m,
+                       result.live.max_m, result.live.inside95, result.live.nees, result.settled.rmse_m,
+                       result.settled.max_m, result.cycle_us);
+  }
+  table.notes.push_back(
+      "poses as they were said while driving, at the rate of the odometry, and when they left the window");
+  formats::write_file_atomically(run.options.folder + "/" + settings.modeling + ".windows.csv", csv);
+  return text::table_text(table, run.console.look());
+}
+
 ExitCode run_drive(const RunOptions& options) {
   const Console console(options.common);
   drive::DriveFile file = read_drive_file(options.input, options.choice);
@@ -238,6 +271,8 @@ ExitCode run_drive(const RunOptions& options) {
   const TypeRegistry registry = make_registry(options.common, file.description.plugins);
   drive::check_minimization(options.minimization, registry);
   const LoadedDrive loaded = load_drive_for(file, options.choice, registry, console);
+  if (!options.windows_s.empty() && loaded.drive.truth.empty())
+    throw UsageError("--window: the drive has no truth to compare with");
   if (options.causal && file.description.outage.length_s == 0)
     throw UsageError("--causal: there are no outages to predict; name them with --outage LENGTH/EVERY");
   const RunOfDrive run{options, loaded, evaluation::ResultFolder(options.folder), registry, console};
@@ -249,16 +284,20 @@ ExitCode run_drive(const RunOptions& options) {
   std::vector<ModelingRun> runs;
   std::vector<evaluation::LabelledEvaluation> evaluations;
   ExitCode code = kSuccess;
+  std::string windows;
   for (std::size_t i = 0; i < models.size() && code != kInterrupted; ++i) {
+    const drive::FusionSettings fused = models[i].settings;
     runs.push_back(run_modeling(run, std::move(models[i]), loaded.settings[i], header));
     evaluations.push_back(runs.back().evaluation);
     const ExitCode of_run = exit_code(runs.back().result.summary);
     if (of_run != kSuccess) code = of_run;
     if (interrupted) code = kInterrupted;
+    if (!options.windows_s.empty() && code != kInterrupted)
+      windows += "\n" + compare_windows(run, file, fused);
   }
   const std::string metrics = evaluation::metrics_json(evaluations, header);
   const std::vector<std::string> common = write_common(run, runs, metrics, header);
-  console.result(options.common.json ? metrics : run_text(run, runs, evaluations, common));
+  console.result(options.common.json ? metrics : run_text(run, runs, evaluations, common) + windows);
   return code;
 }
 
@@ -280,6 +319,12 @@ void add_run(CLI::App& app, Action& action) {
   {
     const OptionHeading heading(*command, "The drive");
     command->add_flag("--causal", options->causal, "Also predict each outage of --outage without later data");
+    command
+        ->add_option("--window", options->windows_s,
+                     "Also fuse as 'live' does, in windows of so many seconds: 1,5,15,60,300")
+        ->type_name("SECONDS[,...]")
+        ->delimiter(',')
+        ->check(CLI::Range(1.0, 1e5));
   }
   add_optimization_options(*command, options->minimization);
   add_common_options(*command, options->common);

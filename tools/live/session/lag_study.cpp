@@ -1,0 +1,132 @@
+#include <waymark/tools/live/session/lag_study.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/LU>
+
+#include <waymark/tools/live/session/session.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark::live {
+namespace {
+
+/// Compares poses with the truth. Stamps should ascend.
+class Comparison {
+ public:
+  explicit Comparison(const drive::PreparedDrive& drive) : drive_(drive) {}
+
+  void add(Stamp stamp, const Eigen::Vector3d& pose, const Eigen::Matrix3d* covariance) {
+    const std::optional<Eigen::Vector2d> truth = at(stamp);
+    if (!truth) return;
+    const Eigen::Vector2d off = pose.head<2>() + rotate(pose[2], drive_.truth_reference_m) - *truth;
+    ++errors_.poses;
+    squares_ += off.squaredNorm();
+    errors_.max_m = std::max(errors_.max_m, off.norm());
+    if (covariance == nullptr) return;
+    const Eigen::Matrix2d spread = covariance->topLeftCorner<2, 2>();
+    const double normalised = off.dot(spread.inverse() * off);
+    constexpr double kChiSquare95 = 5.991464547107979;
+    inside_ += normalised < kChiSquare95;
+    normalised_ += normalised;
+  }
+
+  [[nodiscard]] LagErrors errors() const {
+    LagErrors errors = errors_;
+    if (errors.poses == 0) return errors;
+    const auto count = static_cast<double>(errors.poses);
+    errors.rmse_m = std::sqrt(squares_ / count);
+    errors.inside95 = static_cast<double>(inside_) / count;
+    errors.nees = normalised_ / count;
+    return errors;
+  }
+
+ private:
+  /// Returns the truth at a moment; empty where it has a gap.
+  [[nodiscard]] std::optional<Eigen::Vector2d> at(Stamp stamp) const {
+    constexpr double kGap = 1.5;
+    const std::vector<TruthPose>& truth = drive_.truth;
+    const auto after = std::lower_bound(truth.begin(), truth.end(), stamp,
+                                        [](const TruthPose& of, Stamp moment) { return of.stamp < moment; });
+    if (after == truth.end() || after == truth.begin()) return std::nullopt;
+    const TruthPose& before = *std::prev(after);
+    const double apart_s = seconds_between(before.stamp, after->stamp);
+    if (apart_s > kGap) return std::nullopt;
+    const double share = seconds_between(before.stamp, stamp) / apart_s;
+    return Eigen::Vector2d((1 - share) * before.position + share * after->position);
+  }
+
+  const drive::PreparedDrive& drive_;
+  LagErrors errors_;
+  double squares_ = 0;
+  double normalised_ = 0;
+  std::size_t inside_ = 0;
+};
+
+std::vector<Sample> samples_of(const drive::DriveFile& file, const TypeRegistry& registry) {
+  Session session(file, {}, registry);
+  std::vector<Sample> samples;
+  for (std::size_t input = 0; input < session.inputs().size(); ++input) {
+    std::vector<Sample> own = session.decode_file(input);
+    samples.insert(samples.end(), std::make_move_iterator(own.begin()), std::make_move_iterator(own.end()));
+  }
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const Sample& a, const Sample& b) { return stamp_of(a) < stamp_of(b); });
+  return samples;
+}
+
+LagResult replay(const std::vector<Sample>& samples, const drive::DriveFile& file, double window_s,
+                 const drive::PreparedDrive& drive, const TypeRegistry& registry) {
+  LiveSettings live;
+  live.window_s = window_s;
+  Estimator estimator(file.description, file.settings, live, registry);
+  Comparison at_once(drive);
+  Comparison later(drive);
+  LatencyHistogram cycles;
+  const auto hear = [&] {
+    bool solved = false;
+    for (const Report& report : estimator.reports()) {
+      if (const auto* pose = std::get_if<LivePose>(&report)) {
+        if (pose->heading_known && !pose->corrected) at_once.add(pose->stamp, pose->pose, &pose->covariance);
+        solved = solved || pose->corrected;
+      }
+      if (const auto* pose = std::get_if<SettledPose>(&report)) later.add(pose->stamp, pose->pose, nullptr);
+    }
+    return solved;
+  };
+  for (const Sample& sample : samples) {
+    const auto begin = std::chrono::steady_clock::now();
+    estimator.take(sample);
+    const double us =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+    if (hear()) cycles.add(us);
+  }
+  estimator.finish();
+  (void)hear();
+  return {window_s, at_once.errors(), later.errors(), cycles.quantile_us(0.5)};
+}
+
+}  // namespace
+
+std::vector<LagResult> study_lags(const drive::DriveFile& file, const drive::FusionSettings& settings,
+                                  const drive::PreparedDrive& drive, std::span<const double> windows_s,
+                                  const TypeRegistry& registry, const std::function<void(double)>& begun) {
+  drive::DriveFile own = file;
+  own.settings = settings;
+  own.description.sensors.clear();
+  if (drive.frame.zone != 0) {
+    own.description.utm_zone = drive.frame.north ? drive.frame.zone : -drive.frame.zone;
+    own.description.utm_origin = Eigen::Vector2d(drive.frame.origin_easting_m, drive.frame.origin_northing_m);
+  }
+  const std::vector<Sample> samples = samples_of(own, registry);
+  std::vector<LagResult> results;
+  for (const double window_s : windows_s) {
+    if (begun) begun(window_s);
+    results.push_back(replay(samples, own, window_s, drive, registry));
+  }
+  return results;
+}
+
+}  // namespace waymark::live
