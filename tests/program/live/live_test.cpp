@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -168,7 +169,7 @@ TEST_CASE("live: clients of TCP come and go, and a slow one holds nothing up") {
 TEST_CASE("live: what cannot be is refused with its remedy") {
   const std::string folder = fresh_folder();
   const std::string drive = bundled_drive();
-  check_refused(run({"live", drive, "-o", "xml:-"}), 2, "known are json, nmea, csv");
+  check_refused(run({"live", drive, "-o", "xml:-"}), 2, "known are json, nmea, csv, mcap");
   check_refused(run({"live", drive, "-o", "json:gopher://x"}), 2, "unknown scheme 'gopher'");
   check_refused(run({"live", drive, "-o", "json:tcp://host"}), 2, "the port is missing");
   check_refused(run({"live", drive, "-o", "nmea:-", "--talker", "x"}), 2, "a talker has two capital letters");
@@ -208,6 +209,68 @@ TEST_CASE("run --window: a live run loses little beside the batch run, and less 
   CHECK(lag_rmse < table[0][6]);
   CHECK(lag_rmse < live_rmse);
   check_refused(run({"run", drive, "-o", folder + "out", "--window", "0"}), 2, "--window");
+}
+
+TEST_CASE("live: a file of MCAP holds the lines of JSON, topic by topic") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "rural", "--duration", "40", "-o", folder + "d"}).code == 0);
+  REQUIRE(run({"live", folder + "d/drive.yaml", "-o", "json:" + folder + "a.jsonl", "-o",
+               "mcap:" + folder + "a.mcap"})
+              .code == 0);
+  // A reader from the specification: magic, records of opcode and length, magic.
+  const std::string bytes = read_text(folder + "a.mcap");
+  const std::string magic("\x89MCAP0\r\n", 8);
+  REQUIRE(bytes.size() > 16);
+  CHECK(bytes.substr(0, 8) == magic);
+  CHECK(bytes.substr(bytes.size() - 8) == magic);
+  const auto number = [&](std::size_t at, std::size_t size) {
+    std::uint64_t value = 0;
+    for (std::size_t i = size; i-- > 0;) value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  const auto text = [&](std::size_t& at) {
+    const std::size_t size = number(at, 4);
+    at += 4 + size;
+    return bytes.substr(at - size, size);
+  };
+  std::map<std::uint64_t, std::string> topics;
+  std::map<std::string, std::vector<std::string>> messages;
+  std::vector<int> opcodes;
+  std::set<std::uint64_t> schemas;
+  for (std::size_t at = 8; at < bytes.size() - 8;) {
+    const int opcode = static_cast<unsigned char>(bytes[at]);
+    const std::size_t size = number(at + 1, 8);
+    std::size_t content = at + 9;
+    REQUIRE(content + size <= bytes.size() - 8);
+    opcodes.push_back(opcode);
+    if (opcode == 3) {
+      schemas.insert(number(content, 2));
+      content += 2;
+      (void)text(content);
+      CHECK(text(content) == "jsonschema");
+      CHECK(Json::parse(text(content), nullptr, false).is_object());
+    } else if (opcode == 4) {
+      const std::uint64_t id = number(content, 2);
+      CHECK(schemas.contains(number(content + 2, 2)));
+      content += 4;
+      topics[id] = text(content);
+      CHECK(text(content) == "json");
+    } else if (opcode == 5) {
+      std::vector<std::string>& of = messages[topics.at(number(content, 2))];
+      CHECK(number(content + 2, 4) == of.size());  // the sequence
+      of.push_back(bytes.substr(content + 22, size - 22));
+    }
+    at += 9 + size;
+  }
+  CHECK(opcodes.front() == 1);
+  CHECK(opcodes[opcodes.size() - 2] == 15);
+  CHECK(opcodes.back() == 2);
+  std::map<std::string, std::vector<std::string>> lines;
+  for (const std::string& line : lines_of(read_text(folder + "a.jsonl")))
+    lines["/" + Json::parse(line).at("kind").get<std::string>()].push_back(line);
+  for (const auto& [topic, of] : lines) CHECK(messages[topic] == of);
+  CHECK(messages["/location"].size() == lines["/pose"].size());
+  CHECK(Json::parse(messages["/location"].back()).at("latitude").is_number());
 }
 
 TEST_CASE("live: every key of its lines is documented") {

@@ -196,7 +196,10 @@ void Session::finish() {
   estimator_.finish();
   say();
   if (!state_file_.empty()) save_state();
-  for (Output& output : outputs_) output.bytes->flush();
+  for (Output& output : outputs_) {
+    output.bytes->write(output.writer->footer());
+    output.bytes->flush();
+  }
 }
 
 std::size_t Session::lines_dropped() const {

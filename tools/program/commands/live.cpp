@@ -56,8 +56,11 @@ void add_output(const std::string& text, const LiveCommand& command, bool may_wa
     writer = live::make_nmea_writer(command.talker);
   } else if (format == "csv") {
     writer = live::make_csv_writer();
+  } else if (format == "mcap") {
+    writer = live::make_mcap_writer();
   } else {
-    throw UsageError("--output " + text + ": unknown format '" + format + "'; known are json, nmea, csv");
+    throw UsageError("--output " + text + ": unknown format '" + format +
+                     "'; known are json, nmea, csv, mcap");
   }
   const live::Address address = live::parse_address(text.substr(colon + 1));
   double rate_hz = format == "nmea" ? 10 : 0;
@@ -209,7 +212,7 @@ void add_live(CLI::App& app, Action& action) {
     command
         ->add_option(
             "-o,--output", options->outputs,
-            "Where poses go, any number: json, nmea or csv, then ':' and '-', a file, tcp://:PORT (a server) or "
+            "Where poses go, any number: json, nmea, csv or mcap, then ':' and '-', a file, tcp://:PORT (a server) or "
             "udp://HOST:PORT; '?rate=5' for 5 per second. Default: json:-")
         ->type_name("FORMAT:PLACE");
     command->add_option("--talker", options->talker, "Talker of the sentences of NMEA: two letters")
