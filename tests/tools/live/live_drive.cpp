@@ -21,6 +21,12 @@ LiveDrive live_drive(const std::string& preset, double duration_s, std::uint64_t
   LiveDrive drive{simulation::simulate(recipe, seed), {}};
   for (const OdometrySample& sample : drive.simulated.odometry) drive.arrivals.emplace_back(sample);
   for (const simulation::SimulatedFix& fix : drive.simulated.fixes) drive.arrivals.emplace_back(fix.fix);
+  for (std::size_t i = 0; i < drive.simulated.further_gnss.size(); ++i) {
+    for (const simulation::SimulatedFix& fix : drive.simulated.further_gnss[i].fixes) {
+      drive.arrivals.emplace_back(fix.fix);
+      std::get<GeodeticFix>(drive.arrivals.back()).source = static_cast<int>(i) + 1;
+    }
+  }
   std::stable_sort(drive.arrivals.begin(), drive.arrivals.end(),
                    [](const Sample& a, const Sample& b) { return stamp_of(a) < stamp_of(b); });
   return drive;
@@ -60,8 +66,9 @@ std::string Said::text() const {
   return out.str();
 }
 
-Said listen(const Arrivals& arrivals, const LiveSettings& settings, const std::string& modeling) {
-  Estimator estimator(live_description(), live_fusion(modeling), settings, registry());
+Said listen(const Arrivals& arrivals, const LiveSettings& settings, const std::string& modeling,
+            const std::vector<std::string>& receivers) {
+  Estimator estimator(live_description(receivers), live_fusion(modeling), settings, registry());
   Said said;
   const auto hear = [&] {
     for (const Report& report : estimator.reports()) {

@@ -40,7 +40,8 @@ struct Said {
   [[nodiscard]] std::string text() const;
 };
 [[nodiscard]] Said listen(const Arrivals& arrivals, const waymark::live::LiveSettings& settings = {},
-                          const std::string& modeling = "correlated");
+                          const std::string& modeling = "correlated",
+                          const std::vector<std::string>& receivers = {"gnss"});
 
 /// Distances of the poses with a heading from the truth, m.
 [[nodiscard]] std::vector<double> errors_m(const Said& said, const LiveDrive& drive);

@@ -42,6 +42,7 @@ void Predictor::begin(const Graph& graph, const WindowTail& tail, VertexIndex po
   std::vector<Eigen::Index> order = own;
   order.insert(order.end(), others.begin(), others.end());
   covariance_ = tail.covariance(order, order);
+  keep_sizes(graph);
   mark(graph);
 }
 
@@ -68,7 +69,33 @@ void Predictor::add_edge(const Graph& graph, std::size_t batch, std::size_t edge
   }
 }
 
+/// Leaves out states that have left the window, which happens if no solution came before.
+void Predictor::forget_dropped(const Graph& graph) {
+  std::vector<VertexId> kept;
+  std::vector<Eigen::Index> rows;
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < vertices_.size(); ++k) {
+    const std::optional<VertexIndex> v = graph.find(vertices_[k]);
+    const Eigen::Index size = sizes_[k];
+    if (v) {
+      kept.push_back(vertices_[k]);
+      for (Eigen::Index i = 0; i < size; ++i) rows.push_back(row + i);
+    }
+    row += size;
+  }
+  if (kept.size() == vertices_.size()) return;
+  covariance_ = covariance_(rows, rows).eval();
+  vertices_ = std::move(kept);
+  keep_sizes(graph);
+}
+
+void Predictor::keep_sizes(const Graph& graph) {
+  sizes_.clear();
+  for (const VertexId id : vertices_) sizes_.push_back(graph.vertex_type(*graph.find(id)).tangent_size);
+}
+
 void Predictor::follow(Graph& graph, VertexIndex pose) {
+  forget_dropped(graph);
   Joint joint;
   const Eigen::Index known = covariance_.rows();
   for (const VertexId id : vertices_) joint.add(graph, *graph.find(id));
@@ -119,6 +146,7 @@ void Predictor::follow(Graph& graph, VertexIndex pose) {
   }
   covariance_ = all(order, order).eval();
   vertices_ = std::move(vertices);
+  keep_sizes(graph);
   mark(graph);
 }
 

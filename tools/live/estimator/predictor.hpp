@@ -37,9 +37,12 @@ class Predictor {
 
  private:
   struct Joint;
+  void forget_dropped(const Graph& graph);
+  void keep_sizes(const Graph& graph);
   void add_edge(const Graph& graph, std::size_t batch, std::size_t edge, Joint& joint) const;
 
-  std::vector<VertexId> vertices_;  // the pose first
+  std::vector<VertexId> vertices_;   // the pose first
+  std::vector<Eigen::Index> sizes_;  // of their tangents
   Eigen::MatrixXd covariance_;
   std::vector<std::size_t> edges_;  // per batch, at the mark
 };

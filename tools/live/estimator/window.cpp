@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <utility>
+
+#include <Eigen/LU>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
@@ -26,7 +29,9 @@ bool Window::begin(const PlacedStretch& stretch) {
                    .intervals = stretch.intervals,
                    .fixes = {},
                    .fix_nodes = {}});
-  for (const Fix& fix : stretch.fixes) add_fix(fix, claimed_accuracies(stretch.fixes));
+  std::map<int, std::vector<Fix>> by_source;
+  for (const Fix& fix : stretch.fixes) by_source[fix.source].push_back(fix);
+  for (const Fix& fix : stretch.fixes) add_fix(fix, claimed_accuracies(by_source[fix.source]));
   drive::Minimization how;
   const std::unique_ptr<Algorithm> algorithm = registry_.make_algorithm(how.algorithm, how.options);
   const std::unique_ptr<LinearSolver> solver =

@@ -1,7 +1,9 @@
 #include <waymark/tools/live/session/state_file.hpp>
 
+#include <cmath>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/base/error.hpp>
