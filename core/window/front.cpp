@@ -34,7 +34,6 @@ template <int kSize>
                                             const double* factors, int size, int count) {
   const int n = kSize > 0 ? kSize : size;
   // `to` may lie before `from` in the same column: each number is read before its place is written.
-#pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     double sum = from[i];
     for (int k = 0; k < n; ++k) sum -= rows[k * stride + i] * factors[k];
