@@ -40,8 +40,9 @@ struct Step {
 
 enum class ProposalStatus {
   ok,
-  singular,  ///< H could not be factorised, and the algorithm cannot avoid this
-  exhausted  ///< the damping is at its maximum, or the trust region at its minimum
+  singular,   ///< H could not be factorised, and the algorithm cannot avoid this
+  exhausted,  ///< the damping is at its maximum, or the trust region at its minimum
+  retreat     ///< the accepted steps that went uphill led nowhere: back to the lowest chi2
 };
 
 class Algorithm {

@@ -16,7 +16,11 @@ struct LevenbergMarquardtOptions {
 
 /// Solves (H + mu D) d = -g with D = diag(H) (Marquardt) or the identity. mu follows the rule of
 /// Nielsen, "Damping parameter in Marquardt's method" (1999). Near the minimum a damped step does
-/// not show convergence, so the undamped one is computed and proposed there.
+/// not show convergence, so the undamped one is computed and proposed there, and also where the
+/// steps crawl: in a curved valley (a long chain that turns about its end) damped steps follow the
+/// floor, and full steps leave it and come back further down. A full step that goes uphill is kept
+/// on trial, as in the watchdog technique of Chamberlain, Powell, Lemarechal and Pedersen (1982): a
+/// few more of them must lead below the chi2 of before, or all are undone.
 class LevenbergMarquardt final : public Algorithm {
  public:
   explicit LevenbergMarquardt(const LevenbergMarquardtOptions& options) : options_(options) { reset(); }
@@ -25,11 +29,16 @@ class LevenbergMarquardt final : public Algorithm {
     damping_ = -1;
     growth_ = 2;
     look_below_ = std::numeric_limits<double>::infinity();
+    patience_ = kPatience;
+    crawled_ = 0;
+    last_promised_ = std::numeric_limits<double>::infinity();
+    end_trial();
   }
 
   [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver,
                                        double tolerance, Step& step) override {
     set_scale(equations);
+    if (trial_steps_ > 0) return propose_on_trial(equations, solver, tolerance, step);
     if (damping_ < 0)
       damping_ = options_.initial_damping * (options_.scale_by_diagonal ? 1 : scale_of_identity_);
     while (damping_ <= kMaxDamping * scale_of_identity_) {
@@ -45,35 +54,45 @@ class LevenbergMarquardt final : public Algorithm {
       step.kind = "damped";
       step.control = damping_;
       // The damped step promises little, either because of the damping or because this is the
-      // minimum. The full step shows which.
-      if (step.predicted_decrease <= std::min(kLookAhead * tolerance, look_below_)) {
+      // minimum, or the steps crawl. The full step shows which.
+      if (crawled_ >= patience_ || step.predicted_decrease <= std::min(kLookAhead * tolerance, look_below_)) {
         promised_ = step.predicted_decrease;
         if (solve_step(equations, solver, {}, scratch_, newton_, slope) == FactorStatus::ok) {
           step.delta.swap(newton_);
           describe_newton_step(slope, step);
         }
       }
+      full_ = step.full_newton;
       return ProposalStatus::ok;
     }
     return ProposalStatus::exhausted;
   }
 
-  [[nodiscard]] bool acceptable(double gain_ratio) const override { return gain_ratio > 1e-4; }
+  /// A full step may go uphill, on trial.
+  [[nodiscard]] bool acceptable(double gain_ratio) const override { return full_ || gain_ratio > 1e-4; }
 
   void accepted(const Step& step, double gain_ratio) override {
-    if (step.full_newton) return;
+    if (step.full_newton) {
+      gained_ += gain_ratio * step.predicted_decrease;
+      ++trial_steps_;
+      if (gained_ > 0) end_trial();
+      crawled_ = 0;
+      return;
+    }
+    crawled_ = step.predicted_decrease > kCrawl * last_promised_ ? crawled_ + 1 : 0;
+    last_promised_ = step.predicted_decrease;
     damping_ *= std::max(1.0 / 3, 1 - std::pow(2 * gain_ratio - 1, 3));
     damping_ = std::max(damping_, kMinDamping);
     growth_ = 2;
   }
 
   void rejected(const Step& step, double) override {
-    if (step.full_newton) {
-      // The full step promised more than the model can predict. It is tried again only after damped
-      // steps promise much less.
-      look_below_ = 0.01 * promised_;
-    } else {
+    if (!step.full_newton) {
       grow();
+    } else if (trial_steps_ > 0) {
+      trial_steps_ = kTrialSteps;  // its end was not finite
+    } else {
+      look_later();
     }
   }
 
@@ -81,6 +100,39 @@ class LevenbergMarquardt final : public Algorithm {
   static constexpr double kMaxDamping = 1e20;
   static constexpr double kMinDamping = 1e-30;
   static constexpr double kLookAhead = 1e3;  // how far above the tolerance the full step is tried
+  static constexpr double kCrawl = 0.5;      // a crawling step promises this share of the one before it
+  static constexpr int kPatience = 4;        // crawling steps in a row before a full step is tried
+  static constexpr int kLongestPatience = 64;
+  static constexpr int kTrialSteps = 4;  // full steps that may lead below the chi2 before them
+
+  /// Proposes the next full step of a trial, or ends the trial where it cannot succeed any more.
+  ProposalStatus propose_on_trial(const NormalEquations& equations, LinearSolver& solver, double tolerance,
+                                  Step& step) {
+    double slope = 0;
+    const bool solved = trial_steps_ < kTrialSteps &&
+                        solve_step(equations, solver, {}, scratch_, step.delta, slope) == FactorStatus::ok;
+    if (!solved || -slope <= tolerance) {  // the latter: a minimum above the values of before
+      end_trial();
+      look_later();
+      return ProposalStatus::retreat;
+    }
+    describe_newton_step(slope, step);
+    step.control = 0;
+    return ProposalStatus::ok;
+  }
+
+  void end_trial() {
+    trial_steps_ = 0;
+    gained_ = 0;
+  }
+
+  /// The full step promised more than the model can predict. It is tried again only after damped
+  /// steps promise much less, or have crawled twice as long.
+  void look_later() {
+    look_below_ = 0.01 * promised_;
+    patience_ = std::min(2 * patience_, kLongestPatience);
+    crawled_ = 0;
+  }
 
   void set_scale(const NormalEquations& equations) {
     const Eigen::VectorXd& diagonal = equations.diagonal();
@@ -110,7 +162,13 @@ class LevenbergMarquardt final : public Algorithm {
   double scale_of_identity_ = 1;
   // a damped step that promises less than this is compared with the full one
   double look_below_ = 0;
-  double promised_ = 0;  // by the damped step that the full one replaced
+  double promised_ = 0;       // by the damped step that the full one replaced
+  bool full_ = false;         // the last proposal was the full step
+  double last_promised_ = 0;  // by the last damped step that was taken
+  int crawled_ = 0;           // damped steps in a row that promised nearly as much as the one before
+  int patience_ = kPatience;
+  int trial_steps_ = 0;  // full steps since the first one that went uphill
+  double gained_ = 0;    // decrease of chi2 by them
 };
 
 }  // namespace

@@ -126,6 +126,43 @@ TEST_CASE("optimizer: a stationary point above the best values is no convergence
   CHECK(summary.final_chi2 == start);
 }
 
+TEST_CASE("optimizer: an algorithm that climbed goes back to the lowest chi2 by retreating") {
+  // Full steps from x = 2 climb: -8, 512. The next proposal must see x = 2 again.
+  class Climber final : public Algorithm {
+   public:
+    void reset() override { proposals_ = 0; }
+    [[nodiscard]] ProposalStatus propose(const NormalEquations& equations, LinearSolver& solver, double,
+                                         Step& step) override {
+      gradients.push_back(equations.gradient()[0]);
+      if (++proposals_ == 3) return ProposalStatus::retreat;
+      if (proposals_ > 3 || solver.factorize(equations.hessian()) != FactorStatus::ok)
+        return ProposalStatus::exhausted;
+      step.delta = -equations.gradient();
+      solver.solve({equations.gradient().data(), 1}, {step.delta.data(), 1});
+      step.delta = -step.delta;
+      step.predicted_decrease = 1;
+      step.full_newton = false;
+      return ProposalStatus::ok;
+    }
+    [[nodiscard]] bool acceptable(double) const override { return true; }
+    void accepted(const Step&, double) override {}
+    void rejected(const Step&, double) override {}
+
+    std::vector<double> gradients;
+
+   private:
+    int proposals_ = 0;
+  };
+  Graph graph = sigmoid_at(2);
+  Climber climber;
+  const Summary summary = optimize(graph, climber, *registry().make_linear_solver("eigen"), {});
+  REQUIRE(climber.gradients.size() == 4);
+  CHECK(climber.gradients[1] != climber.gradients[0]);
+  CHECK(climber.gradients[3] == climber.gradients[0]);
+  CHECK(summary.termination == Termination::stalled);
+  CHECK(graph.value(0)[0] == 2);
+}
+
 TEST_CASE("optimizer: damped and truncated methods find the minimum where full steps diverge") {
   for (const std::string name : {"levenberg_marquardt", "dogleg"}) {
     INFO(name);
