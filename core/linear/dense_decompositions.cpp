@@ -35,6 +35,7 @@ std::optional<Eigen::MatrixXd> inverse_of_positive_definite(const Eigen::MatrixX
   const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
   if (factor.info() != Eigen::Success) return std::nullopt;
   Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
+  inverse = (0.5 * inverse + 0.5 * inverse.transpose()).eval();  // their sum may be infinite
   if (!inverse.allFinite()) return std::nullopt;
   return inverse;
 }

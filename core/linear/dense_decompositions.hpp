@@ -33,7 +33,7 @@ struct SingularValues {
 /// Decomposes any matrix, m x n with m, n >= 1. A value is right to rounding of the largest one.
 [[nodiscard]] SingularValues singular_values(const Eigen::MatrixXd& matrix);
 
-/// Inverts a symmetric matrix by Cholesky's method.
+/// Inverts a symmetric matrix by Cholesky's method. The inverse is exactly symmetric.
 /// @return nothing if the matrix is not positive definite or its inverse is not finite
 [[nodiscard]] std::optional<Eigen::MatrixXd> inverse_of_positive_definite(const Eigen::MatrixXd& matrix);
 

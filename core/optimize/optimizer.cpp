@@ -9,6 +9,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/graph/finite_check.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/system/detail/information_unit.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
@@ -99,6 +100,7 @@ class Loop {
   double best_chi2_ = 0;
   bool last_accepted_ = true;
   double gradient_ = 0;
+  double unit_ = 1;  // of the information: a chi2 far below it is small
   Step step_;
   bool done_ = false;
 };
@@ -117,6 +119,7 @@ void Loop::prepare() {
     made_.build(graph_, gauge.held);
     if (made_.pattern().dimension() > 0) solver_.analyze(made_.pattern());
   }
+  unit_ = information_unit(graph_);
   summary_.ordering = structure_.ordering();
   summary_.vertices = graph_.vertex_count();
   summary_.edges = graph_.edge_count();
@@ -139,11 +142,13 @@ bool Loop::converged_at_gradient() {
   const auto gradient = equations_.gradient();
   double largest = 0;
   for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
-    const double square = gradient[i] * gradient[i];
-    if (square > largest * diagonal[i] && diagonal[i] > 0) largest = square / diagonal[i];
+    // in the unit of the information: the square of a faint gradient would be 0
+    const double square = gradient[i] / unit_ * gradient[i];
+    const double curvature = diagonal[i] / unit_;
+    if (square > largest * curvature && curvature > 0) largest = square / curvature;
   }
   gradient_ = std::sqrt(largest);
-  const double bound = options_.gradient_tolerance * std::sqrt(1 + chi2_);
+  const double bound = options_.gradient_tolerance * std::sqrt(unit_ + chi2_);
   if (!(gradient_ <= bound)) return false;
   finish(Termination::converged_gradient, text("converged: scaled gradient ", gradient_, " <= ", bound));
   return true;
@@ -151,7 +156,7 @@ bool Loop::converged_at_gradient() {
 
 bool Loop::converged_by(const Step& step, double step_size) {
   if (!step.full_newton) return false;
-  const double bound = options_.decrement_tolerance * (1 + chi2_);
+  const double bound = options_.decrement_tolerance * (unit_ + chi2_);
   if (step.newton_decrement <= bound) {
     finish(Termination::converged_decrement,
            text("converged: Newton decrement ", step.newton_decrement, " <= ", bound));
@@ -187,7 +192,7 @@ bool Loop::step_once() {
   ProposalStatus status;
   {
     const Timer timer(summary_.solve_seconds);
-    status = algorithm_.propose(equations_, solver_, options_.decrement_tolerance * (1 + chi2_), step_);
+    status = algorithm_.propose(equations_, solver_, options_.decrement_tolerance * (unit_ + chi2_), step_);
   }
   if (status == ProposalStatus::singular) {
     finish(Termination::singular, singular_message());
@@ -301,7 +306,7 @@ Summary Loop::run() {
   }
   // Full steps that went uphill may end at a minimum above earlier values. The values that are then
   // returned are no minimum.
-  if (summary_.converged() && chi2_ - best_chi2_ > options_.decrement_tolerance * (1 + best_chi2_)) {
+  if (summary_.converged() && chi2_ - best_chi2_ > options_.decrement_tolerance * (unit_ + best_chi2_)) {
     finish(Termination::stalled, text("the steps ended at a stationary point with chi2 ", chi2_,
                                       "; the lowest chi2 on the way, ", best_chi2_, ", is kept"));
   }

@@ -18,18 +18,18 @@
 
 namespace WAYMARK_EXPORT waymark {
 
-/// Convergence is declared if the values are stationary, or at a full (undamped, untruncated)
-/// Newton step d:
-///   gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(1 + chi2)
-///   decrement  g^T H^-1 g <= decrement_tolerance (1 + chi2)      the gain that the step promises
+/// Convergence is declared if the values are stationary, or at a full (undamped, untruncated) Newton
+/// step d. The unit u is 1, or the largest information of the graph if all of it is less:
+///   gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(u + chi2)
+///   decrement  g^T H^-1 g <= decrement_tolerance (u + chi2)      the gain that the step promises
 ///   step       |d_i| <= step_tolerance (1 + |x|_max) for all i of the full step
 /// The first two tests do not depend on the units of the unknowns. g_i^2 / H_ii never exceeds the
 /// decrement, so the gradient test, at rounding level, is for an initial guess that already is a
 /// minimum. A damped or truncated step never ends the run as converged, however small it is.
 struct OptimizerOptions {
   int max_iterations = 500;           ///< limit on proposed steps, >= 0
-  double decrement_tolerance = 1e-6;  ///< relative to 1 + chi2, > 0; the last step is still taken
-  double gradient_tolerance = 1e-12;  ///< relative to sqrt(1 + chi2), >= 0
+  double decrement_tolerance = 1e-6;  ///< relative to u + chi2, > 0; the last step is still taken
+  double gradient_tolerance = 1e-12;  ///< relative to sqrt(u + chi2), >= 0
   double step_tolerance = 1e-14;      ///< relative to 1 + largest value, >= 0
 
   /// Threads for linearisation and, if the backend has them, factorisation; >= 1. The result is the

@@ -6,6 +6,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/registry/detail/module_file.hpp>
+#include <waymark/core/registry/detail/module_trial.hpp>
 #include <waymark/core/registry/plugin_loader.hpp>
 
 namespace waymark {
@@ -89,8 +90,9 @@ void enter_plugin(const PluginDescriptor& descriptor, PluginEntry enter, const s
   registry = std::move(extended);
 }
 
-void load_plugin(const std::string& file, TypeRegistry& registry) {
-  const PluginDescriptor descriptor = read_descriptor(file);
+namespace {
+
+void load_module(const std::string& file, const PluginDescriptor& descriptor, TypeRegistry& registry) {
   // The system would search a bare name in its library folders.
   const std::string path = file.find('/') == std::string::npos ? "./" + file : file;
   std::fenv_t environment;
@@ -102,6 +104,17 @@ void load_plugin(const std::string& file, TypeRegistry& registry) {
   if (enter == nullptr)
     refuse(file, "is no waymark plugin (no symbol 'waymark_plugin_enter')", "define it with WAYMARK_PLUGIN");
   enter_plugin(descriptor, enter, file, registry);
+}
+
+}  // namespace
+
+void load_plugin(const std::string& file, TypeRegistry& registry) {
+  const PluginDescriptor descriptor = read_descriptor(file);
+  try_in_child(file, [&] {
+    TypeRegistry copy = registry;
+    load_module(file, descriptor, copy);
+  });
+  load_module(file, descriptor, registry);
 }
 
 }  // namespace waymark

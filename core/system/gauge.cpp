@@ -6,9 +6,10 @@
 
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
+#include <waymark/core/system/detail/information_unit.hpp>
+#include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/core/system/gauge.hpp>
 
 namespace waymark {
@@ -84,14 +85,16 @@ Components describe_components(const Graph& graph) {
 
 /// Returns how many eigenvalues are above the noise of the largest. 0 if all of them are
 /// only rounding.
-int rank_of(const Eigen::Matrix3d& information) {
+/// @param unit of the information of the graph
+int rank_of(const Eigen::Matrix3d& information, double unit) {
   if (!information.allFinite()) return 3;  // whoever uses the graph finds the edge that is not finite
   const Eigen::Vector3d eigenvalues = symmetric_eigenvalues(information);
   constexpr double kRounding =
       1e-12;  // (J T) of a component without anchor cancels to about 1e-12, squared times Omega
   constexpr double kRelative = 1e-12;
   int rank = 0;
-  for (const double value : eigenvalues) rank += value > std::max(kRounding, kRelative * eigenvalues[2]);
+  for (const double value : eigenvalues)
+    rank += value > std::max(kRounding * unit, kRelative * eigenvalues[2]);
   return rank;
 }
 
@@ -146,9 +149,10 @@ Gauge find_gauge(const Graph& graph, PartlyAnchored partly) {
   }
   Gauge gauge;
   gauge.held.assign(graph.vertex_count(), 0);
+  const double unit = information_unit(graph);
   for (std::size_t c = 0; c < components.first.size(); ++c) {
     const VertexIndex first = components.first[c];
-    const int rank = rank_of(information[c]);
+    const int rank = rank_of(information[c], unit);
     if (rank == 1 || rank == 2) {
       if (partly == PartlyAnchored::refuse) refuse(graph, first, rank);
       gauge.held[at(first)] = 1;

@@ -234,8 +234,9 @@ class GraphReader {
   void check_matrix(const LineScanner& line, std::string_view tag) {
     if (format_ == GraphFormat::covariance) {
       const std::optional<Eigen::MatrixXd> inverse = inverse_of_positive_definite(information_);
-      if (!inverse) line.fail(join(tag, "the covariance matrix is not positive definite"));
-      information_ = 0.5 * (*inverse + inverse->transpose());
+      if (!inverse)
+        line.fail(join(tag, "the covariance matrix is not positive definite, or its inverse not finite"));
+      information_ = *inverse;
     } else if (!is_positive_semidefinite(information_)) {
       line.fail(join(tag, "the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)"));
     }

@@ -13,7 +13,7 @@
 #include <waymark/core/base/guard.hpp>
 #include <waymark/formats/logs/detail/compression/byte_source.hpp>
 #include <waymark/formats/logs/detail/foreign_formats.hpp>
-#include <waymark/formats/text/detail/read_failure.hpp>
+#include <waymark/formats/text/detail/input_file.hpp>
 #include <waymark/formats/text/detail/utf16.hpp>
 
 namespace waymark::formats {

@@ -1,26 +1,33 @@
 #include <waymark/formats/text/text_file.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <climits>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <random>
+#include <span>
 #include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/formats/text/detail/read_failure.hpp>
+#include <waymark/formats/text/detail/input_file.hpp>
 
 namespace waymark::formats {
 namespace {
 
 constexpr std::size_t kChunk = 1U << 20U;
-constexpr int kAttempts = 1000;
+constexpr std::size_t kLongLine = 64U << 20U;
+constexpr int kAttempts = 100;
 
 using Producer = std::function<void(const TextSink&)>;
 
@@ -72,9 +79,22 @@ TextSink sink_to(int descriptor, const std::string& path) {
   };
 }
 
+/// Opens a device, or a pipe once it has a reader. A signal that the program handles ends the wait;
+/// open() itself would begin to wait again.
+int open_to_write(const std::string& path) {
+  while (true) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor >= 0) {
+      if (::fcntl(descriptor, F_SETFL, O_WRONLY) != 0) fail_write(path, errno);
+      return descriptor;
+    }
+    constexpr int kPause_ms = 20;
+    if (errno != ENXIO || ::poll(nullptr, 0, kPause_ms) < 0) fail_write(path, errno);
+  }
+}
+
 void write_directly(const std::string& path, const Producer& produce) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (file.number() < 0) fail_write(path, errno);
+  Descriptor file(open_to_write(path));
   produce(sink_to(file.number(), path));
   if (const int error = file.close(); error != 0) fail_write(path, error);
 }
@@ -85,21 +105,35 @@ std::string link_target(const std::string& path) {
   return resolved ? std::string(resolved.get()) : path;
 }
 
+/// Returns a name beside `target` that nobody can foresee, so that nothing can be laid there.
+std::string name_beside(const std::filesystem::path& target) {
+  constexpr std::size_t kLongest = 200;  // a name has at most 255 bytes
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof number, 0) != sizeof number) number = std::random_device()();
+  const std::string name =
+      fmt::format("{}.partial-{:016x}", target.filename().string().substr(0, kLongest), number);
+  return (target.parent_path() / name).string();
+}
+
 /// A file under another name beside its final place. The destructor removes it, unless it was
 /// moved there.
 class PartialFile {
  public:
-  PartialFile(const std::string& path, const std::string& target) : path_(path) {
+  /// @param mode of the final file; nobody else may ever open this one
+  PartialFile(const std::string& path, const std::string& target, mode_t mode) : path_(path) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      name_ = fmt::format("{}.partial-{}-{}", target, ::getpid(), attempt);
-      const int descriptor = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      name_ = name_beside(target);
+      const int flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+      const int descriptor = ::open(name_.c_str(), flags, mode);
       if (descriptor >= 0) {
         file_.emplace(descriptor);
         return;
       }
-      if (errno != EEXIST) fail_write(path, errno);
+      if (errno != EEXIST) break;
     }
-    fail_write(path, EEXIST);
+    const int error = errno;
+    name_.clear();
+    fail_write(path, error);
   }
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
@@ -120,9 +154,18 @@ class PartialFile {
   std::optional<Descriptor> file_;
 };
 
+/// @throws InputError for a zero byte or an endless line in the beginning of a long or endless input
+void require_text_if_long(std::string_view content, const InputFile& file) {
+  if (file.size().value_or(kLongLine) < kLongLine && content.size() < kLongLine) return;
+  if (const std::size_t zero = content.substr(0, kChunk).find('\0'); zero != std::string_view::npos)
+    throw InputError(fmt::format("{}: is no text: byte {} is zero", file.path(), zero + 1));
+  if (content.size() >= kLongLine && content.substr(0, kLongLine).find('\n') == std::string_view::npos)
+    throw InputError(fmt::format("{}:1: is no text: the line does not end within 64 MiB", file.path()));
+}
+
 void write_aside(const std::string& path, const Producer& produce, std::optional<mode_t> mode) {
   const std::string target = mode ? link_target(path) : path;
-  PartialFile partial(path, target);
+  PartialFile partial(path, target, mode.value_or(0666) & 0777);
   if (mode && ::fchmod(partial.number(), *mode) != 0) fail_write(path, errno);
   produce(sink_to(partial.number(), path));
   partial.put_at(target);
@@ -131,23 +174,19 @@ void write_aside(const std::string& path, const Producer& produce, std::optional
 }  // namespace
 
 std::string read_text_file(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.number() < 0) fail_read(path, errno);
-  struct stat status {};
-  if (::fstat(file.number(), &status) != 0) fail_read(path, errno);
-  if (S_ISDIR(status.st_mode)) fail_read(path, EISDIR);
-
-  const std::size_t expected = S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : kChunk;
-  // one more byte shows the end of the file without growing
-  std::string content(expected + 1, '\0');
+  InputFile file(path);
+  std::string content;
   std::size_t used = 0;
   while (true) {
-    if (used == content.size()) content.resize(used + kChunk);
-    const ssize_t count = ::read(file.number(), content.data() + used, content.size() - used);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail_read(path, errno);
+    // What a file or stream promises is believed only after its first piece.
+    if (used == content.size()) {
+      const std::size_t promised = used > 0 ? file.size().value_or(0) + 1 : 0;
+      content.resize(std::max({used + used / 2, used + kChunk, promised}));
+    }
+    const std::size_t count = file.read(std::span(content).subspan(used));
     if (count == 0) break;
-    used += static_cast<std::size_t>(count);
+    used += count;
+    require_text_if_long({content.data(), used}, file);
   }
   content.resize(used);
   return content;
@@ -172,6 +211,11 @@ void write_file_atomically(const std::string& path, const Producer& produce) {
   // be that one.
   if (path.starts_with("/dev/") || path.starts_with("/proc/")) return write_directly(path, produce);
   write_aside(path, produce, status.st_mode & 07777);
+}
+
+void try_to_write_in(const std::string& folder) {
+  PartialFile file(folder, (std::filesystem::path(folder) / "trial").string(), 0600);
+  if (const int error = write_all(file.number(), "a trial\n"); error != 0) fail_write(folder, error);
 }
 
 void make_folder(const std::string& folder) {

@@ -9,20 +9,13 @@
 
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/run_path.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
 const std::string kPrefix = INSTALLED_PREFIX;
-
-/// RPATH and RUNPATH of a binary, as the linker's section shows them.
-std::string run_path(const std::string& file) {
-  const RunResult result = run({"-d", file}, {.program = "/usr/bin/readelf"});
-  REQUIRE(result.code == 0);
-  const auto at = result.out.find("PATH)");
-  return at == std::string::npos ? "" : result.out.substr(at, result.out.find('\n', at) - at);
-}
 
 /// waymark_add_plugin's look at the flags, without a compiler.
 RunResult check_flags(const std::string& variable, const std::string& flags,
@@ -61,9 +54,13 @@ TEST_CASE("installed: the program runs from any prefix, and nothing points into 
   const RunResult result = run({"--version"}, {.program = kPrefix + "/bin/waymark"});
   CHECK(result.code == 0);
   CHECK(result.out.starts_with("waymark "));
-  CHECK(contains(run_path(kPrefix + "/bin/waymark"), "[$ORIGIN/../lib"));
+  CHECK(waymark_test::run_path(kPrefix + "/bin/waymark").front().starts_with("$ORIGIN/../lib"));
+  for (const std::string& file : waymark_test::binaries_below(kPrefix)) {
+    INFO(file);
+    CHECK(waymark_test::is_safe(waymark_test::run_path(file)));
+  }
   for (const auto& entry : fs::recursive_directory_iterator(kPrefix)) {
-    if (entry.path().extension() == ".so") CHECK(run_path(entry.path()) == "");
+    if (entry.path().extension() == ".so") CHECK(waymark_test::run_path(entry.path()).empty());
     const std::string suffix = entry.path().extension();
     if (suffix == ".cmake" || suffix == ".pc") {
       INFO(entry.path());

@@ -194,4 +194,14 @@ TEST_CASE("gauge: optimize says in its notes what was held and leaves it in plac
   CHECK(summary.unknowns == 57);
 }
 
+TEST_CASE("gauge: an anchor counts beside the information of its graph, however faint that is") {
+  Graph graph;
+  const VertexIndex origin = add_fixed_origin(graph, 0);
+  const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId{1}, {5, 5, 1});
+  graph.add_edge(EdgeSe2{{1, 0, 0}}, {origin, pose}, 1e-20 * Eigen::Matrix3d::Identity());
+  const Gauge gauge = find_gauge(graph);
+  CHECK(held_count(gauge) == 0);
+  CHECK(gauge.messages.empty());
+}
+
 }  // namespace gauge_test

@@ -394,4 +394,23 @@ TEST_CASE("options of algorithms: unknown names, words and numbers out of range 
                     Contains("'marquardt' or 'identity'") && Contains("got 'none'"));
 }
 
+TEST_CASE("optimizer: a graph of faint edges has the minimum of the same graph with strong ones") {
+  for (const std::string& name : algorithm_names()) {
+    for (const double information : {1e-20, 1e-200, 1e20}) {
+      INFO(name << ", information " << information);
+      Graph graph;
+      const VertexIndex origin = graph.add_vertex<VertexSe2>(VertexId{0}, {0, 0, 0});
+      const VertexIndex pose = graph.add_vertex<VertexSe2>(VertexId{1}, {5, 5, 1});
+      graph.set_fixed(origin, true);
+      graph.add_edge(EdgeSe2{{1, 2, 0.5}}, {origin, pose}, information * Eigen::Matrix3d::Identity());
+      const Summary summary = run(graph, name);
+      INFO(summary.message);
+      CHECK(summary.converged());
+      CHECK(graph.value(pose)[0] == Approx(1).margin(1e-6));
+      CHECK(graph.value(pose)[1] == Approx(2).margin(1e-6));
+      CHECK(graph.value(pose)[2] == Approx(0.5).margin(1e-6));
+    }
+  }
+}
+
 }  // namespace optimizer_test

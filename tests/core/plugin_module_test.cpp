@@ -180,4 +180,28 @@ TEST_CASE("modules: a file that is damaged anywhere is refused or loaded, never 
   }
 }
 
+TEST_CASE("modules: a file that is cut off is refused before it is loaded") {
+  const std::string whole = module_file("sound");
+  const auto size = std::filesystem::file_size(whole);
+  const std::filesystem::path cut = scratch_dir() / "cut.so";
+  for (const std::uintmax_t part : {size / 4, size / 2}) {
+    std::filesystem::copy_file(whole, cut, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(cut, part);
+    TypeRegistry own = registry();
+    const Attempt result = attempt(cut, own);
+    INFO(part << " of " << size << ": " << result.error);
+    CHECK_FALSE(result.error.empty());
+    CHECK_FALSE(result.ran);
+  }
+}
+
+TEST_CASE("modules: one that kills the process that loads it is refused, and the host lives") {
+#if defined(__SANITIZE_THREAD__)
+  return waymark_test::skip("ThreadSanitizer has a thread of its own, so there is no trial in a child");
+#endif
+  TypeRegistry own = registry();
+  const Attempt result = attempt(module_file("crashes"), own);
+  CHECK_THAT(result.error, Contains("crashes.so: loading it ends a process by signal 6 (Aborted)"));
+}
+
 }  // namespace plugin_module_test

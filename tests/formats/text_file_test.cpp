@@ -126,6 +126,53 @@ TEST_CASE("text file: a symbolic link and the permissions of a file are kept") {
   CHECK(fs::status(file).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
 }
 
+TEST_CASE(
+    "text file: an unfinished file never has more permissions than the final one, and no name in advance") {
+  const fs::path folder = fresh_folder("unforeseeable");
+  const fs::path file = folder / "secret.graph";
+  write_file_atomically(file.string(), "old");
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  std::vector<std::string> names;
+  for (int i = 0; i < 2; ++i) {
+    write_file_atomically(file.string(), [&](const TextSink&) {
+      for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        CHECK(entry.status().permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+        if (entry.path() != file) names.push_back(entry.path().filename());
+      }
+    });
+  }
+  REQUIRE(names.size() == 2);
+  CHECK(names[0] != names[1]);
+  CHECK(names[0].starts_with("secret.graph.partial-"));
+}
+
+TEST_CASE("text file: a name of the greatest length is written too") {
+  const fs::path folder = fresh_folder("long_name");
+  const std::string path = (folder / std::string(255, 'n')).string();
+  write_file_atomically(path, "x");
+  CHECK(read_text_file(path) == "x");
+  CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("text file: a trial in a folder leaves nothing, and names the folder if it fails") {
+  const fs::path folder = fresh_folder("trial");
+  try_to_write_in(folder.string());
+  CHECK(entries(folder) == 0);
+  const std::string nowhere = (folder / "none").string();
+  CHECK_THROWS_MATCHES(try_to_write_in(nowhere), OutputError,
+                       Message(nowhere + ": cannot write: its folder does not exist"));
+}
+
+TEST_CASE("text file: an input that promises more than it can hold is refused before it is in memory") {
+  const fs::path file = fresh_folder("sparse") / "a.graph";
+  write_file_atomically(file.string(), "");
+  fs::resize_file(file, std::uintmax_t{1} << 40U);
+  CHECK_THROWS_MATCHES(read_text_file(file.string()), InputError,
+                       Message(file.string() + ": is no text: byte 1 is zero"));
+  CHECK_THROWS_MATCHES(read_text_file("/dev/zero"), InputError,
+                       Message("/dev/zero: is no text: byte 1 is zero"));
+}
+
 TEST_CASE("text file: a pipe is written and read directly, in as many parts as it takes") {
   const fs::path pipe = fresh_folder("pipe") / "pipe";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);

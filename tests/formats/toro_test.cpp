@@ -118,3 +118,17 @@ TEST_CASE("fr079: chi2 is the same through every format, and another if TORO is 
   // guessed.
   CHECK(chi2(GraphFormat::covariance, text) < 1e-3 * expected);
 }
+
+TEST_CASE(
+    "covariance: a matrix without a finite inverse is refused, and the least one that has an inverse is written") {
+  const auto text = [](const char* variance) {
+    const std::string v = variance;
+    return "VERTEX2 0 0 0 0\nVERTEX2 1 0 0 0\nEDGE2 0 1 1 0 0 " + v + " 0 " + v + " " + v + " 0 0\n";
+  };
+  CHECK_THROWS_WITH(
+      read_as(GraphFormat::covariance, text("1e-309")),
+      "a.graph:3:43: EDGE2: the covariance matrix is not positive definite, or its inverse not finite");
+  const GraphDocument document = read_as(GraphFormat::covariance, text("1e-308"));
+  CHECK(document.graph.batch(0).information(0).diagonal().isApproxToConstant(1e308, 1e-12));
+  CHECK(write_as(GraphFormat::g2o, document).find("inf") == std::string::npos);
+}

@@ -1,5 +1,5 @@
 // A plugin in many variants, each wrong in one way (tests/CMakeLists.txt): compiled with other flags, linked
-// with -Ofast, a tag that is taken, a registration that throws, a solver that fails, no descriptor. A sound
+// with -Ofast, a tag that is taken, a registration that throws or crashes, a solver that fails, no descriptor. A sound
 // one tells, by a file, when any of its code runs.
 #include <cstdio>
 #include <cstdlib>
@@ -34,6 +34,8 @@ namespace {
   add_located_sensor(registry);
 #elif defined(SAMPLE_THROWS)
   throw std::runtime_error("the sensor is not plugged in");
+#elif defined(SAMPLE_CRASHES)
+  std::abort();
 #elif defined(SAMPLE_THROWS_NUMBER)
   throw 42;
 #endif

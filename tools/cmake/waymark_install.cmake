@@ -7,9 +7,13 @@ set(cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/waymark")
 # While the version is 0.x, each minor version may break the ABI (plugins/README.md, "ABI and versions").
 set_target_properties(waymark_core PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-# The program finds the library beside it, wherever the prefix is; packages set CMAKE_SKIP_INSTALL_RPATH.
+# The program finds the library beside it, wherever the prefix is; packages set CMAKE_SKIP_INSTALL_RPATH. The build tree
+# (bin and lib) has the same run path: one that CMake changes at installation ends with a colon, an empty entry, and the
+# linker would look for libraries in the present folder.
 file(RELATIVE_PATH bin_to_lib "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
-set_target_properties(waymark PROPERTIES INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
+set(run_path "$ORIGIN/${bin_to_lib}" "$ORIGIN/../lib")
+list(REMOVE_DUPLICATES run_path)
+set_target_properties(waymark PROPERTIES INSTALL_RPATH "${run_path}" BUILD_WITH_INSTALL_RPATH ON)
 
 install(TARGETS waymark RUNTIME COMPONENT runtime)
 install(TARGETS waymark_core waymark_types_se2 waymark_solvers waymark_formats waymark_drive waymark_plugins

@@ -91,8 +91,9 @@ LogReaderType reader_for(const std::string& path, std::span<const LogReaderType>
 void find_companions(LogInspection& log, const InspectionOptions& options) {
   if (formats::is_can_format(log.format) && !options.dbc.empty()) log.companions["dbc"] = options.dbc;
   const std::filesystem::path beside = std::filesystem::path(log.path).parent_path() / "timestamps.txt";
-  if (log.format == "kitti_oxts" && std::filesystem::is_directory(log.path) &&
-      std::filesystem::exists(beside))
+  std::error_code unknown;
+  if (log.format == "kitti_oxts" && std::filesystem::is_directory(log.path, unknown) &&
+      std::filesystem::exists(beside, unknown))
     log.companions["timestamps"] = {beside.string()};
 }
 

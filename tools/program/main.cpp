@@ -1,6 +1,9 @@
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,7 +28,7 @@ void check_command(const CLI::App& app, int argc, char** argv) {
   (void)find_command(app, std::string(word));
 }
 
-ExitCode run(int argc, char** argv) {
+ExitCode run_command(int argc, char** argv) {
   CLI::App app;
   Action action;
   build_command_line(app, action);
@@ -48,17 +51,32 @@ ExitCode run(int argc, char** argv) {
     if (app.exit(error) != 0) return kUsageError;
     std::cout.flush();
     return std::cout.good() ? kSuccess : fail(kOutputError, "standard output: cannot write");
+  }
+}
+
+/// Nothing that is read may end in an internal error: what the system or the standard library says
+/// about an input is bad input too.
+ExitCode run(int argc, char** argv) {
+  try {
+    return run_command(argc, argv);
   } catch (const Interrupted& error) {
     return fail(kInterrupted, error.what());
   } catch (const UsageError& error) {
     return fail(kUsageError, error.what());
   } catch (const InputError& error) {
-    return fail(kInputError, error.what());
+    // the wait for a pipe ended because of the signal
+    return interrupted ? fail(kInterrupted, Interrupted().what()) : fail(kInputError, error.what());
   } catch (const OutputError& error) {
     return fail(kOutputError, error.what());
   } catch (const PluginError& error) {
     const std::string plugin = plugin_of(error.type());
     return fail(kPluginError, (plugin.empty() ? "" : "plugin '" + plugin + "': ") + error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(kInputError, error.path1().string() + ": " + error.code().message());
+  } catch (const std::bad_alloc&) {
+    return fail(kInputError, "the input needs more memory than there is; shorten it, or use another machine");
+  } catch (const std::length_error&) {
+    return fail(kInputError, "the input asks for more memory than a program can have; shorten it");
   } catch (const std::exception& error) {
     return fail(kInternalError, std::string("internal error, please report: ") + error.what());
   }

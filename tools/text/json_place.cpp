@@ -10,17 +10,54 @@ namespace waymark::text {
 
 using Json = nlohmann::ordered_json;
 
+namespace {
+
+[[noreturn]] void fail_at(std::string_view text, std::size_t byte, const std::string& name,
+                          const std::string& why) {
+  const std::string_view before = text.substr(0, byte);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t begin = before.find_last_of('\n') + 1;  // npos + 1 is 0
+  throw InputError(fmt::format("{}:{}:{}: {}", name, line, before.size() - begin + 1, why));
+}
+
+/// Most functions that walk over a document call themselves for each level.
+void check_depth(std::string_view text, const std::string& name) {
+  constexpr int kDeepest = 100;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\') ++i;
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kDeepest)
+      fail_at(text, i, name, fmt::format("lists and objects are nested more than {} deep", kDeepest));
+  }
+}
+
+/// Returns a message of the library without its number.
+std::string reason_of(const Json::exception& error) {
+  constexpr std::size_t kLongest = 200;  // it repeats the text that it has read
+  std::string why = error.what();
+  const std::size_t prefix =
+      why.find(dynamic_cast<const Json::parse_error*>(&error) != nullptr ? ": " : "] ");
+  if (prefix != std::string::npos) why.erase(0, prefix + 2);
+  if (why.size() > kLongest) why = why.substr(0, kLongest) + "...";
+  return why;
+}
+
+}  // namespace
+
 Json parse_json(std::string_view text, const std::string& name) {
+  check_depth(text, name);
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
-    const std::string_view before = text.substr(0, error.byte > 0 ? error.byte - 1 : 0);
-    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    const std::size_t begin = before.find_last_of('\n') + 1;  // npos + 1 is 0
-    std::string why = error.what();
-    const std::size_t colon = why.find(": ");
-    if (colon != std::string::npos) why.erase(0, colon + 2);
-    throw InputError(fmt::format("{}:{}:{}: is no JSON: {}", name, line, before.size() - begin + 1, why));
+    fail_at(text, error.byte > 0 ? error.byte - 1 : 0, name, "is no JSON: " + reason_of(error));
+  } catch (const Json::exception& error) {  // a number beyond a double
+    throw InputError(fmt::format("{}: is no JSON: {}", name, reason_of(error)));
   }
 }
 

@@ -10,7 +10,9 @@
 
 namespace waymark::text {
 
-/// @throws InputError "metrics.json:3:7: is no JSON: ..." @param name name of the file, for errors
+/// @throws InputError "metrics.json:3:7: is no JSON: ...", also for a number that no double holds and
+/// for lists and objects nested more than 100 deep
+/// @param name name of the file, for errors
 [[nodiscard]] nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
 
 /// A value of a document and its place. The document must outlive it. Every function throws

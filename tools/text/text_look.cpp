@@ -1,6 +1,7 @@
 #include <waymark/tools/text/text_look.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace waymark::text {
 namespace {
@@ -44,6 +45,27 @@ bool steers_terminals(std::string_view character) {
   return byte == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0;  // C1: U+0080 to U+009F
 }
 
+/// Returns the size of a sequence of painted() with which the text begins; 0: none.
+std::size_t colour_size(std::string_view text) {
+  for (const std::string_view colour :
+       {"\033[0m", "\033[1m", "\033[2m", "\033[32m", "\033[31m", "\033[33m", "\033[1;31m"})
+    if (text.starts_with(colour)) return colour.size();
+  return 0;
+}
+
+/// Returns the word, or its beginning with "..." and its end; both end with whole characters.
+std::pair<std::string, std::string_view> shown_word(std::string_view word, std::size_t longest) {
+  if (word.size() <= longest) return {std::string(word), {}};
+  const auto continues = [&](std::size_t at) {
+    return (static_cast<unsigned char>(word[at]) & 0xc0U) == 0x80;
+  };
+  std::size_t first = longest / 2;
+  while (first > 0 && continues(first)) --first;
+  std::size_t last = word.size() - (longest - longest / 2 - 3);
+  while (last < word.size() && continues(last)) ++last;
+  return {std::string(word.substr(0, first)) + "...", word.substr(last)};
+}
+
 template <typename Take>
 void for_characters(std::string_view text, const Take& take) {
   for (std::size_t at = 0; at < text.size();) {
@@ -84,6 +106,40 @@ std::string fitted(std::string_view text, std::size_t columns) {
   });
   if (width <= columns) return whole;
   return columns < kCut.size() ? std::string(columns, '.') : start.append(kCut);
+}
+
+std::string without_controls(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    std::string_view part = text.substr(0, std::max(character_size(text), colour_size(text)));
+    text.remove_prefix(part.size());
+    if (part.front() == '\n' || part.front() == '\t' || part.starts_with("\033[") ||
+        !steers_terminals(part)) {
+      out += part;
+      continue;
+    }
+    for (const char c : part) {
+      const auto byte = static_cast<unsigned char>(c);
+      out += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 15U]};
+    }
+  }
+  return out;
+}
+
+std::string shown_message(std::string_view text, std::size_t longest) {
+  const std::string safe = without_controls(text);
+  std::string out;
+  for (std::size_t at = 0; at < safe.size();) {
+    const std::size_t end = std::min(safe.find_first_of(" \n\t", at), safe.size());
+    const std::string_view word(safe.data() + at, end - at);
+    const auto cut = shown_word(word, longest);
+    out.append(cut.first).append(cut.second);
+    if (end < safe.size()) out += safe[end];
+    at = end + 1;
+  }
+  return out;
 }
 
 std::string indented(std::string_view lines, std::size_t spaces) {

@@ -27,6 +27,15 @@ enum class Tone { heading, dim, better, worse, warning, error };
 /// terminals become '?'.
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t columns);
 
+/// Returns text that is safe on a terminal, whatever names and messages from outside it holds: bytes
+/// that control terminals, and those that are no UTF-8, become `\xNN`. The ends of lines, tabs and
+/// the colours of painted() stay.
+[[nodiscard]] std::string without_controls(std::string_view text);
+
+/// Returns a message without controls whose words have at most `longest` bytes. A longer one, such
+/// as a name from a file, loses its middle, because its end may be a place.
+[[nodiscard]] std::string shown_message(std::string_view text, std::size_t longest = 200);
+
 /// Returns the lines, each that is not empty behind so many spaces.
 [[nodiscard]] std::string indented(std::string_view lines, std::size_t spaces);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -66,6 +67,39 @@ std::optional<std::span<const std::byte>> bytes_at_address(std::span<const std::
   return found;
 }
 
+/// Tells whether a segment lies in the file, and at a place where the system can map it.
+bool is_whole(const Elf64_Phdr& segment, std::size_t file_size) {
+  constexpr std::uint64_t kLargest = std::uint64_t{1} << 40U;
+  if (segment.p_offset > file_size || segment.p_filesz > file_size - segment.p_offset) return false;
+  if (segment.p_type != PT_LOAD) return true;
+  const bool aligned =
+      segment.p_align <= 1 || (std::has_single_bit(segment.p_align) &&
+                               segment.p_vaddr % segment.p_align == segment.p_offset % segment.p_align);
+  return aligned && segment.p_filesz <= segment.p_memsz && segment.p_memsz < kLargest &&
+         segment.p_vaddr < kLargest;
+}
+
+/// Returns what is wrong with the table of segments; empty: nothing. Segments that are loaded ascend
+/// and do not overlap; the dynamic section is in one of them.
+std::string flaw_of_segments(std::span<const std::byte> bytes, const Elf64_Ehdr& header) {
+  std::uint64_t end = 0;
+  std::size_t seen = 0;
+  bool dynamic = false;
+  const bool flawed =
+      header.e_phentsize != sizeof(Elf64_Phdr) ||
+      any_of_table<Elf64_Phdr>(bytes, header.e_phoff, header.e_phnum, [&](const Elf64_Phdr& s) {
+        ++seen;
+        const bool loaded = s.p_type == PT_LOAD;
+        if (!is_whole(s, bytes.size()) || (loaded && s.p_vaddr < end)) return true;
+        if (loaded) end = s.p_vaddr + s.p_memsz;
+        if (s.p_type == PT_DYNAMIC)
+          dynamic = bytes_at_address(bytes, header, s.p_vaddr, s.p_filesz).has_value();
+        return false;
+      });
+  if (flawed || seen != header.e_phnum) return "its segments do not lie in the file";
+  return dynamic ? "" : "it has no dynamic section";
+}
+
 bool sets_flush_to_zero_in(std::span<const std::byte> code) {
   constexpr std::array kBits{std::byte{0x40}, std::byte{0x80}, std::byte{0}, std::byte{0}};
   // bytes between the immediate and the instruction that uses it
@@ -101,6 +135,8 @@ ModuleFile::ModuleFile(const std::string& path) {
   if (!shared_object)
     throw UsageError(path +
                      ": is no shared object for this machine; build the plugin with waymark_add_plugin()");
+  if (const std::string flaw = flaw_of_segments(bytes_, *header); !flaw.empty())
+    throw UsageError(path + ": is damaged: " + flaw + "; build the plugin again");
 }
 
 std::optional<std::span<const std::byte>> ModuleFile::symbol(std::string_view name) const {

@@ -164,7 +164,7 @@ void ForeignGraph::express(std::size_t batch, std::size_t edge, ForeignEdge& out
       refuse(place(batch, edge), "cannot hold an edge without information on some axis: it has no covariance",
              "write --format g2o or toro");
     }
-    out.information = 0.5 * (*covariance + covariance->transpose());
+    out.information = *covariance;
   }
 }
 

@@ -7,7 +7,8 @@
 
 namespace waymark::formats {
 
-/// Appends a text. It is quoted if it contains a separator, a quote or a line end.
+/// Appends a text. It is quoted if it contains a separator, a quote or a line end. A text that a
+/// spreadsheet would compute, because it begins with = + - @ and is no number, gets a ' before it.
 void append_csv_text(std::string& out, std::string_view text);
 
 /// Appends a separator and the shortest digits that read back to the same double. The field is

@@ -5,6 +5,8 @@
 
 #include <fmt/compile.h>
 
+#include <waymark/core/base/error.hpp>
+
 namespace waymark::formats {
 namespace {
 
@@ -59,6 +61,7 @@ void TextBuilder::write_number(double value) {
   constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;
   Recent& recent = recent_[(bits * kSpread) >> (64U - kRecentBits)];
   if (recent.bits != bits) {
+    if (!std::isfinite(value)) throw OutputError("a number that is not finite would have been written");
     char* const begin = recent.text.data();
     recent.length = write_shortest(begin, begin + recent.text.size(), value) - begin;
     recent.bits = bits;

@@ -24,6 +24,7 @@ class TextBuilder {
     cursor_ = std::copy(text.begin(), text.end(), cursor_);
     return *this;
   }
+  /// @throws OutputError if the number is not finite: no reader takes it
   TextBuilder& number(double value) {
     separate();
     write_number(value);

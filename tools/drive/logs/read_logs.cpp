@@ -49,8 +49,9 @@ void read_companions(const LogConfig& log, LogRequest& request, std::vector<Inpu
                      std::vector<std::string>& notes) {
   std::map<std::string, std::vector<std::string>> companions = log.companions;
   const std::filesystem::path beside = std::filesystem::path(log.file).parent_path() / "timestamps.txt";
-  if (std::filesystem::is_directory(log.file) && !companions.contains("timestamps") &&
-      std::filesystem::exists(beside)) {
+  std::error_code unknown;  // opening the log will report the error
+  if (std::filesystem::is_directory(log.file, unknown) && !companions.contains("timestamps") &&
+      std::filesystem::exists(beside, unknown)) {
     companions["timestamps"] = {beside.string()};
     notes.push_back(
         fmt::format("{}: time stamps are on the scale of {} (not stated)", log.file, beside.string()));

@@ -14,8 +14,9 @@ namespace waymark::live {
 void use_former_noise(const std::string& path, const TypeRegistry& registry,
                       drive::FusionSettings& settings) {
   (void)registry.gnss_modeling(settings.modeling);  // names an unknown one
-  const std::string file =
-      std::filesystem::is_directory(path) ? (std::filesystem::path(path) / "summary.json").string() : path;
+  std::error_code unknown;
+  const bool folder = std::filesystem::is_directory(path, unknown);
+  const std::string file = folder ? (std::filesystem::path(path) / "summary.json").string() : path;
   const std::string text = formats::read_text_file(file);
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains(settings.modeling) || !json[settings.modeling].contains("noise"))

@@ -81,7 +81,8 @@ void Session::add_output(std::unique_ptr<ReportWriter> writer, std::unique_ptr<B
 
 void Session::use_state_file(const std::string& path) {
   state_file_ = path;
-  if (std::filesystem::exists(path)) estimator_.begin_with(read_state_file(path));
+  std::error_code unknown;
+  if (std::filesystem::exists(path, unknown)) estimator_.begin_with(read_state_file(path));
 }
 
 const drive::Projection* Session::projection() {

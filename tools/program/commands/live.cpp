@@ -79,7 +79,9 @@ void add_output(const std::string& text, const LiveCommand& command, bool may_wa
 /// Logs that are files lie still: they are replayed.
 bool is_replay(const live::Session& session) {
   return std::all_of(session.inputs().begin(), session.inputs().end(), [](const live::Session::Input& input) {
-    return std::filesystem::is_regular_file(input.file) || std::filesystem::is_directory(input.file);
+    std::error_code unknown;
+    return std::filesystem::is_regular_file(input.file, unknown) ||
+           std::filesystem::is_directory(input.file, unknown);
   });
 }
 

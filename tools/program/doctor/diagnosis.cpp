@@ -139,15 +139,12 @@ Json inputs_json(const std::vector<ReadInput>& inputs, const TypeRegistry& regis
   return json;
 }
 
-/// Writes a file into the present folder and removes it.
 Json folder_json(Diagnosis& diagnosis) {
   std::error_code unknown;
   const std::string folder = std::filesystem::current_path(unknown).string();
-  const std::string file = fmt::format(".waymark_doctor_{}", ::getpid());
   std::string problem;
   try {
-    formats::write_file_atomically(file, "written by waymark doctor\n");
-    std::filesystem::remove(file, unknown);
+    formats::try_to_write_in(".");
   } catch (const OutputError& error) {
     problem = error.what();
     worsen(diagnosis, kOutputError, "this folder cannot be written to: " + problem);

@@ -43,14 +43,17 @@ std::vector<std::string> files_in(const std::vector<std::string>& paths,
   };
   std::vector<std::string> files;
   for (const std::string& path : paths) {
-    if (!std::filesystem::is_directory(path) || is_log(path)) {
+    std::error_code unknown;  // opening the file will report the error
+    if (!std::filesystem::is_directory(path, unknown) || is_log(path)) {
       files.push_back(path);
       continue;
     }
     std::vector<std::string> inside;
-    for (const auto& entry : std::filesystem::directory_iterator(path))
-      if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.'))
+    std::error_code unreadable;
+    for (const auto& entry : std::filesystem::directory_iterator(path, unreadable))
+      if (entry.is_regular_file(unknown) && !entry.path().filename().string().starts_with('.'))
         inside.push_back(entry.path().string());
+    if (unreadable) throw InputError(path + ": cannot read the folder: " + unreadable.message());
     std::sort(inside.begin(), inside.end());
     files.insert(files.end(), inside.begin(), inside.end());
   }
@@ -93,7 +96,8 @@ void add_inspection_options(CLI::App& command, InspectCommand& options) {
 void require_new_file(const InspectCommand& command) {
   if (is_stdout(command.output)) return;
   require_output_place(command.output);
-  if (!command.force && std::filesystem::exists(command.output))
+  std::error_code unknown;  // writing will report the error
+  if (!command.force && std::filesystem::exists(command.output, unknown))
     throw OutputError(command.output + ": it exists already; --force replaces it");
 }
 

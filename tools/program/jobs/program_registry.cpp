@@ -70,7 +70,8 @@ fs::path find_plugin(const std::string& wanted, const std::vector<PluginFolder>&
   std::string looked;
   for (const PluginFolder& folder : folders) {
     const fs::path file = fs::path(folder.path) / (wanted + ".so");
-    if (fs::exists(file)) return file;
+    std::error_code unknown;
+    if (fs::exists(file, unknown)) return file;
     looked += (looked.empty() ? "" : ", ") + folder.path;
   }
   throw UsageError("no plugin '" + wanted + "': searched for " + wanted + ".so in " +

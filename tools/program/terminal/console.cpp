@@ -68,10 +68,12 @@ text::TextLook Console::look(bool to_stderr) const {
 void Console::result(const std::string& text, bool to_stderr) const {
   if (options_.quiet && !options_.json) return;
   end_progress();
+  // JSON escapes what it holds
+  const std::string safe = options_.json ? text : text::without_controls(text);
   if (to_stderr) {
-    std::fputs(text.c_str(), stderr);
+    std::fputs(safe.c_str(), stderr);
   } else {
-    formats::write_file_atomically("-", text);
+    formats::write_file_atomically("-", safe);
   }
 }
 
@@ -86,7 +88,7 @@ void Console::note(const std::string& text) const {
 void Console::tell(const std::string& text) const {
   if (options_.quiet) return;
   end_progress();
-  std::fprintf(stderr, "%s\n", text.c_str());
+  std::fprintf(stderr, "%s\n", text::shown_message(text).c_str());
 }
 
 void Console::detail(const std::string& text) const {
@@ -107,8 +109,8 @@ void Console::end_progress() const {
 }
 
 std::string error_line(const std::string& message) {
-  return "waymark: " + text::painted("error:", text::Tone::error, look_of(STDERR_FILENO)) + " " + message +
-         "\n";
+  return "waymark: " + text::painted("error:", text::Tone::error, look_of(STDERR_FILENO)) + " " +
+         text::shown_message(message) + "\n";
 }
 
 std::function<void(const std::string& file, std::uint64_t done, std::uint64_t size)> watch_reading(

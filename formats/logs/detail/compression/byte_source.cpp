@@ -1,15 +1,9 @@
 #include <waymark/formats/logs/detail/compression/byte_source.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <waymark/formats/text/detail/read_failure.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -18,21 +12,12 @@ constexpr std::size_t kInput = 64U << 10U;
 
 }  // namespace
 
-ByteSource::ByteSource(std::string path) : path_(std::move(path)), input_(kInput) {
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) fail_read(path_, errno);
-  struct stat status {};
-  if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode))
-    size_ = static_cast<std::uint64_t>(status.st_size);
+ByteSource::ByteSource(std::string path) : file_(std::move(path)), input_(kInput) {
   // A pipe may give its first bytes one by one.
   std::size_t known = 0;
   while (known < kLongestMagic && !at_end_) known += read_some(std::span(input_).subspan(known));
   waiting_ = std::span<const char>(input_).first(known);
   codec_ = codec_of({waiting_.data(), waiting_.size()});
-}
-
-ByteSource::~ByteSource() {
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 std::string_view ByteSource::next(std::vector<char>& buffer) {
@@ -42,18 +27,10 @@ std::string_view ByteSource::next(std::vector<char>& buffer) {
 
 /// Reads what the file has at the moment. At its end it sets at_end_ and returns 0.
 std::size_t ByteSource::read_some(std::span<char> buffer) {
-  while (true) {
-    const ssize_t count = ::read(descriptor_, buffer.data(), buffer.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      const int error = errno;
-      ::close(std::exchange(descriptor_, -1));
-      fail_read(path_, error);
-    }
-    at_end_ = count == 0;
-    done_ += static_cast<std::uint64_t>(count);
-    return static_cast<std::size_t>(count);
-  }
+  const std::size_t count = file_.read(buffer);
+  at_end_ = count == 0;
+  done_ += count;
+  return count;
 }
 
 std::size_t ByteSource::read_all(std::span<char> buffer) {

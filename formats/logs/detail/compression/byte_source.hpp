@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <waymark/formats/logs/detail/compression/codec.hpp>
+#include <waymark/formats/text/detail/input_file.hpp>
 
 namespace waymark::formats {
 
@@ -19,7 +20,6 @@ class ByteSource {
   explicit ByteSource(std::string path);
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
-  ~ByteSource();
 
   /// Returns the next bytes, as many as the buffer holds unless it is the end. Empty at the end, and
   /// if a compressed file is cut off or damaged (see trouble()).
@@ -29,7 +29,7 @@ class ByteSource {
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
   /// Bytes of the file on the disk: read so far, and in all (0: not known).
   [[nodiscard]] std::uint64_t done() const { return done_; }
-  [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[nodiscard]] std::uint64_t size() const { return file_.size().value_or(0); }
 
  private:
   [[nodiscard]] std::size_t read_some(std::span<char> buffer);
@@ -37,9 +37,8 @@ class ByteSource {
   [[nodiscard]] std::size_t copy(std::span<char> buffer);
   [[nodiscard]] std::size_t uncompress(std::span<char> buffer);
 
-  std::string path_;
-  int descriptor_ = -1;
-  std::uint64_t size_ = 0, done_ = 0;
+  InputFile file_;
+  std::uint64_t done_ = 0;
   std::vector<char> input_;
   std::span<const char> waiting_;  ///< bytes of the file that are not used yet
   std::unique_ptr<Codec> codec_;   ///< null: the file is not compressed
