@@ -75,6 +75,36 @@ TEST_CASE("live: a replay says the same at any speed") {
   }
 }
 
+TEST_CASE("live: a replay of two odometries and a receiver says the same at twenty times real time") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "two-odometries", "--duration", "60", "-o", folder + "d"}).code == 0);
+  const std::string drive = folder + "d/drive.yaml";
+  const RunResult result = run({"live", drive, "-o", "json:" + folder + "max.jsonl", "--json"});
+  REQUIRE(result.code == 0);
+  const Json summary = Json::parse(result.out, nullptr, false);
+  CHECK(summary.at("taken").at("wheels").get<int>() > 1000);
+  CHECK(summary.at("taken").at("visual").get<int>() > 100);
+  CHECK(summary.at("failures") == 0);
+  REQUIRE(run({"live", drive, "-o", "json:" + folder + "paced.jsonl", "--speed", "20"}).code == 0);
+  CHECK(read_text(folder + "paced.jsonl") == read_text(folder + "max.jsonl"));
+}
+
+TEST_CASE("live: the report has the way, the radius and the histogram of latencies") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "urban", "--duration", "60", "-o", folder + "d"}).code == 0);
+  REQUIRE(run({"live", folder + "d/drive.yaml", "-o", "json:" + folder + "a.jsonl", "--report", folder + "r"})
+              .code == 0);
+  CHECK(contains(read_text(folder + "r/report.html"), "99.9 %"));
+  CHECK(!read_text(folder + "r/figures/report-way.svg").empty());
+  CHECK(!read_text(folder + "r/figures/report-radius.svg").empty());
+  // The shares of each histogram are all of it.
+  double sum = 0;
+  const std::vector<std::string> rows = lines_of(read_text(folder + "r/figures/report-latency.csv"));
+  for (const std::string& row : rows)
+    if (row.rfind("solve,", 0) == 0) sum += std::stod(row.substr(row.find(',', row.find(',') + 1) + 1));
+  CHECK(sum == Approx(100).margin(0.1));
+}
+
 TEST_CASE("live: sentences of NMEA have right checksums and the places of the poses") {
   const std::string folder = fresh_folder();
   REQUIRE(run({"simulate", "--preset", "urban", "--duration", "40", "-o", folder + "d"}).code == 0);

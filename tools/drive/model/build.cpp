@@ -207,10 +207,17 @@ void GraphBuilder::add_motion(const DrivePart& part, std::size_t joint) {
 }
 
 std::vector<VertexIndex> GraphBuilder::track_of(const MotionRun& run) {
-  const std::optional<Eigen::Matrix3d>& tie = relative_[run.source].tie_information;
+  Relative& source = relative_[run.source];
+  const std::optional<Eigen::Matrix3d>& tie = source.tie_information;
   std::vector<VertexIndex> track;
   for (std::size_t i = 0; i < run.nodes.size(); ++i) {
     const VertexIndex node = poses_[run.nodes[i]];
+    if (i == 0 && source.end && source.end->first == stamps_[run.nodes[i]]) {
+      if (const std::optional<VertexIndex> end = graph_.find(source.end->second)) {
+        track.push_back(*end);
+        continue;
+      }
+    }
     if (!tie || run.beside[i] == 0) {
       track.push_back(node);
       continue;
@@ -222,6 +229,7 @@ std::vector<VertexIndex> GraphBuilder::track_of(const MotionRun& run) {
     graph_.add_edge(EdgeSe2{}, {node, beside}, share_s * *tie);
     track.push_back(beside);
   }
+  source.end = {stamps_[run.nodes.back()], graph_.id(track.back())};
   return track;
 }
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <waymark/core/registry/registry.hpp>
@@ -110,6 +111,8 @@ class GraphBuilder {
     /// of the ties between its track and the nodes; empty if it joins the nodes themselves
     std::optional<Eigen::Matrix3d> tie_information;
     std::optional<Loss> loss;
+    /// where its track ends: the stamp of the node, and the pose at it or beside it
+    std::optional<std::pair<Stamp, VertexId>> end{};
   };
   struct Absolute {
     AbsoluteGroup group;
@@ -119,7 +122,8 @@ class GraphBuilder {
   void add_nodes(const DrivePart& part);
   void add_first_pose();
   void add_motion(const DrivePart& part, std::size_t joint);
-  /// Returns the poses of a run: the nodes, or poses beside them.
+  /// Returns the poses of a run: the nodes, or poses beside them. A run that begins where the last one of
+  /// its source ended goes on from there.
   [[nodiscard]] std::vector<VertexIndex> track_of(const MotionRun& run);
   void add_fixes(const std::vector<Fix>& fixes, const std::vector<FixMoment>& moments);
   [[nodiscard]] std::size_t absolute_of(int source) const;

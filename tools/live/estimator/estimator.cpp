@@ -62,10 +62,9 @@ Estimator::Estimator(drive::DriveDescription description, const drive::FusionSet
       settings_(drive::decided(settings, registry)),
       live_(live),
       registry_(registry),
-      intake_(live.reorder_s, live.longest_gap_s) {
-  if (description_.odometry.size() != 1)
-    throw UsageError("live fusion takes one odometry; the drive has " +
-                     std::to_string(description_.odometry.size()));
+      intake_(live.reorder_s, live.longest_gap_s),
+      odometries_(description_.odometry.size(), description_.timeline.gap_s) {
+  if (description_.odometry.empty()) throw UsageError("live fusion needs an odometry");
   if (description_.gnss.empty()) throw UsageError("live fusion needs a receiver");
   standstill_mps_ =
       drive::make_odometry_model(drive::for_relative(settings_, description_.odometry.front().name),
@@ -85,6 +84,8 @@ void Estimator::begin_with(const WarmStart& start) {
 
 std::string Estimator::source_of(const Sample& sample) const {
   if (std::holds_alternative<OdometrySample>(sample)) return description_.odometry.front().name;
+  if (const auto* further = std::get_if<FurtherOdometry>(&sample))
+    return description_.odometry[further->source].name;
   if (const auto* reading = std::get_if<SensorReading>(&sample)) {
     const drive::SensorConfig& sensor = description_.sensors[reading->sensor];
     return sensor.source.empty() ? sensor.name : sensor.source;
@@ -109,6 +110,11 @@ void Estimator::refuse(const Sample& sample, const std::string& reason, const st
 void Estimator::take(Sample sample) {
   if (auto* odometry = std::get_if<OdometrySample>(&sample)) {
     odometry->stamp = odometry->stamp.later(-description_.odometry.front().speed_delay_s);
+  } else if (auto* further = std::get_if<FurtherOdometry>(&sample)) {
+    if (further->source == 0 || further->source >= description_.odometry.size())
+      throw UsageError("a sample names the odometry " + std::to_string(further->source) +
+                       ", which is no further one");
+    further->stamp = further->stamp.later(-description_.odometry[further->source].speed_delay_s);
   } else if (auto* fix = std::get_if<GeodeticFix>(&sample)) {
     if (fix->source < 0 || static_cast<std::size_t>(fix->source) >= description_.gnss.size())
       throw UsageError("a fix names the receiver " + std::to_string(fix->source) + ", which does not exist");
@@ -165,6 +171,7 @@ void Estimator::work() {
     reset("jump", fmt::format("the clock of the odometry has jumped by {:.3f} s",
                               seconds_between(jump->from, jump->to)));
     odometry_.clear();
+    odometries_.clear();
     fixes_.clear();
     pending_.clear();
     receivers_.clear();
@@ -172,7 +179,9 @@ void Estimator::work() {
   }
   while (std::optional<Sample> sample = intake_.next()) {
     if (const auto* odometry = std::get_if<OdometrySample>(&*sample)) {
-      advance(*odometry);
+      hear(0, *odometry);
+    } else if (const auto* further = std::get_if<FurtherOdometry>(&*sample)) {
+      hear(further->source, {further->stamp, further->speed_mps, further->yaw_rate_radps});
     } else {
       pending_.push_back(std::move(*sample));
       if (!odometry_.empty() && stamp_of(pending_.back()) <= now_) use_pending();
@@ -196,8 +205,29 @@ void Estimator::use_pending() {
   for (Sample& sample : later) pending_.push_back(std::move(sample));
 }
 
-void Estimator::advance(const OdometrySample& sample) {
-  counts_.taken[description_.odometry.front().name] += 1;
+void Estimator::hear(std::size_t source, const OdometrySample& sample) {
+  const std::string& name = description_.odometry[source].name;
+  counts_.taken[name] += 1;
+  if (!has_several_odometries()) return advance(0, sample);
+  if (!odometries_.take(source, sample)) {
+    counts_.taken[name] -= 1;
+    refuse(FurtherOdometry{sample.stamp, source, 0, 0}, "late",
+           "a sample is older than others of its source");
+    return;
+  }
+  const std::optional<Stamp> last = odometry_.empty() ? std::nullopt : std::optional(now_);
+  for (const OdometrySample& node : odometries_.nodes(source, last)) {
+    const std::size_t before = odometry_.empty() ? source : odometry_.back().giver;
+    if (before != source) say("odometry", name, "the nodes come from here now");
+    odometries_.made_node(source, node.stamp);
+    advance(source, node);
+  }
+  if (!window_) return;
+  for (const MeasuredWay& way : odometries_.ways(window_->stamps(), odometry_.back().giver, grid_scale_))
+    window_->add_way(way);
+}
+
+void Estimator::advance(std::size_t source, const OdometrySample& sample) {
   const bool first = odometry_.empty();
   if (!first && seconds_between(now_, sample.stamp) > live_.longest_gap_s) {
     reset("reset", fmt::format("no odometry for {:.1f} s", seconds_between(now_, sample.stamp)));
@@ -205,10 +235,10 @@ void Estimator::advance(const OdometrySample& sample) {
     fixes_.clear();
   }
   if (odometry_.empty()) {
-    odometry_.push_back({sample, Eigen::Vector3d::Zero(), 0});
+    odometry_.push_back({sample, source, Eigen::Vector3d::Zero(), 0});
     now_ = sample.stamp;
   } else {
-    add_motion(sample);
+    add_motion(source, sample);
   }
   // A short window is no reason to look back less for the heading.
   const double kept_s = window_ ? live_.window_s + kLongestStretch : std::max(live_.window_s, kLooksBack);
@@ -229,11 +259,13 @@ void Estimator::advance(const OdometrySample& sample) {
 
 // Between two samples the motion is the mean of both. In a gap fixes have nodes of their own, because the
 // nearest sample may be seconds away.
-void Estimator::add_motion(const OdometrySample& sample) {
+void Estimator::add_motion(std::size_t source, const OdometrySample& sample) {
   const Reckoned& last = odometry_.back();
-  const Interval whole = drive::motion_between(last.sample, sample, grid_scale_, description_.timeline.gap_s);
+  Interval whole = drive::motion_between(last.sample, sample, grid_scale_, description_.timeline.gap_s);
+  if (last.giver != source && !whole.bridged)
+    whole = odometries_.between(source, last.sample.stamp, sample.stamp, grid_scale_);
   const Eigen::Vector3d way = way_of(whole, standstill_mps_);
-  Reckoned next{sample, moved(last.pose, way), last.way_m + std::abs(way[0])};
+  Reckoned next{sample, source, moved(last.pose, way), last.way_m + std::abs(way[0])};
   std::vector<Stamp> ends;
   if (whole.bridged)
     for (const Sample& waiting : pending_)
@@ -247,7 +279,7 @@ void Estimator::add_motion(const OdometrySample& sample) {
     now_ = end;
     if (!window_) continue;
     const Eigen::Vector3d before = window_->newest_pose();
-    window_->add_node(end, part);
+    window_->add_node(end, part, whole.bridged ? 0 : source);
     smooth_ = compose(to_pose(smooth_), between(to_pose(before), to_pose(window_->newest_pose()))).vector();
   }
   odometry_.push_back(std::move(next));
@@ -288,7 +320,7 @@ Estimator::Reckoned Estimator::reckoned_at(Stamp stamp) const {
       drive::motion_between(before.sample, after->sample, grid_scale_, description_.timeline.gap_s);
   part.dt_s = seconds_between(before.sample.stamp, stamp);
   const Eigen::Vector3d way = way_of(part, standstill_mps_);
-  return {before.sample, moved(before.pose, way), before.way_m + std::abs(way[0])};
+  return {before.sample, before.giver, moved(before.pose, way), before.way_m + std::abs(way[0])};
 }
 
 /// Tells whether the receiver repeats a position while the vehicle moves away from it.
@@ -459,9 +491,11 @@ PlacedStretch Estimator::stretch() const {
   PlacedStretch stretch;
   drive::Timeline timeline;
   for (const Reckoned& node : odometry_) timeline.stamps.push_back(node.sample.stamp);
-  for (std::size_t i = 1; i < odometry_.size(); ++i)
+  for (std::size_t i = 1; i < odometry_.size(); ++i) {
     timeline.intervals.push_back(drive::motion_between(odometry_[i - 1].sample, odometry_[i].sample,
                                                        grid_scale_, description_.timeline.gap_s));
+    stretch.givers.push_back(timeline.intervals.back().bridged ? 0 : odometry_[i].giver);
+  }
   std::vector<Fix> fixes(fixes_.begin(), fixes_.end());
   for (const Fix& fix : fixes) {
     const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};
@@ -477,7 +511,7 @@ PlacedStretch Estimator::stretch() const {
 
 void Estimator::begin_window(const PlacedStretch& stretch, std::optional<drive::FirstPose> first_pose) {
   drive::DriveFacts facts;
-  facts.relative = {description_.odometry.front().name};
+  for (const drive::OdometryConfig& odometry : description_.odometry) facts.relative.push_back(odometry.name);
   facts.antenna_m = description_.gnss.front().antenna_m;
   facts.gap_noise_factor = description_.timeline.gap_noise_factor;
   facts.first_pose = std::move(first_pose);
@@ -536,9 +570,11 @@ void Estimator::align_warm() {
     const Eigen::Vector3d way = between(to_pose(odometry_.front().pose), to_pose(node.pose)).vector();
     placed.poses.push_back(compose(to_pose(pose), to_pose(way)).vector());
   }
-  for (std::size_t i = 1; i < odometry_.size(); ++i)
+  for (std::size_t i = 1; i < odometry_.size(); ++i) {
     placed.intervals.push_back(drive::motion_between(odometry_[i - 1].sample, odometry_[i].sample,
                                                      grid_scale_, description_.timeline.gap_s));
+    placed.givers.push_back(placed.intervals.back().bridged ? 0 : odometry_[i].giver);
+  }
   placed.fixes.assign(fixes_.begin(), fixes_.end());
   drive::FirstPose first;
   first.position = pose.head<2>();
@@ -616,7 +652,7 @@ void Estimator::publish(bool corrected) {
 }
 
 void Estimator::publish_place(const Fix& fix) {
-  judge_state();
+  if (!window_) judge_state();  // with one it is lost, until the odometry is back
   constexpr double kRadius95 = 2.4477468306808161;
   LivePose pose;
   pose.stamp = fix.stamp;

@@ -22,6 +22,7 @@
 #include <waymark/tools/drive/description/drive_description.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/live/estimator/intake.hpp>
+#include <waymark/tools/live/estimator/odometries.hpp>
 #include <waymark/tools/live/estimator/reports.hpp>
 #include <waymark/tools/live/estimator/settings.hpp>
 #include <waymark/tools/live/estimator/window.hpp>
@@ -80,6 +81,7 @@ class Estimator {
   /// A sample of the odometry and the dead reckoning up to it, from anywhere.
   struct Reckoned {
     OdometrySample sample;
+    std::size_t giver = 0;  // the odometry that measured it
     Eigen::Vector3d pose = Eigen::Vector3d::Zero();
     double way_m = 0;
   };
@@ -94,8 +96,10 @@ class Estimator {
   };
 
   void work();
-  void advance(const OdometrySample& sample);
-  void add_motion(const OdometrySample& sample);
+  void hear(std::size_t source, const OdometrySample& sample);
+  void advance(std::size_t source, const OdometrySample& sample);
+  void add_motion(std::size_t source, const OdometrySample& sample);
+  [[nodiscard]] bool has_several_odometries() const { return description_.odometry.size() > 1; }
   void use_pending();
   void use(const GeodeticFix& fix);
   void use(const SensorReading& reading);
@@ -130,6 +134,7 @@ class Estimator {
   LiveSettings live_;
   const TypeRegistry& registry_;
   Intake intake_;
+  Odometries odometries_;
   std::unique_ptr<Window> window_;
   std::optional<Frame> frame_;
   std::optional<drive::Projection> projection_;

@@ -21,8 +21,13 @@ bool is_finite(const SensorReading&) {
   return true;  // NaN stands for a value that a row does not have
 }
 
+bool is_finite(const FurtherOdometry& sample) {
+  return std::isfinite(sample.speed_mps) && std::isfinite(sample.yaw_rate_radps);
+}
+
 std::size_t order_of(const Sample& sample) {
   if (std::holds_alternative<OdometrySample>(sample)) return 0;
+  if (const auto* further = std::get_if<FurtherOdometry>(&sample)) return 500 + further->source;
   if (const auto* reading = std::get_if<SensorReading>(&sample)) return 1 + reading->sensor;
   return 1000 + static_cast<std::size_t>(std::get<GeodeticFix>(sample).source);
 }
@@ -54,8 +59,8 @@ Arrival Intake::take_odometry(const OdometrySample& sample) {
   const bool plausible = !newest_ || (ahead_s <= longest_gap_s_ && ahead_s > -std::max(1.0, reorder_s_));
   if (plausible) {
     suspended_.clear();
-    if (released_ && sample.stamp <= *released_)
-      return sample.stamp == *released_ ? Arrival::duplicate : Arrival::late;
+    if (released_odometry_ && sample.stamp <= *released_odometry_)
+      return sample.stamp == *released_odometry_ ? Arrival::duplicate : Arrival::late;
     if (is_duplicate(sample, 0)) return Arrival::duplicate;
     insert(sample, 0);
     newest_ = newest_ ? std::max(*newest_, sample.stamp) : sample.stamp;
@@ -72,14 +77,31 @@ Arrival Intake::take_odometry(const OdometrySample& sample) {
   std::erase_if(waiting_, [&](const Waiting& other) { return other.order == 0 || other.stamp < jump_->to; });
   late_.clear();
   released_.reset();
+  released_odometry_.reset();
   newest_ = suspended_.back().stamp;
   for (const OdometrySample& kept : std::exchange(suspended_, {})) insert(kept, 0);
+  return Arrival::taken;
+}
+
+// A further odometry keeps the time going while the first one is silent, but no stamp of it moves the clock by
+// more than a gap.
+Arrival Intake::take_further(const FurtherOdometry& sample) {
+  if (newest_) {
+    const double ahead_s = seconds_between(*newest_, sample.stamp);
+    if (ahead_s > longest_gap_s_) return Arrival::future;
+    if (ahead_s <= -std::max(1.0, reorder_s_)) return Arrival::late;
+  }
+  const std::size_t order = order_of(sample);
+  if (is_duplicate(sample, order)) return Arrival::duplicate;
+  insert(sample, order);
+  newest_ = newest_ ? std::max(*newest_, sample.stamp) : sample.stamp;
   return Arrival::taken;
 }
 
 Arrival Intake::take(Sample sample) {
   if (!std::visit([](const auto& of) { return is_finite(of); }, sample)) return Arrival::not_finite;
   if (const auto* odometry = std::get_if<OdometrySample>(&sample)) return take_odometry(*odometry);
+  if (const auto* further = std::get_if<FurtherOdometry>(&sample)) return take_further(*further);
   const Stamp stamp = stamp_of(sample);
   const std::size_t order = order_of(sample);
   if (newest_ && seconds_between(*newest_, stamp) > kFuture) return Arrival::future;
@@ -108,7 +130,8 @@ std::optional<Sample> Intake::next() {
   if (!finished_ && seconds_between(waiting_.front().stamp, *newest_) < reorder_s_) return std::nullopt;
   Waiting first = std::move(waiting_.front());
   waiting_.pop_front();
-  released_ = first.stamp;
+  released_ = released_ ? std::max(*released_, first.stamp) : first.stamp;
+  if (first.order == 0) released_odometry_ = first.stamp;
   return std::move(first.sample);
 }
 

@@ -1,6 +1,6 @@
 /// Samples in order of time, whatever the order of their arrival within a stated bound.
 ///
-/// Time is what the stamps of the odometry say. A sample is released when the odometry is later by the
+/// Time is what the stamps of the odometries say. A sample is released when the odometry is later by the
 /// bound. So no sample of another source can move the time: one stamp in the future waits, and does no
 /// harm.
 #pragma once
@@ -23,7 +23,15 @@ struct SensorReading {
   std::vector<double> values;
 };
 
-using Sample = std::variant<OdometrySample, GeodeticFix, SensorReading>;
+/// A sample of a further odometry. An OdometrySample is one of the first.
+struct FurtherOdometry {
+  Stamp stamp;
+  std::size_t source = 1;  ///< index in DriveDescription::odometry
+  double speed_mps = 0;
+  double yaw_rate_radps = 0;
+};
+
+using Sample = std::variant<OdometrySample, GeodeticFix, SensorReading, FurtherOdometry>;
 [[nodiscard]] Stamp stamp_of(const Sample& sample);
 
 /// What the intake does with a sample.
@@ -65,6 +73,7 @@ class Intake {
     std::size_t order;  // samples of one stamp: odometry, sensors, fixes by source
   };
   Arrival take_odometry(const OdometrySample& sample);
+  Arrival take_further(const FurtherOdometry& sample);
   void insert(Sample sample, std::size_t order);
   [[nodiscard]] bool is_duplicate(const Sample& sample, std::size_t order) const;
 
@@ -74,6 +83,7 @@ class Intake {
   std::deque<Sample> late_;
   std::optional<Stamp> newest_;    // of the odometry
   std::optional<Stamp> released_;  // of the last one
+  std::optional<Stamp> released_odometry_;
   std::vector<OdometrySample> suspended_;
   std::optional<ClockJump> jump_;
   bool finished_ = false;

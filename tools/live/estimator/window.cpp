@@ -19,16 +19,37 @@ Window::Window(drive::DriveFacts facts, std::vector<drive::PreparedSensor> senso
                const drive::FusionSettings& settings, const TypeRegistry& registry)
     : sensors_(std::move(sensors)),
       registry_(registry),
+      several_odometries_(facts.relative.size() > 1),
       builder_(std::move(facts), sensors_, settings, registry),
       graph_(builder_.graph()),
       solver_(graph_) {}
 
+namespace {
+
+/// Returns the intervals by the odometry that they come from.
+std::vector<drive::MotionRun> runs_of(const PlacedStretch& stretch) {
+  std::vector<drive::MotionRun> runs;
+  for (std::size_t i = 0; i < stretch.intervals.size(); ++i) {
+    if (runs.empty() || runs.back().source != stretch.givers[i])
+      runs.push_back({.source = stretch.givers[i], .nodes = {i}, .intervals = {}, .beside = {0}});
+    runs.back().nodes.push_back(i + 1);
+    runs.back().intervals.push_back(stretch.intervals[i]);
+    runs.back().beside.push_back(0);
+  }
+  return runs;
+}
+
+}  // namespace
+
 bool Window::begin(const PlacedStretch& stretch) {
+  std::vector<drive::MotionRun> runs;
+  if (several_odometries_) runs = runs_of(stretch);
   builder_.extend({.stamps = stretch.stamps,
                    .poses = stretch.poses,
                    .intervals = stretch.intervals,
                    .fixes = {},
-                   .fix_nodes = {}});
+                   .fix_nodes = {},
+                   .runs = runs});
   std::map<int, std::vector<Fix>> by_source;
   for (const Fix& fix : stretch.fixes) by_source[fix.source].push_back(fix);
   for (const Fix& fix : stretch.fixes) add_fix(fix, claimed_accuracies(by_source[fix.source]));
@@ -68,17 +89,43 @@ void Window::extend(const drive::DrivePart& part) {
   readings_wait_ = false;
 }
 
-void Window::add_node(Stamp stamp, const Interval& interval) {
+void Window::add_node(Stamp stamp, const Interval& interval, std::size_t giver) {
   const Eigen::Vector3d from = newest_pose();
   const Eigen::Vector3d twist(interval.speed_mps * interval.dt_s, 0, interval.yaw_rate_radps * interval.dt_s);
   const Eigen::Vector3d to = compose(Pose2<double>(from[0], from[1], from[2]), se2_exp(twist)).vector();
+  const std::size_t last = poses() - 1;
+  drive::MotionRun run;
+  if (several_odometries_)
+    run = {.source = giver, .nodes = {last, last + 1}, .intervals = {interval}, .beside = {0, 0}};
   predictor_.mark(graph_);
   extend({.stamps = std::span(&stamp, 1),
           .poses = std::span(&to, 1),
           .intervals = std::span(&interval, 1),
           .fixes = {},
-          .fix_nodes = {}});
+          .fix_nodes = {},
+          .runs = std::span(&run, several_odometries_ ? 1 : 0)});
   predictor_.follow(graph_, builder_.nodes().poses.back());
+}
+
+void Window::add_way(const MeasuredWay& way) {
+  const std::span<const Stamp> nodes = stamps();
+  const auto index = [&](Stamp stamp) {
+    return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), stamp) - nodes.begin());
+  };
+  const drive::MotionRun run{.source = way.source,
+                             .nodes = {index(way.from), index(way.to)},
+                             .intervals = {way.interval},
+                             .beside = {1, 1}};
+  const auto first = static_cast<VertexIndex>(graph_.vertex_count());
+  predictor_.mark(graph_);
+  extend(
+      {.stamps = {}, .poses = {}, .intervals = {}, .fixes = {}, .fix_nodes = {}, .runs = std::span(&run, 1)});
+  // Poses beside the nodes are eliminated at their time. Without a stamp they would come last, all together.
+  std::vector<VertexIndex> beside;
+  for (auto v = first; v < static_cast<VertexIndex>(graph_.vertex_count()); ++v)
+    if (graph_.vertex_type(v).position != nullptr && !graph_.stamp(v)) beside.push_back(v);
+  for (const VertexIndex v : beside) graph_.set_stamp(v, v == beside.back() ? way.to : way.from);
+  predictor_.settle(graph_, first);
 }
 
 void Window::add_fix(const Fix& fix, const ClaimedAccuracies& claimed) {

@@ -15,6 +15,7 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/core/window/window_solver.hpp>
 #include <waymark/tools/drive/model/build.hpp>
+#include <waymark/tools/live/estimator/odometries.hpp>
 #include <waymark/tools/live/estimator/predictor.hpp>
 
 namespace waymark::live {
@@ -24,7 +25,8 @@ struct PlacedStretch {
   std::vector<Stamp> stamps;
   std::vector<Eigen::Vector3d> poses;
   std::vector<Interval> intervals;
-  std::vector<Fix> fixes;  ///< accepted ones, in order of time
+  std::vector<std::size_t> givers;  ///< the odometry of each interval
+  std::vector<Fix> fixes;           ///< accepted ones, in order of time
 };
 
 /// What is known of states before the first measurement, from a former run.
@@ -49,8 +51,11 @@ class Window {
   /// Adds what is known of the open states. Call it after begin().
   void add_known(std::span<const KnownState> states);
 
-  /// Adds a node at the end of an interval, at its predicted pose.
-  void add_node(Stamp stamp, const Interval& interval);
+  /// Adds a node at the end of an interval, at its predicted pose. @param giver the odometry of the interval
+  void add_node(Stamp stamp, const Interval& interval, std::size_t giver);
+  /// Adds what an odometry measured beside the one that gives the nodes. The prediction does not use it, the
+  /// next solution does.
+  void add_way(const MeasuredWay& way);
   /// Adds a fix to the nearest node. Its stamp may be any within the window.
   void add_fix(const Fix& fix, const ClaimedAccuracies& claimed);
   /// Adds readings of a sensor. @param sensor index in those of the constructor
@@ -63,6 +68,7 @@ class Window {
   /// @returns the removed ones at their last values
   [[nodiscard]] std::vector<StampedPose> drop_before(Stamp moment);
 
+  [[nodiscard]] std::span<const Stamp> stamps() const { return builder_.nodes().stamps; }
   [[nodiscard]] Stamp oldest() const { return builder_.nodes().stamps.front(); }
   [[nodiscard]] Stamp newest() const { return builder_.nodes().stamps.back(); }
   [[nodiscard]] Eigen::Vector3d newest_pose() const;
@@ -80,6 +86,7 @@ class Window {
 
   std::vector<drive::PreparedSensor> sensors_;  // each with the readings that wait for the next part
   const TypeRegistry& registry_;
+  bool several_odometries_;
   drive::GraphBuilder builder_;
   Graph& graph_;
   WindowSolver solver_;

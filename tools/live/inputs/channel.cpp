@@ -8,12 +8,13 @@
 namespace waymark::live {
 
 Channel::Channel(Role role, const drive::LogConfig& log, std::size_t index, TimeScale scale,
-                 OdometryStream& parts, const TypeRegistry& registry)
+                 OdometryStream& parts, std::size_t odometry, const TypeRegistry& registry)
     : role_(role),
       log_(log),
       index_(index),
       scale_(scale),
       parts_(parts),
+      odometry_(odometry),
       chosen_(drive::choose_reader(log, registry)),
       decoder_(chosen_.type.reader->open(log.file, chosen_.request)) {}
 
@@ -32,13 +33,18 @@ std::vector<Sample> Channel::pause(const drive::Projection* projection) {
   return collect(projection);
 }
 
+Sample Channel::labelled(const OdometrySample& sample) const {
+  if (odometry_ == 0) return sample;
+  return FurtherOdometry{sample.stamp, odometry_, sample.speed_mps, sample.yaw_rate_radps};
+}
+
 std::vector<Sample> Channel::collect(const drive::Projection* projection) {
   LogData& data = decoder_->data();
   const TimeScale own = chosen_.request.time_scale;
   std::vector<Sample> samples;
   for (OdometrySample& sample : std::exchange(data.odometry, {})) {
     sample.stamp = convert(sample.stamp, own, scale_);
-    samples.emplace_back(sample);
+    samples.push_back(labelled(sample));
   }
   for (GeodeticFix& fix : std::exchange(data.fixes, {})) {
     fix.stamp = convert(fix.stamp, own, scale_);
@@ -51,7 +57,7 @@ std::vector<Sample> Channel::collect(const drive::Projection* projection) {
   std::swap(rows, data.readings);
   if (role_ == Role::odometry) {
     for (Stamp& stamp : rows.stamps) stamp = convert(stamp, own, scale_);
-    for (const OdometrySample& sample : parts_.take(index_, rows)) samples.emplace_back(sample);
+    for (const OdometrySample& sample : parts_.take(index_, rows)) samples.push_back(labelled(sample));
   } else if (role_ == Role::sensor && projection != nullptr) {
     drive::DriveLogs::Log log;
     log.scale = own;

@@ -23,9 +23,10 @@ class Channel {
   /// @param log as in the description, resolved (drive::resolve_sensors)
   /// @param index of the receiver or of the sensor; of the log among those of the odometry
   /// @param parts the odometry that is assembled from parts; it outlives the channel
+  /// @param odometry index of the odometry that the log belongs to
   /// @throws InputError for a format that is unknown or cannot be recognised
   Channel(Role role, const drive::LogConfig& log, std::size_t index, TimeScale scale, OdometryStream& parts,
-          const TypeRegistry& registry);
+          std::size_t odometry, const TypeRegistry& registry);
 
   /// Decodes a piece. @param projection of the frame, once it is known
   /// @throws InputError for errors that concern the whole stream
@@ -40,6 +41,7 @@ class Channel {
   [[nodiscard]] const std::vector<std::string>& notes() const { return chosen_.notes; }
 
  private:
+  [[nodiscard]] Sample labelled(const OdometrySample& sample) const;
   [[nodiscard]] std::vector<Sample> collect(const drive::Projection* projection);
 
   Role role_;
@@ -47,6 +49,7 @@ class Channel {
   std::size_t index_;
   TimeScale scale_;
   OdometryStream& parts_;
+  std::size_t odometry_;
   drive::ChosenReader chosen_;
   std::unique_ptr<LogDecoder> decoder_;
 };

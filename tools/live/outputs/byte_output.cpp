@@ -150,14 +150,15 @@ void ByteOutput::write(const std::string& lines) {
       (void)::send(clients_.front().descriptor, lines.data(), lines.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     return;
   }
+  const auto is_full = [&](const Client& client) {
+    return client.waiting.size() + lines.size() > kBytesKept;
+  };
+  // It may accept clients and lose some, so it comes before the loop over them.
+  if (may_wait_ && std::any_of(clients_.begin(), clients_.end(), is_full)) flush();
   for (Client& client : clients_) {
-    if (client.waiting.size() + lines.size() > kBytesKept) {
-      if (may_wait_) {
-        flush();
-      } else {
-        dropped_ += static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'));
-        continue;
-      }
+    if (is_full(client) && !may_wait_) {
+      dropped_ += static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'));
+      continue;
     }
     client.waiting += lines;
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <waymark/tools/live/inputs/address.hpp>
@@ -21,6 +22,8 @@ class ByteOutput {
   ByteOutput(const ByteOutput&) = delete;
   ByteOutput& operator=(const ByteOutput&) = delete;
 
+  /// Changes the header for readers that connect from now on, and for files that are opened again.
+  void use_header(std::string header) { header_ = std::move(header); }
   /// Takes lines, and sends what its readers accept.
   void write(const std::string& lines);
   /// Accepts clients, and sends what waits. Call it now and then.

@@ -36,15 +36,16 @@ double course_deg(double heading_rad, double convergence_rad) {
 
 class JsonWriter final : public ReportWriter {
  public:
+  [[nodiscard]] std::string header() const override { return frame_line_; }
   [[nodiscard]] std::string write(const Report& report, const Surroundings& around) override {
     std::string lines;
-    if (around.projection != nullptr && !frame_told_) {
+    if (around.projection != nullptr && frame_line_.empty()) {
       const Frame& frame = around.projection->frame();
       lines = fmt::format(
           "{{\"kind\":\"frame\",\"schema\":\"waymark-live\",\"version\":1,\"time_scale\":\"{}\",\"zone\":{},"
           "\"north\":{},\"origin_easting_m\":{},\"origin_northing_m\":{}}}\n",
           to_string(around.scale), frame.zone, frame.north, frame.origin_easting_m, frame.origin_northing_m);
-      frame_told_ = true;
+      frame_line_ = lines;
     }
     return lines + std::visit([&](const auto& one) { return line(one, around); }, report);
   }
@@ -85,7 +86,7 @@ class JsonWriter final : public ReportWriter {
     return fmt::format("{{\"kind\":\"event\",\"stamp_ns\":{},\"event\":{},\"source\":{},\"text\":{}}}\n",
                        event.stamp.nanoseconds, quoted(event.kind), quoted(event.source), quoted(event.text));
   }
-  bool frame_told_ = false;
+  std::string frame_line_;  // empty: the frame is not known yet
 };
 
 /// Degrees as NMEA writes them: ddmm.mmmmmm

@@ -116,6 +116,7 @@ std::vector<LagResult> study_lags(const drive::DriveFile& file, const drive::Fus
   drive::DriveFile own = file;
   own.settings = settings;
   own.description.sensors.clear();
+  put_nodes_first(own.description);
   if (drive.frame.zone != 0) {
     own.description.utm_zone = drive.frame.north ? drive.frame.zone : -drive.frame.zone;
     own.description.utm_origin = Eigen::Vector2d(drive.frame.origin_easting_m, drive.frame.origin_northing_m);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace waymark::live {
 
@@ -28,6 +30,18 @@ class LatencyHistogram {
         return std::fmin(largest_, 0.1 * std::exp2(static_cast<double>(bucket + 1) / kPerOctave));
     }
     return largest_;
+  }
+  /// Returns the buckets from the first to the last that is not empty: upper end in us, and count.
+  [[nodiscard]] std::vector<std::pair<double, std::uint64_t>> buckets() const {
+    std::vector<std::pair<double, std::uint64_t>> found;
+    std::size_t end = 0;
+    for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
+      if (counts_[bucket] == 0 && found.empty()) continue;
+      found.emplace_back(0.1 * std::exp2(static_cast<double>(bucket + 1) / kPerOctave), counts_[bucket]);
+      if (counts_[bucket] > 0) end = found.size();
+    }
+    found.resize(end);
+    return found;
   }
 
  private:

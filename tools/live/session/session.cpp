@@ -22,13 +22,17 @@ double microseconds_since(std::chrono::steady_clock::time_point begin) {
 
 drive::DriveFile resolved(drive::DriveFile file, const TypeRegistry& registry) {
   drive::resolve_sensors(file.description, registry);
+  if (file.description.odometry.empty())
+    throw InputError(file.description.path + ": no odometry log is named");
+  put_nodes_first(file.description);
   return file;
 }
 
-const drive::OdometryConfig& odometry_of(const drive::DriveFile& file) {
-  if (file.description.odometry.empty())
-    throw InputError(file.description.path + ": no odometry log is named");
-  return file.description.odometry.front();
+std::vector<OdometryStream> streams_of(const drive::DriveDescription& description) {
+  std::vector<OdometryStream> streams;
+  for (const drive::OdometryConfig& odometry : description.odometry)
+    streams.emplace_back(odometry.logs.size(), odometry.assembly, description.timeline.gap_s);
+  return streams;
 }
 
 }  // namespace
@@ -36,12 +40,12 @@ const drive::OdometryConfig& odometry_of(const drive::DriveFile& file) {
 Session::Session(drive::DriveFile file, const LiveSettings& settings, const TypeRegistry& registry)
     : file_(resolved(std::move(file), registry)),
       registry_(registry),
-      parts_(odometry_of(file_).logs.size(), odometry_of(file_).assembly, file_.description.timeline.gap_s),
+      parts_(streams_of(file_.description)),
       estimator_(file_.description, file_.settings, settings, registry) {
   const drive::DriveDescription& description = file_.description;
-  channels_.reserve(description.gnss.size() + description.sensors.size() + odometry_of(file_).logs.size());
-  for (std::size_t i = 0; i < odometry_of(file_).logs.size(); ++i)
-    add_channel(Channel::Role::odometry, odometry_of(file_).logs[i], i);
+  for (std::size_t odometry = 0; odometry < description.odometry.size(); ++odometry)
+    for (std::size_t i = 0; i < description.odometry[odometry].logs.size(); ++i)
+      add_channel(Channel::Role::odometry, description.odometry[odometry].logs[i], i, odometry);
   for (std::size_t i = 0; i < description.gnss.size(); ++i) {
     if (description.gnss[i].velocity)
       throw UsageError(description.gnss[i].place + "live fusion does not read a 'velocity' beside the fixes");
@@ -51,7 +55,8 @@ Session::Session(drive::DriveFile file, const LiveSettings& settings, const Type
     if (description.sensors[i].log) add_channel(Channel::Role::sensor, *description.sensors[i].log, i);
 }
 
-void Session::add_channel(Channel::Role role, const drive::LogConfig& stated, std::size_t index) {
+void Session::add_channel(Channel::Role role, const drive::LogConfig& stated, std::size_t index,
+                          std::size_t odometry) {
   drive::LogConfig log = stated;
   const bool live = log.file == "-" || log.file.find("://") != std::string::npos;
   if (live && log.format == "auto") {
@@ -64,7 +69,7 @@ void Session::add_channel(Channel::Role role, const drive::LogConfig& stated, st
     }
   }
   const std::size_t channel = channels_.size();
-  channels_.emplace_back(role, log, index, file_.description.scale(), parts_, registry_);
+  channels_.emplace_back(role, log, index, file_.description.scale(), parts_[odometry], odometry, registry_);
   const auto known = std::find_if(inputs_.begin(), inputs_.end(),
                                   [&](const Input& input) { return input.file == log.file; });
   if (known == inputs_.end()) {
@@ -76,7 +81,7 @@ void Session::add_channel(Channel::Role role, const drive::LogConfig& stated, st
 
 void Session::add_output(std::unique_ptr<ReportWriter> writer, std::unique_ptr<ByteOutput> output,
                          double rate_hz) {
-  outputs_.push_back({std::move(writer), std::move(output), rate_hz, std::nullopt});
+  outputs_.push_back({std::move(writer), std::move(output), rate_hz, std::nullopt, false});
 }
 
 void Session::use_state_file(const std::string& path) {
@@ -149,7 +154,13 @@ void Session::say_to(Output& output, const Report& report, const Surroundings& a
       return;
     output.last = pose->stamp;
   }
-  output.bytes->write(output.writer->write(report, around));
+  const std::string lines = output.writer->write(report, around);
+  if (!output.frame_told && around.projection != nullptr) {
+    // Who connects from now on misses the line of the frame, unless it is part of the header.
+    output.bytes->use_header(output.writer->header());
+    output.frame_told = true;
+  }
+  output.bytes->write(lines);
 }
 
 void Session::say() {
@@ -158,7 +169,10 @@ void Session::say() {
   const Surroundings around{projection(), file_.description.scale()};
   for (const Report& report : reports) {
     for (Output& output : outputs_) say_to(output, report, around);
-    if (const auto* pose = std::get_if<LivePose>(&report)) last_pose_ = *pose;
+    if (const auto* pose = std::get_if<LivePose>(&report)) {
+      last_pose_ = *pose;
+      track_.add(*pose);
+    }
     if (const auto* event = std::get_if<Event>(&report)) {
       last_events_.push_back(*event);
       if (last_events_.size() > kEventsKept) last_events_.erase(last_events_.begin());

@@ -14,6 +14,7 @@
 #include <waymark/tools/live/outputs/byte_output.hpp>
 #include <waymark/tools/live/outputs/lines.hpp>
 #include <waymark/tools/live/session/latency.hpp>
+#include <waymark/tools/live/session/track.hpp>
 
 namespace waymark::live {
 
@@ -59,6 +60,7 @@ class Session {
   [[nodiscard]] const Estimator& estimator() const { return estimator_; }
   [[nodiscard]] const Latencies& latencies() const { return latencies_; }
   [[nodiscard]] const std::optional<LivePose>& last_pose() const { return last_pose_; }
+  [[nodiscard]] const Track& track() const { return track_; }
   [[nodiscard]] const std::vector<Event>& last_events() const { return last_events_; }
   [[nodiscard]] std::size_t lines_dropped() const;
   /// Descriptors of outputs that wait for clients.
@@ -71,8 +73,10 @@ class Session {
     std::unique_ptr<ByteOutput> bytes;
     double rate_hz = 0;
     std::optional<Stamp> last;
+    bool frame_told = false;
   };
-  void add_channel(Channel::Role role, const drive::LogConfig& log, std::size_t index);
+  void add_channel(Channel::Role role, const drive::LogConfig& log, std::size_t index,
+                   std::size_t odometry = 0);
   void hand_over(std::vector<Sample> samples);
   void say();
   void say_to(Output& output, const Report& report, const Surroundings& around);
@@ -81,7 +85,7 @@ class Session {
 
   drive::DriveFile file_;
   const TypeRegistry& registry_;
-  OdometryStream parts_;
+  std::vector<OdometryStream> parts_;  // of each odometry
   Estimator estimator_;
   std::vector<Channel> channels_;
   std::vector<Input> inputs_;
@@ -91,6 +95,7 @@ class Session {
   std::optional<Stamp> saved_;
   Latencies latencies_;
   std::optional<LivePose> last_pose_;
+  Track track_;
   std::vector<Event> last_events_;
 };
 

@@ -17,6 +17,7 @@
 #include <waymark/tools/live/session/live_loop.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/drive_choice.hpp>
+#include <waymark/tools/program/jobs/live/live_report.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/dashboard.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -37,6 +38,7 @@ struct LiveCommand {
   std::string speed = "max";
   std::string state;
   std::string noise;
+  std::string report;
   bool status = false;
   live::LiveSettings settings;
 };
@@ -161,6 +163,7 @@ ExitCode run(const LiveCommand& command) {
   std::vector<std::string> outputs = command.outputs;
   if (outputs.empty()) outputs.push_back("json:-");
   for (const std::string& output : outputs) add_output(output, command, replays, session);
+  if (!command.report.empty()) formats::make_folder(command.report);  // before a long run, not after it
   if (!command.state.empty()) session.use_state_file(command.state);
   std::signal(SIGHUP, [](int) { reopen_requested = true; });
   ServiceManager manager;
@@ -181,6 +184,12 @@ ExitCode run(const LiveCommand& command) {
   }
   manager.stopping();
   dashboard.end();
+  if (!command.report.empty()) {
+    const std::string name = std::filesystem::path(command.input).filename().string();
+    const std::vector<std::string> written =
+        drawing::write_page(live_page(session, name), command.report, "report");
+    console.note("written " + written.front());
+  }
   const bool stdout_taken = std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
     return output.ends_with(":-") || output.find(":-?") != std::string::npos;
   });
@@ -220,6 +229,10 @@ void add_live(CLI::App& app, Action& action) {
     command->add_option("--talker", options->talker, "Talker of the sentences of NMEA: two letters")
         ->type_name("XX")
         ->capture_default_str();
+    command
+        ->add_option("--report", options->report,
+                     "Write report.html at the end: the way, the radius of 95 %, the histogram of latencies")
+        ->type_name("DIR");
     command->add_flag("--status", options->status, "Show state, rates, ages and latency on the terminal");
   }
   {

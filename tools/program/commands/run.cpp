@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <utility>
@@ -8,7 +9,6 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/summary_json.hpp>
-#include <waymark/tools/live/session/lag_study.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
 #include <waymark/tools/program/jobs/drive_job.hpp>
@@ -16,12 +16,12 @@
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/evaluation/source_comparison.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
+#include <waymark/tools/program/jobs/live/window_study.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/jobs/result_files.hpp>
 #include <waymark/tools/program/jobs/result_warnings.hpp>
 #include <waymark/tools/program/terminal/iteration_table.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
-#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 namespace {
@@ -44,11 +44,13 @@ struct ModelingRun {
   drive::NoiseEstimate noise;
   std::string description;  ///< of the error model
   std::vector<std::string> files;
+  std::string windows;  ///< live runs beside this one, as text
 };
 
 /// The data that all modelings of a run share.
 struct RunOfDrive {
   const RunOptions& options;
+  const drive::DriveFile& file;
   const LoadedDrive& loaded;
   const evaluation::ResultFolder folder;
   const TypeRegistry& registry;
@@ -128,6 +130,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   const std::string& modeling = settings.modeling;
   const Console& console = run.console;
   ModelingRun result;
+  const drive::FusionSettings fused = modeled.settings;
   result.noise = modeled.noise;
   result.description = describe_model(modeled, console.look());
   formats::GraphDocument& document = modeled.document;
@@ -150,6 +153,16 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   std::optional<evaluation::Sparsity> sparsity = sparsity_for_report(document, console);
   if (document.provenance.size() > known) write(run.folder.fused_graph(modeling));
   add_provenance(document, modeling, header);
+  std::vector<drawing::Section> more_sections;
+  if (!run.options.windows_s.empty() && !interrupted) {
+    const auto& truth = result.evaluation.evaluation.truth;
+    WindowStudy study =
+        study_windows({run.file, fused, run.loaded.drive, run.options.windows_s, run.options.folder,
+                       truth ? truth->fused.position.rmse_m : std::nan("")},
+                      run.registry, console);
+    result.windows = "\n" + study.text;
+    more_sections.push_back(std::move(study.section));
+  }
   result.files = write_result({.drive = header.drive,
                                .document = document,
                                .evaluated = result.evaluation,
@@ -159,7 +172,8 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
                                .sparsity = std::move(sparsity),
                                .went_in = {{"odometry", odometry_in_words(run.loaded.drive)},
                                            {"left out", left_out(run.loaded.drive)}},
-                               .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)}},
+                               .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)},
+                               .more_sections = std::move(more_sections)},
                               run.folder, run.loaded.settings.size(), console);
   return result;
 }
@@ -234,36 +248,6 @@ std::string run_text(const RunOfDrive& run, const std::vector<ModelingRun>& runs
   return text + "  and the figures of the report as SVG and CSV in " + run.folder.figures() + "\n";
 }
 
-/// Compares live runs with the batch run: text for people, and a table in the folder of the results.
-std::string compare_windows(const RunOfDrive& run, const drive::DriveFile& file,
-                            const drive::FusionSettings& settings) {
-  const std::vector<live::LagResult> results = live::study_lags(
-      file, settings, run.loaded.drive, run.options.windows_s, run.registry, [&](double window_s) {
-        stop_if_interrupted();
-        run.console.progress(fmt::format("{}: live, window of {} s", settings.modeling, window_s));
-      });
-  run.console.end_progress();
-  text::Table table{.title = "live, " + settings.modeling,
-                    .columns = {"window [s]", "poses", "RMSE [m]", "Max [m]", "inside 95 % [%]", "NEES",
-                                "RMSE at the lag [m]", "Max at the lag [m]", "cycle [us]"}};
-  std::string csv = "window_s,poses,rmse_m,max_m,inside95,nees,settled_rmse_m,settled_max_m,cycle_us\n";
-  for (const live::LagResult& result : results) {
-    table.rows.push_back(
-        {fmt::format("{}", result.window_s), fmt::format("{}", result.live.poses),
-         fmt::format("{:.3f}", result.live.rmse_m), fmt::format("{:.2f}", result.live.max_m),
-         fmt::format("{:.1f}", 100 * result.live.inside95), fmt::format("{:.2f}", result.live.nees),
-         fmt::format("{:.3f}", result.settled.rmse_m), fmt::format("{:.2f}", result.settled.max_m),
-         fmt::format("{:.0f}", result.cycle_us)});
-    csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", result.window_s, result.live.poses, result.live.rmse_m,
-                       result.live.max_m, result.live.inside95, result.live.nees, result.settled.rmse_m,
-                       result.settled.max_m, result.cycle_us);
-  }
-  table.notes.push_back(
-      "poses as they were said while driving, at the rate of the odometry, and when they left the window");
-  formats::write_file_atomically(run.options.folder + "/" + settings.modeling + ".windows.csv", csv);
-  return text::table_text(table, run.console.look());
-}
-
 ExitCode run_drive(const RunOptions& options) {
   const Console console(options.common);
   drive::DriveFile file = read_drive_file(options.input, options.choice);
@@ -275,7 +259,7 @@ ExitCode run_drive(const RunOptions& options) {
     throw UsageError("--window: the drive has no truth to compare with");
   if (options.causal && file.description.outage.length_s == 0)
     throw UsageError("--causal: there are no outages to predict; name them with --outage LENGTH/EVERY");
-  const RunOfDrive run{options, loaded, evaluation::ResultFolder(options.folder), registry, console};
+  const RunOfDrive run{options, file, loaded, evaluation::ResultFolder(options.folder), registry, console};
   require_logs_stay(run);
   stop_if_interrupted();
   std::vector<drive::ModeledDrive> models = model_all(run);
@@ -286,14 +270,12 @@ ExitCode run_drive(const RunOptions& options) {
   ExitCode code = kSuccess;
   std::string windows;
   for (std::size_t i = 0; i < models.size() && code != kInterrupted; ++i) {
-    const drive::FusionSettings fused = models[i].settings;
     runs.push_back(run_modeling(run, std::move(models[i]), loaded.settings[i], header));
     evaluations.push_back(runs.back().evaluation);
     const ExitCode of_run = exit_code(runs.back().result.summary);
     if (of_run != kSuccess) code = of_run;
     if (interrupted) code = kInterrupted;
-    if (!options.windows_s.empty() && code != kInterrupted)
-      windows += "\n" + compare_windows(run, file, fused);
+    windows += runs.back().windows;
   }
   const std::string metrics = evaluation::metrics_json(evaluations, header);
   const std::vector<std::string> common = write_common(run, runs, metrics, header);

@@ -32,6 +32,7 @@ std::string write_report(const DocumentResult& request, const std::vector<std::s
   for (const std::string& file : files)
     drive.files.push_back(std::filesystem::path(file).filename().string());
   drawing::Page page = report::drive_page(drive);
+  page.sections.insert(page.sections.end(), request.more_sections.begin(), request.more_sections.end());
   const std::vector<std::string> written = drawing::write_page(page, folder.path(), page_name);
   for (std::size_t i = 1; i < written.size(); ++i) console.detail("written " + written[i]);
   console.end_progress();

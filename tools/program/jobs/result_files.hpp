@@ -9,6 +9,7 @@
 
 #include <waymark/core/optimize/multi_start.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
+#include <waymark/tools/drawing/page/page.hpp>
 #include <waymark/tools/evaluation/document/estimated_states.hpp>
 #include <waymark/tools/evaluation/document/sparsity.hpp>
 #include <waymark/tools/evaluation/output/report.hpp>
@@ -28,7 +29,8 @@ struct DocumentResult {
   std::optional<evaluation::Sparsity> sparsity{};  ///< from sparsity_for_report
   /// Inputs from the logs: heading and text.
   std::vector<std::pair<std::string, std::string>> went_in{};
-  std::vector<std::string> files{};  ///< written before, to be linked; paths
+  std::vector<std::string> files{};               ///< written before, to be linked; paths
+  std::vector<drawing::Section> more_sections{};  ///< at the end of the report
 };
 
 /// Returns the pattern of the matrices for the report. An undetermined graph has residuals, but no
