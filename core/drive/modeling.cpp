@@ -16,6 +16,9 @@ std::vector<Eigen::Vector2d> GnssModeling::lasting_errors(std::span<const Fix>, 
 }
 SensorModel::~SensorModel() = default;
 void SensorModel::check_drive(std::span<const Fix>, const SensorTable&) const {}
+std::vector<RoughPosition> SensorModel::rough_positions(const SensorTable&) const {
+  return {};
+}
 
 SolutionKind kind_of(FixQuality quality) {
   if (quality == FixQuality::fixed) return SolutionKind::fixed;

@@ -176,6 +176,11 @@ class SensorModel {
   /// @param fixes, readings all of the drive
   /// @throws InputError if the drive has nothing that the sensor could use
   virtual void check_drive(std::span<const Fix> fixes, const SensorTable& readings) const;
+  /// Returns where readings alone place the vehicle, in any order: for frame and initial guess of a
+  /// drive without fixes. They are not measurements of the graph. It is called before there is a
+  /// frame, so columns of places are still as in the log. Less than half of them may be wrong.
+  /// @throws InputError for impossible readings
+  [[nodiscard]] virtual std::vector<RoughPosition> rough_positions(const SensorTable& readings) const;
   /// Adds vertices (ids from Graph::free_id) and edges for all readings within the drive.
   /// @throws InputError for impossible readings; it names the row
   virtual void extend(const SensorInput& input, Graph& graph) = 0;

@@ -172,6 +172,14 @@ struct SensorTable {
   }
 };
 
+/// Where a sensor places the vehicle by one epoch of its readings alone.
+struct RoughPosition {
+  Stamp stamp;
+  Eigen::Vector3d ecef = Eigen::Vector3d::Zero();       ///< Earth-centred, Earth-fixed, m
+  Eigen::Vector2d antenna_m = Eigen::Vector2d::Zero();  ///< what is placed, in the body frame
+  double sigma_m = 10;                                  ///< per horizontal axis
+};
+
 /// An estimated pose of the body point at a stamp: (x, y, heading) in the frame.
 struct StampedPose {
   Stamp stamp;

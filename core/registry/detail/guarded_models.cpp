@@ -53,6 +53,9 @@ class GuardedSensor final : public GuardedModel<SensorModel> {
   void check_drive(std::span<const Fix> fixes, const SensorTable& readings) const override {
     call([&](const SensorModel& model) { model.check_drive(fixes, readings); });
   }
+  [[nodiscard]] std::vector<RoughPosition> rough_positions(const SensorTable& readings) const override {
+    return call([&](const SensorModel& model) { return model.rough_positions(readings); });
+  }
   void extend(const SensorInput& input, Graph& graph) override {
     call([&](SensorModel& model) { model.extend(input, graph); });
   }

@@ -20,6 +20,8 @@ std::optional<GeodeticPoint> first_place(const DriveDescription& description, co
     if (const auto place =
             first_geodetic_place(description.sensors[i].log->request, logs.sensors[i].data.readings))
       return place;
+    const std::vector<RoughPosition>& rough = logs.sensors[i].rough;
+    if (!rough.empty()) return geodetic_from_ecef(rough[rough.size() / 2].ecef);
   }
   return std::nullopt;
 }

@@ -17,6 +17,7 @@
 #include <waymark/tools/drive/nodes/fix_motion.hpp>
 #include <waymark/tools/drive/nodes/frozen.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
+#include <waymark/tools/drive/sensors/rough_fixes.hpp>
 #include <waymark/tools/drive/sensors/sensor_logs.hpp>
 
 namespace waymark::drive {
@@ -263,6 +264,7 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
         return prepare_readings(logs.sensors[i], sensor.log->request, drive.scale, fixes,
                                 projection ? &*projection : nullptr, drive.report);
       });
+    if (projection) prepared.rough = rough_fixes(logs.sensors[i], drive.scale, *projection);
   }
   drive.report.warnings.insert(drive.report.warnings.end(), logs.warnings.begin(), logs.warnings.end());
   std::vector<std::string>& notes = drive.report.notes;

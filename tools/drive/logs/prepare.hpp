@@ -81,6 +81,9 @@ struct PreparedSensor {
   std::string place{};     ///< of its entry in the drive.yaml, for messages
   SensorTable readings{};  ///< empty for a sensor without a log
   std::string source{};    ///< name of the source
+  /// where it places the vehicle (SensorModel::rough_positions), sorted; in the frame. For the initial
+  /// guess alone, and only without receivers
+  std::vector<Fix> rough{};
 };
 
 /// A relative source: its own samples, on the clock of the drive.
@@ -144,6 +147,8 @@ struct DriveLogs {
     TimeScale scale = TimeScale::gps;
     std::string file;                 ///< for messages
     std::vector<InputFile> inputs{};  ///< the log and the companions that the description names
+    /// where the readings of a sensor place the vehicle, if the drive has no receiver
+    std::vector<RoughPosition> rough{};
   };
   /// in the order of DriveDescription::odometry, and of the logs of each
   std::vector<std::vector<Log>> odometry;

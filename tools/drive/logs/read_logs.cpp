@@ -161,8 +161,14 @@ DriveLogs read_drive_logs(const DriveDescription& description, const TypeRegistr
     logs.velocity.push_back(log.velocity ? read_log(*log.velocity, registry, watch) : DriveLogs::Log{});
   }
   if (description.truth) logs.truth.push_back(read_log(*description.truth, registry, watch));
-  for (const SensorConfig& sensor : description.sensors)
+  for (const SensorConfig& sensor : description.sensors) {
     logs.sensors.push_back(sensor.log ? read_log(*sensor.log, registry, watch) : DriveLogs::Log{});
+    if (!sensor.log || !description.gnss.empty()) continue;
+    DriveLogs::Log& log = logs.sensors.back();
+    log.rough = at_place_of(sensor.place, sensor.name, [&] {
+      return registry.make_sensor_model(sensor.name, sensor.options)->rough_positions(log.data.readings);
+    });
+  }
   return logs;
 }
 

@@ -2,6 +2,7 @@
 #include <waymark/tools/drive/model/surroundings.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <waymark/tools/drive/coordinates/projection.hpp>
@@ -89,6 +90,23 @@ void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
     placed.start = make_start(placed.timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
 }
 
+/// Returns the rough positions of the first sensor that has any within the drive.
+std::vector<Fix> rough_fixes_of(const PreparedDrive& drive) {
+  for (const PreparedSensor& sensor : drive.sensors) {
+    std::vector<Fix> within;
+    for (const Fix& fix : sensor.rough)
+      if (fix.stamp >= drive.odometry.front().stamp && fix.stamp <= drive.odometry.back().stamp)
+        within.push_back(fix);
+    if (!within.empty()) return within;
+  }
+  return {};
+}
+
+std::size_t node_nearest(const Timeline& timeline, Stamp stamp) {
+  const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};
+  return nearest_node(nodes, stamp, std::numeric_limits<double>::infinity())->node;
+}
+
 /// Returns where on the Earth the drive is.
 std::optional<GeodeticPoint> place_of(const PreparedDrive& drive) {
   if (drive.frame.zone == 0) return std::nullopt;
@@ -103,7 +121,16 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
   if (drive.fixes.empty()) {
     placed.warnings = drive.report.warnings;
     placed.surroundings = std::make_shared<const DriveSurroundings>(drive, placed.fixes);
-    search_start(drive.sensors, settings, registry, placed);
+    const std::vector<Fix> rough = rough_fixes_of(drive);
+    const bool is_stated = drive.first_pose && drive.first_pose->position;
+    if (rough.empty() || is_stated) {
+      search_start(drive.sensors, settings, registry, placed);
+      return placed;
+    }
+    Timeline with_rough = timeline;
+    for (const Fix& fix : rough) with_rough.fix_node.push_back(node_nearest(timeline, fix.stamp));
+    placed.start = make_start(with_rough, rough, placed.standstill_mps, settings.initial_guess);
+    placed.start.note = "no receiver: rough positions of a sensor are the start";
     return placed;
   }
   const std::vector<Eigen::Vector3d> reckoned =

@@ -1,0 +1,79 @@
+#include <waymark/plugins/gnss_raw/detail/noise.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark::plugins::gnss_raw {
+namespace {
+
+constexpr double kStrongSignal_dbhz = 45;
+
+double weakness(const SatelliteReading& reading) {
+  if (std::isnan(reading.cn0_dbhz)) return 1;
+  const double below_db = std::clamp(kStrongSignal_dbhz - reading.cn0_dbhz, 0.0, kStrongSignal_dbhz);
+  return std::pow(10, below_db / 20);
+}
+
+double obliquity(const SatelliteReading& reading) {
+  constexpr double kLowest = 0.2;  // 11.5 degrees
+  if (std::isnan(reading.elevation_rad)) return 1;
+  return 1 / std::max(kLowest, std::sin(reading.elevation_rad));
+}
+
+}  // namespace
+
+RangeNoise Noise::of(const SatelliteReading& reading) const {
+  const double factor = weakness(reading) * std::sqrt(obliquity(reading));
+  return {parameters_.pseudorange_sigma_m * factor, parameters_.multipath_sigma_m * factor,
+          parameters_.reflection_delay_m * (weakness(reading) - 1)};
+}
+
+double Noise::range_rate_sigma(const SatelliteReading& reading) const {
+  return parameters_.range_rate_sigma_mps * std::sqrt(weakness(reading));
+}
+
+std::vector<OptionInfo> noise_options() {
+  return {{.name = "pseudorange_sigma",
+           .value = "2",
+           .unit = "m",
+           .allowed = OptionRange{0.01, 1000},
+           .text = "error of a strong signal's pseudorange that each epoch draws anew",
+           .prior = NoisePrior{.mean = 2, .deviation = 0.7}},
+          {.name = "multipath_sigma",
+           .value = "3",
+           .unit = "m",
+           .allowed = OptionRange{0, 1000},
+           .text = "error of a strong signal's pseudorange that lasts; 0: there is none",
+           .prior = NoisePrior{.mean = 3, .deviation = 0.7}},
+          {.name = "reflection_delay",
+           .value = "0",
+           .unit = "m",
+           .allowed = OptionRange{0, 1000},
+           .text = "how late weak signals are: 10^((45 - C/N0) / 20) - 1 times this"},
+          {.name = "range_rate_sigma",
+           .value = "0.1",
+           .unit = "m/s",
+           .allowed = OptionRange{0.001, 100},
+           .text = "error of a strong signal's range rate",
+           .prior = NoisePrior{.mean = 0.1, .deviation = 0.7}},
+          {.name = "tails",
+           .value = "cauchy",
+           .allowed = OptionWords{"cauchy", "gaussian"},
+           .text = "'cauchy': a heavy-tailed loss on pseudoranges and range rates; 'gaussian': none"},
+          {.name = "tail_scale",
+           .value = "1",
+           .allowed = OptionRange{0.1, 100},
+           .text = "scale of the loss, in standard deviations"}};
+}
+
+Noise read_noise(const CheckedOptions& options) {
+  return Noise({.pseudorange_sigma_m = options.number("pseudorange_sigma"),
+                .range_rate_sigma_mps = options.number("range_rate_sigma"),
+                .multipath_sigma_m = options.number("multipath_sigma"),
+                .reflection_delay_m = options.number("reflection_delay"),
+                .tails = options.word("tails") == "gaussian"
+                             ? std::nullopt
+                             : std::optional(builtin_loss("cauchy", options.number("tail_scale")))});
+}
+
+}  // namespace waymark::plugins::gnss_raw
