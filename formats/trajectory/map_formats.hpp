@@ -9,6 +9,7 @@
 /// the whole file has no times. Places in these two formats have nine decimals (0.1 mm).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,9 @@
 #include <waymark/formats/trajectory/trajectory.hpp>
 
 namespace waymark::formats {
+
+/// Returns a stamp as a date in POSIX nanoseconds. Empty if it is no date, as above.
+[[nodiscard]] std::optional<Stamp> date_of(Stamp stamp, TimeScale scale);
 
 /// A fix on a map.
 struct FixPoint {

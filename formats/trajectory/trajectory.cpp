@@ -7,6 +7,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/detail/csv_text.hpp>
 #include <waymark/formats/text/detail/text_builder.hpp>
+#include <waymark/formats/text/iso8601.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 
 namespace waymark::formats {
@@ -29,6 +30,10 @@ void append_csv_point(std::string& out, const TrajectoryPoint& point) {
   append_csv_text(out, point.status);
   out += ',';
   append_csv_text(out, point.reason);
+  out += ',';
+  if (point.utc) out += decimal_seconds(*point.utc);
+  out += ',';
+  if (point.utc) out += iso8601_from_stamp(*point.utc);
   out += '\n';
 }
 
@@ -37,7 +42,7 @@ void append_csv_point(std::string& out, const TrajectoryPoint& point) {
 std::string trajectory_csv(std::span<const TrajectoryPoint> points) {
   std::string out =
       "stamp_ns,x_m,y_m,heading_rad,latitude_deg,longitude_deg,"
-      "sigma_x_m,sigma_y_m,sigma_heading_rad,status,reason\n";
+      "sigma_x_m,sigma_y_m,sigma_heading_rad,status,reason,unix_s,utc\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     check_finite("CSV", i, points[i]);
     append_csv_point(out, points[i]);

@@ -27,12 +27,14 @@ struct TrajectoryPoint {
   std::optional<Eigen::Vector3d> sigma;  ///< of x, y [m], heading [rad]
   /// status of the fix at this epoch ("accepted", ...); empty: no fix
   std::string status;
-  std::string reason;  ///< reason for that status
+  std::string reason;          ///< reason for that status
+  std::optional<Stamp> utc{};  ///< the same instant in POSIX nanoseconds; empty: the date is not known
 };
 
 /// Returns comma-separated values (RFC 4180 with "\n" line ends) under one header line: stamp_ns,
 /// x_m, y_m, heading_rad, latitude_deg, longitude_deg, sigma_x_m, sigma_y_m, sigma_heading_rad,
-/// status, reason. The columns are always the same; a missing value is an empty field.
+/// status, reason, unix_s, utc ("2006-06-01T08:16:07.04Z"). The columns are always the same; a
+/// missing value is an empty field.
 [[nodiscard]] std::string trajectory_csv(std::span<const TrajectoryPoint> points);
 
 /// Returns lines "t x y z qx qy qz qw". t is in seconds with nine decimals on the time scale of the

@@ -6,6 +6,7 @@ Usage: reports_test.py PROGRAM SOURCE_FOLDER   (ctest calls it)
 import csv
 import json
 import math
+import os
 import pathlib
 import re
 import subprocess
@@ -151,7 +152,9 @@ class Pages(unittest.TestCase):
                 self.assertEqual(
                     self.browser.execute_script("return performance.getEntriesByType('resource').length"), 0)
                 text = page.read_text(encoding="utf-8")
-                self.assertEqual(set(re.findall(r"https?://[^\s\"']+", text)), {"http://www.w3.org/2000/svg"})
+                # The second is followed only by a click on the link beside a map.
+                self.assertEqual(set(re.findall(r"https?://[^\s\"'?]+", text)),
+                                 {"http://www.w3.org/2000/svg", "https://www.openstreetmap.org/"})
 
     def test_every_figure_has_a_title_a_description_and_files(self):
         for page in self.pages:
@@ -160,7 +163,7 @@ class Pages(unittest.TestCase):
             self.assertEqual(len(ids), len(set(ids)), page)
             for figure in self.browser.find_elements(By.CSS_SELECTOR, "figure.figure"):
                 svg = figure.find_element(By.TAG_NAME, "svg")
-                self.assertEqual(svg.get_attribute("role"), "img")
+                self.assertIn(svg.get_attribute("role"), ("group", "img"))  # with or without a legend of buttons
                 for part in ("title", "desc"):
                     text = self.browser.execute_script(
                         "return arguments[0].querySelector(arguments[1]).textContent", svg, part)
@@ -176,6 +179,83 @@ class Pages(unittest.TestCase):
         self.move_to("trajectory", *self.place("trajectory", float(fix["east [m]"]), float(fix["north [m]"]))).perform()
         self.assertIn("rejected, angle", self.tip("trajectory"))
         self.assertIn("deg", self.tip("trajectory"))
+
+    def test_the_cursor_tells_its_place_and_time_and_links_to_an_online_map(self):
+        self.open("gated/report.html")
+        self.wake("trajectory")
+        with (self.folder / "gated/g2.epochs.csv").open(encoding="utf-8") as file:
+            epoch = list(csv.DictReader(file))[60]
+        fused = [r for r in self.rows("gated/report.html", "trajectory") if r["series"] == "fused"]
+        pose = min(fused, key=lambda r: abs(float(r["time [s]"]) - float(epoch["time_s"])))
+        self.move_to("trajectory", *self.place("trajectory", float(pose["east [m]"]), float(pose["north [m]"]))).perform()
+        told = self.tip("trajectory")
+        latitude, longitude = map(float, re.search(r"(\d+\.\d{7}), (\d+\.\d{7})", told).groups())
+        # The pointer is a whole pixel, which is a metre or two here.
+        self.assertAlmostEqual(latitude, float(epoch["fused_latitude_deg"]), delta=4e-5)
+        self.assertAlmostEqual(longitude, float(epoch["fused_longitude_deg"]), delta=6e-5)
+        self.assertRegex(told, r"2016-06-06 11:1\d:\d\d\.\d UTC")  # GPS week 1900
+        link = self.browser.find_element(By.CSS_SELECTOR, "#trajectory a.online")
+        self.assertIn(f"mlat={latitude:.6f}&mlon={longitude:.6f}#map=", link.get_attribute("href"))
+
+    def test_the_trajectory_takes_the_colour_of_a_quantity(self):
+        self.open("gated/report.html")
+        self.wake("trajectory")
+        select = self.browser.find_element(By.CSS_SELECTOR, "#trajectory select.colour-by")
+        offered = [option.text for option in select.find_elements(By.TAG_NAME, "option")]
+        for name in ("one colour", "colour: error", "colour: sigma", "colour: speed"):
+            self.assertIn(name, offered)
+        self.assertEqual(self.browser.find_elements(By.CSS_SELECTOR, "#trajectory path.colour"), [])
+        select.send_keys("colour: error")
+        self.settle()
+        paths = self.browser.find_elements(By.CSS_SELECTOR, "#trajectory path.colour")
+        self.assertEqual(len(paths), 8)
+        self.assertGreater(sum(1 for path in paths if path.get_attribute("d")), 3)
+
+    def test_ellipses_appear_when_the_map_is_zoomed_in(self):
+        self.open("gated/report.html")
+        self.wake("trajectory")
+        ellipses = self.browser.find_element(By.CSS_SELECTOR, "#trajectory path.ellipses")
+        fused = [r for r in self.rows("gated/report.html", "trajectory") if r["series"] == "fused"]
+        for _ in range(12):
+            middle = fused[len(fused) // 2]
+            self.figure("trajectory").click()
+            self.wheel("trajectory", *self.place("trajectory", float(middle["east [m]"]), float(middle["north [m]"])), -400)
+            if ellipses.get_attribute("d"):
+                break
+        radii = [float(r) for r in re.findall(r"a([\d.]+) ", ellipses.get_attribute("d"))]
+        low, high = self.view("trajectory")[:2]
+        per_metre = self.data("trajectory")["box"][2] / (high - low)
+        with (self.folder / "gated/g2.epochs.csv").open(encoding="utf-8") as file:
+            sigmas = [math.sqrt(float(r["covariance_xx_m2"]) + float(r["covariance_yy_m2"])) for r in csv.DictReader(file)]
+        self.assertGreater(len(radii), 0)
+        self.assertLessEqual(max(radii), math.sqrt(5.991) * max(sigmas) * per_metre + 0.1)
+
+    def test_a_tip_stays_inside_the_window(self):
+        self.open("gated/report.html")
+        self.wake("trajectory")
+        svg = self.figure("trajectory")
+        self.browser.execute_script("scrollBy(0, arguments[0].getBoundingClientRect().bottom - innerHeight)", svg)
+        left, top, width, height = self.data("trajectory")["box"]
+        for x, y in ((left + 4, top + height - 4), (left + width - 4, top + height - 4), (left + width / 2, top + height - 2)):
+            box = self.browser.execute_script(
+                "const [x, y] = [arguments[1], arguments[2]]; const s = arguments[0];"
+                "const b = s.getBoundingClientRect(); const k = b.width / s.viewBox.baseVal.width;"
+                "s.dispatchEvent(new PointerEvent('pointermove', {clientX: b.left + x * k, clientY: b.top + y * k}));"
+                "const t = document.querySelector('#trajectory .tip').getBoundingClientRect();"
+                "return [t.left, t.top, t.right, t.bottom, innerWidth, innerHeight]", svg, x, y)
+            self.assertGreaterEqual(min(box[0], box[1]), 0)
+            self.assertLessEqual(box[2], box[4])
+            self.assertLessEqual(box[3], box[5])
+
+    def test_the_page_reads_verdict_trajectory_errors_and_then_the_inputs(self):
+        self.open("gated/report.html")
+        headings = [h.text for h in self.browser.find_elements(By.TAG_NAME, "h2") if h.text != "Warnings"]
+        self.assertEqual(headings[:3], ["Trajectory", "Errors", "What went in"])
+        for folded in self.browser.find_elements(By.TAG_NAME, "details"):
+            self.assertIsNone(folded.get_attribute("open"))
+        word = self.browser.find_element(By.CSS_SELECTOR, ".verdict abbr")
+        self.assertGreater(len(word.get_attribute("title")), 10)
+        self.assertNotIn("EDGE_", self.browser.find_element(By.CSS_SELECTOR, "#residuals-by-type table").text)
 
     def test_the_cursor_is_linked_by_time(self):
         self.open("gated/report.html")
@@ -335,6 +415,60 @@ class Pages(unittest.TestCase):
                 self.assertTrue(any(path.get_attribute("d") for path in drawn), figure.get_attribute("id"))
         finally:
             self.browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
+
+    def narrow(self, width=400, height=800):
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": True})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
+
+    def test_a_narrow_screen_shows_the_rmse_first_and_letters_that_can_be_read(self):
+        self.narrow()
+        self.open("gated/report.html")
+        verdict = self.browser.find_element(By.CLASS_NAME, "verdict")
+        self.assertIn("RMSE", verdict.text)
+        self.assertLess(verdict.rect["y"] + verdict.rect["height"], 800)
+        self.assertEqual(self.browser.execute_script("return document.documentElement.scrollWidth"), 400)
+        for name in ("trajectory", "error-position"):
+            self.assertGreaterEqual(12 * self.scale(name), 10)  # px of the letters of a drawing
+
+    def test_two_fingers_zoom_a_map(self):
+        self.narrow()
+        self.browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.setTouchEmulationEnabled", {"enabled": False})
+        self.open("gated/report.html")
+        before = self.wake("trajectory")
+        box = self.browser.execute_script(
+            "const b = arguments[0].getBoundingClientRect(); return [b.left, b.top + b.height / 2]",
+            self.figure("trajectory"))
+
+        def touch(kind, spread):
+            points = [] if spread is None else [{"x": 200 - spread, "y": box[1], "id": 1},
+                                                {"x": 200 + spread, "y": box[1], "id": 2}]
+            self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+        touch("touchStart", 40)
+        for spread in (50, 60, 70, 80):
+            touch("touchMove", spread)
+        touch("touchEnd", None)
+        after = self.view("trajectory")
+        self.assertAlmostEqual((after[1] - after[0]) / (before[1] - before[0]), 40 / 80, delta=0.1)
+
+    def test_axe_finds_no_violation_by_day_and_by_night(self):
+        """axe-core of npm, if WAYMARK_AXE names its minified script (tests/README.md)."""
+        if not os.environ.get("WAYMARK_AXE"):
+            self.skipTest("WAYMARK_AXE names no axe.min.js")
+        script = pathlib.Path(os.environ["WAYMARK_AXE"]).read_text(encoding="utf-8")
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.setEmulatedMedia", {"features": []})
+        for scheme in ("light", "dark"):
+            self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                         {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+            for page in ("gated/report.html", "all/report.html", "all/correlated.html", "compared/comparison.html"):
+                self.open(page)
+                self.browser.execute_script(script)
+                found = self.browser.execute_async_script(
+                    "const done = arguments[0]; axe.run().then((result) => done(result.violations.map("
+                    "(v) => v.id + ': ' + v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)).join(' | '))))")
+                self.assertEqual(found, [], f"{page}, {scheme}")
 
     def test_words_are_apart_from_their_ground(self):
         """Contrast of text on white: at least 4.5 to 1 (WCAG 2.1, 1.4.3)."""

@@ -73,18 +73,20 @@ TEST_CASE("CSV: shortest exact numbers, empty fields where nothing is known") {
   full.sigma = Eigen::Vector3d(1, 2.5, 0.001);
   full.status = "rejected";
   full.reason = "angle";
+  full.utc = Stamp{1149149767040000000};
   const std::vector<TrajectoryPoint> points{full, point(-5, 1, 2, 0)};
   CHECK(trajectory_csv(points) ==
         "stamp_ns,x_m,y_m,heading_rad,latitude_deg,longitude_deg,sigma_x_m,sigma_y_m,sigma_heading_rad,"
-        "status,reason\n"
-        "1149206567040000000,0.1,5701234.567,-0.3333333333333333,52.5,13.25,1,2.5,0.001,rejected,angle\n"
-        "-5,1,2,0,,,,,,,\n");
+        "status,reason,unix_s,utc\n"
+        "1149206567040000000,0.1,5701234.567,-0.3333333333333333,52.5,13.25,1,2.5,0.001,rejected,angle,"
+        "1149149767.040000000,2006-06-01T08:16:07.04Z\n"
+        "-5,1,2,0,,,,,,,,,\n");
 }
 
 TEST_CASE("CSV: text with separators is quoted") {
   TrajectoryPoint p = point(0, 0, 0, 0);
   p.reason = "15 m, \"far\"";
-  CHECK_THAT(trajectory_csv(std::vector{p}), Contains(",\"15 m, \"\"far\"\"\"\n"));
+  CHECK_THAT(trajectory_csv(std::vector{p}), Contains(",\"15 m, \"\"far\"\"\",,\n"));
 }
 
 TEST_CASE("TUM: stamps exact, heading as a quaternion") {

@@ -1,5 +1,6 @@
 #include <waymark/tools/evaluation/evaluation.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -21,6 +22,9 @@ void check(const EvaluationInput& input) {
   if (!input.position_covariances.empty() && input.position_covariances.size() != n)
     throw UsageError(
         fmt::format("evaluate: {} covariances for {} poses", input.position_covariances.size(), n));
+  if (!input.heading_sigmas_rad.empty() && input.heading_sigmas_rad.size() != n)
+    throw UsageError(
+        fmt::format("evaluate: {} sigmas of headings for {} poses", input.heading_sigmas_rad.size(), n));
   const bool levers = std::all_of(input.fixes.begin(), input.fixes.end(),
                                   [](const Fix& fix) { return fix.antenna_m.allFinite(); });
   if (!levers || !input.truth_reference_m.allFinite())
@@ -99,6 +103,24 @@ void compare_with_truth(const EvaluationInput& input, std::size_t i, const Truth
   if (truth.heading_rad) result.heading_error_rad = wrap_angle(fused[2] - *truth.heading_rad);
 }
 
+/// Compares the motions of the fused poses with those of the truth.
+std::vector<RelativePoseError> relative_errors(const EvaluationInput& input, const TruthMatch& match,
+                                               const std::vector<EpochResult>& epochs) {
+  std::vector<Eigen::Vector3d> truth;
+  std::vector<Eigen::Vector3d> fused;
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    if (!match.at[i] || !epochs[i].fused_offset_m) continue;
+    const Eigen::Vector3d& pose = input.fused[i].pose;
+    const Eigen::Vector2d place = pose.head<2>() - *epochs[i].fused_offset_m;
+    truth.emplace_back(place.x(), place.y(), match.at[i]->pose.heading_rad.value_or(pose[2]));
+    fused.push_back(pose);
+  }
+  std::vector<RelativePoseError> errors;
+  for (const double distance : kRelativeDistances)
+    errors.push_back(relative_pose_error(truth, fused, distance));
+  return errors;
+}
+
 TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochResult>& epochs) {
   std::vector<Stamp> stamps;
   stamps.reserve(epochs.size());
@@ -130,6 +152,9 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
   evaluation.gnss_accepted = gnss_accepted.metrics();
   evaluation.fused = fused.metrics();
   evaluation.improvement = improvement(evaluation.gnss.position, evaluation.fused.position);
+  evaluation.gnss_without_offset = without_constant_offset(gnss.offsets, gnss.directions);
+  evaluation.fused_without_offset = without_constant_offset(fused.offsets, fused.directions);
+  evaluation.relative = relative_errors(input, evaluation.match, epochs);
   evaluation.gnss_autocorrelation = gnss.autocorrelation();
   evaluation.fused_autocorrelation = fused.autocorrelation();
   if (!input.position_covariances.empty())
@@ -148,7 +173,10 @@ std::vector<EpochResult> epochs_without_truth(const EvaluationInput& input) {
       epochs[i].status = fix.status;
       epochs[i].reason = fix.reason;
       epochs[i].fix_sigma_m = fix.covariance.diagonal().cwiseSqrt();
+      epochs[i].told = fix.told;
     }
+    if (!input.heading_sigmas_rad.empty()) epochs[i].heading_sigma_rad = input.heading_sigmas_rad[i];
+    epochs[i].fused_position = input.fused[i].pose.head<2>();
     epochs[i].speed_mps = speeds[i];
     if (!input.position_covariances.empty()) epochs[i].position_covariance = input.position_covariances[i];
   }
@@ -165,6 +193,7 @@ void evaluate_residuals(const EvaluationInput& input, Evaluation& evaluation) {
     const Fix& fix = input.fixes[i];
     const ResidualKind kind = residual_kind(fix.status);
     const Eigen::Vector2d residual = fix.position - predicted_antenna(input, i);
+    evaluation.epochs[i].fix_residual_m = residual;
     const Eigen::Matrix2d* pose_covariance =
         input.position_covariances.empty() ? nullptr : &input.position_covariances[i];
     const double nu =
@@ -235,6 +264,17 @@ void compare_at_withheld(const EvaluationInput& input, Evaluation& evaluation) {
 }
 
 }  // namespace
+
+std::optional<double> EpochResult::sigma_m() const {
+  return position_covariance ? std::optional(std::sqrt(0.5 * position_covariance->trace())) : std::nullopt;
+}
+
+const WithheldMetrics& HeldOut::fused() const {
+  const auto lasting = std::find_if(predictions.begin(), predictions.end(), [](const WithheldMetrics& way) {
+    return way.label == "with lasting errors";
+  });
+  return lasting == predictions.end() ? predictions.front() : *lasting;
+}
 
 std::vector<std::optional<double>> fused_speeds(std::span<const StampedPose> poses) {
   constexpr double kLongestSide = 5;  // s; a longer chord says little about the speed here

@@ -16,13 +16,16 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/frame.hpp>
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/tools/evaluation/document/source_residuals.hpp>
 #include <waymark/tools/evaluation/numbers/autocorrelation.hpp>
 #include <waymark/tools/evaluation/numbers/consistency.hpp>
+#include <waymark/tools/evaluation/numbers/constant_offset.hpp>
 #include <waymark/tools/evaluation/numbers/innovation.hpp>
 #include <waymark/tools/evaluation/numbers/metrics.hpp>
+#include <waymark/tools/evaluation/numbers/relative_pose_error.hpp>
 #include <waymark/tools/evaluation/numbers/truth_interpolation.hpp>
 #include <waymark/tools/evaluation/numbers/withheld.hpp>
 #include <waymark/tools/evaluation/source_comparison.hpp>
@@ -41,6 +44,8 @@ struct EvaluationInput {
   Eigen::Vector2d truth_reference_m{0, 0};  ///< truth reference point in the body frame
   /// Covariances of the fused positions, m^2, frame axes; empty or one per pose.
   std::vector<Eigen::Matrix2d> position_covariances;
+  /// Standard deviations of the fused headings, rad; empty or one per pose.
+  std::vector<double> heading_sigmas_rad{};
   /// The graph takes the errors of the fixes as independent, with the covariances that they claim. Otherwise
   /// the normalised innovations have no meaning and are left out.
   bool independent_errors = true;
@@ -75,6 +80,35 @@ struct EpochResult {
   std::optional<double> heading_error_rad;  ///< fused - truth
   double nees = kUndefined;                 ///< d^T P^-1 d of the fused offset d
   double nu = kUndefined;                   ///< normalised innovation squared
+  /// Fix - fused antenna, at the moment when the fix was measured: an estimated delay is applied.
+  std::optional<Eigen::Vector2d> fix_residual_m{};
+  std::optional<Eigen::Vector2d> fused_position{};  ///< of the body point, m, frame
+  std::optional<double> heading_sigma_rad{};        ///< stated, of the fused heading
+  FixDetails told{};                                ///< what the receiver told of the fix
+  std::optional<GeodeticPoint> raw_place{};         ///< of the antenna; empty from evaluate()
+  std::optional<GeodeticPoint> fused_place{};       ///< of the body point; empty from evaluate()
+
+  /// Returns the stated sigma of the fused position: root mean square of both axes.
+  [[nodiscard]] std::optional<double> sigma_m() const;
+};
+
+/// Fixes that were kept out of a second fusion of the same drive, and how well it predicts them.
+/// All fixes of a run are kept out, so that no neighbour in time tells the answer. Only fixes that
+/// the first fusion accepted are judged. Errors that last longer than a run are in the neighbouring
+/// fixes too, and remain unseen.
+struct HeldOut {
+  double run_s = 0;                            ///< length of a run of fixes that are kept out
+  double every_s = 0;                          ///< from run to run
+  std::vector<WithheldMetrics> predictions{};  ///< "fused", "dead reckoning", "with lasting errors"
+  InnovationStatistics innovation{};           ///< count is 0 if the errors of fixes are not independent
+  /// Root mean of trace(R + P): the error that the covariances promise. kUndefined without them
+  double expected_rmse_m = kUndefined;
+  std::vector<Stamp> stamps{};     ///< of the judged fixes
+  std::vector<double> errors_m{};  ///< of the fused prediction at each of them
+
+  /// Returns the prediction of the fused poses; with the lasting errors of the fixes if the
+  /// modeling expects any.
+  [[nodiscard]] const WithheldMetrics& fused() const;
 };
 
 /// Raw and fused positions at the fixes of one quality.
@@ -94,8 +128,13 @@ struct TruthEvaluation {
   /// Raw fixes, only accepted ones. Their epochs differ from those of `fused`, so no improvement is
   /// computed from them.
   SystemMetrics gnss_accepted;
-  SystemMetrics fused;      ///< at the same epochs as `gnss`
-  Improvement improvement;  ///< of `fused` relative to `gnss`
+  SystemMetrics fused;                    ///< at the same epochs as `gnss`
+  Improvement improvement;                ///< of `fused` relative to `gnss`
+  OffsetTakenOut gnss_without_offset{};   ///< raw errors without a constant offset of the vehicle
+  OffsetTakenOut fused_without_offset{};  ///< fused errors, likewise
+  /// Of the fused poses at kRelativeDistances. Without a heading of the truth the fused one stands
+  /// for it, so there are no rotations.
+  std::vector<RelativePoseError> relative{};
   /// Stated against actual error of the fused poses. Empty without covariances.
   std::optional<ConsistencyStatistics> consistency;
   /// error_autocorrelation of raw fixes at kAutocorrelationLags.
@@ -112,6 +151,7 @@ struct Evaluation {
   /// Empty if none was withheld.
   std::optional<SystemMetrics> withheld_fixes;
   std::size_t outages = 0;                   ///< runs of withheld fixes over several epochs
+  std::optional<HeldOut> held_out{};         ///< empty from evaluate(): it takes a further fusion
   std::vector<WithheldMetrics> at_withheld;  ///< the fused poses ("fused") and each prediction
   /// accepted fixes: residuals after the fit, not innovations
   InnovationStatistics post_fit;

@@ -25,9 +25,6 @@ struct MapPlace {
 /// Returns "rejected: displacement", or only the status if the reason adds nothing.
 [[nodiscard]] std::string verdict(const FixPoint& fix);
 
-/// Returns the stamp as a date in POSIX nanoseconds. Empty if it is no date (see map_formats.hpp).
-[[nodiscard]] std::optional<Stamp> date_of(Stamp stamp, TimeScale scale);
-
 /// The dates of the stamps of a file. Either all stamps are dates or none is.
 class MapDates {
  public:

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 #include <sstream>
 #include <vector>
 
@@ -140,6 +141,41 @@ TEST_CASE("evaluation: an outage without a causal prediction is named in every f
   CHECK(contains(read_text(folder + "r/g1.fused.graph"), "PROVENANCE warning " + warning));
   CHECK(contains(read_text(folder + "r/metrics.json"), warning));
   CHECK(contains(read_text(folder + "r/report.html"), warning));
+}
+
+TEST_CASE(
+    "evaluation: without truth a second fusion predicts fixes that were kept out, as well as they are") {
+  // White errors of 1 m to the east only, so 1 m RMS, whatever is stated of them.
+  const std::string folder = fresh_folder();
+  const std::string drive =
+      write_drive(folder, {.seconds = 900, .with_truth = false, .fix_error_m = [](int second) {
+                             std::mt19937_64 random(static_cast<std::uint64_t>(second) + 7);
+                             return std::normal_distribution<double>()(random);
+                           }});
+  const RunResult result = run({"run", drive, "-m", "g1", "--no-gate", "--out", folder + "r"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Json held = Json::parse(read_text(folder + "r/metrics.json"))["evaluations"][0]["held_out"];
+  const Json& fused = held["predictions"]["fused"]["at_fixes"];
+  CHECK(fused["n"] == 90);  // a tenth
+  CHECK(fused["rmse_m"].get<double>() == Approx(1).margin(0.25));
+  const auto verdict =
+      result.out.find("There is no truth to compare with. A second fusion predicts 90 fixes");
+  REQUIRE(verdict != std::string::npos);
+  CHECK(result.out.ends_with("\nRead on in " + folder + "r/report.html\n"));
+  CHECK(contains(result.out, "written:\n  " + folder + "r/report.html\n"));
+  CHECK(contains(read_text(folder + "r/report.html"), "Stated errors</h2>"));
+}
+
+TEST_CASE("evaluation: nothing is kept out of a drive that has truth or withheld fixes") {
+  const std::string folder = fresh_folder();
+  for (const bool with_truth : {true, false}) {
+    const std::string drive = write_drive(folder, {.seconds = 120, .with_truth = with_truth});
+    REQUIRE(
+        run({"run", drive, "-m", "g1", "--withhold", with_truth ? "0" : "5", "--out", folder + "r"}).code ==
+        0);
+    CHECK(Json::parse(read_text(folder + "r/metrics.json"))["evaluations"][0]["held_out"].is_null());
+  }
 }
 
 TEST_CASE("evaluation: a graph without normal equations has no matrices, and report and metrics say so") {

@@ -66,10 +66,37 @@ TEST_CASE("page: a page refers to nothing outside itself but the files it links"
             .sections = {{"s", "S", {line_figure("a")}}},
             .footer = ""};
   const std::string html = page_html(page);
-  CHECK(count(html, "http") == count(html, "http://www.w3.org/2000/svg"));
+  const std::size_t opened_by_click = count(html, "https://www.openstreetmap.org/");
+  CHECK(opened_by_click == 1);
+  CHECK(count(html, "http") == count(html, "http://www.w3.org/2000/svg") + opened_by_click);
   CHECK(count(html, "<link rel=\"icon\" href=\"data:,\">") == 1);
   CHECK(count(html, "<link") == 1);
   CHECK(count(html, " src=") == 0);
+}
+
+TEST_CASE("page: a word of the glossary is explained once, where it is a whole word") {
+  Page page{.title = "t", .subtitle = "", .summary = "", .sections = {}, .footer = ""};
+  page.glossary = {{"GNSS", "satellites"}, {"raw GNSS", "as logged"}, {"fix", "a \"reading\""}};
+  page.sections.push_back(
+      {"s", "S", {Paragraph{"The prefix of raw GNSS, and GNSS & a fix."}, Paragraph{"GNSS, a fix."}}});
+  const std::string html = page_html(page);
+  CHECK(count(html, "<abbr tabindex=\"0\" title=\"as logged\">raw GNSS</abbr>, and <abbr") == 1);
+  CHECK(count(html, "title=\"satellites\">GNSS</abbr> &amp; a <abbr") == 1);
+  CHECK(count(html, "title=\"a &quot;reading&quot;\">fix</abbr>.") == 1);
+  CHECK(count(html, "The prefix of") == 1);
+  CHECK(count(html, "<p>GNSS, a fix.</p>") == 1);
+}
+
+TEST_CASE("page: a folded table keeps its heading in sight") {
+  const Page page{.title = "t",
+                  .subtitle = "",
+                  .summary = "",
+                  .sections = {{"s", "S", {FoldedTable{"3 hashes", {.columns = {""}, .rows = {{"af5c"}}}}}}},
+                  .footer = ""};
+  const std::string html = page_html(page);
+  CHECK(count(html, "<details><summary>3 hashes</summary>") == 1);
+  CHECK(count(html, "<td>af5c</td>") == 1);
+  CHECK(count(html, "<thead>") == 0);  // a table without headings has no empty row
 }
 
 TEST_CASE("page: equal columns of numbers are in a page once") {

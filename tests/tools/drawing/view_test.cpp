@@ -60,6 +60,16 @@ TEST_CASE("view: logarithmic ticks are powers of ten, with 2 and 5 between where
   CHECK(labels({110, 150}, true, 4) == Labels{"110", "120", "130", "140", "150"});
 }
 
+TEST_CASE("view: an axis has at least three ticks, however little room there is") {
+  for (const double high : {1.0, 1.9, 2.1, 4.9, 7.3, 9.99, 19.0}) {
+    for (int count = 1; count < 6; ++count) {
+      CHECK(ticks({0, high}, false, count).size() >= 3);
+      CHECK(ticks({-0.3 * high, high}, false, count).size() >= 3);
+      CHECK(ticks({high, 2.3 * high}, true, count).size() >= 3);
+    }
+  }
+}
+
 TEST_CASE("view: ticks end, however odd the range") {
   for (const Range range : {Range{0, 1e308}, Range{1e15, 1e15 + 1}, Range{-5e-324, 5e-324}, Range{0, 5e-324}})
     CHECK(ticks(range, false, 8).size() <= 101);

@@ -21,7 +21,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-constexpr auto kColumns = 21;
+constexpr auto kColumns = 31;
 
 EpochResult epoch_at(std::int64_t nanoseconds) {
   EpochResult epoch;
@@ -51,11 +51,17 @@ TEST_CASE("epochs.csv: numbers, and offsets turned into the direction of travel"
   epoch.position_covariance = Eigen::Matrix2d{{4, 1}, {1, 9}};
   epoch.nees = 0.125;
   epoch.nu = 6;
+  epoch.fix_residual_m = {0.5, -2};
+  epoch.heading_sigma_rad = 3.14159265358979323846 / 360;
+  epoch.told = {.quality = FixQuality::floating, .satellites = 9, .hdop = 1.25};
+  epoch.raw_place = GeodeticPoint{52.5, 13.25};
+  epoch.fused_place = GeodeticPoint{52.75, 13.5};
   const auto lines = lines_of(epochs_csv(std::vector{epoch_at(1'000'000'000), epoch}));
   REQUIRE(lines.size() == 3);
   CHECK(lines[2] ==
         "2900000000,1.9,rejected,\"far, "
-        "\"\"very\"\"\",2,3,1,4,-0.5,0.25,1,4,-0.5,0.25,-180,-1.5,4,1,9,0.125,6");
+        "\"\"very\"\"\",2,3,1,4,-0.5,0.25,1,4,-0.5,0.25,-180,-1.5,4,1,9,0.125,6,"
+        "0.5,-2,0.5,float,9,1.25,52.5,13.25,52.75,13.5");
 }
 
 TEST_CASE("epochs.csv: at a pose without a fix the status is empty") {

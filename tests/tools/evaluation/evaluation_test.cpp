@@ -90,6 +90,22 @@ TEST_CASE("evaluation: raw and fused are compared at the same epochs, rejected a
   CHECK_FALSE(e.epochs[4].gnss_offset_m);
 }
 
+TEST_CASE("evaluation: a fix is compared with the pose of the moment when it was measured") {
+  // 20 m/s northwards, and fixes that are 0.35 s late: 7 m behind the poses of their stamps.
+  EvaluationInput input;
+  for (int i = 0; i < 3; ++i) {
+    input.fixes.push_back(fix_at(i, 0, 20.0 * i - 7));
+    input.fused.push_back(pose_at(i, 0, 20.0 * i, kNorth));
+    input.when_measured.emplace_back(0, 20.0 * i - 7, kNorth);
+  }
+  for (const EpochResult& epoch : evaluate(input).epochs) {
+    REQUIRE(epoch.fix_residual_m);
+    CHECK(epoch.fix_residual_m->norm() == Approx(0).margin(1e-12));
+  }
+  input.when_measured.clear();
+  CHECK(evaluate(input).epochs[1].fix_residual_m->isApprox(Eigen::Vector2d(0, -7)));
+}
+
 TEST_CASE("lever arms: everything is compared at the body point") {
   // Body at the origin heading north; antenna 1 m ahead and 0.5 m left, truth reference 2 m behind.
   const bool truth_heading = GENERATE(true, false);

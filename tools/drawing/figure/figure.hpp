@@ -54,6 +54,20 @@ struct Axis {
   std::vector<std::string> categories{};
 };
 
+/// Where the points of a map are on Earth, and how well they are known. The page tells it at the
+/// cursor. All columns have one length, or are empty if they are not known.
+struct Places {
+  std::vector<double> time{};  ///< s since the start, ascending
+  std::vector<double> x{};     ///< in the units of the axes
+  std::vector<double> y{};
+  std::vector<double> latitude_deg{};  ///< WGS84
+  std::vector<double> longitude_deg{};
+  std::vector<double> xx{};  ///< covariance of the position, squared units of the axes
+  std::vector<double> xy{};
+  std::vector<double> yy{};
+  std::optional<double> start_utc_s{};  ///< POSIX time of the start; empty: the date is not known
+};
+
 /// How a figure can be moved on a page.
 enum class Motion {
   still,  ///< not at all
@@ -69,11 +83,12 @@ struct Figure {
   Axis y;
   std::vector<Series> series;
   Motion motion = Motion::still;
-  std::string link{};       ///< figures with the same name move along x together
-  bool geographic = false;  ///< has a scale bar and a north arrow (y is north, metres)
-  bool downwards = false;   ///< y grows downwards, like the rows of a matrix
-  int width = 880;          ///< px, with axes and legend
-  int height = 300;         ///< px
+  std::string link{};              ///< figures with the same name move along x together
+  bool geographic = false;         ///< has a scale bar and a north arrow (y is north, metres)
+  bool downwards = false;          ///< y grows downwards, like the rows of a matrix
+  std::optional<Places> places{};  ///< of a map
+  int width = 880;                 ///< px, with axes and legend
+  int height = 300;                ///< px
 };
 
 /// Returns "position error [m]", or "share" without a unit.

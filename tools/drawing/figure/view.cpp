@@ -139,6 +139,24 @@ std::vector<Tick> logarithmic_ticks(Range range) {
   return result;
 }
 
+/// Returns round numbers with steps of 1, 2 or 5 times a power of ten, at most about `count`.
+std::vector<Tick> even_ticks(Range range, int count) {
+  const double least = (range.high - range.low) / count;
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.0, 1.0}) {
+    if (factor * power >= least) step = factor * power;
+  }
+  std::vector<Tick> result;
+  const double first = std::ceil(range.low / step - 1e-9);
+  const double last = std::floor((range.high - first * step) / step + 1e-9);
+  for (int k = 0; k <= static_cast<int>(std::min(last, 100.0)); ++k) {
+    const double value = (first + k) * step;
+    result.push_back({value, tick_label(value, step)});
+  }
+  return result;
+}
+
 }  // namespace
 
 double text_width(std::string_view text) {
@@ -194,24 +212,15 @@ double round_down_125(double value) {
 }
 
 std::vector<Tick> ticks(Range range, bool logarithmic, int count) {
+  constexpr std::size_t kFewest = 3;
   if (logarithmic) {
     std::vector<Tick> powers = logarithmic_ticks(range);
     // otherwise the range is so narrow that even steps suffice
-    if (powers.size() > 1) return powers;
-  }
-  const double least = (range.high - range.low) / std::max(count, 1);
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
-  double step = 10 * power;
-  for (const double factor : {5.0, 2.0, 1.0}) {
-    if (factor * power >= least) step = factor * power;
+    if (powers.size() >= kFewest) return powers;
   }
   std::vector<Tick> result;
-  const double first = std::ceil(range.low / step - 1e-9);
-  const double last = std::floor((range.high - first * step) / step + 1e-9);
-  for (int k = 0; k <= static_cast<int>(std::min(last, 100.0)); ++k) {
-    const double value = (first + k) * step;
-    result.push_back({value, tick_label(value, step)});
-  }
+  for (int wanted = std::max(count, 1); result.size() < kFewest && wanted <= std::max(count, 1) + 6; ++wanted)
+    result = even_ticks(range, wanted);
   return result;
 }
 

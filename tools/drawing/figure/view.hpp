@@ -55,7 +55,8 @@ struct Tick {
 [[nodiscard]] double text_width(std::string_view text);
 
 /// Returns about `count` round numbers (1, 2 or 5 times a power of ten). On a logarithmic axis they
-/// are powers of ten, and also 2 and 5 between them if the powers are few.
+/// are powers of ten, and also 2 and 5 between them if the powers are few. There are at least
+/// three.
 [[nodiscard]] std::vector<Tick> ticks(Range range, bool logarithmic, int count);
 
 /// Returns the largest of 1, 2, 5 times a power of ten that is at most `value`. @param value > 0

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,25 +15,85 @@
 namespace waymark::drawing {
 namespace {
 
-template <typename... Functions>
-struct Overloaded : Functions... {
-  using Functions::operator()...;
-};
-template <typename... Functions>
-Overloaded(Functions...) -> Overloaded<Functions...>;
+/// Writes the blocks of a page in reading order, and explains each word of the glossary once.
+class Writer {
+ public:
+  explicit Writer(const std::vector<std::pair<std::string, std::string>>& glossary) : words_(glossary) {
+    // "raw GNSS" is a word of its own, and must be found before "GNSS".
+    std::stable_sort(words_.begin(), words_.end(),
+                     [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
+  }
 
-std::string html(const text::Table& table) {
+  /// Returns escaped text with the words that are new in it explained.
+  std::string text(const std::string& plain);
+  std::string html(const text::Table& table);
+  std::string html(const FoldedTable& folded) {
+    return "<details><summary>" + text(folded.heading) + "</summary>\n" + html(folded.table) + "</details>\n";
+  }
+  std::string html(const Figure& figure) {
+    return fmt::format(
+        "<figure class=\"figure\" id=\"{}\">\n{}<figcaption><span><b>{}.</b> {}</span></figcaption></figure>\n",
+        figure.id, inline_svg(figure), text(figure.title), text(figure.description));
+  }
+  std::string html(const Paragraph& paragraph) { return "<p>" + text(paragraph.text) + "</p>\n"; }
+  std::string html(const PageLink& link) {
+    return fmt::format("<p><a href=\"{}\">{}</a></p>\n", escaped(link.file), escaped(link.text));
+  }
+  std::string html(const FigureRow& row) {
+    std::string out = "<div class=\"row\">\n";
+    for (const Figure& figure : row.figures) out += html(figure);
+    return out + "</div>\n";
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> words_;  ///< not explained yet
+};
+
+/// Returns the place of a whole word in a text; npos: it is not there.
+std::size_t find_word(const std::string& text, const std::string& word) {
+  const auto is_letter = [&](std::size_t i) {
+    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_');
+  };
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    if (!(at > 0 && is_letter(at - 1)) && !is_letter(at + word.size())) return at;
+  }
+  return std::string::npos;
+}
+
+std::string Writer::text(const std::string& plain) {
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    const std::size_t at = find_word(plain, words_[i].first);
+    if (at == std::string::npos) continue;
+    const auto [word, meaning] = words_[i];
+    words_.erase(words_.begin() + static_cast<std::ptrdiff_t>(i));
+    const std::string before = text(plain.substr(0, at));
+    return before +
+           fmt::format("<abbr tabindex=\"0\" title=\"{}\">{}</abbr>", escaped(meaning), escaped(word)) +
+           text(plain.substr(at + word.size()));
+  }
+  return escaped(plain);
+}
+
+std::string Writer::html(const text::Table& table) {
   std::vector<bool> numbers;
   for (std::size_t c = 0; c < table.columns.size(); ++c) numbers.push_back(text::has_numbers(table, c));
   const auto kind = [&](std::size_t c) {
     return c < numbers.size() && numbers[c] ? " class=\"number\"" : "";
   };
-  std::string out = "<div class=\"scroll\"><table>";
-  if (!table.title.empty()) out += "<caption>" + escaped(table.title) + "</caption>";
-  out += "<thead><tr>";
-  for (std::size_t c = 0; c < table.columns.size(); ++c)
-    out += fmt::format("<th scope=\"col\"{}>{}</th>", kind(c), escaped(table.columns[c]));
-  out += "</tr></thead><tbody>\n";
+  std::string out = "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" +
+                    escaped(table.title.empty() ? "table" : table.title) + "\"><table>";
+  if (!table.title.empty()) out += "<caption>" + text(table.title) + "</caption>";
+  const bool named = std::any_of(table.columns.begin(), table.columns.end(),
+                                 [](const std::string& column) { return !column.empty(); });
+  if (named) {
+    out += "<thead><tr>";
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      out += table.columns[c].empty()
+                 ? "<td class=\"corner\"></td>"  // a heading without words would be read aloud as one
+                 : fmt::format("<th scope=\"col\"{}>{}</th>", kind(c), text(table.columns[c]));
+    out += "</tr></thead>";
+  }
+  out += "<tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
     for (std::size_t c = 0; c < row.size(); ++c)
@@ -39,29 +101,8 @@ std::string html(const text::Table& table) {
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";
-  for (const std::string& note : table.notes) out += "<p class=\"note\">" + escaped(note) + "</p>\n";
+  for (const std::string& note : table.notes) out += "<p class=\"note\">" + text(note) + "</p>\n";
   return out;
-}
-
-std::string html(const Figure& figure) {
-  return fmt::format(
-      "<figure class=\"figure\" id=\"{}\">\n{}<figcaption><span><b>{}.</b> {}</span></figcaption></figure>\n",
-      figure.id, inline_svg(figure), escaped(figure.title), escaped(figure.description));
-}
-
-std::string html(const PageBlock& block) {
-  return std::visit(Overloaded{[](const Paragraph& p) { return "<p>" + escaped(p.text) + "</p>\n"; },
-                               [](const PageLink& link) {
-                                 return fmt::format("<p><a href=\"{}\">{}</a></p>\n", escaped(link.file),
-                                                    escaped(link.text));
-                               },
-                               [](const FigureRow& row) {
-                                 std::string out = "<div class=\"row\">\n";
-                                 for (const Figure& figure : row.figures) out += html(figure);
-                                 return out + "</div>\n";
-                               },
-                               [](const auto& other) { return html(other); }},
-                    block);
 }
 
 std::string head(const Page& page) {
@@ -74,11 +115,12 @@ std::string head(const Page& page) {
 
 std::string body(const Page& page) {
   static constexpr const char* kKinds[] = {"", " better", " worse"};
+  Writer writer(page.glossary);
   std::string out = "<body>\n<main>\n<h1>" + escaped(page.title) + "</h1>\n";
   if (!page.subtitle.empty()) out += "<p class=\"subtitle\">" + escaped(page.subtitle) + "</p>\n";
   if (!page.summary.empty()) {
     out += fmt::format("<p class=\"verdict{}\">{}</p>\n", kKinds[static_cast<int>(page.verdict)],
-                       escaped(page.summary));
+                       writer.text(page.summary));
   }
   out += "<nav aria-label=\"Contents\">";
   for (const Section& section : page.sections)
@@ -86,7 +128,8 @@ std::string body(const Page& page) {
   out += "</nav>\n";
   for (const Section& section : page.sections) {
     out += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", section.id, escaped(section.title));
-    for (const PageBlock& block : section.blocks) out += html(block);
+    for (const PageBlock& block : section.blocks)
+      out += std::visit([&](const auto& any) { return writer.html(any); }, block);
     out += "</section>\n";
   }
   return out + "</main>\n<footer>" + escaped(page.footer) + "</footer>\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -25,7 +26,13 @@ struct PageLink {
   std::string text;
 };
 
-using PageBlock = std::variant<Paragraph, text::Table, Figure, FigureRow, PageLink>;
+/// A table that is folded away until the reader opens it. Paper shows it.
+struct FoldedTable {
+  std::string heading;  ///< remains visible
+  text::Table table;
+};
+
+using PageBlock = std::variant<Paragraph, text::Table, FoldedTable, Figure, FigureRow, PageLink>;
 
 struct Section {
   std::string id;  ///< [a-z0-9-]
@@ -42,6 +49,9 @@ struct Page {
   Verdict verdict = Verdict::none;
   std::vector<Section> sections;
   std::string footer;  ///< the program that made the page
+  /// Words with their meanings. The first use of each is explained where the pointer or the focus
+  /// is.
+  std::vector<std::pair<std::string, std::string>> glossary{};
 };
 
 /// Returns HTML 5 in UTF-8. It includes style, script, drawings and their data, and loads nothing.

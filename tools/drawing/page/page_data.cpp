@@ -80,6 +80,17 @@ Json axis_json(const Axis& axis, Range range) {
           {"rows", !axis.categories.empty()}};
 }
 
+Json places_json(const Places& places, ColumnStore& store) {
+  Json json = {{"start", places.start_utc_s ? Json(*places.start_utc_s) : Json(nullptr)}};
+  for (const auto& [key, column] :
+       {std::pair{"time", &places.time}, std::pair{"x", &places.x}, std::pair{"y", &places.y},
+        std::pair{"latitude", &places.latitude_deg}, std::pair{"longitude", &places.longitude_deg},
+        std::pair{"xx", &places.xx}, std::pair{"xy", &places.xy}, std::pair{"yy", &places.yy}}) {
+    if (!column->empty()) json[key] = store.add(*column, true);
+  }
+  return json;
+}
+
 Json figure_json(const Figure& figure, ColumnStore& store) {
   static constexpr const char* kMotions[] = {"still", "x", "map"};
   const View view = drawn_view(figure);
@@ -90,6 +101,7 @@ Json figure_json(const Figure& figure, ColumnStore& store) {
                {"box", {view.box.left, view.box.top, view.box.width, view.box.height}},
                {"x", axis_json(figure.x, view.x)},
                {"y", axis_json(figure.y, view.y)}};
+  if (figure.places) json["places"] = places_json(*figure.places, store);
   json["series"] = Json::array();
   for (const Series& series : figure.series) json["series"].push_back(series_json(series, figure, store));
   return json;

@@ -45,6 +45,17 @@ Eigen::Vector3d pose_at(const std::vector<StampedPose>& nodes, Stamp stamp, doub
 
 namespace {
 
+/// Returns the covariance of each evaluated vertex; null where the document has none.
+std::vector<const formats::VertexCovariance*> evaluated_blocks(const formats::GraphDocument& document) {
+  std::vector<const formats::VertexCovariance*> of_vertex(document.graph.vertex_count(), nullptr);
+  for (const formats::VertexCovariance& block : document.covariances)
+    of_vertex[static_cast<std::size_t>(block.vertex)] = &block;
+  std::vector<const formats::VertexCovariance*> blocks;
+  for (const VertexIndex v : evaluated_vertices(document))
+    blocks.push_back(v >= 0 ? of_vertex[static_cast<std::size_t>(v)] : nullptr);
+  return blocks;
+}
+
 /// Returns how late the fixes of each source are; empty if no offset is estimated.
 std::vector<double> delays_of(const formats::GraphDocument& document) {
   const Graph& graph = document.graph;
@@ -126,16 +137,21 @@ std::vector<StampedPose> evaluated_poses(const formats::GraphDocument& document)
 }
 
 std::vector<std::optional<Eigen::Matrix2d>> evaluated_covariances(const formats::GraphDocument& document) {
-  std::vector<const formats::VertexCovariance*> of_vertex(document.graph.vertex_count(), nullptr);
-  for (const formats::VertexCovariance& block : document.covariances)
-    of_vertex[static_cast<std::size_t>(block.vertex)] = &block;
   std::vector<std::optional<Eigen::Matrix2d>> covariances;
-  for (const VertexIndex v : evaluated_vertices(document)) {
-    const formats::VertexCovariance* block = v >= 0 ? of_vertex[static_cast<std::size_t>(v)] : nullptr;
+  for (const formats::VertexCovariance* block : evaluated_blocks(document)) {
     covariances.emplace_back();
     if (block != nullptr) covariances.back() = block->covariance.topLeftCorner<2, 2>();
   }
   return covariances;
+}
+
+std::vector<std::optional<double>> evaluated_heading_sigmas(const formats::GraphDocument& document) {
+  std::vector<std::optional<double>> sigmas;
+  for (const formats::VertexCovariance* block : evaluated_blocks(document)) {
+    sigmas.emplace_back();
+    if (block != nullptr && block->covariance.rows() > 2) sigmas.back() = std::sqrt(block->covariance(2, 2));
+  }
+  return sigmas;
 }
 
 std::vector<Eigen::Vector3d> poses_of_fixes(const formats::GraphDocument& document) {

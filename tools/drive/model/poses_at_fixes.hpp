@@ -27,6 +27,11 @@ namespace waymark::drive {
 [[nodiscard]] std::vector<std::optional<Eigen::Matrix2d>> evaluated_covariances(
     const formats::GraphDocument& document);
 
+/// Returns the standard deviations of their headings, rad. Empty where the document has no
+/// covariance.
+[[nodiscard]] std::vector<std::optional<double>> evaluated_heading_sigmas(
+    const formats::GraphDocument& document);
+
 /// Returns the poses at the true times of the fixes: their stamps minus the estimated time offset,
 /// along the constant twist between the adjacent nodes. Empty if the graph estimates no offset.
 [[nodiscard]] std::vector<Eigen::Vector3d> poses_when_measured(const formats::GraphDocument& document);

@@ -11,7 +11,9 @@ constexpr std::string_view kHeader =
     "stamp_ns,time_s,status,reason,sigma_east_m,sigma_north_m,"
     "gnss_east_m,gnss_north_m,fused_east_m,fused_north_m,"
     "gnss_along_m,gnss_cross_m,fused_along_m,fused_cross_m,heading_error_deg,speed_mps,"
-    "covariance_xx_m2,covariance_xy_m2,covariance_yy_m2,nees,nu\n";
+    "covariance_xx_m2,covariance_xy_m2,covariance_yy_m2,nees,nu,"
+    "fix_minus_fused_east_m,fix_minus_fused_north_m,heading_sigma_deg,quality,satellites,hdop,"
+    "raw_latitude_deg,raw_longitude_deg,fused_latitude_deg,fused_longitude_deg\n";
 
 void append_vector(std::string& out, const std::optional<Eigen::Vector2d>& vector) {
   for (Eigen::Index axis = 0; axis < 2; ++axis)
@@ -34,6 +36,19 @@ void append_covariance(std::string& out, const std::optional<Eigen::Matrix2d>& c
                                covariance ? std::optional<double>((*covariance)(row, column)) : std::nullopt);
 }
 
+void append_told(std::string& out, const FixDetails& told) {
+  out += ',';
+  if (told.quality != FixQuality::unknown) formats::append_csv_text(out, to_string(told.quality));
+  formats::append_csv_number(out,
+                             told.satellites >= 0 ? std::optional<double>(told.satellites) : std::nullopt);
+  formats::append_csv_number(out, told.hdop > 0 ? std::optional(told.hdop) : std::nullopt);
+}
+
+void append_place(std::string& out, const std::optional<GeodeticPoint>& place) {
+  append_vector(
+      out, place ? std::optional(Eigen::Vector2d(place->latitude_deg, place->longitude_deg)) : std::nullopt);
+}
+
 void append_epoch(std::string& out, const EpochResult& epoch, Stamp first) {
   out += std::to_string(epoch.stamp.nanoseconds);
   // A quotient is the double nearest to the decimal, 1.9. A product with 1e-9 would be
@@ -54,6 +69,12 @@ void append_epoch(std::string& out, const EpochResult& epoch, Stamp first) {
   append_covariance(out, epoch.position_covariance);
   formats::append_csv_number(out, epoch.nees);
   formats::append_csv_number(out, epoch.nu);
+  append_vector(out, epoch.fix_residual_m);
+  const auto& sigma = epoch.heading_sigma_rad;
+  formats::append_csv_number(out, sigma ? std::optional(*sigma * 180 / std::numbers::pi) : std::nullopt);
+  append_told(out, epoch.told);
+  append_place(out, epoch.raw_place);
+  append_place(out, epoch.fused_place);
   out += '\n';
 }
 

@@ -98,12 +98,30 @@ Json numbers(std::span<const double> values) {
   return list;
 }
 
+Json to_json(const OffsetTakenOut& o) {
+  return {{"along_m", text::number_or_null(o.along_m)},
+          {"cross_m", text::number_or_null(o.cross_m)},
+          {"position", to_json(o.rest)}};
+}
+
+Json to_json(std::span<const RelativePoseError> errors) {
+  Json list = Json::array();
+  for (const RelativePoseError& error : errors)
+    list.push_back({{"distance_m", error.distance_m},
+                    {"translation", to_json(error.translation_m, "m")},
+                    {"rotation", to_json(error.rotation_rad, "rad")}});
+  return list;
+}
+
 Json to_json(const TruthEvaluation& t) {
   return {{"match", to_json(t.match)},
           {"gnss", to_json(t.gnss)},
           {"gnss_accepted", to_json(t.gnss_accepted)},
           {"fused", to_json(t.fused)},
           {"improvement_percent", to_json(t.improvement)},
+          {"gnss_without_constant_offset", to_json(t.gnss_without_offset)},
+          {"fused_without_constant_offset", to_json(t.fused_without_offset)},
+          {"relative_pose_error", to_json(t.relative)},
           {"consistency", t.consistency ? to_json(*t.consistency) : Json(nullptr)},
           {"autocorrelation",
            {{"lags_s", Json(kAutocorrelationLags)},
@@ -112,13 +130,23 @@ Json to_json(const TruthEvaluation& t) {
 }
 
 /// Returns the predictions at withheld fixes, by label.
-Json predictions_json(const Evaluation& e) {
+Json predictions_json(std::span<const WithheldMetrics> at_withheld) {
   Json predictions = Json::object();
-  for (const WithheldMetrics& w : e.at_withheld)
+  for (const WithheldMetrics& w : at_withheld)
     predictions[w.label] = {{"at_fixes", to_json(w.at_fixes)},
                             {"at_ends", to_json(w.at_ends)},
                             {"innovation", to_json(w.innovation)}};
   return predictions;
+}
+
+/// Returns null if no fixes were kept out for a verdict.
+Json held_out_json(const std::optional<HeldOut>& held) {
+  if (!held) return nullptr;
+  return {{"run_s", held->run_s},
+          {"every_s", held->every_s},
+          {"expected_rmse_m", text::number_or_null(held->expected_rmse_m)},
+          {"predictions", predictions_json(held->predictions)},
+          {"innovation", to_json(held->innovation)}};
 }
 
 Json to_json(const Frame& frame) {
@@ -166,7 +194,8 @@ Json to_json(const LabelledEvaluation& labelled) {
       {"truth", e.truth ? to_json(*e.truth) : Json(nullptr)},
       {"withheld_fixes", e.withheld_fixes ? to_json(*e.withheld_fixes) : Json(nullptr)},
       {"outages", e.outages},
-      {"withheld_predictions", predictions_json(e)},
+      {"withheld_predictions", predictions_json(e.at_withheld)},
+      {"held_out", held_out_json(e.held_out)},
       {"innovation",
        {{"accepted", to_json(e.post_fit)},
         {"rejected", to_json(e.gated)},

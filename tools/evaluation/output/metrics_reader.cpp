@@ -86,6 +86,19 @@ std::vector<double> numbers(const text::JsonPlace& json) {
   return values;
 }
 
+OffsetTakenOut offset_taken_out(const text::JsonPlace& json) {
+  return {json.number("along_m"), json.number("cross_m"), position(json.at("position"))};
+}
+
+std::vector<RelativePoseError> relative_errors(const text::JsonPlace& json) {
+  std::vector<RelativePoseError> errors;
+  for (const text::JsonPlace& item : json.items())
+    errors.push_back(
+        {item.number("distance_m"), scalar(item.at("translation"), "m"), scalar(item.at("rotation"), "rad")});
+  return errors;
+}
+
+/// Files of this version without offsets taken out and relative errors exist.
 TruthEvaluation truth(const text::JsonPlace& json) {
   TruthEvaluation t;
   const text::JsonPlace match = json.at("match");
@@ -99,6 +112,11 @@ TruthEvaluation truth(const text::JsonPlace& json) {
   t.gnss_accepted = system(json.at("gnss_accepted"));
   t.fused = system(json.at("fused"));
   t.improvement = improvement_of(json.at("improvement_percent"));
+  if (json.has("gnss_without_constant_offset"))
+    t.gnss_without_offset = offset_taken_out(json.at("gnss_without_constant_offset"));
+  if (json.has("fused_without_constant_offset"))
+    t.fused_without_offset = offset_taken_out(json.at("fused_without_constant_offset"));
+  if (json.has("relative_pose_error")) t.relative = relative_errors(json.at("relative_pose_error"));
   if (json.has("consistency")) t.consistency = consistency(json.at("consistency"));
   t.gnss_autocorrelation = numbers(json.at("autocorrelation").at("gnss"));
   t.fused_autocorrelation = numbers(json.at("autocorrelation").at("fused"));
@@ -120,6 +138,14 @@ std::vector<WithheldMetrics> predictions(const text::JsonPlace& json) {
   return result;
 }
 
+HeldOut held_out(const text::JsonPlace& json) {
+  HeldOut held{.run_s = json.number("run_s"), .every_s = json.number("every_s")};
+  held.predictions = predictions(json.at("predictions"));
+  held.innovation = innovation(json.at("innovation"), ResidualKind::prediction);
+  held.expected_rmse_m = json.number("expected_rmse_m");
+  return held;
+}
+
 /// Files of this version without outages and predictions exist, because these were added later.
 LabelledEvaluation labelled(const text::JsonPlace& json) {
   Evaluation e;
@@ -132,6 +158,7 @@ LabelledEvaluation labelled(const text::JsonPlace& json) {
   if (json.has("withheld_fixes")) e.withheld_fixes = system(json.at("withheld_fixes"));
   if (json.has("outages")) e.outages = json.count("outages");
   if (json.has("withheld_predictions")) e.at_withheld = predictions(json.at("withheld_predictions"));
+  if (json.has("held_out")) e.held_out = held_out(json.at("held_out"));
   const text::JsonPlace innovations = json.at("innovation");
   e.post_fit = innovation(innovations.at("accepted"), ResidualKind::post_fit);
   e.gated = innovation(innovations.at("rejected"), ResidualKind::gated);

@@ -107,7 +107,7 @@ evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std
   if (reports) sparsity = sparsity_for_report(document, console);
   add_provenance(document, label, header);
   if (!reports) return evaluated;
-  const std::vector<std::string> files =
+  const WrittenResult written =
       write_result({.drive = header.drive,
                     .document = document,
                     .evaluated = evaluated,
@@ -115,11 +115,11 @@ evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std
                     .states = states_at(document),
                     .sparsity = std::move(sparsity)},
                    evaluation::ResultFolder(job.options.folder), job.options.inputs.size(), console);
-  for (std::size_t i = 0; i + 1 < files.size(); ++i) console.detail("written " + files[i]);
+  for (const std::string& file : written.files) console.detail("written " + file);
   if (job.options.inputs.size() == 1) {
-    console.note("written " + files.back());
+    console.note("written " + written.page);
   } else {
-    console.detail("written " + files.back());
+    console.detail("written " + written.page);
   }
   return evaluated;
 }

@@ -14,6 +14,7 @@
 #include <waymark/tools/program/jobs/drive_job.hpp>
 #include <waymark/tools/program/jobs/drive_text.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/hold_out.hpp>
 #include <waymark/tools/program/jobs/evaluation/source_comparison.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/live/window_study.hpp>
@@ -43,7 +44,7 @@ struct ModelingRun {
   std::vector<evaluation::StateReport> states;
   drive::NoiseEstimate noise;
   std::string description;  ///< of the error model
-  std::vector<std::string> files;
+  WrittenResult written;
   std::string windows;  ///< live runs beside this one, as text
 };
 
@@ -99,13 +100,11 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
   return causal;
 }
 
-/// Evaluates a document with the covariances at its fixes. Afterwards the document keeps the
-/// requested ones.
+/// Evaluates a document with the covariances at its fixes, which it holds afterwards.
 evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDrive& modeled,
                                         const Summary& summary, const drive::FusionSettings& settings) {
   formats::GraphDocument& document = modeled.document;
   run.console.progress(settings.modeling + ": covariances");
-  const std::vector<formats::VertexCovariance> asked_for = document.covariances;
   if (summary.converged() && document.covariances.empty()) {
     try {
       drive::add_covariances(document, "fixes");
@@ -121,7 +120,8 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDri
   run.console.end_progress();
   if (summary.converged())
     evaluation.sources = compare_sources(run.loaded.drive, modeled, evaluation, run.registry, run.console);
-  document.covariances = asked_for;
+  if (summary.converged())
+    evaluation.held_out = hold_out(run.loaded.drive, modeled, run.registry, run.console);
   return evaluation;
 }
 
@@ -146,7 +146,10 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   write(run.folder.fused_graph(modeling));  // the minimum is saved before anything else can fail
   const std::size_t known = document.provenance.size();
   result.states = states_of_minimum(document, summary, console);
+  const std::vector<formats::VertexCovariance> asked_for = document.covariances;
   result.evaluation = {modeling, evaluate_minimum(run, modeled, summary, settings)};
+  // The graph file has the covariances that were asked for, the trajectory all that are known.
+  std::vector<formats::VertexCovariance> known_covariances = std::exchange(document.covariances, asked_for);
   for (const std::string& sentence :
        warnings_of_result(result.states, modeled.settings, result.noise, result.evaluation.evaluation))
     warn(run.loaded.settings.size() > 1 ? modeling + ": " + sentence : sentence, document, console);
@@ -160,21 +163,25 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
         study_windows({run.file, fused, run.loaded.drive, run.options.windows_s, run.options.folder,
                        truth ? truth->fused.position.rmse_m : std::nan("")},
                       run.registry, console);
-    result.windows = "\n" + study.text;
+    result.windows = study.text + "\n";
     more_sections.push_back(std::move(study.section));
   }
-  result.files = write_result({.drive = header.drive,
-                               .document = document,
-                               .evaluated = result.evaluation,
-                               .truth = run.loaded.drive.truth,
-                               .optimization = &result.result,
-                               .states = result.states,
-                               .sparsity = std::move(sparsity),
-                               .went_in = {{"odometry", odometry_in_words(run.loaded.drive)},
-                                           {"left out", left_out(run.loaded.drive)}},
-                               .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)},
-                               .more_sections = std::move(more_sections)},
-                              run.folder, run.loaded.settings.size(), console);
+  document.covariances.swap(known_covariances);
+  result.written =
+      write_result({.drive = header.drive,
+                    .document = document,
+                    .evaluated = result.evaluation,
+                    .truth = run.loaded.drive.truth,
+                    .optimization = &result.result,
+                    .states = result.states,
+                    .sparsity = std::move(sparsity),
+                    .noise = result.noise.parameters.empty() ? text::Table() : noise_table(result.noise),
+                    .went_in = {{"odometry", odometry_in_words(run.loaded.drive)},
+                                {"left out", left_out(run.loaded.drive)}},
+                    .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)},
+                    .more_sections = std::move(more_sections)},
+                   run.folder, run.loaded.settings.size(), console);
+  document.covariances.swap(known_covariances);
   return result;
 }
 
@@ -235,17 +242,33 @@ std::string describe_runs(const RunOfDrive& run, const std::vector<ModelingRun>&
   return text;
 }
 
-/// Returns the printed text of a run: its modelings, the metrics, the files.
+/// Returns the verdict of each modeling, and where to read on.
+std::string verdicts(const std::vector<ModelingRun>& runs, const std::string& page) {
+  std::string text = "\n";
+  for (const ModelingRun& of : runs) {
+    if (runs.size() > 1) text += of.evaluation.label + ": ";
+    text += of.written.verdict + "\n";
+  }
+  return text + "Read on in " + page + "\n";
+}
+
+/// Returns the printed text of a run: its modelings, the metrics, the files, and the verdict last,
+/// where the eye is when the program has ended.
 std::string run_text(const RunOfDrive& run, const std::vector<ModelingRun>& runs,
                      const std::vector<evaluation::LabelledEvaluation>& evaluations,
                      const std::vector<std::string>& common) {
+  const std::string page = run.folder.page(run.folder.kReport);
   std::string text = describe_runs(run, runs) + "\n" +
-                     evaluation::metrics_table(evaluations, run.console.look()) + "\nwritten:\n";
+                     evaluation::metrics_table(evaluations, run.console.look()) + "\nwritten:\n  " + page +
+                     "\n";
   for (const ModelingRun& of : runs) {
-    for (const std::string& file : of.files) text += "  " + file + "\n";
+    if (of.written.page != page) text += "  " + of.written.page + "\n";
+    for (const std::string& file : of.written.files) text += "  " + file + "\n";
   }
-  for (const std::string& file : common) text += "  " + file + "\n";
-  return text + "  and the figures of the report as SVG and CSV in " + run.folder.figures() + "\n";
+  for (const std::string& file : common)
+    if (file != page) text += "  " + file + "\n";
+  return text + "  and the figures of the report as SVG and CSV in " + run.folder.figures() + "\n" +
+         verdicts(runs, page);
 }
 
 ExitCode run_drive(const RunOptions& options) {
@@ -275,11 +298,14 @@ ExitCode run_drive(const RunOptions& options) {
     const ExitCode of_run = exit_code(runs.back().result.summary);
     if (of_run != kSuccess) code = of_run;
     if (interrupted) code = kInterrupted;
+<<<<<<< HEAD
     windows += runs.back().windows;
+=======
+>>>>>>> report
   }
   const std::string metrics = evaluation::metrics_json(evaluations, header);
   const std::vector<std::string> common = write_common(run, runs, metrics, header);
-  console.result(options.common.json ? metrics : run_text(run, runs, evaluations, common) + windows);
+  console.result(options.common.json ? metrics : windows + run_text(run, runs, evaluations, common));
   return code;
 }
 

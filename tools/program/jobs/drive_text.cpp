@@ -41,11 +41,9 @@ std::string describe_gate(const drive::ModeledDrive& modeled) {
 
 }  // namespace
 
-std::string describe_model(const drive::ModeledDrive& modeled, const text::TextLook& look) {
-  std::string text = describe_gate(modeled);
-  if (modeled.noise.parameters.empty()) return text;
+text::Table noise_table(const drive::NoiseEstimate& noise) {
   text::Table table{.columns = {"estimated noise", "unit", "value", "68 % between", "and", "known before"}};
-  for (const drive::NoiseParameter& p : modeled.noise.parameters) {
+  for (const drive::NoiseParameter& p : noise.parameters) {
     const bool linear = p.prior.linear;
     const auto moved = [&](double by) { return linear ? p.value + by : p.value * std::exp(by); };
     table.rows.push_back({p.name(), p.unit, fmt::format("{:.3g}", p.value),
@@ -53,7 +51,13 @@ std::string describe_model(const drive::ModeledDrive& modeled, const text::TextL
                           fmt::format("{:.3g}", moved(p.deviation)),
                           p.observed() ? fmt::format("{:.3g}", p.prior.mean) : "not observed"});
   }
-  return text + text::table_text(table, look);
+  return table;
+}
+
+std::string describe_model(const drive::ModeledDrive& modeled, const text::TextLook& look) {
+  const std::string text = describe_gate(modeled);
+  if (modeled.noise.parameters.empty()) return text;
+  return text + text::table_text(noise_table(modeled.noise), look);
 }
 
 std::string left_out(const drive::PreparedDrive& drive) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <waymark/tools/drive/model/fuse.hpp>
+#include <waymark/tools/text/table.hpp>
 #include <waymark/tools/text/text_look.hpp>
 
 namespace waymark::program {
@@ -22,6 +23,10 @@ namespace waymark::program {
 /// Describes the fixes that the gate rejected and why, the estimated noise, and the noise
 /// parameters that the drive does not show.
 [[nodiscard]] std::string describe_model(const drive::ModeledDrive& modeled, const text::TextLook& look = {});
+
+/// Returns the estimated noise: values, their 68 % intervals, and what was known before. "not
+/// observed": the drive tells no more than the prior did.
+[[nodiscard]] text::Table noise_table(const drive::NoiseEstimate& noise);
 
 /// Returns the estimated noise as a list.
 [[nodiscard]] nlohmann::ordered_json noise_json(const drive::NoiseEstimate& noise);

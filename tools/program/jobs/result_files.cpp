@@ -13,10 +13,11 @@
 namespace waymark::program {
 namespace {
 
-/// Writes the report and its figures. Returns the name of the page.
-std::string write_report(const DocumentResult& request, const std::vector<std::string>& files,
-                         const evaluation::ResultFolder& folder, const std::string& page_name,
-                         const Console& console) {
+/// Writes the report and its figures. Returns the name of the page and its verdict.
+std::pair<std::string, std::string> write_report(const DocumentResult& request,
+                                                 const std::vector<std::string>& files,
+                                                 const evaluation::ResultFolder& folder,
+                                                 const std::string& page_name, const Console& console) {
   console.progress("writing report " + page_name + ".html");
   const evaluation::GraphResiduals residuals = evaluation::residuals_by_type(request.document.graph);
   report::ReportedDrive drive{.name = request.drive,
@@ -28,6 +29,7 @@ std::string write_report(const DocumentResult& request, const std::vector<std::s
                               .states = &request.states,
                               .residuals = &residuals,
                               .sparsity = request.sparsity ? &*request.sparsity : nullptr};
+  drive.noise = request.noise;
   drive.went_in = request.went_in;
   for (const std::string& file : files)
     drive.files.push_back(std::filesystem::path(file).filename().string());
@@ -36,7 +38,7 @@ std::string write_report(const DocumentResult& request, const std::vector<std::s
   const std::vector<std::string> written = drawing::write_page(page, folder.path(), page_name);
   for (std::size_t i = 1; i < written.size(); ++i) console.detail("written " + written[i]);
   console.end_progress();
-  return written.front();
+  return {written.front(), page.summary};
 }
 
 std::string write_comparison(const std::vector<ComparedResult>& results,
@@ -78,15 +80,15 @@ std::optional<evaluation::Sparsity> sparsity_for_report(formats::GraphDocument& 
   }
 }
 
-std::vector<std::string> write_result(const DocumentResult& result, const evaluation::ResultFolder& folder,
-                                      std::size_t results, const Console& console) {
+WrittenResult write_result(const DocumentResult& result, const evaluation::ResultFolder& folder,
+                           std::size_t results, const Console& console) {
   const std::string& label = result.evaluated.label;
   std::vector<std::string> files = result.files;
   for (const std::string& file : write_trajectories(result.document, folder, label)) files.push_back(file);
   files.push_back(folder.epochs(label));
   formats::write_file_atomically(files.back(), evaluation::epochs_csv(result.evaluated.evaluation.epochs));
-  files.push_back(write_report(result, files, folder, folder.page_name(label, results), console));
-  return files;
+  auto [page, verdict] = write_report(result, files, folder, folder.page_name(label, results), console);
+  return {.files = std::move(files), .page = std::move(page), .verdict = std::move(verdict)};
 }
 
 std::vector<std::string> write_overview(const std::vector<ComparedResult>& results,

@@ -15,6 +15,7 @@
 #include <waymark/tools/evaluation/output/report.hpp>
 #include <waymark/tools/evaluation/output/result_folder.hpp>
 #include <waymark/tools/program/terminal/console.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::program {
 
@@ -27,6 +28,7 @@ struct DocumentResult {
   const MultiStartSummary* optimization = nullptr;  ///< null: optimised elsewhere
   std::vector<evaluation::StateReport> states{};
   std::optional<evaluation::Sparsity> sparsity{};  ///< from sparsity_for_report
+  text::Table noise{};                             ///< the estimated noise; without rows: as stated
   /// Inputs from the logs: heading and text.
   std::vector<std::pair<std::string, std::string>> went_in{};
   std::vector<std::string> files{};               ///< written before, to be linked; paths
@@ -39,12 +41,18 @@ struct DocumentResult {
 [[nodiscard]] std::optional<evaluation::Sparsity> sparsity_for_report(formats::GraphDocument& document,
                                                                       const Console& console);
 
+/// What was written of one result.
+struct WrittenResult {
+  std::vector<std::string> files;  ///< earlier ones first, without figures, because there are many
+  std::string page;                ///< the report
+  std::string verdict;             ///< the sentences at its top
+};
+
 /// Writes trajectory, epochs and report with its figures.
 /// @param results number of results in the folder. A single report has the name of the report;
 /// several have their labels.
-/// @return the files: earlier ones first, the report last, without figures, because there are many
-std::vector<std::string> write_result(const DocumentResult& result, const evaluation::ResultFolder& folder,
-                                      std::size_t results, const Console& console);
+WrittenResult write_result(const DocumentResult& result, const evaluation::ResultFolder& folder,
+                           std::size_t results, const Console& console);
 
 /// One of the results in the folder.
 struct ComparedResult {

@@ -45,9 +45,10 @@ std::vector<OfVertex> known_of_vertices(const formats::GraphDocument& document) 
 }
 
 formats::TrajectoryPoint point_of(const StampedPose& pose, const OfVertex& known,
-                                  const std::optional<drive::Projection>& projection) {
+                                  const std::optional<drive::Projection>& projection, TimeScale scale) {
   formats::TrajectoryPoint point;
   point.stamp = pose.stamp;
+  point.utc = formats::date_of(pose.stamp, scale);
   point.pose = pose.pose;
   if (projection) {
     const GeodeticPoint place = projection->to_geodetic(point.pose.head<2>());
@@ -72,7 +73,7 @@ std::vector<std::string> write_trajectories(const formats::GraphDocument& docume
   std::vector<formats::TrajectoryPoint> points;
   for (std::size_t v = 0; v < known.size(); ++v) {
     if (const auto pose = stamped_pose(document.graph, static_cast<VertexIndex>(v)))
-      points.push_back(point_of(*pose, known[v], projection));
+      points.push_back(point_of(*pose, known[v], projection, document.time_scale));
   }
   if (points.empty()) return {};
   std::vector<std::string> files;

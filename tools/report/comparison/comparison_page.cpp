@@ -6,6 +6,7 @@
 #include <waymark/tools/report/comparison/comparison_page.hpp>
 #include <waymark/tools/report/comparison/comparison_parts.hpp>
 #include <waymark/tools/report/consistency_bars.hpp>
+#include <waymark/tools/report/words.hpp>
 
 namespace waymark::report {
 namespace {
@@ -92,6 +93,12 @@ drawing::Section errors_section(const Groups& groups) {
   return section;
 }
 
+drawing::Section trajectories_section(const Groups& groups) {
+  drawing::Section section{"trajectories", "Trajectories", {}};
+  drawing::add_figures(run_trajectories(groups), section);
+  return section;
+}
+
 drawing::Section course_section(const Groups& groups) {
   drawing::Section section{"course", "Distribution and course", {}};
   drawing::add_figures(distribution_figures(groups), section);
@@ -149,9 +156,10 @@ drawing::Page comparison_page(const Runs& runs, const std::string& version) {
   page.subtitle = subtitle(runs, groups);
   page.footer = "Made by waymark " + version + ".";
   add_summary(runs, groups, page);
+  page.glossary = glossary();
   for (drawing::Section section :
-       {errors_section(groups), course_section(groups), consistency_section(groups), ending_section(runs),
-        differences_section(runs, groups)}) {
+       {errors_section(groups), trajectories_section(groups), course_section(groups),
+        consistency_section(groups), ending_section(runs), differences_section(runs, groups)}) {
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
   }
   return page;

@@ -47,6 +47,9 @@ struct SystemRow {
 [[nodiscard]] std::vector<drawing::Figure> distribution_figures(const std::vector<DriveGroup>& groups);
 /// Returns the errors over time, one figure per drive and seven runs.
 [[nodiscard]] std::vector<drawing::Figure> course_figures(const std::vector<DriveGroup>& groups);
+/// Returns the fused trajectories over each other, one figure per drive and seven runs. Runs whose
+/// places on Earth are not known are left out.
+[[nodiscard]] std::vector<drawing::Figure> run_trajectories(const std::vector<DriveGroup>& groups);
 /// Returns chi2 over the accepted steps, seven runs per figure.
 [[nodiscard]] std::vector<drawing::Figure> chi2_figures(const std::vector<ComparedRun>& runs);
 /// Returns iterations and seconds.

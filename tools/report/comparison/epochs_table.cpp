@@ -25,6 +25,12 @@ class Table {
     throw InputError(fmt::format("{}:{}: expected {} fields, as in the heading, got {}", name_, line_,
                                  heading_.size(), fields_.size()));
   }
+  /// Folders of earlier versions lack some columns.
+  [[nodiscard]] std::optional<std::size_t> column_if_there(const std::string& name) const {
+    const auto found = std::find(heading_.begin(), heading_.end(), name);
+    return found == heading_.end() ? std::nullopt
+                                   : std::optional(static_cast<std::size_t>(found - heading_.begin()));
+  }
   [[nodiscard]] std::size_t column(const std::string& name) const {
     const auto found = std::find(heading_.begin(), heading_.end(), name);
     if (found == heading_.end()) throw InputError(fmt::format("{}:1: has no column '{}'", name_, name));
@@ -69,6 +75,8 @@ std::vector<evaluation::EpochResult> read_epochs_table(std::string_view text, co
   };
   const auto gnss = offset_columns("gnss");
   const auto fused = offset_columns("fused");
+  const auto latitude = table.column_if_there("fused_latitude_deg");
+  const auto longitude = table.column_if_there("fused_longitude_deg");
   const auto offset = [&](const std::pair<std::size_t, std::size_t>& columns) {
     const auto east = table.number<double>(columns.first);
     const auto north = table.number<double>(columns.second);
@@ -81,6 +89,9 @@ std::vector<evaluation::EpochResult> read_epochs_table(std::string_view text, co
     epoch.gnss_offset_m = offset(gnss);
     epoch.fused_offset_m = offset(fused);
     epoch.nees = table.number<double>(nees).value_or(evaluation::kUndefined);
+    const auto north = latitude ? table.number<double>(*latitude) : std::nullopt;
+    const auto east = longitude ? table.number<double>(*longitude) : std::nullopt;
+    if (north && east) epoch.fused_place = GeodeticPoint{*north, *east};
     epochs.push_back(std::move(epoch));
   }
   return epochs;

@@ -8,6 +8,7 @@
 #include <waymark/tools/drawing/figure/figure.hpp>
 #include <waymark/tools/drawing/figure/view.hpp>
 #include <waymark/tools/report/drive/drive_report.hpp>
+#include <waymark/tools/text/table.hpp>
 
 namespace waymark::report {
 
@@ -27,8 +28,8 @@ namespace waymark::report {
 /// the same scale.
 [[nodiscard]] drawing::FigureRow error_tiles(const ReportedDrive& drive);
 
-/// Shows the position error along and across the direction of travel, the heading error and the
-/// speed, with rejected spans.
+/// Shows the position error: its length, east and north with the stated sigmas, along and across
+/// the direction of travel; the heading error and the speed, with rejected spans.
 [[nodiscard]] std::vector<drawing::Figure> errors_over_time(const ReportedDrive& drive);
 
 /// Shows the share of epochs with an error below x, with CEP50 and CEP95.
@@ -41,8 +42,19 @@ namespace waymark::report {
 /// covariances.
 [[nodiscard]] std::vector<drawing::Figure> consistency_figures(const ReportedDrive& drive);
 
-/// Shows fix minus fused antenna over time, east and north. Without truth this is the only
-/// view of errors.
+/// Shows the stated sigmas of position and heading over time, and the NIS of the fixes. Figures
+/// without data are left out.
+[[nodiscard]] std::vector<drawing::Figure> sigmas_over_time(const ReportedDrive& drive);
+
+/// Shows the distance of the fixes from the fused antenna over time. If fixes were kept out of a
+/// second fusion, it shows their distance from that too.
 [[nodiscard]] drawing::Figure fix_residuals_over_time(const ReportedDrive& drive);
+
+/// Shows quality, satellites and HDOP of the fixes, as far as the receivers tell them.
+[[nodiscard]] std::vector<drawing::Figure> receiver_figures(const ReportedDrive& drive);
+
+/// Returns the ten worst stretches with times and reasons: by the error with truth, by the stated
+/// sigma without.
+[[nodiscard]] text::Table weak_table(const ReportedDrive& drive);
 
 }  // namespace waymark::report

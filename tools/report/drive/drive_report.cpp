@@ -6,6 +6,8 @@
 #include <waymark/tools/report/drive/drive_report.hpp>
 #include <waymark/tools/report/drive/drive_summary.hpp>
 #include <waymark/tools/report/drive/optimization_figures.hpp>
+#include <waymark/tools/report/drive/verdict.hpp>
+#include <waymark/tools/report/words.hpp>
 
 namespace waymark::report {
 namespace {
@@ -29,25 +31,68 @@ text::Table provenance(const ReportedDrive& drive) {
 }
 
 drawing::Section error_section(const ReportedDrive& drive) {
-  drawing::Section section{"errors", "Errors", {}};
+  drawing::Section section{"errors", "Errors", metric_tables(drive)};
   if (drive.evaluation.truth) {
     section.blocks.emplace_back(error_tiles(drive));
     drawing::add_figures(errors_over_time(drive), section);
     section.blocks.emplace_back(track_table(*drive.evaluation.truth));
+    text::Table relative = relative_table(*drive.evaluation.truth);
+    if (!relative.rows.empty()) section.blocks.emplace_back(std::move(relative));
     section.blocks.emplace_back(error_distribution(drive));
     section.blocks.emplace_back(autocorrelation_figure(drive));
   } else {
     section.blocks.emplace_back(fix_residuals_over_time(drive));
     drawing::add_figures(errors_over_time(drive), section);
   }
+  text::Table weak = weak_table(drive);
+  if (!weak.rows.empty()) section.blocks.emplace_back(std::move(weak));
   return section;
 }
 
+/// Describes whether the residuals of the fixes are as large as their covariances say.
+std::string describe_innovations(const evaluation::Evaluation& e) {
+  std::string text;
+  if (e.post_fit.count > 0)
+    text =
+        fmt::format("The mean NIS of {} accepted fixes is {}.", e.post_fit.count, describe_nis(e.post_fit));
+  const auto* nis = e.held_out ? &e.held_out->innovation : &e.prediction;
+  if (nis->count > 0) {
+    text += fmt::format(
+        "{}The mean NIS of {} fixes that are not in the graph is {}; {:.0f} % of them are inside "
+        "their 95 % region.",
+        text.empty() ? "" : " ", nis->count, describe_nis(*nis), 100 * nis->fraction_inside);
+  }
+  return text.empty() ? "The modeling takes the errors of the fixes as lasting, so their NIS has no meaning."
+                      : text;
+}
+
 void add_consistency(const ReportedDrive& drive, drawing::Page& page) {
-  if (!drive.evaluation.truth || !drive.evaluation.truth->consistency) return;
-  drawing::Section section{"consistency", "Stated against actual errors", {}};
-  section.blocks.emplace_back(drawing::Paragraph{describe_consistency(*drive.evaluation.truth->consistency)});
-  drawing::add_figures(consistency_figures(drive), section);
+  const evaluation::Evaluation& e = drive.evaluation;
+  const bool compared = e.truth && e.truth->consistency;
+  drawing::Section section{"consistency", compared ? "Stated against actual errors" : "Stated errors", {}};
+  if (compared) section.blocks.emplace_back(drawing::Paragraph{describe_consistency(*e.truth->consistency)});
+  if (e.fixes() > 0) section.blocks.emplace_back(drawing::Paragraph{describe_innovations(e)});
+  const std::size_t words = section.blocks.size();
+  if (compared) drawing::add_figures(consistency_figures(drive), section);
+  drawing::add_figures(sigmas_over_time(drive), section);
+  if (compared || section.blocks.size() > words) page.sections.push_back(std::move(section));
+}
+
+void add_receivers(const ReportedDrive& drive, drawing::Page& page) {
+  drawing::Section section{"receiver", "What the receiver told", {}};
+  drawing::add_figures(receiver_figures(drive), section);
+  if (!section.blocks.empty()) page.sections.push_back(std::move(section));
+}
+
+/// Tells the noise that the drive was fused with.
+void add_noise(const ReportedDrive& drive, drawing::Page& page) {
+  if (drive.noise.rows.empty()) return;
+  drawing::Section section{"noise", "Noise", {}};
+  text::Table table = drive.noise;
+  table.notes = {
+      "Estimated from this drive. The true value lies in the 68 % interval at two of three drives. 'not "
+      "observed': the drive tells no more about it than was known before."};
+  section.blocks.emplace_back(std::move(table));
   page.sections.push_back(std::move(section));
 }
 
@@ -128,17 +173,25 @@ drawing::Page drive_page(const ReportedDrive& drive) {
   page.footer =
       "Made by Waymark. The folder figures beside this page has all figures as SVG "
       "and their numbers as CSV.";
-  summarise(drive, page);
-  page.sections.push_back(summary_section(drive));
+  DriveVerdict verdict = verdict_of(drive);
+  page.summary = std::move(verdict.text);
+  page.verdict = verdict.kind;
+  page.glossary = glossary();
+  if (drawing::Section warnings = warning_section(drive); !warnings.blocks.empty())
+    page.sections.push_back(std::move(warnings));
   page.sections.push_back({"trajectory-section", "Trajectory", {trajectory_figure(drive)}});
   page.sections.push_back(error_section(drive));
+  page.sections.push_back(summary_section(drive));
   add_consistency(drive, page);
+  add_noise(drive, page);
+  add_receivers(drive, page);
   add_sources(drive, page);
   add_source_residuals(drive, page);
   add_states(drive, page);
   add_residuals(drive, page);
   add_optimization(drive, page);
-  drawing::Section origin{"provenance", "Provenance", {provenance(drive)}};
+  drawing::Section origin{
+      "provenance", "Provenance", {drawing::FoldedTable{"Versions, options and hashes", provenance(drive)}}};
   for (const std::string& file : drive.files) origin.blocks.emplace_back(drawing::PageLink{file, file});
   page.sections.push_back(std::move(origin));
   return page;

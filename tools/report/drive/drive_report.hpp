@@ -31,7 +31,8 @@ struct ReportedDrive {
   const std::vector<evaluation::StateReport>* states = nullptr;  ///< null: not computed
   const evaluation::GraphResiduals* residuals = nullptr;         ///< null: not computed
   const evaluation::Sparsity* sparsity = nullptr;                ///< null: not computed
-  std::vector<std::pair<std::string, std::string>> went_in{};    ///< the inputs: heading, text
+  text::Table noise{};  ///< the estimated noise; without rows: as stated
+  std::vector<std::pair<std::string, std::string>> went_in{};  ///< the inputs: heading, text
   /// files beside the report, relative to it
   std::vector<std::string> files{};
 

@@ -8,6 +8,7 @@
 #include <waymark/formats/logs/fix_quality.hpp>
 #include <waymark/tools/report/drive/drive_figures.hpp>
 #include <waymark/tools/report/drive/drive_summary.hpp>
+#include <waymark/tools/report/drive/verdict.hpp>
 #include <waymark/tools/report/metric_columns.hpp>
 #include <waymark/tools/text/number_text.hpp>
 #include <waymark/types_se2/stamped_pose.hpp>
@@ -37,17 +38,32 @@ text::Row improvement_row(const evaluation::PositionMetrics& raw, const evaluati
   return row;
 }
 
+/// Adds the errors that remain without the constant offset of the vehicle, if there is one worth
+/// telling.
+void add_without_offset(const std::string& name, const evaluation::OffsetTakenOut& taken,
+                        text::Table& table) {
+  if (!(std::hypot(taken.along_m, taken.cross_m) > 0.001)) return;
+  table.rows.push_back(metrics_row(name + " less its offset", taken.rest));
+  table.notes.push_back(fmt::format(
+      "{} less its offset: without the constant {:.3f} m ahead and {:.3f} m to the left of the vehicle, as a wrong "
+      "lever arm would make it.",
+      name, taken.along_m, taken.cross_m));
+}
+
 text::Table truth_table(const ReportedDrive& drive) {
   const evaluation::TruthEvaluation& truth = *drive.evaluation.truth;
   text::Table table{.title = "Against truth", .columns = metrics_heading()};
-  table.rows = {metrics_row("raw GNSS", truth.gnss.position),
-                metrics_row("raw GNSS, accepted fixes only", truth.gnss_accepted.position),
-                metrics_row("fused", truth.fused.position)};
+  table.rows = {metrics_row("raw GNSS", truth.gnss.position), metrics_row("fused", truth.fused.position)};
+  if (truth.gnss_accepted.position.count != truth.gnss.position.count)
+    table.rows.insert(table.rows.begin() + 1,
+                      metrics_row("raw GNSS, accepted fixes only", truth.gnss_accepted.position));
   table.rows.push_back(improvement_row(truth.gnss.position, truth.fused.position));
   table.notes = {
       "Max: largest error. Acc: length of the mean error. Prec: standard deviation about the mean "
       "error. CEP50, CEP95: radius about the truth that holds 50 and 95 % of the epochs. Raw and "
       "fused errors are at the same epochs: the stamps of all fixes with a truth."};
+  add_without_offset("raw GNSS", truth.gnss_without_offset, table);
+  add_without_offset("fused", truth.fused_without_offset, table);
   return table;
 }
 
@@ -61,6 +77,18 @@ text::Table withheld_table(const evaluation::Evaluation& evaluation) {
     if (way.at_ends.count > 0)
       table.rows.push_back(metrics_row(way.label + ", at the ends of outages", way.at_ends));
   }
+  return table;
+}
+
+text::Table held_out_table(const evaluation::HeldOut& held) {
+  text::Table table{.title = "At fixes that were kept out of a second fusion", .columns = metrics_heading()};
+  table.notes = {fmt::format(
+      "All fixes of {:g} s in every {:g} s were kept out, and those that the gate accepts are judged. The "
+      "numbers contain the noise of the fixes. Errors of the receiver that last longer are in the fixes "
+      "before and after too, so they remain unseen.",
+      held.run_s, held.every_s)};
+  for (const evaluation::WithheldMetrics& way : held.predictions)
+    table.rows.push_back(metrics_row(way.label, way.at_fixes));
   return table;
 }
 
@@ -119,15 +147,6 @@ std::string describe_input(const ReportedDrive& drive) {
                      graph.vertex_count(), graph.edge_count());
 }
 
-/// Returns the texts of a key of the provenance, in order.
-std::vector<std::string> stated(const ReportedDrive& drive, std::string_view key) {
-  std::vector<std::string> texts;
-  for (const auto& [name, text] : drive.document.provenance) {
-    if (name == key) texts.push_back(text);
-  }
-  return texts;
-}
-
 /// Describes modeling, noise, calibration and gate; empty if the graph does not contain them.
 std::string describe_error_model(const ReportedDrive& drive) {
   std::string text = fmt::format("{}", fmt::join(stated(drive, "modeling"), ", "));
@@ -149,76 +168,77 @@ std::string outcome(const ReportedDrive& drive) {
                      s.total_seconds, s.initial_chi2, s.final_chi2);
 }
 
-/// Lists inputs, assumptions, rejected fixes and results.
+/// Returns one sentence a row.
+text::Table list(const std::vector<std::string>& texts) {
+  text::Table table{.columns = {""}, .words = true};
+  for (const std::string& text : texts) table.rows.push_back({text});
+  return table;
+}
+
+/// Lists inputs, rejected fixes and results.
 text::Table account(const ReportedDrive& drive) {
   text::Table table{.columns = {"", ""}, .words = true};
-  for (const std::string& warning : stated(drive, "warning")) table.rows.push_back({"WARNING", warning});
   table.rows.push_back({"input", describe_input(drive)});
-  for (const std::string& log : stated(drive, "input")) table.rows.push_back({"log", log});
   for (const auto& [heading, text] : drive.went_in) table.rows.push_back({heading, text});
   const std::string model = describe_error_model(drive);
   if (!model.empty()) table.rows.push_back({"error model", model});
-  for (const std::string& assumption : stated(drive, "assumed"))
-    table.rows.push_back({"assumed", assumption});
   if (!drive.evaluation.by_quality.empty()) table.rows.push_back({"quality", qualities_of(drive)});
   table.rows.push_back({"rejected", count_of_rejections(drive)});
   table.rows.push_back({"result", outcome(drive)});
   return table;
 }
 
-/// Describes what became worse, because a summary must not only praise.
-std::string describe_losses(const evaluation::Improvement& i) {
-  constexpr double kWorthTelling = -2;  // percent
-  std::string text;
-  for (const auto& [name, percent] :
-       {std::pair{"the mean offset (Acc)", i.accuracy_percent},
-        std::pair{"the spread (Prec)", i.precision_percent},
-        std::pair{"the largest error (Max)", i.max_percent}, std::pair{"the median", i.median_percent}}) {
-    if (percent < kWorthTelling)
-      text += fmt::format("{} {} by {:.0f} %", text.empty() ? " Worse:" : ",", name, -percent);
-  }
-  return text.empty() ? text : text + ".";
-}
-
 }  // namespace
 
-void summarise(const ReportedDrive& drive, drawing::Page& page) {
-  const std::size_t warnings = stated(drive, "warning").size();
-  if (warnings > 0)
-    page.summary = fmt::format("{} {}: see below. ", warnings, warnings == 1 ? "warning" : "warnings");
-  if (drive.optimization != nullptr && !drive.optimization->summary.converged())
-    page.summary += "No minimum was reached: " + drive.optimization->summary.message + ". ";
-  if (!drive.evaluation.truth) {
-    page.summary += "There is no truth to compare with.";
-    if (drive.evaluation.withheld_fixes) {
-      page.summary += fmt::format(
-          " At {} withheld fixes the fused positions are off by {:.3f} m (RMSE, with the noise of the "
-          "fixes).",
-          drive.evaluation.withheld, drive.evaluation.withheld_fixes->position.rmse_m);
-    }
-    return;
-  }
-  const evaluation::TruthEvaluation& truth = *drive.evaluation.truth;
-  const double better = truth.improvement.rmse_percent;
-  page.verdict = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
-  page.summary += fmt::format(
-      "Fused positions are {:.0f} % {} than raw GNSS: RMSE {:.3f} m against {:.3f} m, largest error {:.3f} m "
-      "against {:.3f} m, at {} epochs.",
-      std::abs(better), better >= 0 ? "better" : "worse", truth.fused.position.rmse_m,
-      truth.gnss.position.rmse_m, truth.fused.position.max_m, truth.gnss.position.max_m,
-      truth.fused.position.count);
-  page.summary += describe_losses(truth.improvement);
+std::vector<drawing::PageBlock> metric_tables(const ReportedDrive& drive) {
+  std::vector<drawing::PageBlock> blocks;
+  if (drive.evaluation.truth) blocks.emplace_back(truth_table(drive));
+  if (!drive.evaluation.at_withheld.empty() && drive.evaluation.withheld > 0)
+    blocks.emplace_back(withheld_table(drive.evaluation));
+  if (drive.evaluation.held_out) blocks.emplace_back(held_out_table(*drive.evaluation.held_out));
+  if (drive.evaluation.truth && !drive.evaluation.by_quality.empty())
+    blocks.emplace_back(quality_table(drive.evaluation));
+  return blocks;
+}
+
+drawing::Section warning_section(const ReportedDrive& drive) {
+  drawing::Section section{"warnings", "Warnings", {}};
+  const std::vector<std::string> warnings = stated(drive, "warning");
+  if (!warnings.empty()) section.blocks.emplace_back(list(warnings));
+  return section;
 }
 
 drawing::Section summary_section(const ReportedDrive& drive) {
-  drawing::Section section{"summary", "Summary", {}};
-  if (drive.evaluation.truth) section.blocks.emplace_back(truth_table(drive));
-  if (!drive.evaluation.at_withheld.empty() && drive.evaluation.withheld > 0)
-    section.blocks.emplace_back(withheld_table(drive.evaluation));
-  if (drive.evaluation.truth && !drive.evaluation.by_quality.empty())
-    section.blocks.emplace_back(quality_table(drive.evaluation));
-  section.blocks.emplace_back(account(drive));
+  drawing::Section section{"summary", "What went in", {account(drive)}};
+  const std::vector<std::string> assumed = stated(drive, "assumed");
+  const std::vector<std::string> logs = stated(drive, "input");
+  if (!assumed.empty())
+    section.blocks.emplace_back(
+        drawing::FoldedTable{fmt::format("{} assumptions", assumed.size()), list(assumed)});
+  if (!logs.empty())
+    section.blocks.emplace_back(
+        drawing::FoldedTable{fmt::format("{} logs with their hashes", logs.size()), list(logs)});
   return section;
+}
+
+text::Table relative_table(const evaluation::TruthEvaluation& truth) {
+  text::Table table{.title = "Error of the motion over a distance (RPE)",
+                    .columns = {"distance [m]", "motions", "rms [m]", "mean [m]", "largest [m]",
+                                "rms [% of distance]", "rotation rms [deg]"}};
+  for (const evaluation::RelativePoseError& error : truth.relative) {
+    const evaluation::ScalarStatistics& t = error.translation_m;
+    if (t.count == 0) continue;
+    table.rows.push_back({fmt::format("{:g}", error.distance_m), fmt::to_string(t.count),
+                          text::decimals(t.rms, 3), text::decimals(t.mean, 3), text::decimals(t.max_abs, 3),
+                          text::decimals(100 * t.rms / error.distance_m, 2),
+                          truth.fused.heading.count > 0
+                              ? text::decimals(error.rotation_rad.rms * 180 / std::numbers::pi, 3)
+                              : "-"});
+  }
+  table.notes = {
+      "Of the fused poses, as evo_rpe tells it: a motion ends at the first epoch that is at least this far along the "
+      "truth, and the next one begins there. A constant offset does not count."};
+  return table;
 }
 
 text::Table track_table(const evaluation::TruthEvaluation& truth) {

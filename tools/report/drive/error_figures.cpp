@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include <waymark/tools/report/drive/drive_figures.hpp>
 #include <waymark/tools/report/drive/epoch_series.hpp>
@@ -44,6 +43,46 @@ drawing::Figure track_figure(const ReportedDrive& drive, bool along) {
     const Offset which = offset;
     figure.series.push_back(over_time(drive, name, look, [&](const evaluation::EpochResult& epoch) {
       return component(epoch, which, along);
+    }));
+  }
+  return figure;
+}
+
+/// Returns the band of two stated sigmas about zero. It holds 95 % of the errors of one axis if the
+/// covariances are consistent.
+drawing::Series two_sigmas(
+    const ReportedDrive& drive,
+    const std::function<std::optional<double>(const evaluation::EpochResult&)>& sigma) {
+  drawing::Series band{.name = "2 sigma", .mark = drawing::Mark::band, .look = drawing::Look::reference};
+  for (const evaluation::EpochResult& epoch : drive.evaluation.epochs) {
+    const std::optional<double> value = sigma(epoch);
+    if (!value || !std::isfinite(*value)) continue;
+    band.x.push_back(drive.seconds(epoch.stamp));
+    band.low.push_back(-2 * *value);
+    band.high.push_back(2 * *value);
+  }
+  return band;
+}
+
+drawing::Figure axis_figure(const ReportedDrive& drive, Eigen::Index axis) {
+  const std::string name = axis == 0 ? "east" : "north";
+  drawing::Figure figure =
+      time_figure(drive, "error-" + name, "Error to the " + name,
+                  "Grid " + name +
+                      ". The band is two stated sigmas of the fused position: 95 % of the fused errors "
+                      "lie inside if the covariances are consistent.",
+                  {.title = "error " + name, .unit = "m"});
+  drawing::Series band = two_sigmas(drive, [axis](const evaluation::EpochResult& e) {
+    return e.position_covariance ? std::optional(std::sqrt((*e.position_covariance)(axis, axis)))
+                                 : std::nullopt;
+  });
+  if (!band.x.empty()) figure.series.push_back(std::move(band));
+  for (const auto& [label, look, offset] :
+       {std::tuple{"raw GNSS", drawing::Look::raw, Offset(&evaluation::EpochResult::gnss_offset_m)},
+        std::tuple{"fused", drawing::Look::fused, Offset(&evaluation::EpochResult::fused_offset_m)}}) {
+    const Offset which = offset;
+    figure.series.push_back(over_time(drive, label, look, [which, axis](const evaluation::EpochResult& e) {
+      return e.*which ? std::optional((*(e.*which))[axis]) : std::nullopt;
     }));
   }
   return figure;
@@ -95,11 +134,18 @@ std::vector<drawing::Figure> errors_over_time(const ReportedDrive& drive) {
                 [](const evaluation::EpochResult& e) { return length(e.fused_offset_m); }));
   if (drive.evaluation.truth) fit_error_axis(position, *drive.evaluation.truth);
   add_if_seen(std::move(position), figures);
+  add_if_seen(axis_figure(drive, 0), figures);
+  add_if_seen(axis_figure(drive, 1), figures);
   add_if_seen(track_figure(drive, true), figures);
   add_if_seen(track_figure(drive, false), figures);
   drawing::Figure turned = time_figure(drive, "error-heading", "Heading error",
-                                       "Fused minus true heading; positive is turned too far to the left.",
+                                       "Fused minus true heading; positive is turned too far to the left. "
+                                       "The band is two stated sigmas.",
                                        {.title = "heading error", .unit = "deg"});
+  drawing::Series band = two_sigmas(drive, [](const evaluation::EpochResult& e) {
+    return e.heading_sigma_rad ? std::optional(*e.heading_sigma_rad * kDegrees) : std::nullopt;
+  });
+  if (!band.x.empty()) turned.series.push_back(std::move(band));
   turned.series.push_back(
       over_time(drive, "fused", drawing::Look::fused, [](const evaluation::EpochResult& e) {
         return e.heading_error_rad ? std::optional(*e.heading_error_rad * kDegrees) : std::nullopt;
@@ -112,30 +158,6 @@ std::vector<drawing::Figure> errors_over_time(const ReportedDrive& drive) {
                                    [](const evaluation::EpochResult& e) { return e.speed_mps; }));
   add_if_seen(std::move(speed), figures);
   return figures;
-}
-
-drawing::Figure fix_residuals_over_time(const ReportedDrive& drive) {
-  drawing::Figure figure =
-      time_figure(drive, "fix-residuals", "Fix minus fused position",
-                  "Distance of each raw fix from the fused antenna, whether the fix was used or "
-                  "not. This is not an error: fixes that pull the poses look better than they are.",
-                  {.title = "fix - fused", .unit = "m", .low = 0});
-  const std::vector<Fix>& fixes = drive.document.fixes;
-  const Graph& graph = drive.document.graph;
-  drawing::Series series{.name = "fix - fused", .mark = drawing::Mark::line, .look = drawing::Look::raw};
-  for (const Fix& fix : fixes) {
-    const auto v = graph.find(fix.vertex);
-    if (!v) continue;
-    const auto pose = graph.value(*v);
-    const Eigen::Vector2d antenna =
-        Eigen::Vector2d(pose[0], pose[1]) + Eigen::Rotation2Dd(pose[2]) * fix.antenna_m;
-    const double seconds = drive.seconds(fix.stamp);
-    series.x.push_back(seconds);
-    series.y.push_back((fix.position - antenna).norm());
-    series.time.push_back(seconds);
-  }
-  figure.series.push_back(std::move(series));
-  return figure;
 }
 
 drawing::Figure error_distribution(const ReportedDrive& drive) {

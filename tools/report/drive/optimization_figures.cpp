@@ -8,6 +8,7 @@
 #include <waymark/tools/drawing/figure/look.hpp>
 #include <waymark/tools/drawing/figure/markup.hpp>
 #include <waymark/tools/report/drive/optimization_figures.hpp>
+#include <waymark/tools/report/words.hpp>
 #include <waymark/tools/text/number_text.hpp>
 
 namespace waymark::report {
@@ -36,7 +37,7 @@ drawing::Series quantiles(const evaluation::TypeResiduals& type, drawing::Look l
   std::copy_if(type.whitened.begin(), type.whitened.end(), std::back_inserter(whitened),
                [](double w) { return std::isfinite(w); });
   std::sort(whitened.begin(), whitened.end());
-  drawing::Series series{.name = type.tag, .mark = drawing::Mark::points, .look = look};
+  drawing::Series series{.name = edge_name(type.tag), .mark = drawing::Mark::points, .look = look};
   const std::size_t n = whitened.size();
   const std::size_t every = std::max<std::size_t>(1, n / kMostQuantiles);
   for (std::size_t i = 0; i < n; ++i) {
@@ -167,13 +168,17 @@ text::Table residual_table(const evaluation::GraphResiduals& residuals) {
     for (std::size_t k = 0; k < type.components.size(); ++k) {
       const evaluation::ScalarStatistics& s = type.components[k].statistics;
       const bool first = k == 0;
-      table.rows.push_back({first ? type.tag : "", first ? to_string(type.role) : "",
+      table.rows.push_back({first ? edge_name(type.tag) : "", first ? to_string(type.role) : "",
                             first ? fmt::to_string(type.edges.size()) : "",
                             first ? fmt::format("{:.1f}", 100 * type.chi2_share) : "",
                             type.components[k].name, text::readable(s.mean), text::readable(s.rms),
                             text::readable(s.max_abs)});
     }
   }
+  std::string tags;
+  for (const evaluation::TypeResiduals& type : residuals.types)
+    tags += fmt::format("{}{}: {}", tags.empty() ? "" : "; ", edge_name(type.tag), type.tag);
+  table.notes = {"In the graph file: " + tags + "."};
   return table;
 }
 
@@ -192,7 +197,7 @@ text::Table largest_residuals(const evaluation::GraphResiduals& residuals,
         vertices += to_string(id);
       }
       const evaluation::EdgeResidual& edge = large.residual;
-      table.rows.push_back({type.tag, fmt::to_string(edge.edge),
+      table.rows.push_back({edge_name(type.tag), fmt::to_string(edge.edge),
                             edge.stamp ? fmt::format("{:.2f}", seconds(*edge.stamp)) : "", vertices,
                             text::readable(edge.squared), text::readable(edge.weight),
                             joined_numbers(large.whitened)});

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/trajectory/map_formats.hpp>
 #include <waymark/tools/report/drive/drive_figures.hpp>
 #include <waymark/types_se2/stamped_pose.hpp>
 
@@ -128,6 +129,66 @@ FixSeries fixes(const ReportedDrive& drive) {
   return all;
 }
 
+/// Returns where the epochs are on Earth, and their covariances.
+drawing::Places places(const ReportedDrive& drive) {
+  drawing::Places places;
+  const auto& epochs = drive.evaluation.epochs;
+  const bool stated = std::all_of(epochs.begin(), epochs.end(),
+                                  [](const auto& epoch) { return epoch.position_covariance.has_value(); });
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    if (!epochs[i].fused_place || !epochs[i].fused_position) continue;
+    places.time.push_back(drive.seconds(epochs[i].stamp));
+    places.x.push_back(epochs[i].fused_position->x());
+    places.y.push_back(epochs[i].fused_position->y());
+    places.latitude_deg.push_back(epochs[i].fused_place->latitude_deg);
+    places.longitude_deg.push_back(epochs[i].fused_place->longitude_deg);
+    if (!stated) continue;
+    places.xx.push_back((*epochs[i].position_covariance)(0, 0));
+    places.xy.push_back((*epochs[i].position_covariance)(0, 1));
+    places.yy.push_back((*epochs[i].position_covariance)(1, 1));
+  }
+  if (const auto utc = formats::date_of(drive.start, drive.document.time_scale))
+    places.start_utc_s = static_cast<double>(utc->nanoseconds) * 1e-9;
+  return places;
+}
+
+/// Returns the time between marks: a round one, of which a drive has at most ten.
+double between_marks_s(double duration_s) {
+  for (const double seconds : {10.0, 30.0, 60.0, 300.0, 600.0, 1800.0, 3600.0}) {
+    if (duration_s <= 10 * seconds) return seconds;
+  }
+  return 7200;
+}
+
+/// Returns start, end and time marks on the fused trajectory.
+std::vector<drawing::Series> marks(const drawing::Series& fused) {
+  if (fused.x.size() < 2) return {};
+  const auto mark = [&](drawing::Series& series, std::size_t i, std::string note) {
+    series.x.push_back(fused.x[i]);  // without a time: the cursor is not to stop at marks
+    series.y.push_back(fused.y[i]);
+    series.note.push_back(static_cast<int>(series.notes.size()));
+    series.notes.push_back(std::move(note));
+  };
+  drawing::Series times{
+      .name = "time marks", .mark = drawing::Mark::points, .look = drawing::Look::reference};
+  const double every = between_marks_s(fused.time.back() - fused.time.front());
+  double next = every;
+  for (std::size_t i = 0; i < fused.time.size(); ++i) {
+    if (fused.time[i] < next) continue;
+    mark(times, i, fmt::format("{:g} s after the start", next));
+    while (next <= fused.time[i]) next += every;
+  }
+  drawing::Series start{.name = "start", .mark = drawing::Mark::points, .look = drawing::Look::first};
+  drawing::Series end{.name = "end", .mark = drawing::Mark::points, .look = drawing::Look::second};
+  mark(start, 0, "start of the drive");
+  mark(end, fused.x.size() - 1, "end of the drive");
+  std::vector<drawing::Series> all;
+  if (!times.x.empty()) all.push_back(std::move(times));
+  all.push_back(std::move(start));
+  all.push_back(std::move(end));
+  return all;
+}
+
 }  // namespace
 
 std::size_t nearly_left_out(const ReportedDrive& drive) {
@@ -154,10 +215,13 @@ drawing::Figure trajectory_figure(const ReportedDrive& drive) {
   drawing::Series fused = poses(drive);
   const double end_s = fused.time.empty() ? 0 : fused.time.back();
   FixSeries raw = fixes(drive);
-  const std::vector<drawing::Series> layers = {
+  const std::vector<drawing::Series> marked = marks(fused);
+  if (drawing::Places known = places(drive); !known.time.empty()) figure.places = std::move(known);
+  std::vector<drawing::Series> layers = {
       truth(drive, end_s),     std::move(raw.accepted), std::move(raw.dead_reckoned),
       std::move(raw.floating), std::move(raw.fixed),    std::move(raw.light),
       std::move(raw.rejected), std::move(raw.withheld), std::move(fused)};
+  layers.insert(layers.end(), marked.begin(), marked.end());
   for (const drawing::Series& series : layers) {
     if (!series.x.empty()) figure.series.push_back(series);
   }

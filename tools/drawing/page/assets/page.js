@@ -83,10 +83,16 @@
           if (value >= low && value <= high) result.push({ value, label: String(Number(value.toPrecision(4))) });
         }
       }
-      if (result.length > 1) return result;  // else the range is so narrow that even steps serve it
-      result.length = 0;
+      if (result.length > 2) return result;  // else the range is so narrow that even steps serve it
     }
-    const least = (high - low) / Math.max(count, 1);
+    let even = [];
+    const fewest = Math.max(count, 1);
+    for (let wanted = fewest; even.length < 3 && wanted <= fewest + 6; wanted += 1) even = evenTicks(low, high, wanted);
+    return even;
+  }
+  function evenTicks(low, high, count) {
+    const result = [];
+    const least = (high - low) / count;
     const power = 10 ** Math.floor(Math.log10(least));
     const step = [1, 2, 5, 10].map((factor) => factor * power).find((value) => value >= least) || 10 * power;
     const digits = Math.min(Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), 12);
@@ -100,6 +106,141 @@
     return result;
   }
 
+  /// What a map has besides its series: where on Earth the cursor is, the trajectory in colours of a
+  /// quantity, and ellipses of the stated covariances where they are large enough to be seen.
+  class MapLayer {
+    constructor(plot, places) {
+      this.plot = plot;
+      this.start = places.start;
+      for (const key of ["time", "x", "y", "latitude", "longitude", "xx", "xy", "yy"]) this[key] = column(places[key]);
+      this.colours = plot.add("g", { class: "colours" });
+      this.ellipses = plot.add("path", { class: "ellipses" });
+      for (const layer of [this.ellipses, this.colours]) plot.marks.append(layer);
+      this.by = "";
+    }
+    /// Quantities of other figures that are known over time: error, sigma, speed, NIS.
+    static quantities() {
+      const wanted = { "error-position": "error", sigma: "sigma", speed: "speed", nis: "NIS", hdop: "HDOP",
+        "fix-residuals": "fix - fused" };
+      const found = [];
+      for (const [id, name] of Object.entries(wanted)) {
+        const figure = data.figures[id];
+        const series = figure && (figure.series.find((s) => s.look === "fused" && s.mark === "line")
+          || figure.series.find((s) => s.mark === "line" && s.time !== undefined));
+        if (series && series.time !== undefined) found.push({ id, name, unit: figure.y.unit, series });
+      }
+      return found;
+    }
+    addTools() {
+      const tools = this.plot.element.querySelector(".tools");
+      const select = document.createElement("select");
+      select.className = "colour-by";
+      select.setAttribute("aria-label", "Colour of the trajectory");
+      select.add(new Option("one colour", ""));
+      for (const { id, name } of MapLayer.quantities()) select.add(new Option("colour: " + name, id));
+      select.addEventListener("change", () => { this.by = select.value; this.draw(); });
+      this.link = document.createElement("a");
+      this.link.className = "online";
+      this.link.target = "_blank";
+      this.link.rel = "noreferrer";
+      this.link.textContent = "on-line map";
+      this.link.title = "Opens openstreetmap.org at the cursor: the place is sent there";
+      this.scale = document.createElement("span");
+      this.scale.className = "colour-scale";
+      tools.prepend(this.scale, select, this.link, " ");
+      if (this.time.length > 0) this.follow(this.time[0]);
+    }
+    /// The place at a time: that of the nearest epoch, moved by what the trajectory moved since.
+    at(time) {
+      if (time === null || this.time.length === 0) return null;
+      const i = nearest(this.time, time, 5);
+      if (i < 0) return null;
+      let [latitude, longitude] = [this.latitude[i], this.longitude[i]];
+      const fused = this.plot.series.findIndex((series) => series.look === "fused" && series.mark === "line");
+      const track = fused < 0 ? null : this.plot.loaded(fused);
+      const k = track === null ? -1 : nearest(track.time, time, track.reach);
+      if (k >= 0) {
+        latitude += (track.y[k] - this.y[i]) / 111320;
+        longitude += (track.x[k] - this.x[i]) / (111320 * Math.cos((latitude * Math.PI) / 180));
+      }
+      const lines = [`<div class="place">${latitude.toFixed(7)}, ${longitude.toFixed(7)}</div>`];
+      if (this.start !== null) {
+        const date = new Date((this.start + time) * 1000);
+        lines.push(`<div>${date.toISOString().replace("T", " ").slice(0, 21)} UTC</div>`,
+          `<div>${escaped(date.toLocaleTimeString([], { timeZoneName: "short" }))}, this computer's clock</div>`);
+      }
+      return { latitude, longitude, lines };
+    }
+    follow(time) {
+      const place = this.at(time);
+      if (place === null) return;
+      const where = place.latitude.toFixed(6) + "/" + place.longitude.toFixed(6);
+      this.link.href = "https://www.openstreetmap.org/?mlat=" + place.latitude.toFixed(6) + "&mlon=" +
+        place.longitude.toFixed(6) + "#map=18/" + where;
+    }
+    draw() {
+      this.drawColours();
+      this.drawEllipses();
+    }
+    /// One path per colour, so that a long track costs no more than it did.
+    drawColours() {
+      const plot = this.plot;
+      const quantity = MapLayer.quantities().find(({ id }) => id === this.by);
+      this.colours.innerHTML = "";
+      if (this.scale) this.scale.textContent = "";
+      if (quantity === undefined) return;
+      const times = column(quantity.series.time);
+      const values = column(quantity.series.y);
+      const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
+      if (sorted.length === 0) return;
+      const low = sorted[0];
+      const high = Math.max(sorted[Math.floor(0.98 * (sorted.length - 1))], low + 1e-9);
+      const fused = plot.series.findIndex((series) => series.look === "fused" && series.mark === "line");
+      if (fused < 0) return;
+      const track = plot.loaded(fused);
+      const hues = MapLayer.hues;
+      const parts = hues.map(() => []);
+      let [lastX, lastY, lastHue] = [NaN, NaN, -1];
+      for (let k = 0, i = 0; k < track.x.length; k += 1) {
+        while (i + 1 < times.length && times[i + 1] <= track.time[k]) i += 1;
+        const x = plot.toX(track.x[k]);
+        const y = plot.toY(track.y[k]);
+        const near = Math.abs(x - lastX) + Math.abs(y - lastY) < 0.7;
+        const hue = Number.isFinite(values[i])
+          ? Math.min(hues.length - 1, Math.max(0, Math.floor((hues.length * (values[i] - low)) / (high - low)))) : -1;
+        if (near && hue === lastHue) continue;
+        const seen = x > plot.left && x < plot.left + plot.width && y > plot.top && y < plot.top + plot.height;
+        if (hue >= 0 && seen && Number.isFinite(lastX)) parts[hue].push("M" + px(lastX) + " " + px(lastY) + "L" + px(x) + " " + px(y));
+        [lastX, lastY, lastHue] = [x, y, hue];
+      }
+      this.colours.innerHTML = parts.map((part, h) => `<path class="colour" stroke="${hues[h]}" d="${part.join("")}"/>`).join("");
+      this.scale.innerHTML = escaped(readable(low, "")) + hues.map((hue) => `<i style="background:${hue}"></i>`).join("") +
+        escaped(readable(high, quantity.unit)) + " ";
+    }
+    /// Ellipses of 95 %: with two degrees of freedom the root of 5.99 sigmas.
+    drawEllipses() {
+      const plot = this.plot;
+      const perMetre = plot.width / (plot.view.x[1] - plot.view.x[0]);
+      const parts = [];
+      for (let i = 0; this.xx !== null && i < this.xx.length; i += 1) {
+        const x = plot.toX(this.x[i]);
+        const y = plot.toY(this.y[i]);
+        if (x < plot.left || x > plot.left + plot.width || y < plot.top || y > plot.top + plot.height) continue;
+        const middle = 0.5 * (this.xx[i] + this.yy[i]);
+        const off = Math.hypot(0.5 * (this.xx[i] - this.yy[i]), this.xy[i]);
+        const major = 2.4477 * Math.sqrt(middle + off) * perMetre;
+        const minor = 2.4477 * Math.sqrt(Math.max(middle - off, 0)) * perMetre;
+        const degrees = (-0.5 * Math.atan2(2 * this.xy[i], this.xx[i] - this.yy[i]) * 180) / Math.PI;
+        const arc = `a${px(major)} ${px(minor)} ${px(degrees)} 1 0 `;
+        const [dx, dy] = [major * Math.cos((degrees * Math.PI) / 180), major * Math.sin((degrees * Math.PI) / 180)];
+        if (major > 6) parts.push(`M${px(x - dx)} ${px(y - dy)}${arc}${px(2 * dx)} ${px(2 * dy)}${arc}${px(-2 * dx)} ${px(-2 * dy)}`);
+      }
+      // Many ellipses on each other are no picture: they appear when zoomed in.
+      this.ellipses.setAttribute("d", parts.length <= 120 ? parts.join("") : "");
+    }
+  }
+  MapLayer.hues = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#fde725"];
+
   class Plot {
     constructor(element, figure) {
       this.element = element;
@@ -112,12 +253,15 @@
       this.home = { x: [figure.x.low, figure.x.high], y: [figure.y.low, figure.y.high] };
       this.view = this.home;
       this.hidden = new Set();
+      this.fingers = new Map();
       this.series = figure.series.map((series, index) => ({ ...series, index, isLoaded: false }));
       this.cursor = this.add("g", { class: "cursor" });
       this.tip = document.createElement("div");
       this.tip.className = "tip";
       element.append(this.tip);
+      this.map = figure.places ? new MapLayer(this, figure.places) : null;
       this.listen();
+      if (this.map) this.map.addTools();
     }
 
     add(name, attributes) {
@@ -340,6 +484,7 @@
       }
       if (this.figure.motion !== "still") this.drawAxes();
       if (this.ornaments) this.drawScaleBar();
+      if (this.map) this.map.draw();
       this.drawCursor();
     }
     /// Once before the next picture, however many events came; a figure out of sight when it is scrolled to.
@@ -399,6 +544,13 @@
       const tooNear = x[1] - x[0] < 1e-6 * (this.home.x[1] - this.home.x[0]);
       if (tooFar || tooNear) return;
       this.moveTo({ x, y: this.figure.motion === "map" ? about(this.view.y, this.fromY(centre.y)) : this.view.y });
+    }
+    /// Where the cursor is on a map, so that keys zoom about it; null: about the middle.
+    cursorPlace() {
+      if (this.figure.motion !== "map" || Plot.time === null) return null;
+      const reading = this.readingsAt(Plot.time).find(({ series }) => series.look === "fused");
+      return reading === undefined ? null
+        : { x: this.toX(reading.series.x[reading.i]), y: this.toY(reading.series.y[reading.i]) };
     }
     pan(dx, dy, from) {
       const shift = (range, by) => [range[0] + by, range[1] + by];
@@ -481,17 +633,32 @@
       }
       if (found !== null && found.series.note && found.series.note[found.i] >= 0)
         remarks.add(found.series.notes[found.series.note[found.i]]);
+      const place84 = this.map ? this.map.at(Plot.time) : null;
+      if (place84 !== null) lines.push(...place84.lines);
       for (const remark of remarks) lines.push(`<div class="remark">${escaped(remark)}</div>`);
       this.tip.innerHTML = lines.join("");
       const toCss = 1 / place.scale;
       const isRight = place.x > this.left + this.width / 2;
       this.tip.style.left = isRight ? "" : px(place.x * toCss + 14) + "px";
       this.tip.style.right = isRight ? px(this.element.clientWidth - place.x * toCss + 14) + "px" : "";
-      this.tip.style.top = px(this.svg.offsetTop + place.y * toCss + 10) + "px";
+      const svgTop = this.svg.getBoundingClientRect().top - this.element.getBoundingClientRect().top;
+      this.tip.style.top = px(svgTop + place.y * toCss + 10) + "px";
+      this.keepTipInSight();
+    }
+    /// Moves the tip until the window shows the whole of it.
+    keepTipInSight() {
+      const box = this.tip.getBoundingClientRect();
+      const down = Math.min(0, window.innerHeight - 4 - box.bottom);
+      if (down < 0) this.tip.style.top = px(parseFloat(this.tip.style.top) + Math.max(down, 4 - box.top)) + "px";
+      const across = Math.max(4 - box.left, Math.min(0, document.documentElement.clientWidth - 4 - box.right));
+      if (across === 0) return;
+      this.tip.style.left = px(box.left + across - this.element.getBoundingClientRect().left) + "px";
+      this.tip.style.right = "";
     }
     point(place) {
       Plot.time = this.timeAt(place);
       for (const plot of plots) plot.drawCursor();
+      if (this.map) this.map.follow(Plot.time);
       this.showTip(place);
     }
     leave() {
@@ -507,6 +674,7 @@
       const at = Plot.time === null ? 0 : lowerBound(time, Plot.time) + samples;
       Plot.time = time[Math.min(Math.max(at, 0), time.length - 1)];
       for (const plot of plots) plot.drawCursor();
+      if (this.map) this.map.follow(Plot.time);
       const x = this.figure.link === "time" ? this.toX(Plot.time) : this.left;
       this.showTip({ x, y: this.top, scale: this.place({ clientX: 0, clientY: 0 }).scale });
     }
@@ -516,10 +684,11 @@
     listen() {
       const moves = this.figure.motion !== "still";
       if (moves) {
-        this.element.classList.add("moves");
+        this.element.classList.add("moves", this.figure.motion);
         this.listenToMoves();
       }
       this.svg.setAttribute("tabindex", "0");
+      this.svg.setAttribute("role", "group");  // an image cannot have a legend of buttons
       this.svg.addEventListener("pointermove", (event) => { if (!this.drag) this.point(this.place(event)); });
       this.svg.addEventListener("pointerleave", () => this.leave());
       this.svg.addEventListener("keydown", (event) => this.onKey(event));
@@ -536,6 +705,7 @@
       }, { passive: false });
       this.svg.addEventListener("pointerdown", (event) => {
         if (event.button !== 0 || event.target.closest(".entry")) return;
+        this.fingers.set(event.pointerId, event);
         this.drag = { ...this.place(event), view: this.view };
         this.svg.setPointerCapture(event.pointerId);
         this.svg.focus({ preventScroll: true });
@@ -543,11 +713,16 @@
       });
       this.svg.addEventListener("pointermove", (event) => {
         if (!this.drag) return;
+        if (this.fingers.size === 2) {
+          this.pinch(event);
+          return;
+        }
         const place = this.place(event);
         this.pan(place.x - this.drag.x, place.y - this.drag.y, this.drag.view);
       });
       for (const end of ["pointerup", "pointercancel"]) {
-        this.svg.addEventListener(end, () => {
+        this.svg.addEventListener(end, (event) => {
+          this.fingers.delete(event.pointerId);
           this.drag = null;
           this.element.classList.remove("dragged");
           this.drawSoon();
@@ -555,13 +730,25 @@
       }
       this.svg.addEventListener("dblclick", () => this.reset());
     }
+    /// Zooms by how far two fingers went apart, about their middle.
+    pinch(event) {
+      const spread = () => {
+        const [a, b] = [...this.fingers.values()];
+        return Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
+      };
+      const before = spread();
+      this.fingers.set(event.pointerId, event);
+      const [a, b] = [...this.fingers.values()];
+      const middle = { clientX: 0.5 * (a.clientX + b.clientX), clientY: 0.5 * (a.clientY + b.clientY) };
+      if (before > 0 && spread() > 0) this.zoom(before / spread(), this.place(middle));
+    }
     onKey(event) {
       const many = event.shiftKey ? 10 : 1;
       const moves = this.figure.motion !== "still";
       const actions = { ArrowLeft: () => this.step(-many), ArrowRight: () => this.step(many), Escape: () => this.leave() };
       if (moves) {
-        actions["+"] = () => this.zoom(0.7);
-        actions["-"] = () => this.zoom(1 / 0.7);
+        actions["+"] = () => this.zoom(0.7, this.cursorPlace());
+        actions["-"] = () => this.zoom(1 / 0.7, this.cursorPlace());
         actions["0"] = () => this.reset();
       }
       if (actions[event.key] === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -651,6 +838,9 @@
   addEventListener("scroll", () => {
     for (const plot of plots) if (plot.isDue && plot.isInSight()) requestAnimationFrame(() => plot.drawDue());
   }, { passive: true });
-  addEventListener("beforeprint", () => { for (const plot of plots) plot.drawDue(); });
+  addEventListener("beforeprint", () => {
+    for (const plot of plots) plot.drawDue();
+    for (const folded of document.querySelectorAll("details")) folded.open = true;
+  });
   document.documentElement.dataset.ready = String(plots.length);
 })();

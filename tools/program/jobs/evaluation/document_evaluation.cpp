@@ -9,6 +9,7 @@
 #include <waymark/formats/text/stamp_text.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/formats/trajectory/trajectory.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
@@ -18,6 +19,18 @@ namespace {
 
 std::string spanned(Stamp first, Stamp last) {
   return fmt::format("from {} s to {} s", formats::decimal_seconds(first), formats::decimal_seconds(last));
+}
+
+/// Adds where on Earth the raw and fused positions are, if the frame is known.
+void add_places(const formats::GraphDocument& document, const evaluation::EvaluationInput& input,
+                evaluation::Evaluation& evaluation) {
+  if (!document.frame || document.frame->zone == 0) return;
+  const drive::Projection projection(*document.frame);
+  for (std::size_t i = 0; i < evaluation.epochs.size(); ++i) {
+    evaluation.epochs[i].fused_place = projection.to_geodetic(input.fused[i].pose.head<2>());
+    if (!input.fixes.empty())
+      evaluation.epochs[i].raw_place = projection.to_geodetic(input.fixes[i].position);
+  }
 }
 
 }  // namespace
@@ -37,20 +50,24 @@ evaluation::Evaluation evaluate_document(const formats::GraphDocument& document,
   input.fixes = document.fixes;
   input.truth = truth;
   input.truth_reference_m = document.truth_reference_m;
-  input.independent_errors =
-      std::none_of(document.provenance.begin(), document.provenance.end(),
-                   [](const auto& entry) { return entry.first == drive::kFixErrors; });
+  input.independent_errors = std::none_of(document.provenance.begin(), document.provenance.end(),
+                                          [](const auto& entry) { return entry.first == drive::kFixErrors; });
   input.frame = document.frame.value_or(Frame());
   input.max_stamp_offset_s = drive::kLargestSnap;  // a fix may share the node of an odometry sample
   const auto covariances = drive::evaluated_covariances(document);
   if (std::all_of(covariances.begin(), covariances.end(), [](const auto& c) { return c.has_value(); })) {
     for (const auto& covariance : covariances) input.position_covariances.push_back(*covariance);
   }
+  const auto headings = drive::evaluated_heading_sigmas(document);
+  if (std::all_of(headings.begin(), headings.end(), [](const auto& sigma) { return sigma.has_value(); })) {
+    for (const auto& sigma : headings) input.heading_sigmas_rad.push_back(*sigma);
+  }
   if (!document.fixes.empty())
     input.predictions = {as_prediction("dead reckoning", drive::dead_reckoned_at_withheld(document))};
   for (const evaluation::Prediction& prediction : further) input.predictions.push_back(prediction);
   evaluation::Evaluation evaluation = evaluation::evaluate(input);
   evaluation.residuals = evaluation::residuals_by_source(document);
+  add_places(document, input, evaluation);
   return evaluation;
 }
 

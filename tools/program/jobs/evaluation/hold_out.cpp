@@ -1,0 +1,103 @@
+#include <waymark/tools/program/jobs/evaluation/hold_out.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/model/outages.hpp>
+#include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/graph/optimization.hpp>
+
+namespace waymark::program {
+namespace {
+
+constexpr double kRun_s = 5;
+constexpr double kEvery_s = 50;
+constexpr std::size_t kFewestJudged = 10;
+constexpr std::size_t kMostVertices = 300'000;
+
+/// Returns the drive without the fixes in the middle of every kEvery_s. Runs begin by the clock, so
+/// that all receivers lose the same ones.
+drive::PreparedDrive without_runs(const drive::PreparedDrive& drive) {
+  drive::PreparedDrive rest = drive;
+  const Stamp first = drive.fixes.front().stamp;
+  for (Fix& fix : rest.fixes) {
+    const double phase = std::fmod(seconds_between(first, fix.stamp), kEvery_s) - 0.5 * kEvery_s;
+    if (phase < 0 || phase >= kRun_s) continue;
+    fix.status = FixStatus::withheld;
+    fix.reason = "withheld";
+  }
+  return rest;
+}
+
+/// Takes the fixes that the first fusion did not accept out of the judgement.
+void judge_accepted_only(const formats::GraphDocument& first, formats::GraphDocument& second) {
+  std::set<std::pair<std::int64_t, int>> accepted;
+  for (const Fix& fix : first.fixes)
+    if (fix.status == FixStatus::accepted) accepted.emplace(fix.stamp.nanoseconds, fix.source);
+  for (Fix& fix : second.fixes) {
+    if (fix.status == FixStatus::withheld && !accepted.contains({fix.stamp.nanoseconds, fix.source}))
+      fix.status = FixStatus::rejected;
+  }
+}
+
+evaluation::HeldOut judged(const formats::GraphDocument& document, const evaluation::Evaluation& evaluated) {
+  evaluation::HeldOut held{.run_s = kRun_s, .every_s = kEvery_s, .predictions = evaluated.at_withheld};
+  held.innovation = evaluated.prediction;
+  double promised = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < document.fixes.size(); ++i) {
+    if (document.fixes[i].status != FixStatus::withheld) continue;
+    const evaluation::EpochResult& epoch = evaluated.epochs[i];
+    held.stamps.push_back(epoch.stamp);
+    held.errors_m.push_back(epoch.fix_residual_m->norm());
+    if (!epoch.position_covariance) continue;
+    promised += epoch.fix_sigma_m.squaredNorm() + epoch.position_covariance->trace();
+    ++count;
+  }
+  if (count > 0 && held.innovation.count > 0)
+    held.expected_rmse_m = std::sqrt(promised / static_cast<double>(count));
+  return held;
+}
+
+/// Tells whether a second fusion can tell anything.
+bool can_hold_out(const drive::PreparedDrive& drive, const drive::ModeledDrive& modeled) {
+  const auto withheld = [](const Fix& fix) { return fix.status == FixStatus::withheld; };
+  return drive.truth.empty() && !drive.fixes.empty() &&
+         std::none_of(drive.fixes.begin(), drive.fixes.end(), withheld) &&
+         modeled.document.graph.vertex_count() <= kMostVertices;
+}
+
+}  // namespace
+
+std::optional<evaluation::HeldOut> hold_out(const drive::PreparedDrive& drive,
+                                            const drive::ModeledDrive& modeled, const TypeRegistry& registry,
+                                            const Console& console) {
+  if (!can_hold_out(drive, modeled) || interrupted) return std::nullopt;
+  const drive::PreparedDrive rest = without_runs(drive);
+  drive::FusionSettings settings = modeled.settings;
+  settings.estimates_noise = false;
+  settings.minimization.covariances = "fixes";
+  console.progress("fusing again without a tenth of the fixes");
+  try {
+    drive::FusedDrive fused = drive::fuse(rest, settings, registry, {.cancel = &interrupted});
+    console.end_progress();
+    if (!fused.minimum.summary.converged()) return std::nullopt;
+    formats::GraphDocument& document = fused.model.document;
+    judge_accepted_only(modeled.document, document);
+    std::vector<evaluation::Prediction> further;
+    drive::PosesAtWithheld lasting = drive::with_lasting_errors(document, fused.model.modelings);
+    if (!lasting.poses.empty()) further.push_back(as_prediction("with lasting errors", std::move(lasting)));
+    const evaluation::Evaluation evaluated = evaluate_document(document, {}, further);
+    if (evaluated.withheld < kFewestJudged) return std::nullopt;
+    return judged(document, evaluated);
+  } catch (const InputError& error) {
+    console.end_progress();
+    console.detail("the fixes that were kept out cannot be judged: " + std::string(error.what()));
+    return std::nullopt;
+  }
+}
+
+}  // namespace waymark::program
