@@ -68,6 +68,8 @@ with tempfile.TemporaryDirectory() as scratch:
             if sound.returncode != 0:
                 sys.exit(f"{name} fails without a fault: {sound.stderr}")
             count = int((folder / "seen").read_text())
+            if count == 0 and (call != "rename" or output):
+                sys.exit(f"{name}: no call of {call} was seen: does the shim stand before the system's?")
             whole = len((folder / output).read_bytes()) if output else 0
             every = max(1, count // points) if points else 1
             # from the first call to the last, evenly
