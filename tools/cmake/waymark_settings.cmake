@@ -51,6 +51,11 @@ list(JOIN options " " options)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}} ${options}" WAYMARK_CXX_FLAGS)
 set_property(GLOBAL PROPERTY WAYMARK_CXX_FLAGS "${WAYMARK_CXX_FLAGS}")
 
+# Relocations are read-only once the program runs, and bound at its start: nothing can be written over them later.
+if(PROJECT_IS_TOP_LEVEL AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+  add_link_options(-Wl,-z,relro,-z,now)
+endif()
+
 # The presets ask for these two; neither changes the program that is built.
 if(WAYMARK_FAST_TOOLS)
   find_program(WAYMARK_MOLD mold)

@@ -1,4 +1,8 @@
+#include <unistd.h>
+
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -82,10 +86,25 @@ ExitCode run(int argc, char** argv) {
   }
 }
 
+constexpr const char* kNoMemory = "waymark: error: there is no memory left\n";
+
+/// Without memory even an error may end here: a message is a string. What else ends here is a defect.
+[[noreturn]] void on_terminate() {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    (void)!::write(STDERR_FILENO, kNoMemory, std::strlen(kNoMemory));
+    ::_exit(kInputError);
+  } catch (...) {
+    std::abort();
+  }
+}
+
 }  // namespace
 }  // namespace waymark::program
 
 int main(int argc, char** argv) {
+  std::set_terminate(waymark::program::on_terminate);
   waymark::program::install_signal_handlers();
   return waymark::program::run(argc, argv);
 }

@@ -50,7 +50,10 @@ void try_in_child(const std::string& file, const std::function<void()>& load) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFSIGNALED(status)) return;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  if (WIFEXITED(status))  // the dynamic linker gives up so
+    throw UsageError(file + ": loading it ends a process with code " + std::to_string(WEXITSTATUS(status)) +
+                     ": the file is damaged; build the plugin again");
   const int signal = WTERMSIG(status);
   if (signal == SIGALRM)
     throw UsageError(file + ": loading it takes more than " + std::to_string(kPatience_s) +

@@ -22,6 +22,17 @@ TEST_CASE("run path: no binary or module of the build has an empty or relative e
   CHECK(seen > 2);
 }
 
+TEST_CASE(
+    "hardening: program and library are position independent, with relocations that are bound and read-only") {
+  const std::string program = waymark_test::program_path();
+  const std::string headers = run({"-W", "-l", "-h", program}, {.program = "/usr/bin/readelf"}).out;
+  CHECK(contains(headers, "DYN (Position-Independent Executable file)"));
+  CHECK(contains(headers, "GNU_RELRO"));
+  CHECK_FALSE(contains(headers, "RWE"));  // no segment is both written and run
+  const std::string dynamic = run({"-W", "-d", program}, {.program = "/usr/bin/readelf"}).out;
+  CHECK((contains(dynamic, "BIND_NOW") || contains(dynamic, "Flags: NOW")));
+}
+
 TEST_CASE("run path: a library beside a log is not loaded") {
   const std::string folder = fresh_folder();
   write_text(folder + "libz.so.1", "no library, so that loading it would be an error");

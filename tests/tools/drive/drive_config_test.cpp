@@ -179,7 +179,7 @@ TEST_CASE("drive.yaml: wrong types and ranges") {
   CHECK(error_of("truth: {file: t.csv, reference: [1, 2, 3]}\n") ==
         "tours/drive.yaml:3:33: truth.reference: expected two numbers [x, y], got a list of 3");
   CHECK(error_of_gnss("  period: -1\n") ==
-        "tours/drive.yaml:4:11: gnss.period: expected a number not below 0, got '-1'");
+        "tours/drive.yaml:4:11: gnss.period: expected 0 (all), or seconds from 0.001 to 1e6, got '-1'");
   CHECK(error_of_gnss("  withhold_every: 1\n") ==
         "tours/drive.yaml:4:19: gnss.withhold_every: expected 0 (none) or a whole number from 2, got '1'");
   CHECK(error_of_gnss("  accuracy: {meaning: 2sigma}\n") ==
@@ -194,6 +194,36 @@ TEST_CASE("drive.yaml: wrong types and ranges") {
         "kn, mm/s");
   CHECK(error_of_gnss("  columns:\n    course: {unit: deg}\n") ==
         "tours/drive.yaml:5:13: no column is given for course");
+}
+
+TEST_CASE("drive.yaml: numbers that nothing in the world has are refused with their place") {
+  CHECK(error_of_gnss("  period: 1e-10\n") ==
+        "tours/drive.yaml:4:11: gnss.period: expected 0 (all), or seconds from 0.001 to 1e6, got '1e-10'");
+  CHECK(error_of_gnss("  delay: 1e300\n") ==
+        "tours/drive.yaml:4:10: gnss.delay: expected seconds from -1e9 to 1e9, got '1e300'");
+  CHECK(
+      error_of_gnss("  accuracy: {default_sigma: 1e-9}\n") ==
+      "tours/drive.yaml:4:29: gnss.accuracy.default_sigma: expected a standard deviation from 1e-6 to 1e6, got "
+      "'1e-9'");
+  CHECK(error_of("time: {from: 1e300}\n") ==
+        "tours/drive.yaml:3:14: time.from: expected seconds from 0 to 1e9, got '1e300'");
+  CHECK(
+      error_of("gap: {longer_than: 1e-300}\n") ==
+      "tours/drive.yaml:3:20: gap.longer_than: expected a number that something in the world may have (0, or "
+      "1e-12 to 1e12), got '1e-300'");
+}
+
+TEST_CASE("drive.yaml: aliases without end and a second document are refused") {
+  CHECK(error_of("modeling: {name: g1, options: {a: &x [*x]}}\n") ==
+        "tours/drive.yaml:3:35: the values are nested more than 50 deep");
+  std::string bomb = "plugins:\n  - &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i < 9; ++i) {
+    bomb += "  - &a" + std::to_string(i) + " [";
+    for (int k = 0; k < 10; ++k) bomb += (k > 0 ? ", *a" : "*a") + std::to_string(i - 1);
+    bomb += "]\n";
+  }
+  CHECK_THAT(error_of(bomb), Catch::Contains("the file has more than 100,000 values with its aliases"));
+  CHECK_THAT(error_of("---\nname: x\n"), Catch::Contains(":4:1: a second YAML document begins"));
 }
 
 TEST_CASE("drive.yaml: odometry from parts, a CAN log with its DBC, a velocity apart") {
@@ -220,7 +250,8 @@ truth: {file: oxts/data, format: kitti_oxts, timestamps: oxts/times.txt}
   REQUIRE(config.description.odometry.front().logs.size() == 2);
   CHECK(config.description.odometry.front().logs[0].request.time_offset_s == -0.4);
   CHECK(config.description.odometry.front().logs[1].format == "candump");
-  CHECK(config.description.odometry.front().logs[1].companions.at("dbc") == std::vector<std::string>{"tours/car.dbc"});
+  CHECK(config.description.odometry.front().logs[1].companions.at("dbc") ==
+        std::vector<std::string>{"tours/car.dbc"});
   CHECK(config.description.odometry.front().logs[1].request.columns.at("gyro_x").column == "IMU.Rate");
   CHECK(config.description.odometry.front().logs[1].request.readings.size() == odometry_channels().size());
   CHECK(config.description.odometry.front().assembly.rate_hz == 20);
@@ -361,9 +392,10 @@ TEST_CASE("drive.yaml: plugins are names, or files beside the drive.yaml") {
 TEST_CASE("drive.yaml: what is missing, doubled or no YAML") {
   CHECK_THROWS_MATCHES(parse("gnss: {file: g.csv}\n"), InputError,
                        Message("tours/drive.yaml:1:1: 'odometry' is missing"));
-  CHECK_THROWS_MATCHES(parse("odometry: {file: g.csv}\n"), InputError,
-                       Message("tours/drive.yaml:1:1: 'gnss' is missing; a drive without it needs a sensor that sees known "
-                                "places, or 'first_pose'"));
+  CHECK_THROWS_MATCHES(
+      parse("odometry: {file: g.csv}\n"), InputError,
+      Message("tours/drive.yaml:1:1: 'gnss' is missing; a drive without it needs a sensor that sees known "
+              "places, or 'first_pose'"));
   CHECK_THROWS_MATCHES(parse("odometry: {file: o.csv}\ngnss: []\n"), InputError,
                        Message("tours/drive.yaml:2:7: gnss: at least one log is needed"));
   CHECK(error_of("gate: {}\ngate: {}\n") == "tours/drive.yaml:4:1: key 'gate' is given twice");

@@ -23,7 +23,10 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kGapPolicies{"bridge", "error"};
 constexpr NumberRule kRate{1e-3, 1000, "a rate in Hz from 0.001 to 1000"};
+constexpr double kLeastPeriod = 1e-3;
 constexpr NumberRule kSnap{0, kLargestSnap, "seconds from 0 to 0.05"};
+constexpr NumberRule kLater{0, 1e9, "seconds from 0 to 1e9"};
+constexpr NumberRule kPeriod{0, 1e6, "0 (all), or seconds from 0.001 to 1e6"};
 constexpr NumberRule kFactor{1, std::numeric_limits<double>::max(), "a number not below 1"};
 constexpr NumberRule kWithhold{0, 1e9, "0 (none) or a whole number from 2"};
 
@@ -32,8 +35,8 @@ void read_time(const YamlSection& top, DriveDescription& drive) {
   if (!time) return;
   if (const auto scale = time->read_word("scale", kTimeScaleWords))
     drive.time_scale = time_scale_from_string(kTimeScaleWords[*scale]);
-  time->read("from", drive.from_s, kNotNegative);
-  time->read("to", drive.to_s, kPositive);
+  time->read("from", drive.from_s, kLater);
+  time->read("to", drive.to_s, kLater);
   if (drive.to_s && *drive.to_s <= drive.from_s.value_or(0)) time->fail("to", "must be greater than 'from'");
 }
 
@@ -97,8 +100,8 @@ OdometryConfig read_odometry(const YamlSection& section, std::string name, const
     read_log(section, names_channels(section));
   }
   read_assembly(section, odometry.assembly);
-  section.read("speed_delay", odometry.speed_delay_s, kAnyNumber);
-  section.read("yaw_rate_delay", odometry.yaw_rate_delay_s, kAnyNumber);
+  section.read("speed_delay", odometry.speed_delay_s, kSeconds);
+  section.read("yaw_rate_delay", odometry.yaw_rate_delay_s, kSeconds);
   section.read("nodes", odometry.gives_nodes);
   return odometry;
 }
@@ -119,8 +122,9 @@ GnssConfig read_gnss(const YamlSection& section, std::string name, const DriveDe
   gnss.velocity = read_velocity(section, drive);
   gnss.name = std::move(name);
   section.read("antenna", gnss.antenna_m);
-  section.read("period", gnss.period_s, kNotNegative);
-  section.read("delay", gnss.delay_s, kAnyNumber);
+  section.read("period", gnss.period_s, kPeriod);
+  if (gnss.period_s > 0 && gnss.period_s < kLeastPeriod) section.fail_value("period", kPeriod.words);
+  section.read("delay", gnss.delay_s, kSeconds);
   section.read("withhold_every", gnss.withhold_every, kWithhold);
   if (gnss.withhold_every == 1) section.fail_value("withhold_every", kWithhold.words);
   section.read("withheld", gnss.withheld);
@@ -148,9 +152,9 @@ void read_first_pose(const YamlSection& top, DriveDescription& drive) {
   std::optional<double> heading_deg;
   section->read("heading_deg", heading_deg, kAnyNumber);
   if (heading_deg) pose.heading_rad = std::remainder(*heading_deg, 360) * kDegree;
-  section->read("sigma", pose.sigma_m, kPositive);
+  section->read("sigma", pose.sigma_m, kSigma);
   double sigma_deg = pose.sigma_rad / kDegree;
-  section->read("heading_sigma_deg", sigma_deg, kPositive);
+  section->read("heading_sigma_deg", sigma_deg, kSigma);
   pose.sigma_rad = sigma_deg * kDegree;
   if (!pose.place && !pose.position_m && !pose.heading_rad)
     throw InputError(section->place() +

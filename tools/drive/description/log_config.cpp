@@ -90,6 +90,7 @@ void read_accuracy(const YamlSection& section, LogRequest& request) {
   if (const auto meaning = accuracy->read_word("meaning", kMeanings))
     request.accuracy = kMeaningValues[*meaning];
   accuracy->read("default_sigma", request.default_sigma_m, kNotNegative);
+  if (request.default_sigma_m != 0) accuracy->read("default_sigma", request.default_sigma_m, kSigma);
   accuracy->read("range_error", request.range_error_m, kNotNegative);
   const auto by_quality = accuracy->free_section("by_quality");
   if (!by_quality) return;
@@ -99,7 +100,7 @@ void read_accuracy(const YamlSection& section, LogRequest& request) {
       by_quality->fail(word,
                        "is no quality of a fix; known: unknown, single, differential, float, fixed, "
                        "dead_reckoned, manual, simulated");
-    by_quality->read(word, request.sigma_by_quality[*quality], kPositive);
+    by_quality->read(word, request.sigma_by_quality[*quality], kSigma);
   }
 }
 

@@ -15,6 +15,10 @@
 namespace waymark::drive {
 namespace {
 
+// Beyond them squares and quotients soon are infinite or 0.
+constexpr double kLeast = 1e-12;
+constexpr double kMost = 1e12;
+
 std::string place_at(const std::string& file, const YAML::Mark& mark) {
   if (mark.is_null()) return file + ": ";
   return fmt::format("{}:{}:{}: ", file, mark.line + 1, mark.column + 1);
@@ -115,6 +119,8 @@ void YamlSection::read(std::string_view key, double& value, const NumberRule& ru
   if (!has(key)) return;
   const std::optional<double> number = number_from(node(key));
   if (!number || *number < rule.smallest || *number > rule.largest) fail_value(key, rule.words);
+  if (*number != 0 && (std::abs(*number) < kLeast || std::abs(*number) > kMost))
+    fail_value(key, "a number that something in the world may have (0, or 1e-12 to 1e12)");
   value = *number;
 }
 

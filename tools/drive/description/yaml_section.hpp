@@ -26,6 +26,9 @@ inline constexpr NumberRule kAnyNumber{.words = "a number"};
 inline constexpr NumberRule kPositive{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
                                       "a number above 0"};
 inline constexpr NumberRule kNotNegative{0, std::numeric_limits<double>::max(), "a number not below 0"};
+/// Stamps count nanoseconds in 64 bits, and a measurement has an information of 1 / sigma^2.
+inline constexpr NumberRule kSeconds{-1e9, 1e9, "seconds from -1e9 to 1e9"};
+inline constexpr NumberRule kSigma{1e-6, 1e6, "a standard deviation from 1e-6 to 1e6"};
 
 class YamlSection {
  public:

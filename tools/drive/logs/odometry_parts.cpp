@@ -330,6 +330,13 @@ class Assembler {
     note(fmt::format("{} readings of speed are negative by 'reverse'", flipped));
   }
 
+  /// Returns t if the series has a value then, else its next stamp; its last one is followed by nothing.
+  static std::int64_t next_known(const TimeSeries& series, std::int64_t t, double gap_s) {
+    if (value_at(series, {t}, gap_s)) return t;
+    const auto next = std::upper_bound(series.stamps.begin(), series.stamps.end(), Stamp{t});
+    return next == series.stamps.end() ? series.stamps.back().nanoseconds + 1 : next->nanoseconds;
+  }
+
   void sample(const TimeSeries& yaw) {
     const double rate = how_.rate_hz > 0 ? how_.rate_hz : std::min(kLargestRate, 1 / median_interval_s(yaw));
     const auto period = static_cast<std::int64_t>(std::llround(1e9 / rate));
@@ -342,7 +349,12 @@ class Assembler {
     std::int64_t t = first - first % period;
     if (t < first) t += period;
     for (; t <= last; t += period) {
-      if (!value_at(speed_, {t}, speed_gap) || !value_at(yaw, {t}, yaw_gap)) continue;
+      // a silence may be of years if a single stamp is wrong
+      const std::int64_t known = std::max(next_known(speed_, t, speed_gap), next_known(yaw, t, yaw_gap));
+      if (known > t) {
+        t += ((known - t - 1) / period) * period;
+        continue;
+      }
       const Stamp from{std::max(t - period / 2, first)};
       const Stamp to{std::min(t - period / 2 + period, last)};
       const double yaw_rate = yaw_is_turn_ ? mean_slope(yaw, from, to) : turn.mean(from, to);

@@ -298,10 +298,7 @@ ExitCode run_drive(const RunOptions& options) {
     const ExitCode of_run = exit_code(runs.back().result.summary);
     if (of_run != kSuccess) code = of_run;
     if (interrupted) code = kInterrupted;
-<<<<<<< HEAD
     windows += runs.back().windows;
-=======
->>>>>>> report
   }
   const std::string metrics = evaluation::metrics_json(evaluations, header);
   const std::vector<std::string> common = write_common(run, runs, metrics, header);

@@ -40,6 +40,8 @@ SelfTest test_on_known_problem(const std::string& name, const std::string& algor
     } else if (!(std::abs(test.chi2 - problem.minimum) <= kAgreement * problem.minimum)) {
       test.problem = fmt::format("ended at chi2 {:.12g}; the minimum is {:.12g}", test.chi2, problem.minimum);
     }
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {  // plugins may throw anything
     test.problem = error.what();
   }
