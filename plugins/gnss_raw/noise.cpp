@@ -29,7 +29,7 @@ RangeNoise Noise::of(const SatelliteReading& reading) const {
 }
 
 double Noise::range_rate_sigma(const SatelliteReading& reading) const {
-  return parameters_.range_rate_sigma_mps * std::sqrt(weakness(reading));
+  return parameters_.range_rate_sigma_mps * weakness(reading);
 }
 
 std::vector<OptionInfo> noise_options() {
