@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <waymark/core/covariance/evidence.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
@@ -86,7 +88,9 @@ double weight_of_mass(const Loss& loss, int dimension) {
 }
 
 /// Returns for each batch the smallest weight of its losses, and 1 if it has none.
-std::vector<double> evidence_weights(const Graph& graph) {
+/// @param weight_of the weight of a loss on errors of a dimension
+template <typename WeightOf>
+std::vector<double> evidence_weights(const Graph& graph, const WeightOf& weight_of) {
   std::vector<double> weights(graph.batch_count(), 1.0);
   for (std::size_t b = 0; b < graph.batch_count(); ++b) {
     const EdgeBatchBase& batch = graph.batch(b);
@@ -94,24 +98,51 @@ std::vector<double> evidence_weights(const Graph& graph) {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const Loss* loss = batch.loss(i);
       if (loss == nullptr || loss == last) continue;
-      weights[b] = std::min(weights[b], weight_of_mass(*loss, batch.error_dimension(i)));
+      weights[b] = std::min(weights[b], weight_of(*loss, batch.error_dimension(i)));
       last = loss;
     }
   }
   return weights;
 }
 
-}  // namespace
-
-Evidence evidence(const Graph& graph, const Structure& structure, BlockCholesky& cholesky) {
-  NormalEquations equations(graph, structure);
+Evidence evidence_at(const std::vector<double>& values, std::span<const double> weights, const Graph& graph,
+                     NormalEquations& equations, BlockCholesky& cholesky) {
   Evidence result;
-  result.chi2 = equations.linearize(graph.values(), evidence_weights(graph));
+  result.chi2 = equations.linearize(values, weights);
   result.log_det_hessian = cholesky.factorize(equations.hessian()) == FactorStatus::ok
                                ? cholesky.log_determinant()
                                : std::numeric_limits<double>::infinity();
   result.log_det_information = log_det_information(graph);
   return result;
+}
+
+}  // namespace
+
+Evidence evidence(const Graph& graph, const Structure& structure, BlockCholesky& cholesky) {
+  NormalEquations equations(graph, structure);
+  return evidence_at(graph.values(), evidence_weights(graph, weight_of_mass), graph, equations, cholesky);
+}
+
+RepeatedEvidence::RepeatedEvidence(const Graph& graph, const Structure& structure)
+    : graph_(graph), equations_(graph, structure) {
+  cholesky_.analyze(structure.pattern());
+}
+
+double RepeatedEvidence::weight_of(const Loss& loss, int dimension) {
+  const auto known = std::find_if(known_.begin(), known_.end(), [&](const LossWeight& other) {
+    return other.dimension == dimension && other.loss == loss;
+  });
+  if (known != known_.end()) return known->weight;
+  return known_.emplace_back(LossWeight{loss, dimension, weight_of_mass(loss, dimension)}).weight;
+}
+
+std::vector<double> RepeatedEvidence::weights() {
+  return evidence_weights(graph_,
+                          [&](const Loss& loss, int dimension) { return weight_of(loss, dimension); });
+}
+
+Evidence RepeatedEvidence::at(const std::vector<double>& values) {
+  return evidence_at(values, weights(), graph_, equations_, cholesky_);
 }
 
 Evidence evidence(const Graph& graph) {

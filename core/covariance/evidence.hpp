@@ -19,9 +19,12 @@
 /// The functions keep nothing after a call. Other threads may read the graph meanwhile.
 #pragma once
 
+#include <vector>
+
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/graph/graph.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
+#include <waymark/core/system/normal_equations.hpp>
 #include <waymark/core/system/structure.hpp>
 
 namespace WAYMARK_EXPORT waymark {
@@ -40,6 +43,34 @@ struct Evidence {
 /// @param cholesky has analysed the pattern of the structure (StructuredSolver::analysed); it keeps
 /// the factor of H
 [[nodiscard]] Evidence evidence(const Graph& graph, const Structure& structure, BlockCholesky& cholesky);
+
+/// The evidence of a graph whose numbers change while its structure stays, as in a search for noise. It
+/// keeps memory, factor and the weights of losses between the calls. One thread at a time may use it.
+class RepeatedEvidence {
+ public:
+  /// Both must outlive this object, and the structure must follow the graph at every call.
+  RepeatedEvidence(const Graph& graph, const Structure& structure);
+
+  /// Returns the evidence of the graph at these values (in the layout of graph.values()).
+  [[nodiscard]] Evidence at(const std::vector<double>& values);
+  /// Returns half the gradient of chi2 at the values of the last call.
+  [[nodiscard]] Eigen::Map<const Eigen::VectorXd> gradient() const { return equations_.gradient(); }
+
+ private:
+  /// The weight of a loss on errors of a dimension.
+  struct LossWeight {
+    Loss loss;
+    int dimension = 0;
+    double weight = 1;
+  };
+  [[nodiscard]] double weight_of(const Loss& loss, int dimension);
+  [[nodiscard]] std::vector<double> weights();
+
+  const Graph& graph_;
+  NormalEquations equations_;
+  BlockCholesky cholesky_;
+  std::vector<LossWeight> known_;
+};
 
 /// Computes the same and makes structure and factor itself. If nothing anchors the graph,
 /// find_gauge holds a vertex (gauge.hpp); this does not matter for comparisons under one structure.

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cstdlib>
 
 #include <waymark/core/base/detail/index.hpp>
+#include <waymark/core/graph/detail/robust_information.hpp>
 #include <waymark/core/system/normal_equations.hpp>
 
 namespace waymark {
@@ -34,19 +36,61 @@ double NormalEquations::sum_over_chunks(const Work& work) const {
   return total;
 }
 
-double NormalEquations::linearize(const std::vector<double>& values,
-                                  std::span<const double> evidence_weights) {
+double NormalEquations::linearize_edges(const ValueView& view, std::span<const double> evidence_weights) {
   hessian_.assign(at(structure_.hessian_size()), 0.0);
   gradient_.assign(at(structure_.gradient_size()), 0.0);
   diagonal_known_ = false;
-  const ValueView view{values.data(), graph_.offsets().data()};
-  const double chi2 = sum_over_chunks([&](std::size_t batch, EdgeRange range) {
+  return sum_over_chunks([&](std::size_t batch, EdgeRange range) {
     const NormalView normal{hessian_.data(), gradient_.data(),
                             evidence_weights.empty() ? 0 : evidence_weights[batch]};
     return graph_.batch(batch).linearize(view, structure_.scatter(batch), range, normal);
   });
+}
+
+double NormalEquations::linearize(const std::vector<double>& values,
+                                  std::span<const double> evidence_weights) {
+  const double chi2 = linearize_edges({values.data(), graph_.offsets().data()}, evidence_weights);
   structure_.add_slots(hessian_.data(), gradient_.data());
   return chi2;
+}
+
+double NormalEquations::linearize_with_concave_terms(const std::vector<double>& values) {
+  const ValueView view{values.data(), graph_.offsets().data()};
+  const double chi2 = linearize_edges(view, {});
+  for (std::size_t b = 0; b < graph_.batch_count(); ++b) add_concave_terms(b, view);
+  structure_.add_slots(hessian_.data(), gradient_.data());
+  return chi2;
+}
+
+void NormalEquations::add_concave_terms(std::size_t batch, const ValueView& view) {
+  const EdgeBatchBase& edges = graph_.batch(batch);
+  const auto arity = at(edges.vertex_table().arity);
+  const std::size_t pairs = arity * (arity + 1) / 2;
+  Eigen::VectorXd error;
+  std::vector<Eigen::MatrixXd> jacobians;
+  for (std::size_t e = 0; arity > 0 && e < edges.size(); ++e) {
+    const Loss* loss = edges.loss(e);
+    if (loss == nullptr) continue;
+    edges.linearize_edge(e, view, error, jacobians);
+    const Eigen::VectorXd along = edges.information(e) * error;
+    const double squared = error.dot(along);
+    const LossValue value = loss->at(squared);
+    const bool is_left_out = value.curvature < 0 && curvature_factor(value, squared) == 1;
+    if (!is_left_out) continue;
+    const BlockTarget* block = structure_.scatter(batch).blocks.data() + e * pairs;
+    for (std::size_t k = 0; k < arity; ++k) {
+      const Eigen::VectorXd left = 2 * value.curvature * (jacobians[k].transpose() * along);
+      for (std::size_t l = 0; l <= k; ++l, ++block) {
+        const Eigen::VectorXd right = jacobians[l].transpose() * along;
+        const bool turned = block->stride < 0;
+        const Eigen::VectorXd& rows = turned ? right : left;
+        const Eigen::VectorXd& columns = turned ? left : right;
+        Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
+            hessian_.data() + block->offset, rows.size(), columns.size(),
+            Eigen::OuterStride<>(std::abs(block->stride))) += rows * columns.transpose();
+      }
+    }
+  }
 }
 
 double NormalEquations::chi2(const std::vector<double>& values) const {

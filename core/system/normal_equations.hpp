@@ -30,6 +30,10 @@ class NormalEquations {
   /// Computes H and g at `values` (in the layout of graph.values()), and returns chi2 there.
   /// @param evidence_weights empty, or NormalView::evidence_weight for each batch
   double linearize(const std::vector<double>& values, std::span<const double> evidence_weights = {});
+  /// Computes the same with the whole second-order terms of the losses of edges with fixed arity,
+  /// also where these are concave (robust_information.hpp leaves them out there). Near a minimum
+  /// Newton's steps then converge quadratically. Far from one H may not be positive definite.
+  double linearize_with_concave_terms(const std::vector<double>& values);
   /// Returns chi2 at other values. H and g do not change.
   [[nodiscard]] double chi2(const std::vector<double>& values) const;
 
@@ -55,6 +59,8 @@ class NormalEquations {
   [[nodiscard]] VertexIndex vertex_of_unknown(std::int64_t unknown) const;
 
  private:
+  double linearize_edges(const ValueView& view, std::span<const double> evidence_weights);
+  void add_concave_terms(std::size_t batch, const ValueView& view);
   /// Calls work(batch, range) for all edges: the chunks in parallel, then the last one. It sums the
   /// results in order.
   template <typename Work>

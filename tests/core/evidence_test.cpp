@@ -140,4 +140,35 @@ TEST_CASE("evidence: a robust edge counts by its weight, at most by what gives i
   CHECK(evidence(graph).log_det_hessian == Approx(std::log(expected)).epsilon(1e-4));
 }
 
+TEST_CASE("evidence: H with the concave terms of the losses is the derivative of the gradient") {
+  Graph graph;
+  const VertexIndex bias = graph.add_vertex<VertexGyroBias>(VertexId{0}, {0});
+  add_prior_about_zero(graph, bias, 1);
+  const std::vector<double> readings = {0.5, 1.5, 3, 8};
+  for (const double reading : readings)
+    graph.add_edge(EdgeGyroAtRest{reading}, {bias}, Eigen::Matrix<double, 1, 1>(1.0));
+  graph.batch(1).set_loss(builtin_loss("cauchy", std::sqrt(6.0)));
+  Structure structure;
+  structure.build(graph, std::vector<char>(graph.vertex_count(), 0));
+  NormalEquations equations(graph, structure);
+  // The second derivative of 3 log(1 + e^2 / 6) is (6 - e^2) / 6 / (1 + e^2 / 6)^2.
+  double expected = 1;
+  for (const double e : readings) expected += (1 - e * e / 6) / std::pow(1 + e * e / 6, 2);
+  (void)equations.linearize_with_concave_terms(graph.values());
+  CHECK(equations.hessian()[0] == Approx(expected).epsilon(1e-12));
+  (void)equations.linearize(graph.values());
+  CHECK(equations.hessian()[0] > expected);
+}
+
+TEST_CASE("evidence: repeated for other numbers in one structure it is that of each graph") {
+  Graph graph = make_graph({0.01, 0.005, 0.02}, Eigen::VectorXd::LinSpaced(kSteps, -0.01, 0.01));
+  Structure structure;
+  structure.build(graph, std::vector<char>(graph.vertex_count(), 0));
+  RepeatedEvidence repeated(graph, structure);
+  for (const double sigma : {0.02, 0.2, 0.02}) {
+    graph = make_graph({0.01, 0.005, sigma}, Eigen::VectorXd::LinSpaced(kSteps, -0.01, 0.01));
+    CHECK(repeated.at(graph.values()).negative_log() == evidence(graph).negative_log());
+  }
+}
+
 }  // namespace evidence_test

@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/estimation/coarse.hpp>
+#include <waymark/tools/drive/estimation/noise_objective.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 
 #include <waymark/types_se2/se2.hpp>
@@ -164,6 +165,37 @@ double apart(const NoiseEstimate& one, const NoiseEstimate& other) {
 }
 
 }  // namespace
+
+TEST_CASE("noise: the derivatives of the objective are those of its differences") {
+  const PreparedDrive drive = make_drive({.accuracy_exponent = 0.5}, 6);
+  const FusionSettings settings = complete_settings();
+  const PlacedDrive placed = place_drive(drive, timeline_of(drive), settings, registry());
+  NoiseEstimate noise = estimate(drive, settings);
+  const CoarseDrive coarse = coarsen(placed, {});
+  NoiseObjective objective(coarse, settings, registry());
+  const Eigen::VectorXd minimum = coordinates_of(noise);
+  for (const double away : {0.0, 0.6, -0.6}) {
+    const Eigen::VectorXd at = minimum.array() + away;
+    place_at(at, noise);
+    Eigen::VectorXd gradient;
+    const double cost = objective.with_gradient(noise, gradient);
+    CHECK(objective.at(noise) == Approx(cost).epsilon(1e-9));
+    objective.stay();
+    for (Eigen::Index i = 0; i < at.size(); ++i) {
+      // Weights that reach that of their mass bend the cost, so that a longer difference is a mean.
+      constexpr double kStep = 2e-3;
+      const auto beside = [&](double step) {
+        Eigen::VectorXd moved = at;
+        moved[i] += step;
+        place_at(moved, noise);
+        return objective.at(noise);
+      };
+      INFO(noise.parameters[static_cast<std::size_t>(i)].option << " at " << away);
+      const double difference = (beside(kStep) - beside(-kStep)) / (2 * kStep);
+      CHECK(gradient[i] == Approx(difference).epsilon(0.01).margin(0.03));
+    }
+  }
+}
 
 TEST_CASE("noise: a parameter without effect changes nothing, and is not observed") {
   PreparedDrive drive = make_drive({}, 3);

@@ -27,8 +27,10 @@ TEST_CASE("posterior mode: on a narrow ridge it is found from anywhere, with the
   covariance << 0.25, 0.999 * 0.5 * 0.3, 0.999 * 0.5 * 0.3, 0.09;
   const Eigen::Matrix2d information = covariance.inverse();
   const Eigen::Vector2d best(1, -0.5);
-  const PosteriorCost cost{
-      [&](const Eigen::VectorXd& x) { return 7 + 0.5 * (x - best).dot(information * (x - best)); }};
+  const PosteriorCost cost{[&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) *gradient = information * (x - best);
+    return 7 + 0.5 * (x - best).dot(information * (x - best));
+  }};
   for (const Eigen::Vector2d& start :
        {Eigen::Vector2d(0, 0), Eigen::Vector2d(-3, 3), Eigen::Vector2d(3.5, 0)}) {
     const PosteriorMode mode = find(cost, start, within(4, 2));
@@ -40,8 +42,9 @@ TEST_CASE("posterior mode: on a narrow ridge it is found from anywhere, with the
 
 TEST_CASE("posterior mode: the end of a curved valley is found within a hundredth of a deviation") {
   // -log of exp(-y^2 / 2) times a normal distribution of x about y^2 / 2 with deviation 0.1: mode (0, 0).
-  const PosteriorCost cost{[](const Eigen::VectorXd& x) {
+  const PosteriorCost cost{[](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
     const double across = (x[0] - 0.5 * x[1] * x[1]) / 0.1;
+    if (gradient != nullptr) *gradient = Eigen::Vector2d(10 * across, x[1] - 10 * across * x[1]);
     return 0.5 * (x[1] * x[1] + across * across);
   }};
   const PosteriorMode mode = find(cost, Eigen::Vector2d(2, 2), within(4, 2));
@@ -55,8 +58,10 @@ TEST_CASE("posterior mode: a parameter that is pushed over its bound stays there
   Eigen::Matrix2d information;
   information << 1, -0.8, -0.8, 1;
   const Eigen::Vector2d best(2, 1);
-  const PosteriorCost cost{
-      [&](const Eigen::VectorXd& x) { return 0.5 * (x - best).dot(information * (x - best)); }};
+  const PosteriorCost cost{[&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) *gradient = information * (x - best);
+    return 0.5 * (x - best).dot(information * (x - best));
+  }};
   const PosteriorBounds bounds{Eigen::Vector2d(-4, -4), Eigen::Vector2d(1, 4)};
   const PosteriorMode mode = find(cost, Eigen::Vector2d::Zero(), bounds);
   CHECK(mode.at[0] == 1);

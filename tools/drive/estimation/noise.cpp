@@ -5,32 +5,14 @@
 #include <cmath>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/covariance/evidence.hpp>
-#include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/registry/options.hpp>
-#include <waymark/core/system/gauge.hpp>
 #include <waymark/tools/drive/estimation/coarse.hpp>
+#include <waymark/tools/drive/estimation/noise_objective.hpp>
 #include <waymark/tools/drive/estimation/posterior_mode.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 
 namespace waymark::drive {
 namespace {
-
-/// The distance of a value from the mean of its prior, in deviations of the prior.
-double coordinate_of(double value, const NoisePrior& prior) {
-  const double away = prior.linear ? value - prior.mean : std::log(value / prior.mean);
-  return away / prior.deviation;
-}
-double value_at(double coordinate, const NoisePrior& prior) {
-  const double away = coordinate * prior.deviation;
-  return prior.linear ? prior.mean + away : prior.mean * std::exp(away);
-}
-
-void place(double coordinate, NoiseParameter& parameter) {
-  // A value at the end of its range must not leave it by rounding.
-  parameter.value =
-      std::clamp(value_at(coordinate, parameter.prior), parameter.range.low, parameter.range.high);
-}
 
 /// The prior for receivers that claim an accuracy. @param accuracy_m median; 0: none is claimed
 NoisePrior prior_for(const NoisePrior& general, double accuracy_m) {
@@ -54,68 +36,10 @@ void add_parameters(const std::string& source, const std::string& owner, const s
     parameter.unit = option.unit;
     parameter.range = std::get<OptionRange>(option.allowed);
     parameter.prior = prior_for(*option.prior, claimed.reference_m());
-    place(0, parameter);
+    place_at(0, parameter);
     parameters.push_back(std::move(parameter));
   }
 }
-
-/// The function that the noise minimises: -log of prior times marginal likelihood.
-class Objective {
- public:
-  Objective(const CoarseDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry)
-      : coarse_(coarse),
-        settings_(settings),
-        registry_(registry),
-        algorithm_(registry.make_algorithm("dogleg")) {}
-
-  /// From now on every minimisation begins at the minimum of this noise and goes to its end. Before,
-  /// it begins at the one before: heavy tails have several minima, so that the cost depends a little
-  /// on where the search has been.
-  double begin_at(const NoiseEstimate& noise) {
-    stays_ = true;
-    return cost_of(noise, 1e-12, true);
-  }
-
-  double operator()(const NoiseEstimate& noise) { return cost_of(noise, stays_ ? 1e-7 : 1e-6, !stays_); }
-  [[nodiscard]] int evaluations() const { return evaluations_; }
-
- private:
-  /// @param next whether the next minimisation begins at this minimum
-  double cost_of(const NoiseEstimate& noise, double decrement_tolerance, bool next) {
-    ++evaluations_;
-    Graph graph = build_graph(coarse_.drive, coarse_.sensors, with_noise(settings_, noise), registry_).graph;
-    prepare(graph);
-    OptimizerOptions options;
-    options.decrement_tolerance = decrement_tolerance;
-    options.max_iterations = 200;
-    const Summary summary = optimize(graph, kept_, *algorithm_, options);
-    if (next && summary.converged()) values_ = graph.values();
-    double cost = evidence(graph, kept_.structure(), cholesky_).negative_log();
-    for (const NoiseParameter& parameter : noise.parameters)
-      cost += 0.5 * std::pow(coordinate_of(parameter.value, parameter.prior), 2);
-    return std::isfinite(cost) ? cost : 1e300;
-  }
-
-  /// Vertices and edges are the same every time. So structure and analysis are made once.
-  void prepare(Graph& graph) {
-    if (!values_.empty()) {
-      graph.set_values(values_);
-      return;
-    }
-    if (evaluations_ > 1) return;
-    kept_.build(graph, find_gauge(graph).held);
-  }
-
-  const CoarseDrive& coarse_;
-  const FusionSettings& settings_;
-  const TypeRegistry& registry_;
-  std::unique_ptr<Algorithm> algorithm_;
-  BlockCholesky cholesky_;
-  StructuredSolver kept_{cholesky_};
-  std::vector<double> values_;
-  int evaluations_ = 0;
-  bool stays_ = false;  ///< where the next minimisation begins
-};
 
 /// A parameter may leave its prior by kNoiseReach deviations, but not what its option allows.
 PosteriorBounds bounds_of(const NoiseEstimate& noise) {
@@ -131,26 +55,19 @@ PosteriorBounds bounds_of(const NoiseEstimate& noise) {
 }
 
 /// @param begins_near whether the values of the noise are near the minimum
-void minimize(Objective& objective, bool begins_near, NoiseEstimate& noise) {
+void minimize(NoiseObjective& objective, bool begins_near, NoiseEstimate& noise) {
   const PosteriorBounds bounds = bounds_of(noise);
-  const Eigen::Index size = bounds.low.size();
-  const auto with = [&](const Eigen::VectorXd& coordinates) -> const NoiseEstimate& {
-    for (Eigen::Index i = 0; i < size; ++i)
-      place(coordinates[i], noise.parameters[static_cast<std::size_t>(i)]);
-    return noise;
-  };
-  const PosteriorCost cost{[&](const Eigen::VectorXd& x) { return objective(with(x)); },
-                           [&](const Eigen::VectorXd& x) { return objective.begin_at(with(x)); }};
-  Eigen::VectorXd start(size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const NoiseParameter& parameter = noise.parameters[static_cast<std::size_t>(i)];
-    start[i] = coordinate_of(parameter.value, parameter.prior);
-  }
-  start = start.cwiseMax(bounds.low).cwiseMin(bounds.high);
+  const PosteriorCost cost{[&](const Eigen::VectorXd& at, Eigen::VectorXd* gradient) {
+                             place_at(at, noise);
+                             return gradient == nullptr ? objective.at(noise)
+                                                        : objective.with_gradient(noise, *gradient);
+                           },
+                           [&] { objective.stay(); }};
+  const Eigen::VectorXd start = coordinates_of(noise).cwiseMax(bounds.low).cwiseMin(bounds.high);
   const Eigen::VectorXd near = begins_near ? start : search_posterior(cost, start, bounds);
   const PosteriorMode mode = find_posterior_mode(cost, near, bounds);
-  with(mode.at);
-  for (Eigen::Index i = 0; i < size; ++i) {
+  place_at(mode.at, noise);
+  for (Eigen::Index i = 0; i < mode.at.size(); ++i) {
     NoiseParameter& parameter = noise.parameters[static_cast<std::size_t>(i)];
     parameter.deviation = std::sqrt(mode.covariance(i, i)) * parameter.prior.deviation;
   }
@@ -221,7 +138,7 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const Prepared
     const CoarseDrive coarse = with_only(source, all);
     NoiseEstimate part = open_parameters(coarse, count, source == 0, known, registry);
     if (part.parameters.empty()) continue;
-    Objective objective(coarse, known, registry);
+    NoiseObjective objective(coarse, known, registry);
     const bool begins_near = take_values(near, part);
     minimize(objective, begins_near, part);
     noise.evaluations += objective.evaluations();

@@ -16,46 +16,31 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kStep = 0.05;        // of the differences in the search
 constexpr double kNear = 0.05;        // where the search ends
-constexpr int kMostSearchSteps = 20;  // evaluations with derivatives
+constexpr int kMostSearchSteps = 40;  // evaluations
 constexpr int kMostNewtonSteps = 20;
 constexpr double kSettled = 5e-5;        // gain of cost, a hundredth of a deviation; its step is still taken
-constexpr double kClose = 0.5;           // gain of cost, a deviation: the correlations are kept from there
-constexpr double kFar = 2;               // gain of cost, two deviations: a rough curvature leads nearer
-constexpr double kSearchShare = 0.5;     // of a deviation, the differences until then
-constexpr double kEndShare = 0.1;        // and for the curvature at the end
-constexpr double kFalling = 0.2;         // from step to step, or they are found anew
-constexpr double kTolerated = 0.02;      // rise of cost in a step, a fifth of a deviation
-constexpr double kFirstStep = 0.1;       // of the differences for the first of them
+constexpr double kShare = 0.15;          // of a deviation, the differences of the gradient
+constexpr double kFine = 0.25;           // of them, for the curvature at the end
+constexpr double kFirstStep = 0.02;      // the first of them
+constexpr double kFalling = 0.1;         // of the gain from step to step, or the curvature is found anew
+constexpr double kTolerated = 1e-5;      // rise of cost in a step: rounding
 constexpr double kLongestStep = 1.0;     // in deviations of the priors
 constexpr double kLeastCurvature = 0.1;  // the prior alone has 1
 
-/// Cost and bounds of the search behind the C interface.
-struct Search {
-  const PosteriorCost& cost;
-  const VectorXd& high;
-};
-
-VectorXd with_step(VectorXd at, Index i, double step) {
-  at[i] += step;
-  return at;
-}
-
-/// The cost for NLopt, with differences as its gradient: forward ones, or backward ones at the upper bound.
+/// Cost behind the C interface of NLopt.
 double evaluate(unsigned size, const double* coordinates, double* gradient, void* data) {
-  const Search& search = *static_cast<Search*>(data);
+  const PosteriorCost& cost = *static_cast<const PosteriorCost*>(data);
   const VectorXd at = Eigen::Map<const VectorXd>(coordinates, size);
-  const double cost = search.cost.at(at);
-  if (gradient == nullptr) return cost;
-  for (Index i = 0; i < at.size(); ++i) {
-    const double step = at[i] + kStep <= search.high[i] ? kStep : -kStep;
-    gradient[i] = (search.cost.at(with_step(at, i, step)) - cost) / step;
-  }
-  return cost;
+  VectorXd slope;
+  const double value = cost.at(at, gradient == nullptr ? nullptr : &slope);
+  if (cost.stay) cost.stay();
+  if (gradient == nullptr) return value;
+  Eigen::Map<VectorXd>(gradient, size) = slope;
+  return value;
 }
 
-/// The quadratic function through costs about a point within the bounds.
+/// The quadratic function about a point.
 struct Quadratic {
   VectorXd centre;
   double cost = 0;
@@ -69,58 +54,33 @@ struct Quadratic {
   }
 };
 
+/// Moves the centre, and keeps the curvature.
+void move_to(const VectorXd& at, const PosteriorCost& cost, Quadratic& fit) {
+  fit.centre = at;
+  fit.cost = cost.at(at, &fit.gradient);
+}
+
 /// Returns steps that are a share of what each coordinate is known to alone. Far smaller ones see
 /// rounding, far larger ones the derivatives of higher order.
-VectorXd fitting_steps(const VectorXd& curvature, double share) {
-  return (share / curvature.array().max(kLeastCurvature).sqrt()).cwiseMin(share).cwiseMax(0.02);
+VectorXd fitting_steps(const VectorXd& curvature) {
+  return kShare * curvature.array().max(kLeastCurvature).rsqrt().min(1.0);
 }
 
-/// How the terms between two coordinates are found.
-enum class Mixed {
-  known,    ///< from the correlations of a curvature nearby: no costs of their own
-  forward,  ///< with one cost each
-  central   ///< with two: exact to one order more
-};
-
-/// Returns the quadratic through the costs about a point, by central differences.
-/// @param correlations for Mixed::known
-Quadratic fit_quadratic(const PosteriorCost& cost, const VectorXd& at, const VectorXd& steps,
-                        const PosteriorBounds& bounds, Mixed mixed, const MatrixXd& correlations) {
-  const Index n = at.size();
-  Quadratic fit{at.cwiseMax(bounds.low + steps).cwiseMin(bounds.high - steps), 0, VectorXd(n),
-                MatrixXd(n, n)};
-  fit.cost = cost.begin_at ? cost.begin_at(fit.centre) : cost.at(fit.centre);
-  VectorXd ahead(n);
-  VectorXd behind(n);
+/// Returns the curvature at the centre, from the gradients beside it.
+MatrixXd curvature_at(const Quadratic& fit, const PosteriorCost& cost, const VectorXd& steps,
+                      const PosteriorBounds& bounds) {
+  const Index n = fit.centre.size();
+  MatrixXd curvature(n, n);
+  VectorXd gradient(n);
   for (Index i = 0; i < n; ++i) {
-    ahead[i] = cost.at(with_step(fit.centre, i, steps[i])) - fit.cost;
-    behind[i] = cost.at(with_step(fit.centre, i, -steps[i])) - fit.cost;
-    fit.gradient[i] = (ahead[i] - behind[i]) / (2 * steps[i]);
-    fit.curvature(i, i) = (ahead[i] + behind[i]) / (steps[i] * steps[i]);
+    const double end = fit.centre[i] + steps[i];
+    const double step = end >= bounds.low[i] && end <= bounds.high[i] ? steps[i] : -steps[i];
+    VectorXd beside = fit.centre;
+    beside[i] += step;
+    (void)cost.at(beside, &gradient);
+    curvature.col(i) = (gradient - fit.gradient) / step;
   }
-  if (mixed == Mixed::known) {
-    const VectorXd scale = fit.curvature.diagonal().cwiseMax(kLeastCurvature).cwiseSqrt();
-    fit.curvature = scale.asDiagonal() * correlations * scale.asDiagonal();
-    return fit;
-  }
-  for (Index i = 0; i < n; ++i) {
-    for (Index j = 0; j < i; ++j) {
-      const auto along_both = [&](double share) {
-        return cost.at(with_step(with_step(fit.centre, i, share * steps[i]), j, share * steps[j])) - fit.cost;
-      };
-      double product = along_both(1) - ahead[i] - ahead[j];
-      if (mixed == Mixed::central) product = 0.5 * (product + along_both(-1) - behind[i] - behind[j]);
-      fit.curvature(i, j) = product / (steps[i] * steps[j]);
-      fit.curvature(j, i) = fit.curvature(i, j);
-    }
-  }
-  return fit;
-}
-
-/// Returns a curvature scaled to ones on its diagonal.
-MatrixXd correlations_of(const MatrixXd& curvature) {
-  const VectorXd scale = curvature.diagonal().cwiseMax(kLeastCurvature).cwiseSqrt().cwiseInverse();
-  return scale.asDiagonal() * curvature * scale.asDiagonal();
+  return 0.5 * (curvature + curvature.transpose());
 }
 
 /// Returns the inverse, with the curvature made positive where rounding or a saddle has left none.
@@ -162,23 +122,30 @@ VectorXd least_point(const Quadratic& fit, const PosteriorBounds& bounds) {
   return at;
 }
 
-/// Returns the share of a step at which the cost does not rise: the step may leave the region
-/// where the quadratic fits. Close to the mode a rise is the difference between the cost and its
-/// quadratic over the width of the steps, and no reason to halt.
-double descending(const PosteriorCost& cost, const Quadratic& fit, const VectorXd& step) {
+/// Takes a share of a step at which the cost does not rise: the step may leave the region where
+/// the quadratic fits. @returns whether there is one. The cost is bent where weights of losses reach
+/// their bounds, and a minimum there has a gradient.
+bool descend(const PosteriorCost& cost, const VectorXd& step, Quadratic& fit) {
   constexpr double kLeastShare = 0.05;
   double share = std::min(1.0, kLongestStep / std::max(step.cwiseAbs().maxCoeff(), 1e-12));
-  while (share > kLeastShare && cost.at(fit.centre + share * step) > fit.cost + kTolerated) share *= 0.4;
-  return share;
+  Quadratic trial = fit;
+  for (; share > kLeastShare; share *= 0.4) {
+    move_to(fit.centre + share * step, cost, trial);
+    if (trial.cost > fit.cost + kTolerated) continue;
+    fit = std::move(trial);
+    if (cost.stay) cost.stay();
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
 
 VectorXd search_posterior(const PosteriorCost& cost, const VectorXd& start, const PosteriorBounds& bounds) {
   VectorXd at = start;
-  Search search{cost, bounds.high};
+  PosteriorCost kept = cost;
   nlopt_opt slsqp = nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(at.size()));
-  nlopt_set_min_objective(slsqp, evaluate, &search);
+  nlopt_set_min_objective(slsqp, evaluate, &kept);
   nlopt_set_lower_bounds(slsqp, bounds.low.data());
   nlopt_set_upper_bounds(slsqp, bounds.high.data());
   nlopt_set_xtol_abs1(slsqp, kNear);
@@ -191,31 +158,41 @@ VectorXd search_posterior(const PosteriorCost& cost, const VectorXd& start, cons
 
 PosteriorMode find_posterior_mode(const PosteriorCost& cost, const VectorXd& near,
                                   const PosteriorBounds& bounds) {
-  const VectorXd longest = 0.25 * (bounds.high - bounds.low);
-  VectorXd steps = longest.cwiseMin(kFirstStep);
-  PosteriorMode mode{near, {}};
-  MatrixXd correlations;
+  Quadratic fit;
+  move_to(near, cost, fit);
+  if (cost.stay) cost.stay();
+  VectorXd steps = VectorXd::Constant(near.size(), kFirstStep);
+  VectorXd curved_at;  // where the curvature is from
+  const auto find_curvature = [&] {
+    fit.curvature = curvature_at(fit, cost, steps, bounds);
+    steps = fitting_steps(fit.curvature.diagonal());
+    curved_at = fit.centre;
+  };
+  find_curvature();
   double gain_before = std::numeric_limits<double>::max();
   for (int i = 0; i < kMostNewtonSteps; ++i) {
-    Mixed mixed = gain_before > kFar ? Mixed::forward : Mixed::central;
-    if (correlations.size() > 0) mixed = Mixed::known;
-    const Quadratic fit = fit_quadratic(cost, mode.at, steps, bounds, mixed, correlations);
-    const VectorXd least = least_point(fit, bounds);
-    const double gain = fit.rise_to(mode.at) - fit.rise_to(least);
+    VectorXd least = least_point(fit, bounds);
+    double gain = -fit.rise_to(least);
+    if (gain > kSettled && gain > kFalling * gain_before && curved_at != fit.centre) {
+      find_curvature();
+      least = least_point(fit, bounds);
+      gain = -fit.rise_to(least);
+    }
     if (gain < kSettled) {
-      mode.at = least;
+      fit.centre = least;
       break;
     }
-    const VectorXd step = least - fit.centre;
-    mode.at = fit.centre + descending(cost, fit, step) * step;
-    steps = fitting_steps(fit.curvature.diagonal(), kSearchShare).cwiseMin(longest);
-    const bool converging = gain < kClose && gain < kFalling * gain_before;
-    correlations = converging ? correlations_of(fit.curvature) : MatrixXd();
     gain_before = gain;
+    if (descend(cost, least - fit.centre, fit)) continue;
+    if (curved_at == fit.centre) break;
+    find_curvature();
   }
-  const VectorXd fine = steps * (kEndShare / kSearchShare);
-  mode.covariance = covariance_of(fit_quadratic(cost, mode.at, fine, bounds, Mixed::central, {}).curvature);
-  return mode;
+  // A ridge that bends falls out of the mean of the curvatures from both sides.
+  move_to(fit.centre, cost, fit);
+  if (cost.stay) cost.stay();
+  const VectorXd fine = kFine * steps;
+  fit.curvature = 0.5 * (curvature_at(fit, cost, fine, bounds) + curvature_at(fit, cost, -fine, bounds));
+  return {fit.centre, covariance_of(fit.curvature)};
 }
 
 }  // namespace waymark::drive

@@ -10,10 +10,11 @@ namespace waymark::drive {
 /// The cost of n coordinates, -log of prior times likelihood, each coordinate in units of its
 /// prior's deviation. It must be a smooth function of them and of nothing else.
 struct PosteriorCost {
-  std::function<double(const Eigen::VectorXd& coordinates)> at;
-  /// Returns the same. The costs near these coordinates are asked for next, so that a cost which is a
-  /// minimum itself can begin there. May be empty.
-  std::function<double(const Eigen::VectorXd& coordinates)> begin_at = {};
+  /// @param gradient receives the n derivatives; null: they are not wanted
+  std::function<double(const Eigen::VectorXd& coordinates, Eigen::VectorXd* gradient)> at;
+  /// From now on costs are asked for near the last ones, so that a cost which is a minimum itself can
+  /// begin there. May be empty.
+  std::function<void()> stay = {};
 };
 
 struct PosteriorMode {
@@ -27,14 +28,13 @@ struct PosteriorBounds {
   Eigen::VectorXd high;
 };
 
-/// Comes near the least cost: a quasi-Newton search (SLSQP, Kraft 1988) with differences of the cost
-/// as its gradient. The cost may be rough.
+/// Comes near the least cost: a quasi-Newton search (SLSQP, Kraft 1988).
 [[nodiscard]] Eigen::VectorXd search_posterior(const PosteriorCost& cost, const Eigen::VectorXd& start,
                                                const PosteriorBounds& bounds);
 
-/// Finds the least cost from a point near it. Newton's steps with the full curvature go on until
-/// they are a small part of what the parameters are known to: parameters on a ridge move together,
-/// which no search along axes does.
+/// Finds the least cost from a point near it. Newton's steps with the full curvature, from
+/// differences of the gradient, go on until they are a small part of what the parameters are known
+/// to: parameters on a ridge move together, which no search along axes does.
 [[nodiscard]] PosteriorMode find_posterior_mode(const PosteriorCost& cost, const Eigen::VectorXd& near,
                                                 const PosteriorBounds& bounds);
 

@@ -1,0 +1,179 @@
+#include <waymark/tools/drive/estimation/noise_objective.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <waymark/core/optimize/optimizer.hpp>
+#include <waymark/core/system/gauge.hpp>
+#include <waymark/tools/drive/model/build.hpp>
+
+namespace waymark::drive {
+namespace {
+
+/// Of the differences, in deviations of the priors. The cost is exact to 1e-11.
+constexpr double kDifference = 1e-4;
+/// Of the minimum, as OptimizerOptions::decrement_tolerance. What is left of its gradient counts in the
+/// derivatives.
+constexpr double kExact = 1e-10;
+/// Newton's steps begin there, and each decrement is at most this share of the one before.
+constexpr double kNearMinimum = 1e-5;
+constexpr double kContraction = 0.5;
+/// The step of the poses is corrected until the last correction is a small part of it. One step is
+/// enough where H is the whole curvature.
+constexpr double kCorrected = 0.02;
+constexpr int kMostCorrections = 12;
+constexpr double kImpossible = 1e300;
+
+double value_at(double coordinate, const NoisePrior& prior) {
+  const double away = coordinate * prior.deviation;
+  return prior.linear ? prior.mean + away : prior.mean * std::exp(away);
+}
+
+double negative_log_prior(const NoiseEstimate& noise) {
+  return 0.5 * coordinates_of(noise).squaredNorm();
+}
+
+std::span<double> span_of(Eigen::VectorXd& x) {
+  return {x.data(), static_cast<std::size_t>(x.size())};
+}
+
+}  // namespace
+
+double coordinate_of(double value, const NoisePrior& prior) {
+  const double away = prior.linear ? value - prior.mean : std::log(value / prior.mean);
+  return away / prior.deviation;
+}
+
+Eigen::VectorXd coordinates_of(const NoiseEstimate& noise) {
+  Eigen::VectorXd at(static_cast<Eigen::Index>(noise.parameters.size()));
+  std::transform(noise.parameters.begin(), noise.parameters.end(), at.begin(),
+                 [](const NoiseParameter& of) { return coordinate_of(of.value, of.prior); });
+  return at;
+}
+
+void place_at(double coordinate, NoiseParameter& parameter) {
+  // A value at the end of its range must not leave it by rounding.
+  parameter.value =
+      std::clamp(value_at(coordinate, parameter.prior), parameter.range.low, parameter.range.high);
+}
+
+void place_at(const Eigen::VectorXd& coordinates, NoiseEstimate& noise) {
+  for (std::size_t i = 0; i < noise.parameters.size(); ++i)
+    place_at(coordinates[static_cast<Eigen::Index>(i)], noise.parameters[i]);
+}
+
+NoiseObjective::NoiseObjective(const CoarseDrive& coarse, const FusionSettings& settings,
+                               const TypeRegistry& registry)
+    : coarse_(coarse),
+      settings_(settings),
+      registry_(registry),
+      algorithm_(registry.make_algorithm("dogleg")) {}
+
+void NoiseObjective::build(const NoiseEstimate& noise) {
+  graph_ = build_graph(coarse_.drive, coarse_.sensors, with_noise(settings_, noise), registry_).graph;
+  if (equations_) return;
+  kept_.build(graph_, find_gauge(graph_).held);
+  equations_ = std::make_unique<NormalEquations>(graph_, kept_.structure());
+  evidence_ = std::make_unique<RepeatedEvidence>(graph_, kept_.structure());
+}
+
+bool NoiseObjective::polish() {
+  constexpr int kMostSteps = 8;
+  values_ = graph_.values();
+  std::vector<double> next;
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double chi2 = equations_->linearize_with_concave_terms(values_);
+    if (cholesky_.factorize(equations_->hessian()) != FactorStatus::ok) return false;
+    Eigen::VectorXd move = -equations_->gradient();
+    cholesky_.solve(span_of(move), span_of(move));
+    const double decrement = -move.dot(equations_->gradient());
+    if (!(decrement >= 0 && decrement < before)) return decrement <= kExact * (1 + chi2);
+    equations_->retract(values_, move, next);
+    values_.swap(next);
+    if (decrement <= kExact * (1 + chi2)) return true;
+    before = kContraction * decrement;
+  }
+  return false;
+}
+
+void NoiseObjective::find_poses() {
+  if (!stays_at_.empty()) {
+    graph_.set_values(stays_at_);
+    if (polish()) return;
+    graph_.set_values(stays_at_);
+  }
+  OptimizerOptions options;
+  options.decrement_tolerance = kNearMinimum;
+  options.max_iterations = 200;
+  optimize(graph_, kept_, *algorithm_, options);
+  const std::vector<double> near = graph_.values();
+  if (polish()) return;
+  graph_.set_values(near);
+  options.decrement_tolerance = kExact;
+  optimize(graph_, kept_, *algorithm_, options);
+  values_ = graph_.values();
+}
+
+double NoiseObjective::at(const NoiseEstimate& noise) {
+  ++evaluations_;
+  build(noise);
+  find_poses();
+  here_ = evidence_->at(values_);
+  const double cost = here_.negative_log() + negative_log_prior(noise);
+  return std::isfinite(cost) ? cost : kImpossible;
+}
+
+bool NoiseObjective::factorize_curvature() {
+  (void)equations_->linearize_with_concave_terms(values_);
+  if (cholesky_.factorize(equations_->hessian()) == FactorStatus::ok) return true;
+  (void)equations_->linearize(values_);
+  return cholesky_.factorize(equations_->hessian()) == FactorStatus::ok;
+}
+
+double NoiseObjective::with_gradient(const NoiseEstimate& noise, Eigen::VectorXd& gradient) {
+  const double cost = at(noise);
+  gradient = coordinates_of(noise);  // of the prior
+  if (cost >= kImpossible || !factorize_curvature()) return cost;
+  const Eigen::VectorXd residual = equations_->gradient();
+  for (std::size_t i = 0; i < noise.parameters.size(); ++i)
+    gradient[static_cast<Eigen::Index>(i)] += derivative(noise, i, residual);
+  return cost;
+}
+
+std::vector<double> NoiseObjective::moved_poses(const Eigen::VectorXd& residual) {
+  std::vector<double> values = values_;
+  std::vector<double> next;
+  double first = 0;
+  for (int i = 0; i < kMostCorrections; ++i) {
+    const Eigen::VectorXd left = residual - equations_->gradient();
+    Eigen::VectorXd move = left;
+    cholesky_.solve(span_of(move), span_of(move));
+    const double decrement = move.dot(left);
+    equations_->retract(values, move, next);
+    values.swap(next);
+    if (i == 0) first = decrement;
+    if (!(decrement > kCorrected * kCorrected * first)) break;
+    (void)equations_->linearize(values);
+  }
+  return values;
+}
+
+double NoiseObjective::derivative(const NoiseEstimate& noise, std::size_t parameter,
+                                  const Eigen::VectorXd& residual) {
+  NoiseEstimate moved = noise;
+  NoiseParameter& changed = moved.parameters[parameter];
+  const double from = coordinate_of(changed.value, changed.prior);
+  const bool fits = value_at(from + kDifference, changed.prior) <= changed.range.high;
+  const double step = fits ? kDifference : -kDifference;
+  place_at(from + step, changed);
+  build(moved);
+  const double chi2 = equations_->linearize(values_);  // where the poses stand
+  const std::vector<double> values = moved_poses(residual);
+  Evidence there = evidence_->at(values);
+  there.chi2 = chi2;
+  return (there.negative_log() - here_.negative_log()) / step;
+}
+
+}  // namespace waymark::drive
