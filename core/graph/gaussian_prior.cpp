@@ -99,7 +99,7 @@ Eigen::MatrixXd GaussianPriorBatch::jacobian(const Record& record, std::size_t v
     type.local(reference, moved.data(), delta.data());
     return delta;
   };
-  constexpr double kStep = 1e-3;
+  constexpr double kStep = 5e-4;
   Eigen::MatrixXd result(n, n);
   for (int column = 0; column < n; ++column) {
     const Eigen::VectorXd near = seen_at(column, kStep) - seen_at(column, -kStep);

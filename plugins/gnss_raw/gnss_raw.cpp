@@ -22,9 +22,11 @@ std::vector<OptionInfo> options() {
       {"antenna_x", "0", "m", OptionRange{-100, 100}, "antenna in the body frame, forward"},
       {"antenna_y", "0", "m", OptionRange{-100, 100}, "antenna in the body frame, to the left"},
       {"satellites_at", "transmission", "", OptionWords{"transmission", "reception"},
-       "the axes of the satellites' positions: those of the Earth when the signal leaves, or when it arrives"},
-      {"systems", "all", "", OptionWords{"all", "gps"}, "systems whose pseudoranges are used"},
-      {"range_rates", "on", "", OptionWords{"on", "off"}, "whether range rates are used"}};
+       "axes of the satellites' positions: those of the Earth when the signal leaves, 'transmission', or "
+       "when it arrives, 'reception'"},
+      {"systems", "all", "", OptionWords{"all", "gps"},
+       "systems whose pseudoranges are used: 'all', or 'gps' alone"},
+      {"range_rates", "on", "", OptionWords{"on", "off"}, "range rates are used, 'on', or left out, 'off'"}};
   for (OptionInfo& option : noise_options()) all.push_back(std::move(option));
   for (OptionInfo& option : drive_state_options()) all.push_back(std::move(option));
   return all;
