@@ -135,6 +135,12 @@ DriveVerdict verdict_of(const ReportedDrive& drive) {
   const evaluation::TruthEvaluation& truth = *drive.evaluation.truth;
   const double better = truth.improvement.rmse_percent;
   DriveVerdict verdict{.text = describe_trouble(drive)};
+  if (truth.gnss.position.count == 0) {  // a drive without a receiver
+    verdict.text += fmt::format("Fused positions: RMSE {:.3f} m, largest error {:.3f} m, at {} epochs.",
+                                truth.fused.position.rmse_m, truth.fused.position.max_m,
+                                truth.fused.position.count);
+    return verdict;
+  }
   verdict.kind = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
   verdict.text += fmt::format(
       "Fused positions are {:.0f} % {} than raw GNSS: RMSE {:.3f} m against {:.3f} m, largest error {:.3f} m "
