@@ -73,7 +73,7 @@ class Loop {
   void finish(Termination termination, std::string message);
   double linearize(const std::vector<double>& values);
   void accept(double trial_chi2);
-  bool retreat();
+  void retreat();
   std::string singular_message() const;
   bool not_finite_without_unknowns() const;
   /// Returns ": " and what is not finite in the graph, if something is.
@@ -203,7 +203,10 @@ bool Loop::step_once() {
            "stalled: no step lowers chi2 any more, yet the Newton decrement is not small");
     return false;
   }
-  if (status == ProposalStatus::retreat) return retreat();
+  if (status == ProposalStatus::retreat) {
+    retreat();
+    return true;
+  }
   IterationRecord record;
   record.iteration = ++summary_.iterations;
   record.predicted_decrease = step_.predicted_decrease;
@@ -260,15 +263,14 @@ void Loop::accept(double trial_chi2) {
   }
 }
 
-/// Goes back to the values of the lowest chi2. @returns true: the linearisation is another one now
-bool Loop::retreat() {
-  if (present_is_best_) return true;
+/// Goes back to the values of the lowest chi2, and linearises there.
+void Loop::retreat() {
+  if (present_is_best_) return;
   values_.swap(best_);
   present_is_best_ = true;
   chi2_ = best_chi2_;
   linearize(values_);
   last_accepted_ = false;
-  return true;
 }
 
 /// A graph whose Jacobians are NaN may look as if nothing were to do.

@@ -85,6 +85,17 @@ double negative_log(const Walk& walk, const Eigen::VectorXd& readings) {
   return evidence(graph, structure, cholesky).negative_log();
 }
 
+/// A bias at 0 with a prior of sigma 1, and readings of it with sigma 1 and a Cauchy loss of scale sqrt(6).
+Graph bias_with_cauchy_readings(const std::vector<double>& readings) {
+  Graph graph;
+  const VertexIndex bias = graph.add_vertex<VertexGyroBias>(VertexId{0}, {0});
+  add_prior_about_zero(graph, bias, 1);
+  for (const double reading : readings)
+    graph.add_edge(EdgeGyroAtRest{reading}, {bias}, Eigen::Matrix<double, 1, 1>(1.0));
+  graph.batch(1).set_loss(builtin_loss("cauchy", std::sqrt(6.0)));
+  return graph;
+}
+
 }  // namespace
 
 TEST_CASE("evidence: of linear errors it is the density of the readings, without its powers of 2 pi") {
@@ -123,15 +134,8 @@ TEST_CASE("evidence: an axis without information counts for nothing, H that is n
 }
 
 TEST_CASE("evidence: a robust edge counts by its weight, at most by what gives its density its mass") {
-  Graph graph;
-  const VertexIndex bias = graph.add_vertex<VertexGyroBias>(VertexId{0}, {0});
-  add_prior_about_zero(graph, bias, 1);
   const std::vector<double> readings = {0.5, 1.5, 3, 8};
-  for (const double reading : readings)
-    graph.add_edge(EdgeGyroAtRest{reading}, {bias}, Eigen::Matrix<double, 1, 1>(1.0));
-  for (const LossType& type : builtin_losses()) {
-    if (type.name == "cauchy") graph.batch(1).set_loss(Loss{type.name, type.evaluate, std::sqrt(6.0)});
-  }
+  const Graph graph = bias_with_cauchy_readings(readings);
   // exp(-rho / 2) = (1 + e^2 / 6)^-3 has the mass sqrt(6) B(1/2, 5/2) = sqrt(6) 3 pi / 8.
   const double mass = std::sqrt(6.0) * 3 * std::numbers::pi / 8;
   const double most = 2 * std::numbers::pi / (mass * mass);
@@ -141,13 +145,8 @@ TEST_CASE("evidence: a robust edge counts by its weight, at most by what gives i
 }
 
 TEST_CASE("evidence: H with the concave terms of the losses is the derivative of the gradient") {
-  Graph graph;
-  const VertexIndex bias = graph.add_vertex<VertexGyroBias>(VertexId{0}, {0});
-  add_prior_about_zero(graph, bias, 1);
   const std::vector<double> readings = {0.5, 1.5, 3, 8};
-  for (const double reading : readings)
-    graph.add_edge(EdgeGyroAtRest{reading}, {bias}, Eigen::Matrix<double, 1, 1>(1.0));
-  graph.batch(1).set_loss(builtin_loss("cauchy", std::sqrt(6.0)));
+  const Graph graph = bias_with_cauchy_readings(readings);
   Structure structure;
   structure.build(graph, std::vector<char>(graph.vertex_count(), 0));
   NormalEquations equations(graph, structure);
