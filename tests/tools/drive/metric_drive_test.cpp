@@ -8,9 +8,9 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/formats/logs/detail/csv/csv_log.hpp>
+#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
-#include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
 

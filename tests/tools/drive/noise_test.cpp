@@ -84,8 +84,10 @@ FusionSettings complete_settings(const Options& modeling_options = {}) {
 }
 
 NoiseEstimate estimate(const PreparedDrive& drive, const FusionSettings& settings) {
-  return estimate_noise(place_drive(drive, timeline_of(drive), settings, registry()), {}, settings,
-                        registry());
+  const PlacedDrive placed = place_drive(drive, timeline_of(drive), settings, registry());
+  NoiseEstimate noise = estimate_noise(placed, {}, settings, registry());
+  find_deviations(placed, {}, settings, registry(), noise);
+  return noise;
 }
 
 const NoiseParameter& find(const NoiseEstimate& noise, const std::string& option) {
@@ -288,6 +290,47 @@ TEST_CASE("coarse: fewer nodes and fixes, the same way and turn") {
   CHECK(coarse.fixes.size() == 172);  // every seventh of 1200
   for (const Fix& fix : coarse.fixes)
     CHECK(coarse.timeline.stamps[static_cast<std::size_t>(fix.vertex) - 1] == fix.stamp);
+}
+
+TEST_CASE("coarse: straight ways are merged up to a second, turns as far as a twist follows them") {
+  PreparedDrive drive = make_drive({}, 5);
+  const auto coarse_of = [&] {
+    return coarsen(place_drive(drive, timeline_of(drive), complete_settings(), registry()), {}).drive;
+  };
+  for (OdometrySample& sample : drive.odometry) sample.yaw_rate_radps = 0.1;
+  const PlacedDrive steady = coarse_of();  // whatever the speed does, this is one circle
+  CHECK(steady.timeline.intervals.size() < drive.odometry.size() / 8);
+  // The yaw rate changes by 1 rad/s^2 to and fro: at 12 m/s a twist of 0.25 s misses by 1.5 cm.
+  for (std::size_t i = 0; i < drive.odometry.size(); ++i)
+    drive.odometry[i].yaw_rate_radps =
+        0.5 * std::sin(2 * seconds_between(drive.odometry[0].stamp, drive.odometry[i].stamp));
+  const PlacedDrive turning = coarse_of();
+  CHECK(turning.timeline.intervals.size() > 2 * steady.timeline.intervals.size());
+}
+
+TEST_CASE("coarse: the middle of a drive is a drive with the nodes, fixes and motion of its time") {
+  const PreparedDrive drive = make_drive({}, 5);
+  const CoarseDrive whole =
+      coarsen(place_drive(drive, timeline_of(drive), complete_settings(), registry()), {});
+  const PlacedDrive piece = middle_of(whole, 300).drive;
+  const std::vector<Stamp>& all = whole.drive.timeline.stamps;
+  const std::vector<Stamp>& stamps = piece.timeline.stamps;
+  CHECK(seconds_between(stamps.front(), stamps.back()) == Approx(300).margin(2.1));
+  CHECK(seconds_between(stamps.front(), stamps.back()) >= 300);
+  CHECK(seconds_between(all.front(), stamps.front()) ==
+        Approx(seconds_between(stamps.back(), all.back())).margin(2.1));
+  REQUIRE(piece.timeline.intervals.size() == stamps.size() - 1);
+  for (std::size_t i = 0; i + 1 < stamps.size(); ++i)
+    CHECK(piece.timeline.intervals[i].dt_s == Approx(seconds_between(stamps[i], stamps[i + 1])));
+  std::size_t expected = 0;
+  for (const Fix& fix : whole.drive.fixes)
+    expected += fix.stamp >= stamps.front() && fix.stamp <= stamps.back() ? 1 : 0;
+  CHECK(piece.fixes.size() == expected);
+  REQUIRE(piece.timeline.fix_node.size() == expected);
+  for (std::size_t i = 0; i < expected; ++i) {
+    CHECK(stamps[piece.timeline.fix_node[i]] == piece.fixes[i].stamp);
+    CHECK(piece.fixes[i].vertex == vertex_of(piece.timeline.fix_node[i]));
+  }
 }
 
 TEST_CASE("fuse: modelings that agree on gate and guess share them, and give what each gives alone") {

@@ -11,8 +11,14 @@ using namespace waymark::drive;
 
 namespace {
 
-PosteriorMode find(const PosteriorCost& cost, const Eigen::VectorXd& start, const PosteriorBounds& bounds) {
-  return find_posterior_mode(cost, search_posterior(cost, start, bounds), bounds);
+struct Found {
+  Eigen::VectorXd at;
+  Eigen::MatrixXd covariance;
+};
+
+Found find(const PosteriorCost& cost, const Eigen::VectorXd& start, const PosteriorBounds& bounds) {
+  const PosteriorMode mode = find_posterior_mode(cost, search_posterior(cost, start, bounds), bounds);
+  return {mode.at, posterior_covariance(cost, mode, bounds)};
 }
 
 PosteriorBounds within(double reach, Eigen::Index size) {
@@ -33,7 +39,7 @@ TEST_CASE("posterior mode: on a narrow ridge it is found from anywhere, with the
   }};
   for (const Eigen::Vector2d& start :
        {Eigen::Vector2d(0, 0), Eigen::Vector2d(-3, 3), Eigen::Vector2d(3.5, 0)}) {
-    const PosteriorMode mode = find(cost, start, within(4, 2));
+    const Found mode = find(cost, start, within(4, 2));
     CHECK(mode.at[0] == Approx(1).margin(0.005));
     CHECK(mode.at[1] == Approx(-0.5).margin(0.003));
     CHECK((mode.covariance - covariance).norm() < 1e-4);
@@ -47,7 +53,7 @@ TEST_CASE("posterior mode: the end of a curved valley is found within a hundredt
     if (gradient != nullptr) *gradient = Eigen::Vector2d(10 * across, x[1] - 10 * across * x[1]);
     return 0.5 * (x[1] * x[1] + across * across);
   }};
-  const PosteriorMode mode = find(cost, Eigen::Vector2d(2, 2), within(4, 2));
+  const Found mode = find(cost, Eigen::Vector2d(2, 2), within(4, 2));
   CHECK(std::abs(mode.at[0]) < 0.001);
   CHECK(std::abs(mode.at[1]) < 0.01);
   CHECK(mode.covariance(1, 1) == Approx(1).epsilon(0.1));
@@ -63,9 +69,34 @@ TEST_CASE("posterior mode: a parameter that is pushed over its bound stays there
     return 0.5 * (x - best).dot(information * (x - best));
   }};
   const PosteriorBounds bounds{Eigen::Vector2d(-4, -4), Eigen::Vector2d(1, 4)};
-  const PosteriorMode mode = find(cost, Eigen::Vector2d::Zero(), bounds);
+  const Found mode = find(cost, Eigen::Vector2d::Zero(), bounds);
   CHECK(mode.at[0] == 1);
   CHECK(mode.at[1] == Approx(0.2).margin(0.01));
+}
+
+TEST_CASE("posterior mode: a curvature that is known costs no differences, and a wrong one does no harm") {
+  // Known to 0.2 and 0.1, with a term of fourth order.
+  int gradients = 0;
+  const PosteriorCost cost{[&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    const Eigen::Array2d away = x.array() - Eigen::Array2d(0.3, -0.2);
+    const Eigen::Array2d weight(25, 100);
+    if (gradient != nullptr) {
+      ++gradients;
+      *gradient = weight * away + 4 * away.cube();
+    }
+    return 0.5 * (weight * away.square()).sum() + away.pow(4).sum();
+  }};
+  const Eigen::Vector2d near(0.1, 0);
+  const Eigen::Matrix2d known = Eigen::Vector2d(25, 100).asDiagonal();
+  for (const double factor : {1.0, 3.0, 0.3}) {
+    gradients = 0;
+    const PosteriorMode mode = find_posterior_mode(cost, {near, factor * known}, within(4, 2));
+    INFO("curvature times " << factor << ", " << gradients << " gradients");
+    CHECK(mode.at[0] == Approx(0.3).margin(0.002));
+    CHECK(mode.at[1] == Approx(-0.2).margin(0.001));
+    if (factor == 1) CHECK(gradients <= 3);
+    CHECK(gradients <= 9);
+  }
 }
 
 }  // namespace posterior_mode_test

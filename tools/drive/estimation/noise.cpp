@@ -54,35 +54,65 @@ PosteriorBounds bounds_of(const NoiseEstimate& noise) {
   return bounds;
 }
 
-/// @param begins_near whether the values of the noise are near the minimum
-void minimize(NoiseObjective& objective, bool begins_near, NoiseEstimate& noise) {
-  const PosteriorBounds bounds = bounds_of(noise);
-  const PosteriorCost cost{[&](const Eigen::VectorXd& at, Eigen::VectorXd* gradient) {
-                             place_at(at, noise);
-                             return gradient == nullptr ? objective.at(noise)
-                                                        : objective.with_gradient(noise, *gradient);
-                           },
-                           [&] { objective.stay(); }};
-  const Eigen::VectorXd start = coordinates_of(noise).cwiseMax(bounds.low).cwiseMin(bounds.high);
-  const Eigen::VectorXd near = begins_near ? start : search_posterior(cost, start, bounds);
-  const PosteriorMode mode = find_posterior_mode(cost, near, bounds);
-  place_at(mode.at, noise);
-  for (Eigen::Index i = 0; i < mode.at.size(); ++i) {
-    NoiseParameter& parameter = noise.parameters[static_cast<std::size_t>(i)];
-    parameter.deviation = std::sqrt(mode.covariance(i, i)) * parameter.prior.deviation;
-  }
+PosteriorCost cost_of(NoiseObjective& objective, NoiseEstimate& noise) {
+  return {[&](const Eigen::VectorXd& at, Eigen::VectorXd* gradient) {
+            place_at(at, noise);
+            return gradient == nullptr ? objective.at(noise) : objective.with_gradient(noise, *gradient);
+          },
+          [&] { objective.stay(); }};
 }
 
-/// Takes the values of the same parameters. @returns whether all of them are known
-bool take_values(const NoiseEstimate& known, NoiseEstimate& noise) {
-  for (NoiseParameter& parameter : noise.parameters) {
+/// Finds the minimum. Where the curvature of the noise is known, its values are near it.
+void minimize(NoiseObjective& objective, NoiseEstimate& noise) {
+  const PosteriorBounds bounds = bounds_of(noise);
+  const PosteriorCost cost = cost_of(objective, noise);
+  PosteriorMode near{coordinates_of(noise).cwiseMax(bounds.low).cwiseMin(bounds.high), noise.curvature};
+  if (noise.curvature.size() == 0) near = search_posterior(cost, near.at, bounds);
+  const PosteriorMode mode = find_posterior_mode(cost, near, bounds);
+  place_at(mode.at, noise);
+  noise.curvature = mode.curvature;
+}
+
+/// What is estimated together: the parameters of one relative source, with those of the absolute ones if
+/// it is the first.
+struct Part {
+  CoarseDrive coarse;
+  FusionSettings settings;  ///< with what the parts before it have estimated
+  NoiseEstimate noise;
+};
+
+/// Takes the values of the same parameters and their curvature, if all of them are known.
+void take_known(const NoiseEstimate& known, NoiseEstimate& noise) {
+  std::vector<Eigen::Index> places;
+  for (const NoiseParameter& parameter : noise.parameters) {
     const auto same = std::find_if(known.parameters.begin(), known.parameters.end(), [&](const auto& other) {
       return other.owner == parameter.owner && other.name() == parameter.name();
     });
-    if (same == known.parameters.end()) return false;
-    parameter.value = same->value;
+    if (same == known.parameters.end()) return;
+    places.push_back(same - known.parameters.begin());
   }
-  return true;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    noise.parameters[i].value = known.parameters[static_cast<std::size_t>(places[i])].value;
+  noise.curvature = known.curvature(places, places);
+}
+
+/// Takes the minimum of a piece of a long drive, where an evaluation costs little, if it is nearer to the
+/// minimum of the whole than what is known before. The curvature of the likelihood grows with the drive.
+void begin_with_piece(const Part& part, const TypeRegistry& registry, NoiseObjective& whole,
+                      NoiseEstimate& noise) {
+  constexpr double kPiece_s = 600;
+  constexpr double kLongDrive = 3;  // pieces
+  const std::vector<Stamp>& stamps = part.coarse.drive.timeline.stamps;
+  const double whole_s = seconds_between(stamps.front(), stamps.back());
+  if (whole_s < kLongDrive * kPiece_s) return;
+  const CoarseDrive piece = middle_of(part.coarse, kPiece_s);
+  NoiseEstimate found = noise;
+  NoiseObjective objective(piece, part.settings, registry);
+  minimize(objective, found);
+  if (!(whole.at(found) < whole.at(noise))) return;
+  const auto prior = Eigen::MatrixXd::Identity(found.curvature.rows(), found.curvature.cols());
+  found.curvature = prior + whole_s / kPiece_s * (found.curvature - prior);
+  noise = found;
 }
 
 /// Returns a coarse drive with one of its relative sources. Where that is silent, the motion is bridged.
@@ -124,30 +154,73 @@ NoiseEstimate open_parameters(const CoarseDrive& coarse, std::size_t count, bool
   return noise;
 }
 
-}  // namespace
+/// Adds what was estimated apart from the rest.
+void append(const NoiseEstimate& part, NoiseEstimate& noise) {
+  noise.parameters.insert(noise.parameters.end(), part.parameters.begin(), part.parameters.end());
+  noise.evaluations += part.evaluations;
+  const Eigen::Index before = noise.curvature.rows();
+  const auto size = static_cast<Eigen::Index>(noise.parameters.size());
+  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(size, size);
+  curvature.topLeftCorner(before, before) = noise.curvature;
+  curvature.bottomRightCorner(size - before, size - before) = part.curvature;
+  noise.curvature = std::move(curvature);
+}
 
-NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
-                             const FusionSettings& settings, const TypeRegistry& registry,
-                             const NoiseEstimate& near) {
+/// Visits the parts of a drive one after the other. A visit may change the noise of its part, for those
+/// that follow. @returns all of the noise
+template <typename Visit>
+NoiseEstimate visit_parts(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
+                          const FusionSettings& settings, const TypeRegistry& registry, const Visit& visit) {
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
   FusionSettings known = settings;
   const CoarseDrive all = coarsen(placed, sensors);
   const std::size_t count = std::max<std::size_t>(placed.relative.size(), 1);
   for (std::size_t source = 0; source < count; ++source) {
-    const CoarseDrive coarse = with_only(source, all);
-    NoiseEstimate part = open_parameters(coarse, count, source == 0, known, registry);
-    if (part.parameters.empty()) continue;
-    NoiseObjective objective(coarse, known, registry);
-    const bool begins_near = take_values(near, part);
-    minimize(objective, begins_near, part);
-    noise.evaluations += objective.evaluations();
-    noise.parameters.insert(noise.parameters.end(), part.parameters.begin(), part.parameters.end());
-    known = with_noise(std::move(known), part);
+    Part part{with_only(source, all), known, {}};
+    part.noise = open_parameters(part.coarse, count, source == 0, known, registry);
+    if (part.noise.parameters.empty()) continue;
+    visit(part);
+    append(part.noise, noise);
+    known = with_noise(std::move(known), part.noise);
   }
   if (!noise.parameters.empty())
     noise.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return noise;
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
+                             const FusionSettings& settings, const TypeRegistry& registry,
+                             const NoiseEstimate& near) {
+  return visit_parts(placed, sensors, settings, registry, [&](Part& part) {
+    NoiseObjective objective(part.coarse, part.settings, registry);
+    take_known(near, part.noise);
+    if (part.noise.curvature.size() == 0) begin_with_piece(part, registry, objective, part.noise);
+    minimize(objective, part.noise);
+    part.noise.evaluations = objective.evaluations();
+  });
+}
+
+void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
+                     const FusionSettings& settings, const TypeRegistry& registry, NoiseEstimate& noise) {
+  NoiseEstimate known = visit_parts(placed, sensors, settings, registry, [&](Part& part) {
+    NoiseObjective objective(part.coarse, part.settings, registry);
+    take_known(noise, part.noise);
+    const PosteriorMode mode{coordinates_of(part.noise), part.noise.curvature};
+    NoiseEstimate moved = part.noise;
+    const Eigen::MatrixXd covariance =
+        posterior_covariance(cost_of(objective, moved), mode, bounds_of(part.noise));
+    for (Eigen::Index i = 0; i < mode.at.size(); ++i) {
+      NoiseParameter& parameter = part.noise.parameters[static_cast<std::size_t>(i)];
+      parameter.deviation = std::sqrt(covariance(i, i)) * parameter.prior.deviation;
+    }
+    part.noise.evaluations = objective.evaluations();
+  });
+  known.evaluations += noise.evaluations;
+  known.seconds += noise.seconds;
+  noise = std::move(known);
 }
 
 FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 
@@ -25,7 +27,7 @@ struct NoiseParameter {
   NoisePrior prior;
   double value = 0;
   /// Standard deviation of the posterior, in the form of the prior (of the logarithm, or linear),
-  /// whatever the other parameters are.
+  /// whatever the other parameters are. 0: not known yet
   double deviation = 0;
 
   /// Returns the option with its source if there are several: "front.white_sigma".
@@ -36,6 +38,8 @@ struct NoiseParameter {
 
 struct NoiseEstimate {
   std::vector<NoiseParameter> parameters;
+  /// n x n, of -log of prior times likelihood by coordinates (noise_objective.hpp), as the search left it
+  Eigen::MatrixXd curvature;
   int evaluations = 0;  ///< evaluations of the marginal likelihood
   double seconds = 0;
 };
@@ -44,16 +48,20 @@ struct NoiseEstimate {
 /// state. Fixes are thinned to one in 7.5 s per receiver: receivers smooth their output, and the
 /// white noise would otherwise come out too small. Each relative source is estimated without the others:
 /// over short times they agree better than over long ones, which is what matters. The first one is
-/// estimated with all absolute sources and further sensors. Nodes are thinned to four per second, and
-/// so are the readings of sensors.
+/// estimated with all absolute sources and further sensors. Nodes are thinned as coarse.hpp says. The search
+/// for a long drive begins in a piece of it.
 /// @param sensors further ones, which take part
 /// @param settings from decided()
 /// @param near an estimate of the same parameters for slightly other settings, to begin from
-/// @return no parameters if none is left to estimate
+/// @return values without deviations; no parameters if none is left to estimate
 /// @throws UsageError and InputError as the odometry model and the modeling do
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                            const FusionSettings& settings, const TypeRegistry& registry,
                                            const NoiseEstimate& near = {});
+
+/// Finds how well the values are known, where they stand. @param settings as of the estimate
+void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
+                     const FusionSettings& settings, const TypeRegistry& registry, NoiseEstimate& noise);
 
 /// Returns the settings with the estimates as options of the models.
 /// Stated options are kept.

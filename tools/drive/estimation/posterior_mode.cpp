@@ -21,24 +21,10 @@ constexpr int kMostSearchSteps = 40;  // evaluations
 constexpr int kMostNewtonSteps = 20;
 constexpr double kSettled = 5e-5;        // gain of cost, a hundredth of a deviation; its step is still taken
 constexpr double kShare = 0.15;          // of a deviation, the differences of the gradient
-constexpr double kFine = 0.25;           // of them, for the curvature at the end
-constexpr double kFirstStep = 0.02;      // the first of them
-constexpr double kFalling = 0.1;         // of the gain from step to step, or the curvature is found anew
+constexpr double kFine = 0.25;           // of them, for the covariance
 constexpr double kTolerated = 1e-5;      // rise of cost in a step: rounding
 constexpr double kLongestStep = 1.0;     // in deviations of the priors
 constexpr double kLeastCurvature = 0.1;  // the prior alone has 1
-
-/// Cost behind the C interface of NLopt.
-double evaluate(unsigned size, const double* coordinates, double* gradient, void* data) {
-  const PosteriorCost& cost = *static_cast<const PosteriorCost*>(data);
-  const VectorXd at = Eigen::Map<const VectorXd>(coordinates, size);
-  VectorXd slope;
-  const double value = cost.at(at, gradient == nullptr ? nullptr : &slope);
-  if (cost.stay) cost.stay();
-  if (gradient == nullptr) return value;
-  Eigen::Map<VectorXd>(gradient, size) = slope;
-  return value;
-}
 
 /// The quadratic function about a point.
 struct Quadratic {
@@ -58,6 +44,47 @@ struct Quadratic {
 void move_to(const VectorXd& at, const PosteriorCost& cost, Quadratic& fit) {
   fit.centre = at;
   fit.cost = cost.at(at, &fit.gradient);
+}
+
+/// Moves the centre, and lets the curvature follow (Broyden, Fletcher, Goldfarb, Shanno 1970): it becomes
+/// that of the gradients along the step, and stays positive.
+void follow_to(const Quadratic& next, Quadratic& fit) {
+  const VectorXd step = next.centre - fit.centre;
+  const VectorXd change = next.gradient - fit.gradient;
+  const VectorXd expected = fit.curvature * step;
+  const double found = step.dot(change);
+  const double known = step.dot(expected);
+  const MatrixXd before = fit.curvature;
+  fit = next;
+  fit.curvature = before;
+  constexpr double kLeastShare = 0.2;  // less is the end of a ridge, or rounding
+  if (known > 0 && found > kLeastShare * known)
+    fit.curvature += change * change.transpose() / found - expected * expected.transpose() / known;
+}
+
+/// What SLSQP evaluates: the cost, with a curvature that follows its points.
+struct Search {
+  const PosteriorCost& cost;
+  Quadratic followed;
+};
+
+/// The interface of NLopt in C. @param data a Search
+double evaluate(unsigned size, const double* coordinates, double* gradient, void* data) {
+  Search& search = *static_cast<Search*>(data);
+  const VectorXd at = Eigen::Map<const VectorXd>(coordinates, size);
+  Quadratic there;
+  there.centre = at;
+  there.cost = search.cost.at(at, gradient == nullptr ? nullptr : &there.gradient);
+  if (search.cost.stay) search.cost.stay();
+  if (gradient == nullptr) return there.cost;
+  Eigen::Map<VectorXd>(gradient, size) = there.gradient;
+  if (search.followed.centre.size() == 0) {
+    search.followed = there;
+    search.followed.curvature = MatrixXd::Identity(at.size(), at.size());  // of the prior
+  } else {
+    follow_to(there, search.followed);
+  }
+  return there.cost;
 }
 
 /// Returns steps that are a share of what each coordinate is known to alone. Far smaller ones see
@@ -132,7 +159,7 @@ bool descend(const PosteriorCost& cost, const VectorXd& step, Quadratic& fit) {
   for (; share > kLeastShare; share *= 0.4) {
     move_to(fit.centre + share * step, cost, trial);
     if (trial.cost > fit.cost + kTolerated) continue;
-    fit = std::move(trial);
+    follow_to(trial, fit);
     if (cost.stay) cost.stay();
     return true;
   }
@@ -141,11 +168,12 @@ bool descend(const PosteriorCost& cost, const VectorXd& step, Quadratic& fit) {
 
 }  // namespace
 
-VectorXd search_posterior(const PosteriorCost& cost, const VectorXd& start, const PosteriorBounds& bounds) {
+PosteriorMode search_posterior(const PosteriorCost& cost, const VectorXd& start,
+                               const PosteriorBounds& bounds) {
   VectorXd at = start;
-  PosteriorCost kept = cost;
+  Search search{cost, {}};
   nlopt_opt slsqp = nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(at.size()));
-  nlopt_set_min_objective(slsqp, evaluate, &kept);
+  nlopt_set_min_objective(slsqp, evaluate, &search);
   nlopt_set_lower_bounds(slsqp, bounds.low.data());
   nlopt_set_upper_bounds(slsqp, bounds.high.data());
   nlopt_set_xtol_abs1(slsqp, kNear);
@@ -153,27 +181,25 @@ VectorXd search_posterior(const PosteriorCost& cost, const VectorXd& start, cons
   double least = 0;
   nlopt_optimize(slsqp, at.data(), &least);  // its best values stand whatever ends it
   nlopt_destroy(slsqp);
-  return at.cwiseMax(bounds.low).cwiseMin(bounds.high);
+  return {at.cwiseMax(bounds.low).cwiseMin(bounds.high), search.followed.curvature};
 }
 
-PosteriorMode find_posterior_mode(const PosteriorCost& cost, const VectorXd& near,
+PosteriorMode find_posterior_mode(const PosteriorCost& cost, const PosteriorMode& near,
                                   const PosteriorBounds& bounds) {
   Quadratic fit;
-  move_to(near, cost, fit);
+  fit.curvature = near.curvature;
+  move_to(near.at, cost, fit);
   if (cost.stay) cost.stay();
-  VectorXd steps = VectorXd::Constant(near.size(), kFirstStep);
-  VectorXd curved_at;  // where the curvature is from
+  bool is_curvature_of_centre = false;
   const auto find_curvature = [&] {
-    fit.curvature = curvature_at(fit, cost, steps, bounds);
-    steps = fitting_steps(fit.curvature.diagonal());
-    curved_at = fit.centre;
+    fit.curvature = curvature_at(fit, cost, fitting_steps(fit.curvature.diagonal()), bounds);
+    is_curvature_of_centre = true;
   };
-  find_curvature();
   double gain_before = std::numeric_limits<double>::max();
   for (int i = 0; i < kMostNewtonSteps; ++i) {
     VectorXd least = least_point(fit, bounds);
     double gain = -fit.rise_to(least);
-    if (gain > kSettled && gain > kFalling * gain_before && curved_at != fit.centre) {
+    if (gain > kSettled && gain > gain_before && !is_curvature_of_centre) {
       find_curvature();
       least = least_point(fit, bounds);
       gain = -fit.rise_to(least);
@@ -183,16 +209,22 @@ PosteriorMode find_posterior_mode(const PosteriorCost& cost, const VectorXd& nea
       break;
     }
     gain_before = gain;
-    if (descend(cost, least - fit.centre, fit)) continue;
-    if (curved_at == fit.centre) break;
+    if (descend(cost, least - fit.centre, fit)) {
+      is_curvature_of_centre = false;
+      continue;
+    }
+    if (is_curvature_of_centre) break;
     find_curvature();
   }
-  // A ridge that bends falls out of the mean of the curvatures from both sides.
-  move_to(fit.centre, cost, fit);
+  return {fit.centre, fit.curvature};
+}
+
+MatrixXd posterior_covariance(const PosteriorCost& cost, const PosteriorMode& mode,
+                              const PosteriorBounds& bounds) {
+  Quadratic fit;
+  move_to(mode.at, cost, fit);
   if (cost.stay) cost.stay();
-  const VectorXd fine = kFine * steps;
-  fit.curvature = 0.5 * (curvature_at(fit, cost, fine, bounds) + curvature_at(fit, cost, -fine, bounds));
-  return {fit.centre, covariance_of(fit.curvature)};
+  return covariance_of(curvature_at(fit, cost, kFine * fitting_steps(mode.curvature.diagonal()), bounds));
 }
 
 }  // namespace waymark::drive

@@ -18,8 +18,9 @@ struct PosteriorCost {
 };
 
 struct PosteriorMode {
-  Eigen::VectorXd at;          ///< n
-  Eigen::MatrixXd covariance;  ///< n x n, the inverse of the curvature there
+  Eigen::VectorXd at;  ///< n
+  /// n x n, as the search followed it: good enough for the next search from near
+  Eigen::MatrixXd curvature;
 };
 
 /// The bounds of the coordinates, n each, low < high. A coordinate may end at them.
@@ -29,13 +30,20 @@ struct PosteriorBounds {
 };
 
 /// Comes near the least cost: a quasi-Newton search (SLSQP, Kraft 1988).
-[[nodiscard]] Eigen::VectorXd search_posterior(const PosteriorCost& cost, const Eigen::VectorXd& start,
-                                               const PosteriorBounds& bounds);
+[[nodiscard]] PosteriorMode search_posterior(const PosteriorCost& cost, const Eigen::VectorXd& start,
+                                             const PosteriorBounds& bounds);
 
-/// Finds the least cost from a point near it. Newton's steps with the full curvature, from
-/// differences of the gradient, go on until they are a small part of what the parameters are known
-/// to: parameters on a ridge move together, which no search along axes does.
-[[nodiscard]] PosteriorMode find_posterior_mode(const PosteriorCost& cost, const Eigen::VectorXd& near,
+/// Finds the least cost from a point near it. Newton's steps with the full curvature go on until they are
+/// a small part of what the parameters are known to: parameters on a ridge move together, which no search
+/// along axes does. The curvature follows the steps (BFGS). Where they do not lead on, it is found anew
+/// from differences of the gradient.
+/// @param near with a curvature that holds about there
+[[nodiscard]] PosteriorMode find_posterior_mode(const PosteriorCost& cost, const PosteriorMode& near,
                                                 const PosteriorBounds& bounds);
+
+/// Returns the inverse of the curvature at a mode, n x n, from differences of the gradient over a small
+/// part of what the parameters are known to.
+[[nodiscard]] Eigen::MatrixXd posterior_covariance(const PosteriorCost& cost, const PosteriorMode& mode,
+                                                   const PosteriorBounds& bounds);
 
 }  // namespace waymark::drive

@@ -139,6 +139,8 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   const auto offsets = estimate(decision, drive_.sensors, registry_, modeled);
   if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))
     (void)estimate(decision, drive_.sensors, registry_, modeled);
+  if (!modeled.noise.parameters.empty())
+    find_deviations(modeled.placed, drive_.sensors, decision, registry_, modeled.noise);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);
