@@ -1,4 +1,5 @@
 // The noise of a drive, on drives made by the very error model whose parameters are estimated.
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <random>
@@ -9,6 +10,7 @@
 #include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/estimation/noise_objective.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
+#include <waymark/tools/drive/model/interrupted.hpp>
 
 #include <waymark/types_se2/se2.hpp>
 
@@ -234,6 +236,24 @@ TEST_CASE("noise: what a stand-in for an accuracy says does not count") {
     return estimate(drive, complete_settings());
   };
   CHECK(apart(with_stand_in(0.5), with_stand_in(50)) < 1e-6);
+}
+
+TEST_CASE("noise: the search ends where the caller asks for it, with nothing") {
+  const PreparedDrive drive = make_drive({}, 3);
+  const FusionSettings settings = complete_settings();
+  const PlacedDrive placed = place_drive(drive, timeline_of(drive), settings, registry());
+  std::atomic<bool> cancel = false;
+  const CoarseDrive coarse = coarsen(placed, {});
+  NoiseEstimate noise = estimate_noise(placed, {}, settings, registry(), {}, &cancel);
+  NoiseObjective objective(coarse, settings, registry(), &cancel);
+  Eigen::VectorXd gradient;
+  (void)objective.with_gradient(noise, gradient);
+  cancel = true;
+  CHECK_THROWS_AS(objective.with_gradient(noise, gradient), Interrupted);
+  CHECK_THROWS_AS(estimate_noise(placed, {}, settings, registry(), {}, &cancel), Interrupted);
+  CHECK_THROWS_AS(find_deviations(placed, {}, settings, registry(), noise, &cancel), Interrupted);
+  FusionSettings whole;
+  CHECK_THROWS_AS(fuse(drive, whole, registry(), {.cancel = &cancel}), Interrupted);
 }
 
 TEST_CASE("noise: a modeling without such options and fixes that leave nothing open have none") {

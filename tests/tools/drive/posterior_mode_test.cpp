@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/estimation/posterior_mode.hpp>
 
 namespace posterior_mode_test {
@@ -72,6 +73,17 @@ TEST_CASE("posterior mode: a parameter that is pushed over its bound stays there
   const Found mode = find(cost, Eigen::Vector2d::Zero(), bounds);
   CHECK(mode.at[0] == 1);
   CHECK(mode.at[1] == Approx(0.2).margin(0.01));
+}
+
+TEST_CASE("posterior mode: what the cost throws comes out of the search") {
+  int calls = 0;
+  const PosteriorCost cost{[&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    if (++calls == 3) throw waymark::InputError("the third");
+    if (gradient != nullptr) *gradient = 10 * x;
+    return 5 * x.squaredNorm();
+  }};
+  CHECK_THROWS_WITH(find(cost, Eigen::Vector2d(3, 2), within(4, 2)), "the third");
+  CHECK(calls == 3);
 }
 
 TEST_CASE("posterior mode: a curvature that is known costs no differences, and a wrong one does no harm") {

@@ -11,6 +11,7 @@
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/model/build.hpp>
+#include <waymark/tools/drive/model/interrupted.hpp>
 #include <waymark/types_se2/edge_gnss.hpp>
 
 namespace waymark::drive {
@@ -108,7 +109,8 @@ std::vector<std::optional<TimeOffset>> found_in(const Round& round, const Fusion
 std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
                                                            std::span<const PreparedSensor> sensors,
                                                            const FusionSettings& settings,
-                                                           const TypeRegistry& registry) {
+                                                           const TypeRegistry& registry,
+                                                           const std::atomic<bool>* cancel) {
   CoarseDrive coarse = coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s);
   const auto algorithm = registry.make_algorithm("dogleg");
   BlockCholesky cholesky;
@@ -117,7 +119,8 @@ std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
     Round round = begin_round(coarse, settings, registry);
     if (!round.estimates()) return std::vector<std::optional<TimeOffset>>(round.groups.size());
     solver.build(round.graph, find_gauge(round.graph).held);
-    optimize(round.graph, solver, *algorithm, {});
+    optimize(round.graph, solver, *algorithm, {.cancel = cancel});
+    stop_if(cancel);
     const double moved_s = take_offsets(round, coarse.drive);
     if (moved_s < kSettled_s || count == kMostRounds) {
       placed.time_offsets_s = coarse.drive.time_offsets_s;

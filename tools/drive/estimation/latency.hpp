@@ -4,6 +4,7 @@
 /// offset only (EdgeGnssPositionLate). So the offset is found first, on a coarse drive.
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,12 +33,14 @@ struct TimeOffset {
 /// with those that this gives, until they no longer move. Nothing changes if the settings
 /// estimate no time offset. @param sensors further ones, which take part
 /// @param settings from decided()
-/// @throws UsageError for an unknown modeling or option; errors of the plugins
+/// @param cancel as OptimizerOptions::cancel
+/// @throws UsageError for an unknown modeling or option; errors of the plugins; Interrupted
 /// @returns the offset of each group (groups_of() in build.hpp); empty for one that has none
 std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
                                                            std::span<const PreparedSensor> sensors,
                                                            const FusionSettings& settings,
-                                                           const TypeRegistry& registry);
+                                                           const TypeRegistry& registry,
+                                                           const std::atomic<bool>* cancel = nullptr);
 
 /// Returns the vertex of the time offset that a graph estimates among some vertices, if it does.
 [[nodiscard]] std::optional<VertexIndex> time_offset_vertex(const Graph& graph,

@@ -3,6 +3,7 @@
 /// (core/covariance/evidence.hpp).
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,14 +55,17 @@ struct NoiseEstimate {
 /// @param settings from decided()
 /// @param near an estimate of the same parameters for slightly other settings, to begin from
 /// @return values without deviations; no parameters if none is left to estimate
-/// @throws UsageError and InputError as the odometry model and the modeling do
+/// @param cancel as OptimizerOptions::cancel
+/// @throws UsageError and InputError as the odometry model and the modeling do; Interrupted
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                            const FusionSettings& settings, const TypeRegistry& registry,
-                                           const NoiseEstimate& near = {});
+                                           const NoiseEstimate& near = {},
+                                           const std::atomic<bool>* cancel = nullptr);
 
 /// Finds how well the values are known, where they stand. @param settings as of the estimate
 void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
-                     const FusionSettings& settings, const TypeRegistry& registry, NoiseEstimate& noise);
+                     const FusionSettings& settings, const TypeRegistry& registry, NoiseEstimate& noise,
+                     const std::atomic<bool>* cancel = nullptr);
 
 /// Returns the settings with the estimates as options of the models.
 /// Stated options are kept.

@@ -8,6 +8,7 @@
 /// minimisation, and no noise of one, so that h can be small.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -32,7 +33,9 @@ void place_at(const Eigen::VectorXd& coordinates, NoiseEstimate& noise);
 class NoiseObjective {
  public:
   /// All of them must outlive this object. @param settings state none of the parameters
-  NoiseObjective(const CoarseDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry);
+  /// @param cancel as OptimizerOptions::cancel: calls then throw Interrupted
+  NoiseObjective(const CoarseDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry,
+                 const std::atomic<bool>* cancel = nullptr);
 
   /// Returns L. The search for its poses begins where the objective stays: heavy tails have several
   /// minima, and L is a function of the noise alone if all searches begin at the same poses.
@@ -64,6 +67,7 @@ class NoiseObjective {
   const CoarseDrive& coarse_;
   const FusionSettings& settings_;
   const TypeRegistry& registry_;
+  const std::atomic<bool>* cancel_;
   std::unique_ptr<Algorithm> algorithm_;
   Graph graph_;
   BlockCholesky cholesky_;

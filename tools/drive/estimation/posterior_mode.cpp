@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <vector>
 
@@ -65,25 +66,34 @@ void follow_to(const Quadratic& next, Quadratic& fit) {
 /// What SLSQP evaluates: the cost, with a curvature that follows its points.
 struct Search {
   const PosteriorCost& cost;
-  Quadratic followed;
+  nlopt_opt slsqp = nullptr;
+  Quadratic followed{};
+  std::exception_ptr thrown{};  // by the cost: it must not fly through code in C
 };
+
+void evaluate_here(Search& search, Quadratic& there, bool with_gradient) {
+  there.cost = search.cost.at(there.centre, with_gradient ? &there.gradient : nullptr);
+  if (search.cost.stay) search.cost.stay();
+  if (!with_gradient) return;
+  if (search.followed.centre.size() > 0) return follow_to(there, search.followed);
+  search.followed = there;
+  const Index size = there.centre.size();
+  search.followed.curvature = MatrixXd::Identity(size, size);  // of the prior
+}
 
 /// The interface of NLopt in C. @param data a Search
 double evaluate(unsigned size, const double* coordinates, double* gradient, void* data) {
   Search& search = *static_cast<Search*>(data);
-  const VectorXd at = Eigen::Map<const VectorXd>(coordinates, size);
   Quadratic there;
-  there.centre = at;
-  there.cost = search.cost.at(at, gradient == nullptr ? nullptr : &there.gradient);
-  if (search.cost.stay) search.cost.stay();
-  if (gradient == nullptr) return there.cost;
-  Eigen::Map<VectorXd>(gradient, size) = there.gradient;
-  if (search.followed.centre.size() == 0) {
-    search.followed = there;
-    search.followed.curvature = MatrixXd::Identity(at.size(), at.size());  // of the prior
-  } else {
-    follow_to(there, search.followed);
+  there.centre = Eigen::Map<const VectorXd>(coordinates, size);
+  try {
+    evaluate_here(search, there, gradient != nullptr);
+  } catch (...) {
+    search.thrown = std::current_exception();
+    nlopt_force_stop(search.slsqp);
+    return 0;
   }
+  if (gradient != nullptr) Eigen::Map<VectorXd>(gradient, size) = there.gradient;
   return there.cost;
 }
 
@@ -171,8 +181,8 @@ bool descend(const PosteriorCost& cost, const VectorXd& step, Quadratic& fit) {
 PosteriorMode search_posterior(const PosteriorCost& cost, const VectorXd& start,
                                const PosteriorBounds& bounds) {
   VectorXd at = start;
-  Search search{cost, {}};
   nlopt_opt slsqp = nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(at.size()));
+  Search search{cost, slsqp};
   nlopt_set_min_objective(slsqp, evaluate, &search);
   nlopt_set_lower_bounds(slsqp, bounds.low.data());
   nlopt_set_upper_bounds(slsqp, bounds.high.data());
@@ -181,6 +191,7 @@ PosteriorMode search_posterior(const PosteriorCost& cost, const VectorXd& start,
   double least = 0;
   nlopt_optimize(slsqp, at.data(), &least);  // its best values stand whatever ends it
   nlopt_destroy(slsqp);
+  if (search.thrown) std::rethrow_exception(search.thrown);
   return {at.cwiseMax(bounds.low).cwiseMin(bounds.high), search.followed.curvature};
 }
 

@@ -42,14 +42,15 @@ void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSetti
 /// @returns what the drive says about the delay of each group; empty for those that have none
 std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings,
                                                 std::span<const PreparedSensor> sensors,
-                                                const TypeRegistry& registry, ModeledDrive& modeled) {
+                                                const TypeRegistry& registry, const std::atomic<bool>* cancel,
+                                                ModeledDrive& modeled) {
   modeled.settings = settings;
   std::vector<std::optional<TimeOffset>> offsets =
-      assume_time_offsets(modeled.placed, sensors, settings, registry);
+      assume_time_offsets(modeled.placed, sensors, settings, registry, cancel);
   if (!*settings.estimates_noise) return offsets;
-  modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise);
+  modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise, cancel);
   modeled.settings = with_noise(settings, modeled.noise);
-  return assume_time_offsets(modeled.placed, sensors, modeled.settings, registry);
+  return assume_time_offsets(modeled.placed, sensors, modeled.settings, registry, cancel);
 }
 
 /// Leaves out the delays that the drive gives no better odds than their priors, unless they are stated.
@@ -136,11 +137,11 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   FusionSettings decision = decided(settings, registry_);
   adapt(drive_, !settings.calibration, decision, registry_);
   modeled.placed = placed(decision);
-  const auto offsets = estimate(decision, drive_.sensors, registry_, modeled);
+  const auto offsets = estimate(decision, drive_.sensors, registry_, cancel_, modeled);
   if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))
-    (void)estimate(decision, drive_.sensors, registry_, modeled);
+    (void)estimate(decision, drive_.sensors, registry_, cancel_, modeled);
   if (!modeled.noise.parameters.empty())
-    find_deviations(modeled.placed, drive_.sensors, decision, registry_, modeled.noise);
+    find_deviations(modeled.placed, drive_.sensors, decision, registry_, modeled.noise, cancel_);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);
@@ -173,7 +174,7 @@ FusedDrive Fusion::fuse(const FusionSettings& settings, const MinimizationWatch&
 
 FusedDrive fuse(const PreparedDrive& drive, const FusionSettings& settings, const TypeRegistry& registry,
                 const MinimizationWatch& watch) {
-  return Fusion(drive, registry).fuse(settings, watch);
+  return Fusion(drive, registry, watch.cancel).fuse(settings, watch);
 }
 
 }  // namespace waymark::drive

@@ -22,6 +22,7 @@
 /// is no error; MultiStartSummary::summary.termination reports it.
 #pragma once
 
+#include <atomic>
 #include <list>
 #include <map>
 #include <optional>
@@ -65,7 +66,7 @@ struct FusedDrive {
 
 /// Fuses a drive.
 /// @param drive from load_drive or prepare_drive; its sensors are used
-/// @throws errors of the steps
+/// @throws errors of the steps; Interrupted if the watch ends it before there is a graph
 [[nodiscard]] FusedDrive fuse(const PreparedDrive& drive, const FusionSettings& settings,
                               const TypeRegistry& registry, const MinimizationWatch& watch = {});
 
@@ -73,10 +74,11 @@ struct FusedDrive {
 /// share the nodes in time.
 class Fusion {
  public:
-  /// Both must outlive the object.
-  Fusion(const PreparedDrive& drive, const TypeRegistry& registry) : drive_(drive), registry_(registry) {}
+  /// All must outlive the object. @param cancel as OptimizerOptions::cancel
+  Fusion(const PreparedDrive& drive, const TypeRegistry& registry, const std::atomic<bool>* cancel = nullptr)
+      : drive_(drive), registry_(registry), cancel_(cancel) {}
 
-  /// Does the steps up to the graph. @throws errors of the steps
+  /// Does the steps up to the graph. @throws errors of the steps; Interrupted
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
   /// Does all steps. @throws errors of the steps
   [[nodiscard]] FusedDrive fuse(const FusionSettings& settings, const MinimizationWatch& watch = {});
@@ -96,6 +98,7 @@ class Fusion {
 
   const PreparedDrive& drive_;
   const TypeRegistry& registry_;
+  const std::atomic<bool>* cancel_;
   std::optional<Timeline> timeline_;
   std::list<std::pair<Key, PlacedDrive>> placed_;
 };

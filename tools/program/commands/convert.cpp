@@ -63,7 +63,7 @@ ExitCode convert_drive(const ConvertOptions& options, const drive::DriveFile& fi
     throw UsageError("convert writes one graph: name one modeling ('run' takes several)");
   const std::string& modeling = loaded.settings.front().modeling;
   require_not_read(options.output, loaded.files);
-  drive::Fusion fusion(loaded.drive, registry);
+  drive::Fusion fusion(loaded.drive, registry, &interrupted);
   std::set<std::string> told;
   const drive::ModeledDrive modeled = model_loaded(fusion, loaded.settings.front(), registry, console, told);
   const formats::GraphDocument& document = modeled.document;

@@ -90,6 +90,8 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
       if (fused.minimum.summary.termination == Termination::interrupted) return std::nullopt;
       judge_causal(fused.minimum.summary, outage, document, run.console);
       return std::move(fused.model.document);
+    } catch (const Interrupted&) {
+      return std::nullopt;
     } catch (const InputError& error) {
       warn(fmt::format("no causal prediction for {}: {}", outage, error.what()), document, run.console);
       return std::nullopt;
@@ -199,7 +201,7 @@ void require_logs_stay(const RunOfDrive& run) {
 
 /// Returns the modelings of a drive. Errors in one of them are found before anything is written.
 std::vector<drive::ModeledDrive> model_all(const RunOfDrive& run) {
-  drive::Fusion fusion(run.loaded.drive, run.registry);
+  drive::Fusion fusion(run.loaded.drive, run.registry, &interrupted);
   std::set<std::string> told;
   std::vector<drive::ModeledDrive> models;
   for (const drive::FusionSettings& settings : run.loaded.settings) {

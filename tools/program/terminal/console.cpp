@@ -55,7 +55,7 @@ void install_signal_handlers() {
 }
 
 void stop_if_interrupted() {
-  if (interrupted) throw Interrupted();
+  drive::stop_if(&interrupted);
 }
 
 Console::Console(const CommonOptions& options)

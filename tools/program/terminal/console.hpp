@@ -10,6 +10,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/summary.hpp>
+#include <waymark/tools/drive/model/interrupted.hpp>
 #include <waymark/tools/program/terminal/progress.hpp>
 #include <waymark/tools/text/text_look.hpp>
 
@@ -30,10 +31,7 @@ extern std::atomic<bool> interrupted;
 void install_signal_handlers();
 
 /// Ctrl-C before there was a result to keep.
-class Interrupted : public Error {
- public:
-  Interrupted() : Error("interrupted before there was a result") {}
-};
+using drive::Interrupted;
 /// Call it between steps other than those of the optimizer. @throws Interrupted
 void stop_if_interrupted();
 

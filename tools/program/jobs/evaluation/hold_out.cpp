@@ -93,6 +93,8 @@ std::optional<evaluation::HeldOut> hold_out(const drive::PreparedDrive& drive,
     const evaluation::Evaluation evaluated = evaluate_document(document, {}, further);
     if (evaluated.withheld < kFewestJudged) return std::nullopt;
     return judged(document, evaluated);
+  } catch (const Interrupted&) {
+    return std::nullopt;
   } catch (const InputError& error) {
     console.end_progress();
     console.detail("the fixes that were kept out cannot be judged: " + std::string(error.what()));
