@@ -10,9 +10,12 @@
 #include <unistd.h>
 #include <catch2/catch.hpp>
 
+#include <waymark/core/window/window_solver.hpp>
 #include <waymark/tools/live/estimator/odometries.hpp>
+#include <waymark/tools/live/estimator/window.hpp>
 #include <waymark/tools/live/outputs/byte_output.hpp>
 #include <waymark/tools/live/outputs/lines.hpp>
+#include <waymark/types_se2/se2.hpp>
 
 #include "live_drive.hpp"
 #include "support/registry.hpp"
@@ -115,6 +118,55 @@ TEST_CASE("each reading of a further odometry counts once, and its mean motion i
     CHECK(way.interval.dt_s > 0.07);
     CHECK(way.interval.dt_s < 0.13);
   }
+}
+
+TEST_CASE("poses beside the nodes leave the front of the elimination at their time", "[live]") {
+  // Wheels at 25 Hz give the nodes, a camera measures beside them every 0.12 s.
+  drive::DriveFacts facts;
+  facts.relative = {"wheels", "visual"};
+  facts.absolute.push_back({.name = "gnss", .sources = {0}});
+  const drive::FusionSettings settings =
+      drive::decided(waymark_test::live_fusion(), waymark_test::registry());
+  Window window(facts, {}, settings, waymark_test::registry());
+  const Interval step{.speed_mps = 10, .yaw_rate_radps = 0.05, .dt_s = 0.04};
+  const Interval way{.speed_mps = 10, .yaw_rate_radps = 0.05, .dt_s = 0.12};
+  const Eigen::Vector3d twist(10 * 0.04, 0, 0.05 * 0.04);
+  Pose2<double> pose(0, 0, 0);
+  const auto fix_at = [&](Stamp stamp) {
+    Fix fix;
+    fix.stamp = stamp;
+    fix.position = pose.position;
+    fix.covariance = Eigen::Matrix2d::Identity();
+    return fix;
+  };
+  PlacedStretch stretch;
+  stretch.stamps = {at(0), at(0.04)};
+  stretch.poses = {pose.vector(), compose(pose, se2_exp(twist)).vector()};
+  stretch.intervals = {step};
+  stretch.givers = {0};
+  stretch.fixes = {fix_at(at(0))};
+  pose = compose(pose, se2_exp(twist));
+  stretch.fixes.push_back(fix_at(at(0.04)));
+  REQUIRE(window.begin(stretch));
+  std::vector<int> fronts;
+  for (int node = 2; node <= 1500; ++node) {
+    const Stamp now = at(0.04 * node);
+    pose = compose(pose, se2_exp(twist));
+    window.add_node(now, step, 0);
+    if (node % 3 == 0 && node > 3) window.add_way({1, at(0.04 * (node - 3)), now, way});
+    if (node % 25 == 0) window.add_fix(fix_at(now), {});
+    if (node % 500 != 0) continue;
+    REQUIRE(window.solve());
+    Graph graph = window.graph();
+    WindowSolver solver(graph);
+    REQUIRE(solver.update({}).solved);
+    fronts.push_back(solver.largest_front());
+  }
+  CAPTURE(fronts);
+  // A pose of the nodes, the last one of either track, and the states that are open at a time: six of
+  // calibration for each odometry, the delay, bias and multipath.
+  CHECK(fronts.back() == fronts.front());
+  CHECK(fronts.back() <= 30);
 }
 
 TEST_CASE("two odometries are both used, and the pose is better for it", "[live]") {
