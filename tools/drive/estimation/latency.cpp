@@ -9,7 +9,6 @@
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
-#include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/interrupted.hpp>
 #include <waymark/types_se2/edge_gnss.hpp>
@@ -106,27 +105,28 @@ std::vector<std::optional<TimeOffset>> found_in(const Round& round, const Fusion
 
 }  // namespace
 
-std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
-                                                           std::span<const PreparedSensor> sensors,
-                                                           const FusionSettings& settings,
-                                                           const TypeRegistry& registry,
-                                                           const std::atomic<bool>* cancel) {
-  CoarseDrive coarse = coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s);
-  const auto algorithm = registry.make_algorithm("dogleg");
+TimeOffsetSearch::TimeOffsetSearch(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
+                                   const TypeRegistry& registry, const std::atomic<bool>* cancel)
+    : coarse_(coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s)), registry_(registry), cancel_(cancel) {}
+
+std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettings& settings,
+                                                              PlacedDrive& placed) {
+  coarse_.drive.time_offsets_s = placed.time_offsets_s;
+  const auto algorithm = registry_.make_algorithm("dogleg");
   BlockCholesky cholesky;
   StructuredSolver solver{cholesky};
   for (int count = 1;; ++count) {
-    Round round = begin_round(coarse, settings, registry);
+    Round round = begin_round(coarse_, settings, registry_);
     if (!round.estimates()) return std::vector<std::optional<TimeOffset>>(round.groups.size());
     solver.build(round.graph, find_gauge(round.graph).held);
-    optimize(round.graph, solver, *algorithm, {.cancel = cancel});
-    stop_if(cancel);
-    const double moved_s = take_offsets(round, coarse.drive);
+    optimize(round.graph, solver, *algorithm, {.cancel = cancel_});
+    stop_if(cancel_);
+    keep_poses(round.graph, coarse_.drive.start.poses);
+    const double moved_s = take_offsets(round, coarse_.drive);
     if (moved_s < kSettled_s || count == kMostRounds) {
-      placed.time_offsets_s = coarse.drive.time_offsets_s;
-      return found_in(round, settings, registry);
+      placed.time_offsets_s = coarse_.drive.time_offsets_s;
+      return found_in(round, settings, registry_);
     }
-    keep_poses(round.graph, coarse.drive.start.poses);
   }
 }
 

@@ -13,6 +13,7 @@
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 
 namespace waymark::drive {
@@ -29,18 +30,27 @@ struct TimeOffset {
   [[nodiscard]] double odds_of_none() const;
 };
 
-/// Finds PlacedDrive::time_offsets_s. The coarse drive is fused with the offsets of before, and again
-/// with those that this gives, until they no longer move. Nothing changes if the settings
-/// estimate no time offset. @param sensors further ones, which take part
-/// @param settings from decided()
-/// @param cancel as OptimizerOptions::cancel
-/// @throws UsageError for an unknown modeling or option; errors of the plugins; Interrupted
-/// @returns the offset of each group (groups_of() in build.hpp); empty for one that has none
-std::vector<std::optional<TimeOffset>> assume_time_offsets(PlacedDrive& placed,
-                                                           std::span<const PreparedSensor> sensors,
-                                                           const FusionSettings& settings,
-                                                           const TypeRegistry& registry,
-                                                           const std::atomic<bool>* cancel = nullptr);
+/// Finds PlacedDrive::time_offsets_s, for one setting after the other. The coarse drive is fused with the
+/// offsets of before, and again with those that this gives, until they no longer move. Each call begins at
+/// the poses of the last one.
+class TimeOffsetSearch {
+ public:
+  /// @param sensors further ones, which take part @param registry must outlive this object
+  /// @param cancel as OptimizerOptions::cancel
+  TimeOffsetSearch(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
+                   const TypeRegistry& registry, const std::atomic<bool>* cancel = nullptr);
+
+  /// Nothing changes if the settings estimate no time offset.
+  /// @param settings from decided() @param placed the drive of the constructor
+  /// @throws UsageError for an unknown modeling or option; errors of the plugins; Interrupted
+  /// @returns the offset of each group (groups_of() in build.hpp); empty for one that has none
+  std::vector<std::optional<TimeOffset>> find(const FusionSettings& settings, PlacedDrive& placed);
+
+ private:
+  CoarseDrive coarse_;
+  const TypeRegistry& registry_;
+  const std::atomic<bool>* cancel_;
+};
 
 /// Returns the vertex of the time offset that a graph estimates among some vertices, if it does.
 [[nodiscard]] std::optional<VertexIndex> time_offset_vertex(const Graph& graph,

@@ -43,14 +43,13 @@ void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSetti
 std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings,
                                                 std::span<const PreparedSensor> sensors,
                                                 const TypeRegistry& registry, const std::atomic<bool>* cancel,
-                                                ModeledDrive& modeled) {
+                                                TimeOffsetSearch& delays, ModeledDrive& modeled) {
   modeled.settings = settings;
-  std::vector<std::optional<TimeOffset>> offsets =
-      assume_time_offsets(modeled.placed, sensors, settings, registry, cancel);
+  std::vector<std::optional<TimeOffset>> offsets = delays.find(settings, modeled.placed);
   if (!*settings.estimates_noise) return offsets;
   modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise, cancel);
   modeled.settings = with_noise(settings, modeled.noise);
-  return assume_time_offsets(modeled.placed, sensors, modeled.settings, registry, cancel);
+  return delays.find(modeled.settings, modeled.placed);
 }
 
 /// Leaves out the delays that the drive gives no better odds than their priors, unless they are stated.
@@ -137,9 +136,10 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   FusionSettings decision = decided(settings, registry_);
   adapt(drive_, !settings.calibration, decision, registry_);
   modeled.placed = placed(decision);
-  const auto offsets = estimate(decision, drive_.sensors, registry_, cancel_, modeled);
+  TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, cancel_);
+  const auto offsets = estimate(decision, drive_.sensors, registry_, cancel_, delays, modeled);
   if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))
-    (void)estimate(decision, drive_.sensors, registry_, cancel_, modeled);
+    (void)estimate(decision, drive_.sensors, registry_, cancel_, delays, modeled);
   if (!modeled.noise.parameters.empty())
     find_deviations(modeled.placed, drive_.sensors, decision, registry_, modeled.noise, cancel_);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
