@@ -54,10 +54,12 @@ PosteriorBounds bounds_of(const NoiseEstimate& noise) {
   return bounds;
 }
 
-/// @param begins_near whether the values of the noise are near the minimum
-void minimize(NoiseObjective& objective, bool begins_near, NoiseEstimate& noise) {
+/// @param begins_near whether the values of the noise are near the minimum @param between as for estimate_noise()
+void minimize(NoiseObjective& objective, bool begins_near, const std::function<void()>& between,
+              NoiseEstimate& noise) {
   const PosteriorBounds bounds = bounds_of(noise);
   const PosteriorCost cost{[&](const Eigen::VectorXd& at, Eigen::VectorXd* gradient) {
+                             if (between) between();
                              place_at(at, noise);
                              return gradient == nullptr ? objective.at(noise)
                                                         : objective.with_gradient(noise, *gradient);
@@ -128,7 +130,7 @@ NoiseEstimate open_parameters(const CoarseDrive& coarse, std::size_t count, bool
 
 NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                              const FusionSettings& settings, const TypeRegistry& registry,
-                             const NoiseEstimate& near) {
+                             const NoiseEstimate& near, const std::function<void()>& between) {
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
   FusionSettings known = settings;
@@ -140,7 +142,7 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const Prepared
     if (part.parameters.empty()) continue;
     NoiseObjective objective(coarse, known, registry);
     const bool begins_near = take_values(near, part);
-    minimize(objective, begins_near, part);
+    minimize(objective, begins_near, between, part);
     noise.evaluations += objective.evaluations();
     noise.parameters.insert(noise.parameters.end(), part.parameters.begin(), part.parameters.end());
     known = with_noise(std::move(known), part);

@@ -3,6 +3,7 @@
 /// (core/covariance/evidence.hpp).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,11 +50,14 @@ struct NoiseEstimate {
 /// @param sensors further ones, which take part
 /// @param settings from decided()
 /// @param near an estimate of the same parameters for slightly other settings, to begin from
+/// @param between called before every evaluation, from some tens to some hundreds of them; what it throws ends
+/// the search. Empty: nothing is called
 /// @return no parameters if none is left to estimate
 /// @throws UsageError and InputError as the odometry model and the modeling do
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                            const FusionSettings& settings, const TypeRegistry& registry,
-                                           const NoiseEstimate& near = {});
+                                           const NoiseEstimate& near = {},
+                                           const std::function<void()>& between = {});
 
 /// Returns the settings with the estimates as options of the models.
 /// Stated options are kept.

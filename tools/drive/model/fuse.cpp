@@ -42,12 +42,13 @@ void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSetti
 /// @returns what the drive says about the delay of each group; empty for those that have none
 std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings,
                                                 std::span<const PreparedSensor> sensors,
-                                                const TypeRegistry& registry, ModeledDrive& modeled) {
+                                                const TypeRegistry& registry,
+                                                const std::function<void()>& between, ModeledDrive& modeled) {
   modeled.settings = settings;
   std::vector<std::optional<TimeOffset>> offsets =
       assume_time_offsets(modeled.placed, sensors, settings, registry);
   if (!*settings.estimates_noise) return offsets;
-  modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise);
+  modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise, between);
   modeled.settings = with_noise(settings, modeled.noise);
   return assume_time_offsets(modeled.placed, sensors, modeled.settings, registry);
 }
@@ -136,9 +137,9 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   FusionSettings decision = decided(settings, registry_);
   adapt(drive_, !settings.calibration, decision, registry_);
   modeled.placed = placed(decision);
-  const auto offsets = estimate(decision, drive_.sensors, registry_, modeled);
+  const auto offsets = estimate(decision, drive_.sensors, registry_, between_, modeled);
   if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))
-    (void)estimate(decision, drive_.sensors, registry_, modeled);
+    (void)estimate(decision, drive_.sensors, registry_, between_, modeled);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);

@@ -22,6 +22,7 @@
 /// is no error; MultiStartSummary::summary.termination reports it.
 #pragma once
 
+#include <functional>
 #include <list>
 #include <map>
 #include <optional>
@@ -73,8 +74,11 @@ struct FusedDrive {
 /// share the nodes in time.
 class Fusion {
  public:
-  /// Both must outlive the object.
-  Fusion(const PreparedDrive& drive, const TypeRegistry& registry) : drive_(drive), registry_(registry) {}
+  /// Drive and registry must outlive the object.
+  /// @param between called before every evaluation of the noise search, which takes most of the time up to
+  /// the graph; what it throws ends the work. Empty: nothing is called
+  Fusion(const PreparedDrive& drive, const TypeRegistry& registry, std::function<void()> between = {})
+      : drive_(drive), registry_(registry), between_(std::move(between)) {}
 
   /// Does the steps up to the graph. @throws errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
@@ -96,6 +100,7 @@ class Fusion {
 
   const PreparedDrive& drive_;
   const TypeRegistry& registry_;
+  std::function<void()> between_;
   std::optional<Timeline> timeline_;
   std::list<std::pair<Key, PlacedDrive>> placed_;
 };
