@@ -11,8 +11,8 @@
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
-#include <waymark/tools/program/jobs/drive_job.hpp>
-#include <waymark/tools/program/jobs/drive_text.hpp>
+#include <waymark/tools/program/jobs/drive/drive_job.hpp>
+#include <waymark/tools/program/jobs/drive/drive_text.hpp>
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>

@@ -75,14 +75,14 @@ bool can_hold_out(const drive::PreparedDrive& drive, const drive::ModeledDrive& 
 std::optional<evaluation::HeldOut> hold_out(const drive::PreparedDrive& drive,
                                             const drive::ModeledDrive& modeled, const TypeRegistry& registry,
                                             const Console& console) {
-  if (!can_hold_out(drive, modeled) || interrupted) return std::nullopt;
+  if (!can_hold_out(drive, modeled) || console.cancel()) return std::nullopt;
   const drive::PreparedDrive rest = without_runs(drive);
   drive::FusionSettings settings = modeled.settings;
   settings.estimates_noise = false;
   settings.minimization.covariances = "fixes";
   console.progress("fusing again without a tenth of the fixes");
   try {
-    drive::FusedDrive fused = drive::fuse(rest, settings, registry, {.cancel = &interrupted});
+    drive::FusedDrive fused = drive::fuse(rest, settings, registry, {.cancel = &console.cancel()});
     console.end_progress();
     if (!fused.minimum.summary.converged()) return std::nullopt;
     formats::GraphDocument& document = fused.model.document;
