@@ -1,8 +1,7 @@
-#include <cstdlib>
 #include <utility>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/detail/robust_information.hpp>
+#include <waymark/core/graph/detail/dense_edge.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
 
@@ -125,28 +124,11 @@ double GaussianPriorBatch::linearize(const ValueView& view, const Scatter& scatt
   std::vector<Eigen::MatrixXd> jacobians;
   for (std::size_t i = range.first; i < range.last; ++i) {
     const Record& record = records_[i];
-    const std::uint32_t* gradient = scatter.gradient.data() + record.first_gradient;
-    const BlockTarget* block = scatter.blocks.data() + record.first_block;
     linearize_edge(i, view, e, jacobians);
-    const double squared = e.dot(record.information * e);
-    const LossValue loss = evaluate_loss(i, squared);
-    sum += loss.rho;
-    const Eigen::MatrixXd information =
-        normal.evidence_weight > 0 ? std::min(loss.weight, normal.evidence_weight) * record.information
-                                   : robust_information(loss, squared, record.information, e);
-    const Eigen::VectorXd weighted_error = loss.weight * (record.information * e);
-    for (std::size_t k = 0; k < record.vertices.size(); ++k) {
-      const Eigen::MatrixXd left = jacobians[k].transpose() * information;
-      Eigen::Map<Eigen::VectorXd>(normal.gradient + *gradient++, left.rows()) +=
-          jacobians[k].transpose() * weighted_error;
-      for (std::size_t l = 0; l <= k; ++l, ++block) {
-        const Eigen::MatrixXd product = left * jacobians[l];
-        const Eigen::MatrixXd& placed = block->stride < 0 ? Eigen::MatrixXd(product.transpose()) : product;
-        Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
-            normal.hessian + block->offset, placed.rows(), placed.cols(),
-            Eigen::OuterStride<>(std::abs(block->stride))) += placed;
-      }
-    }
+    const LossValue loss = evaluate_loss(i, e.dot(record.information * e));
+    sum += detail::add_dense_edge(e, jacobians, record.information, loss,
+                                  scatter.gradient.data() + record.first_gradient,
+                                  scatter.blocks.data() + record.first_block, normal);
   }
   return sum;
 }

@@ -3,6 +3,7 @@
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/core/*.hpp"
   "${PROJECT_SOURCE_DIR}/types_se2/*.hpp" "${PROJECT_SOURCE_DIR}/solvers/*.hpp" "${PROJECT_SOURCE_DIR}/plugins/*.hpp"
   "${PROJECT_SOURCE_DIR}/formats/*.hpp" "${PROJECT_SOURCE_DIR}/tools/*.hpp")
+list(FILTER headers EXCLUDE REGEX "^tools/python/")  # they need pybind11; the sources of the module are compiled merged
 list(TRANSFORM headers REPLACE "(.+)" "#include <waymark/\\1>\n")
 list(JOIN headers "" all_headers)
 file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/all_headers.cpp" CONTENT "${all_headers}")

@@ -1,5 +1,5 @@
 # What `cmake --install` puts where. Components: runtime (program, shared library), dev (headers, static libraries, CMake
-# and pkg-config files, plugin template), plugins (modules that are not built into the program).
+# and pkg-config files, plugin template), plugins (modules that are not built into the program), python (the package).
 include(CMakePackageConfigHelpers)
 
 set(cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/waymark")
@@ -23,6 +23,17 @@ install(TARGETS waymark_core waymark_types_se2 waymark_solvers waymark_formats w
 foreach(name ${WAYMARK_MODULE_NAMES})
   install(TARGETS waymark_module_${name} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/waymark/plugins" COMPONENT plugins)
 endforeach()
+
+# The package of Python, where Debian's looks for it below /usr.
+if(TARGET waymark_python)
+  set(WAYMARK_PYTHON_FOLDER lib/python3/dist-packages CACHE STRING "Folder of Python packages, below the prefix")
+  file(RELATIVE_PATH package_to_lib "${CMAKE_INSTALL_PREFIX}/${WAYMARK_PYTHON_FOLDER}/waymark" "${CMAKE_INSTALL_FULL_LIBDIR}")
+  set_target_properties(waymark_python PROPERTIES INSTALL_RPATH "$ORIGIN/${package_to_lib};$ORIGIN/../../lib"
+    BUILD_WITH_INSTALL_RPATH ON)  # as the program
+  install(TARGETS waymark_python LIBRARY DESTINATION "${WAYMARK_PYTHON_FOLDER}/waymark" COMPONENT python)
+  install(DIRECTORY tools/python/waymark DESTINATION "${WAYMARK_PYTHON_FOLDER}" COMPONENT python
+    FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+endif()
 
 # Headers under the spelling of the build tree, <waymark/core/graph/graph.hpp>: those of the two lists and the version.
 include(public_headers)
@@ -67,7 +78,7 @@ set(WAYMARK_DOC_FOLDER "${CMAKE_INSTALL_DATADIR}/doc/waymark-doc")
 install(DIRECTORY core types_se2 solvers formats plugins tools examples DESTINATION "${WAYMARK_DOC_FOLDER}" COMPONENT doc
   FILES_MATCHING PATTERN "*.md" PATTERN "report.png" PATTERN "setup" EXCLUDE PATTERN "detail" EXCLUDE)
 install(DIRECTORY examples/berlin_potsdamer_platz examples/drives examples/extensions examples/plugin_template examples/programs examples/live
-                  examples/tutorial DESTINATION "${WAYMARK_DOC_FOLDER}/examples" COMPONENT doc)
+                  examples/python examples/tutorial DESTINATION "${WAYMARK_DOC_FOLDER}/examples" COMPONENT doc)
 # As `systemctl enable --now waymark-live` wants it; it is off until then.
 install(FILES examples/live/waymark-live.service DESTINATION lib/systemd/system COMPONENT runtime)
 install(FILES README.md CONTRIBUTING.md DESTINATION "${WAYMARK_DOC_FOLDER}" COMPONENT doc)

@@ -1,5 +1,4 @@
 // The noise of a drive, on drives made by the very error model whose parameters are estimated.
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <random>
@@ -10,7 +9,6 @@
 #include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/estimation/noise_objective.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
-#include <waymark/tools/drive/model/interrupted.hpp>
 
 #include <waymark/types_se2/se2.hpp>
 
@@ -242,18 +240,22 @@ TEST_CASE("noise: the search ends where the caller asks for it, with nothing") {
   const PreparedDrive drive = make_drive({}, 3);
   const FusionSettings settings = complete_settings();
   const PlacedDrive placed = place_drive(drive, timeline_of(drive), settings, registry());
-  std::atomic<bool> cancel = false;
+  struct Ended {};
+  bool ends = false;
+  const auto between = [&] {
+    if (ends) throw Ended();
+  };
   const CoarseDrive coarse = coarsen(placed, {});
-  NoiseEstimate noise = estimate_noise(placed, {}, settings, registry(), {}, &cancel);
-  NoiseObjective objective(coarse, settings, registry(), &cancel);
+  NoiseEstimate noise = estimate_noise(placed, {}, settings, registry(), {}, between);
+  NoiseObjective objective(coarse, settings, registry(), between);
   Eigen::VectorXd gradient;
   (void)objective.with_gradient(noise, gradient);
-  cancel = true;
-  CHECK_THROWS_AS(objective.with_gradient(noise, gradient), Interrupted);
-  CHECK_THROWS_AS(estimate_noise(placed, {}, settings, registry(), {}, &cancel), Interrupted);
-  CHECK_THROWS_AS(find_deviations(placed, {}, settings, registry(), noise, &cancel), Interrupted);
+  ends = true;
+  CHECK_THROWS_AS(objective.with_gradient(noise, gradient), Ended);
+  CHECK_THROWS_AS(estimate_noise(placed, {}, settings, registry(), {}, between), Ended);
+  CHECK_THROWS_AS(find_deviations(placed, {}, settings, registry(), noise, between), Ended);
   FusionSettings whole;
-  CHECK_THROWS_AS(fuse(drive, whole, registry(), {.cancel = &cancel}), Interrupted);
+  CHECK_THROWS_AS(Fusion(drive, registry(), between).fuse(whole), Ended);
 }
 
 TEST_CASE("noise: a modeling without such options and fixes that leave nothing open have none") {

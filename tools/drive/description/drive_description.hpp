@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/core/drive/stamp.hpp>
 #include <waymark/core/registry/options.hpp>
+#include <waymark/tools/drive/logs/memory_log.hpp>
 #include <waymark/tools/drive/logs/odometry_parts.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
 
@@ -27,6 +29,8 @@ struct LogConfig {
   /// files that belong to the log, resolved, by key ("dbc")
   std::map<std::string, std::vector<std::string>> companions;
   std::string place;  ///< "drive.yaml:12:5: " of the entry, for messages
+  /// The log itself, which is then not read: `file` is its name for messages, and `format` means nothing.
+  std::shared_ptr<const MemoryLog> samples{};
 };
 
 /// A relative source: the logs of speed and yaw rate.

@@ -10,7 +10,6 @@
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/tools/drive/model/build.hpp>
-#include <waymark/tools/drive/model/interrupted.hpp>
 #include <waymark/types_se2/edge_gnss.hpp>
 
 namespace waymark::drive {
@@ -106,8 +105,10 @@ std::vector<std::optional<TimeOffset>> found_in(const Round& round, const Fusion
 }  // namespace
 
 TimeOffsetSearch::TimeOffsetSearch(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
-                                   const TypeRegistry& registry, const std::atomic<bool>* cancel)
-    : coarse_(coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s)), registry_(registry), cancel_(cancel) {}
+                                   const TypeRegistry& registry, const std::function<void()>& between)
+    : coarse_(coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s)),
+      registry_(registry),
+      between_(between) {}
 
 std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettings& settings,
                                                               PlacedDrive& placed) {
@@ -119,8 +120,8 @@ std::vector<std::optional<TimeOffset>> TimeOffsetSearch::find(const FusionSettin
     Round round = begin_round(coarse_, settings, registry_);
     if (!round.estimates()) return std::vector<std::optional<TimeOffset>>(round.groups.size());
     solver.build(round.graph, find_gauge(round.graph).held);
-    optimize(round.graph, solver, *algorithm, {.cancel = cancel_});
-    stop_if(cancel_);
+    optimize(round.graph, solver, *algorithm, {});
+    if (between_) between_();
     keep_poses(round.graph, coarse_.drive.start.poses);
     const double moved_s = take_offsets(round, coarse_.drive);
     if (moved_s < kSettled_s || count == kMostRounds) {

@@ -4,7 +4,7 @@
 /// offset only (EdgeGnssPositionLate). So the offset is found first, on a coarse drive.
 #pragma once
 
-#include <atomic>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,20 +36,20 @@ struct TimeOffset {
 class TimeOffsetSearch {
  public:
   /// @param sensors further ones, which take part @param registry must outlive this object
-  /// @param cancel as OptimizerOptions::cancel
+  /// @param between called between its fusions; what it throws ends the search. Empty: nothing is called
   TimeOffsetSearch(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
-                   const TypeRegistry& registry, const std::atomic<bool>* cancel = nullptr);
+                   const TypeRegistry& registry, const std::function<void()>& between = {});
 
   /// Nothing changes if the settings estimate no time offset.
   /// @param settings from decided() @param placed the drive of the constructor
-  /// @throws UsageError for an unknown modeling or option; errors of the plugins; Interrupted
+  /// @throws UsageError for an unknown modeling or option; errors of the plugins
   /// @returns the offset of each group (groups_of() in build.hpp); empty for one that has none
   std::vector<std::optional<TimeOffset>> find(const FusionSettings& settings, PlacedDrive& placed);
 
  private:
   CoarseDrive coarse_;
   const TypeRegistry& registry_;
-  const std::atomic<bool>* cancel_;
+  std::function<void()> between_;
 };
 
 /// Returns the vertex of the time offset that a graph estimates among some vertices, if it does.

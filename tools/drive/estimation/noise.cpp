@@ -98,7 +98,7 @@ void take_known(const NoiseEstimate& known, NoiseEstimate& noise) {
 
 /// Takes the minimum of a piece of a long drive, where an evaluation costs little, if it is nearer to the
 /// minimum of the whole than what is known before. The curvature of the likelihood grows with the drive.
-void begin_with_piece(const Part& part, const TypeRegistry& registry, const std::atomic<bool>* cancel,
+void begin_with_piece(const Part& part, const TypeRegistry& registry, const std::function<void()>& between,
                       NoiseObjective& whole, NoiseEstimate& noise) {
   constexpr double kPiece_s = 600;
   constexpr double kLongDrive = 3;  // pieces
@@ -107,7 +107,7 @@ void begin_with_piece(const Part& part, const TypeRegistry& registry, const std:
   if (whole_s < kLongDrive * kPiece_s) return;
   const CoarseDrive piece = middle_of(part.coarse, kPiece_s);
   NoiseEstimate found = noise;
-  NoiseObjective objective(piece, part.settings, registry, cancel);
+  NoiseObjective objective(piece, part.settings, registry, between);
   minimize(objective, found);
   if (!(whole.at(found) < whole.at(noise))) return;
   const auto prior = Eigen::MatrixXd::Identity(found.curvature.rows(), found.curvature.cols());
@@ -193,11 +193,11 @@ NoiseEstimate visit_parts(const PlacedDrive& placed, std::span<const PreparedSen
 
 NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                              const FusionSettings& settings, const TypeRegistry& registry,
-                             const NoiseEstimate& near, const std::atomic<bool>* cancel) {
+                             const NoiseEstimate& near, const std::function<void()>& between) {
   return visit_parts(placed, sensors, settings, registry, [&](Part& part) {
-    NoiseObjective objective(part.coarse, part.settings, registry, cancel);
+    NoiseObjective objective(part.coarse, part.settings, registry, between);
     take_known(near, part.noise);
-    if (part.noise.curvature.size() == 0) begin_with_piece(part, registry, cancel, objective, part.noise);
+    if (part.noise.curvature.size() == 0) begin_with_piece(part, registry, between, objective, part.noise);
     minimize(objective, part.noise);
     part.noise.evaluations = objective.evaluations();
   });
@@ -205,9 +205,9 @@ NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const Prepared
 
 void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                      const FusionSettings& settings, const TypeRegistry& registry, NoiseEstimate& noise,
-                     const std::atomic<bool>* cancel) {
+                     const std::function<void()>& between) {
   NoiseEstimate known = visit_parts(placed, sensors, settings, registry, [&](Part& part) {
-    NoiseObjective objective(part.coarse, part.settings, registry, cancel);
+    NoiseObjective objective(part.coarse, part.settings, registry, between);
     take_known(noise, part.noise);
     const PosteriorMode mode{coordinates_of(part.noise), part.noise.curvature};
     NoiseEstimate moved = part.noise;

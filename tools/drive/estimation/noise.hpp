@@ -3,7 +3,7 @@
 /// (core/covariance/evidence.hpp).
 #pragma once
 
-#include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,17 +55,18 @@ struct NoiseEstimate {
 /// @param settings from decided()
 /// @param near an estimate of the same parameters for slightly other settings, to begin from
 /// @return values without deviations; no parameters if none is left to estimate
-/// @param cancel as OptimizerOptions::cancel
-/// @throws UsageError and InputError as the odometry model and the modeling do; Interrupted
+/// @param between called before every building of a graph, some hundred times; what it throws ends the search.
+/// Empty: nothing is called
+/// @throws UsageError and InputError as the odometry model and the modeling do
 [[nodiscard]] NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                            const FusionSettings& settings, const TypeRegistry& registry,
                                            const NoiseEstimate& near = {},
-                                           const std::atomic<bool>* cancel = nullptr);
+                                           const std::function<void()>& between = {});
 
 /// Finds how well the values are known, where they stand. @param settings as of the estimate
 void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                      const FusionSettings& settings, const TypeRegistry& registry, NoiseEstimate& noise,
-                     const std::atomic<bool>* cancel = nullptr);
+                     const std::function<void()>& between = {});
 
 /// Returns the settings with the estimates as options of the models.
 /// Stated options are kept.

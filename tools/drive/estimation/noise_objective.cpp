@@ -7,7 +7,6 @@
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/tools/drive/model/build.hpp>
-#include <waymark/tools/drive/model/interrupted.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -65,15 +64,15 @@ void place_at(const Eigen::VectorXd& coordinates, NoiseEstimate& noise) {
 }
 
 NoiseObjective::NoiseObjective(const CoarseDrive& coarse, const FusionSettings& settings,
-                               const TypeRegistry& registry, const std::atomic<bool>* cancel)
+                               const TypeRegistry& registry, const std::function<void()>& between)
     : coarse_(coarse),
       settings_(settings),
       registry_(registry),
-      cancel_(cancel),
+      between_(between),
       algorithm_(registry.make_algorithm("dogleg")) {}
 
 void NoiseObjective::build(const NoiseEstimate& noise) {
-  stop_if(cancel_);
+  if (between_) between_();
   graph_ = build_graph(coarse_.drive, coarse_.sensors, with_noise(settings_, noise), registry_).graph;
   if (equations_) return;
   kept_.build(graph_, find_gauge(graph_).held);
@@ -110,7 +109,6 @@ void NoiseObjective::find_poses() {
   OptimizerOptions options;
   options.decrement_tolerance = kNearMinimum;
   options.max_iterations = 200;
-  options.cancel = cancel_;
   optimize(graph_, kept_, *algorithm_, options);
   const std::vector<double> near = graph_.values();
   if (polish()) return;

@@ -8,7 +8,7 @@
 /// minimisation, and no noise of one, so that h can be small.
 #pragma once
 
-#include <atomic>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -33,9 +33,9 @@ void place_at(const Eigen::VectorXd& coordinates, NoiseEstimate& noise);
 class NoiseObjective {
  public:
   /// All of them must outlive this object. @param settings state none of the parameters
-  /// @param cancel as OptimizerOptions::cancel: calls then throw Interrupted
+  /// @param between as for estimate_noise()
   NoiseObjective(const CoarseDrive& coarse, const FusionSettings& settings, const TypeRegistry& registry,
-                 const std::atomic<bool>* cancel = nullptr);
+                 const std::function<void()>& between = {});
 
   /// Returns L. The search for its poses begins where the objective stays: heavy tails have several
   /// minima, and L is a function of the noise alone if all searches begin at the same poses.
@@ -67,7 +67,7 @@ class NoiseObjective {
   const CoarseDrive& coarse_;
   const FusionSettings& settings_;
   const TypeRegistry& registry_;
-  const std::atomic<bool>* cancel_;
+  std::function<void()> between_;
   std::unique_ptr<Algorithm> algorithm_;
   Graph graph_;
   BlockCholesky cholesky_;

@@ -81,7 +81,21 @@ formats::Recognised recognised(const std::string& file, const std::vector<LogRea
   }
 }
 
+/// Takes a log that is in memory. Odometry may come in parts, as its columns tell.
+DriveLogs::Log take_memory_log(const LogConfig& log) {
+  LogRequest request = log.request;
+  const auto has = [&](const char* column) { return log.samples->columns.contains(column); };
+  const bool complete = has("speed") && has("yaw_rate");
+  if (request.stream == StreamKind::odometry && !complete && log.samples->columns.size() > 0)
+    request.readings = formats::odometry_channels();
+  return {read_memory_log(*log.samples, log.file, request),
+          request.time_scale,
+          log.file,
+          {{log.file, fingerprint(*log.samples)}}};
+}
+
 DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, const LogWatch& watch) {
+  if (log.samples) return take_memory_log(log);
   ChosenReader chosen = choose_reader(log, registry);
   std::vector<InputFile> inputs{{log.file, {}}};
   inputs.insert(inputs.end(), chosen.inputs.begin(), chosen.inputs.end());

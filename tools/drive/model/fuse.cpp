@@ -42,12 +42,13 @@ void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSetti
 /// @returns what the drive says about the delay of each group; empty for those that have none
 std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings,
                                                 std::span<const PreparedSensor> sensors,
-                                                const TypeRegistry& registry, const std::atomic<bool>* cancel,
+                                                const TypeRegistry& registry,
+                                                const std::function<void()>& between,
                                                 TimeOffsetSearch& delays, ModeledDrive& modeled) {
   modeled.settings = settings;
   std::vector<std::optional<TimeOffset>> offsets = delays.find(settings, modeled.placed);
   if (!*settings.estimates_noise) return offsets;
-  modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise, cancel);
+  modeled.noise = estimate_noise(modeled.placed, sensors, settings, registry, modeled.noise, between);
   modeled.settings = with_noise(settings, modeled.noise);
   return delays.find(modeled.settings, modeled.placed);
 }
@@ -136,12 +137,12 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   FusionSettings decision = decided(settings, registry_);
   adapt(drive_, !settings.calibration, decision, registry_);
   modeled.placed = placed(decision);
-  TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, cancel_);
-  const auto offsets = estimate(decision, drive_.sensors, registry_, cancel_, delays, modeled);
+  TimeOffsetSearch delays(modeled.placed, drive_.sensors, registry_, between_);
+  const auto offsets = estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
   if (leave_out_delays(offsets, !settings.calibration, settings, decision, modeled))
-    (void)estimate(decision, drive_.sensors, registry_, cancel_, delays, modeled);
+    (void)estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
   if (!modeled.noise.parameters.empty())
-    find_deviations(modeled.placed, drive_.sensors, decision, registry_, modeled.noise, cancel_);
+    find_deviations(modeled.placed, drive_.sensors, decision, registry_, modeled.noise, between_);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);
@@ -174,7 +175,7 @@ FusedDrive Fusion::fuse(const FusionSettings& settings, const MinimizationWatch&
 
 FusedDrive fuse(const PreparedDrive& drive, const FusionSettings& settings, const TypeRegistry& registry,
                 const MinimizationWatch& watch) {
-  return Fusion(drive, registry, watch.cancel).fuse(settings, watch);
+  return Fusion(drive, registry).fuse(settings, watch);
 }
 
 }  // namespace waymark::drive

@@ -22,7 +22,7 @@
 /// is no error; MultiStartSummary::summary.termination reports it.
 #pragma once
 
-#include <atomic>
+#include <functional>
 #include <list>
 #include <map>
 #include <optional>
@@ -66,7 +66,7 @@ struct FusedDrive {
 
 /// Fuses a drive.
 /// @param drive from load_drive or prepare_drive; its sensors are used
-/// @throws errors of the steps; Interrupted if the watch ends it before there is a graph
+/// @throws errors of the steps
 [[nodiscard]] FusedDrive fuse(const PreparedDrive& drive, const FusionSettings& settings,
                               const TypeRegistry& registry, const MinimizationWatch& watch = {});
 
@@ -74,11 +74,13 @@ struct FusedDrive {
 /// share the nodes in time.
 class Fusion {
  public:
-  /// All must outlive the object. @param cancel as OptimizerOptions::cancel
-  Fusion(const PreparedDrive& drive, const TypeRegistry& registry, const std::atomic<bool>* cancel = nullptr)
-      : drive_(drive), registry_(registry), cancel_(cancel) {}
+  /// Drive and registry must outlive the object.
+  /// @param between called between the steps of the searches for delay and noise, which take most of the time
+  /// up to the graph; what it throws ends the work. Empty: nothing is called
+  Fusion(const PreparedDrive& drive, const TypeRegistry& registry, std::function<void()> between = {})
+      : drive_(drive), registry_(registry), between_(std::move(between)) {}
 
-  /// Does the steps up to the graph. @throws errors of the steps; Interrupted
+  /// Does the steps up to the graph. @throws errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
   /// Does all steps. @throws errors of the steps
   [[nodiscard]] FusedDrive fuse(const FusionSettings& settings, const MinimizationWatch& watch = {});
@@ -98,7 +100,7 @@ class Fusion {
 
   const PreparedDrive& drive_;
   const TypeRegistry& registry_;
-  const std::atomic<bool>* cancel_;
+  std::function<void()> between_;
   std::optional<Timeline> timeline_;
   std::list<std::pair<Key, PlacedDrive>> placed_;
 };

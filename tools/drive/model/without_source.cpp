@@ -17,7 +17,7 @@ void leave_out_odometry(const std::string& name, PreparedDrive& drive) {
 }
 
 /// Keeps the fixes within the odometry, which may be shorter now.
-void cut_fixes(PreparedDrive& drive) {
+void keep_fixes_within(PreparedDrive& drive) {
   std::erase_if(drive.fixes, [&](const Fix& fix) {
     return fix.stamp < drive.odometry.front().stamp || fix.stamp > drive.odometry.back().stamp;
   });
@@ -44,7 +44,7 @@ PreparedDrive without_source(const PreparedDrive& drive, const SourceOfDrive& so
   PreparedDrive rest = drive;
   if (source.kind == "odometry") {
     leave_out_odometry(source.name, rest);
-    cut_fixes(rest);
+    keep_fixes_within(rest);
   } else if (source.kind == "gnss") {
     for (Fix& fix : rest.fixes) {
       if (rest.receivers[static_cast<std::size_t>(fix.source)].name != source.name) continue;

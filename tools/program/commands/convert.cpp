@@ -11,8 +11,8 @@
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
-#include <waymark/tools/program/jobs/drive_job.hpp>
-#include <waymark/tools/program/jobs/drive_text.hpp>
+#include <waymark/tools/program/jobs/drive/drive_job.hpp>
+#include <waymark/tools/program/jobs/drive/drive_text.hpp>
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
@@ -63,7 +63,7 @@ ExitCode convert_drive(const ConvertOptions& options, const drive::DriveFile& fi
     throw UsageError("convert writes one graph: name one modeling ('run' takes several)");
   const std::string& modeling = loaded.settings.front().modeling;
   require_not_read(options.output, loaded.files);
-  drive::Fusion fusion(loaded.drive, registry, &interrupted);
+  drive::Fusion fusion(loaded.drive, registry, stop_if_interrupted);
   std::set<std::string> told;
   const drive::ModeledDrive modeled = model_loaded(fusion, loaded.settings.front(), registry, console, told);
   const formats::GraphDocument& document = modeled.document;

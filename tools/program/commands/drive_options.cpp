@@ -41,16 +41,6 @@ CLI::Option* repeated(CLI::Option* option) {
   return option->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-void set_initial_guess(DriveFile& file, const std::string& way) {
-  file.settings.initial_guess.method =
-      way == "anchored" ? drive::StartMethod::anchored : drive::StartMethod::dead_reckoning;
-}
-
-void set_loss(DriveFile& file, const std::string& loss) {
-  file.settings.loss = loss;
-  file.places.of.erase("modeling.loss");
-}
-
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
@@ -93,9 +83,7 @@ void add_drive_options(CLI::App& command, DriveChoice& choice) {
       ->check(rule("must be a number of seconds, at least 0", at_least_zero));
   add_edit<int>(command, choice, "--withhold",
                 "Keep the fixes of every N-th epoch out of the graph, for evaluation",
-                [](DriveFile& file, const int& every) {
-                  for (drive::GnssConfig& source : file.description.gnss) source.withhold_every = every;
-                })
+                [](DriveFile& file, const int& every) { set_withheld(file, every); })
       ->type_name("N")
       ->check(rule("must be 0 (none) or at least 2", [](double n) { return n == 0 || n >= 2; }));
   add_edit<std::string>(

@@ -249,8 +249,21 @@ void set_calibration(const std::vector<std::string>& words, drive::FusionSetting
   }
 }
 
-drive::DriveFile read_drive_file(const std::string& path, const DriveChoice& choice) {
-  drive::DriveFile file = drive::load_drive_file(path, choice.data_folder);
+void set_initial_guess(drive::DriveFile& file, const std::string& way) {
+  file.settings.initial_guess.method =
+      way == "anchored" ? drive::StartMethod::anchored : drive::StartMethod::dead_reckoning;
+}
+
+void set_loss(drive::DriveFile& file, const std::string& loss) {
+  file.settings.loss = loss;
+  file.places.of.erase("modeling.loss");
+}
+
+void set_withheld(drive::DriveFile& file, int every) {
+  for (drive::GnssConfig& source : file.description.gnss) source.withhold_every = every;
+}
+
+drive::DriveFile edited(drive::DriveFile file, const DriveChoice& choice) {
   const auto from_s = file.description.from_s;
   const auto to_s = file.description.to_s;
   for (const DriveEdit& edit : choice.edits) edit(file);
@@ -259,6 +272,10 @@ drive::DriveFile read_drive_file(const std::string& path, const DriveChoice& cho
   if (edited && drive.from_s && drive.to_s && *drive.from_s >= *drive.to_s)
     throw UsageError(fmt::format("--from {} must be less than --to {}", *drive.from_s, *drive.to_s));
   return file;
+}
+
+drive::DriveFile read_drive_file(const std::string& path, const DriveChoice& choice) {
+  return edited(drive::load_drive_file(path, choice.data_folder), choice);
 }
 
 std::vector<drive::FusionSettings> chosen_settings(const drive::DriveFile& file, const DriveChoice& choice,

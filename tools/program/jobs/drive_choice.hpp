@@ -23,6 +23,9 @@ struct DriveChoice {
   std::vector<DriveEdit> edits;  ///< for all other choices, applied in this order
 };
 
+/// Returns the drive.yaml with the edits. @throws UsageError for an edit
+[[nodiscard]] drive::DriveFile edited(drive::DriveFile file, const DriveChoice& choice);
+
 /// Returns the edited drive.yaml. @throws InputError for the file, UsageError for an edit
 [[nodiscard]] drive::DriveFile read_drive_file(const std::string& path, const DriveChoice& choice);
 
@@ -34,6 +37,13 @@ struct DriveChoice {
 
 /// Reads "60/240". @throws UsageError
 [[nodiscard]] drive::OutagePattern parse_outage(const std::string& text);
+
+/// Sets the way to the initial guess, "anchored" or "dead_reckoning".
+void set_initial_guess(drive::DriveFile& file, const std::string& way);
+/// Sets the loss of the fixes, "LOSS:SCALE" or "none".
+void set_loss(drive::DriveFile& file, const std::string& loss);
+/// Keeps the fixes of every n-th epoch out of the graph. @param every 0 (none) or at least 2
+void set_withheld(drive::DriveFile& file, int every);
 
 /// Sets the states to estimate from "on", "off", or NAME=VALUE pairs; pairs are added to those of
 /// the settings.

@@ -1,5 +1,7 @@
 #include <waymark/tools/program/jobs/program_registry.hpp>
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -20,12 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the folder of plugins in the prefix of this program, wherever that was installed to.
+/// Returns the folder of plugins in the prefix of this installation, wherever that is: beside the library
+/// that plugins use. The program may be that of Python.
 fs::path installed_folder() {
+  Dl_info library{};
+  if (::dladdr(reinterpret_cast<const void*>(&load_plugin), &library) == 0) return WAYMARK_PLUGIN_FOLDER;
   std::error_code unknown;
-  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
-  if (unknown) return WAYMARK_PLUGIN_FOLDER;
-  return (program.parent_path() / WAYMARK_BIN_TO_PLUGINS).lexically_normal();
+  const fs::path file = fs::canonical(library.dli_fname, unknown);
+  return unknown ? fs::path(WAYMARK_PLUGIN_FOLDER) : file.parent_path() / "waymark/plugins";
 }
 
 std::vector<PluginFolder> plugin_folders() {
@@ -163,13 +167,17 @@ std::string plugin_of(const std::string& type) {
 }
 
 TypeRegistry make_registry(const CommonOptions& options, const std::vector<std::string>& plugins) {
+  return make_registry(options, plugins, Console(options));
+}
+
+TypeRegistry make_registry(const CommonOptions& options, const std::vector<std::string>& plugins,
+                           const Console& console) {
   std::vector<std::string> wanted = options.plugins;
   wanted.insert(wanted.end(), plugins.begin(), plugins.end());
   PluginSearch search = search_plugins(wanted);
   for (const PluginModule& module : search.modules) {
     if (module.asked_for && module.state == PluginModule::State::refused) throw UsageError(module.problem);
   }
-  const Console console(options);
   for (const PluginFolder& folder : search.folders) {
     if (!folder.problem.empty() && !folder.installed)
       console.warning("no plugins from " + folder.path + ": " + folder.problem);

@@ -25,6 +25,9 @@ namespace waymark::program {
 /// @throws UsageError for a module of the first kind that cannot be found or does not fit
 [[nodiscard]] TypeRegistry make_registry(const CommonOptions& options,
                                          const std::vector<std::string>& plugins = {});
+/// The same, with warnings on this console.
+[[nodiscard]] TypeRegistry make_registry(const CommonOptions& options,
+                                         const std::vector<std::string>& plugins, const Console& console);
 
 /// A folder that is searched for plugins.
 struct PluginFolder {

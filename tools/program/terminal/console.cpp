@@ -55,13 +55,31 @@ void install_signal_handlers() {
 }
 
 void stop_if_interrupted() {
-  drive::stop_if(&interrupted);
+  if (interrupted) throw Interrupted();
 }
 
 Console::Console(const CommonOptions& options)
     : options_(options), show_progress_(!options.quiet && takes_escapes(STDERR_FILENO)) {}
 
+Console::Console(const CommonOptions& options, Listener listener)
+    : options_(options), listener_(std::move(listener)), show_progress_(false) {}
+
+const std::atomic<bool>& Console::cancel() const {
+  return listener_ && listener_->cancel != nullptr ? *listener_->cancel : interrupted;
+}
+
+void Console::stop_if_cancelled() const {
+  if (listener_ && listener_->waits) listener_->waits();
+  if (cancel()) throw Interrupted();
+}
+
+bool Console::step(const std::string& work, const IterationRecord& record) const {
+  if (listener_ && listener_->step) listener_->step(work, record);
+  return listener_.has_value();
+}
+
 text::TextLook Console::look(bool to_stderr) const {
+  if (listener_) return {};
   return look_of(to_stderr ? STDERR_FILENO : STDOUT_FILENO);
 }
 
@@ -78,15 +96,17 @@ void Console::result(const std::string& text, bool to_stderr) const {
 }
 
 void Console::warning(const std::string& text) const {
+  if (heard(Listener::Kind::warning, text)) return;
   tell(text::painted("warning:", text::Tone::warning, look(true)) + " " + text);
 }
 
 void Console::note(const std::string& text) const {
+  if (heard(Listener::Kind::note, text)) return;
   tell(text::painted("note:", text::Tone::dim, look(true)) + " " + text);
 }
 
 void Console::tell(const std::string& text) const {
-  if (options_.quiet) return;
+  if (heard(Listener::Kind::detail, text) || options_.quiet) return;
   end_progress();
   std::fprintf(stderr, "%s\n", text::shown_message(text).c_str());
 }
@@ -95,7 +115,13 @@ void Console::detail(const std::string& text) const {
   if (options_.verbosity > 0) tell(text);
 }
 
+bool Console::heard(Listener::Kind kind, const std::string& text) const {
+  if (listener_ && listener_->said) listener_->said(kind, text);
+  return listener_.has_value();
+}
+
 void Console::progress(const std::string& text) const {
+  if (listener_ && listener_->progress) listener_->progress(text);
   if (!show_progress_) return;
   // The last column stays free, because a terminal may begin a new line once it is filled.
   const std::size_t columns = columns_of(STDERR_FILENO) - 1;
@@ -117,7 +143,7 @@ std::function<void(const std::string& file, std::uint64_t done, std::uint64_t si
     const Console& console) {
   return [&console, meter = ProgressMeter(), current = std::string(), before = std::uint64_t{0}](
              const std::string& file, std::uint64_t done, std::uint64_t size) mutable {
-    stop_if_interrupted();
+    console.stop_if_cancelled();
     // A log may be read more than once.
     if (file != current || done < before) meter.restart();
     current = file;

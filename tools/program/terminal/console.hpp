@@ -1,16 +1,16 @@
 /// The output of the program: results on stdout, everything else on stderr. Progress and colours
-/// appear only on a terminal.
+/// appear only on a terminal. A host of the jobs that has no terminal listens instead (Listener).
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/summary.hpp>
-#include <waymark/tools/drive/model/interrupted.hpp>
 #include <waymark/tools/program/terminal/progress.hpp>
 #include <waymark/tools/text/text_look.hpp>
 
@@ -31,13 +31,31 @@ extern std::atomic<bool> interrupted;
 void install_signal_handlers();
 
 /// Ctrl-C before there was a result to keep.
-using drive::Interrupted;
+class Interrupted : public Error {
+ public:
+  Interrupted() : Error("interrupted before there was a result") {}
+};
 /// Call it between steps other than those of the optimizer. @throws Interrupted
 void stop_if_interrupted();
+
+/// What a job says, for a host that is no terminal: the Python package. All members may be empty.
+struct Listener {
+  enum class Kind { warning, note, detail };
+  std::function<void(Kind kind, const std::string& text)> said{};
+  std::function<void(const std::string& text)> progress{};
+  /// of every optimisation; `work` is its name and may be empty
+  std::function<void(const std::string& work, const IterationRecord& record)> step{};
+  /// called between steps that are long and say nothing
+  std::function<void()> waits{};
+  /// ends the work as Ctrl-C ends that of the program
+  const std::atomic<bool>* cancel = nullptr;
+};
 
 class Console {
  public:
   explicit Console(const CommonOptions& options);
+  /// A console that prints nothing but tells a listener.
+  Console(const CommonOptions& options, Listener listener);
   /// Clears the progress line, also after an exception.
   ~Console() { end_progress(); }
   Console(const Console&) = delete;
@@ -58,6 +76,14 @@ class Console {
   /// Shows work in progress on a terminal, cut to its width. The next output overwrites it.
   void progress(const std::string& text) const;
   void end_progress() const;
+  /// Tells a listener of a step of the optimizer. Returns whether there is a listener.
+  bool step(const std::string& work, const IterationRecord& record) const;
+
+  /// Returns what ends the work: that of the listener, or Ctrl-C. The optimizer checks it before
+  /// every step.
+  [[nodiscard]] const std::atomic<bool>& cancel() const;
+  /// Call it between steps other than those of the optimizer. @throws Interrupted
+  void stop_if_cancelled() const;
 
   [[nodiscard]] bool json() const { return options_.json; }
   [[nodiscard]] int verbosity() const { return options_.verbosity; }
@@ -65,7 +91,11 @@ class Console {
   [[nodiscard]] text::TextLook look(bool to_stderr = false) const;
 
  private:
+  /// Tells the listener. Returns whether there is one.
+  bool heard(Listener::Kind kind, const std::string& text) const;
+
   CommonOptions options_;
+  std::optional<Listener> listener_;
   bool show_progress_;
   mutable bool progress_stands_ = false;
 };

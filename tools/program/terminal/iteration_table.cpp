@@ -22,6 +22,7 @@ IterationTable::IterationTable(const Console& console, std::string work)
     : console_(console), work_(std::move(work)) {}
 
 void IterationTable::add(const IterationRecord& record) {
+  if (console_.step(work_, record)) return;
   const bool first = record.iteration <= last_ || last_ == 0;
   if (first) meter_.restart();
   last_ = record.iteration;

@@ -75,14 +75,14 @@ bool can_hold_out(const drive::PreparedDrive& drive, const drive::ModeledDrive& 
 std::optional<evaluation::HeldOut> hold_out(const drive::PreparedDrive& drive,
                                             const drive::ModeledDrive& modeled, const TypeRegistry& registry,
                                             const Console& console) {
-  if (!can_hold_out(drive, modeled) || interrupted) return std::nullopt;
+  if (!can_hold_out(drive, modeled) || console.cancel()) return std::nullopt;
   const drive::PreparedDrive rest = without_runs(drive);
   drive::FusionSettings settings = modeled.settings;
   settings.estimates_noise = false;
   settings.minimization.covariances = "fixes";
   console.progress("fusing again without a tenth of the fixes");
   try {
-    drive::FusedDrive fused = drive::fuse(rest, settings, registry, {.cancel = &interrupted});
+    drive::FusedDrive fused = drive::fuse(rest, settings, registry, {.cancel = &console.cancel()});
     console.end_progress();
     if (!fused.minimum.summary.converged()) return std::nullopt;
     formats::GraphDocument& document = fused.model.document;
@@ -93,8 +93,6 @@ std::optional<evaluation::HeldOut> hold_out(const drive::PreparedDrive& drive,
     const evaluation::Evaluation evaluated = evaluate_document(document, {}, further);
     if (evaluated.withheld < kFewestJudged) return std::nullopt;
     return judged(document, evaluated);
-  } catch (const Interrupted&) {
-    return std::nullopt;
   } catch (const InputError& error) {
     console.end_progress();
     console.detail("the fixes that were kept out cannot be judged: " + std::string(error.what()));

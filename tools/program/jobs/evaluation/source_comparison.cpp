@@ -164,7 +164,7 @@ evaluation::SourceComparison compare_sources(const drive::PreparedDrive& drive, 
   for (const drive::SourceOfDrive& source : sources) {
     evaluation::SourceReport& report =
         comparison.sources.emplace_back(report_with(drive, source, modeled.document, evaluated));
-    if (!drive::can_do_without(drive, source) || interrupted) continue;
+    if (!drive::can_do_without(drive, source) || console.cancel()) continue;
     console.progress("without " + source.name);
     try {
       add_result_without(drive, source, settings, all, registry, report);

@@ -29,7 +29,8 @@ MultiStartSummary optimize_document(formats::GraphDocument& document, const driv
                                     const Minimizer& search, const std::string& work) {
   IterationTable iterations(console, work);
   const drive::MinimizationWatch watch{
-      .observer = [&](const IterationRecord& record) { iterations.add(record); }, .cancel = &interrupted};
+      .observer = [&](const IterationRecord& record) { iterations.add(record); },
+      .cancel = &console.cancel()};
   MultiStartSummary result = drive::minimize(document.graph, how, registry, watch, search);
   console.end_progress();
   for (const std::string& note : result.summary.notes) console.note(note);

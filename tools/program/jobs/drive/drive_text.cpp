@@ -1,4 +1,4 @@
-#include <waymark/tools/program/jobs/drive_text.hpp>
+#include <waymark/tools/program/jobs/drive/drive_text.hpp>
 
 #include <cmath>
 

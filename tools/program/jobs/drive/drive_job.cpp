@@ -1,4 +1,4 @@
-#include <waymark/tools/program/jobs/drive_job.hpp>
+#include <waymark/tools/program/jobs/drive/drive_job.hpp>
 
 #include <waymark/tools/drive/clocks/clock_check.hpp>
 #include <waymark/tools/drive/clocks/synchronise.hpp>
