@@ -33,6 +33,7 @@ const std::map<std::string, Rooms> kArrows = {
     {"tools/live", {"core", "types_se2", "formats", "tools/drive"}},
     {"tools/evaluation", {"core", "types_se2", "formats", "tools/text"}},
     {"tools/report", {"core", "types_se2", "formats", "tools/text", "tools/drawing", "tools/evaluation"}},
+    {"tools/fleet", {"core", "formats", "tools/text", "tools/drawing", "tools/evaluation", "tools/report"}},
     {"tools/benchmark", {"core", "types_se2", "plugins", "formats", "tools/text", "tools/drawing"}},
     {"tools/simulation", {"core", "formats", "tools/text", "tools/drive", "tools/evaluation"}},
     {"tools/inspection", {"core", "formats", "tools/text", "tools/drive"}},

@@ -78,7 +78,8 @@ ExitCode run(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(kInputError, error.path1().string() + ": " + error.code().message());
   } catch (const std::bad_alloc&) {
-    return fail(kInputError, "the input needs more memory than there is; shorten it, or use another machine");
+    return fail(kInputError,
+                std::string("the input ") + kLackOfMemory[0] + "; shorten it, or use another machine");
   } catch (const std::length_error&) {
     return fail(kInputError, "the input asks for more memory than a program can have; shorten it");
   } catch (const std::exception& error) {
@@ -86,14 +87,14 @@ ExitCode run(int argc, char** argv) {
   }
 }
 
-constexpr const char* kNoMemory = "waymark: error: there is no memory left\n";
-
 /// Without memory even an error may end here: a message is a string. What else ends here is a defect.
 [[noreturn]] void on_terminate() {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    (void)!::write(STDERR_FILENO, kNoMemory, std::strlen(kNoMemory));
+    // nothing may be put together here
+    for (const char* part : {"waymark: error: ", kLackOfMemory[1], "\n"})
+      (void)!::write(STDERR_FILENO, part, std::strlen(part));
     ::_exit(kInputError);
   } catch (...) {
     std::abort();

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# Installs the Debian packages listed in packages.txt, as far as they are missing: tools/setup/install_packages.sh [build|test|all]
-# build: what the program needs; test: what its tests need, too; all (default): everything. With sudo if you are not root.
+# Installs the Debian packages listed in packages.txt, as far as they are missing: tools/setup/install_packages.sh [build|test|all|cluster]
+# build: what the program needs; test: what its tests need, too; all (default): everything but the
+# daemons of a cluster; cluster: only those. With sudo if you are not root.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 case ${1:-all} in
   build) wanted=' build ' ;;
   test) wanted=' build test ' ;;
   all) wanted=' build test hand ' ;;
-  *) echo "usage: $0 [build|test|all]" >&2; exit 2 ;;
+  cluster) wanted=' cluster ' ;;
+  *) echo "usage: $0 [build|test|all|cluster]" >&2; exit 2 ;;
 esac
 
 missing=()

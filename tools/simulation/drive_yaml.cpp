@@ -1,5 +1,6 @@
 #include <waymark/tools/simulation/drive_yaml.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -25,6 +26,14 @@ std::string gnss_keys(const GnssRecipe& gnss, const std::string& indent) {
   if (!gnss.antenna_m.isZero(0))
     text += fmt::format("{}antenna: [{:g}, {:g}]\n", indent, gnss.antenna_m[0], gnss.antenna_m[1]);
   return text + commented(indent, "accuracy: {meaning: 95}", "epx and epy");
+}
+
+/// Returns the kinds of its roads, each once: "urban, rural".
+std::string environment(const SimulationRecipe& recipe) {
+  std::vector<std::string> kinds;
+  for (const RoadRecipe& road : recipe.roads)
+    if (std::find(kinds.begin(), kinds.end(), road.kind) == kinds.end()) kinds.push_back(road.kind);
+  return fmt::format("{}", fmt::join(kinds, ", "));
 }
 
 std::string one_of_each(const SimulationRecipe& recipe) {
@@ -85,6 +94,7 @@ std::string drive_yaml(const SimulatedDrive& drive) {
       "# explained in tools/simulation/README.md, the keys in tools/drive/README.md.\n"
       "{}"
       "name: \"{}\"\n"
+      "environment: \"{}\"\n"
       "time: {{scale: gps}}              # gpsd's log counts UTC and is converted\n"
       "\n"
       "{}"
@@ -95,7 +105,7 @@ std::string drive_yaml(const SimulatedDrive& drive) {
       "heading: "
       "heading_rad}}\n",
       recipe.name, drive.seed, recipe.has_several() ? "" : one_of_each(recipe), drive.name,
-      recipe.has_several() ? sources(recipe) : sections(recipe));
+      environment(recipe), recipe.has_several() ? sources(recipe) : sections(recipe));
 }
 
 }  // namespace waymark::simulation

@@ -67,6 +67,7 @@ TEST_CASE("drive.yaml: the least there is, and its defaults") {
 TEST_CASE("drive.yaml: everything that can be said") {
   const DriveFile config = parse(R"(
 name: Somewhere
+environment: urban
 folder: logs
 time: {scale: utc, from: 10, to: 70.5}
 frame: {utm_zone: 56S, origin: [300000, 6250000]}
@@ -91,6 +92,7 @@ initial_guess: dead_reckoning
 modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
 )");
   CHECK(config.description.name == "Somewhere");
+  CHECK(config.description.environment == "urban");
   CHECK(config.description.time_scale == TimeScale::utc);
   CHECK(*config.description.from_s == 10);
   CHECK(*config.description.to_s == 70.5);

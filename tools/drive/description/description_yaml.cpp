@@ -264,6 +264,7 @@ DriveDescription read_description(const YamlSection& top, const std::string& dat
   drive.path = top.file();
   drive.name = std::filesystem::path(drive.path).stem().string();
   top.read("name", drive.name);
+  top.read("environment", drive.environment);
   read_folder(top, data_folder, drive);
   read_time(top, drive);
   read_frame(top, drive);

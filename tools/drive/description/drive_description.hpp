@@ -83,6 +83,7 @@ struct OutagePattern {
 struct DriveDescription {
   std::string path;                      ///< of the drive.yaml, for messages; may be empty
   std::string name;                      ///< default: name of the file without ".yaml"
+  std::string environment;               ///< a word that groups drives of a fleet: urban; may be empty
   std::string folder;                    ///< the folder for relative names of logs
   std::vector<OdometryConfig> odometry;  ///< relative sources, at least one
   std::vector<GnssConfig> gnss;          ///< absolute sources; none: further sensors say where it is

@@ -77,8 +77,8 @@ bool is_plugin_file(std::string_view plugin) {
 DriveFile parse_drive_file(const std::string& text, const std::string& path, const std::string& data_folder) {
   const YamlSection top(
       load_yaml(text, path), "", path,
-      {"name", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap", "snap", "initial_guess",
-       "modeling", "calibration", "noise", "sensors", "sources", "plugins", "first_pose"});
+      {"name", "environment", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap", "snap",
+       "initial_guess", "modeling", "calibration", "noise", "sensors", "sources", "plugins", "first_pose"});
   DriveFile file;
   file.places.file = path;
   file.description = read_description(top, data_folder);

@@ -225,6 +225,7 @@ void take_odometry(std::vector<PreparedOdometry> relative, PreparedDrive& drive)
 PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& description) {
   PreparedDrive drive;
   drive.name = description.name;
+  drive.environment = description.environment;
   drive.scale = description.scale();
   drive.truth_reference_m = description.truth_reference_m;
   drive.timeline = description.timeline;

@@ -118,6 +118,7 @@ struct InputFile {
 /// A drive in its frame on its clock. Every stream is sorted by stamp.
 struct PreparedDrive {
   std::string name;
+  std::string environment{};  ///< as the drive.yaml states it
   Frame frame;
   TimeScale scale = TimeScale::gps;
   /// The samples that nodes come from: those of one relative source, and those of others while it is

@@ -43,6 +43,7 @@ Provenance provenance_of(const PreparedDrive& drive, const ModeledDrive& modeled
                          const TypeRegistry& registry) {
   const FusionSettings& settings = modeled.settings;
   Provenance provenance{{"drive", drive.name}};
+  if (!drive.environment.empty()) provenance.emplace_back("environment", drive.environment);
   for (const InputFile& input : drive.inputs)
     provenance.emplace_back("input", file_name(input.path) + " " + input.fingerprint);
   add_settings(settings, modeled.noise, provenance);

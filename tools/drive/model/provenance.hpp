@@ -13,8 +13,8 @@ namespace waymark::drive {
 /// Key of a drive whose modeling gives fixes other errors than independent ones of the covariance they claim.
 inline constexpr std::string_view kFixErrors = "fix_errors";
 
-/// Returns key and text in the order of writing: drive, input (name and fingerprint of each
-/// file), modeling, modeling_option, loss, noise, calibration, fix_errors, sensor, plugin, gate, start,
+/// Returns key and text in the order of writing: drive, environment, input (name and fingerprint of
+/// each file), modeling, modeling_option, loss, noise, calibration, fix_errors, sensor, plugin, gate, start,
 /// assumed, warning.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(const PreparedDrive& drive,
                                                                              const ModeledDrive& modeled,

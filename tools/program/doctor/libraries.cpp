@@ -19,6 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include <waymark/tools/benchmark/contestants.hpp>
+#include <waymark/tools/fleet/table/sqlite_file.hpp>
 
 namespace waymark::program {
 namespace {
@@ -69,6 +70,7 @@ std::vector<Library> built_in_libraries() {
   std::string expat = XML_ExpatVersion();  // "expat_2.5.0"
   expat.erase(0, expat.find('_') + 1);
   add("expat", expat, "MIT", "GPX logs");
+  add("SQLite", fleet::sqlite_version(), "public domain", "merged tables of fleets");
   add("fmt", numbers(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100), "MIT", "text");
   add("nlohmann-json",
       numbers(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH), "MIT",

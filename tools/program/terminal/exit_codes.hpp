@@ -32,4 +32,8 @@ inline constexpr std::array kExitCodeMeanings = {
     ExitCodeMeaning{kPluginError, "a plugin failed"},
     ExitCodeMeaning{kInterrupted, "interrupted (the best state so far is written)"}};
 
+/// The words of an error by which a run says that it lacks memory. `fleet` runs such a drive again, with
+/// more of it.
+inline constexpr std::array kLackOfMemory = {"needs more memory than there is", "there is no memory left"};
+
 }  // namespace waymark::program
