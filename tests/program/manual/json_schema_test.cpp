@@ -141,6 +141,7 @@ TEST_CASE("json: json of every subcommand is as tools/program/JSON.md documents 
       {"metrics", {"evaluate", fused}},
       {"metrics", {"run", drive, "-o", folder + "out", "--outage", "5/20", "--causal"}},
       {"metrics", {"compare", folder + "out", "-o", folder + "compared"}},
+      {"view", {"view", folder + "out"}},
       {"live", {"live", drive, "-o", "json:" + folder + "live.jsonl"}},
       {"doctor", {"doctor", drive}},
       {"bench", {"bench", square, "--repeat", "1"}},

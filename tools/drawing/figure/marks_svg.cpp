@@ -68,6 +68,22 @@ std::string band_path(const Series& series, const View& view) {
   return d;
 }
 
+/// Draws the rings of which a part is in the plot.
+std::string areas_path(const Series& series, const View& view) {
+  const PlotBox& box = view.box;
+  std::string d;
+  for (const auto& ring : thin_line(series.x, series.y, view)) {
+    const auto [left, right] =
+        std::minmax_element(ring.begin(), ring.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    const auto [top, bottom] =
+        std::minmax_element(ring.begin(), ring.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+    const bool misses = right->x < box.left || left->x > box.left + box.width || bottom->y < box.top ||
+                        top->y > box.top + box.height;
+    if (!misses && ring.size() > 2) d += polyline(ring, 'M') + "Z";
+  }
+  return d;
+}
+
 std::string spans_path(const Series& series, const View& view) {
   std::string d;
   for (std::size_t i = 0; i < series.low.size(); ++i) {
@@ -163,6 +179,8 @@ std::string_view name_of(Mark mark) {
       return "bars";
     case Mark::cells:
       return "cells";
+    case Mark::areas:
+      return "areas";
   }
   return "";
 }
@@ -185,6 +203,8 @@ std::string marks_svg(const Figure& figure, std::size_t index, const View& view)
       return bars(figure, index, view);
     case Mark::cells:
       return cells(series, index, view);
+    case Mark::areas:
+      return path(series, index, areas_path(series, view), "areas");
   }
   return "";
 }

@@ -15,6 +15,7 @@
 #include <waymark/tools/program/jobs/drive_text.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/evaluation/hold_out.hpp>
+#include <waymark/tools/program/jobs/evaluation/map_file.hpp>
 #include <waymark/tools/program/jobs/evaluation/source_comparison.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/live/window_study.hpp>
@@ -33,6 +34,7 @@ struct RunOptions {
   drive::Minimization minimization;
   std::string input;
   std::string folder;
+  std::string map;  ///< beneath the trajectory; empty: none
   bool causal = false;
   std::vector<double> windows_s;  ///< of live runs to compare with
 };
@@ -53,6 +55,7 @@ struct RunOfDrive {
   const RunOptions& options;
   const drive::DriveFile& file;
   const LoadedDrive& loaded;
+  const MapFile& map;
   const evaluation::ResultFolder folder;
   const TypeRegistry& registry;
   const Console& console;
@@ -179,6 +182,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
                     .went_in = {{"odometry", odometry_in_words(run.loaded.drive)},
                                 {"left out", left_out(run.loaded.drive)}},
                     .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)},
+                    .map = &run.map,
                     .more_sections = std::move(more_sections)},
                    run.folder, run.loaded.settings.size(), console);
   document.covariances.swap(known_covariances);
@@ -277,15 +281,22 @@ ExitCode run_drive(const RunOptions& options) {
   file.settings.minimization = options.minimization;
   const TypeRegistry registry = make_registry(options.common, file.description.plugins);
   drive::check_minimization(options.minimization, registry);
-  const LoadedDrive loaded = load_drive_for(file, options.choice, registry, console);
+  LoadedDrive loaded = load_drive_for(file, options.choice, registry, console);
+  if (!options.map.empty()) loaded.files.push_back(options.map);
   if (!options.windows_s.empty() && loaded.drive.truth.empty())
     throw UsageError("--window: the drive has no truth to compare with");
   if (options.causal && file.description.outage.length_s == 0)
     throw UsageError("--causal: there are no outages to predict; name them with --outage LENGTH/EVERY");
-  const RunOfDrive run{options, file, loaded, evaluation::ResultFolder(options.folder), registry, console};
+  // A wrong map is found before the work, if the drive has fixes that say where it is.
+  const bool has_fixes = !loaded.drive.fixes.empty();
+  MapFile map;
+  if (has_fixes) map = read_map_file(options.map, loaded.drive.frame, positions_of(loaded.drive.fixes));
+  const RunOfDrive run{options,  file,   loaded, map, evaluation::ResultFolder(options.folder),
+                       registry, console};
   require_logs_stay(run);
   stop_if_interrupted();
   std::vector<drive::ModeledDrive> models = model_all(run);
+  if (!has_fixes) map = read_map_file(options.map, loaded.drive.frame, positions_of(models.front().document));
   formats::make_folder(options.folder);
   evaluation::ReportHeader header{loaded.drive.name, {}};
   std::vector<ModelingRun> runs;
@@ -332,6 +343,10 @@ void add_run(CLI::App& app, Action& action) {
         ->check(CLI::Range(1.0, 1e5));
   }
   add_optimization_options(*command, options->minimization);
+  {
+    const OptionHeading heading(*command, "The report");
+    add_map_option(*command, options->map);
+  }
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark run drive.yaml --out results --modeling all");
   command->callback([options, &action] { action = [options] { return run_drive(*options); }; });

@@ -136,9 +136,9 @@ DriveVerdict verdict_of(const ReportedDrive& drive) {
   const double better = truth.improvement.rmse_percent;
   DriveVerdict verdict{.text = describe_trouble(drive)};
   if (truth.gnss.position.count == 0) {  // a drive without a receiver
-    verdict.text += fmt::format("Fused positions: RMSE {:.3f} m, largest error {:.3f} m, at {} epochs.",
-                                truth.fused.position.rmse_m, truth.fused.position.max_m,
-                                truth.fused.position.count);
+    verdict.text +=
+        fmt::format("Fused positions: RMSE {:.3f} m, largest error {:.3f} m, at {} epochs.",
+                    truth.fused.position.rmse_m, truth.fused.position.max_m, truth.fused.position.count);
     return verdict;
   }
   verdict.kind = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;
