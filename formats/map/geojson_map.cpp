@@ -242,12 +242,16 @@ class CountedText {
   throw InputError(fmt::format("{}:{}:{}: {}", name, line, before.size() - begin + 1, why));
 }
 
-/// Returns a message of the library without its number, and not longer than a line or two.
+/// Returns a message of the library without its number, not longer than a line or two, and with nothing
+/// that steers a terminal: it repeats the text that was read.
 std::string shortened(std::string why) {
-  constexpr std::size_t kLongest = 200;  // it repeats the text that it has read
+  constexpr std::size_t kLongest = 200;
   const std::size_t prefix = why.find(": ");
   if (prefix != std::string::npos) why.erase(0, prefix + 2);
-  return why.size() > kLongest ? why.substr(0, kLongest) + "..." : why;
+  if (why.size() > kLongest) why = why.substr(0, kLongest) + "...";
+  std::replace_if(
+      why.begin(), why.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return why;
 }
 
 }  // namespace

@@ -56,13 +56,17 @@ class PageCase(unittest.TestCase):
         self.assertEqual(self.browser.get_log("browser"), [])
 
     def part(self, name, selector):
-        """An element of the drawing that is shown."""
-        return self.figure(name).find_element(By.CSS_SELECTOR, selector)
+        """An element of the drawing that is shown. The page is not scrolled: the pointer would leave its figure."""
+        return self.shown(name).find_element(By.CSS_SELECTOR, selector)
 
-    def figure(self, name):
+    def shown(self, name):
         """The drawing of a figure that this screen shows."""
         drawings = self.browser.find_elements(By.CSS_SELECTOR, f"#{name} > svg")
-        element = next(svg for svg in drawings if svg.is_displayed())
+        return next(svg for svg in drawings if svg.is_displayed())
+
+    def figure(self, name):
+        """The same, in sight."""
+        element = self.shown(name)
         self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
         return element
 
@@ -84,7 +88,7 @@ class PageCase(unittest.TestCase):
 
     def box(self, name):
         """The plot in the drawing that is shown, px of the drawing."""
-        classes = self.figure(name).get_attribute("class").split()
+        classes = self.shown(name).get_attribute("class").split()
         return next(drawn["box"] for screen, drawn in self.data(name)["drawings"].items() if screen in classes)
 
     def scale(self, name):

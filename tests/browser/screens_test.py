@@ -53,11 +53,11 @@ class Screens(PageCase):
         run("run", bundled / "drive.yaml", "-o", cls.folder / "true", "-m", "g2")
         write_map(cls.folder / "true/g2.epochs.csv", cls.folder / "town.geojson")
         without_truth(bundled, cls.folder / "drive")
-        for modeling in ("g2", "correlated"):
+        for modeling in ("g1", "correlated"):
             run("run", cls.folder / "drive/drive.yaml", "-o", cls.folder / modeling, "-m", modeling,
-                "--map", cls.folder / "town.geojson")
-        run("compare", cls.folder / "true", cls.folder / "g2", "-o", cls.folder / "compared")
-        cls.all_pages = ("true/report.html", "g2/report.html", "correlated/report.html", "compared/comparison.html")
+                "--map", cls.folder / "town.geojson", "--no-gate")
+        run("compare", cls.folder / "true", cls.folder / "g1", "-o", cls.folder / "compared")
+        cls.all_pages = ("true/report.html", "g1/report.html", "correlated/report.html", "compared/comparison.html")
 
     # Any screen.
 
@@ -67,7 +67,7 @@ class Screens(PageCase):
             for page in self.all_pages:
                 with self.subTest(page=page, width=width):
                     self.open(page)
-                    self.assertEqual(self.browser.execute_script("return document.documentElement.scrollWidth"), width)
+                    self.assertLessEqual(self.browser.execute_script("return document.documentElement.scrollWidth"), width)
                     pushed = self.browser.execute_script(
                         "return [...document.querySelectorAll('body *')].filter((e) => e.scrollWidth > e.clientWidth + 1 &&"
                         " ['auto', 'scroll'].includes(getComputedStyle(e).overflowX) && !e.querySelector('table'))"
@@ -153,9 +153,9 @@ class Screens(PageCase):
         self.fail(f"no tab leads to {wanted}")
 
     def test_every_control_is_reached_by_tabs(self):
-        self.open("g2/report.html")
+        self.open("g1/report.html")
         wanted = self.browser.execute_script(
-            "return [...document.querySelectorAll('a[href], button, select, summary, abbr, figure > svg, .entry, .scroll')]"
+            "return [...document.querySelectorAll('a[href], button, select, summary, abbr, figure > svg[role=group], .entry, .scroll')]"
             ".filter((e) => e.getBoundingClientRect().width > 0 && e.closest('details:not([open]) > :not(summary)') === null)"
             ".map((e, i) => { e.dataset.wanted = i; return i; })")
         reached = set()
@@ -218,7 +218,7 @@ class Screens(PageCase):
     # Without truth.
 
     def test_without_truth_the_verdict_predicts_fixes_and_judges_sigmas(self):
-        for modeling in ("g2", "correlated"):
+        for modeling in ("g1", "correlated"):
             self.open(f"{modeling}/report.html")
             verdict = self.browser.find_element(By.CLASS_NAME, "verdict").text
             self.assertRegex(verdict, r"A second fusion predicts \d+ fixes")
@@ -229,7 +229,7 @@ class Screens(PageCase):
                 self.assertTrue(self.figure(figure).is_displayed())
             held = [r for r in self.rows(f"{modeling}/report.html", "fix-residuals") if r["series"] == "kept out"]
             self.assertGreaterEqual(len(held), 10)
-        self.open("g2/report.html")
+        self.open("g1/report.html")
         self.assertRegex(self.browser.find_element(By.CLASS_NAME, "verdict").text, r"The mean NIS is [\d.]+, and 2 is right")
         self.assertTrue(self.figure("nis").is_displayed())
         self.open("correlated/report.html")
@@ -262,13 +262,13 @@ class Screens(PageCase):
     # The map.
 
     def test_a_map_lies_beneath_the_trajectory_and_moves_with_it(self):
-        self.open("g2/report.html")
+        self.open("g1/report.html")
         self.assertEqual(self.browser.execute_script("return performance.getEntriesByType('resource').length"), 0)
         names = [series["name"] for series in self.data("trajectory")["series"]]
         self.assertEqual(names[:2], ["buildings", "roads"])
         self.assertLess(names.index("roads"), names.index("raw GNSS"))
         self.assertGreater(names.index("fused"), names.index("raw GNSS"))
-        road = [r for r in self.rows("g2/report.html", "trajectory") if r["series"] == "roads"]
+        road = [r for r in self.rows("g1/report.html", "trajectory") if r["series"] == "roads"]
         self.assertGreater(len(road), 50)
         self.wake("trajectory")
         for _ in range(2):
@@ -306,7 +306,7 @@ class Screens(PageCase):
         self.assertIsNotNone(self.part("trajectory", ".marks .line.look-third").get_attribute("d"))
 
     def test_the_trajectory_is_coloured_by_the_quality_of_the_fixes(self):
-        self.open("g2/report.html")
+        self.open("g1/report.html")
         self.wake("trajectory")
         select = self.browser.find_element(By.CSS_SELECTOR, "#trajectory select.colour-by")
         select.send_keys("colour: fix quality")

@@ -93,6 +93,7 @@ TEST_CASE("geojson map: a refusal has a place and a remedy") {
   };
   refused("", "m.geojson:1:1: is no JSON");
   refused("{\"type\": \"Feature\",\n \"geometry\": }", "m.geojson:2:14: is no JSON");
+  refused("{\"a\x7f\n", "?");  // nothing that steers a terminal
   refused("[1, 2]", "neither roads nor buildings (0 features)");
   refused(collection({feature("{}", "Point", "[13, 52]")}), "neither roads nor buildings (1 features)");
   refused("\n" + feature("{}", "LineString", "[[390000, 5800000], [390001, 5800000]]"),

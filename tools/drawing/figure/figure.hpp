@@ -106,6 +106,7 @@ struct Figure {
   std::optional<Places> places{};  ///< of a map
   int width = 880;                 ///< px, with axes and legend
   int height = 300;                ///< px
+  double grain = 1;                ///< px; smaller details of lines and markers are not drawn
 };
 
 /// Returns "position error [m]", or "share" without a unit.

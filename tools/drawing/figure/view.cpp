@@ -197,6 +197,7 @@ View full_view(const Figure& figure, int rows_of_legend) {
   view.logarithmic_x = figure.x.logarithmic;
   view.logarithmic_y = figure.y.logarithmic;
   view.downwards = figure.downwards || !figure.y.categories.empty();
+  view.grain = figure.grain;
   view.x = range_x(figure);
   view.y = range_y(figure);
   const double top = kMarginTop + kLegendRow * rows_of_legend;

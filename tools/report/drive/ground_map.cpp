@@ -8,8 +8,7 @@ namespace waymark::report {
 namespace {
 
 constexpr double kFinest_m = 0.25;
-constexpr double kCoarsest_m = 1024;
-constexpr double kCoarseBuildings_m = 16;
+constexpr double kCoarsest_m = 16;
 
 struct Cell {
   std::int64_t x = 0;
@@ -36,27 +35,36 @@ std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& line, d
   return kept;
 }
 
-/// Returns how far a line goes from where it begins.
-double extent_of(const std::vector<Eigen::Vector2d>& line) {
-  double extent = 0;
-  for (const Eigen::Vector2d& point : line) extent = std::max(extent, (point - line.front()).norm());
-  return extent;
+/// A way as it is drawn.
+struct DrawnWay {
+  bool is_road = false;
+  double extent_m = 0;  ///< how far it goes from where it begins
+  std::vector<Eigen::Vector2d> points;
+};
+
+/// Thins lines and adds those that are still something to see. Returns their points, with one between lines.
+std::size_t add_thinned(const std::vector<std::vector<Eigen::Vector2d>>& lines, double apart, bool is_road,
+                        std::vector<DrawnWay>& ways) {
+  std::size_t count = 0;
+  for (const auto& line : lines) {
+    DrawnWay way{.is_road = is_road, .points = thinned(line, apart)};
+    if (way.points.size() < (is_road ? 2U : 4U)) continue;
+    for (const Eigen::Vector2d& point : way.points)
+      way.extent_m = std::max(way.extent_m, (point - way.points.front()).norm());
+    count += way.points.size() + 1;
+    ways.push_back(std::move(way));
+  }
+  return count;
 }
 
-std::size_t add_lines(const std::vector<std::vector<Eigen::Vector2d>>& lines, double apart,
-                      std::size_t fewest, drawing::Series& series) {
+void append_way(const DrawnWay& way, drawing::Series& series) {
   constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& line : lines) {
-    const std::vector<Eigen::Vector2d> kept = thinned(line, apart);
-    if (kept.size() < fewest || (apart > kFinest_m && extent_of(line) < 4 * apart)) continue;
-    for (const Eigen::Vector2d& point : kept) {
-      series.x.push_back(point.x());
-      series.y.push_back(point.y());
-    }
-    series.x.push_back(kBreak);
-    series.y.push_back(kBreak);
+  for (const Eigen::Vector2d& point : way.points) {
+    series.x.push_back(point.x());
+    series.y.push_back(point.y());
   }
-  return series.x.size();
+  series.x.push_back(kBreak);
+  series.y.push_back(kBreak);
 }
 
 }  // namespace
@@ -107,19 +115,26 @@ void GroundMap::add_building(const Line& ring) {
 }
 
 std::vector<drawing::Series> GroundMap::series() const {
-  for (double apart = kFinest_m;; apart *= 2) {
-    drawing::Series roads{.name = "roads", .mark = drawing::Mark::line, .look = drawing::Look::road};
-    drawing::Series buildings{
-        .name = "buildings", .mark = drawing::Mark::areas, .look = drawing::Look::building};
-    roads.in_view = buildings.in_view = false;
-    std::size_t count = add_lines(roads_, apart, 2, roads);
-    if (apart < kCoarseBuildings_m) count += add_lines(buildings_, apart, 4, buildings);
-    if (count > kMostPoints && apart < kCoarsest_m) continue;
-    std::vector<drawing::Series> all;
-    if (!buildings.x.empty()) all.push_back(std::move(buildings));
-    if (!roads.x.empty()) all.push_back(std::move(roads));
-    return all;
+  std::vector<DrawnWay> ways;
+  for (double apart = kFinest_m; apart <= kCoarsest_m; apart *= 2) {
+    ways.clear();
+    const std::size_t roads = add_thinned(roads_, apart, true, ways);
+    if (roads + add_thinned(buildings_, apart, false, ways) <= kMostPoints) break;
   }
+  std::stable_sort(ways.begin(), ways.end(),
+                   [](const DrawnWay& a, const DrawnWay& b) { return a.extent_m > b.extent_m; });
+  drawing::Series roads{.name = "roads", .mark = drawing::Mark::line, .look = drawing::Look::road};
+  drawing::Series buildings{
+      .name = "buildings", .mark = drawing::Mark::areas, .look = drawing::Look::building};
+  roads.in_view = buildings.in_view = false;
+  for (const DrawnWay& way : ways) {
+    if (roads.x.size() + buildings.x.size() + way.points.size() + 1 > kMostPoints) break;
+    append_way(way, way.is_road ? roads : buildings);
+  }
+  std::vector<drawing::Series> all;
+  if (!buildings.x.empty()) all.push_back(std::move(buildings));
+  if (!roads.x.empty()) all.push_back(std::move(roads));
+  return all;
 }
 
 }  // namespace waymark::report

@@ -30,9 +30,9 @@ class GroundMap {
   void add_building(const std::vector<Eigen::Vector2d>& ring);
   [[nodiscard]] bool empty() const { return roads_.empty() && buildings_.empty(); }
 
-  /// Returns the ways as series "roads" and "buildings" of a map, buildings first. Points less than a tolerance from
-  /// the last one are left out; the tolerance is doubled from 0.25 m until at most kMostPoints remain.
-  /// Ways that are small for the tolerance are left out then, and from 16 m on all buildings.
+  /// Returns the ways as series "roads" and "buildings" of a map, buildings first. Points less than
+  /// a tolerance from the last one are left out; the tolerance is doubled from 0.25 m up to 16 m until
+  /// at most kMostPoints remain. If there are still more, the largest ways are kept.
   [[nodiscard]] std::vector<drawing::Series> series() const;
 
  private:

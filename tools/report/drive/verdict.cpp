@@ -105,6 +105,8 @@ DriveVerdict verdict_without_truth(const ReportedDrive& drive) {
   if (nis.count > 0 && std::isfinite(nis.mean)) {
     verdict.text += " The mean NIS is " + describe_nis(nis) + ".";
     verdict.kind = kind_of(nis);
+  } else if (drive.evaluation.held_out) {
+    verdict.text += " The errors of the fixes are taken as lasting, so their NIS has no meaning.";
   }
   verdict.text += describe_sigma(drive);
   return verdict;

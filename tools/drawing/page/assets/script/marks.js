@@ -81,7 +81,7 @@ class Marks {
   }
   markersPath(series) {
     const [begin, end] = this.inView(series);
-    const side = this.plot.drag ? 5 : 1.5;
+    const side = this.plot.drag ? 5 : 2.5;
     const taken = new Set();
     const parts = [];
     for (let i = begin; i < end; i += 1) {
