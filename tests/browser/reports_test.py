@@ -4,56 +4,26 @@ Usage: reports_test.py PROGRAM SOURCE_FOLDER   (ctest calls it)
 """
 
 import csv
+import itertools
 import json
 import math
 import os
 import pathlib
 import re
-import subprocess
-import sys
 import tempfile
-import unittest
 
-try:
-    from selenium import webdriver
-    from selenium.common.exceptions import WebDriverException
-    from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.common.keys import Keys
-    from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
-    from selenium.webdriver.chrome.service import Service
-except ImportError:
-    print("SKIPPED: python3-selenium is not installed")
-    sys.exit(0)
+from page_case import ActionChains, By, Keys, PageCase, main, run
 
-CHROMIUM = pathlib.Path("/usr/bin/chromium")
-CHROMEDRIVER = pathlib.Path("/usr/bin/chromedriver")
 POSES_OF_LONG_DRIVE = 104949
 
 
-def start_browser():
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(CHROMIUM)
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                     "--window-size=1100,1000"):
-        options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service(str(CHROMEDRIVER)), options=options)
-
-
-def run(*arguments):
-    done = subprocess.run([PROGRAM, *map(str, arguments), "--quiet"], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise RuntimeError(f"waymark {arguments}: {done.returncode}: {done.stderr}")
-
-
-class Pages(unittest.TestCase):
+class Pages(PageCase):
     """What the program writes, opened once for all cases."""
 
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="waymark_pages_"))
-        bundled = SOURCE / "examples/berlin_potsdamer_platz/drive.yaml"
+        bundled = cls.source / "examples/berlin_potsdamer_platz/drive.yaml"
         run("run", bundled, "-o", cls.folder / "gated", "-m", "g2")
         run("run", bundled, "-o", cls.folder / "all", "-m", "g1,correlated")
         run("simulate", "--preset", "paper-8", "-o", cls.folder / "simulated")
@@ -66,76 +36,6 @@ class Pages(unittest.TestCase):
         run("reproduce", bundled, "-o", cls.folder / "reproduced")
         run("reproduce", bundled, "--ablation", "-o", cls.folder / "ablation")
         cls.pages = sorted(cls.folder.rglob("*.html"))
-        cls.browser = BROWSER
-        cls.browser.set_script_timeout(60)
-
-    # What the cases are made of.
-
-    def open(self, page):
-        self.browser.get((self.folder / page).as_uri())
-        self.assertEqual(self.browser.get_log("browser"), [])
-
-    def figure(self, name):
-        element = self.browser.find_element(By.ID, name).find_element(By.TAG_NAME, "svg")
-        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
-        return element
-
-    def settle(self):
-        """Two pictures later all drawing is done."""
-        self.browser.execute_async_script(
-            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done));")
-
-    def view(self, name):
-        """Low and high of x and y."""
-        self.settle()
-        return [float(v) for v in self.browser.find_element(By.ID, name).get_attribute("data-view").split()]
-
-    def data(self, name):
-        text = self.browser.execute_script("return document.getElementById('page-data').textContent")
-        return json.loads(text)["figures"][name]
-
-    def scale(self, name):
-        """CSS px per px of the drawing."""
-        return self.browser.execute_script(
-            "const s = arguments[0]; return s.getBoundingClientRect().width / s.viewBox.baseVal.width", self.figure(name))
-
-    def move_to(self, name, x, y):
-        """The pointer to a place of the drawing, px."""
-        svg = self.figure(name)
-        size, scale = svg.size, self.scale(name)
-        return ActionChains(self.browser, duration=0).move_to_element_with_offset(
-            svg, round(x * scale - size["width"] / 2), round(y * scale - size["height"] / 2))
-
-    def wheel(self, name, x, y, turn):
-        svg = self.figure(name)
-        size, scale = svg.size, self.scale(name)
-        origin = ScrollOrigin.from_element(svg, round(x * scale - size["width"] / 2),
-                                           round(y * scale - size["height"] / 2))
-        ActionChains(self.browser).scroll_from_origin(origin, 0, turn).perform()
-        self.settle()
-
-    def middle(self, name):
-        left, top, width, height = self.data(name)["box"]
-        return left + width / 2, top + height / 2
-
-    def place(self, name, x, y):
-        """Of a point of the data in the drawing, for linear axes."""
-        left, top, width, height = self.data(name)["box"]
-        low_x, high_x, low_y, high_y = self.view(name)
-        return (left + width * (x - low_x) / (high_x - low_x), top + height * (1 - (y - low_y) / (high_y - low_y)))
-
-    def rows(self, page, figure):
-        path = (self.folder / page).parent / "figures" / f"{pathlib.Path(page).stem}-{figure}.csv"
-        with path.open(encoding="utf-8") as file:
-            return list(csv.DictReader(file))
-
-    def tip(self, name):
-        return self.browser.find_element(By.ID, name).find_element(By.CLASS_NAME, "tip").text
-
-    def wake(self, name):
-        """Draws once by the script, so that data-view tells the view at rest."""
-        self.figure(name).send_keys("0")
-        return self.view(name)
 
     # The cases.
 
@@ -216,7 +116,7 @@ class Pages(unittest.TestCase):
     def test_ellipses_appear_when_the_map_is_zoomed_in(self):
         self.open("gated/report.html")
         self.wake("trajectory")
-        ellipses = self.browser.find_element(By.CSS_SELECTOR, "#trajectory path.ellipses")
+        ellipses = self.part("trajectory", "path.ellipses")
         fused = [r for r in self.rows("gated/report.html", "trajectory") if r["series"] == "fused"]
         for _ in range(12):
             middle = fused[len(fused) // 2]
@@ -226,7 +126,7 @@ class Pages(unittest.TestCase):
                 break
         radii = [float(r) for r in re.findall(r"a([\d.]+) ", ellipses.get_attribute("d"))]
         low, high = self.view("trajectory")[:2]
-        per_metre = self.data("trajectory")["box"][2] / (high - low)
+        per_metre = self.box("trajectory")[2] / (high - low)
         with (self.folder / "gated/g2.epochs.csv").open(encoding="utf-8") as file:
             sigmas = [math.sqrt(float(r["covariance_xx_m2"]) + float(r["covariance_yy_m2"])) for r in csv.DictReader(file)]
         self.assertGreater(len(radii), 0)
@@ -237,7 +137,7 @@ class Pages(unittest.TestCase):
         self.wake("trajectory")
         svg = self.figure("trajectory")
         self.browser.execute_script("scrollBy(0, arguments[0].getBoundingClientRect().bottom - innerHeight)", svg)
-        left, top, width, height = self.data("trajectory")["box"]
+        left, top, width, height = self.box("trajectory")
         for x, y in ((left + 4, top + height - 4), (left + width - 4, top + height - 4), (left + width / 2, top + height - 2)):
             box = self.browser.execute_script(
                 "const [x, y] = [arguments[1], arguments[2]]; const s = arguments[0];"
@@ -267,16 +167,16 @@ class Pages(unittest.TestCase):
         x, y = self.middle("error-position")
         self.move_to("error-position", x, y).perform()
         low, high = self.view("error-position")[:2]
-        left, _, width, _ = self.data("error-position")["box"]
+        left, _, width, _ = self.box("error-position")
         time = low + (high - low) * (x - left) / width
         nearest = min(fused, key=lambda r: abs(float(r["time [s]"]) - time))
         expected = self.place("trajectory", float(nearest["east [m]"]), float(nearest["north [m]"]))
-        ring = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .cursor circle.look-fused")
+        ring = self.part("trajectory", ".cursor circle.look-fused")
         self.assertAlmostEqual(float(ring.get_attribute("cx")), expected[0], delta=1.5)
         self.assertAlmostEqual(float(ring.get_attribute("cy")), expected[1], delta=1.5)
         for other in ("error-along", "speed"):
-            line = self.browser.find_element(By.CSS_SELECTOR, f"#{other} .cursor path").get_attribute("d")
-            other_left, _, other_width, _ = self.data(other)["box"]
+            line = self.part(other, ".cursor path").get_attribute("d")
+            other_left, _, other_width, _ = self.box(other)
             at = low + (high - low) * (float(re.match(r"M([\d.]+)", line)[1]) - other_left) / other_width
             self.assertAlmostEqual(at, time, delta=1.5 * (high - low) / width)
 
@@ -284,7 +184,7 @@ class Pages(unittest.TestCase):
         self.open("gated/report.html")
         before = self.wake("trajectory")
         x, y = self.middle("trajectory")
-        drawn = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .marks .line.look-fused")
+        drawn = self.part("trajectory", ".marks .line.look-fused")
         path = drawn.get_attribute("d")
         self.move_to("trajectory", x + 100, y).click().perform()
         self.wheel("trajectory", x + 100, y, -400)
@@ -305,7 +205,8 @@ class Pages(unittest.TestCase):
         """Both choose them by the same rule, in two languages (tools/drawing/README.md)."""
         ticks = ("return [...document.getElementById(arguments[0]).querySelectorAll('.tick-x, .tick-y')]"
                  ".map((tick) => [tick.textContent, tick.getAttribute('x'), tick.getAttribute('y')])")
-        for page in ("gated/report.html", "compared/comparison.html"):
+        for width, page in itertools.product((1100, 400, 1400), ("gated/report.html", "compared/comparison.html")):
+            self.screen(width, 900, mobile=width < 600)
             self.open(page)
             text = self.browser.execute_script("return document.getElementById('page-data').textContent")
             for name, figure in json.loads(text)["figures"].items():
@@ -325,11 +226,11 @@ class Pages(unittest.TestCase):
         for keys in ("", "++++", "---------"):
             self.figure("trajectory").send_keys(keys)
             low, high = self.view("trajectory")[:2]
-            bar = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .scale-bar").get_attribute("d")
-            text = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .scale-text").text
+            bar = self.part("trajectory", ".scale-bar").get_attribute("d")
+            text = self.part("trajectory", ".scale-text").text
             metres = float(text.split()[0]) * (1000 if text.endswith("km") else 1)
             pixels = float(re.search(r"h([\d.]+)", bar)[1])
-            width = self.data("trajectory")["box"][2]
+            width = self.box("trajectory")[2]
             self.assertAlmostEqual(metres, pixels * (high - low) / width, delta=0.01 * metres)
 
     def test_dragging_moves_by_what_was_dragged_and_takes_linked_figures_along(self):
@@ -338,7 +239,7 @@ class Pages(unittest.TestCase):
         x, y = self.middle("error-position")
         self.move_to("error-position", x, y).click_and_hold().move_by_offset(-120, 0).release().perform()
         moved = self.view("error-position")[0] - low
-        width = self.data("error-position")["box"][2]
+        width = self.box("error-position")[2]
         self.assertAlmostEqual(moved, 120 / self.scale("error-position") * (high - low) / width,
                                delta=2 * (high - low) / width)
         for other in ("error-along", "error-across", "speed"):
@@ -351,7 +252,7 @@ class Pages(unittest.TestCase):
         self.open("gated/report.html")
         entry = self.figure("error-position").find_element(By.CSS_SELECTOR, ".entry[data-series]")
         index = entry.get_attribute("data-series")
-        mark = self.browser.find_element(By.CSS_SELECTOR, f"#error-position .marks [data-series='{index}']")
+        mark = self.part("error-position", f".marks [data-series='{index}']")
         entry.click()
         self.settle()
         self.assertFalse(mark.is_displayed())
@@ -389,7 +290,7 @@ class Pages(unittest.TestCase):
                 break
             x, y = self.place("trajectory", *piece[62])
             self.wheel("trajectory", x, y, -500)
-        path = self.browser.find_element(By.CSS_SELECTOR, "#trajectory .marks .line.look-fused").get_attribute("d")
+        path = self.part("trajectory", ".marks .line.look-fused").get_attribute("d")
         drawn = [tuple(map(float, pair.split())) for pair in re.findall(r"[ML]([-\d. ]+)", path)]
         view = self.view("trajectory")
         inside = [p for p in piece if view[0] < p[0] < view[1] and view[2] < p[1] < view[3]]
@@ -417,11 +318,6 @@ class Pages(unittest.TestCase):
                 self.assertTrue(any(path.get_attribute("d") for path in drawn), figure.get_attribute("id"))
         finally:
             self.browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
-
-    def narrow(self, width=400, height=800):
-        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                                     {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": True})
-        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
 
     def test_a_narrow_screen_shows_the_rmse_first_and_letters_that_can_be_read(self):
         self.narrow()
@@ -460,10 +356,8 @@ class Pages(unittest.TestCase):
         if not os.environ.get("WAYMARK_AXE"):
             self.skipTest("WAYMARK_AXE names no axe.min.js")
         script = pathlib.Path(os.environ["WAYMARK_AXE"]).read_text(encoding="utf-8")
-        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.setEmulatedMedia", {"features": []})
         for scheme in ("light", "dark"):
-            self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
-                                         {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+            self.scheme(scheme)
             for page in ("gated/report.html", "all/report.html", "all/correlated.html", "compared/comparison.html"):
                 self.open(page)
                 self.browser.execute_script(script)
@@ -487,15 +381,4 @@ class Pages(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not CHROMIUM.exists() or not CHROMEDRIVER.exists():
-        print("SKIPPED: chromium and chromium-driver are not installed")
-        sys.exit(0)
-    PROGRAM = sys.argv[1]
-    SOURCE = pathlib.Path(sys.argv[2])
-    try:
-        BROWSER = start_browser()
-    except WebDriverException as error:  # a container may forbid what a browser needs
-        print("SKIPPED: Chromium does not start here:", error.msg.splitlines()[0])
-        sys.exit(0)
-    with BROWSER:
-        unittest.main(argv=sys.argv[:1], verbosity=2)
+    main()

@@ -67,6 +67,12 @@ MADE = {
             b"time,latitude,longitude,height,accuracy,course,speed,valid\n1.5,48.1,11.5,500,3.5,90,4.5,1\n" * 2,
             b"time;speed;yaw_rate\n1.5;4.25;0.01\n\"1.6\";4.5;-0.02\n",
             b"2024-05-06T07:08:09.5Z,481234567,111234567,500000,3500\n" * 3],
+    "geojson_map": [b'{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"highway":"path"},'
+                    b'"geometry":{"type":"LineString","coordinates":[[13.1,52.1],[13.2,52.2,40]]}},{"type":"Feature",'
+                    b'"geometry":{"type":"Polygon","coordinates":[[[13,52],[13.1,52],[13,52.1],[13,52]]]},'
+                    b'"properties":null}]}',
+                    b'{"type":"GeometryCollection","geometries":[{"coordinates":[[[1,2],[3,4]]],'
+                    b'"type":"MultiLineString"}]}'],
     "gpx": [b'<?xml version="1.0"?><gpx version="1.1" creator="x"><trk><trkseg><trkpt lat="48.1" lon="11.5">'
             b"<ele>500</ele><time>2024-05-06T07:08:09Z</time><fix>3d</fix><hdop>1.2</hdop><speed>3</speed>"
             b"<course>90</course></trkpt></trkseg></trk></gpx>"],
@@ -82,6 +88,7 @@ HEADS = {
     "vbo": [bytes([s | 4, 8, w, 0]) for s in (0, 1) for w in (0, 4)],
     "candump": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(4) for v in (0, 3)],
     "dbc": [bytes([s | 4, 8, 0, 0]) for s in range(2)],
+    "geojson_map": [b""],
     "ubx": [bytes([s | v << 5 | r | 4, 8 | 32, 2, 0]) for s in (0, 1) for v in (0, 1) for r in (0, 16)],
     "log_file": [bytes([0, 0, 0]), bytes([1, 0, 0]), bytes([3, 128, 0]), bytes([5, 0, 100]), bytes([9, 0, 0]), bytes([17, 0, 0]), bytes([11, 99, 0]),
                  bytes([21, 0, 120])],

@@ -14,7 +14,7 @@ fi
 work=build/fuzz/work
 mkdir -p "$work"
 tests/fuzz/make_seeds.py "$shared" "$work/seeds"
-[ $# -gt 0 ] || set -- csv gpsd_json candump asc trc nmea rtklib_pos kitti_oxts gpx novatel ubx gnss_logger vbo dbc log_file
+[ $# -gt 0 ] || set -- csv gpsd_json candump asc trc nmea rtklib_pos kitti_oxts gpx novatel ubx gnss_logger vbo dbc log_file geojson_map
 
 found=0
 printf '%-12s %10s %8s %8s %9s %8s\n' target runs seconds corpus coverage findings

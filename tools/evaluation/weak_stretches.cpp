@@ -170,7 +170,7 @@ std::vector<WeakStretch> weak_stretches(std::span<const EpochResult> epochs, boo
   for (const std::size_t peak : order) {
     if (stretches.size() == most || !(values[peak].value >= least)) break;
     if (taken[peak]) continue;
-    const double floor = kPart * values[peak].value;
+    const double floor = std::max(kPart * values[peak].value, least);
     const auto goes_on = [&](std::size_t from, std::size_t to) {
       return !taken[to] && values[to].value > floor &&
              std::abs(seconds_between(epochs[values[from].epoch].stamp, epochs[values[to].epoch].stamp)) <=

@@ -22,8 +22,8 @@ struct WeakStretch {
 };
 
 /// Returns the worst stretches, worst first. A stretch reaches from its peak to both sides as far
-/// as the value stays above the half of the peak, epochs follow each other within 10 s, and no
-/// worse stretch begins. Peaks below 1.2 medians of all epochs are no stretches. O(n log n).
+/// as the value stays above the half of the peak and above 1.2 medians of all epochs, epochs follow
+/// each other within 10 s, and no worse stretch begins. O(n log n).
 /// @param epochs in order of time
 /// @param against_truth errors against truth, or else the stated sigmas
 [[nodiscard]] std::vector<WeakStretch> weak_stretches(std::span<const EpochResult> epochs, bool against_truth,

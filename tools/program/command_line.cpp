@@ -45,6 +45,7 @@ void build_command_line(CLI::App& app, Action& action) {
   add_optimize(app, action);
   add_evaluate(app, action);
   add_run(app, action);
+  add_view(app, action);
   add_live(app, action);
   add_fleet(app, action);
   add_compare(app, action);

@@ -144,6 +144,7 @@ TEST_CASE("json: json of every subcommand is as tools/program/JSON.md documents 
       {"fleet", {"fleet", drive, "-o", folder + "fleet"}},
       {"fleet", {"fleet", "status", folder + "fleet"}},
       {"fleet-comparison", {"fleet", "compare", folder + "fleet", folder + "fleet", "-o", folder + "changes"}},
+      {"view", {"view", folder + "out"}},
       {"live", {"live", drive, "-o", "json:" + folder + "live.jsonl"}},
       {"doctor", {"doctor", drive}},
       {"bench", {"bench", square, "--repeat", "1"}},

@@ -102,7 +102,7 @@ TEST_CASE("page: a folded table keeps its heading in sight") {
 TEST_CASE("page: equal columns of numbers are in a page once") {
   const Figure a = line_figure("a");
   const Figure b = line_figure("b");
-  const auto data = nlohmann::json::parse(page_data({&a, &b}));
+  const auto data = nlohmann::json::parse(page_data({&a, &b}, {}));
   CHECK(data["columns"].size() == 2);  // x is time; y
   CHECK(data["figures"]["a"]["series"][0]["x"] == data["figures"]["b"]["series"][0]["time"]);
 }

@@ -19,12 +19,26 @@ enum class Mark {
   spans,   ///< over the whole height, between `low` and `high` on the x axis
   /// horizontal, from the axis to x in row y; `low` and `high` are the spread on the x axis
   bars,
-  cells  ///< squares of side 1 with a corner at (x, y); `weight` in (0, 1] is the darkness
+  cells,  ///< squares of side 1 with a corner at (x, y); `weight` in (0, 1] is the darkness
+  areas   ///< closed rings through (x, y), filled; a number that is not finite ends a ring
 };
 
 /// The role of a series. Each role has its own colour, dash pattern and marker (look.hpp). So a
 /// series looks the same in every figure, and can be recognised in grey too.
-enum class Look { raw, fused, truth, rejected, withheld, reference, first, second, third, fourth };
+enum class Look {
+  raw,
+  fused,
+  truth,
+  rejected,
+  withheld,
+  reference,
+  first,
+  second,
+  third,
+  fourth,
+  road,     ///< of a map beneath a trajectory
+  building  ///< likewise
+};
 
 struct Series {
   std::string name{};  ///< its name in the legend; empty: it has no entry
@@ -41,6 +55,7 @@ struct Series {
   /// The note of each point, an index into `notes`. -1 or an empty vector: no note.
   std::vector<int> note{};
   std::vector<std::string> notes{};
+  bool in_view = true;  ///< false: the axes need not hold it, as a map beneath a trajectory
 };
 
 struct Axis {
@@ -65,6 +80,8 @@ struct Places {
   std::vector<double> xx{};  ///< covariance of the position, squared units of the axes
   std::vector<double> xy{};
   std::vector<double> yy{};
+  std::vector<int> quality{};  ///< of the fix, an index into `qualities`; empty: not told
+  std::vector<std::string> qualities{};
   std::optional<double> start_utc_s{};  ///< POSIX time of the start; empty: the date is not known
 };
 
@@ -89,6 +106,7 @@ struct Figure {
   std::optional<Places> places{};  ///< of a map
   int width = 880;                 ///< px, with axes and legend
   int height = 300;                ///< px
+  double grain = 1;                ///< px; smaller details of lines and markers are not drawn
 };
 
 /// Returns "position error [m]", or "share" without a unit.

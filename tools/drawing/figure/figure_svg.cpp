@@ -19,11 +19,11 @@ std::string title_and_description(const Figure& figure) {
                      escaped(figure.title), escaped(figure.description));
 }
 
-std::string opening(const Figure& figure, std::string_view attributes) {
+std::string opening(const Figure& figure, std::string_view attributes, std::string_view classes) {
   return fmt::format(
-      "<svg {0}class=\"plot\" viewBox=\"0 0 {1} {2}\" role=\"img\" "
+      "<svg {0}class=\"{4}\" viewBox=\"0 0 {1} {2}\" role=\"img\" "
       "aria-labelledby=\"{3}-title {3}-desc\">\n",
-      attributes, figure.width, figure.height, figure.id);
+      attributes, figure.width, figure.height, figure.id, classes);
 }
 
 /// Returns tiles of strokes over bars, for the looks whose bars the figure has.
@@ -72,7 +72,7 @@ std::string figure_style() {
   for (const LookStyle& look : all_looks()) {
     style += fmt::format(
         ".line.look-{0},.points.look-{0}{{stroke:{1}}}\n"
-        ".bars.look-{0},.band.look-{0},.spans.look-{0},.cells.look-{0}{{fill:{1}}}\n",
+        ".bars.look-{0},.band.look-{0},.spans.look-{0},.cells.look-{0},.areas.look-{0}{{fill:{1}}}\n",
         look.name, look.colour);
     if (!look.dash.empty())
       style += fmt::format(".line.look-{}{{stroke-dasharray:{}}}\n", look.name, look.dash);
@@ -83,14 +83,16 @@ std::string figure_style() {
 std::string figure_svg(const Figure& figure) {
   const std::string attributes = fmt::format(
       "xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" ", figure.width, figure.height);
-  return opening(figure, attributes) + title_and_description(figure) + "<style>" + figure_style() +
+  return opening(figure, attributes, "plot") + title_and_description(figure) + "<style>" + figure_style() +
          "</style>\n<rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n" + drawing(figure) + "</svg>\n";
 }
 
-std::string inline_svg(const Figure& figure) {
-  // Above its own size a drawing would only look coarse.
-  const std::string attributes = fmt::format("style=\"max-width:{}px\" ", figure.width * 11 / 10);
-  return opening(figure, attributes) + title_and_description(figure) + drawing(figure) + "</svg>\n";
+std::string inline_svg(const Figure& figure, std::string_view screen) {
+  // Far above its own size a drawing would have letters like headings.
+  const double largest = figure.width >= Figure().width ? 1.45 : 1.1;
+  const std::string attributes = fmt::format("style=\"max-width:{:.0f}px\" ", figure.width * largest);
+  return opening(figure, attributes, fmt::format("plot {}", screen)) + title_and_description(figure) +
+         drawing(figure) + "</svg>\n";
 }
 
 }  // namespace waymark::drawing

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <waymark/tools/drawing/figure/figure.hpp>
 #include <waymark/tools/drawing/figure/view.hpp>
@@ -13,7 +14,8 @@ namespace waymark::drawing {
 
 /// Returns the same drawing as an element of an HTML page. The page must have the style
 /// (figure_style).
-[[nodiscard]] std::string inline_svg(const Figure& figure);
+/// @param screen a class of the element: the screens that show it
+[[nodiscard]] std::string inline_svg(const Figure& figure, std::string_view screen);
 
 /// Returns the style sheet of the drawings.
 [[nodiscard]] std::string figure_style();

@@ -49,9 +49,13 @@ std::string sample(const Figure& figure, const Series& series) {
     case Mark::spans:
     case Mark::bars:
     case Mark::cells:
+    case Mark::areas:
       break;
   }
-  const char* kind = series.mark == Mark::bars ? "bars" : series.mark == Mark::spans ? "spans" : "band";
+  const char* kind = series.mark == Mark::bars    ? "bars"
+                     : series.mark == Mark::spans ? "spans"
+                     : series.mark == Mark::areas ? "areas"
+                                                  : "band";
   static constexpr const char* kBox = "M2-5h24v10h-24z";
   std::string svg = fmt::format("<path class=\"{} look-{}\" d=\"{}\"/>", kind, look.name, kBox);
   if (series.mark == Mark::bars && !look.hatch.empty())

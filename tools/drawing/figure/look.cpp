@@ -15,6 +15,8 @@ constexpr std::string_view kTriangleDown = "m0 3.4l3.2-5.8h-6.4z";
 constexpr std::string_view kHourglass = "m-2.8-2.8h5.6l-5.6 5.6h5.6z";
 constexpr std::string_view kRight = "m3.4 0l-5.8 3.2v-6.4z";
 constexpr std::string_view kLeft = "m-3.4 0l5.8 3.2v-6.4z";
+constexpr std::string_view kUp = "m0-3.2v6.4";
+constexpr std::string_view kBox = "m-3-2h6v4h-6z";
 
 // Okabe and Ito, Color Universal Design, 2008. Their yellow is left out, because it is
 // invisible on white.
@@ -28,7 +30,10 @@ constexpr std::array kLooks = {
     LookStyle{Look::first, "first", "#009e73", "12 3 2 3", kTriangleDown, "M0 0l6 6"},
     LookStyle{Look::second, "second", "#cc79a7", "4 2", kHourglass, "M0 3h6"},
     LookStyle{Look::third, "third", "#e69f00", "8 2 2 2 2 2", kRight, "M3 0v6"},
-    LookStyle{Look::fourth, "fourth", "#5b4a9e", "3 1", kLeft, "M0 3h6M3 0v6"}};
+    LookStyle{Look::fourth, "fourth", "#5b4a9e", "3 1", kLeft, "M0 3h6M3 0v6"},
+    // A map lies beneath: its lines are solid, wider and paler than those of any result (figure.css).
+    LookStyle{Look::road, "road", "#c3c3cb", "none", kUp, "M0 2h6"},
+    LookStyle{Look::building, "building", "#e7dfd3", "2 0", kBox, "M0 5h6"}};
 
 constexpr std::array kOfSystems = {Look::fused,  Look::first,    Look::second,  Look::third,
                                    Look::fourth, Look::withheld, Look::rejected};

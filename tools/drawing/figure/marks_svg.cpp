@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -23,12 +24,40 @@ std::string path(const Series& series, std::size_t index, const std::string& d, 
                      style_of(series.look).name, index, d);
 }
 
+/// Appends tenths of a px as short as SVG allows: "-.5", and a space only if needed.
+void append_tenths(std::string& d, long tenths) {
+  if (tenths >= 0 && d.back() != 'l') d += ' ';
+  if (tenths < 0) d += '-';
+  const long size = std::abs(tenths);
+  if (size >= 10 || size == 0) d += std::to_string(size / 10);
+  if (size % 10 != 0) d += "." + std::to_string(size % 10);
+}
+
+/// Points may lie far outside of the plot.
+long tenths_of(double px_value) {
+  constexpr double kFarOutside = 1e15;
+  return std::lround(std::clamp(10 * px_value, -kFarOutside, kFarOutside));
+}
+
+/// Returns a path through the points. All but the first are told by their distance from the one before, which takes
+/// half of the bytes.
 std::string polyline(const std::vector<DrawnPoint>& points, char first) {
   std::string d;
+  long x = 0;
+  long y = 0;
   for (const DrawnPoint& point : points) {
-    d += d.empty() ? first : 'L';
-    d += px(point.x) + " " + px(point.y);
+    const long next_x = tenths_of(point.x);
+    const long next_y = tenths_of(point.y);
+    if (d.empty()) {
+      d = first + px(point.x) + " " + px(point.y) + "l";
+    } else {
+      append_tenths(d, next_x - x);
+      append_tenths(d, next_y - y);
+    }
+    x = next_x;
+    y = next_y;
   }
+  if (points.size() == 1) d.pop_back();
   return d;
 }
 
@@ -68,11 +97,30 @@ std::string band_path(const Series& series, const View& view) {
   return d;
 }
 
+/// Draws the rings of which a part is in the plot.
+std::string areas_path(const Series& series, const View& view) {
+  const PlotBox& box = view.box;
+  std::string d;
+  for (const auto& ring : thin_line(series.x, series.y, view)) {
+    const auto [left, right] =
+        std::minmax_element(ring.begin(), ring.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    const auto [top, bottom] =
+        std::minmax_element(ring.begin(), ring.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+    const bool misses = right->x < box.left || left->x > box.left + box.width || bottom->y < box.top ||
+                        top->y > box.top + box.height;
+    if (!misses && ring.size() > 2) d += polyline(ring, 'M') + "Z";
+  }
+  return d;
+}
+
 std::string spans_path(const Series& series, const View& view) {
   std::string d;
+  double covered = -std::numeric_limits<double>::infinity();  // px, by the spans before
   for (std::size_t i = 0; i < series.low.size(); ++i) {
     const double left = view.px_x(series.low[i]);
     const double width = std::max(view.px_x(series.high[i]) - left, 1.0);
+    if (left + width <= covered + 0.5) continue;
+    covered = left + width;
     d += fmt::format("M{} {}h{}v{}h-{}z", px(left), px(view.box.top), px(width), px(view.box.height),
                      px(width));
   }
@@ -163,6 +211,8 @@ std::string_view name_of(Mark mark) {
       return "bars";
     case Mark::cells:
       return "cells";
+    case Mark::areas:
+      return "areas";
   }
   return "";
 }
@@ -185,6 +235,8 @@ std::string marks_svg(const Figure& figure, std::size_t index, const View& view)
       return bars(figure, index, view);
     case Mark::cells:
       return cells(series, index, view);
+    case Mark::areas:
+      return path(series, index, areas_path(series, view), "areas");
   }
   return "";
 }

@@ -8,14 +8,15 @@
 namespace waymark::drawing {
 namespace {
 
-constexpr double kNearPx = 0.4;
-constexpr double kMarkerPx = 1.5;
+constexpr double kNear = 0.4;    // grains
+constexpr double kMarker = 2.5;  // grains; a marker is 5 px wide
 
 /// Keeps the needed points of each pixel column.
 class Columns {
  public:
+  explicit Columns(double width) : width_(width) {}
   void add(const DrawnPoint& point) {
-    const double column = std::floor(point.x);
+    const double column = std::floor(point.x / width_);
     if (count_ > 0 && column != column_) flush();
     column_ = column;
     if (count_ == 0) first_ = lowest_ = highest_ = point;
@@ -41,27 +42,28 @@ class Columns {
     count_ = 0;
   }
 
+  double width_;
   std::vector<DrawnPoint> kept_;
   DrawnPoint first_, lowest_, highest_, last_;
   double column_ = 0;
   std::size_t count_ = 0;
 };
 
-std::vector<DrawnPoint> thin_path(const std::vector<DrawnPoint>& points) {
+std::vector<DrawnPoint> thin_path(const std::vector<DrawnPoint>& points, double near) {
   std::vector<DrawnPoint> kept;
   for (const DrawnPoint& point : points) {
     const bool ends = point.index == points.back().index;
-    if (kept.empty() || ends || std::hypot(point.x - kept.back().x, point.y - kept.back().y) >= kNearPx)
+    if (kept.empty() || ends || std::hypot(point.x - kept.back().x, point.y - kept.back().y) >= near)
       kept.push_back(point);
   }
   return kept;
 }
 
-std::vector<DrawnPoint> thin_part(const std::vector<DrawnPoint>& points) {
+std::vector<DrawnPoint> thin_part(const std::vector<DrawnPoint>& points, double grain) {
   const bool ascends =
       std::is_sorted(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-  if (!ascends) return thin_path(points);
-  Columns columns;
+  if (!ascends) return thin_path(points, kNear * grain);
+  Columns columns(grain);
   for (const DrawnPoint& point : points) columns.add(point);
   return columns.finish();
 }
@@ -79,7 +81,7 @@ std::vector<std::vector<DrawnPoint>> thin_line(const std::vector<double>& x, con
     }
   }
   if (parts.back().empty()) parts.pop_back();
-  for (auto& part : parts) part = thin_part(part);
+  for (auto& part : parts) part = thin_part(part, view.grain);
   return parts;
 }
 
@@ -91,8 +93,8 @@ std::vector<DrawnPoint> thin_points(const std::vector<double>& x, const std::vec
     if (!view.shows(x[i], y[i])) continue;
     const DrawnPoint point{view.px_x(x[i]), view.px_y(y[i]), i};
     // A figure is at most a few thousand px wide and high, so 2^20 rows keep the two numbers apart.
-    const auto square = (static_cast<std::int64_t>(std::floor(point.x / kMarkerPx)) << 20) +
-                        static_cast<std::int64_t>(std::floor(point.y / kMarkerPx));
+    const auto square = (static_cast<std::int64_t>(std::floor(point.x / (kMarker * view.grain))) << 20) +
+                        static_cast<std::int64_t>(std::floor(point.y / (kMarker * view.grain)));
     if (taken.insert(square).second) kept.push_back(point);
   }
   return kept;

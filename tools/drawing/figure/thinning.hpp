@@ -18,12 +18,12 @@ struct DrawnPoint {
 };
 
 /// Returns the unbroken parts of a line. As long as x ascends, it keeps the first, lowest, highest
-/// and last point of every pixel column, so the line covers the same pixels. Otherwise it leaves
-/// out points less than 0.4 px from the last one kept.
+/// and last point of every column that is a grain wide, so with a grain of 1 px the line covers the
+/// same pixels. Otherwise it leaves out points less than 0.4 grains from the last one kept.
 [[nodiscard]] std::vector<std::vector<DrawnPoint>> thin_line(const std::vector<double>& x,
                                                              const std::vector<double>& y, const View& view);
 
-/// Returns markers, at most one in a square of 1.5 px.
+/// Returns markers, at most one in a square of 2.5 grains.
 [[nodiscard]] std::vector<DrawnPoint> thin_points(const std::vector<double>& x, const std::vector<double>& y,
                                                   const View& view);
 

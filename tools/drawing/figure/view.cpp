@@ -57,6 +57,7 @@ class Extent {
 Range range_x(const Figure& figure) {
   Extent extent(figure.x.logarithmic);
   for (const Series& series : figure.series) {
+    if (!series.in_view) continue;
     extent.add(series.x);
     if (series.mark == Mark::cells)
       for (const double x : series.x) extent.add(x + 1);
@@ -73,6 +74,7 @@ Range range_y(const Figure& figure) {
   if (!figure.y.categories.empty()) return {-0.5, static_cast<double>(figure.y.categories.size()) - 0.5};
   Extent extent(figure.y.logarithmic);
   for (const Series& series : figure.series) {
+    if (!series.in_view) continue;
     extent.add(series.y);
     if (series.mark == Mark::cells)
       for (const double y : series.y) extent.add(y + 1);
@@ -195,6 +197,7 @@ View full_view(const Figure& figure, int rows_of_legend) {
   view.logarithmic_x = figure.x.logarithmic;
   view.logarithmic_y = figure.y.logarithmic;
   view.downwards = figure.downwards || !figure.y.categories.empty();
+  view.grain = figure.grain;
   view.x = range_x(figure);
   view.y = range_y(figure);
   const double top = kMarginTop + kLegendRow * rows_of_legend;

@@ -30,6 +30,7 @@ struct View {
   bool logarithmic_y = false;
   bool downwards = false;
   PlotBox box;
+  double grain = 1;  ///< px, of thinning
 
   [[nodiscard]] double px_x(double value) const;
   [[nodiscard]] double px_y(double value) const;

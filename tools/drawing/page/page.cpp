@@ -11,6 +11,7 @@
 #include <waymark/tools/drawing/page/page.hpp>
 #include <waymark/tools/drawing/page/page_assets.hpp>
 #include <waymark/tools/drawing/page/page_data.hpp>
+#include <waymark/tools/drawing/page/screens.hpp>
 
 namespace waymark::drawing {
 namespace {
@@ -18,7 +19,8 @@ namespace {
 /// Writes the blocks of a page in reading order, and explains each word of the glossary once.
 class Writer {
  public:
-  explicit Writer(const std::vector<std::pair<std::string, std::string>>& glossary) : words_(glossary) {
+  Writer(const std::vector<std::pair<std::string, std::string>>& glossary, const PageSize& size)
+      : words_(glossary), size_(size) {
     // "raw GNSS" is a word of its own, and must be found before "GNSS".
     std::stable_sort(words_.begin(), words_.end(),
                      [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
@@ -31,9 +33,15 @@ class Writer {
     return "<details><summary>" + text(folded.heading) + "</summary>\n" + html(folded.table) + "</details>\n";
   }
   std::string html(const Figure& figure) {
+    std::string svg;
+    Figure drawn = figure;
+    for (const DrawingForScreen& drawing : drawings_for_screens(figure)) {
+      drawing.apply(drawn);
+      svg += inline_svg(drawn, drawing.screen);
+    }
     return fmt::format(
         "<figure class=\"figure\" id=\"{}\">\n{}<figcaption><span><b>{}.</b> {}</span></figcaption></figure>\n",
-        figure.id, inline_svg(figure), text(figure.title), text(figure.description));
+        figure.id, svg, text(figure.title), text(figure.description + describe_size(figure)));
   }
   std::string html(const Paragraph& paragraph) { return "<p>" + text(paragraph.text) + "</p>\n"; }
   std::string html(const PageLink& link) {
@@ -46,7 +54,10 @@ class Writer {
   }
 
  private:
+  [[nodiscard]] std::string describe_size(const Figure& figure) const;
+
   std::vector<std::pair<std::string, std::string>> words_;  ///< not explained yet
+  PageSize size_;
 };
 
 /// Returns the place of a whole word in a text; npos: it is not there.
@@ -72,6 +83,21 @@ std::string Writer::text(const std::string& plain) {
            text(plain.substr(at + word.size()));
   }
   return escaped(plain);
+}
+
+/// Says how many points of the longest series are here, if not all are.
+std::string Writer::describe_size(const Figure& figure) const {
+  std::size_t longest = 0;
+  std::size_t carried = 0;
+  for (const Series& series : figure.series) {
+    const std::size_t length = std::max(series.x.size(), series.low.size());
+    if (points_carried(series, figure, size_) == length || length <= longest) continue;
+    longest = length;
+    carried = points_carried(series, figure, size_);
+  }
+  if (longest == 0) return {};
+  return fmt::format(" The page carries {} of {} points; the CSV in the folder figures has all.", carried,
+                     longest);
 }
 
 std::string Writer::html(const text::Table& table) {
@@ -113,9 +139,9 @@ std::string head(const Page& page) {
       escaped(page.title), kPageStyle, figure_style());
 }
 
-std::string body(const Page& page) {
+std::string body(const Page& page, const PageSize& size) {
   static constexpr const char* kKinds[] = {"", " better", " worse"};
-  Writer writer(page.glossary);
+  Writer writer(page.glossary, size);
   std::string out = "<body>\n<main>\n<h1>" + escaped(page.title) + "</h1>\n";
   if (!page.subtitle.empty()) out += "<p class=\"subtitle\">" + escaped(page.subtitle) + "</p>\n";
   if (!page.summary.empty()) {
@@ -162,8 +188,10 @@ std::vector<const Figure*> figures_of(const Page& page) {
 }
 
 std::string page_html(const Page& page) {
-  std::string text = head(page) + body(page);
-  text += "<script type=\"application/json\" id=\"page-data\">" + page_data(figures_of(page)) + "</script>\n";
+  const std::vector<const Figure*> figures = figures_of(page);
+  const PageSize size = size_that_fits(figures);
+  std::string text = head(page) + body(page, size);
+  text += "<script type=\"application/json\" id=\"page-data\">" + page_data(figures, size) + "</script>\n";
   text.append("<script>\n").append(kPageScript).append("</script>\n</body>\n</html>\n");
   return text;
 }

@@ -9,6 +9,7 @@
 #include <waymark/tools/drawing/figure/marks_svg.hpp>
 #include <waymark/tools/drawing/page/page_data.hpp>
 #include <waymark/tools/drawing/page/rounded_column.hpp>
+#include <waymark/tools/drawing/page/screens.hpp>
 
 namespace waymark::drawing {
 namespace {
@@ -69,41 +70,71 @@ Json series_json(const Series& series, const Figure& figure, ColumnStore& store)
   return json;
 }
 
-Json axis_json(const Axis& axis, Range range) {
-  return {{"title", axis.title},
-          {"unit", axis.unit},
-          {"heading", heading(axis)},
-          {"log", axis.logarithmic},
-          {"low", range.low},
-          {"high", range.high},
-          {"held", axis.low.has_value()},
-          {"rows", !axis.categories.empty()}};
+Json axis_json(const Axis& axis) {
+  return {{"title", axis.title},          {"unit", axis.unit},
+          {"heading", heading(axis)},     {"log", axis.logarithmic},
+          {"held", axis.low.has_value()}, {"rows", !axis.categories.empty()}};
 }
 
-Json places_json(const Places& places, ColumnStore& store) {
+/// Returns every so many of the values, if they are more than fit.
+std::vector<double> every(const std::vector<double>& values, const PageSize& size) {
+  if (values.size() <= size.of_series) return values;
+  const std::size_t step = 1 + (values.size() - 1) / std::max<std::size_t>(size.of_series, 1);
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < values.size(); i += step) kept.push_back(values[i]);
+  return kept;
+}
+
+Json places_json(const Places& places, const PageSize& size, ColumnStore& store) {
   Json json = {{"start", places.start_utc_s ? Json(*places.start_utc_s) : Json(nullptr)}};
   for (const auto& [key, column] :
        {std::pair{"time", &places.time}, std::pair{"x", &places.x}, std::pair{"y", &places.y},
         std::pair{"latitude", &places.latitude_deg}, std::pair{"longitude", &places.longitude_deg},
         std::pair{"xx", &places.xx}, std::pair{"xy", &places.xy}, std::pair{"yy", &places.yy}}) {
-    if (!column->empty()) json[key] = store.add(*column, true);
+    if (!column->empty()) json[key] = store.add(every(*column, size), true);
+  }
+  if (!places.quality.empty()) {
+    json["quality"] = store.add(every({places.quality.begin(), places.quality.end()}, size), true);
+    json["qualities"] = places.qualities;
   }
   return json;
 }
 
-Json figure_json(const Figure& figure, ColumnStore& store) {
+/// Returns place and view of each drawing, by its screen.
+Json drawings_json(const Figure& figure) {
+  Json json = Json::object();
+  Figure drawn = figure;
+  for (const DrawingForScreen& drawing : drawings_for_screens(figure)) {
+    drawing.apply(drawn);
+    const View view = drawn_view(drawn);
+    json[drawing.screen] = {{"box", {view.box.left, view.box.top, view.box.width, view.box.height}},
+                            {"x", {view.x.low, view.x.high}},
+                            {"y", {view.y.low, view.y.high}}};
+  }
+  return json;
+}
+
+Json figure_json(const Figure& figure, const PageSize& size, ColumnStore& store) {
   static constexpr const char* kMotions[] = {"still", "x", "map"};
-  const View view = drawn_view(figure);
   Json json = {{"motion", kMotions[static_cast<int>(figure.motion)]},
                {"link", figure.link},
                {"geographic", figure.geographic},
-               {"downwards", view.downwards},
-               {"box", {view.box.left, view.box.top, view.box.width, view.box.height}},
-               {"x", axis_json(figure.x, view.x)},
-               {"y", axis_json(figure.y, view.y)}};
-  if (figure.places) json["places"] = places_json(*figure.places, store);
+               {"downwards", drawn_view(figure).downwards},
+               {"drawings", drawings_json(figure)},
+               {"x", axis_json(figure.x)},
+               {"y", axis_json(figure.y)}};
+  if (figure.places) json["places"] = places_json(*figure.places, size, store);
   json["series"] = Json::array();
-  for (const Series& series : figure.series) json["series"].push_back(series_json(series, figure, store));
+  for (const Series& series : figure.series) {
+    const std::size_t carried = points_carried(series, figure, size);
+    if (carried == std::max({series.x.size(), series.y.size(), series.low.size()})) {
+      json["series"].push_back(series_json(series, figure, store));
+    } else {
+      const bool on_map = figure.motion == Motion::map;
+      json["series"].push_back(
+          series_json(with_points(series, points_that_keep_shape(series, on_map, carried)), figure, store));
+    }
+  }
   return json;
 }
 
@@ -114,11 +145,11 @@ bool has_cells(const Figure& figure) {
 
 }  // namespace
 
-std::string page_data(const std::vector<const Figure*>& figures) {
+std::string page_data(const std::vector<const Figure*>& figures, const PageSize& size) {
   ColumnStore store;
   Json of_figures = Json::object();
   for (const Figure* figure : figures) {
-    if (!has_cells(*figure)) of_figures[figure->id] = figure_json(*figure, store);
+    if (!has_cells(*figure)) of_figures[figure->id] = figure_json(*figure, size, store);
   }
   const Json json = {{"columns", store.take()}, {"figures", std::move(of_figures)}};
   const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -41,6 +41,17 @@ class OdometryChain {
     return pose;
   }
 
+  /// Returns the poses from a vertex to the end of its chain.
+  [[nodiscard]] std::vector<StampedPose> track(VertexIndex from, Pose2<double> pose) const {
+    std::vector<StampedPose> poses = {{*graph_.stamp(from), pose.vector()}};
+    for (const Link* link = &next_[static_cast<std::size_t>(from)]; link->batch != nullptr;
+         link = &next_[static_cast<std::size_t>(link->to)]) {
+      pose = compose(pose, motion(*link));
+      poses.push_back({*graph_.stamp(link->to), pose.vector()});
+    }
+    return poses;
+  }
+
  private:
   struct Link {
     VertexIndex to = -1;
@@ -102,6 +113,22 @@ PosesAtWithheld dead_reckoned_at_withheld(const formats::GraphDocument& document
     }
   }
   return result;
+}
+
+std::vector<StampedPose> dead_reckoned(const formats::GraphDocument& document) {
+  const Graph& graph = document.graph;
+  std::optional<VertexIndex> begin;
+  for (const Fix& fix : document.fixes) {
+    if (!begin && fix.status == FixStatus::accepted) begin = graph.find(fix.vertex);
+  }
+  for (VertexIndex v = 0; !begin && v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    if (stamped_pose(graph, v)) begin = v;
+  }
+  if (!begin || !stamped_pose(graph, *begin)) return {};
+  const auto value = graph.value(*begin);
+  std::vector<StampedPose> poses =
+      OdometryChain(graph).track(*begin, Pose2<double>(value[0], value[1], value[2]));
+  return poses.size() > 1 ? poses : std::vector<StampedPose>();
 }
 
 PosesAtWithheld with_lasting_errors(const formats::GraphDocument& document,

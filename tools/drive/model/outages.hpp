@@ -12,6 +12,7 @@
 #include <waymark/core/drive/modeling.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/types_se2/stamped_pose.hpp>
 
 namespace waymark::drive {
 
@@ -31,6 +32,11 @@ struct PosesAtWithheld {
 /// states are zero, its error is the negative of its measured motion. Fixes must be in order of
 /// time, as those of a drive are.
 [[nodiscard]] PosesAtWithheld dead_reckoned_at_withheld(const formats::GraphDocument& document);
+
+/// Returns the drive by odometry alone, uncalibrated as above: from the fused pose at the first
+/// accepted fix (without one: the first pose) as far as the chain of odometry edges reaches. Empty
+/// without odometry.
+[[nodiscard]] std::vector<StampedPose> dead_reckoned(const formats::GraphDocument& document);
 
 /// Predicts what the receiver will say, not where the vehicle is: the poses of the minimum, moved by the
 /// errors that the modeling expects of these fixes. Without poses if it expects none, as for white

@@ -20,6 +20,7 @@ void add_evaluate(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
+void add_view(CLI::App& app, Action& action);
 void add_live(CLI::App& app, Action& action);
 void add_fleet(CLI::App& app, Action& action);
 void add_sync(CLI::App& app, Action& action);

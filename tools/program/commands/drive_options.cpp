@@ -170,4 +170,11 @@ void add_stopping_options(CLI::App& command, drive::Minimization& minimization) 
       ->capture_default_str();
 }
 
+void add_map_option(CLI::App& command, std::string& file) {
+  command
+      .add_option("--map", file,
+                  "Draw roads and buildings of this extract beneath the trajectory of the report")
+      ->type_name("FILE.geojson");
+}
+
 }  // namespace waymark::program

@@ -1,4 +1,4 @@
-/// Command-line options that `convert` and `run` share, and those that `optimize` and `run` share.
+/// Command-line options that several commands share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,9 +8,14 @@
 
 namespace waymark::program {
 
+/// Adds those of `convert` and `run`.
 void add_drive_options(CLI::App& command, DriveChoice& choice);
+/// Adds those of `optimize` and `run`.
 void add_optimization_options(CLI::App& command, drive::Minimization& minimization);
 /// Adds those of them that say when to stop; `bench` has only these.
 void add_stopping_options(CLI::App& command, drive::Minimization& minimization);
+
+/// Adds --map, of `run` and `evaluate`.
+void add_map_option(CLI::App& command, std::string& file);
 
 }  // namespace waymark::program

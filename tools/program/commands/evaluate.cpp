@@ -8,7 +8,9 @@
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
+#include <waymark/tools/program/commands/drive_options.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/map_file.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/jobs/result_files.hpp>
@@ -23,6 +25,7 @@ struct EvaluateOptions {
   std::string truth;
   std::string data_folder;
   std::string folder;
+  std::string map;  ///< beneath the trajectory; empty: none
 };
 
 /// Returns the names of the files without folder and suffix. Equal names are made different: fused,
@@ -103,6 +106,8 @@ evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std
   judge_coverage(truth, document, job);
   evaluation::LabelledEvaluation evaluated{label, evaluate_document(document, truth)};
   const bool reports = !job.options.folder.empty();
+  const MapFile map =
+      read_map_file(job.options.map, document.frame.value_or(Frame{}), positions_of(document));
   std::optional<evaluation::Sparsity> sparsity;
   if (reports) sparsity = sparsity_for_report(document, console);
   add_provenance(document, label, header);
@@ -113,7 +118,8 @@ evaluation::LabelledEvaluation evaluate_file(const EvaluationJob& job, const std
                     .evaluated = evaluated,
                     .truth = truth,
                     .states = states_at(document),
-                    .sparsity = std::move(sparsity)},
+                    .sparsity = std::move(sparsity),
+                    .map = &map},
                    evaluation::ResultFolder(job.options.folder), job.options.inputs.size(), console);
   for (const std::string& file : written.files) console.detail("written " + file);
   if (job.options.inputs.size() == 1) {
@@ -175,6 +181,7 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->type_name("DIR");
   command->add_option("-o,--out", options->folder, "Folder for the report, metrics.json and the trajectories")
       ->type_name("DIR");
+  add_map_option(*command, options->map);
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark evaluate fused.graph --truth drive.yaml --out results");
   command->callback([options, &action] { action = [options] { return evaluate_files(*options); }; });

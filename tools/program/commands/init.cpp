@@ -5,7 +5,7 @@
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/inspection/proposal/drive_proposal.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
-#include <waymark/tools/program/jobs/log_inspection.hpp>
+#include <waymark/tools/program/jobs/inspection/log_inspection.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 
 namespace waymark::program {

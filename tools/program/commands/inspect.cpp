@@ -9,8 +9,8 @@
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/inspection/inspection.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
-#include <waymark/tools/program/commands/drive_statistics.hpp>
-#include <waymark/tools/program/jobs/log_inspection.hpp>
+#include <waymark/tools/program/jobs/inspection/drive_statistics.hpp>
+#include <waymark/tools/program/jobs/inspection/log_inspection.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 

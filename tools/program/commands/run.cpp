@@ -122,6 +122,10 @@ void add_run(CLI::App& app, Action& action) {
         ->check(CLI::Range(1.0, 1e5));
   }
   add_optimization_options(*command, options->minimization);
+  {
+    const OptionHeading heading(*command, "The report");
+    add_map_option(*command, options->job.map);
+  }
   add_common_options(*command, options->common);
   command->footer("Example:\n  waymark run drive.yaml --out results --modeling all");
   command->callback([options, &action] { action = [options] { return run_and_print(*options); }; });

@@ -8,7 +8,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
-#include <waymark/tools/program/commands/drive_statistics.hpp>
+#include <waymark/tools/program/jobs/inspection/drive_statistics.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/tools/simulation/simulation.hpp>
 #include <waymark/tools/simulation/source_statistics.hpp>

@@ -2,6 +2,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/model/outages.hpp>
 #include <waymark/tools/evaluation/output/epochs_csv.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/result_files.hpp>
@@ -31,6 +32,8 @@ std::pair<std::string, std::string> write_report(const DocumentResult& request,
                               .sparsity = request.sparsity ? &*request.sparsity : nullptr};
   drive.noise = request.noise;
   drive.went_in = request.went_in;
+  drive.dead_reckoned = drive::dead_reckoned(request.document);
+  if (request.map != nullptr) drive.ground = ground_of(*request.map, request.document);
   for (const std::string& file : files)
     drive.files.push_back(std::filesystem::path(file).filename().string());
   drawing::Page page = report::drive_page(drive);

@@ -14,6 +14,7 @@
 #include <waymark/tools/evaluation/document/sparsity.hpp>
 #include <waymark/tools/evaluation/output/report.hpp>
 #include <waymark/tools/evaluation/output/result_folder.hpp>
+#include <waymark/tools/program/jobs/evaluation/map_file.hpp>
 #include <waymark/tools/program/terminal/console.hpp>
 #include <waymark/tools/text/table.hpp>
 
@@ -32,6 +33,7 @@ struct DocumentResult {
   /// Inputs from the logs: heading and text.
   std::vector<std::pair<std::string, std::string>> went_in{};
   std::vector<std::string> files{};               ///< written before, to be linked; paths
+  const MapFile* map = nullptr;                   ///< beneath the trajectory; null: none
   std::vector<drawing::Section> more_sections{};  ///< at the end of the report
 };
 

@@ -33,6 +33,8 @@ struct ReportedDrive {
   const evaluation::Sparsity* sparsity = nullptr;                ///< null: not computed
   text::Table noise{};  ///< the estimated noise; without rows: as stated
   std::vector<std::pair<std::string, std::string>> went_in{};  ///< the inputs: heading, text
+  std::vector<StampedPose> dead_reckoned{};  ///< the drive by odometry alone; empty: not known
+  std::vector<drawing::Series> ground{};     ///< a map beneath the trajectory (ground_map.hpp)
   /// files beside the report, relative to it
   std::vector<std::string> files{};
 

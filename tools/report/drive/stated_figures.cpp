@@ -145,9 +145,7 @@ text::Table weak_table(const ReportedDrive& drive) {
          fmt::format("{:.3f}", weak.mean_m),
          weak.reasons.empty() ? "the fixes tell none" : fmt::format("{}", fmt::join(weak.reasons, ", "))});
   }
-  table.notes = {
-      "A stretch reaches as far as the value stays above half of its peak. Peaks below 1.2 medians are "
-      "not listed."};
+  table.notes = {"A stretch reaches as far as the value stays above half of its peak and above 1.2 medians."};
   return table;
 }
 

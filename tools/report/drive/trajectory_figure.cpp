@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -23,6 +24,27 @@ drawing::Series poses(const ReportedDrive& drive) {
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
     if (const auto pose = stamped_pose(graph, v))
       add_point(series, pose->pose[0], pose->pose[1], drive.seconds(pose->stamp));
+  }
+  return series;
+}
+
+/// The odometry alone. It may lead far away, so the axes need not hold it. It is a few thousand points long, because
+/// nobody looks at a drift closely.
+drawing::Series dead_reckoning(const ReportedDrive& drive) {
+  constexpr double kMostPoints = 10'000;
+  const std::vector<StampedPose>& poses = drive.dead_reckoned;
+  drawing::Series series{.name = "dead reckoning", .mark = drawing::Mark::line, .look = drawing::Look::third};
+  series.in_view = false;
+  double length_m = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    length_m += (poses[i].pose - poses[i - 1].pose).head<2>().norm();
+  const double apart_m = std::max(1.0, length_m / kMostPoints);
+  const double apart_s = std::max(1.0, poses.empty() ? 0 : drive.seconds(poses.back().stamp) / kMostPoints);
+  for (const StampedPose& pose : poses) {
+    const double seconds = drive.seconds(pose.stamp);
+    const bool is_near = !series.x.empty() && seconds < series.time.back() + apart_s &&
+                         std::hypot(pose.pose[0] - series.x.back(), pose.pose[1] - series.y.back()) < apart_m;
+    if (!is_near) add_point(series, pose.pose[0], pose.pose[1], seconds);
   }
   return series;
 }
@@ -129,6 +151,18 @@ FixSeries fixes(const ReportedDrive& drive) {
   return all;
 }
 
+/// Adds the qualities of the fixes if the receiver tells any.
+void add_quality(const ReportedDrive& drive, drawing::Places& places) {
+  if (drive.evaluation.by_quality.empty()) return;
+  std::map<FixQuality, int> index_of;
+  for (const evaluation::EpochResult& epoch : drive.evaluation.epochs) {
+    if (!epoch.fused_place || !epoch.fused_position) continue;
+    const auto [known, is_new] = index_of.try_emplace(epoch.told.quality, static_cast<int>(index_of.size()));
+    if (is_new) places.qualities.emplace_back(to_string(epoch.told.quality));
+    places.quality.push_back(known->second);
+  }
+}
+
 /// Returns where the epochs are on Earth, and their covariances.
 drawing::Places places(const ReportedDrive& drive) {
   drawing::Places places;
@@ -147,6 +181,7 @@ drawing::Places places(const ReportedDrive& drive) {
     places.xy.push_back((*epochs[i].position_covariance)(0, 1));
     places.yy.push_back((*epochs[i].position_covariance)(1, 1));
   }
+  add_quality(drive, places);
   if (const auto utc = formats::date_of(drive.start, drive.document.time_scale))
     places.start_utc_s = static_cast<double>(utc->nanoseconds) * 1e-9;
   return places;
@@ -205,6 +240,7 @@ drawing::Figure trajectory_figure(const ReportedDrive& drive) {
   figure.title = "Trajectory";
   figure.description = "Fused poses of the body point, raw fixes of the antenna with their verdicts" +
                        std::string(drive.truth.empty() ? "" : ", and the truth") +
+                       (drive.dead_reckoned.empty() ? "" : ", and the odometry alone from the first fix on") +
                        ". The axes are grid metres of the drive's UTM frame, grid north is up. "
                        "Point at a fix to read its verdict.";
   figure.x = {.title = "east", .unit = "m"};
@@ -217,10 +253,12 @@ drawing::Figure trajectory_figure(const ReportedDrive& drive) {
   FixSeries raw = fixes(drive);
   const std::vector<drawing::Series> marked = marks(fused);
   if (drawing::Places known = places(drive); !known.time.empty()) figure.places = std::move(known);
-  std::vector<drawing::Series> layers = {
-      truth(drive, end_s),     std::move(raw.accepted), std::move(raw.dead_reckoned),
-      std::move(raw.floating), std::move(raw.fixed),    std::move(raw.light),
-      std::move(raw.rejected), std::move(raw.withheld), std::move(fused)};
+  std::vector<drawing::Series> layers = drive.ground;
+  const std::vector<drawing::Series> tracks = {
+      dead_reckoning(drive),   truth(drive, end_s),  std::move(raw.accepted), std::move(raw.dead_reckoned),
+      std::move(raw.floating), std::move(raw.fixed), std::move(raw.light),    std::move(raw.rejected),
+      std::move(raw.withheld), std::move(fused)};
+  layers.insert(layers.end(), tracks.begin(), tracks.end());
   layers.insert(layers.end(), marked.begin(), marked.end());
   for (const drawing::Series& series : layers) {
     if (!series.x.empty()) figure.series.push_back(series);

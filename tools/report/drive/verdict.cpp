@@ -105,6 +105,8 @@ DriveVerdict verdict_without_truth(const ReportedDrive& drive) {
   if (nis.count > 0 && std::isfinite(nis.mean)) {
     verdict.text += " The mean NIS is " + describe_nis(nis) + ".";
     verdict.kind = kind_of(nis);
+  } else if (drive.evaluation.held_out) {
+    verdict.text += " The errors of the fixes are taken as lasting, so their NIS has no meaning.";
   }
   verdict.text += describe_sigma(drive);
   return verdict;
@@ -136,9 +138,9 @@ DriveVerdict verdict_of(const ReportedDrive& drive) {
   const double better = truth.improvement.rmse_percent;
   DriveVerdict verdict{.text = describe_trouble(drive)};
   if (truth.gnss.position.count == 0) {  // a drive without a receiver
-    verdict.text += fmt::format("Fused positions: RMSE {:.3f} m, largest error {:.3f} m, at {} epochs.",
-                                truth.fused.position.rmse_m, truth.fused.position.max_m,
-                                truth.fused.position.count);
+    verdict.text +=
+        fmt::format("Fused positions: RMSE {:.3f} m, largest error {:.3f} m, at {} epochs.",
+                    truth.fused.position.rmse_m, truth.fused.position.max_m, truth.fused.position.count);
     return verdict;
   }
   verdict.kind = better >= 0 ? drawing::Verdict::better : drawing::Verdict::worse;

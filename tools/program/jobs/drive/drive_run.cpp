@@ -14,6 +14,7 @@
 #include <waymark/tools/program/jobs/drive/drive_text.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/evaluation/hold_out.hpp>
+#include <waymark/tools/program/jobs/evaluation/map_file.hpp>
 #include <waymark/tools/program/jobs/evaluation/source_comparison.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 #include <waymark/tools/program/jobs/live/window_study.hpp>
@@ -29,6 +30,7 @@ struct RunOfDrive {
   const DriveRunOptions& options;
   const drive::DriveFile& file;
   const LoadedDrive& loaded;
+  const MapFile& map;
   const evaluation::ResultFolder folder;
   const TypeRegistry& registry;
   const Console& console;
@@ -154,6 +156,7 @@ void write_modeling(const RunOfDrive& run, const formats::GraphDocument& documen
                     .went_in = {{"odometry", odometry_in_words(run.loaded.drive)},
                                 {"left out", left_out(run.loaded.drive)}},
                     .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)},
+                    .map = &run.map,
                     .more_sections = std::move(more_sections)},
                    run.folder, run.loaded.settings.size(), run.console);
 }
@@ -255,11 +258,19 @@ DriveRun run_drive(const drive::DriveFile& file, const DriveChoice& choice, cons
     throw UsageError("--window: the drive has no truth to compare with");
   if (options.causal && file.description.outage.length_s == 0)
     throw UsageError("--causal: there are no outages to predict; name them with --outage LENGTH/EVERY");
-  const RunOfDrive run{options,  file,   done.loaded, evaluation::ResultFolder(options.folder.value_or("")),
-                       registry, console};
+  if (!options.map.empty()) done.loaded.files.push_back(options.map);
+  const drive::PreparedDrive& drive = done.loaded.drive;
+  // A wrong map is found before the work, if the drive has fixes that say where it is.
+  const bool has_fixes = !drive.fixes.empty();
+  MapFile map;
+  if (has_fixes) map = read_map_file(options.map, drive.frame, positions_of(drive.fixes));
+  const RunOfDrive run{
+      options,  file,   done.loaded, map, evaluation::ResultFolder(options.folder.value_or("")),
+      registry, console};
   if (run.writes()) require_logs_stay(run);
   console.stop_if_cancelled();
   std::vector<drive::ModeledDrive> models = model_all(run);
+  if (!has_fixes) map = read_map_file(options.map, drive.frame, positions_of(models.front().document));
   if (run.writes()) formats::make_folder(*options.folder);
   evaluation::ReportHeader header{done.loaded.drive.name, {}};
   for (std::size_t i = 0; i < models.size() && (i == 0 || !console.cancel()); ++i) {

@@ -20,6 +20,7 @@ namespace waymark::program {
 /// What is done with a drive, beside what its drive.yaml and the choices say.
 struct DriveRunOptions {
   std::optional<std::string> folder{};  ///< for all results; empty: nothing is written
+  std::string map{};                    ///< beneath the trajectory of the report; empty: none
   bool causal = false;                  ///< predict each outage without later data, too
   std::vector<double> windows_s{};      ///< of live runs to compare with; they need a folder
   bool keeps_models = false;            ///< ModelingRun::model is filled

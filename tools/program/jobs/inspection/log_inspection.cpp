@@ -1,4 +1,4 @@
-#include <waymark/tools/program/jobs/log_inspection.hpp>
+#include <waymark/tools/program/jobs/inspection/log_inspection.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include <waymark/tools/program/commands/drive_statistics.hpp>
+#include <waymark/tools/program/jobs/inspection/drive_statistics.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
