@@ -45,7 +45,7 @@ TEST_CASE("usage: wrong words on the command line are usage errors that name the
   const std::vector<Case> cases = {
       {{"optimise"}, "unknown subcommand 'optimise'; did you mean 'optimize'?"},
       {{"xyz"},
-       "unknown subcommand 'xyz'; there are: inspect, init, sync, convert, optimize, evaluate, run, live, fleet, compare, "
+       "unknown subcommand 'xyz'; there are: inspect, init, sync, convert, optimize, evaluate, run, view, live, fleet, compare, "
        "bench, info, check"},
       {{"optimize", graph}, "--output is required"},
       {{"optimize", "-o", out}, "graph is required"},

@@ -108,7 +108,7 @@ modeling: {name: g2, loss: "cauchy:1", options: {weight: 1e6}}
   CHECK(odometry.gps_week == 1900);
   CHECK(odometry.time_offset_s == -0.4);
   CHECK(config.settings.odometry_options.at("heading_variance_per_s") == "1e-7");
-  CHECK(config.places.of.at("odometry.options.heading_variance_per_s") == "tours/drive.yaml:14:37: ");
+  CHECK(config.places.of.at("odometry.options.heading_variance_per_s") == "tours/drive.yaml:15:37: ");
   REQUIRE(config.description.gnss.size() == 2);
   CHECK(config.description.gnss[0].format == "gpsd_json");
   CHECK(config.description.gnss[0].request.accuracy == AccuracyMeaning::drms);
