@@ -36,12 +36,20 @@ std::string write_drives(const std::string& folder, int count) {
   return folder + "drives";
 }
 
-/// The cells of a CSV without quotes, by row and column.
+/// The cells of a CSV by row and column. Quotes keep commas together.
 std::vector<std::map<std::string, std::string>> rows_of(const std::string& file) {
   const auto cells = [](const std::string& line) {
-    std::vector<std::string> all;
-    std::istringstream in(line + ",");
-    for (std::string cell; std::getline(in, cell, ',');) all.push_back(cell);
+    std::vector<std::string> all(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') {
+        quoted = !quoted;
+      } else if (c == ',' && !quoted) {
+        all.emplace_back();
+      } else {
+        all.back() += c;
+      }
+    }
     return all;
   };
   const std::vector<std::string> lines = lines_of(read_text(file));

@@ -8,6 +8,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/model/minimize.hpp>
 #include <waymark/tools/fleet/work/fleet_work.hpp>
 #include <waymark/tools/fleet/work/process_pool.hpp>
 #include <waymark/tools/fleet/work/slurm.hpp>
