@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/folder_lock.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/summary_json.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
@@ -287,6 +288,7 @@ ExitCode run_drive(const RunOptions& options) {
   stop_if_interrupted();
   std::vector<drive::ModeledDrive> models = model_all(run);
   formats::make_folder(options.folder);
+  const formats::FolderLock lock(options.folder);
   evaluation::ReportHeader header{loaded.drive.name, {}};
   std::vector<ModelingRun> runs;
   std::vector<evaluation::LabelledEvaluation> evaluations;
