@@ -33,6 +33,29 @@ std::string joined_ids(const Graph& graph, std::span<const VertexIndex> vertices
   return (vertices.size() == 1 ? "vertex " : "vertices ") + text;
 }
 
+std::string name_of(const Graph& graph, std::size_t b, std::size_t edge) {
+  return graph.edge_type(b).tag + " number " + std::to_string(edge + 1) + " (" +
+         joined_ids(graph, graph.batch(b).vertices(edge)) + ")";
+}
+
+/// Every edge is finite. Returns the one with the largest information if their sum is not.
+std::optional<std::string> find_overflow(const Graph& graph) {
+  double sum = 0;
+  double largest = 0;
+  std::string name;
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    for (std::size_t edge = 0; edge < graph.batch(b).size(); ++edge) {
+      const double information = graph.batch(b).information(edge).cwiseAbs().maxCoeff();
+      sum += information;
+      if (!(information > largest)) continue;
+      largest = information;
+      name = name_of(graph, b, edge);
+    }
+  }
+  if (std::isfinite(sum)) return std::nullopt;
+  return name + ": its information is the largest, and the sum over the edges is not finite";
+}
+
 }  // namespace
 
 std::optional<std::string> find_not_finite(const Graph& graph) {
@@ -46,11 +69,10 @@ std::optional<std::string> find_not_finite(const Graph& graph) {
     for (std::size_t edge = 0; edge < batch.size(); ++edge) {
       const std::string flaw = flaw_of(graph, batch, edge);
       if (flaw.empty()) continue;
-      return graph.edge_type(b).tag + " number " + std::to_string(edge + 1) + " (" +
-             joined_ids(graph, batch.vertices(edge)) + "): " + flaw + " is not finite";
+      return name_of(graph, b, edge) + ": " + flaw + " is not finite";
     }
   }
-  return std::nullopt;
+  return find_overflow(graph);
 }
 
 }  // namespace waymark

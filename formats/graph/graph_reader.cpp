@@ -5,6 +5,7 @@
 #include <waymark/core/system/foreign_poses.hpp>
 #include <waymark/formats/graph/detail/graph_records.hpp>
 #include <waymark/formats/graph/detail/own_statements.hpp>
+#include <waymark/formats/graph/detail/own_tags.hpp>
 #include <waymark/formats/graph/detail/sensor_offsets.hpp>
 #include <waymark/formats/graph/detail/toro.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
@@ -17,11 +18,6 @@ constexpr std::size_t kExamples = 10;
 // so many are remembered; further ones are looked up each time
 constexpr std::size_t kMostTags = 64;
 constexpr std::int64_t kMaxArity = 1000;  // of a run-time-arity edge: 72 MB of information matrix
-
-constexpr std::string_view kOwnTags[] = {"GRAPH",  "FRAME",  "TIME",      "PROVENANCE", "LEVER",
-                                         "SOURCE", "STATES", "EDGES",     "TYPE",       "STAMP",
-                                         "LOSS",   "GNSS",   "COVARIANCE"};
-constexpr std::string_view kToroTags[] = {"VERTEX2", "EDGE2", "VERTEX", "EDGE"};
 
 template <std::size_t N>
 bool is_one_of(std::string_view tag, const std::string_view (&tags)[N]) {
@@ -235,10 +231,16 @@ class GraphReader {
     if (format_ == GraphFormat::covariance) {
       const std::optional<Eigen::MatrixXd> inverse = inverse_of_positive_definite(information_);
       if (!inverse)
-        line.fail(join(tag, "the covariance matrix is not positive definite, or its inverse not finite"));
+        line.fail(join(tag,
+                       "the covariance matrix is not positive definite, or its inverse not finite; give the "
+                       "variances of this edge, or read the file with --input-format toro if the numbers are "
+                       "information"));
       information_ = *inverse;
     } else if (!is_positive_semidefinite(information_)) {
       line.fail(join(tag, "the information matrix is indefinite (an eigenvalue below -1e-9 of the largest)"));
+    } else if (format_ == GraphFormat::toro && information_.isZero(0)) {
+      // A .graph may hold an edge that measures nothing. TORO, which divides by the sum of these, cannot.
+      line.fail(join(tag, "the information matrix is zero; remove the edge, or state what it measures"));
     }
   }
 
@@ -267,8 +269,11 @@ class GraphReader {
     // the line may have been an edge: a LOSS below it belongs to no known edge
     last_batch_ = nullptr;
     if (is_toro()) {
+      const bool is_other = registry_.find_vertex(tag) != nullptr || registry_.find_edge(tag) != nullptr ||
+                            is_one_of(tag, kOwnTags);
       line.fail("unknown tag " + quote_word(tag) + "; a file of --input-format " +
-                std::string(to_string(format_)) + " has VERTEX2 and EDGE2");
+                std::string(to_string(format_)) + " has VERTEX2 and EDGE2" +
+                (is_other ? ", and this tag is of .graph or g2o: leave --input-format out" : ""));
     }
     if (is_one_of(tag, kOwnTags)) {
       line.fail(join(tag, is_waymark_ ? "is only allowed in the first line"

@@ -173,10 +173,11 @@ void write_aside(const std::string& path, const Producer& produce, std::optional
 
 }  // namespace
 
-std::string read_text_file(const std::string& path) {
+std::string read_text_file(const std::string& path, const TextLimits& limits) {
   InputFile file(path);
   std::string content;
   std::size_t used = 0;
+  std::size_t checked = 0;
   while (true) {
     // What a file or stream promises is believed only after its first piece.
     if (used == content.size()) {
@@ -187,9 +188,21 @@ std::string read_text_file(const std::string& path) {
     if (count == 0) break;
     used += count;
     require_text_if_long({content.data(), used}, file);
+    if (used > limits.most_bytes)
+      throw InputError(fmt::format("{}: is longer than {} MiB, and {} is not: is it the right file?", path,
+                                   limits.most_bytes / kChunk, limits.longest));
+    for (; limits.check && !file.size() && used - checked >= kChunk; checked += kChunk)
+      limits.check(std::string_view(content).substr(checked, kChunk));
   }
   content.resize(used);
   return content;
+}
+
+std::function<void(std::string_view)> require_digits(const std::string& path) {
+  return [path](std::string_view piece) {
+    if (piece.find_first_of("0123456789") == std::string_view::npos)
+      throw InputError(path + ": a MiB of it holds no number; the input ends nowhere, or is of another kind");
+  };
 }
 
 void write_file_atomically(const std::string& path, std::string_view content) {

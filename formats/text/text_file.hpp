@@ -1,7 +1,9 @@
 /// Reads and writes whole files. A file is written completely or not at all.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -9,12 +11,25 @@
 
 namespace waymark::formats {
 
+/// What a text may be while it is read. A pipe or a device may never end.
+struct TextLimits {
+  /// of a file, pipe or device
+  std::size_t most_bytes = std::numeric_limits<std::size_t>::max();
+  std::string_view longest{};  ///< what is at most so long, for the message: "a drive.yaml"
+  /// Called with every further MiB of a pipe or device, which begins and ends anywhere. @throws InputError if
+  /// nothing in it is of the format
+  std::function<void(std::string_view piece)> check{};
+};
+
 /// Returns the whole content of a file, pipe or device. A pipe, a device and a file of more
 /// than 64 MiB must begin as text: without a zero byte in the first MiB, and with the end of a line
 /// within 64 MiB.
 /// @throws InputError "gnss.csv: cannot read: No such file or directory" and the like, also
 /// for a folder, and if a signal that the program handles ends the wait for a pipe
-[[nodiscard]] std::string read_text_file(const std::string& path);
+[[nodiscard]] std::string read_text_file(const std::string& path, const TextLimits& limits = {});
+
+/// Returns the check for texts of numbers. @throws InputError for a piece without any digit
+[[nodiscard]] std::function<void(std::string_view)> require_digits(const std::string& path);
 
 /// Writes `content` to the file `path`. A reader sees either the old file or the whole new one,
 /// never a part.

@@ -13,6 +13,7 @@ class EigenCholesky final : public LinearSolver {
  public:
   void analyze(const BlockPattern& pattern) override {
     scalar_ = to_scalar<int>(pattern);
+    factorized_ = false;
     factor_.analyzePattern(view(nullptr));
   }
 
@@ -57,7 +58,8 @@ class EigenCholesky final : public LinearSolver {
 }  // namespace
 
 LinearSolverType eigen_solver() {
-  return {"eigen", "Eigen's simplicial LL^T", "MPL-2.0", [](const CheckedOptions&) { return std::make_unique<EigenCholesky>(); }};
+  return {"eigen", "Eigen's simplicial LL^T", "MPL-2.0",
+          [](const CheckedOptions&) { return std::make_unique<EigenCholesky>(); }};
 }
 
 }  // namespace waymark::solvers

@@ -60,6 +60,19 @@ TEST_CASE("every linear solver: 1 x 1") {
   });
 }
 
+TEST_CASE("every linear solver: a new analysis forgets the former factor") {
+  const BlockPattern chain = make_pattern(std::vector<int>(40, 3), random_pairs(40, 25, 1));
+  for_each_solver([&](LinearSolver& solver) {
+    CHECK(solver.factor_size() == 0);
+    solver.analyze(chain);
+    check_solves(solver, chain, random_spd(chain, 2));
+    const std::int64_t former = solver.factor_size();
+    CHECK(former >= 40 * 3 * 4 / 2);
+    solver.analyze(kOne);
+    CHECK(solver.factor_size() < former);
+  });
+}
+
 TEST_CASE("every linear solver: a chain of 3 x 3 blocks with closures") {
   const BlockPattern pattern = make_pattern(std::vector<int>(40, 3), random_pairs(40, 25, 1));
   for_each_solver([&](LinearSolver& solver) {

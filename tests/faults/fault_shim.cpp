@@ -94,6 +94,23 @@ int rename(const char* from, const char* to) noexcept {
   return next<int(const char*, const char*)>("rename")(from, to);
 }
 
+int fsync(int descriptor) {
+  if (fails("fsync")) {
+    errno = EIO;
+    return -1;
+  }
+  return next<int(int)>("fsync")(descriptor);
+}
+
+void* mmap(void* address, size_t size, int protection, int flags, int descriptor, off_t offset) noexcept {
+  if (fails("mmap")) {
+    errno = ENOMEM;
+    return MAP_FAILED;
+  }
+  return next<void*(void*, size_t, int, int, int, off_t)>("mmap")(address, size, protection, flags,
+                                                                  descriptor, offset);
+}
+
 int open(const char* path, int flags, ...) {
   va_list arguments;
   va_start(arguments, flags);

@@ -79,7 +79,24 @@ TEST_CASE("TORO and covariance: wrong lines are refused with their place") {
        "the covariance matrix is not positive definite"},
       {GraphFormat::covariance, "VERTEX2 0 0 0 0\nVERTEX2 1 0 0 0\nEDGE2 0 1 1 0 0 1 0 x 1 0 0\n",
        "a.graph:3:21: EDGE2: expected a number for 'covariance[2]', got 'x'"},
-      {GraphFormat::covariance, "VERTEX2 0 0 0 0\nLANDMARK 0 1 1 0 0 1 0\n", "unknown tag 'LANDMARK'"}};
+      {GraphFormat::covariance, "VERTEX2 0 0 0 0\nLANDMARK 0 1 1 0 0 1 0\n", "unknown tag 'LANDMARK'"},
+      // numbers behind the last one
+      {GraphFormat::toro, "VERTEX2 0 0 0 0 7\n",
+       "a.graph:1:17: VERTEX2: expected the end of the line, got '7'"},
+      {GraphFormat::covariance, "VERTEX2 0 0 0 0\nVERTEX2 1 0 0 0\nEDGE2 0 1 1 0 0 1 0 1 1 0 0 5\n",
+       "a.graph:3:29: EDGE2: expected the end of the line, got '5'"},
+      // a matrix that says nothing
+      {GraphFormat::toro, "VERTEX2 0 0 0 0\nVERTEX2 1 0 0 0\nEDGE2 0 1 1 0 0 0 0 0 0 0 0\n",
+       "a.graph:3:28: EDGE2: the information matrix is zero; remove the edge"},
+      {GraphFormat::covariance, "VERTEX2 0 0 0 0\nVERTEX2 1 0 0 0\nEDGE2 0 1 1 0 0 0 0 0 0 0 0\n",
+       "the covariance matrix is not positive definite, or its inverse not finite; give the variances"},
+      // tags of the other formats
+      {GraphFormat::toro, "VERTEX_SE2 0 0 0 0\n",
+       "a.graph:1:1: unknown tag 'VERTEX_SE2'; a file of --input-format toro has VERTEX2 and EDGE2, and this "
+       "tag is of .graph or g2o: leave --input-format out"},
+      {GraphFormat::covariance, "VERTEX2 0 0 0 0\nVERTEX2 1 0 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n",
+       "a.graph:3:1: unknown tag 'EDGE_SE2'; a file of --input-format covariance has VERTEX2 and EDGE2, and "
+       "this tag is of .graph or g2o"}};
   for (const auto& [format, text, message] : cases) {
     INFO(text);
     CHECK_THROWS_WITH(read_as(format, text), Catch::Contains(message));

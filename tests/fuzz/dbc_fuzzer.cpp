@@ -7,9 +7,9 @@
 
 #include "fuzz_input.hpp"
 #include "invariants.hpp"
+#include "targets.hpp"
 
-using namespace waymark_fuzz;
-
+namespace waymark_fuzz {
 namespace {
 
 /// Every signal out of one frame: none may be undefined.
@@ -30,7 +30,7 @@ void read_signals(const std::string& text) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+void fuzz_dbc(std::string_view, const std::uint8_t* bytes, std::size_t size) {
   FuzzInput input = fuzz_input("candump", bytes, size);
   const std::size_t end = std::min(input.log.find('\0'), input.log.size());
   const std::string dbc = input.log.substr(0, end);
@@ -48,5 +48,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const Outcome whole = read_log(reader, log, input.request, 0);
   if (!whole.refused) check_data(whole.data, input.request);
   check_same(whole, read_log(reader, log, input.request, input.piece));
-  return 0;
 }
+
+}  // namespace waymark_fuzz

@@ -7,6 +7,9 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/map/geojson_map.hpp>
 
+#include "targets.hpp"
+
+namespace waymark_fuzz {
 namespace {
 
 void require(bool holds) {
@@ -21,7 +24,7 @@ void check(const waymark::formats::MapWay& way) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+void fuzz_geojson_map(std::string_view, const std::uint8_t* bytes, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(bytes), size);
   std::size_t ways = 0;
   try {
@@ -35,5 +38,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     require(message.starts_with("fuzz.geojson:") && message.size() < 4000);
     for (const char c : message) require(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
   }
-  return 0;
 }
+
+}  // namespace waymark_fuzz

@@ -62,8 +62,8 @@ void broken(const std::string& what) {
   std::abort();
 }
 
-Outcome read_log(const waymark::LogReader& reader, std::string_view log,
-                                        const waymark::LogRequest& request, std::size_t piece) {
+Outcome read_log(const waymark::LogReader& reader, std::string_view log, const waymark::LogRequest& request,
+                 std::size_t piece) {
   Outcome outcome;
   try {
     const auto decoder = reader.open("fuzz.log", request);

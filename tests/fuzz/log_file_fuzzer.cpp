@@ -4,8 +4,6 @@
 #include <vector>
 
 #include <lzma.h>
-#include <sys/mman.h>
-#include <unistd.h>
 #include <zlib.h>
 #include <zstd.h>
 
@@ -14,9 +12,10 @@
 #include <waymark/formats/logs/log_readers.hpp>
 
 #include "invariants.hpp"
+#include "memory_file.hpp"
+#include "targets.hpp"
 
-using namespace waymark_fuzz;
-
+namespace waymark_fuzz {
 namespace {
 
 constexpr std::size_t kHeader = 3;
@@ -53,27 +52,10 @@ std::string gzip_of(const std::string& text) {
   return result;
 }
 
-/// A file in memory.
-class MemoryFile {
- public:
-  explicit MemoryFile(const std::string& content) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
-    if (descriptor_ < 0 ||
-        ::write(descriptor_, content.data(), content.size()) != static_cast<ssize_t>(content.size()))
-      broken("memfd");
-  }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  ~MemoryFile() { ::close(descriptor_); }
-  [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
- private:
-  int descriptor_;
-};
-
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  if (size < kHeader) return 0;
+void fuzz_log_file(std::string_view, const std::uint8_t* bytes, std::size_t size) {
+  if (size < kHeader) return;
   const std::string plain(reinterpret_cast<const char*>(bytes) + kHeader, size - kHeader);
   const bool compress = (bytes[0] & 1U) != 0;
   const auto packed = std::array{gzip_of, xz_of, zstd_of, gzip_of}[bytes[0] >> 3U & 3U];
@@ -105,5 +87,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   } catch (const waymark::InputError&) {
     // An unreadable log is refused.
   }
-  return 0;
 }
+
+}  // namespace waymark_fuzz

@@ -2,11 +2,16 @@
 """Seed corpora of the fuzzers: snippets of real logs (shared data) and of hand-made ones.
 
 make_seeds.py SHARED_DATA OUTPUT: one folder per target, one file per snippet of at most 4 KiB, each behind the
-four bytes that say how it is read (fuzz_input.hpp).
+bytes that say how it is read (fuzz_input.hpp). Words of a format, as its page lists them, become the dictionary
+OUTPUT/TARGET.dict.
 """
 import gzip
 import pathlib
+import re
+import struct
 import sys
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
 
 SNIPPET = 4096
 
@@ -78,6 +83,59 @@ MADE = {
             b"<course>90</course></trkpt></trkseg></trk></gpx>"],
 }
 
+GRAPH = ("GRAPH 1\nFRAME utm 32N origin 500000 5800000\nTIME gps\nPROVENANCE program waymark\nLEVER antenna 1 0.5\n"
+         "TYPE EDGE_SE2 vertices=VERTEX_SE2,VERTEX_SE2 fields=measured:3 information=3 error=(t, theta)\n"
+         "VERTEX_SE2 0 0 0 0\nSTAMP 0 1000000000\nVERTEX_SE2 1 1 0 0.1\nVERTEX_XY 7 2 3\nFIX 0\n"
+         "EDGE_SE2 0 1 1 0 0.1 100 0 0 100 0 400\nLOSS huber 1.5\nEDGE_SE2_XY 1 7 1 3 4 0 4\n"
+         "EDGE_GNSS_POSITION 0 1 1 0 0 0 1 0 1\nEDGE_PRIOR_SE2 1 1 0 0 1 0 0 1 0 1\n"
+         "EDGE_GAUSSIAN_PRIOR 1 1 1 0 0.1 0 0 0 1 0 0 1 0 1\nCOVARIANCE 1 1 0 0 1 0 1\n"
+         "GNSS 1 1000000000 1 0 1 0 1 40 - - - - 1 0 0 accepted - - -\n")
+G2O = ("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nVERTEX_XY 2 3 1\nPARAMS_SE2OFFSET 0 1 0 0\nFIX 0\n"
+       "EDGE_SE2 0 1 1 0 0 100 0 0 100 0 400\nEDGE_SE2_OFFSET 0 1 0 0 1 0 0 100 0 0 100 0 400\n"
+       "EDGE_SE2_POINTXY_OFFSET 0 2 0 3 1 4 0 4\nEDGE_BEARING_SE2_XY 0 2 0.3 4\nEDGE_PRIOR_SE2_XY 1 1 0 4 0 4\n")
+TORO = ("VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0.1\nVERTEX 2 2 0 0.2\nEDGE2 0 1 1 0 0.1 10 1 20 30 2 3\n"
+        "EDGE 1 2 1 0 0.1 0.5 0.1 0.4 0.1 0.02 0.03\n")
+METRICS = ('{"schema":"waymark-metrics","version":1,"drive":"d","modelings":[{"name":"g1","fused":{"rmse_m":1.5,'
+           '"count":3},"raw":null,"warnings":["w"]}]}')
+SUMMARY = ('{"g1":{"termination":"converged","converged":true,"message":"m","iterations":3,"seconds":0.1,'
+           '"initial_chi2":10,"final_chi2":1.5,"states":[{"name":"speed_scale","value":1.01,"sigma":0.01}]}}')
+# An ELF head of this processor with one section: enough to get behind the first checks.
+ELF = (b"\x7fELF\x02\x01\x01" + bytes(9) + struct.pack("<HHIQQQIHHHHHH", 3, 62, 1, 0, 64, 120, 0, 64, 56, 1, 64, 2, 1) +
+       struct.pack("<IIQQQQQQ", 1, 5, 0, 0, 0, 300, 300, 4096) + bytes(64) +
+       struct.pack("<IIQQQQIIQQ", 1, 11, 2, 0, 64, 48, 1, 1, 8, 24))
+
+# Without a head of bytes; graphs have one byte.
+PLAIN = {
+    "drive_yaml": [p.read_bytes() for p in sorted(SOURCE.glob("examples/**/*.yaml"))] + [
+        b"odometry: {file: o.csv}\ngnss: {file: g.csv}\n",
+        b"time: {scale: gps, from: 1, to: 9}\nframe: {utm_zone: 33N, origin: [500000, 5500000]}\n"
+        b"odometry: {file: o.csv, speed_delay: 0.1, yaw_rate_delay: 0.2}\n"
+        b"gnss: {file: g.csv, antenna: [1, 0.5], period: 1, delay: 0.1, withhold_every: 3}\ntruth: {file: t.csv}\n",
+        b"sources:\n  - {kind: relative, name: a, file: a.csv, nodes: true}\n  - {kind: absolute, name: b, file: b.csv}\n"
+        b"calibration: {speed_scale: on}\nnoise: {estimate: on}\ngap: {policy: bridge}\nmodeling: g2\n",
+        b"odometry: {parts: [{file: a.csv}, {file: b.csv}], track_width: 1.5}\n"
+        b"gnss: {file: g.csv, velocity: {file: v.csv}}\nsensors: {type: heading, file: h.csv}\n"],
+    "metrics_json": [METRICS.encode()], "summary_json": [SUMMARY.encode()],
+    "options": [b"0.5", b"on", b"[1, 2]", b'{x: 1, y: [2, "a b"]}', b"1:2,3:4", b"huber:1.5", b"-1e3"],
+    "module": [ELF],
+    "tum": [b"# t x y z qx qy qz qw\n1.000000001 1 2 0 0 0 0 1\n2 1.5 2 0 0 0 0.7 0.7\n"],
+    "graph": [b"\0" + GRAPH.encode(), b"\1" + GRAPH.encode()], "g2o": [b"\0" + G2O.encode(), b"\1" + G2O.encode()],
+    "toro": [b"\0" + TORO.encode()], "covariance": [b"\0" + TORO.encode(), b"\1" + TORO.encode()],
+}
+
+# The page that lists the words of a format.
+WORDS = {"drive_yaml": "tools/drive/DRIVE_YAML.md", "graph": "formats/README.md", "g2o": "formats/README.md",
+         "toro": "formats/README.md", "covariance": "formats/README.md", "metrics_json": "tools/program/JSON.md",
+         "summary_json": "tools/program/JSON.md"}
+
+
+def dictionary(page):
+    words = set()
+    for code in re.findall(r"`([^`\n]+)`", (SOURCE / page).read_text()):
+        words.update(re.findall(r"[A-Za-z_][A-Za-z_0-9]+", code))
+    return "".join(f'"{word}"\n' for word in sorted(words)) + '"1e999"\n"nan"\n"5e-324"\n"1e308"\n"\\x1b[2J"\n'
+
+
 # Stream and pieces; accuracy; week, date, offset, separator; free.
 HEADS = {
     "csv": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(3) for v in (0, 1, 2, 4, 7)] +
@@ -124,6 +182,13 @@ def main():
         for i, content in enumerate(contents(target, shared)):
             for k, head in enumerate(HEADS.get(target, DEFAULT_HEADS)):
                 (folder / f"seed_{i:03}_{k:02}").write_bytes(head + content)
+    for target, texts in PLAIN.items():
+        folder = output / target
+        folder.mkdir(parents=True, exist_ok=True)
+        for i, content in enumerate(texts):
+            (folder / f"seed_{i:03}").write_bytes(content)
+    for target, page in WORDS.items():
+        (output / f"{target}.dict").write_text(dictionary(page))
 
 
 main()

@@ -14,15 +14,18 @@ fi
 work=build/fuzz/work
 mkdir -p "$work"
 tests/fuzz/make_seeds.py "$shared" "$work/seeds"
-[ $# -gt 0 ] || set -- csv gpsd_json candump asc trc nmea rtklib_pos kitti_oxts gpx novatel ubx gnss_logger vbo dbc log_file geojson_map
+# shellcheck disable=SC2046 # names of targets are words
+[ $# -gt 0 ] || set -- $(grep -o 'Target{"[a-z0-9_]*' tests/fuzz/targets.cpp | cut -d'"' -f2)
 
 found=0
 printf '%-12s %10s %8s %8s %9s %8s\n' target runs seconds corpus coverage findings
 for target in "$@"; do
   mkdir -p "$work/corpus/$target" "$work/found/$target"
+  dictionary=
+  [ ! -f "$work/seeds/$target.dict" ] || dictionary="-dict=$work/seeds/$target.dict"
   # What is kept of a finding is the input; -timeout, -rss_limit_mb and -malloc_limit_mb make hangs and greed findings.
   "build/fuzz/bin/waymark_fuzz_$target" -max_total_time="$seconds" -max_len=16384 -timeout=10 -rss_limit_mb=2048 \
-    -malloc_limit_mb=256 -use_value_profile=1 -print_final_stats=1 -artifact_prefix="$work/found/$target/" \
+    -malloc_limit_mb=256 -use_value_profile=1 -print_final_stats=1 -artifact_prefix="$work/found/$target/" $dictionary \
     "$work/corpus/$target" "$work/seeds/$target" >"$work/$target.log" 2>&1 || true
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$work/$target.log")
   took=$(sed -n 's/^Done [0-9]* runs in \([0-9]*\) second.*/\1/p' "$work/$target.log")

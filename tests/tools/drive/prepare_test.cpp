@@ -18,6 +18,7 @@ namespace prepare_test {
 using namespace waymark;
 using namespace waymark::drive;
 using namespace waymark::formats;
+using Catch::StartsWith;
 using Catch::Matchers::Message;
 
 namespace {
@@ -280,6 +281,38 @@ TEST_CASE("prepare: what cannot become a drive says why and what to do") {
   DriveDescription description = small_description();
   description.from_s = 20;
   CHECK_THROWS_AS(prepare_drive(small_drive(), description), InputError);
+}
+
+TEST_CASE("prepare: a place that the UTM zone cannot hold is told with its log, its time and the remedy") {
+  DriveLogs logs = small_drive();
+  logs.gnss[0].data.fixes[3].longitude_deg = -160;
+  CHECK_THROWS_WITH(
+      prepare_drive(logs, small_description()),
+      StartsWith(
+          "gnss.csv: 4.000 s after the start: latitude 50, longitude -160 cannot be projected into UTM zone 33N; "
+          "leave the wrong places out"));
+  DriveDescription description = small_description();
+  description.utm_zone = -56;
+  CHECK_THROWS_WITH(
+      prepare_drive(small_drive(), description),
+      StartsWith("drive.yaml: the first place of the drive: latitude 50, longitude 15 cannot be "
+                 "projected into UTM zone 56S; leave the wrong places out"));
+}
+
+TEST_CASE("prepare: a delay that is longer than the log is told with its line") {
+  DriveDescription description = small_description();
+  description.gnss.resize(1);
+  description.gnss[0].delay_s = -3600;
+  description.gnss[0].delay_place = "drive.yaml:7:10: ";
+  CHECK_THROWS_WITH(
+      prepare_drive(small_drive(), description),
+      StartsWith("drive.yaml:7:10: delay: -3600 s is longer than the odometry, 10 s, and no fix"));
+  description = small_description();
+  description.odometry.resize(1);
+  description.odometry[0].speed_delay_s = 3600;
+  description.odometry[0].delay_place = "drive.yaml:3:16: ";
+  CHECK_THROWS_WITH(prepare_drive(small_drive(), description),
+                    StartsWith("drive.yaml:3:16: speed_delay 3600 s and yaw_rate_delay 0 s leave 0 samples"));
 }
 
 TEST_CASE("prepare: reading the logs of a description") {

@@ -26,8 +26,10 @@ UtmPlace forward(const GeodeticPoint& point, int zone, bool north) {
   const std::optional<UtmPlace> place =
       formats::utm_from_geodetic(point.latitude_deg, point.longitude_deg, zone, north);
   if (!place)
-    throw InputError(fmt::format("latitude {}, longitude {} cannot be projected into UTM zone {}",
-                                 point.latitude_deg, point.longitude_deg, zone));
+    throw InputError(fmt::format(
+        "latitude {}, longitude {} cannot be projected into UTM zone {}{}; leave the wrong places out ('time: "
+        "{{from, to}}'), or state 'frame: {{utm_zone: ...}}'",
+        point.latitude_deg, point.longitude_deg, zone, north ? 'N' : 'S'));
   return *place;
 }
 

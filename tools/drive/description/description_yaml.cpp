@@ -102,6 +102,8 @@ OdometryConfig read_odometry(const YamlSection& section, std::string name, const
   read_assembly(section, odometry.assembly);
   section.read("speed_delay", odometry.speed_delay_s, kSeconds);
   section.read("yaw_rate_delay", odometry.yaw_rate_delay_s, kSeconds);
+  for (const std::string_view key : {"speed_delay", "yaw_rate_delay"})
+    if (section.has(key)) odometry.delay_place = section.place(key);
   section.read("nodes", odometry.gives_nodes);
   return odometry;
 }
@@ -125,6 +127,7 @@ GnssConfig read_gnss(const YamlSection& section, std::string name, const DriveDe
   section.read("period", gnss.period_s, kPeriod);
   if (gnss.period_s > 0 && gnss.period_s < kLeastPeriod) section.fail_value("period", kPeriod.words);
   section.read("delay", gnss.delay_s, kSeconds);
+  if (section.has("delay")) gnss.delay_place = section.place("delay");
   section.read("withhold_every", gnss.withhold_every, kWithhold);
   if (gnss.withhold_every == 1) section.fail_value("withhold_every", kWithhold.words);
   section.read("withheld", gnss.withheld);

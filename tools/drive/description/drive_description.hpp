@@ -40,7 +40,8 @@ struct OdometryConfig {
   OdometryAssembly assembly;
   double speed_delay_s = 0;  ///< how late the stamps of the speed are; subtracted
   double yaw_rate_delay_s = 0;
-  bool gives_nodes = false;  ///< stated: the nodes of the graph are at its stamps
+  std::string delay_place{};  ///< "drive.yaml:12:5: " of a stated delay, for messages
+  bool gives_nodes = false;   ///< stated: the nodes of the graph are at its stamps
 };
 
 /// An absolute source: the log of its positions, and the log of its velocity if that is another one.
@@ -49,6 +50,7 @@ struct GnssConfig : LogConfig {
   std::string name = "gnss";        ///< of the source
   Eigen::Vector2d antenna_m{0, 0};  ///< body frame (x forward, y left)
   double delay_s = 0;               ///< how late its stamps are; subtracted
+  std::string delay_place{};        ///< "drive.yaml:12:5: " of a stated delay, for messages
   double period_s = 0;              ///< its fixes are thinned to one per period (0: keep all)
   int withhold_every = 0;           ///< every n-th of its fixes is left out of the graph (0: none)
   bool withheld = false;            ///< all of its fixes are left out of the graph

@@ -88,7 +88,8 @@ DriveFile parse_drive_file(const std::string& text, const std::string& path, con
 }
 
 DriveFile load_drive_file(const std::string& path, const std::string& data_folder) {
-  return parse_drive_file(formats::read_text_file(path), path, data_folder);
+  constexpr std::size_t kMost = std::size_t{16} << 20U;
+  return parse_drive_file(formats::read_text_file(path, {kMost, "a drive.yaml"}), path, data_folder);
 }
 
 }  // namespace waymark::drive

@@ -188,6 +188,17 @@ Vehicle vehicle_of(const DriveDescription& description) {
   return {stated.track_width_m, stated.wheelbase_m, stated.steering_ratio, stated.metres_per_tick};
 }
 
+/// Gives an error of the projection the log and the stamp of the place that the zone cannot hold.
+template <typename Project>
+auto projected(const std::string& file, Stamp stamp, const PreparedDrive& drive, Project project) {
+  try {
+    return project();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {:.3f} s after the start: {}", file,
+                                 seconds_between(drive.odometry.front().stamp, stamp), error.what()));
+  }
+}
+
 /// Truth that is far away is told before it may fail to be projected.
 std::vector<TruthPose> projected_truth(const std::vector<GeodeticTruth>& truth,
                                        const std::vector<GeodeticFix>& fixes,
@@ -198,8 +209,7 @@ std::vector<TruthPose> projected_truth(const std::vector<GeodeticTruth>& truth,
   try {
     for (const GeodeticTruth& pose : truth) result.push_back(projection->project(pose));
   } catch (const InputError& error) {
-    if (far_away.empty()) throw;
-    throw InputError(fmt::format("{}; {}", far_away, error.what()));
+    throw InputError(fmt::format("{}{}{}", far_away, far_away.empty() ? "the truth: " : "; ", error.what()));
   }
   return result;
 }
@@ -240,7 +250,11 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   const std::vector<GeodeticTruth> truth = clean_truth(logs.truth, drive.scale, drive.report);
   require_overlap(truth, drive.odometry, description);
 
-  drive.frame = frame_of(description, logs, fixes);
+  try {
+    drive.frame = frame_of(description, logs, fixes);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: the first place of the drive: {}", description.path, error.what()));
+  }
   drive.first_pose = first_pose_in(drive.frame, description);
   std::optional<Projection> projection;
   if (drive.frame.zone != 0) projection.emplace(drive.frame);
@@ -249,7 +263,8 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
                      ": the truth is geodetic and the drive has a local frame; state "
                      "'frame: {utm_zone: ..., origin: [...]}'");
   for (const GeodeticFix& fix : fixes) {
-    drive.fixes.push_back(projection->project(fix));
+    const std::string& file = logs.gnss.at(static_cast<std::size_t>(fix.source)).file;
+    drive.fixes.push_back(projected(file, fix.stamp, drive, [&] { return projection->project(fix); }));
     drive.fixes.back().antenna_m = drive.receivers.at(static_cast<std::size_t>(fix.source)).antenna_m;
   }
   drive.truth = projected_truth(truth, fixes, projection, drive.report);

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -77,6 +78,20 @@ void leave_out_null_island(std::vector<GeodeticFix>& fixes, PrepareReport& repor
         "{} fixes at latitude 0, longitude 0 are left out: receivers without a fix write them", left_out));
 }
 
+/// @throws InputError with its place if a stated delay alone moves the fixes out of the odometry
+void require_short_delays(const DriveDescription& description, std::size_t receivers,
+                          const std::vector<OdometrySample>& odometry) {
+  const double span_s = seconds_between(odometry.front().stamp, odometry.back().stamp);
+  for (std::size_t i = 0; i < receivers; ++i) {
+    const GnssConfig& receiver = receiver_of(description, i);
+    if (std::abs(receiver.delay_s) > span_s)
+      throw InputError(fmt::format(
+          "{}delay: {:g} s is longer than the odometry, {:.6g} s, and no fix lies within it; a delay is how late "
+          "the stamps of the fixes are, and 'time: {{offset}}' moves a whole log",
+          receiver.delay_place, receiver.delay_s, span_s));
+  }
+}
+
 }  // namespace
 
 const GnssConfig& receiver_of(const DriveDescription& description, std::size_t source) {
@@ -120,6 +135,7 @@ std::vector<GeodeticFix> prepare_fixes(const DriveLogs& logs, const DriveDescrip
     return fix.stamp < odometry.front().stamp || fix.stamp > odometry.back().stamp;
   });
   report.fixes_outside_odometry = before - fixes.size();
+  if (fixes.empty()) require_short_delays(description, logs.gnss.size(), odometry);
   if (fixes.empty())
     throw InputError(
         fmt::format("{}: no fix lies within the odometry: odometry {}, fixes {} on the scale '{}'; check "

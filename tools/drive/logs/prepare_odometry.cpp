@@ -99,7 +99,13 @@ Candidate candidate_of(const std::vector<DriveLogs::Log>& logs, const OdometryCo
                       .gives_nodes = config.gives_nodes};
   std::vector<OdometrySample>& samples = candidate.source.samples;
   samples = samples_of(logs, config, description, candidate.stream, report);
-  if (samples.size() < 2) {
+  const bool had_motion = candidate.stream.read >= 2;
+  if (samples.size() < 2 && had_motion && !config.delay_place.empty()) {
+    candidate.flaw = fmt::format(
+        "{}speed_delay {:g} s and yaw_rate_delay {:g} s leave {} samples of speed and yaw rate at one instant: "
+        "they differ by more than {} is long",
+        config.delay_place, config.speed_delay_s, config.yaw_rate_delay_s, samples.size(), candidate.file);
+  } else if (samples.size() < 2) {
     candidate.flaw =
         fmt::format("{}: {} usable odometry samples; at least 2 are needed", candidate.file, samples.size());
   } else {

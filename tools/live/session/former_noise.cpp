@@ -17,7 +17,7 @@ void use_former_noise(const std::string& path, const TypeRegistry& registry,
   std::error_code unknown;
   const bool folder = std::filesystem::is_directory(path, unknown);
   const std::string file = folder ? (std::filesystem::path(path) / "summary.json").string() : path;
-  const std::string text = formats::read_text_file(file);
+  const std::string text = formats::read_text_file(file, {.check = formats::require_digits(file)});
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains(settings.modeling) || !json[settings.modeling].contains("noise"))
     throw InputError(fmt::format(

@@ -57,7 +57,7 @@ void write_state_file(const std::string& path, const WarmStart& state) {
 
 WarmStart read_state_file(const std::string& path) {
   try {
-    const Json json = Json::parse(formats::read_text_file(path));
+    const Json json = Json::parse(formats::read_text_file(path, {.check = formats::require_digits(path)}));
     if (json.at("schema") != kSchema || json.at("version") != 1)
       throw InputError("it is no state of this version");
     WarmStart state;

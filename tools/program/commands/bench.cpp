@@ -6,6 +6,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/optimize/named_start.hpp>
+#include <waymark/formats/graph/graph_text.hpp>
 #include <waymark/formats/text/hash.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/benchmark/benchmark_report.hpp>
@@ -83,7 +84,7 @@ struct LoadedGraph {
 };
 
 LoadedGraph load(const std::string& path, const std::string& format, const TypeRegistry& registry) {
-  const std::string text = formats::read_text_file(path);
+  const std::string text = formats::read_graph_text(path, registry);
   formats::ReadReport report;
   formats::GraphDocument document = formats::read_graph_as(*formats::graph_format_from_string(format), text,
                                                            path, registry, false, &report);
@@ -167,7 +168,9 @@ ExitCode bench(const BenchOptions& options) {
   for (const std::string& start : options.starts) check_start(start, registry, {kFileStart});
   benchmark::KnownOptima known;
   if (!options.optima.empty())
-    known = benchmark::read_known_optima(formats::read_text_file(options.optima), options.optima);
+    known = benchmark::read_known_optima(
+        formats::read_text_file(options.optima, {.check = formats::require_digits(options.optima)}),
+        options.optima);
   if (!options.folder.empty()) formats::make_folder(options.folder);
   // A wrong file at the end of the list is found before hours of work.
   for (std::size_t i = 1; i < options.files.size(); ++i) {

@@ -7,7 +7,7 @@
 #include <waymark/core/graph/gradient_check.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/formats/graph/graph_format.hpp>
-#include <waymark/formats/text/text_file.hpp>
+#include <waymark/formats/graph/graph_text.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/conformance/conformance.hpp>
 #include <waymark/tools/program/jobs/graph/derivatives.hpp>
@@ -56,8 +56,8 @@ ExitCode check_file(const CheckOptions& options, const TypeRegistry& registry) {
   formats::ReadReport report;
   constexpr bool kLenient = true;  // reports the first ten wrong lines, not only one
   const formats::GraphDocument document = formats::read_graph_as(
-      *formats::graph_format_from_string(options.input_format), formats::read_text_file(options.input),
-      options.input, registry, kLenient, &report);
+      *formats::graph_format_from_string(options.input_format),
+      formats::read_graph_text(options.input, registry), options.input, registry, kLenient, &report);
   const Graph& graph = document.graph;
   std::vector<std::string> problems = report.examples;
   if (report.skipped > problems.size()) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/text/folder_lock.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/result_folder.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
@@ -63,6 +64,7 @@ ExitCode compare(const CompareOptions& options) {
   tell_limits(runs, console);
   const drawing::Page page = report::comparison_page(runs, WAYMARK_VERSION);
   formats::make_folder(options.output);
+  const formats::FolderLock lock(options.output);
   const evaluation::ResultFolder folder(options.output);
   std::vector<std::string> files =
       drawing::write_page(page, folder.path(), evaluation::ResultFolder::kComparison);

@@ -7,8 +7,8 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
+#include <waymark/formats/graph/graph_text.hpp>
 #include <waymark/formats/text/hash.hpp>
-#include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/commands/drive_options.hpp>
 #include <waymark/tools/program/jobs/drive/drive_job.hpp>
@@ -95,7 +95,7 @@ ExitCode convert_drive(const ConvertOptions& options, const drive::DriveFile& fi
 ExitCode convert_graph(const ConvertOptions& options, const TypeRegistry& registry, const Console& console) {
   refuse_options(options.of_drives, "a graph file");
   console.progress("reading " + options.input);
-  const std::string text = formats::read_text_file(options.input);
+  const std::string text = formats::read_graph_text(options.input, registry);
   formats::GraphDocument document =
       read_graph_file(text, options.input, options.input_format, options.lenient, registry, console);
   stop_if_interrupted();

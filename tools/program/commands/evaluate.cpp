@@ -4,6 +4,8 @@
 #include <utility>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/graph/graph_text.hpp>
+#include <waymark/formats/text/folder_lock.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
@@ -86,7 +88,8 @@ void judge_coverage(const std::vector<TruthPose>& truth, formats::GraphDocument&
 
 formats::GraphDocument read_fused(const std::string& input, const EvaluationJob& job) {
   job.console.progress("evaluating " + input);
-  formats::GraphDocument document = formats::read_graph(formats::read_text_file(input), input, job.registry);
+  formats::GraphDocument document =
+      formats::read_graph(formats::read_graph_text(input, job.registry), input, job.registry);
   if (drive::evaluated_vertices(document).empty())
     throw InputError(input + ": has neither GNSS records nor poses with stamps to evaluate at");
   const bool optimised = std::any_of(document.provenance.begin(), document.provenance.end(),
@@ -145,7 +148,11 @@ ExitCode evaluate_files(const EvaluateOptions& options) {
   std::vector<evaluation::LabelledEvaluation> evaluations;
   evaluation::ReportHeader header;
   const std::vector<std::string> labels = labels_of(options.inputs);
-  if (!options.folder.empty()) formats::make_folder(options.folder);
+  std::optional<formats::FolderLock> lock;
+  if (!options.folder.empty()) {
+    formats::make_folder(options.folder);
+    lock.emplace(options.folder);
+  }
   for (std::size_t i = 0; i < options.inputs.size(); ++i) {
     stop_if_interrupted();
     evaluations.push_back(evaluate_file(job, options.inputs[i], labels[i], header));

@@ -1,4 +1,5 @@
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/graph/graph_text.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/summary_json.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
@@ -33,8 +34,9 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   require_output_place(options.output);
   check_covariance_file(options.covariance_file, options.minimization.covariances);
   console.progress("reading " + options.input);
-  formats::GraphDocument document = read_graph_file(formats::read_text_file(options.input), options.input,
-                                                    options.input_format, options.lenient, registry, console);
+  formats::GraphDocument document =
+      read_graph_file(formats::read_graph_text(options.input, registry), options.input, options.input_format,
+                      options.lenient, registry, console);
   attach_losses(document.graph, options.robust, registry);
   announce_output(options.format, document, options.input, console);  // before the work
   stop_if_interrupted();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/folder_lock.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/model/minimize.hpp>
@@ -243,6 +244,7 @@ ExitCode reproduce(const ReproduceOptions& options) {
   const TypeRegistry registry = make_registry(options.common);
   const reproduction::Experiment experiment = chosen_experiment(options);
   const std::vector<Subject> subjects = find_subjects(options, console);
+  const formats::FolderLock lock(options.folder);
   StudyProgress progress(experiment, subjects, console);
   std::vector<reproduction::DriveResult> results;
   for (const Subject& subject : subjects)

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/folder_lock.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
 #include <waymark/tools/program/jobs/inspection/drive_statistics.hpp>
@@ -93,6 +94,7 @@ ExitCode simulate_drive(const SimulateOptions& options) {
   simulation::check(recipe);
   require_no_real_drive(options.folder, recipe);
   formats::make_folder(options.folder);
+  const formats::FolderLock lock(options.folder);
   console.progress("simulating " + preset.name);
   const simulation::SimulatedDrive drive =
       simulation::simulate(recipe, options.seed.value_or(preset.default_seed));

@@ -44,7 +44,7 @@ std::vector<ReadInput> read_inputs(const std::vector<std::string>& paths) {
     ReadInput& input = inputs.emplace_back();
     input.path = path;
     try {
-      std::string text = formats::read_text_file(path);
+      std::string text = formats::read_text_file(path, {.check = formats::require_digits(path)});
       if (drive::is_drive_text(path, text)) {
         input.drive = drive::parse_drive_file(text, path);
       } else {

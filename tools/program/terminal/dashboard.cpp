@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <waymark/core/base/angle.hpp>
+#include <waymark/tools/text/text_look.hpp>
 
 namespace waymark::program {
 namespace {
@@ -52,10 +53,11 @@ void Dashboard::show(const live::Session& session) {
   if (!wanted_) return;
   if (!is_terminal_) {
     constexpr int kEvery = 10;
-    if (seconds_++ % kEvery == 0) std::fprintf(stderr, "%s\n", line_of(session).c_str());
+    if (seconds_++ % kEvery == 0)
+      std::fprintf(stderr, "%s\n", text::without_controls(line_of(session)).c_str());
     return;
   }
-  const std::string screen = screen_of(session);
+  const std::string screen = text::without_controls(screen_of(session));
   if (lines_ > 0) std::fprintf(stderr, "\033[%dA\033[J", lines_);
   std::fputs(screen.c_str(), stderr);
   lines_ = static_cast<int>(std::count(screen.begin(), screen.end(), '\n'));

@@ -12,7 +12,7 @@ constexpr std::size_t kInput = 64U << 10U;
 
 }  // namespace
 
-ByteSource::ByteSource(std::string path) : file_(std::move(path)), input_(kInput) {
+ByteSource::ByteSource(std::string path) : file_(std::move(path), PipeUse::remember), input_(kInput) {
   // A pipe may give its first bytes one by one.
   std::size_t known = 0;
   while (known < kLongestMagic && !at_end_) known += read_some(std::span(input_).subspan(known));

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/text/folder_lock.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/summary_json.hpp>
 #include <waymark/tools/program/jobs/drive/drive_text.hpp>
@@ -271,7 +272,11 @@ DriveRun run_drive(const drive::DriveFile& file, const DriveChoice& choice, cons
   console.stop_if_cancelled();
   std::vector<drive::ModeledDrive> models = model_all(run);
   if (!has_fixes) map = read_map_file(options.map, drive.frame, positions_of(models.front().document));
-  if (run.writes()) formats::make_folder(*options.folder);
+  std::optional<formats::FolderLock> lock;
+  if (run.writes()) {
+    formats::make_folder(*options.folder);
+    lock.emplace(*options.folder);
+  }
   evaluation::ReportHeader header{done.loaded.drive.name, {}};
   for (std::size_t i = 0; i < models.size() && (i == 0 || !console.cancel()); ++i) {
     done.modelings.push_back(run_modeling(run, std::move(models[i]), done.loaded.settings[i], header));

@@ -81,7 +81,8 @@ std::vector<TruthPose> truth_for(const formats::GraphDocument& document,
 
 std::vector<TruthPose> truth_from_tum(const std::string& path) {
   std::vector<TruthPose> truth;
-  for (const StampedPose& pose : formats::read_tum(formats::read_text_file(path), path))
+  for (const StampedPose& pose :
+       formats::read_tum(formats::read_text_file(path, {.check = formats::require_digits(path)}), path))
     truth.push_back({pose.stamp, pose.pose.head<2>(), pose.pose[2]});
   std::stable_sort(truth.begin(), truth.end(),
                    [](const auto& a, const auto& b) { return a.stamp < b.stamp; });
