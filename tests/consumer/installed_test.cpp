@@ -60,7 +60,10 @@ TEST_CASE("installed: the program runs from any prefix, and nothing points into 
     CHECK(waymark_test::is_safe(waymark_test::run_path(file)));
   }
   for (const auto& entry : fs::recursive_directory_iterator(kPrefix)) {
-    if (entry.path().extension() == ".so") CHECK(waymark_test::run_path(entry.path()).empty());
+    // The module of Python finds the library as the program does; plugins are loaded by one that has it.
+    const bool is_plugin =
+        entry.path().extension() == ".so" && !entry.path().filename().string().starts_with("_waymark");
+    if (is_plugin) CHECK(waymark_test::run_path(entry.path()).empty());
     const std::string suffix = entry.path().extension();
     if (suffix == ".cmake" || suffix == ".pc") {
       INFO(entry.path());

@@ -44,7 +44,7 @@ TEST_CASE("live: a real gpsd that is killed and comes back is heard again") {
   const RunResult result = shell(
       folder,
       "python3 $2/examples/live/play_drive.py receiver odometry 6 2> play.log & play=$!\n"
-      "sleep 0.5\n"
+      "for i in $(seq 100); do [ -e receiver ] && break; sleep 0.1; done\n"
       "gpsd -N -n -S " +
           port(0) +
           " $PWD/receiver 2> gpsd.log & daemon=$!\n"

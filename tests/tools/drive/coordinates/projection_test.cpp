@@ -123,8 +123,10 @@ TEST_CASE("projection: the frame of a drive") {
   CHECK(stated ==
         Frame{.zone = 32, .north = true, .origin_easting_m = 690'000, .origin_northing_m = 5'800'000});
 
-  CHECK_THROWS_MATCHES(choose_frame({52.5, -100}, 33, std::nullopt), InputError,
-                       Message("latitude 52.5, longitude -100 cannot be projected into UTM zone 33"));
+  CHECK_THROWS_MATCHES(
+      choose_frame({52.5, -100}, 33, std::nullopt), InputError,
+      Message("latitude 52.5, longitude -100 cannot be projected into UTM zone 33N; leave the wrong "
+              "places out ('time: {from, to}'), or state 'frame: {utm_zone: ...}'"));
   CHECK_THROWS_MATCHES(Projection(Frame{}), InputError,
                        Message("a frame without a UTM zone (zone 0) has no geodetic position"));
 }
