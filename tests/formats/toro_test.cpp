@@ -144,7 +144,8 @@ TEST_CASE(
   };
   CHECK_THROWS_WITH(
       read_as(GraphFormat::covariance, text("1e-309")),
-      "a.graph:3:43: EDGE2: the covariance matrix is not positive definite, or its inverse not finite");
+      "a.graph:3:43: EDGE2: the covariance matrix is not positive definite, or its inverse not finite; give "
+      "the variances of this edge, or read the file with --input-format toro if the numbers are information");
   const GraphDocument document = read_as(GraphFormat::covariance, text("1e-308"));
   CHECK(document.graph.batch(0).information(0).diagonal().isApproxToConstant(1e308, 1e-12));
   CHECK(write_as(GraphFormat::g2o, document).find("inf") == std::string::npos);
