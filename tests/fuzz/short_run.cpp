@@ -1,4 +1,4 @@
-// A short run of every target without libFuzzer, as a test of every build:
+// A short run of every target without libFuzzer:
 //   waymark_fuzz_short SEEDS INPUTS SECONDS
 // reads the seeds of all targets (make_seeds.py) and tries INPUTS mutations of them for each target, the same ones in
 // every run, for SECONDS at most. A finding ends the program; its input lies in found-TARGET in the present folder.

@@ -1,5 +1,5 @@
 /// What is fuzzed, by name. libFuzzer runs one target as a program of its own (libfuzzer_main.cpp); a short run of
-/// all of them is a test of every build (short_run.cpp).
+/// all of them needs no libFuzzer (short_run.cpp).
 #pragma once
 
 #include <cstddef>
