@@ -5,15 +5,26 @@
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/core/drive/modeling.hpp>
+#include <waymark/core/graph/graph.hpp>
 
 namespace waymark {
 
 OdometryModel::~OdometryModel() = default;
 GnssModeling::~GnssModeling() = default;
 
-std::vector<Eigen::Vector2d> GnssModeling::lasting_errors(std::span<const Fix>, const Graph&) const {
+std::vector<ExpectedError> GnssModeling::lasting_errors(std::span<const Fix>, const Graph&) const {
   return {};
 }
+
+Eigen::Vector2d ExpectedError::mean(const Graph& graph) const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Term& term : terms) {
+    const auto value = graph.value(term.vertex);
+    sum += term.factor * Eigen::Vector2d(value[0], value[1]);
+  }
+  return sum;
+}
+
 SensorModel::~SensorModel() = default;
 void SensorModel::check_drive(std::span<const Fix>, const SensorTable&) const {}
 std::vector<RoughPosition> SensorModel::rough_positions(const SensorTable&) const {

@@ -136,6 +136,21 @@ struct GnssInput {
   const DriveContext& context = DriveContext::none();
 };
 
+/// The error of a fix (measured minus antenna, m, frame) as a modeling expects it: what states of a graph
+/// tell of it, and a rest that is independent of them.
+struct ExpectedError {
+  struct Term {
+    VertexIndex vertex;      ///< with two values
+    Eigen::Matrix2d factor;  ///< of its value
+  };
+  std::vector<Term> terms;
+  /// covariance of the rest, m^2: what happens between the states, and the noise that is new in each fix
+  Eigen::Matrix2d rest = Eigen::Matrix2d::Zero();
+
+  /// Returns the expectation at the values of the graph, m.
+  [[nodiscard]] Eigen::Vector2d mean(const Graph& graph) const;
+};
+
 /// Connects poses and the fixes of one source (the paper's G1, G2, G3, and those of plugins). Several
 /// sources are served by one object only if they share their errors (GnssModelingType::shares_errors).
 class GnssModeling {
@@ -144,13 +159,13 @@ class GnssModeling {
   /// Adds vertices (ids from Graph::free_id) and edges for the fixes, the next ones in time. The
   /// values of existing vertices are the initial guess.
   virtual void extend(const GnssInput& input, Graph& graph) = 0;
-  /// Predicts the errors of fixes that are not in the graph from those that are: the expectation of
-  /// the part that lasts. A model of white noise has none.
+  /// Predicts the errors of fixes that are not in the graph from those that are, by the part of them that
+  /// lasts. A model of white noise has none.
   /// @param fixes those that extend() never saw, in order of time
   /// @param minimum the graph that extend() built, at its minimum; no vertex has left it
-  /// @returns one error for each fix (measured minus antenna, m, frame); empty: there is no such part
-  [[nodiscard]] virtual std::vector<Eigen::Vector2d> lasting_errors(std::span<const Fix> fixes,
-                                                                    const Graph& minimum) const;
+  /// @returns one error for each fix, or for none of them: there is no such part
+  [[nodiscard]] virtual std::vector<ExpectedError> lasting_errors(std::span<const Fix> fixes,
+                                                                  const Graph& minimum) const;
 };
 
 /// The input of a sensor model.

@@ -23,6 +23,8 @@ namespace {
 /// Cauchy's loss of scale sqrt(6) on 1.5 times the information.
 constexpr double kStudentInformation = 1.5;
 const double kStudentScale = std::sqrt(6.0);
+/// Standard deviation over scale: sqrt(nu / (nu - 2)).
+const double kStudentDeviation = std::sqrt(2.0);
 
 struct ErrorModel {
   double white_m = 0;
@@ -48,7 +50,7 @@ struct ErrorModel {
   [[nodiscard]] double bias_m(const ClaimedAccuracies& claimed, SolutionKind kind) const {
     const double median_m = claimed.of(kind);
     const double floor_m = median_m > 0 ? std::min(bias_floor_m, bias_per_accuracy * median_m) : bias_floor_m;
-    return std::hypot(floor_m, bias_share * multipath_m * kind_scale(claimed, kind));
+    return std::hypot(floor_m, bias_share * std::hypot(multipath_m, white_m) * kind_scale(claimed, kind));
   }
 
   /// Returns the symmetric root of a fix's relative covariance. Within a kind of solution the claimed
@@ -95,17 +97,17 @@ class ProcessAlongFixes {
     return states_.back().vertex.keep(next, graph);
   }
 
-  /// Returns the expectation between the states of the fixes, given all of them: the process has no
-  /// memory beyond its neighbours.
-  [[nodiscard]] Eigen::Vector2d expected(Stamp stamp, const Graph& minimum) const {
+  /// Adds root times what the states of the fixes tell of the process at a moment: it has no memory beyond
+  /// its neighbours.
+  void add_expectation(Stamp stamp, const Graph& graph, const Eigen::Matrix2d& root,
+                       ExpectedError& error) const {
     const auto after = first_not_before(stamp);
-    if (after == states_.begin()) return decay_to(stamp, *after) * value(*after, minimum);
-    const auto before = std::prev(after);
-    if (after == states_.end()) return decay_to(stamp, *before) * value(*before, minimum);
-    const double a = decay_to(stamp, *before);
-    const double b = decay_to(stamp, *after);
-    return (a * (1 - b * b) * value(*before, minimum) + b * (1 - a * a) * value(*after, minimum)) /
-           (1 - a * a * b * b);
+    const double a = after == states_.begin() ? 0 : decay_to(stamp, *std::prev(after));
+    const double b = after == states_.end() ? 0 : decay_to(stamp, *after);
+    const double share = 1 - a * a * b * b;
+    if (a > 0) error.terms.push_back({std::prev(after)->vertex.in(graph), a * (1 - b * b) / share * root});
+    if (b > 0) error.terms.push_back({after->vertex.in(graph), b * (1 - a * a) / share * root});
+    error.rest += sigma_ * sigma_ * (1 - a * a) * (1 - b * b) / share * root * root.transpose();
   }
 
  private:
@@ -156,10 +158,6 @@ class ProcessAlongFixes {
   [[nodiscard]] double decay_to(Stamp stamp, const State& state) const {
     return std::exp(-std::abs(seconds_between(state.stamp, stamp)) / time_s_);
   }
-  [[nodiscard]] static Eigen::Vector2d value(const State& state, const Graph& minimum) {
-    const auto numbers = minimum.value(state.vertex.in(minimum));
-    return {numbers[0], numbers[1]};
-  }
 
   double sigma_;
   double time_s_;
@@ -175,16 +173,20 @@ class GnssCorrelated final : public GnssModeling {
   GnssCorrelated(const ErrorModel& model, double time_offset_sigma_s)
       : model_(model), time_offset_sigma_s_(time_offset_sigma_s) {}
 
-  [[nodiscard]] std::vector<Eigen::Vector2d> lasting_errors(std::span<const Fix> fixes,
-                                                            const Graph& minimum) const override {
-    std::vector<Eigen::Vector2d> errors;
+  [[nodiscard]] std::vector<ExpectedError> lasting_errors(std::span<const Fix> fixes,
+                                                          const Graph& minimum) const override {
+    std::vector<ExpectedError> errors;
     for (const Fix& fix : fixes) {
-      errors.emplace_back(Eigen::Vector2d::Zero());
-      const auto bias = biases_.find({fix.source, kind_of(fix.told.quality)});
-      if (!multipath_ || bias == biases_.end()) continue;
+      ExpectedError& error = errors.emplace_back();
+      const SolutionKind kind = kind_of(fix.told.quality);
       const Eigen::Matrix2d root = model_.relative_root(fix, claimed_);
-      errors.back() = bias->second.expected(fix.stamp, minimum) +
-                      model_.multipath_m * root * multipath_->expected(fix.stamp, minimum);
+      if (multipath_) multipath_->add_expectation(fix.stamp, minimum, model_.multipath_m * root, error);
+      if (const auto bias = biases_.find({fix.source, kind}); bias != biases_.end())
+        bias->second.add_expectation(fix.stamp, minimum, Eigen::Matrix2d::Identity(), error);
+      else
+        error.rest += std::pow(model_.bias_m(claimed_, kind), 2) * Eigen::Matrix2d::Identity();
+      const double white = model_.white_m * (model_.heavy_tails ? kStudentDeviation : 1);
+      error.rest += white * white * root * root;
     }
     return errors;
   }

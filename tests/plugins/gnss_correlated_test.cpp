@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/drive/modeling.hpp>
 #include <waymark/solvers/optimize.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
@@ -45,6 +46,17 @@ BuiltFix fix_of(const Graph& graph) {
       return {graph.batch(b).information(0), graph.batch(b).loss(0)};
   }
   throw std::runtime_error("no fix");
+}
+
+/// Returns the covariance of an expected error, m^2.
+Eigen::Matrix2d covariance_of(const ExpectedError& error, const Graph& minimum) {
+  std::vector<VertexIndex> vertices;
+  Eigen::MatrixXd factors(2, 2 * static_cast<Eigen::Index>(error.terms.size()));
+  for (const ExpectedError::Term& term : error.terms) {
+    factors.middleCols<2>(2 * static_cast<Eigen::Index>(vertices.size())) = term.factor;
+    vertices.push_back(term.vertex);
+  }
+  return factors * Marginals(minimum).joint(vertices) * factors.transpose() + error.rest;
 }
 
 }  // namespace
@@ -106,7 +118,7 @@ TEST_CASE("correlated: the lasting errors of other fixes are those of a Gaussian
   REQUIRE(optimize(graph).summary.converged());
 
   const auto covariance = [](double a, double b) {
-    const double bias = 0.8 * 0.8 + 1.5 * 1.5;
+    const double bias = 0.8 * 0.8 + 0.5 * 0.5 * (3 * 3 + 0.5 * 0.5);
     return bias * std::exp(-std::abs(a - b) / 2000) + 9 * std::exp(-std::abs(a - b) / 30);
   };
   Eigen::MatrixXd gram(5, 5);
@@ -123,10 +135,14 @@ TEST_CASE("correlated: the lasting errors of other fixes are those of a Gaussian
     for (int i = 0; i < 5; ++i) to_known[i] = covariance(time_s, times[static_cast<std::size_t>(i)]);
     const Eigen::Vector2d expected = (to_known * weights).transpose();
     const std::vector<Fix> asked{fix_at(time_s, {0, 0})};
-    const std::vector<Eigen::Vector2d> predicted = modeling->lasting_errors(asked, graph);
+    const std::vector<ExpectedError> predicted = modeling->lasting_errors(asked, graph);
     REQUIRE(predicted.size() == 1);
     INFO(time_s);
-    CHECK((predicted[0] - expected).norm() < 1e-6);
+    CHECK((predicted[0].mean(graph) - expected).norm() < 1e-6);
+
+    const double variance =
+        covariance(time_s, time_s) + 0.25 - to_known * gram.ldlt().solve(to_known.transpose());
+    CHECK((covariance_of(predicted[0], graph) - variance * Eigen::Matrix2d::Identity()).norm() < 1e-6);
   }
   CHECK(registry.make_gnss_modeling("g1", {})->lasting_errors(known, graph).empty());
 }

@@ -100,8 +100,9 @@ struct HeldOut {
   double run_s = 0;                            ///< length of a run of fixes that are kept out
   double every_s = 0;                          ///< from run to run
   std::vector<WithheldMetrics> predictions{};  ///< "fused", "dead reckoning", "with lasting errors"
-  InnovationStatistics innovation{};           ///< count is 0 if the errors of fixes are not independent
-  /// Root mean of trace(R + P): the error that the covariances promise. kUndefined without them
+  InnovationStatistics innovation{};           ///< of errors that last: with their states, at some fixes
+  /// Root mean of the traces of the covariances of innovations: the error that they promise. kUndefined
+  /// without them
   double expected_rmse_m = kUndefined;
   std::vector<Stamp> stamps{};     ///< of the judged fixes
   std::vector<double> errors_m{};  ///< of the fused prediction at each of them

@@ -41,8 +41,8 @@ class GuardedModeling final : public GuardedModel<GnssModeling> {
   void extend(const GnssInput& input, Graph& graph) override {
     call([&](GnssModeling& model) { model.extend(input, graph); });
   }
-  [[nodiscard]] std::vector<Eigen::Vector2d> lasting_errors(std::span<const Fix> fixes,
-                                                            const Graph& minimum) const override {
+  [[nodiscard]] std::vector<ExpectedError> lasting_errors(std::span<const Fix> fixes,
+                                                          const Graph& minimum) const override {
     return call([&](const GnssModeling& model) { return model.lasting_errors(fixes, minimum); });
   }
 };

@@ -167,6 +167,40 @@ TEST_CASE(
   CHECK(contains(read_text(folder + "r/report.html"), "Stated errors</h2>"));
 }
 
+TEST_CASE("evaluation: without truth the innovations of errors that last are as large as promised") {
+  const std::string folder = fresh_folder();
+  // 60 fixes in 12 runs, so the mean of three drives is known to a third or so.
+  double sum = 0;
+  for (const std::string seed : {"1", "3", "4"}) {
+    const std::string drive = folder + seed;
+    REQUIRE(run({"simulate", "--preset", "rural", "--seed", seed, "-o", drive}).code == 0);
+    const std::string yaml = read_text(drive + "/drive.yaml");
+    write_text(drive + "/drive.yaml", yaml.substr(0, yaml.find("truth:")));
+    const RunResult result = run({"run", drive + "/drive.yaml", "--out", folder + "r"});
+    INFO(result.err);
+    REQUIRE(result.code == 0);
+    const Json held = Json::parse(read_text(folder + "r/metrics.json"))["evaluations"][0]["held_out"];
+    const Json& innovation = held["innovation"];
+    CHECK(innovation["n"] == 60);
+    sum += innovation["mean"].get<double>();
+    // Both are over the same fixes: the promise is that of the innovations.
+    const double rmse_m = held["predictions"]["with lasting errors"]["at_fixes"]["rmse_m"];
+    CHECK(held["expected_rmse_m"].get<double>() == Approx(rmse_m).epsilon(0.5));
+    CHECK(contains(result.out, "m is expected). The mean NIS is "));
+  }
+  CHECK(sum / 3 == Approx(2).margin(0.8));
+}
+
+TEST_CASE("evaluation: run says why nothing is kept out") {
+  const std::string folder = fresh_folder();
+  const std::string drive = write_drive(folder, {.seconds = 60, .with_truth = false});
+  const RunResult result = run({"run", drive, "--out", folder + "r"});
+  REQUIRE(result.code == 0);
+  CHECK(contains(result.err,
+                 "note: the result is not judged by fixes that are kept out: only 5 fixes could be "
+                 "kept out, and 10 are needed\n"));
+}
+
 TEST_CASE("evaluation: nothing is kept out of a drive that has truth or withheld fixes") {
   const std::string folder = fresh_folder();
   for (const bool with_truth : {true, false}) {

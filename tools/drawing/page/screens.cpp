@@ -10,7 +10,7 @@ constexpr int kNarrow = 340;   // px: a telephone of 360 px, less its margins
 constexpr int kWide = 1320;    // px: a screen of 1400 px, less its margins
 constexpr int kTallest = 460;  // px: a map on a telephone leaves room to scroll past it
 constexpr int kRowOfLegend = 20;
-constexpr double kCoarse = 2;  // px
+constexpr double kCoarse = 3;  // px
 
 /// Returns the rows of the legend if the figure had this width.
 int rows_at(int width, const Figure& figure) {

@@ -144,13 +144,13 @@ PosesAtWithheld with_lasting_errors(const formats::GraphDocument& document,
       withheld.push_back(fix);
       places.push_back(i);
     }
-    const std::vector<Eigen::Vector2d> errors = modelings[source]->lasting_errors(withheld, document.graph);
+    const std::vector<ExpectedError> errors = modelings[source]->lasting_errors(withheld, document.graph);
     if (errors.empty()) continue;
     if (poses.empty()) poses = poses_of_fixes(document);
     result.poses.resize(document.fixes.size());
     for (std::size_t k = 0; k < places.size(); ++k) {
       result.poses[places[k]] = poses[places[k]];
-      result.poses[places[k]]->head<2>() += errors[k];
+      result.poses[places[k]]->head<2>() += errors[k].mean(document.graph);
     }
   }
   return result;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -144,6 +145,26 @@ void judge_by_prior(const std::map<VertexIndex, Eigen::MatrixXd>& priors, Vertex
       std::abs(result.first) / std::sqrt(result.prior_sigma * result.prior_sigma - covariance(axis, axis));
 }
 
+/// Returns the covariances of vertices: those of the document, if it has all of them.
+std::vector<Eigen::MatrixXd> covariances_of(const formats::GraphDocument& document,
+                                            const std::vector<VertexIndex>& vertices) {
+  std::unordered_map<VertexIndex, const Eigen::MatrixXd*> known;
+  for (const formats::VertexCovariance& block : document.covariances)
+    known.emplace(block.vertex, &block.covariance);
+  std::vector<Eigen::MatrixXd> covariances;
+  covariances.reserve(vertices.size());
+  for (const VertexIndex v : vertices) {
+    const auto block = known.find(v);
+    if (block == known.end()) break;
+    covariances.push_back(*block->second);
+  }
+  if (covariances.size() == vertices.size()) return covariances;
+  covariances.clear();
+  const CovarianceBlocks blocks = marginal_covariances(document.graph, vertices);
+  for (std::size_t i = 0; i < blocks.size(); ++i) covariances.emplace_back(blocks[i]);
+  return covariances;
+}
+
 }  // namespace
 
 std::vector<StateReport> report_states(const formats::GraphDocument& document) {
@@ -154,7 +175,7 @@ std::vector<StateReport> report_states(const formats::GraphDocument& document) {
     ends.push_back(state.vertices.front());
     ends.push_back(state.vertices.back());
   }
-  const auto covariances = marginal_covariances(document.graph, ends);
+  const std::vector<Eigen::MatrixXd> covariances = covariances_of(document, ends);
   const auto priors = single_priors(document.graph);
   std::vector<StateReport> reports;
   for (std::size_t i = 0; i < states.size(); ++i) {

@@ -34,8 +34,15 @@ std::string describe_losses(const evaluation::Improvement& i) {
   return text.empty() ? text : text + ".";
 }
 
+/// Tells whether a few wild fixes make a mean large, while the others are as their covariances say.
+bool few_are_wild(const Innovations& nis) {
+  constexpr double kMostInside = 0.9;
+  return times_as_large(nis) > kFits && nis.fraction_inside >= kMostInside;
+}
+
 drawing::Verdict kind_of(const Innovations& nis) {
   const double factor = times_as_large(nis);
+  if (few_are_wild(nis)) return drawing::Verdict::none;
   if (!(factor > 0)) return drawing::Verdict::none;
   if (factor <= kFits && factor >= 1 / kFits) return drawing::Verdict::better;
   return factor > kFarOff ? drawing::Verdict::worse : drawing::Verdict::none;
@@ -105,8 +112,6 @@ DriveVerdict verdict_without_truth(const ReportedDrive& drive) {
   if (nis.count > 0 && std::isfinite(nis.mean)) {
     verdict.text += " The mean NIS is " + describe_nis(nis) + ".";
     verdict.kind = kind_of(nis);
-  } else if (drive.evaluation.held_out) {
-    verdict.text += " The errors of the fixes are taken as lasting, so their NIS has no meaning.";
   }
   verdict.text += describe_sigma(drive);
   return verdict;
@@ -125,7 +130,9 @@ std::vector<std::string> stated(const ReportedDrive& drive, std::string_view key
 std::string describe_nis(const evaluation::InnovationStatistics& nis) {
   const double factor = times_as_large(nis);
   const std::string words =
-      factor > kFits ? fmt::format("the errors are {:.1f} times as large as their covariances say", factor)
+      few_are_wild(nis) ? fmt::format("a few fixes are wild, and {:.0f} % are inside their 95 % region",
+                                      100 * nis.fraction_inside)
+      : factor > kFits  ? fmt::format("the errors are {:.1f} times as large as their covariances say", factor)
       : factor < 1 / kFits
           ? fmt::format("the errors are only {:.2f} times as large as their covariances say", factor)
           : "the stated covariances fit";

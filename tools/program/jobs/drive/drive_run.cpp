@@ -15,6 +15,7 @@
 #include <waymark/tools/program/jobs/drive/drive_text.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
 #include <waymark/tools/program/jobs/evaluation/hold_out.hpp>
+#include <waymark/tools/program/jobs/evaluation/lasting_innovations.hpp>
 #include <waymark/tools/program/jobs/evaluation/map_file.hpp>
 #include <waymark/tools/program/jobs/evaluation/source_comparison.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
@@ -81,24 +82,32 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
   return causal;
 }
 
-/// Evaluates a document with the covariances at its fixes, which it holds afterwards.
+/// Gives a document the covariances of all its vertices.
+void add_all_covariances(const RunOfDrive& run, const drive::FusionSettings& settings,
+                         formats::GraphDocument& document) {
+  if (settings.minimization.covariances == "all") return;  // it has them
+  run.console.progress(settings.modeling + ": covariances");
+  try {
+    drive::add_covariances(document, "all");
+  } catch (const InputError& error) {
+    warn("stated errors cannot be judged: " + std::string(error.what()), document, run.console);
+  }
+  run.console.end_progress();
+}
+
+/// Evaluates a document with the covariances that it has.
 evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDrive& modeled,
                                         const Summary& summary, const drive::FusionSettings& settings) {
   formats::GraphDocument& document = modeled.document;
-  run.console.progress(settings.modeling + ": covariances");
-  if (summary.converged() && document.covariances.empty()) {
-    try {
-      drive::add_covariances(document, "fixes");
-    } catch (const InputError& error) {
-      warn("stated errors cannot be judged: " + std::string(error.what()), document, run.console);
-    }
-  }
   std::vector<evaluation::Prediction> further;
   drive::PosesAtWithheld fixes = drive::with_lasting_errors(document, modeled.modelings);
   if (!fixes.poses.empty()) further.push_back(as_prediction("with lasting errors", std::move(fixes)));
   if (run.options.causal) further.push_back(predict_causally(run, settings, document));
   evaluation::Evaluation evaluation = evaluate_document(document, run.loaded.drive.truth, further);
-  run.console.end_progress();
+  if (summary.converged() && evaluation.prediction.count == 0) {
+    if (const auto lasting = lasting_innovations(document, modeled.modelings))
+      evaluation.prediction = lasting->statistics;
+  }
   if (summary.converged())
     evaluation.sources = compare_sources(run.loaded.drive, modeled, evaluation, run.registry, run.console);
   if (summary.converged())
@@ -176,10 +185,11 @@ std::vector<formats::VertexCovariance> minimise_and_judge(const RunOfDrive& run,
   const Summary& summary = result.result.summary;
   record_optimization(result.result, document);
   files.write_fused_graph();  // the minimum is saved before anything else can fail
+  std::vector<formats::VertexCovariance> asked_for = document.covariances;
+  if (summary.converged()) add_all_covariances(run, settings, document);
   result.states = states_of_minimum(document, summary, console);
-  const std::vector<formats::VertexCovariance> asked_for = document.covariances;
   result.evaluation = {modeling, evaluate_minimum(run, modeled, summary, settings)};
-  std::vector<formats::VertexCovariance> known = std::exchange(document.covariances, asked_for);
+  std::vector<formats::VertexCovariance> known = std::exchange(document.covariances, std::move(asked_for));
   for (const std::string& sentence :
        warnings_of_result(result.states, modeled.settings, result.noise, result.evaluation.evaluation))
     warn(run.loaded.settings.size() > 1 ? modeling + ": " + sentence : sentence, document, console);

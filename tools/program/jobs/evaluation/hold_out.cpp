@@ -5,9 +5,12 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/model/outages.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
+#include <waymark/tools/program/jobs/evaluation/lasting_innovations.hpp>
 #include <waymark/tools/program/jobs/graph/optimization.hpp>
 
 namespace waymark::program {
@@ -17,6 +20,7 @@ constexpr double kRun_s = 5;
 constexpr double kEvery_s = 50;
 constexpr std::size_t kFewestJudged = 10;
 constexpr std::size_t kMostVertices = 300'000;
+constexpr const char* kNotJudged = "the result is not judged by fixes that are kept out";
 
 /// Returns the drive without the fixes in the middle of every kEvery_s. Runs begin by the clock, so
 /// that all receivers lose the same ones.
@@ -62,12 +66,11 @@ evaluation::HeldOut judged(const formats::GraphDocument& document, const evaluat
   return held;
 }
 
-/// Tells whether a second fusion can tell anything.
-bool can_hold_out(const drive::PreparedDrive& drive, const drive::ModeledDrive& modeled) {
+/// Tells whether nothing else judges the result: truth, or fixes that the user withholds.
+bool needs_hold_out(const drive::PreparedDrive& drive) {
   const auto withheld = [](const Fix& fix) { return fix.status == FixStatus::withheld; };
   return drive.truth.empty() && !drive.fixes.empty() &&
-         std::none_of(drive.fixes.begin(), drive.fixes.end(), withheld) &&
-         modeled.document.graph.vertex_count() <= kMostVertices;
+         std::none_of(drive.fixes.begin(), drive.fixes.end(), withheld);
 }
 
 }  // namespace
@@ -75,7 +78,12 @@ bool can_hold_out(const drive::PreparedDrive& drive, const drive::ModeledDrive& 
 std::optional<evaluation::HeldOut> hold_out(const drive::PreparedDrive& drive,
                                             const drive::ModeledDrive& modeled, const TypeRegistry& registry,
                                             const Console& console) {
-  if (!can_hold_out(drive, modeled) || console.cancel()) return std::nullopt;
+  if (!needs_hold_out(drive) || console.cancel()) return std::nullopt;
+  if (modeled.document.graph.vertex_count() > kMostVertices) {
+    console.note(fmt::format("{}: the graph has more than {} vertices; --withhold N judges it", kNotJudged,
+                             kMostVertices));
+    return std::nullopt;
+  }
   const drive::PreparedDrive rest = without_runs(drive);
   drive::FusionSettings settings = modeled.settings;
   settings.estimates_noise = false;
@@ -84,18 +92,30 @@ std::optional<evaluation::HeldOut> hold_out(const drive::PreparedDrive& drive,
   try {
     drive::FusedDrive fused = drive::fuse(rest, settings, registry, {.cancel = &console.cancel()});
     console.end_progress();
-    if (!fused.minimum.summary.converged()) return std::nullopt;
+    if (!fused.minimum.summary.converged()) {
+      console.note(std::string(kNotJudged) + ": the second fusion reached no minimum");
+      return std::nullopt;
+    }
     formats::GraphDocument& document = fused.model.document;
     judge_accepted_only(modeled.document, document);
     std::vector<evaluation::Prediction> further;
     drive::PosesAtWithheld lasting = drive::with_lasting_errors(document, fused.model.modelings);
     if (!lasting.poses.empty()) further.push_back(as_prediction("with lasting errors", std::move(lasting)));
     const evaluation::Evaluation evaluated = evaluate_document(document, {}, further);
-    if (evaluated.withheld < kFewestJudged) return std::nullopt;
-    return judged(document, evaluated);
+    if (evaluated.withheld < kFewestJudged) {
+      console.note(fmt::format("{}: only {} fixes could be kept out, and {} are needed", kNotJudged,
+                               evaluated.withheld, kFewestJudged));
+      return std::nullopt;
+    }
+    evaluation::HeldOut held = judged(document, evaluated);
+    if (const auto lasting_nis = lasting_innovations(document, fused.model.modelings)) {
+      held.innovation = lasting_nis->statistics;
+      held.expected_rmse_m = lasting_nis->expected_rmse_m;
+    }
+    return held;
   } catch (const InputError& error) {
     console.end_progress();
-    console.detail("the fixes that were kept out cannot be judged: " + std::string(error.what()));
+    console.note(std::string(kNotJudged) + ": " + error.what());
     return std::nullopt;
   }
 }
