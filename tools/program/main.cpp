@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -101,10 +102,19 @@ ExitCode run(int argc, char** argv) {
   }
 }
 
+/// Keeps the memory of arrays that are freed. A search builds a graph hundreds of times, and pages that the
+/// system takes back and clears anew cost a tenth of its time.
+void keep_freed_memory() {
+  constexpr int kMegabyte = 1 << 20;
+  (void)::mallopt(M_MMAP_THRESHOLD, 64 * kMegabyte);
+  (void)::mallopt(M_TRIM_THRESHOLD, 256 * kMegabyte);
+}
+
 }  // namespace
 }  // namespace waymark::program
 
 int main(int argc, char** argv) {
+  waymark::program::keep_freed_memory();
   std::set_terminate(waymark::program::on_terminate);
   waymark::program::install_signal_handlers();
   return waymark::program::run(argc, argv);
