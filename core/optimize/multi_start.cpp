@@ -139,7 +139,7 @@ void MultiStart::try_from(std::string_view start, const std::vector<double>& val
   const Summary& best = result_.summary;
   const bool first = result_.trials.size() == 1;
   const bool same = !first && best.converged() && summary.converged() &&
-                    std::abs(summary.final_chi2 - best.final_chi2) <= kSameMinimum * (1 + best.final_chi2);
+                    std::abs(summary.final_chi2 - best.final_chi2) <= kSameMinimum * best.final_chi2;
   confirmed_ = confirmed_ || same;
   // of equal ones the first is kept
   if (same || (!first && !(summary.final_chi2 < best.final_chi2))) return;

@@ -74,6 +74,7 @@ class Loop {
   double linearize(const std::vector<double>& values);
   void accept(double trial_chi2);
   void retreat();
+  void finish_without_step();
   std::string singular_message() const;
   bool not_finite_without_unknowns() const;
   /// Returns ": " and what is not finite in the graph, if something is.
@@ -102,6 +103,7 @@ class Loop {
   double gradient_ = 0;
   double unit_ = 1;  // of the information: a chi2 far below it is small
   Step step_;
+  bool exhausted_ = false;  // the algorithm had no step left
   bool done_ = false;
 };
 
@@ -186,6 +188,19 @@ std::string Loop::singular_message() const {
               "): it lacks edges or information");
 }
 
+/// Rounding may leave no acceptable step. No minimum is lower than 0, so a chi2 that is small itself leaves nothing to gain.
+void Loop::finish_without_step() {
+  exhausted_ = true;
+  const double bound = options_.decrement_tolerance * unit_;
+  if (best_chi2_ <= bound) {
+    finish(Termination::converged_decrement,
+           text("converged: no step lowers chi2 any more, and all of it, ", best_chi2_, " <= ", bound));
+  } else {
+    finish(Termination::stalled,
+           "stalled: no step lowers chi2 any more, yet the Newton decrement is not small");
+  }
+}
+
 // Takes one step: from the present linearisation to the next one, or to the end.
 bool Loop::step_once() {
   // 1. Propose.
@@ -199,8 +214,7 @@ bool Loop::step_once() {
     return false;
   }
   if (status == ProposalStatus::exhausted) {
-    finish(Termination::stalled,
-           "stalled: no step lowers chi2 any more, yet the Newton decrement is not small");
+    finish_without_step();
     return false;
   }
   if (status == ProposalStatus::retreat) {
@@ -313,8 +327,8 @@ Summary Loop::run() {
                                       "; the lowest chi2 on the way, ", best_chi2_, ", is kept"));
   }
   // Damping hides an undetermined unknown. If no minimum was reached, the message names it.
-  const bool gave_up =
-      summary_.termination == Termination::max_iterations || summary_.termination == Termination::stalled;
+  const bool gave_up = exhausted_ || summary_.termination == Termination::max_iterations ||
+                       summary_.termination == Termination::stalled;
   if (gave_up && solver_.factorize(equations_.hessian()) == FactorStatus::not_positive_definite) {
     summary_.message += "; " + singular_message();
   }

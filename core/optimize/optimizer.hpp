@@ -23,9 +23,9 @@ namespace WAYMARK_EXPORT waymark {
 ///   gradient   max_i |g_i| / sqrt(H_ii) <= gradient_tolerance sqrt(u + chi2)
 ///   decrement  g^T H^-1 g <= decrement_tolerance (u + chi2)      the gain that the step promises
 ///   step       |d_i| <= step_tolerance (1 + |x|_max) for all i of the full step
-/// The first two tests do not depend on the units of the unknowns. g_i^2 / H_ii never exceeds the
-/// decrement, so the gradient test, at rounding level, is for an initial guess that already is a
-/// minimum. A damped or truncated step never ends the run as converged, however small it is.
+///   chi2       chi2 <= decrement_tolerance u, if the algorithm has no step left that lowers it
+/// The gradient test, at rounding level, is for an initial guess that already is a minimum. No test but step depends on
+/// the units of the unknowns. A damped or truncated step never ends the run as converged, however small it is.
 struct OptimizerOptions {
   int max_iterations = 500;           ///< limit on proposed steps, >= 0
   double decrement_tolerance = 1e-6;  ///< relative to u + chi2, > 0; the last step is still taken

@@ -7,6 +7,7 @@
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
+#include <waymark/core/linear/detail/information_root.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/detail/information_unit.hpp>
 #include <waymark/core/system/foreign_poses.hpp>
@@ -98,6 +99,59 @@ int rank_of(const Eigen::Matrix3d& information, double unit) {
   return rank;
 }
 
+/// A part of a motion that is smaller than this, beside the terms that it is the sum of, is rounding.
+constexpr double kNoMotion = 1e-6;
+
+/// Returns the rows of J T that an edge knows something about, and 0 for those that cancel.
+/// @param moved J T, one row per error; @param terms the sum of the sizes of the products in it
+Eigen::MatrixXd known_rows(const Eigen::MatrixXd& information, Eigen::MatrixXd moved,
+                           const Eigen::MatrixXd& terms) {
+  for (Eigen::Index row = 0; row < moved.rows(); ++row) {
+    if (!(information(row, row) > 0)) moved.row(row).setZero();
+    for (Eigen::Index c = 0; c < 3; ++c)
+      if (!(std::abs(moved(row, c)) > kNoMotion * terms.row(row).maxCoeff())) moved(row, c) = 0;
+  }
+  const Eigen::MatrixXd root = information_root(information);
+  // All errors are known: how well does not matter.
+  if (root.rows() == (information.diagonal().array() > 0).count()) return moved;
+  return root * moved;
+}
+
+/// Returns in how many directions the edges move an error by a rigid motion of the component, however faintly: metres of
+/// 1e4 m beside radians of 1e-6 are as good as any. It takes its time, and is asked before a graph is refused.
+int rank_of_directions(const Graph& graph, const Components& components, std::int32_t component) {
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
+  Eigen::VectorXd error;
+  std::vector<Eigen::MatrixXd> jacobians;
+  const RigidMotionView::Place& place = components.places[at(component)];
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    const EdgeBatchBase& batch = graph.batch(b);
+    for (std::size_t e = 0; e < batch.size(); ++e) {
+      const std::span<const VertexIndex> vertices = batch.vertices(e);
+      const auto is_moved = [&](VertexIndex v) { return components.of[at(v)] == component; };
+      if (std::none_of(vertices.begin(), vertices.end(), is_moved)) continue;
+      batch.linearize_edge(e, graph.view(), error, jacobians);
+      Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(error.size(), 3);
+      Eigen::MatrixXd terms = moved;
+      for (std::size_t k = 0; k < vertices.size(); ++k) {
+        if (!is_moved(vertices[k])) continue;
+        Eigen::MatrixXd motion(jacobians[k].cols(), 3);
+        graph.vertex_type(vertices[k])
+            .rigid_motion(graph.values().data() + graph.offsets()[at(vertices[k])], place.centre,
+                          place.extent, motion.data());
+        moved += jacobians[k] * motion;
+        terms += jacobians[k].cwiseAbs() * motion.cwiseAbs();
+      }
+      if (!moved.allFinite()) return 3;  // as in rank_of
+      const Eigen::MatrixXd rows = known_rows(batch.information(e), moved, terms);
+      for (Eigen::Index row = 0; row < rows.rows(); ++row)
+        if (rows.row(row).squaredNorm() > 0)
+          directions += rows.row(row).normalized().transpose() * rows.row(row).normalized();
+    }
+  }
+  return rank_of(directions, 1);
+}
+
 std::string anchored_in_part(const Graph& graph, VertexIndex v, int rank) {
   return "vertex " + to_string(graph.id(v)) + " and the vertices joined to it are anchored in only " +
          std::to_string(rank) + " of 3 rigid motions";
@@ -152,7 +206,8 @@ Gauge find_gauge(const Graph& graph, PartlyAnchored partly) {
   const double unit = information_unit(graph);
   for (std::size_t c = 0; c < components.first.size(); ++c) {
     const VertexIndex first = components.first[c];
-    const int rank = rank_of(information[c], unit);
+    int rank = rank_of(information[c], unit);
+    if (rank == 1 || rank == 2) rank = rank_of_directions(graph, components, static_cast<std::int32_t>(c));
     if (rank == 1 || rank == 2) {
       if (partly == PartlyAnchored::refuse) refuse(graph, first, rank);
       gauge.held[at(first)] = 1;

@@ -30,7 +30,8 @@ enum class PartlyAnchored {
 /// - 0: nothing anchors the component. Its first vertex is held, as usual in the field, and a
 ///   message says so.
 /// - 3: the component is anchored, and nothing is held.
-/// - 1 or 2: it is anchored in part (one fix; a parked car).
+/// - 1 or 2: it is anchored in part (one fix; a parked car), if that is also the rank of the directions in which
+///   the edges are moved. What is known to 1e4 m only is faint in M beside 1e-6 rad, but known.
 /// @throws InputError for rank 1 or 2 (unless they are held); it names a vertex and the missing
 /// measurement
 [[nodiscard]] Gauge find_gauge(const Graph& graph, PartlyAnchored partly = PartlyAnchored::refuse);

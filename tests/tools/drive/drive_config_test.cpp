@@ -225,7 +225,14 @@ TEST_CASE("drive.yaml: aliases without end and a second document are refused") {
     bomb += "]\n";
   }
   CHECK_THAT(error_of(bomb), Catch::Contains("the file has more than 100,000 values with its aliases"));
-  CHECK_THAT(error_of("---\nname: x\n"), Catch::Contains(":4:1: a second YAML document begins"));
+  CHECK_THAT(error_of("---\nname: x\n"), Catch::Contains(":3:1: a second YAML document begins"));
+}
+
+TEST_CASE("drive.yaml: a comma that belongs to nothing ends the document, and does not fill the memory") {
+  CHECK(error_of(", and more\n") ==
+        "tours/drive.yaml:3:1: no valid YAML: the document has ended before this");
+  CHECK_THROWS_MATCHES(parse("# a drive\n, name: x\n"), InputError,
+                       Message("tours/drive.yaml:2:1: no valid YAML: the document has ended before this"));
 }
 
 TEST_CASE("drive.yaml: odometry from parts, a CAN log with its DBC, a velocity apart") {

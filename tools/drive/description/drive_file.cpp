@@ -1,56 +1,13 @@
 #include <waymark/tools/drive/description/drive_file.hpp>
 
-#include <algorithm>
 #include <filesystem>
 
-#include <fmt/format.h>
-
-#include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/drive/description/description_yaml.hpp>
 #include <waymark/tools/drive/description/settings_yaml.hpp>
+#include <waymark/tools/drive/description/yaml_document.hpp>
 
 namespace waymark::drive {
-namespace {
-
-/// An anchor may stand within what it names, or ten times within each of ten levels.
-/// @throws InputError for a value without end, or of more values than a drive can need
-void check_extent(const YAML::Node& node, const std::string& path, int depth, std::size_t& count) {
-  constexpr int kDeepest = 50;
-  constexpr std::size_t kMost = 100'000;
-  if (depth > kDeepest || ++count > kMost)
-    throw InputError(fmt::format("{}:{}:{}: {}", path, node.Mark().line + 1, node.Mark().column + 1,
-                                 depth > kDeepest
-                                     ? "the values are nested more than 50 deep"
-                                     : "the file has more than 100,000 values with its aliases"));
-  for (const auto& entry : node) {
-    if (node.IsMap()) {
-      check_extent(entry.first, path, depth + 1, count);
-      check_extent(entry.second, path, depth + 1, count);
-    } else {
-      check_extent(entry, path, depth + 1, count);
-    }
-  }
-}
-
-YAML::Node load_yaml(const std::string& text, const std::string& path) {
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.empty()) return {};
-    if (documents.size() > 1)
-      throw InputError(
-          fmt::format("{}:{}:1: a second YAML document begins; a drive is one, without '---' inside", path,
-                      std::max(documents[1].Mark().line, 0) + 1));
-    std::size_t count = 0;
-    check_extent(documents.front(), path, 0, count);
-    return documents.front();
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}:{}: no valid YAML: {}", path, error.mark.line + 1,
-                                 error.mark.column + 1, error.msg));
-  }
-}
-
-}  // namespace
 
 std::string Places::at(const std::string& key) const {
   const auto place = of.find(key);
@@ -76,7 +33,7 @@ bool is_plugin_file(std::string_view plugin) {
 
 DriveFile parse_drive_file(const std::string& text, const std::string& path, const std::string& data_folder) {
   const YamlSection top(
-      load_yaml(text, path), "", path,
+      load_yaml_document(text, path), "", path,
       {"name", "environment", "folder", "time", "frame", "odometry", "gnss", "truth", "gate", "gap", "snap",
        "initial_guess", "modeling", "calibration", "noise", "sensors", "sources", "plugins", "first_pose"});
   DriveFile file;

@@ -31,7 +31,7 @@ struct Reading {
 };
 
 /// Returns readings in order of time. Of several with one stamp, the first is kept.
-TimeSeries series_of(std::vector<Reading> readings) {
+TimeSeries channel_of(std::vector<Reading> readings) {
   std::stable_sort(readings.begin(), readings.end(),
                    [](const Reading& a, const Reading& b) { return a.stamp < b.stamp; });
   TimeSeries series;
@@ -60,7 +60,7 @@ Channels collect_channels(std::span<const OdometryPart> parts) {
         throw InputError(
             fmt::format("odometry: both {} and {} have '{}'; leave it out of the columns of one of them",
                         place->second, part.file, known[c].name));
-      channels[known[c].name] = series_of(std::move(readings));
+      channels[known[c].name] = channel_of(std::move(readings));
     }
   }
   return channels;
