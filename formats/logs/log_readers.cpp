@@ -9,6 +9,8 @@
 #include <waymark/formats/logs/detail/kitti/kitti_oxts.hpp>
 #include <waymark/formats/logs/detail/nmea/nmea.hpp>
 #include <waymark/formats/logs/detail/novatel/novatel.hpp>
+#include <waymark/formats/logs/detail/ros/bag.hpp>
+#include <waymark/formats/logs/detail/ros/mcap.hpp>
 #include <waymark/formats/logs/detail/rtklib/rtklib_pos.hpp>
 #include <waymark/formats/logs/detail/tables/gnss_logger.hpp>
 #include <waymark/formats/logs/detail/tables/vbo.hpp>
@@ -30,6 +32,8 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const UbxReader ubx;
   static const GnssLoggerReader gnss_logger;
   static const VboReader vbo;
+  static const McapReader mcap;
+  static const BagReader rosbag;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
@@ -44,6 +48,8 @@ std::span<const LogReaderType> builtin_log_readers() {
       {"ubx", "u-blox binary messages: gnss, truth, odometry and sensor channels (ESF-MEAS)", &ubx},
       {"gnss_logger", "text logs of Android's GnssLogger: gnss, truth", &gnss_logger},
       {"vbo", "Racelogic's VBO files: gnss, truth", &vbo},
+      {"mcap", "ROS messages in MCAP (CDR, JSON): odometry, gnss, truth, sensor channels", &mcap},
+      {"rosbag", "ROS 1 bags of version 2.0, as mcap", &rosbag},
   };
   return readers;
 }

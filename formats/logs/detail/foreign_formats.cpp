@@ -25,13 +25,11 @@ struct Signature {
 constexpr std::array<Signature, 16> kSignatures{{
     {0, "MDF     ", {"an MF4 (ASAM MDF) file", "asammdf writes CSV from it"}},
     {0, "LOGG", {"a Vector BLF file", "`python3 -m can.logconvert` writes a candump log from it"}},
-    {0, "#ROSBAG", {"a ROS 1 bag", "`rostopic echo -p -b FILE /topic` writes CSV from it"}},
+    {0, "#ROSBAG V1", {"a bag of ROS before 2010", "`rosbag fix` of ROS 1 writes version 2.0 from it"}},
     {0,
      {"SQLite format 3\0", 16},
-     {"an SQLite file, such as a ROS 2 bag (db3)",
-      "`ros2 topic echo --csv /topic` "
-      "writes CSV while `ros2 bag play` plays it"}},
-    {0, {"\x89MCAP", 5}, {"an MCAP file", "export its topics as CSV"}},
+     {"an SQLite file, such as a ROS 2 bag (db3)", "`ros2 bag convert` writes MCAP from it"}},
+    {0, {"\x89MCAP", 5}, {"an MCAP file of a version other than 0", "write it again as version 0"}},
     {0, {"PK\x03\x04", 4}, {"a zip archive", "unpack it first"}},
     {0,
      "BZh",

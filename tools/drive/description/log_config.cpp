@@ -104,6 +104,14 @@ void read_accuracy(const YamlSection& section, LogRequest& request) {
   }
 }
 
+/// The topic is a column of the log to its reader, as the quantities of a table are.
+void read_topic(const YamlSection& section, LogConfig& log) {
+  if (log.format != "mcap" && log.format != "rosbag" && log.format != "auto")
+    section.fail("topic", fmt::format("belongs to the formats mcap and rosbag, not to {}", log.format));
+  section.read("topic", log.request.columns["topic"].column);
+  if (log.request.columns["topic"].column.empty()) section.fail_value("topic", "the name of a topic");
+}
+
 /// Reads "receiver == front" or "receiver != front".
 RowFilter read_filter(const YamlSection& section) {
   std::string text;
@@ -134,7 +142,7 @@ std::string resolved(const std::string& folder, const std::string& file) {
 }  // namespace
 
 std::vector<std::string_view> log_keys(std::initializer_list<std::string_view> own) {
-  std::vector<std::string_view> keys{"file", "format", "separator", "where", "columns", "time"};
+  std::vector<std::string_view> keys{"file", "format", "topic", "separator", "where", "columns", "time"};
   keys.insert(keys.end(), kCompanions.begin(), kCompanions.end());
   keys.insert(keys.end(), own);
   return keys;
@@ -167,6 +175,7 @@ LogConfig read_log_config(const YamlSection& section, LogRequest request, const 
   if (const auto separator = section.read_word("separator", kSeparators))
     log.request.separator = kSeparatorValues[*separator];
   read_columns(section, log.format, log.request);
+  if (section.has("topic")) read_topic(section, log);
   read_time(section, log.request);
   read_accuracy(section, log.request);
   read_log_frame(section, log.request);

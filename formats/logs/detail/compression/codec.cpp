@@ -143,4 +143,8 @@ std::unique_ptr<Codec> codec_of(std::string_view head) {
   return nullptr;
 }
 
+std::unique_ptr<Codec> zstd_codec() {
+  return std::make_unique<ZstdCodec>();
+}
+
 }  // namespace waymark::formats

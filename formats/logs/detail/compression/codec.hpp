@@ -1,4 +1,4 @@
-/// Uncompresses the bytes of gzip, xz and Zstandard.
+/// Uncompresses the bytes of gzip, xz and Zstandard, and of chunks in LZ4 and bzip2.
 #pragma once
 
 #include <cstddef>
@@ -30,5 +30,14 @@ class Codec {
 
 /// Returns the codec for the first bytes of a file. Null: the file is not compressed.
 [[nodiscard]] std::unique_ptr<Codec> codec_of(std::string_view head);
+
+/// @name For chunks within a file, whose compression the file names
+///@{
+[[nodiscard]] std::unique_ptr<Codec> zstd_codec();
+/// Null: the build does not have it.
+[[nodiscard]] std::unique_ptr<Codec> bzip2_codec();
+/// Frames of LZ4. Null: the build does not have it.
+[[nodiscard]] std::unique_ptr<Codec> lz4_codec();
+///@}
 
 }  // namespace waymark::formats

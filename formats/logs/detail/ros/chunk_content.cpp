@@ -1,0 +1,59 @@
+#include <waymark/formats/logs/detail/ros/chunk_content.hpp>
+
+#include <span>
+
+#include <zlib.h>
+
+namespace waymark::formats {
+
+const char* ChunkContent::open(std::string_view compression) {
+  if (size_ > kLargestChunk) return "it claims more than 1 GiB";
+  if (compression.empty() || compression == "none") return nullptr;
+  if (compression == "zstd") {
+    codec_ = zstd_codec();
+  } else if (compression == "lz4") {
+    codec_ = lz4_codec();
+    if (!codec_) return "it is compressed with lz4, which this build does not have (liblz4-dev)";
+  } else if (compression == "bz2") {
+    codec_ = bzip2_codec();
+    if (!codec_) return "it is compressed with bz2, which this build does not have (libbz2-dev)";
+  } else {
+    return "its compression is not known";
+  }
+  constexpr std::size_t kBuffer = 64U << 10U;
+  buffer_.resize(kBuffer);
+  return nullptr;
+}
+
+const char* ChunkContent::give(std::string_view content) {
+  done_ += content.size();
+  if (done_ > size_) return "it holds more bytes than it claims";
+  crc_ = static_cast<std::uint32_t>(
+      ::crc32_z(crc_, reinterpret_cast<const Bytef*>(content.data()), content.size()));
+  sink_(content);
+  return nullptr;
+}
+
+const char* ChunkContent::take(std::string_view bytes) {
+  if (!codec_) return give(bytes);
+  std::span<const char> in(bytes.data(), bytes.size());
+  for (;;) {
+    std::span<char> out(buffer_);
+    const std::size_t before = in.size();
+    const Codec::Outcome outcome = codec_->step(in, out, false);
+    const std::size_t made = buffer_.size() - out.size();
+    if (made > 0) {
+      if (const char* error = give({buffer_.data(), made})) return error;
+    }
+    if (outcome == Codec::Outcome::damaged) return "its compressed content is damaged";
+    if (outcome == Codec::Outcome::end || (made == 0 && (in.empty() || in.size() == before))) return nullptr;
+  }
+}
+
+const char* ChunkContent::finish(std::uint32_t crc32) const {
+  if (done_ != size_) return "it holds fewer bytes than it claims";
+  if (crc32 != 0 && crc32 != crc_) return "its checksum is wrong";
+  return nullptr;
+}
+
+}  // namespace waymark::formats

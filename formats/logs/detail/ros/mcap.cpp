@@ -1,0 +1,264 @@
+#include <waymark/formats/logs/detail/ros/mcap.hpp>
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/logs/detail/ros/chunk_content.hpp>
+#include <waymark/formats/logs/detail/ros/held_messages.hpp>
+#include <waymark/formats/logs/detail/ros/record_level.hpp>
+#include <waymark/formats/logs/detail/ros/ros_log.hpp>
+#include <waymark/formats/logs/detail/ros/wire_cursor.hpp>
+
+namespace waymark::formats {
+namespace {
+
+constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
+constexpr unsigned kMcapFooter = 0x02, kMcapSchema = 0x03, kMcapChannel = 0x04, kMcapMessage = 0x05,
+                   kMcapChunk = 0x06, kMcapDataEnd = 0x0F;
+/// Opcode and length.
+constexpr std::size_t kMcapRecordHead = 9;
+/// Channel, sequence, log time, publish time.
+constexpr std::size_t kMcapMessageHead = 2 + 4 + 8 + 8;
+/// Start, end, uncompressed size, CRC, length of the name of the compression.
+constexpr std::size_t kMcapChunkHead = 8 + 8 + 8 + 4 + 4;
+/// The names at the beginning of a schema or channel; definitions and metadata may follow and are not read.
+constexpr std::uint64_t kMcapNames = 4096;
+constexpr std::size_t kMcapMostSchemas = 4096;
+
+class McapDecoder final : public RosLogDecoder {
+ public:
+  using Level = RecordLevel<McapDecoder>;
+
+  McapDecoder(const std::string& path, const LogRequest& request)
+      : RosLogDecoder(path, request, "an MCAP file"), outer_(*this, kMcapRecordHead) {}
+
+  void take(std::string_view piece) override {
+    if (magic_.size() < kMcapMagic.size()) {
+      const std::size_t part = std::min(kMcapMagic.size() - magic_.size(), piece.size());
+      magic_ += piece.substr(0, part);
+      add_to_crc(piece.substr(0, part));
+      piece.remove_prefix(part);
+    }
+    if (magic_ != kMcapMagic) return;
+    outer_.take(piece);
+  }
+
+  [[nodiscard]] RecordStep begin(Level& level, std::string_view collected);
+  void take_content(Level& level, std::string_view bytes);
+  void end_content(Level& level);
+  void passed(Level& level, std::string_view bytes) {
+    if (&level == &outer_) add_to_crc(bytes);
+  }
+
+ private:
+  void end() override;
+  void add_to_crc(std::string_view bytes) {
+    crc_ = static_cast<std::uint32_t>(
+        ::crc32_z(crc_, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+  }
+  [[nodiscard]] std::uint64_t place() const { return kMcapMagic.size() + outer_.place(); }
+  [[nodiscard]] RecordStep begin_names(unsigned opcode, std::uint64_t length, std::string_view collected);
+  [[nodiscard]] RecordStep begin_message(std::uint64_t length, std::string_view collected);
+  [[nodiscard]] RecordStep begin_chunk(std::uint64_t length, std::string_view collected);
+  void take_names(unsigned opcode, WireCursor from);
+  void give_held();
+  void fail_chunk(const char* error);
+
+  std::string magic_;
+  Level outer_;
+  std::uint32_t crc_ = 0;  ///< of all records before the current one, and the magic
+  bool footer_ = false;
+  std::map<std::uint16_t, std::string> schemas_;
+
+  std::optional<Level> inner_;  ///< within a chunk
+  std::optional<ChunkContent> content_;
+  std::uint32_t chunk_crc_ = 0;
+  bool chunk_failed_ = false;
+  HeldMessages held_;
+};
+
+constexpr RecordStep mcap_skipped(std::uint64_t size) {
+  return {RecordStep::Then::skip, size};
+}
+
+/// Returns the step that goes on once the head and this many bytes of the content are there.
+constexpr RecordStep mcap_collect(std::uint64_t size) {
+  return {RecordStep::Then::collect, kMcapRecordHead + size};
+}
+
+RecordStep McapDecoder::begin(Level& level, std::string_view collected) {
+  WireCursor from(collected);
+  const auto opcode = from.get<std::uint8_t>();
+  const auto length = from.get<std::uint64_t>();
+  const bool inside = &level != &outer_;
+  // No file is as long as this, and places beyond it would overflow.
+  constexpr std::uint64_t kMostBytes = 1ULL << 62U;
+  if (opcode == 0 || length > kMostBytes) {
+    corrupt_record(place(), "here no record begins; what follows is not read");
+    return {RecordStep::Then::stop, 0};
+  }
+  switch (opcode) {
+    case kMcapSchema:
+    case kMcapChannel:
+      return begin_names(opcode, length, collected);
+    case kMcapMessage:
+      return begin_message(length, collected);
+    case kMcapChunk:
+      if (inside) break;
+      return begin_chunk(length, collected);
+    case kMcapDataEnd:
+      if (inside || length < 4) break;
+      if (collected.size() == kMcapRecordHead) return mcap_collect(4);
+      if (const auto told = from.get<std::uint32_t>(); told != 0 && told != crc_)
+        corrupt_record(place(), "the checksum of all data is wrong: some of what was read is damaged");
+      return mcap_skipped(length - 4);
+    case kMcapFooter:
+      if (inside) break;
+      footer_ = true;
+      return {RecordStep::Then::stop, 0};
+    default:
+      break;
+  }
+  return mcap_skipped(length);
+}
+
+RecordStep McapDecoder::begin_names(unsigned opcode, std::uint64_t length, std::string_view collected) {
+  const std::uint64_t names = std::min(length, kMcapNames);
+  if (collected.size() < kMcapRecordHead + names) return mcap_collect(names);
+  take_names(opcode, WireCursor(collected.substr(kMcapRecordHead)));
+  return mcap_skipped(length - names);
+}
+
+void McapDecoder::take_names(unsigned opcode, WireCursor from) {
+  const auto id = from.get<std::uint16_t>();
+  if (opcode == kMcapSchema) {
+    const std::string_view name = from.text();
+    if (!from.sound()) return corrupt_record(place(), "schema: it is cut, or its name is too long");
+    if (schemas_.size() < kMcapMostSchemas) schemas_.try_emplace(id, name);
+    return;
+  }
+  RosChannel channel;
+  const auto schema = schemas_.find(from.get<std::uint16_t>());
+  if (schema != schemas_.end()) channel.type_name = schema->second;
+  channel.topic = from.text();
+  channel.encoding = ros_encoding(from.text());
+  const char* error =
+      from.sound() ? add_channel(id, std::move(channel)) : "it is cut, or its names are too long";
+  if (error != nullptr) corrupt_record(place(), std::string("channel: ") + error);
+}
+
+RecordStep McapDecoder::begin_message(std::uint64_t length, std::string_view collected) {
+  if (length < kMcapMessageHead) {
+    corrupt_record(place(), "message: it is shorter than its head");
+    return mcap_skipped(length);
+  }
+  if (collected.size() < kMcapRecordHead + kMcapMessageHead) return mcap_collect(kMcapMessageHead);
+  WireCursor from(collected.substr(kMcapRecordHead));
+  const auto channel = from.get<std::uint16_t>();
+  (void)from.get<std::uint32_t>();
+  const auto log_time = static_cast<std::int64_t>(from.get<std::uint64_t>());
+  if (collected.size() == kMcapRecordHead + kMcapMessageHead) {
+    if (!wants(channel)) return mcap_skipped(length - kMcapMessageHead);
+    if (length > kLongestMessage) {
+      corrupt_record(place(), "message: more than 1 MiB is no message of this type");
+      return mcap_skipped(length - kMcapMessageHead);
+    }
+    if (length > kMcapMessageHead) return mcap_collect(length);
+  }
+  const std::string_view bytes = collected.substr(kMcapRecordHead + kMcapMessageHead);
+  if (!inner_) {
+    take_message(channel, log_time, bytes, place());
+  } else {
+    held_.add({channel, log_time, std::string(bytes)});
+    if (held_.full()) give_held();
+  }
+  return mcap_skipped(0);
+}
+
+RecordStep McapDecoder::begin_chunk(std::uint64_t length, std::string_view collected) {
+  constexpr std::uint64_t kMcapLongestName = 64;
+  if (collected.size() == kMcapRecordHead) {
+    if (length >= kMcapChunkHead + 8) return mcap_collect(kMcapChunkHead);
+    corrupt_record(place(), "chunk: it is shorter than its head");
+    return mcap_skipped(length);
+  }
+  WireCursor from(collected.substr(kMcapRecordHead + 16));
+  const auto size = from.get<std::uint64_t>();
+  chunk_crc_ = from.get<std::uint32_t>();
+  const std::uint64_t name = from.get<std::uint32_t>();
+  const std::uint64_t head = kMcapChunkHead + name + 8;
+  if (name > kMcapLongestName || length < head) {
+    corrupt_record(place(), "chunk: its head is damaged");
+    return mcap_skipped(length - (collected.size() - kMcapRecordHead));
+  }
+  if (collected.size() < kMcapRecordHead + head) return mcap_collect(head);
+  const std::string_view compression = from.take(name);
+  inner_.emplace(*this, kMcapRecordHead);
+  content_.emplace(size, [this](std::string_view bytes) { inner_->take(bytes); });
+  chunk_failed_ = false;
+  const char* error = content_->open(compression);
+  if (error == nullptr && from.get<std::uint64_t>() != length - head)
+    error = "its length is not that of its records";
+  if (error != nullptr) fail_chunk(error);
+  return {RecordStep::Then::stream, length - head};
+}
+
+void McapDecoder::fail_chunk(const char* error) {
+  if (chunk_failed_) return;
+  chunk_failed_ = true;
+  (void)held_.take();
+  corrupt_record(place(), std::string("chunk: ") + error);
+}
+
+void McapDecoder::take_content(Level& /*level*/, std::string_view bytes) {
+  if (chunk_failed_) return;
+  if (const char* error = content_->take(bytes)) fail_chunk(error);
+}
+
+void McapDecoder::end_content(Level& /*level*/) {
+  if (!chunk_failed_) {
+    if (const char* error = content_->finish(chunk_crc_))
+      fail_chunk(error);
+    else if (inner_->within())
+      corrupt_record(place(), "chunk: its last record is cut");
+  }
+  give_held();
+  inner_.reset();
+  content_.reset();
+}
+
+void McapDecoder::give_held() {
+  for (const HeldMessage& message : held_.take())
+    take_message(message.channel, message.log_time, message.bytes, place());
+}
+
+void McapDecoder::end() {
+  if (magic_ != kMcapMagic) {
+    if (!magic_.empty()) corrupt_record(0, "it does not begin as an MCAP file of version 0");
+    return;
+  }
+  if (outer_.within()) {
+    give_held();
+    corrupt_record(place(), "the file ends within this record; what came before is used");
+  } else if (!footer_) {
+    note("the file was not closed (it has no footer): it is read up to its end");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<LogDecoder> McapReader::open(const std::string& path, const LogRequest& request) const {
+  return std::make_unique<McapDecoder>(path, request);
+}
+
+Recognition McapReader::recognise(std::string_view head) const {
+  if (!head.starts_with(kMcapMagic)) return {};
+  return {1, "it begins as an MCAP file"};
+}
+
+}  // namespace waymark::formats
