@@ -9,6 +9,7 @@
 #include <waymark/formats/logs/detail/kitti/kitti_oxts.hpp>
 #include <waymark/formats/logs/detail/nmea/nmea.hpp>
 #include <waymark/formats/logs/detail/novatel/novatel.hpp>
+#include <waymark/formats/logs/detail/rinex/rinex.hpp>
 #include <waymark/formats/logs/detail/rtklib/rtklib_pos.hpp>
 #include <waymark/formats/logs/detail/tables/gnss_logger.hpp>
 #include <waymark/formats/logs/detail/tables/vbo.hpp>
@@ -30,6 +31,7 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const UbxReader ubx;
   static const GnssLoggerReader gnss_logger;
   static const VboReader vbo;
+  static const RinexReader rinex;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
@@ -44,6 +46,7 @@ std::span<const LogReaderType> builtin_log_readers() {
       {"ubx", "u-blox binary messages: gnss, truth, odometry and sensor channels (ESF-MEAS)", &ubx},
       {"gnss_logger", "text logs of Android's GnssLogger: gnss, truth", &gnss_logger},
       {"vbo", "Racelogic's VBO files: gnss, truth", &vbo},
+      {"rinex", "RINEX 2 and 3 observations with their navigation files: sensor gnss_raw", &rinex},
   };
   return readers;
 }
