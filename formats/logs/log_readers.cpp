@@ -9,6 +9,7 @@
 #include <waymark/formats/logs/detail/kitti/kitti_oxts.hpp>
 #include <waymark/formats/logs/detail/nmea/nmea.hpp>
 #include <waymark/formats/logs/detail/novatel/novatel.hpp>
+#include <waymark/formats/logs/detail/rinex/rinex.hpp>
 #include <waymark/formats/logs/detail/ros/bag.hpp>
 #include <waymark/formats/logs/detail/ros/mcap.hpp>
 #include <waymark/formats/logs/detail/rtklib/rtklib_pos.hpp>
@@ -34,6 +35,7 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const VboReader vbo;
   static const McapReader mcap;
   static const BagReader rosbag;
+  static const RinexReader rinex;
   static const std::vector<LogReaderType> readers{
       {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
@@ -50,6 +52,7 @@ std::span<const LogReaderType> builtin_log_readers() {
       {"vbo", "Racelogic's VBO files: gnss, truth", &vbo},
       {"mcap", "ROS messages in MCAP (CDR, JSON): odometry, gnss, truth, sensor channels", &mcap},
       {"rosbag", "ROS 1 bags of version 2.0, as mcap", &rosbag},
+      {"rinex", "RINEX 2 and 3 observations with their navigation files: sensor gnss_raw", &rinex},
   };
   return readers;
 }

@@ -232,10 +232,14 @@ TEST_CASE("log files: a format that is not read is named with what converts it")
   CHECK(refusal("\x89MCAP0\r\n") ==
         start + "it is an MCAP file, which is not supported; export its topics as CSV");
   CHECK(refusal("PK\x03\x04") == start + "it is a zip archive, which is not supported; unpack it first");
-  CHECK(refusal("     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n") ==
+  CHECK(refusal("     3.04           N: GNSS NAV DATA    M: MIXED            RINEX VERSION / TYPE\n") ==
         start +
-            "it is a RINEX file of raw observations, which is not supported; RTKLIB's rnx2rtkp "
-            "computes positions from it");
+            "it is a RINEX file without observations, which is not supported; a navigation file belongs to "
+            "an observation file: `navigation: FILE`");
+  CHECK(refusal("1.0                 COMPACT RINEX FORMAT                    CRINEX VERS   / TYPE\n") ==
+        start +
+            "it is a compact RINEX file (Hatanaka), which is not supported; `crx2rnx FILE` of RNXCMP writes "
+            "plain RINEX from it");
   const auto names = [&](std::string_view head, std::string_view what) {
     const std::string text = refusal(std::string(head));
     return text.starts_with(start + "it is " + std::string(what) + ", which is not supported; ");

@@ -62,8 +62,11 @@ struct Words {
   std::string_view words;
   ForeignFormat format;
 };
-constexpr std::array<Words, 3> kWords{{
-    {"RINEX VERSION", {"a RINEX file of raw observations", "RTKLIB's rnx2rtkp computes positions from it"}},
+constexpr std::array<Words, 4> kWords{{
+    {"COMPACT RINEX",
+     {"a compact RINEX file (Hatanaka)", "`crx2rnx FILE` of RNXCMP writes plain RINEX from it"}},
+    {"RINEX VERSION",
+     {"a RINEX file without observations", "a navigation file belongs to an observation file: `navigation: FILE`"}},
     {"<TrainingCenterDatabase",
      {"a TCX file", "`gpsbabel -i gtrnctr -f FILE -o gpx -F drive.gpx` writes GPX from it"}},
     {"<kml", {"a KML file", "`gpsbabel -i kml -f FILE -o gpx -F drive.gpx` writes GPX from it"}},

@@ -131,9 +131,9 @@ TEST_CASE("raw logs: a folder and a compressed file are logs, a log of another k
                  "a.mf4: the log's format is not recognised: it is an MF4 (ASAM MDF) file, which is "
                  "not supported; asammdf writes CSV from it"));
   CHECK(contains(
-      error_of("a.obs", "     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"),
-      "it is a RINEX file of raw observations, which is not supported; RTKLIB's "
-      "rnx2rtkp computes positions from it"));
+      error_of("a.nav", "     3.04           N: GNSS NAV DATA    M: MIXED            RINEX VERSION / TYPE\n"),
+      "it is a RINEX file without observations, which is not supported; a navigation file belongs to an "
+      "observation file: `navigation: FILE`"));
   CHECK(contains(
       error_of("a.txt", "Dear diary,\ntoday we drove to Horsens.\n"),
       "a.txt: the log's format is not recognised: state its 'format'; `waymark info` lists all formats"));

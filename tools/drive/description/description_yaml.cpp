@@ -195,6 +195,12 @@ SensorConfig read_sensor(const YamlSection& section, std::string kind, std::stri
   LogRequest request;
   request.stream = StreamKind::sensor;
   if (section.has("file")) sensor.log = read_log_config(section, request, drive.folder, drive.scale());
+  if (section.has("antenna")) {
+    Eigen::Vector2d antenna;
+    section.read("antenna", antenna);
+    sensor.options["antenna_x"] = shortest(antenna.x());
+    sensor.options["antenna_y"] = shortest(antenna.y());
+  }
   if (const auto options = section.free_section("options")) {
     for (const std::string& option : options->keys()) options->read_option(option, sensor.options[option]);
   }

@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 8> kSeparators{",",     ";",         "tab
                                                       "comma", "semicolon", "\t",  "auto"};
 constexpr std::array kSeparatorValues{',', ';', '\t', ' ', ',', ';', '\t', '\0'};
 /// Keys of files that belong to a log.
-constexpr std::array<std::string_view, 2> kCompanions{"dbc", "timestamps"};
+constexpr std::array<std::string_view, 3> kCompanions{"dbc", "timestamps", "navigation"};
 constexpr NumberRule kWeek{0, 9999, "a GPS week from 0 to 9999"};
 constexpr NumberRule kOffset{-1e9, 1e9, "a number of seconds"};
 

@@ -25,12 +25,19 @@ std::vector<std::string_view> gnss_keys() {
                    "withhold_every", "withheld", "heading", "modeling", "calibration", "gate", "common"});
 }
 
+/// A receiver whose log needs ephemerides gives raw measurements: a sensor, with some keys of a receiver.
+std::string kind_of(const std::string& stated, const YAML::Node& node) {
+  const bool is_raw = stated == kGnssKind && node.IsMap() && node["navigation"];
+  return is_raw ? std::string(kRawGnssKind) : stated;
+}
+
 /// @param without one of the keys, which has no meaning in this form of an entry
 YamlSection section_of(const std::string& kind, const YAML::Node& node, const std::string& name,
                        const std::string& file, std::string_view without) {
   std::vector<std::string_view> keys = kind == kOdometryKind ? odometry_keys()
                                        : kind == kGnssKind   ? gnss_keys()
                                                              : log_keys({"kind", "name", "options", "loss"});
+  if (kind == kRawGnssKind) keys.push_back("antenna");
   std::erase(keys, without);
   return {node, name, file, keys};
 }
@@ -45,10 +52,11 @@ class Entries {
     const std::vector<YAML::Node> entries = entries_of(top_.node(kind));
     if (entries.empty()) top_.fail(kind, "at least one log is needed");
     for (const YAML::Node& entry : entries) {
-      YamlSection section = section_of(kind, entry, kind, top_.file(), "kind");
+      const std::string meant = kind_of(kind, entry);
+      YamlSection section = section_of(meant, entry, kind, top_.file(), "kind");
       std::string name = numbered(kind);
       section.read("name", name);
-      add(name, kind, std::move(section));
+      add(name, meant, std::move(section));
     }
   }
 
@@ -77,6 +85,7 @@ class Entries {
       if (kind.empty())
         throw InputError(any.place() + "sources." + name +
                          ": 'kind' is missing; use odometry, gnss or a sensor (`waymark info` lists them)");
+      kind = kind_of(kind, sources->node(name));
       YamlSection section = section_of(kind, sources->node(name), "sources." + name, top_.file(), "name");
       add(name, kind, std::move(section));
     }

@@ -13,6 +13,8 @@ namespace waymark::drive {
 /// Kinds of sources that Waymark itself knows. Every other kind is the name of a registered sensor.
 inline constexpr std::string_view kOdometryKind = "odometry";
 inline constexpr std::string_view kGnssKind = "gnss";
+/// The sensor that an entry of kind gnss becomes if it names ephemerides (`navigation`).
+inline constexpr std::string_view kRawGnssKind = "gnss_raw";
 
 struct SourceEntry {
   std::string name;
