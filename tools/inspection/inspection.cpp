@@ -186,6 +186,25 @@ void open(Pass& pass, const LogReader& reader, const std::string& path, const Lo
   }
 }
 
+/// An observation file has no fixes: its satellites are counted.
+void survey_raw(LogInspection& log, const InspectionOptions& options) {
+  Pass pass;
+  auto survey = std::make_unique<RawSurvey>(log.path);
+  const RawSurvey& raw = *survey;
+  pass.decoder = std::move(survey);
+  Pass* const passes[] = {&pass};
+  read_passes(log.path, passes, options, log);
+  if (!pass.trouble.empty()) log.troubles.push_back(pass.trouble);
+  log.records = pass.decoder->data().records;
+  log.corrupt = pass.decoder->data().corrupt;
+  log.corrupt_examples = pass.decoder->data().corrupt_examples;
+  if (raw.summary().stamps.count() == 0) return;
+  log.raw = raw.summary();
+  log.clock.reason = "RINEX names its dates; shown in UTC";
+  log.notes.push_back("raw measurements need the broadcast ephemerides of the day: gnss: {file: " + log.path +
+                      ", navigation: FILE}");
+}
+
 class StreamReading {
  public:
   StreamReading(LogInspection& log, const LogReader& reader, const InspectionOptions& options)
@@ -337,6 +356,7 @@ const StampSeries* LogInspection::span() const {
   if (fixes && fixes->fixes > 0) return &fixes->stamps;
   if (odometry) return &odometry->stamps;
   if (can && can->frames > 0) return &can->stamps;
+  if (raw) return &raw->stamps;
   return nullptr;
 }
 
@@ -382,6 +402,11 @@ LogInspection inspect_log(const std::string& path, std::span<const LogReaderType
   log.clock = {TimeScale::utc, true, true, false, true, "the log names its dates"};
   find_companions(log, options);
   if (log.format == "csv" || formats::is_can_format(log.format)) survey(log, options);
+  if (log.format == "rinex") {
+    survey_raw(log, options);
+    log.suspicions = suspicions_of(log, options.now);
+    return log;
+  }
   const bool without_signals = log.can && log.can->signals.empty();
   if (!without_signals) read_streams(log, *reader.reader, options);
   log.suspicions = suspicions_of(log, options.now);

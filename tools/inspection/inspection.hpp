@@ -16,6 +16,7 @@
 #include <waymark/tools/inspection/survey/can_survey.hpp>
 #include <waymark/tools/inspection/survey/fix_statistics.hpp>
 #include <waymark/tools/inspection/survey/odometry_statistics.hpp>
+#include <waymark/tools/inspection/survey/raw_survey.hpp>
 #include <waymark/tools/inspection/survey/table_survey.hpp>
 #include <waymark/tools/text/text_look.hpp>
 
@@ -50,6 +51,7 @@ struct LogInspection {
   std::optional<CanSummary> can;
   std::optional<FixSummary> fixes;  ///< also for a truth
   std::optional<OdometrySummary> odometry;
+  std::optional<RawSummary> raw{};       ///< of an observation file
   std::optional<double> logger_ahead_s;  ///< its stamps minus the GNSS time in it, median
   std::vector<std::string> suspicions;   ///< one sentence each
 

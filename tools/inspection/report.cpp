@@ -225,6 +225,16 @@ void add_kinds(Text& text, const LogInspection& log) {
   text.table(table);
 }
 
+void add_raw(Text& text, const RawSummary& raw) {
+  text.line("epochs", fmt::format("{} at {}, with {} to {} satellites", raw.stamps.count(),
+                                  rate_text(rate_of(raw.stamps)), raw.fewest, raw.most));
+  text::Table table{.columns = {"satellite", "pseudoranges", "Doppler shifts", "mean C/N0 [dB-Hz]"}};
+  for (const auto& [name, satellite] : raw.satellites)
+    table.rows.push_back({name, std::to_string(satellite.pseudoranges), std::to_string(satellite.dopplers),
+                          satellite.with_cn0 == 0 ? "-" : fmt::format("{:.1f}", satellite.mean_cn0_dbhz())});
+  text.table(table);
+}
+
 }  // namespace
 
 std::string inspection_text(const LogInspection& log, const text::TextLook& look) {
@@ -249,7 +259,9 @@ std::string inspection_text(const LogInspection& log, const text::TextLook& look
   add_kinds(text, log);
   if (log.fixes) add_fixes(text, log);
   if (log.odometry) add_odometry(text, log);
-  if (!log.fixes && !log.odometry && !log.can) text.line("streams", "neither fixes nor odometry were found");
+  if (log.raw) add_raw(text, *log.raw);
+  if (!log.fixes && !log.odometry && !log.can && !log.raw)
+    text.line("streams", "neither fixes nor odometry were found");
   if (log.corrupt > 0) {
     text.line("corrupt", fmt::format("{} of {} records, the first:", log.corrupt, log.records));
     text.list("", log.corrupt_examples);

@@ -101,6 +101,17 @@ Json json_of(const std::vector<ColumnSummary>& columns) {
   return json;
 }
 
+Json json_of(const RawSummary& raw) {
+  Json json{{"epochs", raw.stamps.count()},
+            {"interval_s", text::number_or_null(raw.stamps.median_interval_s())},
+            {"satellites", Json::object()}};
+  for (const auto& [name, satellite] : raw.satellites)
+    json["satellites"][name] = {{"pseudoranges", satellite.pseudoranges},
+                                {"dopplers", satellite.dopplers},
+                                {"mean_cn0_dbhz", text::number_or_null(satellite.mean_cn0_dbhz())}};
+  return json;
+}
+
 }  // namespace
 
 Json inspection_json(const LogInspection& log) {
@@ -119,6 +130,7 @@ Json inspection_json(const LogInspection& log) {
   json["signals"] = log.can ? json_of(log.can->signals) : Json(nullptr);
   json["gnss"] = log.fixes ? json_of(*log.fixes, log.clock) : Json(nullptr);
   json["odometry"] = log.odometry ? json_of(*log.odometry, log.clock) : Json(nullptr);
+  json["raw"] = log.raw ? json_of(*log.raw) : Json(nullptr);
   json["logger_ahead_s"] = log.logger_ahead_s ? text::number_or_null(*log.logger_ahead_s) : Json(nullptr);
   json["troubles"] = log.troubles;
   json["notes"] = log.notes;
