@@ -46,11 +46,18 @@ struct ErrorModel {
     return reference_m > 0 && median_m > 0 ? std::pow(median_m / reference_m, kind_exponent) : 1;
   }
 
+  /// Returns the sigma of what the bias of a kind of solution is at the start, beside bias_m(). It is in
+  /// proportion to the white noise. A constant offset of all fixes is one that no fix reveals, so this sigma
+  /// takes no part in the estimation of the noise; that of a bias which wanders does.
+  [[nodiscard]] double first_bias_m(const ClaimedAccuracies& claimed, SolutionKind kind) const {
+    return bias_share * white_m * kind_scale(claimed, kind);
+  }
+
   /// Returns the sigma of the bias of a kind of solution.
   [[nodiscard]] double bias_m(const ClaimedAccuracies& claimed, SolutionKind kind) const {
     const double median_m = claimed.of(kind);
     const double floor_m = median_m > 0 ? std::min(bias_floor_m, bias_per_accuracy * median_m) : bias_floor_m;
-    return std::hypot(floor_m, bias_share * std::hypot(multipath_m, white_m) * kind_scale(claimed, kind));
+    return std::hypot(floor_m, bias_share * multipath_m * kind_scale(claimed, kind));
   }
 
   /// Returns the symmetric root of a fix's relative covariance. Within a kind of solution the claimed
@@ -75,7 +82,9 @@ struct ErrorModel {
 template <Vertex V, Edge Decay, Edge Between>
 class ProcessAlongFixes {
  public:
-  ProcessAlongFixes(double sigma, double time_s) : sigma_(sigma), time_s_(time_s) {}
+  /// @param first_sigma of the first state, beside sigma
+  ProcessAlongFixes(double sigma, double time_s, double first_sigma = 0)
+      : sigma_(sigma), time_s_(time_s), first_sigma_(std::hypot(sigma, first_sigma)) {}
 
   /// Returns the vertex of a fix.
   [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
@@ -86,7 +95,7 @@ class ProcessAlongFixes {
     const VertexIndex next = graph.add_vertex<V>(graph.free_id(), {0, 0});
     graph.set_stamp(next, stamp);
     if (last < 0) {
-      add_prior_about_zero(graph, next, sigma_);
+      add_prior_about_zero(graph, next, first_sigma_);
     } else {
       Decay edge;
       edge.decay = decay_to(stamp, states_.back());
@@ -161,6 +170,7 @@ class ProcessAlongFixes {
 
   double sigma_;
   double time_s_;
+  double first_sigma_;
   std::vector<State> states_;  ///< in order of time
 };
 
@@ -184,7 +194,9 @@ class GnssCorrelated final : public GnssModeling {
       if (const auto bias = biases_.find({fix.source, kind}); bias != biases_.end())
         bias->second.add_expectation(fix.stamp, minimum, Eigen::Matrix2d::Identity(), error);
       else
-        error.rest += std::pow(model_.bias_m(claimed_, kind), 2) * Eigen::Matrix2d::Identity();
+        error.rest +=
+            (std::pow(model_.bias_m(claimed_, kind), 2) + std::pow(model_.first_bias_m(claimed_, kind), 2)) *
+            Eigen::Matrix2d::Identity();
       const double white = model_.white_m * (model_.heavy_tails ? kStudentDeviation : 1);
       error.rest += white * white * root * root;
     }
@@ -205,7 +217,9 @@ class GnssCorrelated final : public GnssModeling {
       const Fix& fix = input.fixes[i];
       const Eigen::Matrix2d root = model_.relative_root(fix, claimed_);
       const SolutionKind kind = kind_of(fix.told.quality);
-      Bias& bias = biases_.try_emplace({fix.source, kind}, model_.bias_m(claimed_, kind), model_.bias_time_s)
+      Bias& bias = biases_
+                       .try_emplace({fix.source, kind}, model_.bias_m(claimed_, kind), model_.bias_time_s,
+                                    model_.first_bias_m(claimed_, kind))
                        .first->second;
       const VertexIndex pose = pose_vertex(fix, graph);
       EdgeGnssPositionCorrelated edge;

@@ -118,8 +118,10 @@ TEST_CASE("correlated: the lasting errors of other fixes are those of a Gaussian
   REQUIRE(optimize(graph).summary.converged());
 
   const auto covariance = [](double a, double b) {
-    const double bias = 0.8 * 0.8 + 0.5 * 0.5 * (3 * 3 + 0.5 * 0.5);
-    return bias * std::exp(-std::abs(a - b) / 2000) + 9 * std::exp(-std::abs(a - b) / 30);
+    const double bias = 0.8 * 0.8 + 0.5 * 0.5 * 3 * 3;
+    const double first = 0.5 * 0.5 * 0.5 * 0.5;  // at 0 s
+    return bias * std::exp(-std::abs(a - b) / 2000) + first * std::exp(-(std::abs(a) + std::abs(b)) / 2000) +
+           9 * std::exp(-std::abs(a - b) / 30);
   };
   Eigen::MatrixXd gram(5, 5);
   Eigen::MatrixXd measured(5, 2);
