@@ -1,6 +1,7 @@
 #!/bin/sh
-# short_run.sh PROGRAM SHARED_DATA FOLDER: the short run of every target, with seeds made in FOLDER.
+# short_run.sh PROGRAM SHARED_DATA FOLDER: the short run of every target, with seeds made in FOLDER, in 2 GB of memory.
 set -eu
+ulimit -v 2000000
 here=$(cd "$(dirname "$0")" && pwd)
 program=$1
 mkdir -p "$3"
