@@ -1,12 +1,12 @@
-// What a program for g2o, GTSAM or Ceres becomes (examples/coming_from/README.md): poses, an edge of
-// one's own, and a minimum that is known by hand.
+// What a pose-graph program for g2o, GTSAM or Ceres becomes: poses, an edge of one's own, and a minimum that
+// is known by hand.
 #include <array>
 #include <cmath>
 #include <cstdio>
 
 #include <waymark/solvers/optimize.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
-#include <waymark/types_se2/vertex_xy.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
 
 using namespace waymark;
 

@@ -1,9 +1,9 @@
 """MCAP files that are written here from the specification, and bags that Debian's rosbag writes, give the program the
 same drive as CSV; what the program writes is read by others. Usage: ros_logs.py WAYMARK SOURCE_DIR"""
 import csv
-import json
 import math
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -109,9 +109,10 @@ def check_mcap_in(expected):
 def check_damage():
     data = recording(chunk=30_000)
     write("cut.mcap", data[:len(data) // 2])
-    out = json.loads(run("inspect", "cut.mcap", "--json").stdout)
-    assert "the file ends within this record; what came before is used" in json.dumps(out), out
-    assert 20 < next(iter(out["logs"]))["fixes"]["fixes"] < 61 if "logs" in out else True
+    text = run("inspect", "cut.mcap").stdout
+    assert "the file ends within this record; what came before is used" in text, text
+    found = int(re.search(r"/fix \(sensor_msgs/msg/NavSatFix\)\s+(\d+)", text).group(1))
+    assert 25 <= found <= 35, text  # half of 61
     at = data.rindex(b"picture")
     write("flipped.mcap", data[:at] + b"P" + data[at + 1:])
     text = run("inspect", "flipped.mcap").stdout
@@ -147,7 +148,7 @@ def check_topics():
 
 def check_inspect():
     text = run("inspect", "plain.mcap").stdout
-    for words in ("/fix (sensor_msgs/msg/NavSatFix)", "/motion (geometry_msgs/msg/TwistStamped)", "20.0 Hz",
+    for words in ("/fix (sensor_msgs/msg/NavSatFix)", "/motion (geometry_msgs/msg/TwistStamped)", "20.02 Hz",
                   "/camera (sensor_msgs/msg/Image)"):
         assert words in text, (words, text)
     run("init", "plain.mcap", "-o", "proposed.yaml")
