@@ -187,22 +187,29 @@ def check_bag_in(expected):
 def fused():
     write("fuse.yaml", YAML % ("motion.csv", "", "fixes.csv", ""))
     run("run", "fuse.yaml", "--out", "results", "-m", "g2")
-    graph = "results/g2.fused.graph"
+    # The graph of `run` has no covariances; the minimum is found again to rounding.
+    graph = "fused.graph"
+    run("optimize", "results/g2.fused.graph", "-o", graph, "--covariance", "all")
     with open("results/g2.csv") as file:
         return graph, list(csv.DictReader(file))
 
 
 def check_numbers(rows, stamps, poses, covariances, twists):
     assert len(rows) == len(stamps) > 1000
+    compared = 0
     for i, row in enumerate(rows):
         assert stamps[i] == int(row["stamp_ns"]), (i, stamps[i], row)
         x, y, qz, qw = poses[i]
-        assert (x, y) == (float(row["x_m"]), float(row["y_m"]))
-        assert abs(math.remainder(2 * math.atan2(qz, qw) - float(row["heading_rad"]), 2 * math.pi)) < 1e-12
+        assert math.dist((x, y), (float(row["x_m"]), float(row["y_m"]))) < 1e-6
+        assert abs(math.remainder(2 * math.atan2(qz, qw) - float(row["heading_rad"]), 2 * math.pi)) < 1e-8
         c = covariances[i]
         for at, sigma in ((0, "sigma_x_m"), (7, "sigma_y_m"), (35, "sigma_heading_rad")):
-            assert abs(c[at] - float(row[sigma]) ** 2) <= 1e-12 * c[at]
+            assert c[at] > 0
+            if row[sigma]:  # the table has those of the poses at fixes
+                compared += 1
+                assert abs(c[at] - float(row[sigma]) ** 2) <= 1e-6 * c[at], (i, at, c[at], row)
         assert c[1] == c[6] and c[5] == c[30] and c[14] == 1e6
+    assert compared >= 3 * 60
     # The vehicle moves forwards at 6 .. 10 m/s; the fused motion is within 2 m/s of the odometry.
     for i in range(100, 1000, 100):
         assert abs(twists[i][0] - MOTIONS[i][1]) < 2 and abs(twists[i][1]) < 0.5, (i, twists[i], MOTIONS[i])
@@ -233,7 +240,8 @@ def check_mcap_out(graph, rows):
         twists.append(reader.get("d", 6))
         assert reader.get("d", 36) == [0] * 36 and reader.at == len(reader.data)
     check_numbers(rows, stamps, poses, covariances, twists)
-    assert places == [[float(row["latitude_deg"]), float(row["longitude_deg"])] for row in rows]
+    assert all(abs(place[0] - float(row["latitude_deg"])) < 1e-10 and abs(place[1] - float(row["longitude_deg"])) < 1e-10
+               for place, row in zip(places, rows, strict=True))
     # and by ourselves
     assert "/waymark/odometry (nav_msgs/msg/Odometry)" in run("inspect", "fused.mcap").stdout
     print("MCAP out: %d poses with covariance, read by the specification" % len(stamps))
@@ -263,7 +271,8 @@ def check_bag_out(graph, rows):
             covariances.append(message.pose.covariance)
             twists.append((twist.linear.x, twist.linear.y))
     check_numbers(rows, stamps, poses, covariances, twists)
-    assert places == [(float(row["latitude_deg"]), float(row["longitude_deg"])) for row in rows]
+    assert all(abs(place[0] - float(row["latitude_deg"])) < 1e-10 and abs(place[1] - float(row["longitude_deg"])) < 1e-10
+               for place, row in zip(places, rows, strict=True))
     print("bag out: %d poses with covariance, read by rosbag" % len(stamps))
 
 
