@@ -37,6 +37,21 @@ void append_csv_point(std::string& out, const TrajectoryPoint& point) {
   out += '\n';
 }
 
+template <typename StampOf>
+std::string tum_text(std::span<const TrajectoryPoint> points, StampOf stamp_of_point) {
+  return collect_text([&](const TextSink& sink) {
+    TextBuilder out(sink);
+    out.word("# t x y z qx qy qz qw").end_line();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      check_finite("TUM", i, points[i]);
+      const Eigen::Vector3d& pose = points[i].pose;
+      out.word(decimal_seconds(stamp_of_point(points[i]))).number(pose.x()).number(pose.y()).number(0);
+      out.number(0).number(0).number(std::sin(0.5 * pose.z())).number(std::cos(0.5 * pose.z())).end_line();
+    }
+    out.finish();
+  });
+}
+
 }  // namespace
 
 std::string trajectory_csv(std::span<const TrajectoryPoint> points) {
@@ -51,14 +66,24 @@ std::string trajectory_csv(std::span<const TrajectoryPoint> points) {
 }
 
 std::string trajectory_tum(std::span<const TrajectoryPoint> points) {
+  return tum_text(points, [](const TrajectoryPoint& point) { return point.stamp; });
+}
+
+std::string trajectory_tum_unix(std::span<const TrajectoryPoint> points) {
+  return tum_text(points, [](const TrajectoryPoint& point) { return point.utc.value_or(point.stamp); });
+}
+
+std::string trajectory_kitti(std::span<const TrajectoryPoint> points) {
   return collect_text([points](const TextSink& sink) {
     TextBuilder out(sink);
-    out.word("# t x y z qx qy qz qw").end_line();
     for (std::size_t i = 0; i < points.size(); ++i) {
-      check_finite("TUM", i, points[i]);
+      check_finite("KITTI", i, points[i]);
       const Eigen::Vector3d& pose = points[i].pose;
-      out.word(decimal_seconds(points[i].stamp)).number(pose.x()).number(pose.y()).number(0);
-      out.number(0).number(0).number(std::sin(0.5 * pose.z())).number(std::cos(0.5 * pose.z())).end_line();
+      const double c = std::cos(pose.z());
+      const double s = std::sin(pose.z());
+      out.number(c).number(-s).number(0).number(pose.x());
+      out.number(s).number(c).number(0).number(pose.y());
+      out.number(0).number(0).number(1).number(0).end_line();
     }
     out.finish();
   });

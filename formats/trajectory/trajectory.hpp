@@ -29,6 +29,7 @@ struct TrajectoryPoint {
   std::string status;
   std::string reason;          ///< reason for that status
   std::optional<Stamp> utc{};  ///< the same instant in POSIX nanoseconds; empty: the date is not known
+  std::optional<Eigen::Matrix3d> covariance{};  ///< of x, y [m] in frame axes, heading [rad]
 };
 
 /// Returns comma-separated values (RFC 4180 with "\n" line ends) under one header line: stamp_ns,
@@ -41,6 +42,15 @@ struct TrajectoryPoint {
 /// trajectory, z is 0, and the quaternion is a rotation about z. Points are written in the given
 /// order; evo expects them ordered by time.
 [[nodiscard]] std::string trajectory_tum(std::span<const TrajectoryPoint> points);
+
+/// Returns the same lines with Unix time, as recordings of other systems have it; stamps without a date are
+/// written as they are.
+[[nodiscard]] std::string trajectory_tum_unix(std::span<const TrajectoryPoint> points);
+
+/// Returns KITTI's form of poses: for each point the first three rows of its 4 x 4 matrix, row by row, 12 numbers
+/// in a line. x and y are those of the frame and z is up, which KITTI's camera frame has otherwise; evo compares
+/// trajectories in any frame. The form has no stamps.
+[[nodiscard]] std::string trajectory_kitti(std::span<const TrajectoryPoint> points);
 
 /// Reads a TUM trajectory: eight numbers per line, separated by blanks. Empty lines and lines that
 /// start with '#' are skipped. Stamps are exact to the nanosecond. z is dropped. The heading is the

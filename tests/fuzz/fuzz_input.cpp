@@ -23,8 +23,12 @@ bool is_can(std::string_view reader) {
   return reader == "candump" || reader == "asc" || reader == "trc";
 }
 
+bool is_ros(std::string_view reader) {
+  return reader == "mcap" || reader == "rosbag";
+}
+
 std::vector<StreamKind> streams_of(std::string_view reader) {
-  if (reader == "csv" || is_can(reader) || reader == "ubx")
+  if (reader == "csv" || is_can(reader) || reader == "ubx" || is_ros(reader))
     return {StreamKind::odometry, StreamKind::gnss, StreamKind::truth, StreamKind::sensor};
   if (reader == "kitti_oxts") return {StreamKind::odometry, StreamKind::gnss, StreamKind::truth};
   return {StreamKind::gnss, StreamKind::truth};
@@ -154,7 +158,8 @@ void set_readings(LogRequest& request, std::string_view reader, unsigned variant
     } else {
       request.readings = waymark::formats::odometry_channels();
     }
-  } else if (request.stream == StreamKind::odometry && (reader != "csv" || variant == 7)) {
+  } else if (request.stream == StreamKind::odometry &&
+             ((reader != "csv" && !is_ros(reader)) || variant == 7)) {
     if (reader != "kitti_oxts") request.readings = waymark::formats::odometry_channels();
   } else if (request.stream == StreamKind::gnss && variant == 7 && (reader == "csv" || is_can(reader))) {
     request.readings = waymark::formats::velocity_channels();
@@ -249,6 +254,7 @@ FuzzInput fuzz_input(std::string_view reader, const std::uint8_t* bytes, std::si
   }
   if (reader == "ubx" && variant == 1 && request.readings.empty())
     request.columns["position"] = {"HNR-PVT", "", ""};
+  if (is_ros(reader) && variant == 1) request.columns["topic"] = {"/fix", "", ""};
   return input;
 }
 

@@ -5,6 +5,7 @@ make_seeds.py SHARED_DATA OUTPUT: one folder per target, one file per snippet of
 bytes that say how it is read (fuzz_input.hpp). Words of a format, as its page lists them, become the dictionary
 OUTPUT/TARGET.dict.
 """
+import bz2
 import gzip
 import pathlib
 import re
@@ -12,6 +13,8 @@ import struct
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / "tests/peer"))
+import ros_files  # noqa: E402
 
 SNIPPET = 4096
 
@@ -40,7 +43,42 @@ BESTVEL = ("BESTVELA,COM1,0,90.5,FINESTEERING,2062,151500.000,02000020,10a2,1556
            "0.150,0.000,1.2021,150.0,0.01,0.0")
 RTKLIB = ("% GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) sdun(m) age(s) ratio\n"
           "2068 284261.000 36.082 140.077 70.1 1 10 0.01 0.01 0.02 0.001 0.0 0.0 0.0 99.9\n")
+
+
+def mcap(encoding, chunk, compression):
+    file = ros_files.Mcap([("/fix", "sensor_msgs/msg/NavSatFix", encoding), ("/twist", "geometry_msgs/TwistStamped",
+                            encoding), ("/imu", "sensor_msgs/Imu", "cdr"), ("/odom", "nav_msgs/Odometry", "cdr")],
+                          chunk=chunk, compression=compression, crc=False, definition="")
+    for t in range(3):
+        fix = (1_700_000_000_000_000_000 + t, 52.5, 13.4, 40.0, [2.25, 0, 0, 0, 4, 0, 0, 0, 9], 3, 0)
+        file.add(1, t, ros_files.fix_json(*fix) if encoding == "json" else ros_files.fix_cdr(*fix, big=t == 1))
+        file.add(2, t, ros_files.twist_json(t, 8, 0.1) if encoding == "json" else ros_files.twist_cdr(t, 8, 0.1))
+        file.add(3, t, ros_files.imu_cdr(t, (0, 0, 0.1)))
+    file.add(4, t, ros_files.odometry_cdr(t, 8, 0.1))
+    return file.bytes()
+
+
+def bag(compression):
+    def record(fields, data):
+        head = b"".join(struct.pack("<I", len(f)) + f for f in fields)
+        return struct.pack("<I", len(head)) + head + struct.pack("<I", len(data)) + data
+
+    def field(name, value):
+        return name + b"=" + value
+    entry = field(b"type", b"sensor_msgs/NavSatFix")
+    fix = struct.pack("<IIII3sbHddd", 1, 1_700_000_000, 5, 3, b"gps", 0, 1, 52.5, 13.4, 40) + struct.pack(
+        "<9dB", 2.25, 0, 0, 0, 4, 0, 0, 0, 9, 2)
+    records = record([b"op=\x07", field(b"conn", bytes(4)), b"topic=/fix"], struct.pack("<I", len(entry)) + entry)
+    records += record([b"op=\x02", field(b"conn", bytes(4)), field(b"time", bytes(8))], fix) * 3
+    packed = bz2.compress(records) if compression == b"bz2" else records
+    chunk = record([b"op=\x05", field(b"compression", compression), field(b"size", struct.pack("<I", len(records)))],
+                   packed)
+    return b"#ROSBAG V2.0\n" + record([b"op=\x03", field(b"index_pos", bytes(8))], b" " * 40) + chunk + records
+
+
 MADE = {
+    "mcap": [mcap("cdr", 0, ""), mcap("json", 0, ""), mcap("cdr", 500, ""), mcap("cdr", 900, "zstd")],
+    "rosbag": [bag(b"none"), bag(b"bz2")],
     "kitti_oxts": [(OXTS * 8).encode()],
     "novatel": ["".join("#%s*00000000\n" % m for m in messages).encode()
                 for messages in ([BESTPOS] * 4, [INSPVAX] * 4, [BESTPOS, BESTVEL] * 4)],

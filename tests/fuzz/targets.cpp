@@ -18,6 +18,8 @@ std::span<const Target> targets() {
                                           Target{"ubx", fuzz_log_reader},
                                           Target{"gnss_logger", fuzz_log_reader},
                                           Target{"vbo", fuzz_log_reader},
+                                          Target{"mcap", fuzz_log_reader},
+                                          Target{"rosbag", fuzz_log_reader},
                                           Target{"dbc", fuzz_dbc},
                                           Target{"log_file", fuzz_log_file},
                                           Target{"graph", fuzz_graph},

@@ -225,12 +225,14 @@ TEST_CASE("log files: a format that is not read is named with what converts it")
         start +
             "it is a Vector BLF file, which is not supported; `python3 -m can.logconvert` writes a "
             "candump log from it");
-  CHECK(refusal("#ROSBAG V2.0\n") ==
+  CHECK(refusal("#ROSBAG V1.2\n") ==
         start +
-            "it is a ROS 1 bag, which is not supported; `rostopic echo -p -b FILE "
-            "/topic` writes CSV from it");
-  CHECK(refusal("\x89MCAP0\r\n") ==
-        start + "it is an MCAP file, which is not supported; export its topics as CSV");
+            "it is a bag of ROS before 2010, which is not supported; `rosbag fix` of ROS 1 writes "
+            "version 2.0 from it");
+  CHECK(
+      refusal("\x89MCAP1\r\n") ==
+      start +
+          "it is an MCAP file of a version other than 0, which is not supported; write it again as version 0");
   CHECK(refusal("PK\x03\x04") == start + "it is a zip archive, which is not supported; unpack it first");
   CHECK(refusal("     3.04           N: GNSS NAV DATA    M: MIXED            RINEX VERSION / TYPE\n") ==
         start +

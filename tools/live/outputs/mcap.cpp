@@ -6,39 +6,17 @@
 
 #include <fmt/format.h>
 
+#include <waymark/formats/logs/detail/ros/wire_text.hpp>
 #include <waymark/tools/live/outputs/lines.hpp>
 
 namespace waymark::live {
 namespace {
 
-// The MCAP format, version 0 (mcap.dev/spec): records of opcode, length (8 bytes) and content, little endian;
-// neither chunks nor an index.
-constexpr std::string_view kMagic = "\x89MCAP0\r\n";
-enum class Opcode : unsigned char {
-  header = 1,
-  footer = 2,
-  schema = 3,
-  channel = 4,
-  message = 5,
-  data_end = 15
-};
-
-template <typename Number>
-std::string bytes_of(Number value) {
-  std::string bytes;
-  for (std::size_t i = 0; i < sizeof(Number); ++i)
-    bytes += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xFFU);
-  return bytes;
-}
-
-std::string prefixed(std::string_view text) {
-  return bytes_of(static_cast<std::uint32_t>(text.size())) + std::string(text);
-}
-
-std::string record(Opcode opcode, const std::string& content) {
-  return std::string(1, static_cast<char>(opcode)) + bytes_of(static_cast<std::uint64_t>(content.size())) +
-         content;
-}
+// Neither chunks nor an index: a reader may connect at any time.
+using formats::mcap_record;
+using formats::McapOpcode;
+using formats::wire_bytes;
+using formats::wire_text;
 
 /// A topic, and the JSON schema of its messages.
 struct Topic {
@@ -76,13 +54,14 @@ constexpr std::size_t kLocation = 4;
 class McapWriter final : public ReportWriter {
  public:
   [[nodiscard]] std::string header() const override {
-    std::string bytes = std::string(kMagic) + record(Opcode::header, prefixed("") + prefixed("waymark live"));
+    std::string bytes = std::string(formats::kMcapFileMagic) +
+                        mcap_record(McapOpcode::header, wire_text("") + wire_text("waymark live"));
     for (std::size_t i = 0; i < kTopics.size(); ++i) {
       const auto id = static_cast<std::uint16_t>(i + 1);
-      bytes += record(Opcode::schema, bytes_of(id) + prefixed(kTopics[i].schema_name) +
-                                          prefixed("jsonschema") + prefixed(kTopics[i].schema));
-      bytes += record(Opcode::channel, bytes_of(id) + bytes_of(id) + prefixed(kTopics[i].name) +
-                                           prefixed("json") + bytes_of(std::uint32_t{0}));
+      bytes += mcap_record(McapOpcode::schema, wire_bytes(id) + wire_text(kTopics[i].schema_name) +
+                                                   wire_text("jsonschema") + wire_text(kTopics[i].schema));
+      bytes += mcap_record(McapOpcode::channel, wire_bytes(id) + wire_bytes(id) + wire_text(kTopics[i].name) +
+                                                    wire_text("json") + wire_bytes(std::uint32_t{0}));
     }
     return bytes;
   }
@@ -104,10 +83,10 @@ class McapWriter final : public ReportWriter {
   }
 
   [[nodiscard]] std::string footer() const override {
-    return record(Opcode::data_end, bytes_of(std::uint32_t{0})) +
-           record(Opcode::footer,
-                  bytes_of(std::uint64_t{0}) + bytes_of(std::uint64_t{0}) + bytes_of(std::uint32_t{0})) +
-           std::string(kMagic);
+    return mcap_record(McapOpcode::data_end, wire_bytes(std::uint32_t{0})) +
+           mcap_record(McapOpcode::footer, wire_bytes(std::uint64_t{0}) + wire_bytes(std::uint64_t{0}) +
+                                               wire_bytes(std::uint32_t{0})) +
+           std::string(formats::kMcapFileMagic);
   }
 
  private:
@@ -120,9 +99,10 @@ class McapWriter final : public ReportWriter {
     return static_cast<std::size_t>(found - kTopics.begin());
   }
   std::string message(std::size_t topic, Stamp utc, std::string_view data) {
-    const auto time = bytes_of(static_cast<std::uint64_t>(std::max<std::int64_t>(utc.nanoseconds, 0)));
-    return record(Opcode::message, bytes_of(static_cast<std::uint16_t>(topic + 1)) +
-                                       bytes_of(sequence_[topic]++) + time + time + std::string(data));
+    const auto time = wire_bytes(static_cast<std::uint64_t>(std::max<std::int64_t>(utc.nanoseconds, 0)));
+    return mcap_record(McapOpcode::message, wire_bytes(static_cast<std::uint16_t>(topic + 1)) +
+                                                wire_bytes(sequence_[topic]++) + time + time +
+                                                std::string(data));
   }
   /// East and north of the grid stand for those of the ellipsoid: the convergence is left out.
   static std::string location(const LivePose& pose, Stamp utc, const Surroundings& around) {

@@ -15,6 +15,7 @@
 #include <waymark/tools/program/jobs/drive/drive_text.hpp>
 #include <waymark/tools/program/jobs/graph/graph_files.hpp>
 #include <waymark/tools/program/jobs/program_registry.hpp>
+#include <waymark/tools/program/jobs/trajectory_files.hpp>
 #include <waymark/tools/program/terminal/output.hpp>
 #include <waymark/version.hpp>
 
@@ -92,6 +93,25 @@ ExitCode convert_drive(const ConvertOptions& options, const drive::DriveFile& fi
   return kSuccess;
 }
 
+/// A stated format is that of a graph, whatever the file is called.
+bool is_trajectory(const ConvertOptions& options) {
+  return options.format.format.empty() && options.format.profile.empty() &&
+         is_trajectory_file(options.output);
+}
+
+ExitCode write_trajectory(const ConvertOptions& options, const formats::GraphDocument& document,
+                          const Console& console) {
+  const std::size_t poses = write_trajectory_file(document, options.output);
+  if (options.common.json) {
+    console.result(
+        json_document("convert", {{"output", options.output}, {"format", "trajectory"}, {"poses", poses}}),
+        false);
+    return kSuccess;
+  }
+  console.result(fmt::format("written     {}: {} poses\n", options.output, poses), false);
+  return kSuccess;
+}
+
 ExitCode convert_graph(const ConvertOptions& options, const TypeRegistry& registry, const Console& console) {
   refuse_options(options.of_drives, "a graph file");
   console.progress("reading " + options.input);
@@ -99,6 +119,7 @@ ExitCode convert_graph(const ConvertOptions& options, const TypeRegistry& regist
   formats::GraphDocument document =
       read_graph_file(text, options.input, options.input_format, options.lenient, registry, console);
   stop_if_interrupted();
+  if (is_trajectory(options)) return write_trajectory(options, document, console);
   announce_output(options.format, document, options.input, console);
   document.provenance.emplace_back("converted",
                                    fmt::format("waymark {} from {} fnv1a64:{} read as {}", WAYMARK_VERSION,
@@ -127,6 +148,9 @@ ExitCode convert(const ConvertOptions& options) {
   const TypeRegistry registry =
       make_registry(options.common, file ? file->description.plugins : std::vector<std::string>());
   (void)chosen_format(options.format);
+  if (file && is_trajectory(options))
+    throw UsageError(
+        "a trajectory is written from an optimised graph: name a .graph file in place of the drive");
   require_output_place(options.output);
   return file ? convert_drive(options, *file, registry, console) : convert_graph(options, registry, console);
 }
@@ -152,13 +176,14 @@ std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options
 }  // namespace
 
 void add_convert(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("convert",
-                         "Convert raw logs to a graph file, or a graph file to another format\n\n"
-                         "For a drive.yaml it reads the logs, puts them on one clock and into one "
-                         "frame, checks the fixes and writes the graph. A graph file is written in "
-                         "another format. It is refused if its minimum would move in that format. "
-                         "Statements that the format lacks are left out and counted.");
+  auto* command = app.add_subcommand(
+      "convert",
+      "Convert raw logs to a graph file, or a graph file to another format\n\n"
+      "For a drive.yaml it reads the logs, puts them on one clock and into one "
+      "frame, checks the fixes and writes the graph. A graph file is written in "
+      "another format. It is refused if its minimum would move in that format. "
+      "Statements that the format lacks are left out and counted. An output that ends "
+      "in .bag (ROS 1), .mcap (ROS 2), .tum or .kitti (evo) gets the trajectory of a graph.");
   const auto options = std::make_shared<ConvertOptions>();
   command->add_option("input", options->input, "drive.yaml of a drive, or a graph file (any other name)")
       ->required()
@@ -175,7 +200,8 @@ void add_convert(CLI::App& app, Action& action) {
   add_common_options(*command, options->common);
   command->footer(
       "Example:\n  waymark convert drive.yaml -o drive.graph --modeling g2\n"
-      "  waymark convert toro.graph --input-format toro -o for_gtsam.g2o --profile gtsam");
+      "  waymark convert toro.graph --input-format toro -o for_gtsam.g2o --profile gtsam\n"
+      "  waymark convert fused.graph -o fused.bag");
   command->callback([options, of_drives, of_graphs, &action] {
     options->of_drives = given_of(of_drives);
     options->of_graphs = given_of(of_graphs);

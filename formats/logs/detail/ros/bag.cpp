@@ -192,6 +192,7 @@ void BagDecoder::end() {
   if (magic_ != kBagMagic) {
     if (!magic_.empty()) corrupt_record(0, "it does not begin as a bag of version 2.0");
   } else if (outer_.within()) {
+    if (content_ && !chunk_failed_) (void)content_->flush();
     corrupt_record(place(), "the file ends within this record; what came before is used");
   }
 }

@@ -5,6 +5,11 @@
 #include <zlib.h>
 
 namespace waymark::formats {
+namespace {
+
+constexpr std::size_t kChunkBuffer = 64U << 10U;
+
+}  // namespace
 
 const char* ChunkContent::open(std::string_view compression) {
   if (size_ > kLargestChunk) return "it claims more than 1 GiB";
@@ -20,8 +25,7 @@ const char* ChunkContent::open(std::string_view compression) {
   } else {
     return "its compression is not known";
   }
-  constexpr std::size_t kBuffer = 64U << 10U;
-  buffer_.resize(kBuffer);
+  buffer_.resize(kChunkBuffer);
   return nullptr;
 }
 
@@ -36,6 +40,24 @@ const char* ChunkContent::give(std::string_view content) {
 
 const char* ChunkContent::take(std::string_view bytes) {
   if (!codec_) return give(bytes);
+  while (!bytes.empty()) {
+    const std::string_view part = bytes.substr(0, kChunkBuffer - waiting_.size());
+    waiting_ += part;
+    bytes.remove_prefix(part.size());
+    if (waiting_.size() < kChunkBuffer) return nullptr;
+    if (const char* error = flush()) return error;
+  }
+  return nullptr;
+}
+
+const char* ChunkContent::flush() {
+  if (waiting_.empty()) return nullptr;
+  const char* error = uncompress(waiting_);
+  waiting_.clear();
+  return error;
+}
+
+const char* ChunkContent::uncompress(std::string_view bytes) {
   std::span<const char> in(bytes.data(), bytes.size());
   for (;;) {
     std::span<char> out(buffer_);
@@ -50,7 +72,8 @@ const char* ChunkContent::take(std::string_view bytes) {
   }
 }
 
-const char* ChunkContent::finish(std::uint32_t crc32) const {
+const char* ChunkContent::finish(std::uint32_t crc32) {
+  if (const char* error = flush()) return error;
   if (done_ != size_) return "it holds fewer bytes than it claims";
   if (crc32 != 0 && crc32 != crc_) return "its checksum is wrong";
   return nullptr;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,18 +27,23 @@ class ChunkContent {
   [[nodiscard]] const char* open(std::string_view compression);
   /// Takes the next bytes of the chunk. @return null, or an error
   [[nodiscard]] const char* take(std::string_view bytes);
+  /// Gives what was held back of a chunk that ends here, or is cut here. @return null, or an error
+  [[nodiscard]] const char* flush();
   /// Call this after the last bytes. @param crc32 of the content as the file tells it; 0: not told
   /// @return null, or an error
-  [[nodiscard]] const char* finish(std::uint32_t crc32) const;
+  [[nodiscard]] const char* finish(std::uint32_t crc32);
 
  private:
   [[nodiscard]] const char* give(std::string_view content);
+  [[nodiscard]] const char* uncompress(std::string_view bytes);
 
   std::uint64_t size_;
   std::uint64_t done_ = 0;
   std::uint32_t crc_ = 0;
   Sink sink_;
   std::unique_ptr<Codec> codec_;
+  /// What a damaged chunk still gives depends on where the codec is called, so it is called at fixed places.
+  std::string waiting_;
   std::vector<char> buffer_;
 };
 

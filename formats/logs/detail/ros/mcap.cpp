@@ -243,6 +243,8 @@ void McapDecoder::end() {
     return;
   }
   if (outer_.within()) {
+    // Only a chunk that is cut is still open here. Its records before the cut are as good as any.
+    if (content_ && !chunk_failed_) (void)content_->flush();
     give_held();
     corrupt_record(place(), "the file ends within this record; what came before is used");
   } else if (!footer_) {
