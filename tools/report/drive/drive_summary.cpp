@@ -213,8 +213,9 @@ drawing::Section summary_section(const ReportedDrive& drive) {
   const std::vector<std::string> assumed = stated(drive, "assumed");
   const std::vector<std::string> logs = stated(drive, "input");
   if (!assumed.empty())
-    section.blocks.emplace_back(
-        drawing::FoldedTable{fmt::format("{} assumptions", assumed.size()), list(assumed)});
+    section.blocks.emplace_back(drawing::FoldedTable{
+        fmt::format("{} {}", assumed.size(), assumed.size() == 1 ? "assumption" : "assumptions"),
+        list(assumed)});
   if (!logs.empty())
     section.blocks.emplace_back(
         drawing::FoldedTable{fmt::format("{} logs with their hashes", logs.size()), list(logs)});

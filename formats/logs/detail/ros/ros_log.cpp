@@ -18,6 +18,15 @@ namespace {
 constexpr std::size_t kRosMostChannels = 4096;
 constexpr std::size_t kMostTopicsListed = 20;
 
+/// Returns a topic with its type for people: cut, without bytes that a terminal could take for a command.
+std::string shown(const std::string& topic, const std::string& type) {
+  constexpr std::size_t kLongest = 100;
+  std::string text = fmt::format("{} ({})", topic.substr(0, kLongest), type.substr(0, kLongest));
+  const auto is_control = [](unsigned char byte) { return byte < 0x20 || byte == 0x7F; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return text;
+}
+
 /// A number of a message by the name of a channel (channels.hpp).
 struct Source {
   std::string_view name;
@@ -232,7 +241,7 @@ void RosLogDecoder::require_one_topic() const {
 void RosLogDecoder::finish() {
   end();
   for (const auto& [name, topic] : topics_)
-    if (topic.messages > 0) data_.kinds[fmt::format("{} ({})", name, topic.type_name)] = topic.messages;
+    if (topic.messages > 0) data_.kinds[shown(name, topic.type_name)] += topic.messages;
   if (by_log_time_ > 0)
     note(
         fmt::format("{} messages have no stamp of their own: the time of recording stands in", by_log_time_));
