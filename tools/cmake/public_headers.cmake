@@ -14,6 +14,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/drive/kept_vertex.hpp
   core/drive/log_reader.hpp
   core/drive/modeling.hpp
+  core/drive/place_from_ranges.hpp
   core/drive/sample.hpp
   core/drive/stamp.hpp
   core/graph/dual.hpp
