@@ -104,7 +104,7 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDri
   if (!fixes.poses.empty()) further.push_back(as_prediction("with lasting errors", std::move(fixes)));
   if (run.options.causal) further.push_back(predict_causally(run, settings, document));
   evaluation::Evaluation evaluation = evaluate_document(document, run.loaded.drive.truth, further);
-  if (summary.converged() && evaluation.prediction.count == 0) {
+  if (!document.covariances.empty() && evaluation.prediction.count == 0) {
     if (const auto lasting = lasting_innovations(document, modeled.modelings))
       evaluation.prediction = lasting->statistics;
   }
