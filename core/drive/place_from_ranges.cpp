@@ -1,12 +1,14 @@
 #include <waymark/core/drive/place_from_ranges.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
+
+#include <waymark/core/base/detail/median.hpp>
 
 namespace waymark {
 namespace {
@@ -56,9 +58,7 @@ std::optional<PlaceFromRanges> place_from_ranges(std::span<const MeasuredRange> 
   if (!(radius > kInnerEarth_m && radius < kOuterEarth_m)) return std::nullopt;
   std::vector<double> sizes = residuals(ranges, at);
   for (double& size : sizes) size = std::abs(size);
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return PlaceFromRanges{at.head<3>(), at[3], *middle};
+  return PlaceFromRanges{at.head<3>(), at[3], upper_median(std::move(sizes))};
 }
 
 }  // namespace waymark

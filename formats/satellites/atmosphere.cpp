@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <waymark/formats/satellites/constants.hpp>
+#include <waymark/core/drive/signal_travel.hpp>
 
 namespace waymark::formats::satellites {
 namespace {

@@ -3,7 +3,6 @@
 
 namespace waymark::formats::satellites {
 
-inline constexpr double kLight_mps = 299'792'458;
 /// GPS L1 and Galileo E1.
 inline constexpr double kL1_hz = 1575.42e6;
 inline constexpr double kBeidouB1_hz = 1561.098e6;

@@ -3,20 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include <waymark/core/drive/place_from_ranges.hpp>
+#include <waymark/core/drive/signal_travel.hpp>
 #include <waymark/formats/logs/detail/place/geocentric.hpp>
 
 namespace waymark::formats::satellites {
 namespace {
-
-constexpr double kEarthTurns_radps = 7.2921151467e-5;
-
-/// Returns a position in the axes that the Earth has when its signal arrives.
-Eigen::Vector3d at_reception(const Eigen::Vector3d& position, double travel_s) {
-  return Eigen::AngleAxisd(-kEarthTurns_radps * travel_s, Eigen::Vector3d::UnitZ()) * position;
-}
 
 SkyDirection direction_of(const Eigen::Vector3d& satellite, const Eigen::Vector3d& receiver,
                           const GeodeticPlace& place) {
@@ -43,7 +35,7 @@ std::optional<Eigen::Vector3d> rough_place(std::span<const PlacedMeasurement> me
   std::vector<MeasuredRange> ranges;
   for (const PlacedMeasurement& measurement : measurements)
     ranges.push_back(
-        {at_reception(measurement.satellite.position, measurement.raw.pseudorange_m / kLight_mps),
+        {turned_with_earth(measurement.satellite.position, measurement.raw.pseudorange_m / kLight_mps),
          measurement.raw.pseudorange_m + kLight_mps * measurement.satellite.clock_s});
   const auto place = place_from_ranges(ranges, guess);
   if (!place) return std::nullopt;
@@ -57,7 +49,7 @@ CorrectedMeasurement corrected(const PlacedMeasurement& measurement, Stamp momen
   const GeodeticPlace geodetic = geodetic_from_ecef(place);
   CorrectedMeasurement result;
   result.placed = measurement;
-  result.direction = direction_of(at_reception(satellite.position, travel_s), place, geodetic);
+  result.direction = direction_of(turned_with_earth(satellite.position, travel_s), place, geodetic);
   const double ratio = kL1_hz / measurement.carrier_hz;
   const double ionosphere_m =
       ephemerides.ionosphere

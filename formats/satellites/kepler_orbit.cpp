@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include <waymark/core/drive/signal_travel.hpp>
 #include <waymark/formats/satellites/ephemeris.hpp>
 
 namespace waymark::formats::satellites {
@@ -18,8 +19,8 @@ struct Earth {
 };
 
 Earth earth_of(System system) {
-  if (system == System::gps) return {3.986005e14, 7.2921151467e-5};
-  if (system == System::galileo) return {3.986004418e14, 7.2921151467e-5};
+  if (system == System::gps) return {3.986005e14, kEarthRate_radps};
+  if (system == System::galileo) return {3.986004418e14, kEarthRate_radps};
   return {3.986004418e14, 7.292115e-5};
 }
 

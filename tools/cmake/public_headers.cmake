@@ -16,6 +16,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/drive/modeling.hpp
   core/drive/place_from_ranges.hpp
   core/drive/sample.hpp
+  core/drive/signal_travel.hpp
   core/drive/stamp.hpp
   core/graph/dual.hpp
   core/graph/edge.hpp

@@ -7,11 +7,9 @@
 #include <Eigen/Core>
 
 #include <waymark/core/drive/modeling.hpp>
+#include <waymark/core/drive/signal_travel.hpp>
 
 namespace waymark::plugins::gnss_raw {
-
-inline constexpr double kLight_mps = 299'792'458;
-inline constexpr double kEarthRate_radps = 7.2921151467e-5;
 
 /// Satellite systems by the numbers of libRSF.
 enum System : int { kGps = 1, kSbas = 2, kGlonass = 4, kGalileo = 8, kBeidou = 32 };
@@ -39,9 +37,5 @@ struct Epoch {
 /// Gathers rows whose stamps differ by less than a millisecond.
 /// @throws InputError for a row that cannot be; it names row and column
 [[nodiscard]] std::vector<Epoch> epochs_of(const SensorTable& readings);
-
-/// Returns where a satellite was when the signal left it, in the axes that the Earth has when the
-/// signal arrives.
-[[nodiscard]] Eigen::Vector3d turned_with_earth(const Eigen::Vector3d& position, double travel_s);
 
 }  // namespace waymark::plugins::gnss_raw

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/core/drive/signal_travel.hpp>
 #include <waymark/formats/satellites/atmosphere.hpp>
 #include <waymark/formats/satellites/ephemeris.hpp>
 
