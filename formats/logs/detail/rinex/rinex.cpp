@@ -1,5 +1,7 @@
 #include <waymark/formats/logs/detail/rinex/rinex.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <deque>
@@ -36,23 +38,32 @@ std::string date_text(Stamp gps) {
   return text.substr(0, text.find_first_of(".Z"));
 }
 
+/// A number of a measurement by the name of its column (plugins/gnss_raw/README.md).
+struct RinexColumn {
+  std::string_view name;
+  double (*value)(const CorrectedMeasurement&);
+};
+using Corrected = const CorrectedMeasurement&;
+constexpr std::array kRinexColumns{
+    RinexColumn{"system",
+                [](Corrected of) { return double(static_cast<int>(of.placed.raw.satellite.first)); }},
+    RinexColumn{"satellite", [](Corrected of) { return double(of.placed.raw.satellite.second); }},
+    RinexColumn{"pseudorange", [](Corrected of) { return of.pseudorange_m; }},
+    RinexColumn{"range_rate", [](Corrected of) { return of.range_rate_mps; }},
+    RinexColumn{"satellite_x", [](Corrected of) { return of.placed.satellite.position.x(); }},
+    RinexColumn{"satellite_y", [](Corrected of) { return of.placed.satellite.position.y(); }},
+    RinexColumn{"satellite_z", [](Corrected of) { return of.placed.satellite.position.z(); }},
+    RinexColumn{"satellite_vx", [](Corrected of) { return of.placed.satellite.velocity.x(); }},
+    RinexColumn{"satellite_vy", [](Corrected of) { return of.placed.satellite.velocity.y(); }},
+    RinexColumn{"satellite_vz", [](Corrected of) { return of.placed.satellite.velocity.z(); }},
+    RinexColumn{"elevation", [](Corrected of) { return of.direction.elevation_rad; }},
+    RinexColumn{"cn0", [](Corrected of) { return of.placed.raw.cn0_dbhz; }},
+};
+
 double column_of(const CorrectedMeasurement& measurement, std::string_view name) {
-  const satellites::SatelliteState& satellite = measurement.placed.satellite;
-  const std::map<std::string_view, double> values{
-      {"system", static_cast<double>(static_cast<int>(measurement.placed.raw.satellite.first))},
-      {"satellite", measurement.placed.raw.satellite.second},
-      {"pseudorange", measurement.pseudorange_m},
-      {"range_rate", measurement.range_rate_mps},
-      {"satellite_x", satellite.position.x()},
-      {"satellite_y", satellite.position.y()},
-      {"satellite_z", satellite.position.z()},
-      {"satellite_vx", satellite.velocity.x()},
-      {"satellite_vy", satellite.velocity.y()},
-      {"satellite_vz", satellite.velocity.z()},
-      {"elevation", measurement.direction.elevation_rad},
-      {"cn0", measurement.placed.raw.cn0_dbhz}};
-  const auto found = values.find(name);
-  return found == values.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+  const auto found = std::find_if(kRinexColumns.begin(), kRinexColumns.end(),
+                                  [name](const RinexColumn& column) { return column.name == name; });
+  return found == kRinexColumns.end() ? std::numeric_limits<double>::quiet_NaN() : found->value(measurement);
 }
 
 class RinexDecoder final : public LineDecoder {
