@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <map>
 
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/ros/wire_text.hpp>
 #include <waymark/formats/trajectory/detail/ros_trajectory.hpp>
 #include <waymark/formats/trajectory/ros_formats.hpp>
@@ -29,9 +30,8 @@ std::string bag_record(const std::string& header, std::string_view data) {
 
 /// Seconds and nanoseconds, 4 bytes each.
 std::string bag_time(std::int64_t stamp) {
-  constexpr std::int64_t kBagSecond = 1'000'000'000;
-  return wire_bytes(static_cast<std::uint32_t>(stamp / kBagSecond)) +
-         wire_bytes(static_cast<std::uint32_t>(stamp % kBagSecond));
+  return wire_bytes(static_cast<std::uint32_t>(stamp / kSecondNanoseconds)) +
+         wire_bytes(static_cast<std::uint32_t>(stamp % kSecondNanoseconds));
 }
 
 std::string bag_connection(std::uint32_t id) {
@@ -60,7 +60,7 @@ class BagText {
 
   std::string text() {
     if (!index_.empty()) end_chunk();
-    const std::uint64_t begin_of_index = kMagic.size() + kBagFirstRecord + chunks_.size();
+    const std::uint64_t begin_of_index = kBagMagic.size() + kBagFirstRecord + chunks_.size();
     std::uint32_t connections = 0;
     std::string end;
     for (std::uint32_t id = 0; id < kBagTopics.size(); ++id) {
@@ -72,14 +72,12 @@ class BagText {
                                bag_field("conn_count", wire_bytes(connections)) +
                                bag_field("chunk_count", wire_bytes(chunk_count_));
     const std::string padding(kBagFirstRecord - 8 - header.size(), ' ');
-    return std::string(kMagic) + bag_record(header, padding) + chunks_ + end + infos_;
+    return std::string(kBagMagic) + bag_record(header, padding) + chunks_ + end + infos_;
   }
 
  private:
-  static constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-
   void end_chunk() {
-    const std::uint64_t place = kMagic.size() + kBagFirstRecord + chunks_.size();
+    const std::uint64_t place = kBagMagic.size() + kBagFirstRecord + chunks_.size();
     chunks_ += bag_record(bag_op(5) + bag_field("compression", "none") +
                               bag_field("size", wire_bytes(static_cast<std::uint32_t>(chunk_.size()))),
                           chunk_);

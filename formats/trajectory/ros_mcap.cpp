@@ -31,7 +31,7 @@ std::string mcap_message(std::uint16_t id, std::size_t sequence, std::int64_t st
 
 std::string trajectory_mcap(std::span<const TrajectoryPoint> points) {
   const std::vector<std::int64_t> stamps = ros_stamps("MCAP", points);
-  std::string out(kMcapFileMagic);
+  std::string out(kMcapMagic);
   out += mcap_record(McapOpcode::header, wire_text("ros2") + wire_text("waymark"));
   out += mcap_topic(kOdometryTopic, kMcapOdometry) + mcap_topic(kFixTopic, kMcapFix);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -44,7 +44,7 @@ std::string trajectory_mcap(std::span<const TrajectoryPoint> points) {
   out += mcap_record(McapOpcode::data_end, wire_bytes(crc));
   // Neither summary nor offsets, and no CRC of them.
   out += mcap_record(McapOpcode::footer, std::string(8 + 8 + 4, '\0'));
-  return out.append(kMcapFileMagic);
+  return out.append(kMcapMagic);
 }
 
 }  // namespace waymark::formats

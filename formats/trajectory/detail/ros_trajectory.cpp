@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/ros/wire_text.hpp>
 #include <waymark/formats/text/stamp_text.hpp>
 
 namespace waymark::formats {
 namespace {
 
-constexpr std::int64_t kRosSecond = 1'000'000'000;
 /// What is not estimated: z, roll, pitch.
 constexpr double kUnknownVariance = 1e6;
 
@@ -43,7 +43,8 @@ class MessageText {
   /// std_msgs/Header; ROS 1 begins it with a running number.
   MessageText& header(std::size_t sequence, std::int64_t stamp, std::string_view frame) {
     if (form_ == RosForm::ros1) number(static_cast<std::uint32_t>(sequence));
-    number(static_cast<std::uint32_t>(stamp / kRosSecond)).number(static_cast<std::uint32_t>(stamp % kRosSecond));
+    number(static_cast<std::uint32_t>(stamp / kSecondNanoseconds))
+        .number(static_cast<std::uint32_t>(stamp % kSecondNanoseconds));
     return text(frame);
   }
   [[nodiscard]] std::string bytes() && { return std::move(bytes_); }
@@ -132,7 +133,7 @@ std::string ros_definition(const RosTopic& topic, RosForm form) {
 }
 
 std::vector<std::int64_t> ros_stamps(std::string_view format, std::span<const TrajectoryPoint> points) {
-  constexpr std::int64_t kEnd = (std::int64_t{1} << 32) * kRosSecond;
+  constexpr std::int64_t kEnd = (std::int64_t{1} << 32) * kSecondNanoseconds;
   std::vector<std::int64_t> stamps;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const TrajectoryPoint& point = points[i];

@@ -54,7 +54,7 @@ constexpr std::size_t kLocation = 4;
 class McapWriter final : public ReportWriter {
  public:
   [[nodiscard]] std::string header() const override {
-    std::string bytes = std::string(formats::kMcapFileMagic) +
+    std::string bytes = std::string(formats::kMcapMagic) +
                         mcap_record(McapOpcode::header, wire_text("") + wire_text("waymark live"));
     for (std::size_t i = 0; i < kTopics.size(); ++i) {
       const auto id = static_cast<std::uint16_t>(i + 1);
@@ -86,7 +86,7 @@ class McapWriter final : public ReportWriter {
     return mcap_record(McapOpcode::data_end, wire_bytes(std::uint32_t{0})) +
            mcap_record(McapOpcode::footer, wire_bytes(std::uint64_t{0}) + wire_bytes(std::uint64_t{0}) +
                                                wire_bytes(std::uint32_t{0})) +
-           std::string(formats::kMcapFileMagic);
+           std::string(formats::kMcapMagic);
   }
 
  private:

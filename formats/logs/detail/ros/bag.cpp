@@ -10,11 +10,11 @@
 #include <waymark/formats/logs/detail/ros/record_level.hpp>
 #include <waymark/formats/logs/detail/ros/ros_log.hpp>
 #include <waymark/formats/logs/detail/ros/wire_cursor.hpp>
+#include <waymark/formats/logs/detail/ros/wire_text.hpp>
 
 namespace waymark::formats {
 namespace {
 
-constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
 constexpr unsigned kBagMessage = 0x02, kBagChunk = 0x05, kBagConnection = 0x07;
 constexpr std::size_t kBagLength = 4;
 /// A header holds a few short fields; a longer one is damaged, and where the next record begins is not known.

@@ -13,13 +13,11 @@
 #include <waymark/formats/logs/detail/ros/record_level.hpp>
 #include <waymark/formats/logs/detail/ros/ros_log.hpp>
 #include <waymark/formats/logs/detail/ros/wire_cursor.hpp>
+#include <waymark/formats/logs/detail/ros/wire_text.hpp>
 
 namespace waymark::formats {
 namespace {
 
-constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
-constexpr unsigned kMcapFooter = 0x02, kMcapSchema = 0x03, kMcapChannel = 0x04, kMcapMessage = 0x05,
-                   kMcapChunk = 0x06, kMcapDataEnd = 0x0F;
 /// Opcode and length.
 constexpr std::size_t kMcapRecordHead = 9;
 /// Channel, sequence, log time, publish time.
@@ -62,10 +60,10 @@ class McapDecoder final : public RosLogDecoder {
         ::crc32_z(crc_, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
   }
   [[nodiscard]] std::uint64_t place() const { return kMcapMagic.size() + outer_.place(); }
-  [[nodiscard]] RecordStep begin_names(unsigned opcode, std::uint64_t length, std::string_view collected);
+  [[nodiscard]] RecordStep begin_names(McapOpcode opcode, std::uint64_t length, std::string_view collected);
   [[nodiscard]] RecordStep begin_message(std::uint64_t length, std::string_view collected);
   [[nodiscard]] RecordStep begin_chunk(std::uint64_t length, std::string_view collected);
-  void take_names(unsigned opcode, WireCursor from);
+  void take_names(McapOpcode opcode, WireCursor from);
   void give_held();
   void fail_chunk(const char* error);
 
@@ -93,31 +91,31 @@ constexpr RecordStep mcap_collect(std::uint64_t size) {
 
 RecordStep McapDecoder::begin(Level& level, std::string_view collected) {
   WireCursor from(collected);
-  const auto opcode = from.get<std::uint8_t>();
+  const McapOpcode opcode{from.get<std::uint8_t>()};
   const auto length = from.get<std::uint64_t>();
   const bool inside = &level != &outer_;
   // No file is as long as this, and places beyond it would overflow.
   constexpr std::uint64_t kMostBytes = 1ULL << 62U;
-  if (opcode == 0 || length > kMostBytes) {
+  if (opcode == McapOpcode{} || length > kMostBytes) {
     corrupt_record(place(), "here no record begins; what follows is not read");
     return {RecordStep::Then::stop, 0};
   }
   switch (opcode) {
-    case kMcapSchema:
-    case kMcapChannel:
+    case McapOpcode::schema:
+    case McapOpcode::channel:
       return begin_names(opcode, length, collected);
-    case kMcapMessage:
+    case McapOpcode::message:
       return begin_message(length, collected);
-    case kMcapChunk:
+    case McapOpcode::chunk:
       if (inside) break;
       return begin_chunk(length, collected);
-    case kMcapDataEnd:
+    case McapOpcode::data_end:
       if (inside || length < 4) break;
       if (collected.size() == kMcapRecordHead) return mcap_collect(4);
       if (const auto told = from.get<std::uint32_t>(); told != 0 && told != crc_)
         corrupt_record(place(), "the checksum of all data is wrong: some of what was read is damaged");
       return mcap_skipped(length - 4);
-    case kMcapFooter:
+    case McapOpcode::footer:
       if (inside) break;
       footer_ = true;
       return {RecordStep::Then::stop, 0};
@@ -127,16 +125,16 @@ RecordStep McapDecoder::begin(Level& level, std::string_view collected) {
   return mcap_skipped(length);
 }
 
-RecordStep McapDecoder::begin_names(unsigned opcode, std::uint64_t length, std::string_view collected) {
+RecordStep McapDecoder::begin_names(McapOpcode opcode, std::uint64_t length, std::string_view collected) {
   const std::uint64_t names = std::min(length, kMcapNames);
   if (collected.size() < kMcapRecordHead + names) return mcap_collect(names);
   take_names(opcode, WireCursor(collected.substr(kMcapRecordHead)));
   return mcap_skipped(length - names);
 }
 
-void McapDecoder::take_names(unsigned opcode, WireCursor from) {
+void McapDecoder::take_names(McapOpcode opcode, WireCursor from) {
   const auto id = from.get<std::uint16_t>();
-  if (opcode == kMcapSchema) {
+  if (opcode == McapOpcode::schema) {
     const std::string_view name = from.text();
     if (!from.sound()) return corrupt_record(place(), "schema: it is cut, or its name is too long");
     if (schemas_.size() < kMcapMostSchemas) schemas_.try_emplace(id, name);

@@ -1,4 +1,5 @@
-/// Writes numbers and texts as records of MCAP files and bags hold them: little endian, without alignment.
+/// Numbers and texts as records of MCAP files and bags hold them: little endian, without alignment. And what marks both
+/// files.
 #pragma once
 
 #include <bit>
@@ -26,16 +27,18 @@ template <typename Number>
   return wire_bytes(static_cast<std::uint32_t>(text.size())) + std::string(text);
 }
 
-/// Opcodes of MCAP records that are written.
+/// Opcodes of MCAP records that are read or written.
 enum class McapOpcode : unsigned char {
   header = 1,
   footer = 2,
   schema = 3,
   channel = 4,
   message = 5,
+  chunk = 6,
   data_end = 15
 };
-inline constexpr std::string_view kMcapFileMagic = "\x89MCAP0\r\n";
+inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
+inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
 
 /// Returns a record of an MCAP file: opcode, length, content (mcap.dev/spec).
 [[nodiscard]] inline std::string mcap_record(McapOpcode opcode, std::string_view content) {
