@@ -25,7 +25,8 @@ void append_csv_point(std::string& out, const TrajectoryPoint& point) {
   append_csv_number(out, point.latitude_deg);
   append_csv_number(out, point.longitude_deg);
   for (Eigen::Index axis = 0; axis < 3; ++axis)
-    append_csv_number(out, point.sigma ? std::optional<double>((*point.sigma)[axis]) : std::nullopt);
+    append_csv_number(
+        out, point.covariance ? std::optional(std::sqrt((*point.covariance)(axis, axis))) : std::nullopt);
   out += ',';
   append_csv_text(out, point.status);
   out += ',';

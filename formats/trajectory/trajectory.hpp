@@ -24,7 +24,6 @@ struct TrajectoryPoint {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x, y [m] in the frame, heading [rad]
   std::optional<double> latitude_deg;              ///< WGS84
   std::optional<double> longitude_deg;
-  std::optional<Eigen::Vector3d> sigma;  ///< of x, y [m], heading [rad]
   /// status of the fix at this epoch ("accepted", ...); empty: no fix
   std::string status;
   std::string reason;          ///< reason for that status

@@ -70,7 +70,7 @@ TEST_CASE("CSV: shortest exact numbers, empty fields where nothing is known") {
   TrajectoryPoint full = point(1149206567040000000, 0.1, 5701234.567, -1.0 / 3.0);
   full.latitude_deg = 52.5;
   full.longitude_deg = 13.25;
-  full.sigma = Eigen::Vector3d(1, 2.5, 0.001);
+  full.covariance = Eigen::Vector3d(1, 2.5 * 2.5, 0.001 * 0.001).asDiagonal();
   full.status = "rejected";
   full.reason = "angle";
   full.utc = Stamp{1149149767040000000};

@@ -60,10 +60,7 @@ formats::TrajectoryPoint point_of(const StampedPose& pose, const OfVertex& known
     point.latitude_deg = place.latitude_deg;
     point.longitude_deg = place.longitude_deg;
   }
-  if (known.covariance != nullptr) {
-    point.sigma = known.covariance->diagonal().cwiseSqrt();
-    point.covariance = *known.covariance;
-  }
+  if (known.covariance != nullptr) point.covariance = *known.covariance;
   if (known.fix != nullptr) {
     point.status = std::string(to_string(known.fix->status));
     point.reason = known.fix->reason;
