@@ -103,9 +103,10 @@ ExitCode write_trajectory(const ConvertOptions& options, const formats::GraphDoc
                           const Console& console) {
   const std::size_t poses = write_trajectory_file(document, options.output);
   if (options.common.json) {
-    console.result(
-        json_document("convert", {{"output", options.output}, {"format", "trajectory"}, {"poses", poses}}),
-        false);
+    nlohmann::ordered_json json = graph_json(options, document);
+    json["format"] = "trajectory";
+    json["poses"] = poses;
+    console.result(json_document("convert", json), false);
     return kSuccess;
   }
   console.result(fmt::format("written     {}: {} poses\n", options.output, poses), false);
