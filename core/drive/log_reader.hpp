@@ -193,6 +193,9 @@ struct LogReaderType {
   std::string description;  ///< one line
   /// without state; lives as long as the code that registered it
   const LogReader* reader = nullptr;
+  /// The reader gives speed and yaw rate of one moment together unless channels are asked for. Otherwise odometry is
+  /// read as channels (LogRequest::readings) and joined.
+  bool whole_odometry = false;
 };
 
 /// At most this many corrupt records are described. All are counted.

@@ -37,7 +37,7 @@ std::span<const LogReaderType> builtin_log_readers() {
   static const BagReader rosbag;
   static const RinexReader rinex;
   static const std::vector<LogReaderType> readers{
-      {"csv", "separated values with a column map: odometry, gnss, truth", &csv},
+      {"csv", "separated values with a column map: odometry, gnss, truth", &csv, true},
       {"gpsd_json", "gpsd's JSON reports (TPV): gnss, truth", &gpsd_json},
       {"candump", "CAN frames (candump) with a DBC: odometry, gnss, truth, sensors", &candump},
       {"asc", "CAN frames (Vector ASC), as candump", &asc},
@@ -50,8 +50,8 @@ std::span<const LogReaderType> builtin_log_readers() {
       {"ubx", "u-blox binary messages: gnss, truth, odometry and sensor channels (ESF-MEAS)", &ubx},
       {"gnss_logger", "text logs of Android's GnssLogger: gnss, truth", &gnss_logger},
       {"vbo", "Racelogic's VBO files: gnss, truth", &vbo},
-      {"mcap", "ROS messages in MCAP (CDR, JSON): odometry, gnss, truth, sensor channels", &mcap},
-      {"rosbag", "ROS 1 bags of version 2.0, as mcap", &rosbag},
+      {"mcap", "ROS messages in MCAP (CDR, JSON): odometry, gnss, truth, sensor channels", &mcap, true},
+      {"rosbag", "ROS 1 bags of version 2.0, as mcap", &rosbag, true},
       {"rinex", "RINEX 2 and 3 observations with their navigation files: sensor gnss_raw", &rinex},
   };
   return readers;

@@ -146,12 +146,7 @@ ChosenReader choose_reader(const LogConfig& log, const TypeRegistry& registry) {
   } else {
     chosen.type = named_reader(log, readers);
   }
-  // The columns of a table tell whether it holds channels of odometry. Other logs are
-  // asked for both.
-  // Messages of ROS hold both, too.
-  constexpr std::array<std::string_view, 3> kWhole{"csv", "mcap", "rosbag"};
-  const bool whole = std::find(kWhole.begin(), kWhole.end(), chosen.type.name) != kWhole.end();
-  if (log.request.stream == StreamKind::odometry && !whole)
+  if (log.request.stream == StreamKind::odometry && !chosen.type.whole_odometry)
     chosen.request.readings = formats::odometry_channels();
   read_companions(log, chosen.request, chosen.inputs, chosen.notes);
   return chosen;
