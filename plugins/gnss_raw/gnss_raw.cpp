@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
@@ -92,7 +94,7 @@ class GnssRaw final : public SensorModel {
         add_pseudorange(epoch.stamp, reading, sky, {place.pose, height, clock}, antenna, graph);
       if (!std::isnan(reading.range_rate_mps) && uses_rates_)
         add_range_rate(
-            reading, sky, clock,
+            epoch.stamp, reading, sky, clock,
             chord_at(input.nodes, place.node, seconds_between(input.nodes.stamps[place.node], epoch.stamp)),
             input.nodes, graph);
     }
@@ -109,14 +111,16 @@ class GnssRaw final : public SensorModel {
     edge.ground = sky.ground();
     edge.antenna = antenna;
     edge.spread = noise.lasting_m;
+    edge.slow_spread = noise.slow_m;
     const auto [pose, height, clock] = pose_height_clock;
     graph.add_edge(edge,
                    {pose, height, clock, states_.system(reading.system, graph),
-                    states_.satellite(reading.system, reading.satellite, stamp, graph)},
+                    states_.multipath().of(reading.system, reading.satellite, stamp, graph),
+                    states_.slow().of(reading.system, reading.satellite, stamp, graph)},
                    Eigen::Matrix<double, 1, 1>(1 / (noise.white_m * noise.white_m)), noise_.tails());
   }
 
-  void add_range_rate(const SatelliteReading& reading, const LocalSky& sky, VertexIndex clock,
+  void add_range_rate(Stamp stamp, const SatelliteReading& reading, const LocalSky& sky, VertexIndex clock,
                       const std::optional<Chord>& chord, const DriveNodes& nodes, Graph& graph) {
     if (!chord) return;
     const Eigen::Vector3d satellite = sky.local(reading.position);
@@ -127,9 +131,16 @@ class GnssRaw final : public SensorModel {
     edge.direction = towards.head<2>();
     edge.rate = sky.ground() / nodes.intervals[chord->from].dt_s;
     edge.antenna = antenna_;
-    const double sigma = noise_.range_rate_sigma(reading);
+    const double sigma = noise_.range_rate_sigma(reading, since_last_rate(reading, stamp));
     graph.add_edge(edge, {nodes.poses[chord->from], nodes.poses[chord->to], clock},
                    Eigen::Matrix<double, 1, 1>(1 / (sigma * sigma)), noise_.tails());
+  }
+
+  /// Returns the time since the last range rate of a satellite, s; a long one for the first.
+  double since_last_rate(const SatelliteReading& reading, Stamp stamp) {
+    const auto [last, is_first] = last_rates_.try_emplace({reading.system, reading.satellite}, stamp);
+    constexpr double kLong_s = 1e6;
+    return is_first ? kLong_s : seconds_between(std::exchange(last->second, stamp), stamp);
   }
 
   Eigen::Vector2d antenna_;
@@ -138,6 +149,7 @@ class GnssRaw final : public SensorModel {
   bool uses_rates_;
   Noise noise_;
   States states_;
+  std::map<std::pair<int, int>, Stamp> last_rates_;
 };
 
 void register_types(TypeRegistry& registry) {

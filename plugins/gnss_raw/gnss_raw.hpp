@@ -34,8 +34,8 @@ struct VertexGnssSystemBias : ScalarState {
   static constexpr std::array<std::string_view, 1> value_units() { return {"m"}; }
 };
 
-/// The part of the error of one satellite's pseudoranges that lasts for seconds (reflections). Its
-/// unit is the standard deviation that each edge states.
+/// A part of the error of one satellite's pseudoranges that lasts: for seconds (reflections), or for
+/// an hour (orbit, ionosphere). Its unit is the standard deviation that each edge states.
 struct VertexGnssSatelliteBias : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_GNSS_SATELLITE_BIAS";
   static constexpr std::array<std::string_view, 1> value_names() { return {"satellite_bias"}; }
@@ -90,7 +90,7 @@ struct EdgeGnssSatelliteBiasDecay {
 };
 
 /// One pseudorange, corrected for the satellite's clock and the atmosphere:
-///   e = |s - p| - |s| + clock bias + system bias + spread * satellite bias - measured.
+///   e = |s - p| - |s| + clock bias + system bias + spread * lasting + slow_spread * slow - measured.
 /// p is the antenna and s the satellite, in metres from a reference point near the antenna, along
 /// the axes of the grid there and upwards; s is turned by the rotation of the Earth while the signal
 /// travels. `measured` is the pseudorange minus |s|, so no digits are lost.
@@ -98,20 +98,21 @@ struct EdgeGnssPseudorange {
   static constexpr std::string_view kTag = "EDGE_GNSS_PSEUDORANGE";
   static constexpr std::string_view kForm = "range";
   static constexpr int kErrorDimension = 1;
-  using Vertices =
-      VertexList<VertexSe2, VertexGnssHeight, VertexGnssClock, VertexGnssSystemBias, VertexGnssSatelliteBias>;
+  using Vertices = VertexList<VertexSe2, VertexGnssHeight, VertexGnssClock, VertexGnssSystemBias,
+                              VertexGnssSatelliteBias, VertexGnssSatelliteBias>;
   static constexpr auto fields() {
     return std::array{field<&EdgeGnssPseudorange::measured>("measured"),
                       field<&EdgeGnssPseudorange::satellite>("satellite"),
                       field<&EdgeGnssPseudorange::reference>("reference"),
                       field<&EdgeGnssPseudorange::ground>("ground"),
                       field<&EdgeGnssPseudorange::antenna>("antenna"),
-                      field<&EdgeGnssPseudorange::spread>("spread")};
+                      field<&EdgeGnssPseudorange::spread>("spread"),
+                      field<&EdgeGnssPseudorange::slow_spread>("slow_spread")};
   }
 
   template <typename T>
   Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose, const T& height, const Vector2<T>& clock,
-                               const T& system, const T& lasting) const {
+                               const T& system, const T& lasting, const T& slow) const {
     using std::sqrt;
     const Vector2<T> at = pose.position + rotate(pose.heading, constant_vector<T>(antenna));
     const T x = (at[0] - T(reference[0])) * T(ground);
@@ -126,7 +127,8 @@ struct EdgeGnssPseudorange {
     const T excess =
         (x * (x - T(2 * satellite[0])) + y * (y - T(2 * satellite[1])) + z * (z - T(2 * satellite[2]))) /
         (range + T(satellite.norm()));
-    return Eigen::Matrix<T, 1, 1>(T(excess + clock[0] + system + lasting * T(spread) - T(measured)));
+    return Eigen::Matrix<T, 1, 1>(
+        T(excess + clock[0] + system + lasting * T(spread) + slow * T(slow_spread) - T(measured)));
   }
 
   double measured = 0;                                   ///< pseudorange - |satellite|, m
@@ -135,6 +137,7 @@ struct EdgeGnssPseudorange {
   double ground = 1;                                     ///< metres on the ground per grid metre
   Eigen::Vector2d antenna = Eigen::Vector2d::Zero();     ///< in the body frame of the pose, m
   double spread = 0;                                     ///< standard deviation of the lasting part, m
+  double slow_spread = 0;                                ///< standard deviation of the slow part, m
 };
 
 /// One range rate (Doppler): e = clock drift - u (p_to - p_from) rate - measured, where u points from

@@ -7,6 +7,7 @@ namespace waymark::plugins::gnss_raw {
 namespace {
 
 constexpr double kStrongSignal_dbhz = 45;
+constexpr double kGlonassChannels = 2;
 
 double weakness(const SatelliteReading& reading) {
   if (std::isnan(reading.cn0_dbhz)) return 1;
@@ -25,51 +26,69 @@ double obliquity(const SatelliteReading& reading) {
 RangeNoise Noise::of(const SatelliteReading& reading) const {
   const double factor = weakness(reading) * std::sqrt(obliquity(reading));
   return {parameters_.pseudorange_sigma_m * factor, parameters_.multipath_sigma_m * factor,
+          parameters_.slow_sigma_m * std::sqrt(obliquity(reading)) *
+              (reading.system == kGlonass ? kGlonassChannels : 1),
           parameters_.reflection_delay_m * (weakness(reading) - 1)};
 }
 
-double Noise::range_rate_sigma(const SatelliteReading& reading) const {
-  return parameters_.range_rate_sigma_mps * weakness(reading);
+double Noise::range_rate_sigma(const SatelliteReading& reading, double dt_s) const {
+  const double half =
+      0.5 * dt_s / parameters_.range_rate_time_s;  // (1 - r) / (1 + r) is its hyperbolic tangent
+  return parameters_.range_rate_sigma_mps * weakness(reading) / std::sqrt(std::tanh(half));
 }
 
 std::vector<OptionInfo> noise_options() {
-  return {{.name = "pseudorange_sigma",
-           .value = "2",
-           .unit = "m",
-           .allowed = OptionRange{0.01, 1000},
-           .text = "error of a strong signal's pseudorange that each epoch draws anew",
-           .prior = NoisePrior{.mean = 2, .deviation = 0.7}},
-          {.name = "multipath_sigma",
-           .value = "3",
-           .unit = "m",
-           .allowed = OptionRange{0, 1000},
-           .text = "error of a strong signal's pseudorange that lasts; 0: there is none",
-           .prior = NoisePrior{.mean = 3, .deviation = 0.7}},
-          {.name = "reflection_delay",
-           .value = "0",
-           .unit = "m",
-           .allowed = OptionRange{0, 1000},
-           .text = "how late weak signals are: 10^((45 - C/N0) / 20) - 1 times this"},
-          {.name = "range_rate_sigma",
-           .value = "0.1",
-           .unit = "m/s",
-           .allowed = OptionRange{0.001, 100},
-           .text = "error of a strong signal's range rate",
-           .prior = NoisePrior{.mean = 0.1, .deviation = 0.7}},
-          {.name = "tails",
-           .value = "cauchy",
-           .allowed = OptionWords{"cauchy", "gaussian"},
-           .text = "'cauchy': a heavy-tailed loss on pseudoranges and range rates; 'gaussian': none"},
-          {.name = "tail_scale",
-           .value = "1",
-           .allowed = OptionRange{0.1, 100},
-           .text = "scale of the loss, in standard deviations"}};
+  return {
+      {.name = "pseudorange_sigma",
+       .value = "2",
+       .unit = "m",
+       .allowed = OptionRange{0.01, 1000},
+       .text = "error of a strong signal's pseudorange that each epoch draws anew",
+       .prior = NoisePrior{.mean = 2, .deviation = 0.7}},
+      {.name = "multipath_sigma",
+       .value = "3",
+       .unit = "m",
+       .allowed = OptionRange{0, 1000},
+       .text = "error of a strong signal's pseudorange that lasts; 0: there is none",
+       .prior = NoisePrior{.mean = 3, .deviation = 0.7}},
+      {.name = "slow_sigma",
+       .value = "2",
+       .unit = "m",
+       .allowed = OptionRange{0, 1000},
+       .text =
+           "error of a satellite's pseudorange that stays for an hour: orbit, ionosphere; 0: there is none"},
+      {.name = "reflection_delay",
+       .value = "0",
+       .unit = "m",
+       .allowed = OptionRange{0, 1000},
+       .text = "how late weak signals are: 10^((45 - C/N0) / 20) - 1 times this"},
+      {.name = "range_rate_sigma",
+       .value = "0.1",
+       .unit = "m/s",
+       .allowed = OptionRange{0.001, 100},
+       .text = "error of a strong signal's range rate",
+       .prior = NoisePrior{.mean = 0.1, .deviation = 0.7}},
+      {.name = "range_rate_time",
+       .value = "1",
+       .unit = "s",
+       .allowed = OptionRange{1e-3, 1000},
+       .text = "how long the error of a range rate lasts"},
+      {.name = "tails",
+       .value = "cauchy",
+       .allowed = OptionWords{"cauchy", "gaussian"},
+       .text = "'cauchy': a heavy-tailed loss on pseudoranges and range rates; 'gaussian': none"},
+      {.name = "tail_scale",
+       .value = "1",
+       .allowed = OptionRange{0.1, 100},
+       .text = "scale of the loss, in standard deviations"}};
 }
 
 Noise read_noise(const CheckedOptions& options) {
   return Noise({.pseudorange_sigma_m = options.number("pseudorange_sigma"),
                 .range_rate_sigma_mps = options.number("range_rate_sigma"),
+                .range_rate_time_s = options.number("range_rate_time"),
                 .multipath_sigma_m = options.number("multipath_sigma"),
+                .slow_sigma_m = options.number("slow_sigma"),
                 .reflection_delay_m = options.number("reflection_delay"),
                 .tails = options.word("tails") == "gaussian"
                              ? std::nullopt

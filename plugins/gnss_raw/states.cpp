@@ -15,6 +15,9 @@ constexpr double kAnyClock = 1e6;
 constexpr double kAnyHeight_m = 3000;
 /// After so many times its duration a lasting error is forgotten.
 constexpr double kForgotten = 5;
+/// Orbits are broadcast anew every one or two hours, and the ionosphere changes as slowly.
+constexpr double kSlow_s = 3600;
+constexpr double kSlowPeriod_s = 120;
 
 }  // namespace
 
@@ -70,25 +73,25 @@ VertexIndex States::system(int system, Graph& graph) {
   });
 }
 
-VertexIndex States::satellite(int system, int satellite, Stamp stamp, Graph& graph) {
-  if (!parameters_.has_multipath) {
+VertexIndex LastingErrors::of(int system, int satellite, Stamp stamp, Graph& graph) {
+  if (!parameters_.present) {
     return no_error_.in_or(graph, [&] {
       const VertexIndex made = graph.add_vertex<VertexGnssSatelliteBias>(graph.free_id(), {0});
       graph.set_fixed(made, true);
       return made;
     });
   }
-  LastingError& error = satellites_[{system, satellite}];
+  OfSatellite& error = satellites_[{system, satellite}];
   const VertexIndex last = error.vertex.in(graph);
   const double dt = seconds_between(error.since, stamp);
   constexpr double kJitter = 0.999;
-  if (last >= 0 && dt < kJitter * parameters_.multipath_period_s) return last;
+  if (last >= 0 && dt < kJitter * parameters_.period_s) return last;
   const VertexIndex next = graph.add_vertex<VertexGnssSatelliteBias>(graph.free_id(), {0});
   graph.set_stamp(next, stamp);
-  if (last < 0 || dt > kForgotten * parameters_.multipath_time_s) {
+  if (last < 0 || dt > kForgotten * parameters_.time_s) {
     add_prior_about_zero(graph, next, 1);
   } else {
-    const double decay = std::exp(-dt / parameters_.multipath_time_s);
+    const double decay = std::exp(-dt / parameters_.time_s);
     graph.add_edge(EdgeGnssSatelliteBiasDecay{decay}, {last, next},
                    Eigen::Matrix<double, 1, 1>(1 / (1 - decay * decay)));
   }
@@ -98,7 +101,7 @@ VertexIndex States::satellite(int system, int satellite, Stamp stamp, Graph& gra
 
 std::vector<OptionInfo> drive_state_options() {
   return {
-      {"multipath_time", "10", "s", OptionRange{0.1, 1e4}, "how long a lasting error of a satellite lasts"},
+      {"multipath_time", "30", "s", OptionRange{0.1, 1e4}, "how long a lasting error of a satellite lasts"},
       {"multipath_period", "1", "s", OptionRange{0.01, 1e3}, "time between two values of a lasting error"},
       {"clock_walk", "0.1", "m/sqrt(s)", OptionRange{1e-6, 1e6}, "wander of the clock's bias"},
       {"drift_walk", "0.1", "m/s/sqrt(s)", OptionRange{1e-6, 1e6}, "wander of the clock's drift"},
@@ -109,16 +112,18 @@ std::vector<OptionInfo> drive_state_options() {
 }
 
 States::Parameters read_states(const CheckedOptions& options) {
-  return {.height = {.model = StateModel::random_walk,
-                     .prior_sigma = kAnyHeight_m,
-                     .walk_sigma = options.number("height_walk"),
-                     .period_s = options.number("height_period")},
-          .clock_walk = options.number("clock_walk"),
-          .drift_walk = options.number("drift_walk"),
-          .system_bias_sigma_m = options.number("system_bias_sigma"),
-          .has_multipath = options.number("multipath_sigma") > 0,
-          .multipath_time_s = options.number("multipath_time"),
-          .multipath_period_s = options.number("multipath_period")};
+  return {
+      .height = {.model = StateModel::random_walk,
+                 .prior_sigma = kAnyHeight_m,
+                 .walk_sigma = options.number("height_walk"),
+                 .period_s = options.number("height_period")},
+      .clock_walk = options.number("clock_walk"),
+      .drift_walk = options.number("drift_walk"),
+      .system_bias_sigma_m = options.number("system_bias_sigma"),
+      .multipath = {.present = options.number("multipath_sigma") > 0,
+                    .time_s = options.number("multipath_time"),
+                    .period_s = options.number("multipath_period")},
+      .slow = {.present = options.number("slow_sigma") > 0, .time_s = kSlow_s, .period_s = kSlowPeriod_s}};
 }
 
 }  // namespace waymark::plugins::gnss_raw

@@ -80,11 +80,38 @@ struct Receiver {
   double drift_mps = -50;
   double glonass_m = 5;
   double step_at_s = 1e9;  // the clock is set back by 1 ms
+  double slow_m = 0;       // what each satellite's pseudoranges are wrong by, all the drive (sigma)
+  double rate_time_s = 0;  // how long an error of a range rate lasts
+};
+
+/// The errors of the satellites, one draw for each.
+class SatelliteErrors {
+ public:
+  SatelliteErrors(const Receiver& receiver, Noise& noise)
+      : decay_(receiver.rate_time_s > 0 ? std::exp(-1 / receiver.rate_time_s) : 0), noise_(noise) {
+    for (const Satellite& satellite : sky())
+      slow_m_.push_back(receiver.slow_m * (satellite.system == 4 ? 2 : 1) * noise(1));
+    for (std::size_t i = 0; i < slow_m_.size(); ++i) rate_mps_.push_back(noise(kRateSigma_mps));
+  }
+
+  [[nodiscard]] double range_m(std::size_t satellite) { return slow_m_[satellite] + noise_(kSigma_m); }
+  /// A second after the last one.
+  [[nodiscard]] double rate_mps(std::size_t satellite) {
+    double& rate = rate_mps_[satellite];
+    rate = decay_ * rate + std::sqrt(1 - decay_ * decay_) * noise_(kRateSigma_mps);
+    return rate;
+  }
+
+ private:
+  double decay_;
+  Noise& noise_;
+  std::vector<double> slow_m_, rate_mps_;
 };
 
 /// Returns the log of a receiver on the vehicle, at the full seconds after the first.
 Readings log_of(const KitDrive& drive, const Receiver& receiver, Noise& noise) {
   Readings log("gnss_raw");
+  SatelliteErrors errors(receiver, noise);
   for (std::size_t node = kNodesPerSecond; node < drive.truth.size(); node += kNodesPerSecond) {
     const double t = static_cast<double>(node) / kNodesPerSecond;
     const auto place = [&](std::size_t at) {
@@ -93,7 +120,8 @@ Readings log_of(const KitDrive& drive, const Receiver& receiver, Noise& noise) {
     const Eigen::Vector3d velocity = (place(node) - place(node - 1)) * kNodesPerSecond;
     double clock = receiver.bias_m + receiver.drift_mps * t;
     if (t >= receiver.step_at_s) clock -= kLight_mps / 1000;
-    for (const Satellite& satellite : sky()) {
+    for (std::size_t i = 0; i < sky().size(); ++i) {
+      const Satellite satellite = sky()[i];
       const Eigen::Vector3d left = satellite.position + t * satellite.velocity;
       const double travel_s = (left - place(node)).norm() / kLight_mps;
       const Eigen::Vector3d way = turned_with_earth(left, travel_s) - place(node);
@@ -102,8 +130,8 @@ Readings log_of(const KitDrive& drive, const Receiver& receiver, Noise& noise) {
       log.add(drive.stamps[node],
               {{"system", satellite.system},
                {"satellite", satellite.number},
-               {"pseudorange", way.norm() + clock + system + noise(kSigma_m)},
-               {"range_rate", way.normalized().dot(closing) + receiver.drift_mps + noise(kRateSigma_mps)},
+               {"pseudorange", way.norm() + clock + system + errors.range_m(i)},
+               {"range_rate", way.normalized().dot(closing) + receiver.drift_mps + errors.rate_mps(i)},
                {"satellite_x", left.x()},
                {"satellite_y", left.y()},
                {"satellite_z", left.z()},
@@ -115,12 +143,12 @@ Readings log_of(const KitDrive& drive, const Receiver& receiver, Noise& noise) {
   return log;
 }
 
-/// The noise that log_of() has: no elevations, no C/N0, white and normal.
+/// The noise that log_of() has: no elevations, no C/N0, normal; white unless the receiver says more.
 const Options kWhite = {{"pseudorange_sigma", "3"}, {"range_rate_sigma", "0.1"}, {"multipath_sigma", "0"},
                         {"tails", "gaussian"},      {"drift_walk", "0.001"},     {"clock_walk", "0.001"},
-                        {"height_walk", "0.001"}};
+                        {"height_walk", "0.001"},   {"slow_sigma", "0"},         {"range_rate_time", "0.01"}};
 
-KitDrive raw_drive(const Receiver& receiver, std::uint64_t seed) {
+KitDrive raw_drive(const Receiver& receiver, std::uint64_t seed, Options options = kWhite) {
   KitRecipe recipe;
   recipe.last_fix_s = -1;  // there are no fixes
   KitDrive drive = make_kit_drive(recipe, seed);
@@ -129,7 +157,7 @@ KitDrive raw_drive(const Receiver& receiver, std::uint64_t seed) {
   DriveContext context;
   context.geodesy = &sphere();
   registry()
-      .make_sensor_model("gnss_raw", kWhite)
+      .make_sensor_model("gnss_raw", options)
       ->extend({drive.nodes(), {}, {0, 0}, log.table(), 1, "raw", context}, drive.graph);
   return drive;
 }
@@ -142,14 +170,15 @@ TEST_CASE("gnss_raw: a pseudorange is the distance and the clock, without loss o
   edge.satellite = {0, 0, 2e7};
   edge.reference = {100, 200, 50};
   const auto error = [&](const Pose2<double>& pose, double height) {
-    return edge.error(pose, height, Eigen::Vector2d(7, 0), 0.0, 0.0)[0];
+    return edge.error(pose, height, Eigen::Vector2d(7, 0), 0.0, 0.0, 0.0)[0];
   };
   CHECK(error({100, 200, 0}, 53) == Approx(-3 + 7).margin(1e-9));
   // 300 m to the side add 300^2 / (2 * 2e7) m.
   CHECK(error({400, 200, 0}, 50) == Approx(0.00225 + 7).margin(1e-9));
   edge.spread = 4;
-  CHECK(edge.error(Pose2<double>(100, 200, 0), 50.0, Eigen::Vector2d(0, 0), 2.0, 0.5)[0] ==
-        Approx(4).margin(1e-9));
+  edge.slow_spread = 2;
+  CHECK(edge.error(Pose2<double>(100, 200, 0), 50.0, Eigen::Vector2d(0, 0), 2.0, 0.5, -1.5)[0] ==
+        Approx(2 + 4 * 0.5 - 2 * 1.5).margin(1e-9));
 }
 
 TEST_CASE("gnss_raw: a range rate falls by the speed towards the satellite") {
@@ -163,19 +192,36 @@ TEST_CASE("gnss_raw: a range rate falls by the speed towards the satellite") {
         Approx(-20 * std::sin(0.1)));
 }
 
-TEST_CASE("gnss_raw: errors of a drive without fixes are as its covariances say") {
+/// The normalised errors of the first and the last pose over many drives are chi-square of 3.
+void check_consistency(const Receiver& receiver, const Options& options, double largest_rms_m) {
   constexpr int kDrives = 40;
   double first = 0;
   double last = 0;
   for (int i = 0; i < kDrives; ++i) {
-    KitDrive drive = raw_drive({}, static_cast<std::uint64_t>(i));
+    KitDrive drive = raw_drive(receiver, static_cast<std::uint64_t>(i), options);
     const Solution solution = solve(drive);
     first += solution.normalised(kNodesPerSecond);
     last += solution.normalised(static_cast<int>(drive.poses.size()) - 1);
-    CHECK(solution.rms_position() < 2);
+    CHECK(solution.rms_position() < largest_rms_m);
   }
   check_mean_chi_square(first, 3, kDrives);
   check_mean_chi_square(last, 3, kDrives);
+}
+
+TEST_CASE("gnss_raw: errors of a drive without fixes are as its covariances say") {
+  check_consistency({}, kWhite, 2);
+}
+
+TEST_CASE("gnss_raw: so they are where satellites are wrong all the drive long, GLONASS by twice as much") {
+  Options options = kWhite;
+  options["slow_sigma"] = "3";
+  check_consistency({.slow_m = 3}, options, 12);
+}
+
+TEST_CASE("gnss_raw: so they are where an error of a range rate lasts for four epochs") {
+  Options options = kWhite;
+  options["range_rate_time"] = "4";
+  check_consistency({.rate_time_s = 4}, options, 2);
 }
 
 TEST_CASE("gnss_raw: height, bias of a system and a clock that is set back are found") {

@@ -14,6 +14,32 @@
 
 namespace waymark::plugins::gnss_raw {
 
+/// The errors of satellites that last: for each satellite a first-order Gauss-Markov process of
+/// variance 1.
+class LastingErrors {
+ public:
+  struct Parameters {
+    bool present = true;
+    double time_s = 1;    ///< correlation time
+    double period_s = 1;  ///< between two values
+  };
+
+  explicit LastingErrors(const Parameters& parameters) : parameters_(parameters) {}
+
+  /// Returns the error of a satellite at a moment: one value for each period, 0 if there is none.
+  [[nodiscard]] VertexIndex of(int system, int satellite, Stamp stamp, Graph& graph);
+
+ private:
+  struct OfSatellite {
+    KeptVertex vertex;
+    Stamp since;
+  };
+
+  Parameters parameters_;
+  std::map<std::pair<int, int>, OfSatellite> satellites_;
+  KeptVertex no_error_;
+};
+
 class States {
  public:
   struct Parameters {
@@ -21,12 +47,15 @@ class States {
     double clock_walk = 1;  ///< m / sqrt(s)
     double drift_walk = 1;  ///< m/s / sqrt(s)
     double system_bias_sigma_m = 1;
-    bool has_multipath = true;
-    double multipath_time_s = 1;
-    double multipath_period_s = 1;
+    LastingErrors::Parameters multipath{};
+    LastingErrors::Parameters slow{};
   };
 
-  explicit States(const Parameters& parameters) : parameters_(parameters), height_(parameters.height) {}
+  explicit States(const Parameters& parameters)
+      : parameters_(parameters),
+        height_(parameters.height),
+        multipath_(parameters.multipath),
+        slow_(parameters.slow) {}
 
   [[nodiscard]] VertexIndex height(Stamp stamp, Graph& graph) { return height_.at(stamp, graph); }
 
@@ -39,15 +68,10 @@ class States {
   /// Returns the bias of a system. That of the first one that is asked for is held at 0.
   [[nodiscard]] VertexIndex system(int system, Graph& graph);
 
-  /// Returns the lasting error of a satellite at a moment: one value for each period.
-  [[nodiscard]] VertexIndex satellite(int system, int satellite, Stamp stamp, Graph& graph);
+  [[nodiscard]] LastingErrors& multipath() { return multipath_; }
+  [[nodiscard]] LastingErrors& slow() { return slow_; }
 
  private:
-  struct LastingError {
-    KeptVertex vertex;
-    Stamp since;
-  };
-
   void absorb_steps(Stamp stamp, double offset_m);
 
   Parameters parameters_;
@@ -58,8 +82,8 @@ class States {
   std::optional<std::pair<Stamp, double>> last_offset_;  ///< without what is absorbed
   double drift_mps_ = 0;                                 ///< of the offsets
   std::map<int, KeptVertex> systems_;
-  std::map<std::pair<int, int>, LastingError> satellites_;
-  KeptVertex no_error_;
+  LastingErrors multipath_;
+  LastingErrors slow_;
 };
 
 [[nodiscard]] std::vector<OptionInfo> drive_state_options();
