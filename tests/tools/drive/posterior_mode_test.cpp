@@ -111,4 +111,14 @@ TEST_CASE("posterior mode: a curvature that is known costs no differences, and a
   }
 }
 
+TEST_CASE("posterior mode: a derivative that is no number leaves the search at a number") {
+  const PosteriorCost cost{[](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    CHECK(x.allFinite());
+    if (gradient != nullptr) *gradient = Eigen::Vector2d(2 * x[0] - 2, x[0] > 0 ? -INFINITY : -1);
+    return x[0] * x[0] - 2 * x[0] - x[1];
+  }};
+  const PosteriorMode mode = search_posterior(cost, Eigen::Vector2d(0, 0), within(4, 2));
+  CHECK(mode.at.allFinite());
+}
+
 }  // namespace posterior_mode_test

@@ -172,10 +172,14 @@ double NoiseObjective::derivative(const NoiseEstimate& noise, std::size_t parame
   place_at(from + step, changed);
   build(moved);
   const double chi2 = equations_->linearize(values_);  // where the poses stand
-  const std::vector<double> values = moved_poses(residual);
-  Evidence there = evidence_->at(values);
-  there.chi2 = chi2;
-  return (there.negative_log() - here_.negative_log()) / step;
+  const auto derivative_at = [&](const std::vector<double>& values) {
+    Evidence there = evidence_->at(values);
+    there.chi2 = chi2;
+    return (there.negative_log() - here_.negative_log()) / step;
+  };
+  const double derivative = derivative_at(moved_poses(residual));
+  // Where heavy tails let the corrections run away, the poses stand: the determinants lose their part.
+  return std::isfinite(derivative) ? derivative : derivative_at(values_);
 }
 
 }  // namespace waymark::drive

@@ -86,6 +86,10 @@ double evaluate(unsigned size, const double* coordinates, double* gradient, void
   Search& search = *static_cast<Search*>(data);
   Quadratic there;
   there.centre = Eigen::Map<const VectorXd>(coordinates, size);
+  if (!there.centre.allFinite()) {  // a derivative was no number; the best point so far stands
+    nlopt_force_stop(search.slsqp);
+    return std::numeric_limits<double>::max();
+  }
   try {
     evaluate_here(search, there, gradient != nullptr);
   } catch (...) {
