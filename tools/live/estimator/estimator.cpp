@@ -11,6 +11,7 @@
 #include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/model/surroundings.hpp>
 #include <waymark/tools/drive/nodes/start.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double kSecondsWithoutFix = 2;  // then a solution moves the window on
 constexpr double kLongestStretch = 10;    // s of poses that leave the window together
+constexpr double kPlacesFrame_m = 1000;   // a frame is not chosen by a rougher place
 constexpr double kFixIsOld = 1.5;         // s, unless fixes usually are rarer
 constexpr double kLooksBack = 60;         // s, for the alignment
 constexpr std::size_t kClaims = 300;
@@ -63,9 +65,11 @@ Estimator::Estimator(drive::DriveDescription description, const drive::FusionSet
       live_(live),
       registry_(registry),
       intake_(live.reorder_s, live.longest_gap_s),
-      odometries_(description_.odometry.size(), description_.timeline.gap_s) {
+      odometries_(description_.odometry.size(), description_.timeline.gap_s),
+      rough_(description_, registry) {
   if (description_.odometry.empty()) throw UsageError("live fusion needs an odometry");
-  if (description_.gnss.empty()) throw UsageError("live fusion needs a receiver");
+  if (description_.gnss.empty() && !rough_.any())
+    throw UsageError("live fusion needs a receiver, or a sensor that places the vehicle");
   standstill_mps_ =
       drive::make_odometry_model(drive::for_relative(settings_, description_.odometry.front().name),
                                  description_.timeline.gap_noise_factor, registry_)
@@ -245,8 +249,11 @@ void Estimator::advance(std::size_t source, const OdometrySample& sample) {
   while (odometry_.size() > 2 && seconds_between(odometry_[1].sample.stamp, now_) > kept_s)
     odometry_.pop_front();
   use_pending();
+  use_rough_places();
   if (!window_) {
-    while (!fixes_.empty() && fixes_.front().stamp < odometry_.front().sample.stamp) fixes_.pop_front();
+    const Stamp begin = odometry_.front().sample.stamp;
+    while (!fixes_.empty() && fixes_.front().stamp < begin) fixes_.pop_front();
+    while (!readings_.empty() && readings_.front().stamp < begin) readings_.pop_front();
     align();
   }
   if (window_ && seconds_between(last_cycle_, now_) >= kSecondsWithoutFix) {
@@ -285,18 +292,33 @@ void Estimator::add_motion(std::size_t source, const OdometrySample& sample) {
   odometry_.push_back(std::move(next));
 }
 
-Fix Estimator::projected(const GeodeticFix& fix) {
+const drive::Projection& Estimator::projection_at(const GeodeticPoint& place) {
   if (!frame_) {
-    frame_ = drive::choose_frame({fix.latitude_deg, fix.longitude_deg}, description_.utm_zone,
-                                 description_.utm_origin);
+    frame_ = drive::choose_frame(place, description_.utm_zone, description_.utm_origin);
     projection_.emplace(*frame_);
   }
-  Fix place = projection_->project(fix);
+  return *projection_;
+}
+
+Fix Estimator::projected(const GeodeticFix& fix) {
+  Fix place = projection_at({fix.latitude_deg, fix.longitude_deg}).project(fix);
   place.told = fix.told;
   place.accuracy_claimed = fix.accuracy_claimed;
   place.antenna_m = settings_.lever_arm ? description_.gnss[static_cast<std::size_t>(fix.source)].antenna_m
                                         : Eigen::Vector2d(0, 0);
   return place;
+}
+
+Fix Estimator::projected(const RoughPosition& position) {
+  const GeodeticPoint place = drive::geodetic_from_ecef(position.ecef);
+  const GridPoint point = projection_at(place).to_grid(place);
+  Fix fix;
+  fix.stamp = position.stamp;
+  fix.position = point.position;
+  fix.grid_scale = point.scale;
+  fix.antenna_m = position.antenna_m;
+  fix.covariance = position.sigma_m * position.sigma_m * Eigen::Matrix2d::Identity();
+  return fix;
 }
 
 bool Estimator::is_thinned(const GeodeticFix& fix) {
@@ -359,13 +381,17 @@ std::string Estimator::judged_by_gate(const Fix& fix) {
 std::string Estimator::reason_against(const Fix& fix) {
   if (repeats(fix)) return "frozen";
   if (std::string reason = judged_by_gate(fix); !reason.empty()) return reason;
-  if (!window_) return "";
-  // Only what cannot be is refused here; the rest is left to the error model.
+  return is_absurd(fix) ? "absurd" : "";
+}
+
+// Only what cannot be is refused here; the rest is left to the error model.
+bool Estimator::is_absurd(const Fix& fix) const {
+  if (!window_) return false;
   constexpr double kUnmodelled = 5;  // m: slow errors of a receiver
   const Eigen::Vector2d off = fix.position - window_->antenna_at(fix);
   const Eigen::Matrix2d spread = window_->covariance().topLeftCorner<2, 2>() + 4 * fix.covariance +
                                  kUnmodelled * kUnmodelled * Eigen::Matrix2d::Identity();
-  return off.dot(spread.inverse() * off) > live_.absurd ? "absurd" : "";
+  return off.dot(spread.inverse() * off) > live_.absurd;
 }
 
 /// Tells whether so many absurd fixes in a row agree with each other that it is the estimate which is wrong.
@@ -400,22 +426,12 @@ void Estimator::use(const GeodeticFix& geodetic) {
     const double off_m = window_ ? (fix.position - window_->antenna_at(fix)).norm() : 0;
     refuse(geodetic, reason,
            fmt::format("a fix is not used ({}), {:.1f} m from the estimate", reason, off_m));
-    if (reason != "absurd" || !convinces(fix)) return;
-    const std::vector<Fix> believed = std::exchange(absurd_, {});
-    reset("reset", fmt::format("{} fixes in a row contradict the estimate and agree with each other",
-                               believed.size()));
-    fixes_.assign(believed.begin(), believed.end());
+    if (reason == "absurd" && convinces(fix)) begin_at_believed();
     return;
   }
   absurd_.clear();
   counts_.taken[source_of(geodetic)] += 1;
-  const bool is_late = last_fix_ && fix.stamp < *last_fix_;
-  if (is_late) ++counts_.late_fixes;
-  if (last_fix_ && !is_late) {
-    fix_intervals_s_.push_back(seconds_between(*last_fix_, fix.stamp));
-    if (fix_intervals_s_.size() > 20) fix_intervals_s_.pop_front();
-  }
-  if (!is_late) last_fix_ = fix.stamp;
+  note_place_at(fix.stamp);
   std::vector<Fix>& used = receivers_[fix.source].used;
   used.push_back(fix);
   if (used.size() > 2 * kClaims) used.erase(used.begin(), used.end() - kClaims);
@@ -432,9 +448,59 @@ void Estimator::use(const GeodeticFix& geodetic) {
   drop();
 }
 
+void Estimator::begin_at_believed() {
+  const std::vector<Fix> believed = std::exchange(absurd_, {});
+  reset("reset",
+        fmt::format("{} fixes in a row contradict the estimate and agree with each other", believed.size()));
+  fixes_.assign(believed.begin(), believed.end());
+}
+
+/// Something tells where the vehicle was.
+void Estimator::note_place_at(Stamp stamp) {
+  if (last_fix_ && stamp < *last_fix_) {
+    ++counts_.late_fixes;
+    return;
+  }
+  if (last_fix_) {
+    fix_intervals_s_.push_back(seconds_between(*last_fix_, stamp));
+    if (fix_intervals_s_.size() > 20) fix_intervals_s_.pop_front();
+  }
+  last_fix_ = stamp;
+}
+
 void Estimator::use(const SensorReading& reading) {
-  if (window_ && reading.stamp >= window_->oldest())
+  rough_.take(reading);
+  if (!window_) {
+    readings_.push_back(reading);
+  } else if (reading.stamp >= window_->oldest()) {
     window_->add_reading(reading.sensor, reading.stamp, reading.values);
+  }
+}
+
+// Without a receiver, epochs of a sensor tell where the vehicle is: roughly before there is a window, and
+// then whether it is lost. The window has the readings themselves.
+void Estimator::use_rough_places() {
+  if (!rough_.any()) return;
+  for (const RoughPosition& position : rough_.before(now_)) {
+    if (!frame_ && position.sigma_m > kPlacesFrame_m) continue;
+    const Fix place = projected(position);
+    grid_scale_ = place.grid_scale;
+    if (is_absurd(place)) {
+      if (convinces(place)) begin_at_believed();
+      continue;
+    }
+    absurd_.clear();
+    note_place_at(place.stamp);
+    if (!window_) {
+      fixes_.push_back(place);
+      publish_place(place);
+      continue;
+    }
+    window_->use_readings();
+    cycle();
+    publish(true);
+    drop();
+  }
 }
 
 /// Finds the minimum. The window moves on even if nothing new tells the place.
@@ -469,6 +535,7 @@ void Estimator::reset(const std::string& kind, const std::string& text) {
   warm_.reset();
   absurd_.clear();
   fixes_.clear();
+  readings_.clear();
   failures_ = 0;
   say(kind, "", text);
 }
@@ -496,7 +563,7 @@ PlacedStretch Estimator::stretch() const {
                                                        grid_scale_, description_.timeline.gap_s));
     stretch.givers.push_back(timeline.intervals.back().bridged ? 0 : odometry_[i].giver);
   }
-  std::vector<Fix> fixes(fixes_.begin(), fixes_.end());
+  const std::vector<Fix> fixes(fixes_.begin(), fixes_.end());
   for (const Fix& fix : fixes) {
     const DriveNodes nodes{timeline.stamps, {}, timeline.intervals};
     timeline.fix_node.push_back(nearest_node(nodes, fix.stamp, 1e9)->node);
@@ -505,16 +572,25 @@ PlacedStretch Estimator::stretch() const {
   stretch.stamps = timeline.stamps;
   stretch.intervals = timeline.intervals;
   stretch.poses = start.poses;
-  stretch.fixes = fixes;
+  stretch.fixes = measured_fixes();
   return stretch;
 }
 
-void Estimator::begin_window(const PlacedStretch& stretch, std::optional<drive::FirstPose> first_pose) {
+/// Rough places are a start, and no measurements.
+std::vector<Fix> Estimator::measured_fixes() const {
+  if (rough_.any()) return {};
+  return {fixes_.begin(), fixes_.end()};
+}
+
+drive::DriveFacts Estimator::facts() const {
   drive::DriveFacts facts;
   for (const drive::OdometryConfig& odometry : description_.odometry) facts.relative.push_back(odometry.name);
-  facts.antenna_m = description_.gnss.front().antenna_m;
+  if (!description_.gnss.empty()) facts.antenna_m = description_.gnss.front().antenna_m;
   facts.gap_noise_factor = description_.timeline.gap_noise_factor;
-  facts.first_pose = std::move(first_pose);
+  drive::PreparedDrive surroundings;
+  surroundings.frame = *frame_;
+  surroundings.scale = description_.scale();
+  facts.surroundings = std::make_shared<const drive::DriveSurroundings>(surroundings, std::vector<Fix>());
   for (std::size_t source = 0; source < description_.gnss.size(); ++source) {
     const std::string name = drive::group_of(settings_, description_.gnss[source].name);
     auto group = std::find_if(facts.absolute.begin(), facts.absolute.end(),
@@ -523,6 +599,12 @@ void Estimator::begin_window(const PlacedStretch& stretch, std::optional<drive::
       group = facts.absolute.insert(facts.absolute.end(), drive::AbsoluteGroup{.name = name, .sources = {}});
     group->sources.push_back(static_cast<int>(source));
   }
+  return facts;
+}
+
+std::unique_ptr<Window> Estimator::empty_window(std::optional<drive::FirstPose> first_pose) const {
+  drive::DriveFacts known = facts();
+  known.first_pose = std::move(first_pose);
   std::vector<drive::PreparedSensor> sensors;
   for (const drive::SensorConfig& config : description_.sensors) {
     drive::PreparedSensor sensor{.name = config.name, .options = config.options, .place = config.place};
@@ -530,7 +612,14 @@ void Estimator::begin_window(const PlacedStretch& stretch, std::optional<drive::
     sensor.readings.columns = config.log ? config.log->request.readings.size() : 0;
     sensors.push_back(std::move(sensor));
   }
-  auto window = std::make_unique<Window>(std::move(facts), std::move(sensors), settings_, registry_);
+  return std::make_unique<Window>(std::move(known), std::move(sensors), settings_, registry_);
+}
+
+void Estimator::begin_window(const PlacedStretch& stretch, std::optional<drive::FirstPose> first_pose) {
+  std::unique_ptr<Window> window = empty_window(std::move(first_pose));
+  for (const SensorReading& reading : readings_)
+    if (reading.stamp >= stretch.stamps.front())
+      window->add_reading(reading.sensor, reading.stamp, reading.values);
   if (!window->begin(stretch)) {
     say("failure", "", "the first fixes and the odometry have no common minimum");
     return;
@@ -542,6 +631,7 @@ void Estimator::begin_window(const PlacedStretch& stretch, std::optional<drive::
   warm_.reset();
   window_ = std::move(window);
   fixes_.clear();
+  readings_.clear();
   smooth_ = window_->newest_pose();
   last_cycle_ = now_;
   ++counts_.solutions;
@@ -575,7 +665,7 @@ void Estimator::align_warm() {
                                                      grid_scale_, description_.timeline.gap_s));
     placed.givers.push_back(placed.intervals.back().bridged ? 0 : odometry_[i].giver);
   }
-  placed.fixes.assign(fixes_.begin(), fixes_.end());
+  placed.fixes = measured_fixes();
   drive::FirstPose first;
   first.position = pose.head<2>();
   first.heading_rad = pose[2];

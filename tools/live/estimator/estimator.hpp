@@ -24,6 +24,7 @@
 #include <waymark/tools/live/estimator/intake.hpp>
 #include <waymark/tools/live/estimator/odometries.hpp>
 #include <waymark/tools/live/estimator/reports.hpp>
+#include <waymark/tools/live/estimator/rough_places.hpp>
 #include <waymark/tools/live/estimator/settings.hpp>
 #include <waymark/tools/live/estimator/window.hpp>
 
@@ -103,18 +104,27 @@ class Estimator {
   void use_pending();
   void use(const GeodeticFix& fix);
   void use(const SensorReading& reading);
+  void use_rough_places();
+  [[nodiscard]] const drive::Projection& projection_at(const GeodeticPoint& place);
   [[nodiscard]] Fix projected(const GeodeticFix& fix);
+  [[nodiscard]] Fix projected(const RoughPosition& position);
   [[nodiscard]] bool is_thinned(const GeodeticFix& fix);
   /// Returns why a fix cannot be right; empty if it may be.
   [[nodiscard]] std::string reason_against(const Fix& fix);
   [[nodiscard]] std::string judged_by_gate(const Fix& fix);
   [[nodiscard]] bool repeats(const Fix& fix);
+  [[nodiscard]] bool is_absurd(const Fix& fix) const;
   [[nodiscard]] bool convinces(const Fix& fix);
+  void begin_at_believed();
+  void note_place_at(Stamp stamp);
   [[nodiscard]] Reckoned reckoned_at(Stamp stamp) const;
   void align();
   void align_warm();
   [[nodiscard]] bool heading_is_known() const;
   [[nodiscard]] PlacedStretch stretch() const;
+  [[nodiscard]] std::vector<Fix> measured_fixes() const;
+  [[nodiscard]] drive::DriveFacts facts() const;
+  [[nodiscard]] std::unique_ptr<Window> empty_window(std::optional<drive::FirstPose> first_pose) const;
   void begin_window(const PlacedStretch& stretch, std::optional<drive::FirstPose> first_pose);
   void cycle();
   void drop();
@@ -135,16 +145,18 @@ class Estimator {
   const TypeRegistry& registry_;
   Intake intake_;
   Odometries odometries_;
+  RoughPlaces rough_;
   std::unique_ptr<Window> window_;
   std::optional<Frame> frame_;
   std::optional<drive::Projection> projection_;
   std::optional<WarmStart> warm_;
   double standstill_mps_ = 0;
 
-  std::deque<Reckoned> odometry_;  // of the window
-  std::deque<Sample> pending_;     // fixes and readings that wait for the odometry around them
-  std::deque<Fix> fixes_;          // accepted ones, while there is no window
-  std::vector<Fix> absurd_;        // the last ones in a row
+  std::deque<Reckoned> odometry_;       // of the window
+  std::deque<Sample> pending_;          // fixes and readings that wait for the odometry around them
+  std::deque<Fix> fixes_;               // accepted ones or rough places, while there is no window
+  std::deque<SensorReading> readings_;  // while there is no window
+  std::vector<Fix> absurd_;             // the last ones in a row
   std::map<int, Receiver> receivers_;
   int epoch_ = -1;
   double grid_scale_ = 1;

@@ -25,6 +25,11 @@ bool is_finite(const FurtherOdometry& sample) {
   return std::isfinite(sample.speed_mps) && std::isfinite(sample.yaw_rate_radps);
 }
 
+bool have_same_values(const SensorReading& a, const SensorReading& b) {
+  return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
+                    [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
 std::size_t order_of(const Sample& sample) {
   if (std::holds_alternative<OdometrySample>(sample)) return 0;
   if (const auto* further = std::get_if<FurtherOdometry>(&sample)) return 500 + further->source;
@@ -38,10 +43,14 @@ Stamp stamp_of(const Sample& sample) {
   return std::visit([](const auto& of) { return of.stamp; }, sample);
 }
 
+// An epoch of a sensor may be several rows of one stamp, a satellite in each.
 bool Intake::is_duplicate(const Sample& sample, std::size_t order) const {
   const Stamp stamp = stamp_of(sample);
-  return std::any_of(waiting_.begin(), waiting_.end(),
-                     [&](const Waiting& other) { return other.stamp == stamp && other.order == order; });
+  const auto* reading = std::get_if<SensorReading>(&sample);
+  return std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& other) {
+    return other.stamp == stamp && other.order == order &&
+           (reading == nullptr || have_same_values(*reading, std::get<SensorReading>(other.sample)));
+  });
 }
 
 void Intake::insert(Sample sample, std::size_t order) {

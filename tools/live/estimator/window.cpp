@@ -44,12 +44,12 @@ std::vector<drive::MotionRun> runs_of(const PlacedStretch& stretch) {
 bool Window::begin(const PlacedStretch& stretch) {
   std::vector<drive::MotionRun> runs;
   if (several_odometries_) runs = runs_of(stretch);
-  builder_.extend({.stamps = stretch.stamps,
-                   .poses = stretch.poses,
-                   .intervals = stretch.intervals,
-                   .fixes = {},
-                   .fix_nodes = {},
-                   .runs = runs});
+  extend({.stamps = stretch.stamps,
+          .poses = stretch.poses,
+          .intervals = stretch.intervals,
+          .fixes = {},
+          .fix_nodes = {},
+          .runs = runs});
   std::map<int, std::vector<Fix>> by_source;
   for (const Fix& fix : stretch.fixes) by_source[fix.source].push_back(fix);
   for (const Fix& fix : stretch.fixes) add_fix(fix, claimed_accuracies(by_source[fix.source]));
@@ -144,6 +144,14 @@ void Window::add_reading(std::size_t sensor, Stamp stamp, std::span<const double
   table.values.insert(table.values.begin() + row * static_cast<std::ptrdiff_t>(table.columns), values.begin(),
                       values.end());
   readings_wait_ = true;
+}
+
+void Window::use_readings() {
+  if (!readings_wait_) return;
+  const auto first = static_cast<VertexIndex>(graph_.vertex_count());
+  predictor_.mark(graph_);
+  extend({.stamps = {}, .poses = {}, .intervals = {}, .fixes = {}, .fix_nodes = {}});
+  predictor_.settle(graph_, first);
 }
 
 bool Window::solve() {

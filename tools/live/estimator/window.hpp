@@ -45,7 +45,7 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Begins with a stretch of at least two nodes, and finds its minimum from its poses.
+  /// Begins with a stretch of at least two nodes and the readings so far, and finds the minimum from its poses.
   /// @returns false if there is none
   [[nodiscard]] bool begin(const PlacedStretch& stretch);
   /// Adds what is known of the open states. Call it after begin().
@@ -58,8 +58,11 @@ class Window {
   void add_way(const MeasuredWay& way);
   /// Adds a fix to the nearest node. Its stamp may be any within the window.
   void add_fix(const Fix& fix, const ClaimedAccuracies& claimed);
-  /// Adds readings of a sensor. @param sensor index in those of the constructor
+  /// Adds readings of a sensor; they wait for the next node or fix. @param sensor index in those of the
+  /// constructor
   void add_reading(std::size_t sensor, Stamp stamp, std::span<const double> values);
+  /// Adds the readings that wait to the nodes that there are.
+  void use_readings();
 
   /// Finds the minimum of everything so far. @returns false if that failed; the values are then those
   /// before

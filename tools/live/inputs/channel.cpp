@@ -1,11 +1,21 @@
 #include <waymark/tools/live/inputs/channel.hpp>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
 #include <waymark/tools/drive/sensors/sensor_logs.hpp>
 
 namespace waymark::live {
+namespace {
+
+/// Tells whether readings are places or headings, which are converted into the frame.
+bool needs_frame(const LogRequest& request) {
+  return std::any_of(request.readings.begin(), request.readings.end(),
+                     [](const SensorColumn& column) { return !column.sense.empty(); });
+}
+
+}  // namespace
 
 Channel::Channel(Role role, const drive::LogConfig& log, std::size_t index, TimeScale scale,
                  OdometryStream& parts, std::size_t odometry, const TypeRegistry& registry)
@@ -58,7 +68,7 @@ std::vector<Sample> Channel::collect(const drive::Projection* projection) {
   if (role_ == Role::odometry) {
     for (Stamp& stamp : rows.stamps) stamp = convert(stamp, own, scale_);
     for (const OdometrySample& sample : parts_.take(index_, rows)) samples.push_back(labelled(sample));
-  } else if (role_ == Role::sensor && projection != nullptr) {
+  } else if (role_ == Role::sensor && (projection != nullptr || !needs_frame(chosen_.request))) {
     drive::DriveLogs::Log log;
     log.scale = own;
     log.file = log_.file;

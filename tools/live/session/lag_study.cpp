@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 
+#include <waymark/tools/drive/sensors/sensor_logs.hpp>
 #include <waymark/tools/live/session/session.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -115,8 +116,9 @@ std::vector<LagResult> study_lags(const drive::DriveFile& file, const drive::Fus
                                   const TypeRegistry& registry, const std::function<void(double)>& begun) {
   drive::DriveFile own = file;
   own.settings = settings;
-  own.description.sensors.clear();
+  if (!own.description.gnss.empty()) own.description.sensors.clear();
   put_nodes_first(own.description);
+  drive::resolve_sensors(own.description, registry);
   if (drive.frame.zone != 0) {
     own.description.utm_zone = drive.frame.north ? drive.frame.zone : -drive.frame.zone;
     own.description.utm_origin = Eigen::Vector2d(drive.frame.origin_easting_m, drive.frame.origin_northing_m);
