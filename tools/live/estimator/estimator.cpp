@@ -21,6 +21,7 @@ namespace {
 constexpr double kSecondsWithoutFix = 2;  // then a solution moves the window on
 constexpr double kLongestStretch = 10;    // s of poses that leave the window together
 constexpr double kPlacesFrame_m = 1000;   // a frame is not chosen by a rougher place
+constexpr double kRoughStart_s = 30;      // positions of single epochs are wrong alike for many seconds
 constexpr double kFixIsOld = 1.5;         // s, unless fixes usually are rarer
 constexpr double kLooksBack = 60;         // s, for the alignment
 constexpr std::size_t kClaims = 300;
@@ -477,19 +478,14 @@ void Estimator::use(const SensorReading& reading) {
   }
 }
 
-// Without a receiver, epochs of a sensor tell where the vehicle is: roughly before there is a window, and
-// then whether it is lost. The window has the readings themselves.
+// Without a receiver, epochs of a sensor place the start. The window has the readings themselves; single
+// epochs are far too rough to contradict it.
 void Estimator::use_rough_places() {
   if (!rough_.any()) return;
   for (const RoughPosition& position : rough_.before(now_)) {
     if (!frame_ && position.sigma_m > kPlacesFrame_m) continue;
     const Fix place = projected(position);
     grid_scale_ = place.grid_scale;
-    if (is_absurd(place)) {
-      if (convinces(place)) begin_at_believed();
-      continue;
-    }
-    absurd_.clear();
     note_place_at(place.stamp);
     if (!window_) {
       fixes_.push_back(place);
@@ -680,6 +676,7 @@ void Estimator::align() {
     align_warm();
     if (window_ || (warm_ && warm_->pose)) return;
   }
+  if (rough_.any() && seconds_between(fixes_.front().stamp, now_) < kRoughStart_s) return;
   if (heading_is_known()) begin_window(stretch(), std::nullopt);
 }
 

@@ -115,7 +115,8 @@ Arrival Intake::take(Sample sample) {
   const std::size_t order = order_of(sample);
   if (newest_ && seconds_between(*newest_, stamp) > kFuture) return Arrival::future;
   if (is_duplicate(sample, order)) return Arrival::duplicate;
-  if (released_ && stamp <= *released_) {
+  const bool is_row = std::holds_alternative<SensorReading>(sample);  // others of its epoch may be released
+  if (released_ && (is_row ? stamp < *released_ : stamp <= *released_)) {
     if (std::holds_alternative<GeodeticFix>(sample)) late_.push_back(std::move(sample));
     return Arrival::late;
   }
