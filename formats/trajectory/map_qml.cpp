@@ -10,14 +10,14 @@ namespace waymark::formats {
 namespace {
 
 /// The appearance of the fixes of a status; colours are those of the KML.
-struct FixStyle {
+struct FixMarker {
   FixStatus status;
   std::string_view color;  ///< red, green, blue, alpha
   std::string_view shape;
 };
-constexpr std::array<FixStyle, 3> kFixStyles = {{{FixStatus::accepted, "77,179,77,255", "circle"},
-                                                 {FixStatus::rejected, "214,39,40,255", "cross2"},
-                                                 {FixStatus::withheld, "31,119,180,255", "square"}}};
+constexpr std::array<FixMarker, 3> kFixMarkers = {{{FixStatus::accepted, "77,179,77,255", "circle"},
+                                                   {FixStatus::rejected, "214,39,40,255", "cross2"},
+                                                   {FixStatus::withheld, "31,119,180,255", "square"}}};
 
 }  // namespace
 
@@ -34,8 +34,8 @@ std::string trajectory_qml() {
    </symbol>
 )";
   int number = 0;
-  for (const FixStyle& style : kFixStyles) {
-    const std::string_view status = to_string(style.status);
+  for (const FixMarker& marker : kFixMarkers) {
+    const std::string_view status = to_string(marker.status);
     fmt::format_to(std::back_inserter(rules),
                    R"(   <rule key="{0}" label="{0} fixes" filter="&quot;status&quot; = '{0}'" symbol="{1}"/>
 )",
@@ -47,7 +47,7 @@ std::string trajectory_qml() {
     </layer>
    </symbol>
 )",
-                   number, style.shape, style.color, style.color);
+                   number, marker.shape, marker.color, marker.color);
   }
   return fmt::format(R"(<qgis version="3.22.16" styleCategories="Symbology">
  <renderer-v2 type="RuleRenderer" symbollevels="0" forceraster="0" enableorderby="0">
