@@ -38,8 +38,15 @@ std::string fixes() {
   return records;
 }
 
-LogData read(const std::string& file, const LogRequest& request = {}) {
-  return check_pieces(BagReader(), file, "run.bag", request);
+LogRequest request(StreamKind stream = StreamKind::gnss) {
+  LogRequest made;
+  made.time_scale = TimeScale::unix_time;
+  made.stream = stream;
+  return made;
+}
+
+LogData read(const std::string& file, const LogRequest& wanted = request()) {
+  return check_pieces(BagReader(), file, "run.bag", wanted);
 }
 
 std::string at(std::size_t place, const std::string& what) {
@@ -70,11 +77,10 @@ TEST_CASE("bag: messages give the fixes that were written, at the stamps of thei
 }
 
 TEST_CASE("bag: a Twist has the time of recording, seconds before nanoseconds") {
-  LogRequest request;
-  request.stream = StreamKind::odometry;
   const std::string twist = WireWriter(Wire::ros1).numbers({5.5, 0, 0, 0, 0, -0.25}).bytes();
   const LogData data =
-      read(kHead + bag_connection(4, "/motion", "geometry_msgs/Twist") + bag_message(4, twist), request);
+      read(kHead + bag_connection(4, "/motion", "geometry_msgs/Twist") + bag_message(4, twist),
+           request(StreamKind::odometry));
   REQUIRE(data.odometry.size() == 1);
   CHECK(data.odometry[0].stamp == Stamp{1'700'000'000'500'000'000});
   CHECK(data.odometry[0].speed_mps == 5.5);
@@ -93,9 +99,10 @@ TEST_CASE("bag: chunks give the same messages in every compression") {
   std::string damaged = bz2(records);
   damaged[damaged.size() / 2] ^= 0x10;
   const LogData data = read(kHead + bag_chunk("bz2", damaged, records.size()) + records);
-  CHECK(data.fixes.size() >= kFixes);
-  CHECK(data.corrupt_examples ==
-        std::vector<std::string>{at(kHead.size(), "chunk: its compressed content is damaged")});
+  CHECK(data.fixes.size() >= kFixes);  // the records behind the chunk
+  // bzip2 finds damage at the end of a block, when its bytes have been looked at already.
+  REQUIRE(data.corrupt > 0);
+  CHECK(data.corrupt_examples.back() == at(kHead.size(), "chunk: its compressed content is damaged"));
 #endif
 }
 
@@ -147,9 +154,9 @@ TEST_CASE("bag: without a topic of a type that is read it is refused with its to
       read(kHead + bag_connection(0, "/camera", "sensor_msgs/Image") + bag_message(0, "picture")), InputError,
       Message("run.bag: no topic has the messages that are asked for (NavSatFix); topics: '/camera' "
               "('sensor_msgs/Image', 1 messages)"));
-  LogRequest request;
-  request.columns["topic"] = {"/rtk", "", ""};
-  CHECK_THROWS_MATCHES(read(kHead + kFixConnection + fixes(), request), InputError,
+  LogRequest rtk = request();
+  rtk.columns["topic"] = {"/rtk", "", ""};
+  CHECK_THROWS_MATCHES(read(kHead + kFixConnection + fixes(), rtk), InputError,
                        Message("run.bag: there is no topic '/rtk'; topics: '/fix' "
                                "('sensor_msgs/NavSatFix', 5 messages)"));
 }
@@ -157,8 +164,9 @@ TEST_CASE("bag: without a topic of a type that is read it is refused with its to
 TEST_CASE("bag: another version is not recognised, and refused at its first byte") {
   CHECK(BagReader().recognise(kHead).certainty == 1);
   CHECK(BagReader().recognise("#ROSBAG V1.2\n").certainty == 0);
-  CHECK_THROWS_WITH(BagReader().read("#ROSBAG V1.2\n....", "run.bag", {}),
-                    Catch::Matchers::StartsWith("run.bag:byte 0: it does not begin as a bag of version 2.0"));
+  CHECK_THROWS_MATCHES(BagReader().read("#ROSBAG V1.2\n....", "run.bag", request()), InputError,
+                       Message("run.bag: none of 1 records could be used; first: run.bag:byte 0: it does not "
+                               "begin as a bag of version 2.0"));
 }
 
 }  // namespace bag_test

@@ -45,8 +45,14 @@ std::string zstd(const std::string& content) {
   return out;
 }
 
+LogRequest request() {
+  LogRequest made;
+  made.time_scale = TimeScale::unix_time;
+  return made;
+}
+
 LogData read(const std::string& file) {
-  return check_pieces(McapReader(), file, "run.mcap", {});
+  return check_pieces(McapReader(), file, "run.mcap", request());
 }
 
 std::vector<std::string> complaints(const std::string& file) {
@@ -163,6 +169,14 @@ TEST_CASE("MCAP: a message that cannot be read is named with topic and place") {
         std::vector<std::string>{at(before.size(), "schema: it is cut, or its name is too long")});
 }
 
+TEST_CASE("MCAP: stamps are Unix time, which the scale of a drive turns into GPS time") {
+  LogRequest gps;
+  gps.time_scale = TimeScale::gps;
+  const LogData data = McapReader().read(kHead + kFixChannel + fixes() + mcap_end(), "run.mcap", gps);
+  // GPS time began on 1980-01-06, 315964800 s after Unix time, and was 18 leap seconds ahead in 2023.
+  CHECK(data.fixes.at(0).stamp == Stamp{(1'700'000'000 - 315'964'800 + 18) * 1'000'000'000LL + 250'000'000});
+}
+
 TEST_CASE("MCAP: a fix without a solution is counted as one, not as damage") {
   const LogData data = read(kHead + kFixChannel + mcap_message(1, nav_sat_fix(Wire::cdr_little, 9, -1)) +
                             fixes() + mcap_end());
@@ -189,17 +203,18 @@ TEST_CASE("MCAP: a file without a readable schema, or with two that fit, is refu
                        Message("run.mcap: several topics fit; state 'topic'; topics: '/fix' "
                                "('sensor_msgs/msg/NavSatFix', 5 messages), '/rtk' "
                                "('sensor_msgs/msg/NavSatFix', 1 messages)"));
-  LogRequest request;
-  request.columns["topic"] = {"/rtk", "", ""};
-  CHECK(McapReader().read(kHead + two + mcap_end(), "run.mcap", request).fixes.size() == 1);
+  LogRequest rtk = request();
+  rtk.columns["topic"] = {"/rtk", "", ""};
+  CHECK(McapReader().read(kHead + two + mcap_end(), "run.mcap", rtk).fixes.size() == 1);
 }
 
 TEST_CASE("MCAP: another file is not recognised, and refused at its first byte") {
   CHECK(McapReader().recognise(kHead).certainty == 1);
   CHECK(McapReader().recognise("\x89MCAP1\r\n").certainty == 0);
-  CHECK_THROWS_WITH(
-      McapReader().read("\x89MCAP1\r\n....", "run.mcap", {}),
-      Catch::Matchers::StartsWith("run.mcap:byte 0: it does not begin as an MCAP file of version 0"));
+  CHECK_THROWS_MATCHES(
+      McapReader().read("\x89MCAP1\r\n....", "run.mcap", request()), InputError,
+      Message("run.mcap: none of 1 records could be used; first: run.mcap:byte 0: it does not "
+              "begin as an MCAP file of version 0"));
 }
 
 }  // namespace mcap_test

@@ -57,7 +57,7 @@ class WireWriter {
   std::string bytes_;
 };
 
-/// sensor_msgs/NavSatFix, 5 m north per second of 1.5 m east and 2 m north.
+/// sensor_msgs/NavSatFix, 5 m further north every second, with sigmas of 1.5 m east and 2 m north.
 inline std::string nav_sat_fix(Wire form, std::uint32_t second, std::int8_t status = 0,
                                double latitude_deg = 52.5) {
   return WireWriter(form)
