@@ -133,7 +133,7 @@ inline std::string bag_chunk(const std::string& compression, const std::string& 
 }
 ///@}
 
-/// A frame of LZ4 with stored blocks (lz4_Frame_format.md 1.6: the high bit of a block's size). Its descriptor
+/// A frame of LZ4 with stored blocks (LZ4 frame format 1.6: the high bit of a block's size). Its descriptor
 /// says independent blocks of at most 64 KB without checksums; 0x82 is the checksum of these two bytes.
 inline std::string lz4_stored(const std::string& content) {
   return std::string("\x04\x22\x4D\x18\x60\x40\x82", 7) +

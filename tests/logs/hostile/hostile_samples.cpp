@@ -1,4 +1,4 @@
-#include "hostile_samples.hpp"
+#include "logs/hostile/hostile_samples.hpp"
 
 #include <fmt/format.h>
 

@@ -12,8 +12,8 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
-#include "hostile_samples.hpp"
-#include "log_pieces.hpp"
+#include "logs/hostile/hostile_samples.hpp"
+#include "logs/log_pieces.hpp"
 #include "logs/ubx/ubx_bytes.hpp"
 
 #include "support/skip.hpp"
