@@ -308,8 +308,9 @@ void add_work_options(CLI::App& command, FleetOptions& options) {
                   "Kill a drive that runs longer, such as 90s, 20min or 1h; it has failed (default: none)")
       ->type_name("TIME")
       ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
-                                        CLI::AsNumberWithUnit::UNIT_OPTIONAL, "TIME"))
-      ->check(CLI::PositiveNumber);
+                                        CLI::AsNumberWithUnit::UNIT_OPTIONAL)
+                      .description(""))
+      ->check(CLI::Range(0.1, 1e8));
   command.add_flag("--retry-failed", options.retry_failed, "Run drives again that failed before");
 }
 
