@@ -310,7 +310,7 @@ void add_work_options(CLI::App& command, FleetOptions& options) {
       ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                         CLI::AsNumberWithUnit::UNIT_OPTIONAL)
                       .description(""))
-      ->check(CLI::Range(0.1, 1e8));
+      ->check(CLI::Range(0.1, 1e8).description(""));
   command.add_flag("--retry-failed", options.retry_failed, "Run drives again that failed before");
 }
 
