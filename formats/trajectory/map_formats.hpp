@@ -1,4 +1,5 @@
-/// Writes a fused drive for maps, as text: GeoJSON, KML and GPX. All use WGS84.
+/// Writes a fused drive for maps, as text: GeoJSON (with a style for QGIS), KML and
+/// GPX. All use WGS84.
 ///
 /// A place that is missing or not finite is an OutputError that names the point, and nothing is
 /// written. Text may hold anything; characters that the format forbids (bytes that are no UTF-8,
@@ -40,6 +41,11 @@ struct FixPoint {
 /// @param name name of the trajectory, one of its properties
 [[nodiscard]] std::string trajectory_geojson(std::span<const TrajectoryPoint> points,
                                              std::span<const FixPoint> fixes, std::string_view name);
+
+/// Returns the style of that GeoJSON for QGIS (QML of QGIS 3.22): the trajectory as a line, and the
+/// fixes of each status as a rule with a colour and a shape. QGIS loads it by itself if it lies
+/// beside the GeoJSON under the same name with the ending .qml.
+[[nodiscard]] std::string trajectory_qml();
 
 /// Returns KML 2.2 (OGC 07-147r2) with gx:Track. Google Earth reads nothing newer, and readers of
 /// 2.3 accept it. It contains

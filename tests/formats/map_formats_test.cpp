@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,32 @@ class Content final : public XmlStream {
   std::vector<std::string> open_;
 };
 
+/// The rules and symbols of a style for QGIS.
+class QgisStyle final : public XmlStream {
+ public:
+  explicit QgisStyle(const std::string& text) {
+    take(text);
+    finish();
+  }
+  std::vector<std::pair<std::string, std::string>> filters;  ///< attribute, its value
+  std::vector<std::string> used_symbols;
+  std::vector<std::string> symbols;
+
+ private:
+  void begin(std::string_view name, const char** attributes) override {
+    std::map<std::string, std::string> given;
+    for (; *attributes != nullptr; attributes += 2) given[attributes[0]] = attributes[1];
+    if (name == "symbol") symbols.push_back(given["name"]);
+    if (name != "rule") return;
+    used_symbols.push_back(given["symbol"]);
+    std::smatch parts;
+    REQUIRE(std::regex_match(given["filter"], parts, std::regex("\"(.*)\" = '(.*)'")));
+    filters.emplace_back(parts[1], parts[2]);
+  }
+  void end(std::string_view) override {}
+  void text(std::string_view) override {}
+};
+
 LogData read_back(const std::string& gpx) {
   LogRequest request;
   request.time_scale = TimeScale::utc;
@@ -117,6 +144,25 @@ TEST_CASE("GeoJSON: a line of longitude, latitude and marked fixes") {
   CHECK(rejected["properties"]["reason"] == "say \"far\"");
   CHECK(rejected["properties"]["stamp_ns"] == 1149206567040000001);
   CHECK(rejected["properties"].contains("marker-color"));
+}
+
+TEST_CASE("maps: the style for QGIS names only attributes of the GeoJSON, and symbols that are there") {
+  const Drive made = drive(kGpsInstant);
+  const auto json = nlohmann::json::parse(trajectory_geojson(made.points, made.fixes, "drive"));
+  const QgisStyle style(trajectory_qml());
+  CHECK(style.trouble().empty());  // expat's
+  // Each feature of a drive meets one rule.
+  std::size_t met = 0;
+  for (const auto& feature : json["features"])
+    for (const auto& [attribute, value] : style.filters) {
+      REQUIRE(json.dump().find("\"" + attribute + "\":") != std::string::npos);
+      if (feature["properties"].value(attribute, "") == value) ++met;
+    }
+  CHECK(style.filters.size() == 4);
+  CHECK(met == json["features"].size());
+  CHECK(style.used_symbols == style.symbols);
+  // 'Cannot apply style to symbol layer with a different geometry type': lines and points share this style.
+  CHECK(trajectory_qml().find("layerGeometryType") == std::string::npos);
 }
 
 TEST_CASE("maps: GeoJSON of nothing and of one pose is valid") {

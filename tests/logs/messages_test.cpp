@@ -8,7 +8,7 @@
 #include <waymark/formats/logs/detail/can/dbc.hpp>
 #include <waymark/formats/logs/log_readers.hpp>
 
-#include "hostile_samples.hpp"
+#include "logs/hostile/hostile_samples.hpp"
 
 namespace messages_test {
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include <sqlite3.h>
+#include <sys/stat.h>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -178,6 +179,39 @@ TEST_CASE("fleet: a drive that fails is reported with its reason, and the rest g
   CHECK(run(again).code == 0);
   CHECK(rows_of(folder + "out/fleet.csv")[1].at("state") == "done");
   CHECK(fs::last_write_time(folder + "out/records/a.json") == before);
+}
+
+TEST_CASE(
+    "fleet: a drive that hangs is killed at the time limit, the rest goes on, and it can be run again") {
+  const std::string folder = fresh_folder();
+  const std::string drives = write_drives(folder, 3);
+  fs::rename(drives + "/b/gnss.csv", folder + "gnss.csv");
+  REQUIRE(::mkfifo((drives + "/b/gnss.csv").c_str(), 0600) == 0);  // nobody ever writes to it
+  const std::vector<std::string> command = {"fleet", drives, "-o", folder + "out", "-m", "g1"};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), command.begin(), command.end());
+    return run(words);
+  };
+  const RunResult result = with({"--time-limit", "10s"});
+  const std::string reason = "killed, because it reached its time limit of 10 s (--time-limit)";
+  CHECK(result.code == 3);
+  CHECK(contains(result.err, "warning: drive b failed: " + reason));
+  const auto rows = rows_of(folder + "out/fleet.csv");
+  REQUIRE(rows.size() == 3);
+  CHECK(rows[0].at("state") == "done");
+  CHECK(rows[1].at("state") == "failed");
+  CHECK(rows[1].at("reason") == reason);
+  CHECK(rows[2].at("state") == "done");
+  CHECK(processes_with(folder) == 0);
+
+  fs::remove(drives + "/b/gnss.csv");
+  fs::rename(folder + "gnss.csv", drives + "/b/gnss.csv");
+  CHECK(with({"--time-limit", "1h", "--retry-failed"}).code == 0);
+  CHECK(rows_of(folder + "out/fleet.csv")[1].at("state") == "done");
+  for (const char* wrong : {"0", "-5", "1d", "soon"}) {
+    INFO(wrong);
+    CHECK(with({"--time-limit", wrong}).code == 2);
+  }
 }
 
 TEST_CASE("fleet: a drive without a minimum keeps its numbers and says so") {

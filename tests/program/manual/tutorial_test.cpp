@@ -1,10 +1,10 @@
-// The tutorial is followed to the letter: its commands run in order in a fresh folder, end with the exit code
-// it states, and print the output it shows.
+// Pages for newcomers are followed to the letter: their commands run in order in a fresh folder, end with the
+// exit code they state, and print the output they show.
 //
-// In examples/tutorial/README.md a block "sh" is run, with "exit=N" it must end so, with "data=DRIVE" it
-// needs the logs of that drive; a block with a file's name is that file; a block "text" is what the "sh"
-// above it printed: each of its lines must be among the lines printed, "..." stands for anything, numbers may
-// differ by 1 % (other compilers).
+// A block "sh" is run, with "exit=N" it must end so, with "data=DRIVE" it needs the logs of that drive; a block
+// with a file's name is that file, but a block "cpp" is a part of the file of that name beside the page, which
+// is compiled; a block "text" is what the "sh" above it printed: each of its lines must be among the lines
+// printed, "..." stands for anything, numbers may differ by 5 % (other compilers).
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -28,9 +28,11 @@ namespace fs = std::filesystem;
 using Words = std::span<const std::string>;
 using waymark_test::FencedBlock;
 
-std::vector<FencedBlock> tutorial() {
-  return waymark_test::parse_markdown(read_text(waymark_test::source_dir() + "/examples/tutorial/README.md"))
-      .blocks;
+constexpr const char* kTutorial = "examples/tutorial/README.md";
+constexpr const char* kFromG2o = "examples/programs/FROM_G2O.md";
+
+std::vector<FencedBlock> blocks_of(const std::string& page) {
+  return waymark_test::parse_markdown(read_text(waymark_test::source_dir() + "/" + page)).blocks;
 }
 
 /// Of "NAME=VALUE" behind the fence.
@@ -93,10 +95,10 @@ std::string missing_lines(const std::string& shown, const std::string& printed) 
   return missing;
 }
 
-/// A place where the tutorial is followed: `examples` and the program are where a clone has them.
+/// A place where a page is followed: `examples` and the program are where a clone has them.
 class Reader {
  public:
-  Reader() {
+  explicit Reader(std::string page) : page_(std::move(page)) {
     fs::create_symlink(waymark_test::source_dir() + "/examples", root_ + "examples");
     fs::create_directories(root_ + "build/release");
     fs::create_directory_symlink(fs::path(waymark_test::program_path()).parent_path(),
@@ -104,13 +106,18 @@ class Reader {
   }
 
   void follow(const FencedBlock& block) {
-    INFO("examples/tutorial/README.md:" << block.line);
+    INFO(page_ << ":" << block.line);
     if (block.language == "sh") {
       run_block(block);
     } else if (block.language == "text") {
       INFO("shown, but not printed by the commands above:\n" << missing_lines(block.text, printed_));
       INFO("printed:\n" << printed_);
       CHECK(missing_lines(block.text, printed_).empty());
+    } else if (block.language == "cpp") {
+      REQUIRE(block.words.size() == 1);
+      const fs::path beside = fs::path(waymark_test::source_dir()) / page_;
+      CHECK(read_text((beside.parent_path() / block.words.front()).string()).find(block.text) !=
+            std::string::npos);
     } else {
       REQUIRE(block.words.size() == 1);
       write_text(folder_ + "/" + block.words.front(), block.text);
@@ -133,6 +140,7 @@ class Reader {
     folder_.erase(folder_.find_last_not_of('\n') + 1);
   }
 
+  std::string page_;
   std::string root_ = fresh_folder();
   std::string folder_ = root_;
   std::string printed_;
@@ -142,7 +150,7 @@ class Reader {
 std::vector<FencedBlock> part_of_tutorial(const std::string& data) {
   std::vector<FencedBlock> part;
   bool takes = data.empty();
-  for (const FencedBlock& block : tutorial()) {
+  for (const FencedBlock& block : blocks_of(kTutorial)) {
     if (block.language == "sh") takes = attribute(block, "data") == data;
     if (takes) part.push_back(block);
   }
@@ -152,7 +160,7 @@ std::vector<FencedBlock> part_of_tutorial(const std::string& data) {
 }  // namespace
 
 TEST_CASE("tutorial: what it shows of the bundled drive is what its commands print") {
-  Reader reader;
+  Reader reader(kTutorial);
   const std::vector<FencedBlock> part = part_of_tutorial("");
   REQUIRE(part.size() >= 20);
   for (const FencedBlock& block : part) reader.follow(block);
@@ -160,10 +168,17 @@ TEST_CASE("tutorial: what it shows of the bundled drive is what its commands pri
 
 TEST_CASE("tutorial: what it shows of the raw logs of Aarhus is what its commands print") {
   if (!waymark_test::shared_data("drives/aarhus_horsens")) return;
-  Reader reader;
+  Reader reader(kTutorial);
   const std::vector<FencedBlock> part = part_of_tutorial("aarhus_horsens");
   REQUIRE_FALSE(part.empty());
   for (const FencedBlock& block : part) reader.follow(block);
+}
+
+TEST_CASE("tutorial: a user of g2o is led through commands that run and code that is compiled") {
+  Reader reader(kFromG2o);
+  const std::vector<FencedBlock> blocks = blocks_of(kFromG2o);
+  REQUIRE(blocks.size() >= 6);
+  for (const FencedBlock& block : blocks) reader.follow(block);
 }
 
 TEST_CASE("tutorial: a line that was not printed is missed, whatever stands around it") {

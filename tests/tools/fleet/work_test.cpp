@@ -52,7 +52,7 @@ Process shell(const Scratch& scratch, const std::string& script) {
 
 /// Runs scripts and returns how they ended, in the order of their starts.
 std::vector<ProcessEnd> ends_of(const Scratch& scratch, const std::vector<std::string>& scripts,
-                                std::size_t at_once, std::uint64_t memory = 0) {
+                                std::size_t at_once, std::uint64_t memory = 0, double time_limit_s = 0) {
   const std::atomic<bool> never{false};
   std::vector<ProcessEnd> ends(scripts.size());
   std::size_t next = 0;
@@ -61,6 +61,7 @@ std::vector<ProcessEnd> ends_of(const Scratch& scratch, const std::vector<std::s
         if (next == scripts.size()) return std::nullopt;
         Process process = shell(scratch, scripts[next++]);
         process.memory_bytes = memory;
+        process.time_limit_s = time_limit_s;
         return process;
       },
       at_once, never, [&](std::size_t number, const ProcessEnd& end) { ends.at(number) = end; }));
@@ -75,6 +76,19 @@ std::vector<std::string> names_of(const std::vector<PlannedDrive>& drives) {
 
 bool is_alive(pid_t process) {
   return ::kill(process, 0) == 0;
+}
+
+/// Whoever adopts a process whose parent died may take a moment to reap it: until then it is a zombie.
+bool dies_soon(pid_t process) {
+  for (int i = 0; i < 200 && is_alive(process); ++i) {
+    pid_t number = 0;
+    std::string name;
+    char state = 'Z';
+    std::ifstream("/proc/" + std::to_string(process) + "/stat") >> number >> name >> state;
+    if (state == 'Z') return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return !is_alive(process);
 }
 
 }  // namespace
@@ -142,21 +156,24 @@ TEST_CASE("fleet: a stop kills what runs, with its own children") {
   pid_t child = 0;
   std::ifstream(scratch.file("child")) >> child;
   REQUIRE(child > 0);
-  // whoever adopts the grandchild may take a moment to reap it
-  for (int i = 0; i < 200 && is_alive(child); ++i) {
-    char state = 0;
-    std::string name;
-    pid_t number = 0;
-    std::ifstream("/proc/" + std::to_string(child) + "/stat") >> number >> name >> state;
-    if (state == 'Z') break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
-  pid_t number = 0;
-  std::string name;
-  char state = 'Z';
-  stat >> number >> name >> state;
-  CHECK(state == 'Z');
+  CHECK(dies_soon(child));
+}
+
+TEST_CASE("fleet: a process that reaches its time limit is killed with its own children, and no other") {
+  const Scratch scratch;
+  const std::string hangs = "sleep 60 & echo $! > " + scratch.file("child") + "; wait";
+  const std::vector<ProcessEnd> ends = ends_of(scratch, {"exit 7", hangs, "kill -KILL $$"}, 3, 0, 1.5);
+  CHECK(ends[0].exit_code == 7);
+  CHECK_FALSE(ends[0].out_of_time);
+  CHECK(ends[1].signal == SIGKILL);
+  CHECK(ends[1].out_of_time);
+  CHECK(ends[1].wall_s >= 1.5);
+  CHECK(ends[1].wall_s < 30);
+  CHECK_FALSE(ends[2].out_of_time);  // killed by something else
+  pid_t child = 0;
+  std::ifstream(scratch.file("child")) >> child;
+  REQUIRE(child > 0);
+  CHECK(dies_soon(child));
 }
 
 TEST_CASE("fleet: drives are called by the folders of their drive.yaml") {
@@ -220,9 +237,12 @@ TEST_CASE("fleet: an index list of Slurm has ranges and single tasks") {
 TEST_CASE("fleet: a batch script keeps names with quotes and spaces together") {
   CHECK(quoted("it's") == "'it'\\''s'");
   const FleetPlan plan{.label = "night", .options = {}, .drives = {{"a", ""}}};
-  const std::string script = slurm_script(
-      plan, FleetFolder("/data/my fleet/50%"), {0},
-      {.program = "/opt/it's/waymark", .processors = 2, .memory_mb = 900, .options = {"--partition=long"}});
+  const std::string script = slurm_script(plan, FleetFolder("/data/my fleet/50%"), {0},
+                                          {.program = "/opt/it's/waymark",
+                                           .processors = 2,
+                                           .memory_mb = 900,
+                                           .options = {"--partition=long"},
+                                           .time_limit_s = 5400});
   CHECK(script.find("#SBATCH --output='/data/my fleet/50%%/slurm/task-%a.log'\n") != std::string::npos);
   CHECK(script.find("#SBATCH --array=0\n") != std::string::npos);
   CHECK(script.find("#SBATCH --mem=900M\n") != std::string::npos);
@@ -230,7 +250,7 @@ TEST_CASE("fleet: a batch script keeps names with quotes and spaces together") {
   CHECK(script.find("#SBATCH --partition=long\n") != std::string::npos);
   CHECK(script.find(
             "exec '/opt/it'\\''s/waymark' fleet work '/data/my fleet/50%' --task \"$SLURM_ARRAY_TASK_ID\" "
-            "--jobs 2 --memory 900\n") != std::string::npos);
+            "--jobs 2 --memory 900 --time-limit 5400\n") != std::string::npos);
 }
 
 }  // namespace fleet_work_test

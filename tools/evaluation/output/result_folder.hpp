@@ -11,8 +11,9 @@
 
 namespace waymark::evaluation {
 
-/// The formats of a trajectory. Those for maps are written only if the frame is known.
-inline constexpr std::array<std::string_view, 5> kTrajectoryForms = {"csv", "tum", "geojson", "kml", "gpx"};
+/// The formats of a trajectory (qml: the style of the geojson). Those for maps are written only if the frame is known.
+inline constexpr std::array<std::string_view, 6> kTrajectoryForms = {"csv", "tum", "geojson",
+                                                                     "qml", "kml", "gpx"};
 
 class ResultFolder {
  public:

@@ -139,7 +139,8 @@ class Worker {
     Process process{.words = {settings_.program, "run", drive.path, "-o", folder},
                     .output_file = "/dev/null",
                     .messages_file = folder + "/" + kMessages,
-                    .memory_bytes = memory_bytes};
+                    .memory_bytes = memory_bytes,
+                    .time_limit_s = settings_.time_limit_s};
     process.words.insert(process.words.end(), settings_.plan.options.begin(), settings_.plan.options.end());
     return process;
   }
@@ -163,6 +164,7 @@ class Worker {
   }
 
   [[nodiscard]] bool lacks_memory(const ProcessEnd& end, const std::string& messages) const {
+    if (end.out_of_time) return false;
     if (end.signal == SIGKILL) return true;
     return end.exit_code != settings_.codes.success &&
            std::any_of(settings_.lack_of_memory.begin(), settings_.lack_of_memory.end(),
@@ -182,7 +184,10 @@ class Worker {
     const bool has_results = end.signal == 0 && (end.exit_code == settings_.codes.success ||
                                                  end.exit_code == settings_.codes.not_converged);
     if (!has_results) {
-      record.reason = failure_of(end, messages);
+      record.reason = end.out_of_time
+                          ? fmt::format("killed, because it reached its time limit of {} s (--time-limit)",
+                                        settings_.time_limit_s)
+                          : failure_of(end, messages);
       return record;
     }
     record.state = end.exit_code == settings_.codes.success ? DriveState::done : DriveState::not_converged;

@@ -32,6 +32,7 @@ struct WorkSettings {
   std::vector<std::string> lack_of_memory{};
   std::size_t at_once = 1;
   std::uint64_t memory_bytes = 0;     ///< that all drives together may have
+  double time_limit_s = 0;            ///< of each drive; 0: none
   std::optional<std::size_t> task{};  ///< of a cluster: only the drives of this one
   bool retry_failed = false;          ///< run failed drives again
 };
@@ -61,7 +62,7 @@ using OnDriveEnd = std::function<void(const DriveRecord& record, std::size_t end
 
 /// Runs every drive that is due as `PROGRAM run DRIVE -o FOLDER OPTIONS`, each in its own process, with
 /// at most memory_bytes / at_once of data. One that needs more is run again at the end, alone, with all of
-/// it. A drive is run in a folder of the worker, and its results are moved to their place when they are
+/// it. One that reaches the time limit is killed and has failed. A drive is run in a folder of the worker, and its results are moved to their place when they are
 /// complete; then its record is written, which ends it. A work that is killed therefore leaves whole
 /// results only, and the next one begins with the drives that have no record.
 /// @param stop ends the work: what runs is killed, what has ended is kept

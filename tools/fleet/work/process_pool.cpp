@@ -30,7 +30,13 @@ struct Running {
   pid_t pid = 0;
   int watch = -1;  ///< readable once the process has ended
   Clock::time_point begin;
+  double time_limit_s = 0;
+  bool out_of_time = false;
 };
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// Sends a stream into a file. Called in the child.
 bool redirect(const std::string& file, int stream) {
@@ -72,7 +78,7 @@ Running start(const Process& process, std::size_t number) {
     ::waitpid(pid, nullptr, 0);
     throw OutputError(std::string("cannot watch a process: ") + std::strerror(reason));
   }
-  return {number, pid, watch, Clock::now()};
+  return {number, pid, watch, Clock::now(), process.time_limit_s};
 }
 
 double seconds(const timeval& time) {
@@ -88,7 +94,8 @@ ProcessEnd leave(const Running& process) {
   ProcessEnd end;
   end.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
   end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-  end.wall_s = std::chrono::duration<double>(Clock::now() - process.begin).count();
+  end.out_of_time = process.out_of_time && end.signal == SIGKILL;  // it may have ended just before
+  end.wall_s = seconds_since(process.begin);
   end.processor_s = seconds(used.ru_utime) + seconds(used.ru_stime);
   end.memory_bytes = static_cast<std::uint64_t>(used.ru_maxrss) * 1024;
   return end;
@@ -112,8 +119,13 @@ class Pool {
     ++started_;
   }
 
-  /// Waits a while for processes to end, and tells of those that have.
+  /// Waits a while for processes to end, and tells of those that have. Kills those that are out of time.
   void wait(const OnProcessEnd& ended) {
+    for (Running& process : running_) {
+      if (process.time_limit_s <= 0 || seconds_since(process.begin) < process.time_limit_s) continue;
+      process.out_of_time = true;
+      ::kill(-process.pid, SIGKILL);
+    }
     std::vector<pollfd> watched;
     for (const Running& process : running_) watched.push_back({process.watch, POLLIN, 0});
     if (::poll(watched.data(), watched.size(), kLookAround_ms) <= 0) return;  // also a signal

@@ -17,11 +17,13 @@ struct Process {
   std::string output_file;         ///< for its standard output
   std::string messages_file;       ///< for its standard error
   std::uint64_t memory_bytes = 0;  ///< of data that it may have (RLIMIT_DATA); 0: no limit
+  double time_limit_s = 0;         ///< it is killed with its own children after this; 0: no limit
 };
 
 struct ProcessEnd {
   int exit_code = 0;
-  int signal = 0;  ///< that ended it; 0: none
+  int signal = 0;            ///< that ended it; 0: none
+  bool out_of_time = false;  ///< killed, because it reached its time limit
   double wall_s = 0;
   double processor_s = 0;          ///< user and system
   std::uint64_t memory_bytes = 0;  ///< largest resident set

@@ -74,6 +74,7 @@ std::string slurm_script(const FleetPlan& plan, const FleetFolder& folder,
   text += fmt::format("exec {} fleet work {} --task \"$SLURM_ARRAY_TASK_ID\" --jobs {}",
                       quoted(settings.program), quoted(folder.path()), settings.processors);
   if (settings.memory_mb > 0) text += fmt::format(" --memory {}", settings.memory_mb);
+  if (settings.time_limit_s > 0) text += fmt::format(" --time-limit {}", settings.time_limit_s);
   if (settings.retry_failed) text += " --retry-failed";
   return text + "\n";
 }

@@ -19,6 +19,7 @@ struct SlurmSettings {
   std::size_t processors = 1;        ///< of a task; as many drives are run at once
   std::uint64_t memory_mb = 0;       ///< of a task; 0: the cluster's default
   std::vector<std::string> options;  ///< further ones of sbatch: "--partition=long"
+  double time_limit_s = 0;           ///< of each drive; 0: none
   bool retry_failed = false;
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <sstream>
 
@@ -31,6 +32,7 @@ struct FleetOptions {
   std::string keep = "report";
   std::optional<std::size_t> jobs;
   std::optional<std::uint64_t> memory_mb;
+  double time_limit_s = 0;
   bool retry_failed = false;
   bool slurm = false;
   std::vector<std::string> slurm_options;
@@ -141,6 +143,7 @@ fleet::WorkSettings work_settings(const FleetOptions& options, const fleet::Flee
           .lack_of_memory = {kLackOfMemory.begin(), kLackOfMemory.end()},
           .at_once = at_once,
           .memory_bytes = memory,
+          .time_limit_s = options.time_limit_s,
           .task = options.task,
           .retry_failed = options.retry_failed};
 }
@@ -206,6 +209,7 @@ ExitCode run_on_cluster(const FleetOptions& options, const fleet::FleetFolder& f
                                       .processors = options.jobs.value_or(1),
                                       .memory_mb = options.memory_mb.value_or(0),
                                       .options = options.slurm_options,
+                                      .time_limit_s = options.time_limit_s,
                                       .retry_failed = options.retry_failed};
   formats::make_folder(folder.slurm());
   formats::write_file_atomically(folder.slurm_script(), fleet::slurm_script(plan, folder, tasks, settings));
@@ -299,6 +303,14 @@ void add_work_options(CLI::App& command, FleetOptions& options) {
       .add_option("--memory", options.memory_mb,
                   "Megabytes that all drives together may have (default: nine tenths of what is available)")
       ->type_name("MB");
+  command
+      .add_option("--time-limit", options.time_limit_s,
+                  "Kill a drive that runs longer, such as 90s, 20min or 1h; it has failed (default: none)")
+      ->type_name("TIME")
+      ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
+                                        CLI::AsNumberWithUnit::UNIT_OPTIONAL)
+                      .description(""))
+      ->check(CLI::Range(0.1, 1e8).description(""));
   command.add_flag("--retry-failed", options.retry_failed, "Run drives again that failed before");
 }
 

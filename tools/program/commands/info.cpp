@@ -121,7 +121,9 @@ Json registry_json(const TypeRegistry& registry) {
   json["trajectory_formats"] = {
       {{"name", "csv"}, {"origin", "waymark"}, {"description", "written; every column"}},
       {{"name", "tum"}, {"origin", "waymark"}, {"description", "written, read as truth; for evo"}},
-      {{"name", "geojson"}, {"origin", "waymark"}, {"description", "written; for maps"}},
+      {{"name", "geojson"},
+       {"origin", "waymark"},
+       {"description", "written; for maps, with a style for QGIS"}},
       {{"name", "kml"}, {"origin", "waymark"}, {"description", "written; for Google Earth and QGIS"}},
       {{"name", "gpx"}, {"origin", "waymark"}, {"description", "written; for receivers' software"}}};
   return json;

@@ -128,6 +128,7 @@ std::vector<std::string> write_trajectories(const formats::GraphDocument& docume
   if (projection) {
     const std::vector<formats::FixPoint> fixes = fix_points(document, *projection);
     write("geojson", formats::trajectory_geojson(points, fixes, label));
+    write("qml", formats::trajectory_qml());
     write("kml", formats::trajectory_kml(points, fixes, label, document.time_scale));
     write("gpx", formats::trajectory_gpx(points, fixes, label, document.time_scale));
   }

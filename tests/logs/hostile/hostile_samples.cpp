@@ -1,4 +1,4 @@
-#include "hostile_samples.hpp"
+#include "logs/hostile/hostile_samples.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/formats/text/text_file.hpp>
 
+#include "logs/ros/ros_bytes.hpp"
 #include "logs/ubx/ubx_bytes.hpp"
 #include "support/paths.hpp"
 
@@ -62,6 +63,20 @@ std::string ubx_log() {
   return text;
 }
 
+/// The head of each of its messages is the same: opcode or header, and lengths.
+std::string mcap_log() {
+  std::string text = kMcapBegin + mcap_channel(1, "/fix", "sensor_msgs/msg/NavSatFix");
+  for (unsigned second = 0; second < 40; ++second)
+    text += mcap_message(1, nav_sat_fix(Wire::cdr_little, second));
+  return text + mcap_end();
+}
+
+std::string bag_log() {
+  std::string text = kBagBegin + bag_connection(0, "/fix", "sensor_msgs/NavSatFix");
+  for (unsigned second = 0; second < 40; ++second) text += bag_message(0, nav_sat_fix(Wire::ros1, second));
+  return text;
+}
+
 LogRequest gnss() {
   LogRequest request;
   request.time_scale = TimeScale::utc;
@@ -98,6 +113,10 @@ std::vector<HostileSample> make() {
   if (!track.empty()) track = track.substr(0, track.rfind("<trkpt")) + "</trkseg></trk></gpx>\n";
   samples.push_back({"gpx", track, gnss(), "<trkpt", "0123456789"});
   samples.push_back({"novatel", novatel_log(), gnss(), "#BESTPOSA", ";"});
+  samples.push_back({"mcap", mcap_log(), gnss(),
+                     mcap_message(1, nav_sat_fix(Wire::cdr_little, 0)).substr(0, 9), "", false});
+  samples.push_back(
+      {"rosbag", bag_log(), gnss(), bag_message(0, nav_sat_fix(Wire::ros1, 0)).substr(0, 12), "", false});
   samples.push_back({"ubx", ubx_log(), gnss(), "\xB5\x62\x01\x07", "", false});
   std::erase_if(samples, [](const HostileSample& sample) { return sample.text.empty(); });
   return samples;
