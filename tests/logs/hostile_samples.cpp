@@ -7,6 +7,7 @@
 #include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/formats/text/text_file.hpp>
 
+#include "logs/rinex/made_rinex.hpp"
 #include "logs/ubx/ubx_bytes.hpp"
 #include "support/paths.hpp"
 
@@ -98,6 +99,11 @@ std::vector<HostileSample> make() {
   if (!track.empty()) track = track.substr(0, track.rfind("<trkpt")) + "</trkseg></trk></gpx>\n";
   samples.push_back({"gpx", track, gnss(), "<trkpt", "0123456789"});
   samples.push_back({"novatel", novatel_log(), gnss(), "#BESTPOSA", ";"});
+  HostileSample rinex{"rinex", made_rinex_observations(40), {}, "> 2016", "0123456789"};
+  rinex.request.stream = StreamKind::sensor;
+  rinex.request.readings = {{"pseudorange", "m", "", true, ""}, {"elevation", "rad", "", true, ""}};
+  rinex.request.companions["navigation"] = {{"brdc.nav", made_rinex_navigation()}};
+  samples.push_back(rinex);
   samples.push_back({"ubx", ubx_log(), gnss(), "\xB5\x62\x01\x07", "", false});
   std::erase_if(samples, [](const HostileSample& sample) { return sample.text.empty(); });
   return samples;

@@ -10,6 +10,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/rinex/rinex_fields.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -155,7 +156,7 @@ class NavigationReader {
       fail("this is a navigation file of SBAS, which is not used; leave it out");
     if (version->kind != 'N' && version->kind != 'G')
       fail(fmt::format("expected a navigation file, whose type is N or G, got '{}'",
-                       std::string(1, version->kind)));
+                       shown_name({&version->kind, 1})));
     while (next_line()) {
       const std::string_view label = rinex_label(line_);
       if (label == "END OF HEADER") return;

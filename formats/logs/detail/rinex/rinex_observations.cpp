@@ -9,6 +9,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -104,7 +105,7 @@ void RinexObservations::take_first_line() {
   const auto version = rinex_version(line_);
   if (!version) fail("expected RINEX: its first line ends with 'RINEX VERSION / TYPE'");
   if (version->kind != 'O')
-    fail("this is no observation file but a file of type '" + std::string(1, version->kind) +
+    fail("this is no observation file but a file of type '" + shown_name({&version->kind, 1}) +
          "'; name ephemerides with 'navigation', and the observations with 'file'");
   if (version->version < 2 || version->version >= 4)
     fail(fmt::format("RINEX {:.2f} is not read, only 2 and 3; RTKLIB's convbin or gfzrnx converts it",
