@@ -170,8 +170,12 @@ std::vector<std::uint32_t> lnav_ionosphere_page(const std::array<int, 8>& coeffi
 std::vector<std::uint32_t> inav_word(const KeplerOrbit& orbit, int type, unsigned issue, unsigned week) {
   const auto toc_s = std::fmod(static_cast<double>(orbit.toc.nanoseconds) * 1e-9, 604'800);
   Bits word = bits(type, 6);
-  if (type <= 4) word += bits(issue, 10);
-  if (type == 1) {
+  if (type >= 1 && type <= 4) word += bits(issue, 10);
+  if (type == 0) {
+    word += "10" + bits(0, 88) + bits(week, 12) + scaled(orbit.toe_sow_s, 20, 0);
+  } else if (type == 6) {
+    word += bits(0, 122);
+  } else if (type == 1) {
     word += bits(std::llround(orbit.toe_sow_s / 60), 14) + angle(orbit.mean_anomaly_rad, 32, -31);
     word += scaled(orbit.eccentricity, 32, -33) + scaled(orbit.sqrt_a, 32, -19) + "00";
   } else if (type == 2) {
@@ -187,7 +191,8 @@ std::vector<std::uint32_t> inav_word(const KeplerOrbit& orbit, int type, unsigne
     word += scaled(orbit.clock_drift, 21, -46) + scaled(orbit.clock_drift_rate_1_s, 6, -59) + "00";
   } else {
     word += bits(0, 41) + bits(0, 10) + scaled(orbit.group_delay_s, 10, -32) + bits(0, 2);
-    word += bits(orbit.is_healthy ? 0 : 1, 2) + bits(0, 2) + bits(week, 12) + bits(100, 20) + bits(0, 23);
+    word += bits(orbit.is_healthy ? 0 : 1, 2) + bits(0, 2) + bits(week, 12) + scaled(orbit.toe_sow_s, 20, 0) +
+            bits(0, 23);
   }
   const Bits even = "00" + word.substr(0, 112);
   const Bits odd = "10" + word.substr(112) + bits(0, 40 + 22 + 2);

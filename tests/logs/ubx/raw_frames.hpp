@@ -31,7 +31,7 @@ struct RawxMeasurement {
                                                        int number, unsigned issue, unsigned week);
 /// Page 18 of subframe 4. @param coefficients alpha and beta as they are sent: integers of 8 bits
 [[nodiscard]] std::vector<std::uint32_t> lnav_ionosphere_page(const std::array<int, 8>& coefficients);
-/// Two page parts with a word (1 to 5) of Galileo. @param issue 10 bits; @param week of Galileo
+/// Two page parts with a word (0: time, 1 to 5: ephemeris, 6: UTC, left empty) of Galileo. @param issue 10 bits; @param week of Galileo
 [[nodiscard]] std::vector<std::uint32_t> inav_word(const waymark::formats::satellites::KeplerOrbit& orbit,
                                                    int type, unsigned issue, unsigned week);
 /// A subframe (1 to 3) of BeiDou's D1. @param second of the week of its begin; @param week of BeiDou
