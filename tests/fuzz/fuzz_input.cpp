@@ -198,12 +198,15 @@ const std::string& fuzz_navigation() {
   return text;
 }
 
-/// Raw measurements; the ephemerides are those of fuzz_navigation() or stand before the log.
-void set_raw_readings(FuzzInput& input, unsigned variant) {
+/// Raw measurements of RINEX or UBX. The ephemerides of RINEX are those of fuzz_navigation() or stand before the log; UBX
+/// has its own or those.
+void set_raw_readings(FuzzInput& input, bool is_rinex, unsigned variant) {
+  input.request.readings.clear();
   for (const char* name : {"system", "satellite", "pseudorange", "range_rate", "satellite_x", "satellite_vz",
                            "elevation", "cn0"})
     input.request.readings.push_back({name, "", "", false, ""});
-  const bool before = variant >= 4;
+  if (!is_rinex && variant == 2) return;
+  const bool before = is_rinex && variant >= 4;
   input.request.companions["navigation"] = {
       {"fuzz.nav", before ? take_companion(input.log) : fuzz_navigation()}};
 }
@@ -300,7 +303,9 @@ FuzzInput fuzz_input(std::string_view reader, const std::uint8_t* bytes, std::si
   if (reader == "kitti_oxts")
     request.companions["timestamps"] = {{"timestamps.txt", kitti_stamps(input.log, variant, head[3])}};
   if (reader != "rinex") set_readings(request, reader, variant);
-  if (reader == "rinex") set_raw_readings(input, variant);
+  const bool is_raw_ubx =
+      reader == "ubx" && request.stream == StreamKind::sensor && (variant == 2 || variant == 3);
+  if (reader == "rinex" || is_raw_ubx) set_raw_readings(input, reader == "rinex", variant);
   if (reader == "csv" && request.readings.empty()) set_csv_columns(request, variant);
   if (reader == "csv") set_csv_dialect(request, head[3]);
   if (is_can(reader)) {

@@ -119,7 +119,31 @@ def rinex_navigation(version):
 RINEX = [rinex_observations(2), rinex_observations(3), rinex_navigation(2) + "\0" + rinex_observations(2),
          rinex_navigation(3) + "\0" + rinex_observations(3)]
 
+def ubx(key, payload):
+    """A frame without its checksum, which one bit of the head makes right."""
+    return b"\xb5\x62" + struct.pack(">H", key) + struct.pack("<H", len(payload)) + payload + bytes(2)
+
+
+def ubx_raw():
+    """Five satellites at 2016-06-06 11:05, and a subframe of GPS, a page of Galileo, a subframe of BeiDou."""
+    def rawx(second):
+        head = struct.pack("<dHbBBBH", second, 1900, 17, 5, 1, 1, 0)
+        return ubx(0x0215, head + b"".join(struct.pack("<ddfBBBBHBBBBBB", 2.2e7 + 1e5 * n, 1e8, 100, system, n, 0, 0,
+                                                       500, 40, 5, 2, 5, 7, 0)
+                                           for system, n in ((0, 1), (0, 2), (2, 3), (3, 14), (0, 5))))
+
+    def sfrbx(system, number, words):
+        return ubx(0x0213, struct.pack("<BBBBBBBB", system, number, 0, 0, len(words), 0, 2, 0) + struct.pack(
+            f"<{len(words)}I", *words))
+    # A subframe 3 of a real receiver, as the tests of pyubx2 list it.
+    gps = (583028782, 2463198336, 394902765, 2566867280, 1062207503, 675481840, 616371498, 2740700967, 768066377,
+           3045061856)
+    return (rawx(126300) + sfrbx(0, 5, gps) + sfrbx(2, 3, (0x01000000, 0, 0, 0, 0x80000000, 0, 0, 0)) +
+            sfrbx(3, 14, (0x712 << 19 | 1 << 12,) + (0,) * 9) + rawx(126301))
+
+
 MADE = {
+    "ubx": [ubx_raw()],
     "rinex": [text.encode() for text in RINEX],
     "mcap": [mcap("cdr", 0, ""), mcap("json", 0, ""), mcap("cdr", 500, ""), mcap("cdr", 900, "zstd")],
     "rosbag": [bag(b"none"), bag(b"bz2")],
@@ -229,7 +253,8 @@ HEADS = {
     "candump": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(4) for v in (0, 3)],
     "dbc": [bytes([s | 4, 8, 0, 0]) for s in range(2)],
     "geojson_map": [b""],
-    "ubx": [bytes([s | v << 5 | r | 4, 8 | 32, 2, 0]) for s in (0, 1) for v in (0, 1) for r in (0, 16)],
+    "ubx": [bytes([s | v << 5 | r | 4, 8 | 32, 2, 0]) for s in (0, 1) for v in (0, 1) for r in (0, 16)] +
+           [bytes([3 | v << 5 | 16 | 4, 0, 0, 0]) for v in (2, 3)],
     "rinex": [bytes([v << 5 | 4, 0, 0, 0]) for v in (0, 4)],
     "log_file": [bytes([0, 0, 0]), bytes([1, 0, 0]), bytes([3, 128, 0]), bytes([5, 0, 100]), bytes([9, 0, 0]), bytes([17, 0, 0]), bytes([11, 99, 0]),
                  bytes([21, 0, 120])],
