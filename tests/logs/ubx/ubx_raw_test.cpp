@@ -306,6 +306,9 @@ TEST_CASE("ubx raw: a log without ephemerides names the remedy") {
       decode(log),
       "log.ubx: no message of the log holds a whole ephemeris from 2016-06-06T12:00:00 to "
       "2016-06-06T12:00:02 (GPS time); name the broadcast ephemerides of that day with 'navigation: FILE'");
+  CHECK_THROWS_WITH(decode(log, {}),
+                    "log.ubx: the log holds no positions but 3 messages RXM-RAWX; fuse these with 'sensors: "
+                    "{name: gnss_raw, file: ...}'");
   CHECK(any_contains(decode(ubx_frame(0x0107, nav_pvt().bytes())).notes,
                      "the log holds no message RXM-RAWX; enable it at the receiver"));
 }

@@ -68,6 +68,10 @@ double column_of(const CorrectedMeasurement& measurement, std::string_view name)
 RawRows::RawRows(std::string path, const LogRequest& request, LogData& data)
     : path_(std::move(path)), request_(request), data_(data) {
   data_.readings.columns = request_.readings.size();
+  constexpr double kLargestOffset_s = 1e9;  // added to a date before 2200
+  if (!(std::abs(request_.time_offset_s) <= kLargestOffset_s))
+    throw InputError(fmt::format("{}: with an offset of {} s its time is too large for a stamp", path_,
+                                 request_.time_offset_s));
   const auto files = request_.companions.find("navigation");
   if (files != request_.companions.end()) {
     for (const CompanionFile& file : files->second) {

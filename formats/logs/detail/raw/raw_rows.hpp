@@ -24,7 +24,7 @@ class RawRows {
  public:
   /// Reads the companions "navigation" of the request.
   /// @param request and data outlive this object; data gets rows, counts and notes
-  /// @throws InputError for navigation files that cannot be read
+  /// @throws InputError for navigation files that cannot be read, and for an offset of more than 1e9 s
   RawRows(std::string path, const LogRequest& request, LogData& data);
 
   [[nodiscard]] bool has_navigation_files() const { return !files_.empty(); }
