@@ -10,6 +10,9 @@ inline constexpr double kGlonassG1_hz = 1602e6;
 /// Between two channels of GLONASS G1.
 inline constexpr double kGlonassStep_hz = 562.5e3;
 
+/// BeiDou's time is behind that of GPS by this.
+inline constexpr double kBeidouBehind_s = 14;
+
 /// Satellite systems, by the numbers of libRSF.
 enum class System : int { gps = 1, sbas = 2, glonass = 4, galileo = 8, beidou = 32 };
 

@@ -19,6 +19,18 @@ SkyDirection direction_of(const Eigen::Vector3d& satellite, const Eigen::Vector3
 
 }  // namespace
 
+std::optional<RawMeasurement> raw_measurement(const SatelliteName& satellite, double pseudorange_m,
+                                              double doppler_hz, double cn0_dbhz) {
+  constexpr double kNearest_m = 1e6;
+  constexpr double kFarthest_m = 1e8;
+  constexpr double kLargestDoppler_hz = 1e5;
+  if (!(pseudorange_m > kNearest_m && pseudorange_m < kFarthest_m)) return std::nullopt;
+  RawMeasurement measurement{satellite, pseudorange_m};
+  if (std::abs(doppler_hz) < kLargestDoppler_hz) measurement.doppler_hz = doppler_hz;
+  if (cn0_dbhz > 0 && cn0_dbhz < 100) measurement.cn0_dbhz = cn0_dbhz;
+  return measurement;
+}
+
 std::optional<PlacedMeasurement> placed(const RawMeasurement& raw, Stamp moment,
                                         const Ephemerides& ephemerides) {
   const Stamp by_its_clock = moment.later(-raw.pseudorange_m / kLight_mps);

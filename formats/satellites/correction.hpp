@@ -22,6 +22,12 @@ struct RawMeasurement {
   double cn0_dbhz = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Makes a measurement of the numbers of a log. A Doppler shift or C/N0 that no receiver measures counts as not measured.
+/// @returns nothing if the pseudorange is impossible
+[[nodiscard]] std::optional<RawMeasurement> raw_measurement(const SatelliteName& satellite,
+                                                            double pseudorange_m, double doppler_hz,
+                                                            double cn0_dbhz);
+
 struct RawEpoch {
   Stamp moment;  ///< of the receiver's clock, on the GPS scale
   std::vector<RawMeasurement> satellites;

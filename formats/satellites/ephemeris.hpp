@@ -40,6 +40,9 @@ struct KeplerOrbit {
   bool is_healthy = true;
 };
 
+/// Tells whether the elements are those of an orbit that navigation satellites have.
+[[nodiscard]] bool is_possible(const KeplerOrbit& orbit);
+
 /// Position, velocity and acceleration of a GLONASS satellite at one moment.
 struct GlonassOrbit {
   int number = 0;

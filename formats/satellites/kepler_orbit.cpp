@@ -86,6 +86,12 @@ double relativity_s(const KeplerOrbit& orbit, double dt) {
 
 }  // namespace
 
+bool is_possible(const KeplerOrbit& orbit) {
+  constexpr double kWeek_s = 604'800;
+  return orbit.eccentricity >= 0 && orbit.eccentricity < 0.5 && orbit.sqrt_a > 4000 && orbit.sqrt_a < 8000 &&
+         orbit.toe_sow_s >= 0 && orbit.toe_sow_s <= kWeek_s;
+}
+
 SatelliteState state_of(const KeplerOrbit& orbit, Stamp moment) {
   const double dt = seconds_between(orbit.toe, moment);
   const double since_toc = seconds_between(orbit.toc, moment);

@@ -31,6 +31,7 @@ std::vector<StreamKind> streams_of(std::string_view reader) {
   if (reader == "csv" || is_can(reader) || reader == "ubx" || is_ros(reader))
     return {StreamKind::odometry, StreamKind::gnss, StreamKind::truth, StreamKind::sensor};
   if (reader == "kitti_oxts") return {StreamKind::odometry, StreamKind::gnss, StreamKind::truth};
+  if (reader == "rinex") return {StreamKind::sensor};
   return {StreamKind::gnss, StreamKind::truth};
 }
 
@@ -131,14 +132,17 @@ void set_csv_dialect(LogRequest& request, unsigned choice) {
   if (choice & 128U) request.where = waymark::RowFilter{"4", "front", true};
 }
 
+/// Takes the first bytes of a log off, up to a zero: they are a file that belongs to it.
+std::string take_companion(std::string& log) {
+  const std::size_t end = std::min(log.find('\0'), log.size());
+  std::string companion = log.substr(0, end);
+  log.erase(0, std::min(end + 1, log.size()));
+  return companion;
+}
+
 /// One stamp for each record, one too few, or the first bytes of the log itself.
 std::string kitti_stamps(std::string& log, unsigned variant, unsigned between) {
-  if (variant == 7) {
-    const std::size_t end = std::min(log.find('\0'), log.size());
-    std::string stamps = log.substr(0, end);
-    log.erase(0, std::min(end + 1, log.size()));
-    return stamps;
-  }
+  if (variant == 7) return take_companion(log);
   auto lines = static_cast<std::size_t>(std::count(log.begin(), log.end(), '\n'));
   if (!log.empty() && log.back() != '\n') ++lines;
   if (variant == 6 && lines > 0) --lines;
@@ -149,6 +153,62 @@ std::string kitti_stamps(std::string& log, unsigned variant, unsigned between) {
                           ms / 1000 % 60, ms % 1000);
   }
   return stamps;
+}
+
+/// Ephemerides of GPS, Galileo and BeiDou, 32 of each, and two of GLONASS, at 2016-06-06 11:00.
+const std::string& fuzz_navigation() {
+  static const std::string text = [] {
+    std::string made =
+        fmt::format("{:60}RINEX VERSION / TYPE\n", "     3.03           N: GNSS NAV DATA    M");
+    made += fmt::format("GPSA {:12.4E}{:12.4E}{:12.4E}{:12.4E}{:7}IONOSPHERIC CORR\n", 7e-9, 2e-8, -6e-8,
+                        -1e-7, "");
+    made +=
+        fmt::format("GPSB {:12.4E}{:12.4E}{:12.4E}{:12.4E}{:7}IONOSPHERIC CORR\n", 9e4, 1e5, -7e4, -5e5, "");
+    made += fmt::format("{:60}END OF HEADER\n", "");
+    const auto line = [&](std::array<double, 4> values) {
+      made += "    ";
+      for (const double value : values) made += fmt::format("{:19.12E}", value);
+      made += '\n';
+    };
+    const auto head = [&](char system, int number) {
+      made += fmt::format("{}{:02} 2016 06 06 11 00 00{:19.12E}{:19.12E}{:19.12E}\n", system, number, 1e-5,
+                          1e-12, 0.0);
+    };
+    constexpr double kToe_s = 86'400 + 11 * 3600;
+    for (const char system : {'G', 'E', 'C'}) {
+      for (int number = 1; number <= 32; ++number) {
+        head(system, number);
+        line({1, 10, 4e-9, 0.4 * number});
+        line({1e-7, 0.005, 1e-5, 5153.7});
+        line({kToe_s, 1e-7, 1.0 * (number % 6), 1e-7});
+        line({0.96, 170, 0.5, -8e-9});
+        line({6e-10, 1, 1900, 0});
+        line({2, 0, 5e-9, 0});
+        line({0, 0, 0, 0});
+      }
+    }
+    for (const int number : {1, 2}) {
+      head('R', number);
+      line({1e7, 2, 0, 0});
+      line({number == 1 ? 2e7 : -2e7, 1, 0, 5});
+      line({1.2e7, -2.5, 0, 0});
+    }
+    return made;
+  }();
+  return text;
+}
+
+/// Raw measurements of RINEX or UBX. The ephemerides of RINEX are those of fuzz_navigation() or stand before the log; UBX
+/// has its own or those.
+void set_raw_readings(FuzzInput& input, bool is_rinex, unsigned variant) {
+  input.request.readings.clear();
+  for (const char* name : {"system", "satellite", "pseudorange", "range_rate", "satellite_x", "satellite_vz",
+                           "elevation", "cn0"})
+    input.request.readings.push_back({name, "", "", false, ""});
+  if (!is_rinex && variant == 2) return;
+  const bool before = is_rinex && variant >= 4;
+  input.request.companions["navigation"] = {
+      {"fuzz.nav", before ? take_companion(input.log) : fuzz_navigation()}};
 }
 
 void set_readings(LogRequest& request, std::string_view reader, unsigned variant) {
@@ -242,7 +302,10 @@ FuzzInput fuzz_input(std::string_view reader, const std::uint8_t* bytes, std::si
     input.log = repair_lines(input.log, reader == "novatel");
   if (reader == "kitti_oxts")
     request.companions["timestamps"] = {{"timestamps.txt", kitti_stamps(input.log, variant, head[3])}};
-  set_readings(request, reader, variant);
+  if (reader != "rinex") set_readings(request, reader, variant);
+  const bool is_raw_ubx =
+      reader == "ubx" && request.stream == StreamKind::sensor && (variant == 2 || variant == 3);
+  if (reader == "rinex" || is_raw_ubx) set_raw_readings(input, reader == "rinex", variant);
   if (reader == "csv" && request.readings.empty()) set_csv_columns(request, variant);
   if (reader == "csv") set_csv_dialect(request, head[3]);
   if (is_can(reader)) {

@@ -16,7 +16,7 @@ namespace waymark_fuzz {
 /// | 0 | 0-1 | stream, modulo those the reader gives |
 /// |   | 2-3 | pieces of 1, 7, 64 bytes or the whole |
 /// |   | 4   | checksums are made right first (UBX, NMEA, NovAtel) |
-/// |   | 5-7 | columns: a variant (CSV, CAN, UBX), or how the time stamps are made (KITTI) |
+/// |   | 5-7 | columns: a variant (CSV, CAN, UBX), how the time stamps are made (KITTI), or where ephemerides are |
 /// | 1 | 0-2 | meaning of accuracy figures |
 /// |   | 3   | a default sigma of 5 m |
 /// |   | 4   | a range error of 4 m |

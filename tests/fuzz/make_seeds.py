@@ -27,6 +27,7 @@ REAL = {
     "rtklib_pos": ["logs/pos/*.pos", "drives/nagoya/*.pos"],
     "gpx": ["logs/gpx/*.gpx"],
     "ubx": ["logs/ubx/*"],
+    "rinex": ["drives/berlin_potsdamer_platz_raw/rover.obs"],
     "dbc": ["logs/can/*.dbc", "drives/aarhus_horsens/*.dbc"],
     "log_file": ["logs/*/*"],
 }
@@ -76,7 +77,74 @@ def bag(compression):
     return b"#ROSBAG V2.0\n" + record([b"op=\x03", field(b"index_pos", bytes(8))], b" " * 40) + chunk + records
 
 
+def header(content, label):
+    return f"{content:60}{label}\n"
+
+
+def rinex_observations(version):
+    place = header("  6378137.0000        0.0000        0.0000", "APPROX POSITION XYZ")
+    if version == 2:
+        head = header("     2.11           OBSERVATION DATA    M", "RINEX VERSION / TYPE")
+        head += header("     4    C1    L1    S1    D1", "# / TYPES OF OBSERV")
+        epoch = " 16  6  6 11  5  {}.0000000  0  4G01E02C03R01\n" + "  22000000.000                  40.000      1000.000\n" * 4
+    else:
+        head = header("     3.03           OBSERVATION DATA    M", "RINEX VERSION / TYPE")
+        head += "".join(header(f"{s}    3 {c} D{c[1:]} S{c[1:]}", "SYS / # / OBS TYPES")
+                        for s, c in (("G", "C1C"), ("E", "C1X"), ("C", "C2I"), ("R", "C1C")))
+        epoch = "> 2016 06 06 11 05 0{}.0000000  0  4\n" + "".join(
+            f"{s}  22000000.000        1000.000          40.000\n" for s in ("G01", "E02", "C03", "R01"))
+    event = "                            4  1\n" if version == 2 else "> {:31}4  1\n".format("")
+    event += header("antenna", "COMMENT")
+    return head + place + header("", "END OF HEADER") + epoch.format(0) + event + epoch.format(1)
+
+
+def rinex_navigation(version):
+    """A satellite of GPS and, in version 3, one of GLONASS."""
+    def numbers(begin, values):
+        return begin + "".join(f"{value:19.12E}" for value in values) + "\n"
+    blank = "   " if version == 2 else "    "
+    names = (" 1 16  6  6 11  0  0.0", None) if version == 2 else ("G01 2016 06 06 11 00 00", "R01 2016 06 06 11 00 00")
+    text = header(f"     {version}.{'11' if version == 2 else '03'}           NAVIGATION DATA     G", "RINEX VERSION / TYPE")
+    text += header("    0.6519E-08  0.2235E-07 -0.5960E-07 -0.1192E-06", "ION ALPHA") + header("", "END OF HEADER")
+    text += numbers(names[0], (1e-5, 1e-12, 0))
+    for row in ((1, 10, 4e-9, 0.4), (1e-7, 0.005, 1e-5, 5153.7), (126000, 1e-7, 1, 1e-7), (0.96, 170, 0.5, -8e-9),
+                (6e-10, 1, 1900, 0), (2, 0, 5e-9, 0), (0, 0, 0, 0)):
+        text += numbers(blank, row)
+    if names[1]:
+        text += numbers(names[1], (1e-5, 0, 0))
+        text += numbers(blank, (1e4, 2, 0, 0)) + numbers(blank, (2e4, 1, 0, 5)) + numbers(blank, (1.2e4, -2.5, 0, 0))
+    return text
+
+
+RINEX = [rinex_observations(2), rinex_observations(3), rinex_navigation(2) + "\0" + rinex_observations(2),
+         rinex_navigation(3) + "\0" + rinex_observations(3)]
+
+def ubx(key, payload):
+    """A frame without its checksum, which one bit of the head makes right."""
+    return b"\xb5\x62" + struct.pack(">H", key) + struct.pack("<H", len(payload)) + payload + bytes(2)
+
+
+def ubx_raw():
+    """Five satellites at 2016-06-06 11:05, and a subframe of GPS, a page of Galileo, a subframe of BeiDou."""
+    def rawx(second):
+        head = struct.pack("<dHbBBBH", second, 1900, 17, 5, 1, 1, 0)
+        return ubx(0x0215, head + b"".join(struct.pack("<ddfBBBBHBBBBBB", 2.2e7 + 1e5 * n, 1e8, 100, system, n, 0, 0,
+                                                       500, 40, 5, 2, 5, 7, 0)
+                                           for system, n in ((0, 1), (0, 2), (2, 3), (3, 14), (0, 5))))
+
+    def sfrbx(system, number, words):
+        return ubx(0x0213, struct.pack("<BBBBBBBB", system, number, 0, 0, len(words), 0, 2, 0) + struct.pack(
+            f"<{len(words)}I", *words))
+    # A subframe 3 of a real receiver, as the tests of pyubx2 list it.
+    gps = (583028782, 2463198336, 394902765, 2566867280, 1062207503, 675481840, 616371498, 2740700967, 768066377,
+           3045061856)
+    return (rawx(126300) + sfrbx(0, 5, gps) + sfrbx(2, 3, (0x01000000, 0, 0, 0, 0x80000000, 0, 0, 0)) +
+            sfrbx(3, 14, (0x712 << 19 | 1 << 12,) + (0,) * 9) + rawx(126301))
+
+
 MADE = {
+    "ubx": [ubx_raw()],
+    "rinex": [text.encode() for text in RINEX],
     "mcap": [mcap("cdr", 0, ""), mcap("json", 0, ""), mcap("cdr", 500, ""), mcap("cdr", 900, "zstd")],
     "rosbag": [bag(b"none"), bag(b"bz2")],
     "kitti_oxts": [(OXTS * 8).encode()],
@@ -185,7 +253,9 @@ HEADS = {
     "candump": [bytes([s | v << 5 | 4, 8, 0, 0]) for s in range(4) for v in (0, 3)],
     "dbc": [bytes([s | 4, 8, 0, 0]) for s in range(2)],
     "geojson_map": [b""],
-    "ubx": [bytes([s | v << 5 | r | 4, 8 | 32, 2, 0]) for s in (0, 1) for v in (0, 1) for r in (0, 16)],
+    "ubx": [bytes([s | v << 5 | r | 4, 8 | 32, 2, 0]) for s in (0, 1) for v in (0, 1) for r in (0, 16)] +
+           [bytes([3 | v << 5 | 16 | 4, 0, 0, 0]) for v in (2, 3)],
+    "rinex": [bytes([v << 5 | 4, 0, 0, 0]) for v in (0, 4)],
     "log_file": [bytes([0, 0, 0]), bytes([1, 0, 0]), bytes([3, 128, 0]), bytes([5, 0, 100]), bytes([9, 0, 0]), bytes([17, 0, 0]), bytes([11, 99, 0]),
                  bytes([21, 0, 120])],
 }

@@ -20,6 +20,7 @@ std::span<const Target> targets() {
                                           Target{"vbo", fuzz_log_reader},
                                           Target{"mcap", fuzz_log_reader},
                                           Target{"rosbag", fuzz_log_reader},
+                                          Target{"rinex", fuzz_log_reader},
                                           Target{"dbc", fuzz_dbc},
                                           Target{"log_file", fuzz_log_file},
                                           Target{"graph", fuzz_graph},

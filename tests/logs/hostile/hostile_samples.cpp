@@ -7,6 +7,7 @@
 #include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/formats/text/text_file.hpp>
 
+#include "logs/rinex/made_rinex.hpp"
 #include "logs/ros/ros_bytes.hpp"
 #include "logs/ubx/ubx_bytes.hpp"
 #include "support/paths.hpp"
@@ -117,6 +118,11 @@ std::vector<HostileSample> make() {
                      mcap_message(1, nav_sat_fix(Wire::cdr_little, 0)).substr(0, 9), "", false});
   samples.push_back(
       {"rosbag", bag_log(), gnss(), bag_message(0, nav_sat_fix(Wire::ros1, 0)).substr(0, 12), "", false});
+  HostileSample rinex{"rinex", made_rinex_observations(40), {}, "> 2016", "0123456789"};
+  rinex.request.stream = StreamKind::sensor;
+  rinex.request.readings = {{"pseudorange", "m", "", true, ""}, {"elevation", "rad", "", true, ""}};
+  rinex.request.companions["navigation"] = {{"brdc.nav", made_rinex_navigation()}};
+  samples.push_back(rinex);
   samples.push_back({"ubx", ubx_log(), gnss(), "\xB5\x62\x01\x07", "", false});
   std::erase_if(samples, [](const HostileSample& sample) { return sample.text.empty(); });
   return samples;

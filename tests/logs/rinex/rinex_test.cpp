@@ -9,6 +9,7 @@
 #include <waymark/formats/text/text_file.hpp>
 
 #include "logs/log_pieces.hpp"
+#include "logs/rinex/made_rinex.hpp"
 #include "logs/rinex/shared_raw.hpp"
 #include "support/skip.hpp"
 
@@ -59,13 +60,10 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
     text.replace(at, from.size(), to);
 }
 
-std::string line(std::string text, const std::string& label) {
-  text.resize(60, ' ');
-  return text + label + "\n";
-}
-
-const std::string kHead3 = line("     3.03           OBSERVATION DATA    M", "RINEX VERSION / TYPE") +
-                           line("G    4 C1C L1C D1C S1C", "SYS / # / OBS TYPES") + line("", "END OF HEADER");
+const std::string kHead3 =
+    rinex_header_line("     3.03           OBSERVATION DATA    M", "RINEX VERSION / TYPE") +
+    rinex_header_line("G    4 C1C L1C D1C S1C", "SYS / # / OBS TYPES") +
+    rinex_header_line("", "END OF HEADER");
 
 bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
   return std::any_of(texts.begin(), texts.end(),
@@ -151,7 +149,7 @@ TEST_CASE("rinex: events are skipped with their lines, and a new list of observa
   if (!drive) return;
   const LogData right = read(drive->observations, drive->navigation);
   const std::size_t first = drive->observations.find("\n 16  6  6") + 1;
-  const std::string comment = line("stopped at a light", "COMMENT");
+  const std::string comment = rinex_header_line("stopped at a light", "COMMENT");
   std::string moved = drive->observations;
   moved.insert(first, "                            2  1\n" + comment);
   const LogData data = read(moved, drive->navigation);
@@ -159,16 +157,16 @@ TEST_CASE("rinex: events are skipped with their lines, and a new list of observa
   CHECK(any_contains(data.notes, "1 event records were skipped"));
   // The Doppler shift is announced under another name, so there are no range rates.
   moved.insert(first, "                            4  1\n" +
-                          line("     4    C1    L1    S1    D2", "# / TYPES OF OBSERV"));
+                          rinex_header_line("     4    C1    L1    S1    D2", "# / TYPES OF OBSERV"));
   const LogData renamed = read(moved, drive->navigation);
   CHECK(std::isnan(renamed.readings.at(0, 3)));
   CHECK(!std::isnan(right.readings.at(0, 3)));
 }
 
 TEST_CASE("rinex: wrong lines of RINEX 3 are named by line and column") {
-  const CompanionFile nav{"nav", line("     3.03           N: GNSS NAV DATA    M", "RINEX VERSION / TYPE") +
-                                     line("", "END OF HEADER") + "G01 2021 05 17 02 00 00 1.0e-4 0 0\n" +
-                                     "    1\n"};
+  const CompanionFile nav{
+      "nav", rinex_header_line("     3.03           N: GNSS NAV DATA    M", "RINEX VERSION / TYPE") +
+                 rinex_header_line("", "END OF HEADER") + "G01 2021 05 17 02 00 00 1.0e-4 0 0\n" + "    1\n"};
   CHECK_THROWS_WITH(read(kHead3, {nav}), Contains("holds no ephemeris"));
   CHECK_THROWS_WITH(read(kHead3, {nav}), Contains("line 3: the file ends in the record"));
   const auto complaint = [](const std::string& text) {
@@ -200,11 +198,12 @@ TEST_CASE("rinex: versions and files that are not read are named") {
   };
   const auto drive = berlin();
   if (!drive) return;
-  refused(line("     4.00           OBSERVATION DATA    M", "RINEX VERSION / TYPE"));
-  refused(
-      line("     3.03           OBSERVATION DATA    M", "RINEX VERSION / TYPE"));  // cut off in the header
-  const std::string phases = line("     3.03           OBSERVATION DATA    M", "RINEX VERSION / TYPE") +
-                             line("G    1 L1C", "SYS / # / OBS TYPES") + line("", "END OF HEADER");
+  refused(rinex_header_line("     4.00           OBSERVATION DATA    M", "RINEX VERSION / TYPE"));
+  refused(rinex_header_line("     3.03           OBSERVATION DATA    M",
+                            "RINEX VERSION / TYPE"));  // cut off in the header
+  const std::string phases =
+      rinex_header_line("     3.03           OBSERVATION DATA    M", "RINEX VERSION / TYPE") +
+      rinex_header_line("G    1 L1C", "SYS / # / OBS TYPES") + rinex_header_line("", "END OF HEADER");
   CHECK_THROWS_WITH(read(phases, drive->navigation),
                     Contains("announces no pseudorange of a first frequency"));
 }

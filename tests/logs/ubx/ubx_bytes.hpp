@@ -21,6 +21,9 @@ class UbxBytes {
   UbxBytes& u16(std::size_t at, std::int64_t value) { return put(at, value, 2); }
   UbxBytes& u32(std::size_t at, std::int64_t value) { return put(at, value, 4); }
   UbxBytes& f32(std::size_t at, float value) { return put(at, std::bit_cast<std::uint32_t>(value), 4); }
+  UbxBytes& f64(std::size_t at, double value) {
+    return put(at, static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(value)), 8);
+  }
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
  private:

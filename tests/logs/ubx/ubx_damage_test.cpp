@@ -86,7 +86,7 @@ TEST_CASE("ubx: a log is known by its frames") {
     mixed += "$GPGGA,of,NMEA,there,is,much,more,than,of,UBX" + std::string(900, ',') + pvt;
   CHECK(certainty(mixed) == 1);
   CHECK(UbxReader().recognise(mixed).evidence ==
-        "3 UBX frames with a right checksum, 3 of them with a position");
+        "3 UBX frames with a right checksum, 3 of them with a position or raw measurements");
   const std::string silent = nav_eoe(1) + nav_eoe(2) + nav_eoe(3);
   CHECK(certainty(silent + std::string(36, ' ')) == Approx(0.45));
 }

@@ -17,4 +17,13 @@ std::optional<Stamp> stamp_from_gps_week(std::string_view week, std::string_view
   return Stamp{*weeks * kGpsWeekNanoseconds + of_week->nanoseconds};
 }
 
+Stamp in_nearest_week(Stamp near, double seconds_of_week) {
+  const std::int64_t begin = near.nanoseconds / kGpsWeekNanoseconds * kGpsWeekNanoseconds;
+  Stamp time = Stamp{begin}.later(seconds_of_week);
+  const std::int64_t ahead = time.nanoseconds - near.nanoseconds;
+  if (ahead > kGpsWeekNanoseconds / 2) time.nanoseconds -= kGpsWeekNanoseconds;
+  if (ahead < -kGpsWeekNanoseconds / 2) time.nanoseconds += kGpsWeekNanoseconds;
+  return time;
+}
+
 }  // namespace waymark::formats

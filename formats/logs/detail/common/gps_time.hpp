@@ -24,4 +24,7 @@ inline constexpr int kLastGpsWeek = 10'000;
 /// @return empty if the texts are no such numbers
 [[nodiscard]] std::optional<Stamp> stamp_from_gps_week(std::string_view week, std::string_view seconds);
 
+/// Returns the time with these seconds of the week that is nearest to `near`, both on one scale without leap seconds.
+[[nodiscard]] Stamp in_nearest_week(Stamp near, double seconds_of_week);
+
 }  // namespace waymark::formats

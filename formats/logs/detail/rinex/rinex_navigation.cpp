@@ -10,15 +10,13 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/rinex/rinex_fields.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
 
 namespace waymark::formats {
 namespace {
 
 using satellites::System;
 
-constexpr double kWeek_s = 604'800;
-/// BeiDou's time is behind that of GPS by this.
-constexpr double kBeidouBehind_s = 14;
 constexpr std::size_t kNumberWidth = 19;
 
 /// A record: its first line has a clock, the others four numbers each.
@@ -27,17 +25,6 @@ struct NavigationRecord {
   Stamp clock_time;                  ///< as written, without a scale
   std::array<double, 31> numbers{};  ///< in the order of the file
 };
-
-/// The week of a time of the week: that which is nearest to the time of the clock.
-Stamp nearest_week(Stamp clock_time, double seconds_of_week) {
-  const auto week_ns = kGpsWeekNanoseconds;
-  const std::int64_t begin = clock_time.nanoseconds / week_ns * week_ns;
-  Stamp time = Stamp{begin}.later(seconds_of_week);
-  const double ahead = seconds_between(clock_time, time);
-  if (ahead > kWeek_s / 2) time.nanoseconds -= week_ns;
-  if (ahead < -kWeek_s / 2) time.nanoseconds += week_ns;
-  return time;
-}
 
 /// Tells by the data sources of a record of Galileo whether its clock is that of E1 and E5b (I/NAV) or that of
 /// E1 and E5a (F/NAV).
@@ -62,11 +49,9 @@ std::optional<satellites::KeplerOrbit> kepler_of(const NavigationRecord& record)
   orbit.toe_sow_s = n[11], orbit.cic = n[12], orbit.node_rad = n[13], orbit.cis = n[14];
   orbit.inclination_rad = n[15], orbit.crc = n[16], orbit.perigee_rad = n[17], orbit.node_rate_radps = n[18];
   orbit.inclination_rate_radps = n[19];
-  const double behind_s = orbit.system == System::beidou ? kBeidouBehind_s : 0;
-  if (!(orbit.eccentricity >= 0 && orbit.eccentricity < 0.5) ||
-      !(orbit.sqrt_a > 4000 && orbit.sqrt_a < 8000) || !(orbit.toe_sow_s >= 0 && orbit.toe_sow_s <= kWeek_s))
-    return std::nullopt;
-  orbit.toe = nearest_week(record.clock_time, orbit.toe_sow_s).later(behind_s);
+  const double behind_s = orbit.system == System::beidou ? satellites::kBeidouBehind_s : 0;
+  if (!satellites::is_possible(orbit)) return std::nullopt;
+  orbit.toe = in_nearest_week(record.clock_time, orbit.toe_sow_s).later(behind_s);
   orbit.toc = record.clock_time.later(behind_s);
   if (orbit.system == System::galileo) {
     orbit.is_healthy = galileo_is_healthy(n[24]);
@@ -155,7 +140,7 @@ class NavigationReader {
       fail("this is a navigation file of SBAS, which is not used; leave it out");
     if (version->kind != 'N' && version->kind != 'G')
       fail(fmt::format("expected a navigation file, whose type is N or G, got '{}'",
-                       std::string(1, version->kind)));
+                       shown_name({&version->kind, 1})));
     while (next_line()) {
       const std::string_view label = rinex_label(line_);
       if (label == "END OF HEADER") return;

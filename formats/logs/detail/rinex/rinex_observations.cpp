@@ -1,7 +1,7 @@
 #include <waymark/formats/logs/detail/rinex/rinex_observations.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <span>
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
+#include <waymark/formats/text/detail/line_scanner.hpp>
 
 namespace waymark::formats {
 namespace {
@@ -19,8 +20,6 @@ constexpr std::size_t kNamesPerLine2 = 12;
 constexpr std::size_t kLine2 = 80;
 constexpr int kMostSatellites = 200;
 constexpr std::size_t kMostTypes = 200;
-constexpr double kNearest_m = 1e6;
-constexpr double kFarthest_m = 1e8;
 
 std::optional<std::size_t> find_type(const std::vector<std::string>& types, std::string_view type) {
   const auto found = std::find(types.begin(), types.end(), type);
@@ -104,7 +103,7 @@ void RinexObservations::take_first_line() {
   const auto version = rinex_version(line_);
   if (!version) fail("expected RINEX: its first line ends with 'RINEX VERSION / TYPE'");
   if (version->kind != 'O')
-    fail("this is no observation file but a file of type '" + std::string(1, version->kind) +
+    fail("this is no observation file but a file of type '" + shown_name({&version->kind, 1}) +
          "'; name ephemerides with 'navigation', and the observations with 'file'");
   if (version->version < 2 || version->version >= 4)
     fail(fmt::format("RINEX {:.2f} is not read, only 2 and 3; RTKLIB's convbin or gfzrnx converts it",
@@ -281,21 +280,16 @@ void RinexObservations::take_measurement(std::string_view line) {
   const auto number = [&](const std::optional<std::size_t>& at) {
     return at ? rinex_number(line, 3 + kWidth * *at, 14) : std::nullopt;
   };
-  const auto pseudorange = number(columns->second.pseudorange);
-  if (!pseudorange || !(*pseudorange > kNearest_m && *pseudorange < kFarthest_m)) {
-    ++unused_;
-    return;
-  }
-  satellites::RawMeasurement measurement;
-  measurement.satellite = *satellite;
-  measurement.pseudorange_m = *pseudorange;
-  const auto cn0 = number(columns->second.cn0);
-  const auto doppler = number(columns->second.doppler);
-  constexpr double kLargestDoppler_hz = 1e5;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const double doppler = number(columns->second.doppler).value_or(kNone);
   // RINEX has 0 for an observation that is missing.
-  if (doppler && *doppler != 0 && std::abs(*doppler) < kLargestDoppler_hz) measurement.doppler_hz = *doppler;
-  if (cn0 && *cn0 > 0 && *cn0 < 100) measurement.cn0_dbhz = *cn0;
-  epoch_.satellites.push_back(measurement);
+  const auto measurement = satellites::raw_measurement(
+      *satellite, number(columns->second.pseudorange).value_or(kNone), doppler == 0 ? kNone : doppler,
+      number(columns->second.cn0).value_or(kNone));
+  if (measurement)
+    epoch_.satellites.push_back(*measurement);
+  else
+    ++unused_;
 }
 
 void RinexObservations::end_satellite() {

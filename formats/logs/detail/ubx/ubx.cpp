@@ -8,6 +8,7 @@
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/common/log_request.hpp>
 #include <waymark/formats/logs/detail/ubx/ubx_fixes.hpp>
+#include <waymark/formats/logs/detail/ubx/ubx_raw.hpp>
 #include <waymark/formats/logs/detail/ubx/ubx_sensors.hpp>
 
 namespace waymark::formats {
@@ -58,14 +59,26 @@ void check_readings(const std::string& path, const LogRequest& request) {
                     path, channel_names()));
 }
 
-bool holds_position(std::uint16_t key) {
+/// Tells whether the request is that of the plugin gnss_raw.
+bool wants_raw(const LogRequest& request) {
+  return request.stream == StreamKind::sensor &&
+         std::any_of(request.readings.begin(), request.readings.end(),
+                     [](const SensorColumn& column) { return column.name == "pseudorange"; });
+}
+
+bool holds_place(std::uint16_t key) {
   return key == ubx::kNavPvt || key == ubx::kNavPosllh || key == ubx::kNavHpposllh ||
-         key == ubx::kNavPosecef || key == ubx::kNavSol || key == ubx::kHnrPvt;
+         key == ubx::kNavPosecef || key == ubx::kNavSol || key == ubx::kHnrPvt || key == ubx::kRxmRawx;
 }
 
 }  // namespace
 
 std::unique_ptr<LogDecoder> UbxReader::open(const std::string& path, const LogRequest& request) const {
+  if (wants_raw(request)) {
+    require_no_columns(path, request, "a UBX log of raw measurements");
+    require_companions(path, request, "a UBX log of raw measurements", "navigation");
+    return std::make_unique<UbxRawDecoder>(path, request);
+  }
   require_companions(path, request, "a UBX log");
   if (request.gps_week < 0 || request.gps_week > kLastGpsWeek)
     throw InputError(fmt::format("{}: week {} is outside 0 .. {} (time: {{week: ...}})", path,
@@ -88,13 +101,14 @@ Recognition UbxReader::recognise(std::string_view head) const {
     from = found.begin + 2;
     if (found.kind != UbxFound::Kind::frame) continue;
     ++frames;
-    if (holds_position(found.frame.key)) ++positions;
+    if (holds_place(found.frame.key)) ++positions;
     bytes += found.end - found.begin;
     from = found.end;
   }
   if (frames == 0) return {};
   const std::string evidence =
-      fmt::format("{} UBX frames with a right checksum, {} of them with a position", frames, positions);
+      fmt::format("{} UBX frames with a right checksum, {} of them with a position or raw measurements",
+                  frames, positions);
   if (frames >= 3 && positions > 0) return {1, evidence};
   return {0.9 * static_cast<double>(bytes) / static_cast<double>(head.size()), evidence};
 }

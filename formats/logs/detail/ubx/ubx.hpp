@@ -31,6 +31,11 @@ namespace waymark::formats {
 /// direction bit says backwards. The order of the messages places the clock of the sensors on GNSS
 /// time; UbxSensorClock states its error.
 ///
+/// **Raw measurements** (a sensor stream with the column `pseudorange`): RXM-RAWX on the first frequency of GPS,
+/// Galileo, BeiDou and GLONASS; its time is that of the receiver's own clock. The ephemerides come from the companions
+/// "navigation", or without them from RXM-SFRBX: LNAV of GPS with the ionosphere, I/NAV of Galileo, D1 of BeiDou. The
+/// measurements of the first minute wait for them. RawRows has the rest.
+///
 /// **Corrupt**: frames with a wrong checksum or length, messages that are too short, positions
 /// outside the globe, and positions without a known week or without accuracy.
 class UbxReader final : public LogReader {
@@ -40,7 +45,7 @@ class UbxReader final : public LogReader {
   [[nodiscard]] std::unique_ptr<LogDecoder> open(const std::string& path,
                                                  const LogRequest& request) const override;
   /// The confidence is 1 for at least three frames with right checksums that include a message with
-  /// a position. So a log mixed with NMEA belongs to this reader, because the NMEA reader claims at
+  /// a position or raw measurements. So a log mixed with NMEA belongs to this reader, because the NMEA reader claims at
   /// most 0.95. Otherwise it is the share of bytes in frames, times 0.9.
   [[nodiscard]] Recognition recognise(std::string_view head) const override;
 };

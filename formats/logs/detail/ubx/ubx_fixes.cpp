@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/core/base/angle.hpp>
+#include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/detail/nmea/nmea.hpp>
 
 namespace waymark::formats {
@@ -283,6 +284,11 @@ void UbxFixDecoder::end() {
   end_epoch();
   const bool has_positions = counts_.precise + counts_.solution + counts_.plain + counts_.ecef > 0;
   if (!has_positions && data_.without_fix == 0 && nmea_) return take_nmea();
+  if (data_.records == 0 && UbxFrameDecoder::count(ubx::kRxmRawx) > 0)
+    throw InputError(
+        fmt::format("{}: the log holds no positions but {} messages RXM-RAWX; fuse these with 'sensors: "
+                    "{{name: gnss_raw, file: ...}}'",
+                    path(), UbxFrameDecoder::count(ubx::kRxmRawx)));
   note_positions();
   note_time();
   positions_.finish(data_);

@@ -72,6 +72,11 @@ double UbxPayload::f32(std::size_t at) const {
   return std::bit_cast<float>(u32(at));
 }
 
+double UbxPayload::f64(std::size_t at) const {
+  static_assert(sizeof(double) == sizeof(std::uint64_t));
+  return std::bit_cast<double>(u32(at) | static_cast<std::uint64_t>(u32(at + 4)) << 32U);
+}
+
 std::size_t least_ubx_length(std::uint16_t key) {
   switch (key) {
     case ubx::kNavPosecef:

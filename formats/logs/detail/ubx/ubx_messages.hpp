@@ -29,6 +29,8 @@ inline constexpr std::uint16_t kNavTimegps = 0x0120;
 inline constexpr std::uint16_t kNavTimeutc = 0x0121;
 inline constexpr std::uint16_t kNavCov = 0x0136;
 inline constexpr std::uint16_t kNavEoe = 0x0161;
+inline constexpr std::uint16_t kRxmSfrbx = 0x0213;
+inline constexpr std::uint16_t kRxmRawx = 0x0215;
 inline constexpr std::uint16_t kEsfMeas = 0x1002;
 inline constexpr std::uint16_t kHnrPvt = 0x2800;
 }  // namespace ubx
@@ -52,6 +54,7 @@ class UbxPayload {
   }
   [[nodiscard]] std::int32_t i32(std::size_t at) const { return static_cast<std::int32_t>(u32(at)); }
   [[nodiscard]] double f32(std::size_t at) const;
+  [[nodiscard]] double f64(std::size_t at) const;
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }
 
  private:
