@@ -68,7 +68,12 @@ std::string Said::text() const {
 
 Said listen(const Arrivals& arrivals, const LiveSettings& settings, const std::string& modeling,
             const std::vector<std::string>& receivers) {
-  Estimator estimator(live_description(receivers), live_fusion(modeling), settings, registry());
+  return listen(live_description(receivers), arrivals, settings, modeling);
+}
+
+Said listen(const drive::DriveDescription& description, const Arrivals& arrivals,
+            const LiveSettings& settings, const std::string& modeling) {
+  Estimator estimator(description, live_fusion(modeling), settings, registry());
   Said said;
   const auto hear = [&] {
     for (const Report& report : estimator.reports()) {

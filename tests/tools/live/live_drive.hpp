@@ -43,6 +43,10 @@ struct Said {
                           const std::string& modeling = "correlated",
                           const std::vector<std::string>& receivers = {"gnss"});
 
+[[nodiscard]] Said listen(const waymark::drive::DriveDescription& description, const Arrivals& arrivals,
+                          const waymark::live::LiveSettings& settings = {},
+                          const std::string& modeling = "correlated");
+
 /// Distances of the poses with a heading from the truth, m.
 [[nodiscard]] std::vector<double> errors_m(const Said& said, const LiveDrive& drive);
 /// Those of the poses at the end of the lag.
