@@ -99,8 +99,8 @@ TEST_CASE("bag: chunks give the same messages in every compression") {
   std::string damaged = bz2(records);
   damaged[damaged.size() / 2] ^= 0x10;
   const LogData data = read(kHead + bag_chunk("bz2", damaged, records.size()) + records);
-  CHECK(data.fixes.size() >= kFixes);  // the records behind the chunk
-  // bzip2 finds damage at the end of a block, when its bytes have been looked at already.
+  // bzip2 finds damage at the end of a block: nothing of it is used but the records behind the chunk.
+  check_same(data, plain);
   REQUIRE(data.corrupt > 0);
   CHECK(data.corrupt_examples.back() == at(kHead.size(), "chunk: its compressed content is damaged"));
 #endif

@@ -62,9 +62,10 @@ using OnDriveEnd = std::function<void(const DriveRecord& record, std::size_t end
 
 /// Runs every drive that is due as `PROGRAM run DRIVE -o FOLDER OPTIONS`, each in its own process, with
 /// at most memory_bytes / at_once of data. One that needs more is run again at the end, alone, with all of
-/// it. One that reaches the time limit is killed and has failed. A drive is run in a folder of the worker, and its results are moved to their place when they are
-/// complete; then its record is written, which ends it. A work that is killed therefore leaves whole
-/// results only, and the next one begins with the drives that have no record.
+/// it. One that reaches the time limit is killed and has failed. A drive is run in a folder of the
+/// worker, and its results are moved to their place when they are complete; then its record is written,
+/// which ends it. A work that is killed therefore leaves whole results only, and the next one begins with
+/// the drives that have no record.
 /// @param stop ends the work: what runs is killed, what has ended is kept
 /// @throws OutputError if results cannot be written
 WorkReport work(const WorkSettings& settings, const std::atomic<bool>& stop, const OnDriveEnd& on_end);

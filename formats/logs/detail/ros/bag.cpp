@@ -7,6 +7,7 @@
 
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
 #include <waymark/formats/logs/detail/ros/chunk_content.hpp>
+#include <waymark/formats/logs/detail/ros/held_messages.hpp>
 #include <waymark/formats/logs/detail/ros/record_level.hpp>
 #include <waymark/formats/logs/detail/ros/ros_log.hpp>
 #include <waymark/formats/logs/detail/ros/wire_cursor.hpp>
@@ -79,11 +80,13 @@ class BagDecoder final : public RosLogDecoder {
   void take_connection(const BagHeader& header, std::string_view data);
   void begin_chunk(const BagHeader& header);
   void fail_chunk(const char* error);
+  void give_held();
 
   std::string magic_;
   Level outer_;
   std::optional<Level> inner_;  ///< within a chunk
   std::optional<ChunkContent> content_;
+  HeldMessages held_;
   bool chunk_failed_ = false;
 };
 
@@ -141,7 +144,12 @@ RecordStep BagDecoder::begin_message(const BagHeader& header, std::uint64_t leng
   // Seconds in the low half, nanoseconds in the high one.
   const auto log_time = static_cast<std::int64_t>(*time & 0xFFFFFFFFU) * kSecondNanoseconds +
                         static_cast<std::int64_t>(*time >> 32U);
-  take_message(*channel, log_time, data, place());
+  if (!inner_) {
+    take_message(*channel, log_time, data, place());
+  } else {
+    held_.add({*channel, log_time, std::string(data)});
+    if (held_.full()) give_held();
+  }
   return {RecordStep::Then::skip, 0};
 }
 
@@ -169,6 +177,7 @@ void BagDecoder::begin_chunk(const BagHeader& header) {
 void BagDecoder::fail_chunk(const char* error) {
   if (chunk_failed_) return;
   chunk_failed_ = true;
+  (void)held_.take();
   corrupt_record(place(), std::string("chunk: ") + error);
 }
 
@@ -184,8 +193,14 @@ void BagDecoder::end_content(Level& /*level*/) {
     else if (inner_->within())
       corrupt_record(place(), "chunk: its last record is cut");
   }
+  give_held();
   inner_.reset();
   content_.reset();
+}
+
+void BagDecoder::give_held() {
+  for (const HeldMessage& message : held_.take())
+    take_message(message.channel, message.log_time, message.bytes, place());
 }
 
 void BagDecoder::end() {
@@ -193,6 +208,7 @@ void BagDecoder::end() {
     if (!magic_.empty()) corrupt_record(0, "it does not begin as a bag of version 2.0");
   } else if (outer_.within()) {
     if (content_ && !chunk_failed_) (void)content_->flush();
+    give_held();
     corrupt_record(place(), "the file ends within this record; what came before is used");
   }
 }

@@ -1,4 +1,4 @@
-/// Messages of a chunk that wait until its checksum is known to be right.
+/// Messages of a chunk that wait until its checksum or its compression is known to be right.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct HeldMessage {
   std::string bytes;
 };
 
-/// Holds at most 8 MiB, several times the chunk of a usual recorder. What is more is given before the checksum.
+/// Holds at most 8 MiB, several times the chunk of a usual recorder. What is more is given before that.
 class HeldMessages {
  public:
   void add(HeldMessage message) {
