@@ -100,7 +100,8 @@ TEST_CASE("bag: chunks give the same messages in every compression") {
   damaged[damaged.size() / 2] ^= 0x10;
   const LogData data = read(kHead + bag_chunk("bz2", damaged, records.size()) + records);
   // bzip2 finds damage at the end of a block: nothing of it is used but the records behind the chunk.
-  check_same(data, plain);
+  REQUIRE(data.fixes.size() == kFixes);
+  for (std::size_t i = 0; i < kFixes; ++i) CHECK(data.fixes[i].stamp == plain.fixes[i].stamp);
   REQUIRE(data.corrupt > 0);
   CHECK(data.corrupt_examples.back() == at(kHead.size(), "chunk: its compressed content is damaged"));
 #endif
