@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -127,6 +128,19 @@ TEST_CASE("all rows of an epoch count, and the same row twice is a duplicate", "
   const Said said = listen(raw_description(drive), arrivals, settings);
   CHECK(said.counts.taken.at("gnss_raw") == rows);
   CHECK(said.counts.refused.at("gnss_raw: duplicate") == 1);
+}
+
+TEST_CASE("a satellite that is no satellite is refused, and the drive goes on", "[live]") {
+  const LiveDrive drive = live_drive("mixed", 60);
+  Arrivals arrivals = raw_arrivals(drive, 1);
+  auto bad = std::find_if(arrivals.begin() + 500, arrivals.end(),
+                          [](const Sample& s) { return std::holds_alternative<SensorReading>(s); });
+  constexpr std::size_t kX = 4;
+  for (std::size_t axis = 0; axis < 3; ++axis) std::get<SensorReading>(*bad).values[kX + axis] = 1000;
+  const Said said = listen(raw_description(drive), arrivals);
+  CHECK(said.counts.refused == std::map<std::string, std::size_t>{{"gnss_raw: impossible", 1}});
+  CHECK(said.count("impossible") == 1);
+  CHECK(said.state == State::tracking);
 }
 
 TEST_CASE("without a receiver and without sensors there is nothing to fuse", "[live]") {

@@ -203,7 +203,6 @@ void Estimator::use_pending() {
     } else if (const auto* fix = std::get_if<GeodeticFix>(&sample)) {
       use(*fix);
     } else {
-      counts_.taken[source_of(sample)] += 1;
       use(std::get<SensorReading>(sample));
     }
   }
@@ -470,6 +469,11 @@ void Estimator::note_place_at(Stamp stamp) {
 }
 
 void Estimator::use(const SensorReading& reading) {
+  if (const std::string error = rough_.error_of(reading); !error.empty()) {
+    refuse(reading, "impossible", error);
+    return;
+  }
+  counts_.taken[source_of(reading)] += 1;
   rough_.take(reading);
   if (!window_) {
     readings_.push_back(reading);

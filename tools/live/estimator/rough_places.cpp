@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <waymark/core/base/error.hpp>
+
 namespace waymark::live {
 namespace {
 
@@ -19,8 +21,8 @@ SensorTable rows_before(Stamp moment, SensorTable& table) {
 
 }  // namespace
 
-RoughPlaces::RoughPlaces(const drive::DriveDescription& description, const TypeRegistry& registry) {
-  if (!description.gnss.empty()) return;
+RoughPlaces::RoughPlaces(const drive::DriveDescription& description, const TypeRegistry& registry)
+    : has_receiver_(!description.gnss.empty()) {
   for (std::size_t i = 0; i < description.sensors.size(); ++i) {
     const drive::SensorConfig& config = description.sensors[i];
     if (!config.log) continue;
@@ -30,7 +32,20 @@ RoughPlaces::RoughPlaces(const drive::DriveDescription& description, const TypeR
   }
 }
 
+std::string RoughPlaces::error_of(const SensorReading& reading) const {
+  for (const Sensor& sensor : sensors_) {
+    if (sensor.index != reading.sensor) continue;
+    try {
+      (void)sensor.model->rough_positions({{reading.stamp}, reading.values, sensor.waiting.columns});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+  return "";
+}
+
 void RoughPlaces::take(const SensorReading& reading) {
+  if (!any()) return;
   for (Sensor& sensor : sensors_) {
     if (sensor.index != reading.sensor) continue;
     sensor.waiting.stamps.push_back(reading.stamp);

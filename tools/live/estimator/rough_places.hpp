@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <waymark/core/registry/registry.hpp>
@@ -13,14 +14,16 @@ namespace waymark::live {
 
 class RoughPlaces {
  public:
-  /// Drives with a receiver have none. @param registry must outlive the object
+  /// Drives with a receiver need none. @param registry must outlive the object
   RoughPlaces(const drive::DriveDescription& description, const TypeRegistry& registry);
 
   /// Tells whether there is a sensor that may place the vehicle.
-  [[nodiscard]] bool any() const { return !sensors_.empty(); }
+  [[nodiscard]] bool any() const { return !has_receiver_ && !sensors_.empty(); }
+  /// Returns why a reading cannot be, by its sensor; empty if it may be. A graph must not meet it.
+  [[nodiscard]] std::string error_of(const SensorReading& reading) const;
   void take(const SensorReading& reading);
   /// Returns the positions by readings before a moment (SensorModel::rough_positions), in order of time.
-  /// Each reading counts once. @throws InputError for impossible readings
+  /// Each reading counts once.
   [[nodiscard]] std::vector<RoughPosition> before(Stamp moment);
 
  private:
@@ -30,6 +33,7 @@ class RoughPlaces {
     SensorTable waiting{};
   };
 
+  bool has_receiver_;
   std::vector<Sensor> sensors_;
 };
 
