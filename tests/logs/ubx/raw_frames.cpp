@@ -1,5 +1,6 @@
 #include "logs/ubx/raw_frames.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -17,9 +18,10 @@ namespace {
 using Bits = std::string;
 
 Bits bits(std::int64_t value, std::size_t width) {
+  constexpr std::size_t kSign = 63;  // a wider number repeats it
   Bits text;
   for (std::size_t i = width; i-- > 0;)
-    text += (static_cast<std::uint64_t>(value) >> i & 1U) != 0 ? '1' : '0';
+    text += (static_cast<std::uint64_t>(value) >> std::min(i, kSign) & 1U) != 0 ? '1' : '0';
   return text;
 }
 
