@@ -6,10 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
-#include <waymark/formats/logs/detail/ros/chunk_content.hpp>
-#include <waymark/formats/logs/detail/ros/held_messages.hpp>
-#include <waymark/formats/logs/detail/ros/record_level.hpp>
-#include <waymark/formats/logs/detail/ros/ros_log.hpp>
+#include <waymark/formats/logs/detail/ros/chunked_log.hpp>
 #include <waymark/formats/logs/detail/ros/wire_cursor.hpp>
 #include <waymark/formats/logs/detail/ros/wire_text.hpp>
 
@@ -49,45 +46,27 @@ struct BagHeader {
   std::string_view bytes_;
 };
 
-class BagDecoder final : public RosLogDecoder {
+class BagDecoder final : public ChunkedLogDecoder<BagDecoder> {
  public:
-  using Level = RecordLevel<BagDecoder>;
-
   BagDecoder(const std::string& path, const LogRequest& request)
-      : RosLogDecoder(path, request, "a ROS 1 bag"), outer_(*this, kBagLength) {}
+      : ChunkedLogDecoder(path, request, "a ROS 1 bag", kBagMagic, kBagLength) {}
 
   void take(std::string_view piece) override {
-    if (magic_.size() < kBagMagic.size()) {
-      const std::size_t part = std::min(kBagMagic.size() - magic_.size(), piece.size());
-      magic_ += piece.substr(0, part);
-      piece.remove_prefix(part);
-    }
-    if (magic_ == kBagMagic) outer_.take(piece);
+    (void)take_magic(piece);
+    take_records(piece);
   }
 
   [[nodiscard]] RecordStep begin(Level& level, std::string_view collected);
-  void take_content(Level& level, std::string_view bytes);
-  void end_content(Level& level);
   void passed(Level& /*level*/, std::string_view /*bytes*/) {}
 
  private:
   void end() override;
-  [[nodiscard]] std::uint64_t place() const { return kBagMagic.size() + outer_.place(); }
   [[nodiscard]] RecordStep begin_data(bool inside, const BagHeader& header, std::uint64_t length,
                                       std::string_view data, std::size_t before);
   [[nodiscard]] RecordStep begin_message(const BagHeader& header, std::uint64_t length, std::string_view data,
                                          std::size_t before);
   void take_connection(const BagHeader& header, std::string_view data);
   void begin_chunk(const BagHeader& header);
-  void fail_chunk(const char* error);
-  void give_held();
-
-  std::string magic_;
-  Level outer_;
-  std::optional<Level> inner_;  ///< within a chunk
-  std::optional<ChunkContent> content_;
-  HeldMessages held_;
-  bool chunk_failed_ = false;
 };
 
 RecordStep BagDecoder::begin(Level& level, std::string_view collected) {
@@ -101,7 +80,7 @@ RecordStep BagDecoder::begin(Level& level, std::string_view collected) {
   if (collected.size() < before) return {RecordStep::Then::collect, before};
   const BagHeader header(from.take(header_length));
   const std::uint64_t length = from.get<std::uint32_t>();
-  return begin_data(&level != &outer_, header, length, from.rest(), before);
+  return begin_data(!is_outer(level), header, length, from.rest(), before);
 }
 
 /// @param data as far as they are collected @param before size of what stands before the data
@@ -144,12 +123,7 @@ RecordStep BagDecoder::begin_message(const BagHeader& header, std::uint64_t leng
   // Seconds in the low half, nanoseconds in the high one.
   const auto log_time = static_cast<std::int64_t>(*time & 0xFFFFFFFFU) * kSecondNanoseconds +
                         static_cast<std::int64_t>(*time >> 32U);
-  if (!inner_) {
-    take_message(*channel, log_time, data, place());
-  } else {
-    held_.add({*channel, log_time, std::string(data)});
-    if (held_.full()) give_held();
-  }
+  take_or_hold(*channel, log_time, data);
   return {RecordStep::Then::skip, 0};
 }
 
@@ -167,48 +141,16 @@ void BagDecoder::take_connection(const BagHeader& header, std::string_view data)
 
 void BagDecoder::begin_chunk(const BagHeader& header) {
   const auto size = header.number<std::uint32_t>("size");
-  inner_.emplace(*this, kBagLength);
-  content_.emplace(size.value_or(0), [this](std::string_view bytes) { inner_->take(bytes); });
-  chunk_failed_ = false;
-  const char* error = size ? content_->open(header.field("compression")) : "its header has no size";
+  ChunkContent& content = begin_content(size.value_or(0), 0);
+  const char* error = size ? content.open(header.field("compression")) : "its header has no size";
   if (error != nullptr) fail_chunk(error);
 }
 
-void BagDecoder::fail_chunk(const char* error) {
-  if (chunk_failed_) return;
-  chunk_failed_ = true;
-  (void)held_.take();
-  corrupt_record(place(), std::string("chunk: ") + error);
-}
-
-void BagDecoder::take_content(Level& /*level*/, std::string_view bytes) {
-  if (chunk_failed_) return;
-  if (const char* error = content_->take(bytes)) fail_chunk(error);
-}
-
-void BagDecoder::end_content(Level& /*level*/) {
-  if (!chunk_failed_) {
-    if (const char* error = content_->finish(0))
-      fail_chunk(error);
-    else if (inner_->within())
-      corrupt_record(place(), "chunk: its last record is cut");
-  }
-  give_held();
-  inner_.reset();
-  content_.reset();
-}
-
-void BagDecoder::give_held() {
-  for (const HeldMessage& message : held_.take())
-    take_message(message.channel, message.log_time, message.bytes, place());
-}
-
 void BagDecoder::end() {
-  if (magic_ != kBagMagic) {
-    if (!magic_.empty()) corrupt_record(0, "it does not begin as a bag of version 2.0");
-  } else if (outer_.within()) {
-    if (content_ && !chunk_failed_) (void)content_->flush();
-    give_held();
+  if (!has_magic()) {
+    if (!is_empty()) corrupt_record(0, "it does not begin as a bag of version 2.0");
+  } else if (is_cut()) {
+    give_cut_chunk();
     corrupt_record(place(), "the file ends within this record; what came before is used");
   }
 }

@@ -8,10 +8,7 @@
 #include <zlib.h>
 
 #include <waymark/formats/logs/detail/common/record_fields.hpp>
-#include <waymark/formats/logs/detail/ros/chunk_content.hpp>
-#include <waymark/formats/logs/detail/ros/held_messages.hpp>
-#include <waymark/formats/logs/detail/ros/record_level.hpp>
-#include <waymark/formats/logs/detail/ros/ros_log.hpp>
+#include <waymark/formats/logs/detail/ros/chunked_log.hpp>
 #include <waymark/formats/logs/detail/ros/wire_cursor.hpp>
 #include <waymark/formats/logs/detail/ros/wire_text.hpp>
 
@@ -28,29 +25,19 @@ constexpr std::size_t kMcapChunkHead = 8 + 8 + 8 + 4 + 4;
 constexpr std::uint64_t kMcapNames = 4096;
 constexpr std::size_t kMcapMostSchemas = 4096;
 
-class McapDecoder final : public RosLogDecoder {
+class McapDecoder final : public ChunkedLogDecoder<McapDecoder> {
  public:
-  using Level = RecordLevel<McapDecoder>;
-
   McapDecoder(const std::string& path, const LogRequest& request)
-      : RosLogDecoder(path, request, "an MCAP file"), outer_(*this, kMcapRecordHead) {}
+      : ChunkedLogDecoder(path, request, "an MCAP file", kMcapMagic, kMcapRecordHead) {}
 
   void take(std::string_view piece) override {
-    if (magic_.size() < kMcapMagic.size()) {
-      const std::size_t part = std::min(kMcapMagic.size() - magic_.size(), piece.size());
-      magic_ += piece.substr(0, part);
-      add_to_crc(piece.substr(0, part));
-      piece.remove_prefix(part);
-    }
-    if (magic_ != kMcapMagic) return;
-    outer_.take(piece);
+    add_to_crc(take_magic(piece));
+    take_records(piece);
   }
 
   [[nodiscard]] RecordStep begin(Level& level, std::string_view collected);
-  void take_content(Level& level, std::string_view bytes);
-  void end_content(Level& level);
   void passed(Level& level, std::string_view bytes) {
-    if (&level == &outer_) add_to_crc(bytes);
+    if (is_outer(level)) add_to_crc(bytes);
   }
 
  private:
@@ -59,25 +46,14 @@ class McapDecoder final : public RosLogDecoder {
     crc_ = static_cast<std::uint32_t>(
         ::crc32_z(crc_, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
   }
-  [[nodiscard]] std::uint64_t place() const { return kMcapMagic.size() + outer_.place(); }
   [[nodiscard]] RecordStep begin_names(McapOpcode opcode, std::uint64_t length, std::string_view collected);
   [[nodiscard]] RecordStep begin_message(std::uint64_t length, std::string_view collected);
   [[nodiscard]] RecordStep begin_chunk(std::uint64_t length, std::string_view collected);
   void take_names(McapOpcode opcode, WireCursor from);
-  void give_held();
-  void fail_chunk(const char* error);
 
-  std::string magic_;
-  Level outer_;
   std::uint32_t crc_ = 0;  ///< of all records before the current one, and the magic
   bool footer_ = false;
   std::map<std::uint16_t, std::string> schemas_;
-
-  std::optional<Level> inner_;  ///< within a chunk
-  std::optional<ChunkContent> content_;
-  std::uint32_t chunk_crc_ = 0;
-  bool chunk_failed_ = false;
-  HeldMessages held_;
 };
 
 constexpr RecordStep mcap_skipped(std::uint64_t size) {
@@ -93,7 +69,7 @@ RecordStep McapDecoder::begin(Level& level, std::string_view collected) {
   WireCursor from(collected);
   const McapOpcode opcode{from.get<std::uint8_t>()};
   const auto length = from.get<std::uint64_t>();
-  const bool inside = &level != &outer_;
+  const bool inside = !is_outer(level);
   // No file is as long as this, and places beyond it would overflow.
   constexpr std::uint64_t kMostBytes = 1ULL << 62U;
   if (opcode == McapOpcode{} || length > kMostBytes) {
@@ -169,12 +145,7 @@ RecordStep McapDecoder::begin_message(std::uint64_t length, std::string_view col
     if (length > kMcapMessageHead) return mcap_collect(length);
   }
   const std::string_view bytes = collected.substr(kMcapRecordHead + kMcapMessageHead);
-  if (!inner_) {
-    take_message(channel, log_time, bytes, place());
-  } else {
-    held_.add({channel, log_time, std::string(bytes)});
-    if (held_.full()) give_held();
-  }
+  take_or_hold(channel, log_time, bytes);
   return mcap_skipped(0);
 }
 
@@ -187,7 +158,7 @@ RecordStep McapDecoder::begin_chunk(std::uint64_t length, std::string_view colle
   }
   WireCursor from(collected.substr(kMcapRecordHead + 16));
   const auto size = from.get<std::uint64_t>();
-  chunk_crc_ = from.get<std::uint32_t>();
+  const auto crc = from.get<std::uint32_t>();
   const std::uint64_t name = from.get<std::uint32_t>();
   const std::uint64_t head = kMcapChunkHead + name + 8;
   if (name > kMcapLongestName || length < head) {
@@ -196,54 +167,20 @@ RecordStep McapDecoder::begin_chunk(std::uint64_t length, std::string_view colle
   }
   if (collected.size() < kMcapRecordHead + head) return mcap_collect(head);
   const std::string_view compression = from.take(name);
-  inner_.emplace(*this, kMcapRecordHead);
-  content_.emplace(size, [this](std::string_view bytes) { inner_->take(bytes); });
-  chunk_failed_ = false;
-  const char* error = content_->open(compression);
+  const char* error = begin_content(size, crc).open(compression);
   if (error == nullptr && from.get<std::uint64_t>() != length - head)
     error = "its length is not that of its records";
   if (error != nullptr) fail_chunk(error);
   return {RecordStep::Then::stream, length - head};
 }
 
-void McapDecoder::fail_chunk(const char* error) {
-  if (chunk_failed_) return;
-  chunk_failed_ = true;
-  (void)held_.take();
-  corrupt_record(place(), std::string("chunk: ") + error);
-}
-
-void McapDecoder::take_content(Level& /*level*/, std::string_view bytes) {
-  if (chunk_failed_) return;
-  if (const char* error = content_->take(bytes)) fail_chunk(error);
-}
-
-void McapDecoder::end_content(Level& /*level*/) {
-  if (!chunk_failed_) {
-    if (const char* error = content_->finish(chunk_crc_))
-      fail_chunk(error);
-    else if (inner_->within())
-      corrupt_record(place(), "chunk: its last record is cut");
-  }
-  give_held();
-  inner_.reset();
-  content_.reset();
-}
-
-void McapDecoder::give_held() {
-  for (const HeldMessage& message : held_.take())
-    take_message(message.channel, message.log_time, message.bytes, place());
-}
-
 void McapDecoder::end() {
-  if (magic_ != kMcapMagic) {
-    if (!magic_.empty()) corrupt_record(0, "it does not begin as an MCAP file of version 0");
+  if (!has_magic()) {
+    if (!is_empty()) corrupt_record(0, "it does not begin as an MCAP file of version 0");
     return;
   }
-  if (outer_.within()) {
-    // Only a chunk that is cut is still open here. Its records before the cut are as good as any.
-    if (content_ && !chunk_failed_) (void)content_->flush();
-    give_held();
+  if (is_cut()) {
+    give_cut_chunk();
     corrupt_record(place(), "the file ends within this record; what came before is used");
   } else if (!footer_) {
     note("the file was not closed (it has no footer): it is read up to its end");
