@@ -19,6 +19,14 @@ struct MessageParts {
   /// of the ephemeris that was given last, so that each is given once
   std::optional<std::uint64_t> issue;
 
+  /// Adds the ephemeris of the parts, unless it was given already or cannot be. @param key tells it from the next one
+  /// @returns whether it was added
+  [[nodiscard]] bool give(const KeplerOrbit& orbit, std::uint64_t key, Ephemerides& ephemerides) {
+    if (issue == key || !is_possible(orbit)) return false;
+    issue = key;
+    ephemerides.add(orbit);
+    return true;
+  }
   [[nodiscard]] bool is_complete() const {
     for (const auto& part : parts)
       if (!part) return false;

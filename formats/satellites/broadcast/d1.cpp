@@ -69,10 +69,7 @@ bool D1Messages::take(int satellite, std::span<const std::uint32_t, 10> words, S
   const KeplerOrbit orbit = d1_orbit(satellite, message, near);
   const std::uint64_t key = static_cast<std::uint64_t>(orbit.toe_sow_s) << 32U |
                             message.parts[0]->whole(42, 6) << 8U | message.parts[0]->whole(287, 5);
-  if (message.issue == key || !is_possible(orbit)) return false;
-  message.issue = key;
-  ephemerides.add(orbit);
-  return true;
+  return message.give(orbit, key, ephemerides);
 }
 
 }  // namespace waymark::formats::satellites

@@ -97,11 +97,8 @@ InavMessages::Found InavMessages::take(int satellite, std::span<const std::uint3
     if (message.parts[i]->whole(6, 10) != issue) return Found::nothing;
   const std::uint64_t key =
       std::uint64_t{message.parts[0]->whole(16, 14)} << 32U | message.parts[4]->whole(67, 6) << 10U | issue;
-  const KeplerOrbit orbit = inav_orbit(satellite, message, near);
-  if (message.issue == key || !is_possible(orbit)) return Found::nothing;
-  message.issue = key;
-  ephemerides.add(orbit);
-  return Found::ephemeris;
+  return message.give(inav_orbit(satellite, message, near), key, ephemerides) ? Found::ephemeris
+                                                                              : Found::nothing;
 }
 
 }  // namespace waymark::formats::satellites

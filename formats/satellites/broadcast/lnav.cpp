@@ -92,11 +92,8 @@ LnavMessages::Found LnavMessages::take(int satellite, std::span<const std::uint3
   // The issue is the same again after hours, and the health changes without a new one.
   const std::uint64_t key =
       std::uint64_t{message.parts[1]->whole(216, 16)} << 32U | clock.whole({64, 6}, {70, 2}) << 8U | issue;
-  const KeplerOrbit orbit = lnav_orbit(satellite, message, near);
-  if (message.issue == key || !is_possible(orbit)) return Found::nothing;
-  message.issue = key;
-  ephemerides.add(orbit);
-  return Found::ephemeris;
+  return message.give(lnav_orbit(satellite, message, near), key, ephemerides) ? Found::ephemeris
+                                                                              : Found::nothing;
 }
 
 }  // namespace waymark::formats::satellites
