@@ -22,6 +22,17 @@ Eigen::Vector3d middle_of(const std::vector<RoughPosition>& positions) {
 
 }  // namespace
 
+Fix rough_fix(const RoughPosition& position, const Projection& projection) {
+  Fix fix;
+  fix.stamp = position.stamp;
+  const GridPoint place = projection.to_grid(geodetic_from_ecef(position.ecef));
+  fix.position = place.position;
+  fix.grid_scale = place.scale;
+  fix.antenna_m = position.antenna_m;
+  fix.covariance = position.sigma_m * position.sigma_m * Eigen::Matrix2d::Identity();
+  return fix;
+}
+
 std::vector<Fix> rough_fixes(const DriveLogs::Log& log, TimeScale scale, const Projection& projection) {
   if (log.rough.empty()) return {};
   std::vector<RoughPosition> positions = log.rough;
@@ -33,14 +44,7 @@ std::vector<Fix> rough_fixes(const DriveLogs::Log& log, TimeScale scale, const P
   for (const RoughPosition& position : positions) {
     if ((position.ecef - middle).norm() > kFarthest_m) continue;
     if (!fixes.empty() && fixes.back().stamp == position.stamp) continue;
-    Fix fix;
-    fix.stamp = position.stamp;
-    const GridPoint place = projection.to_grid(geodetic_from_ecef(position.ecef));
-    fix.position = place.position;
-    fix.grid_scale = place.scale;
-    fix.antenna_m = position.antenna_m;
-    fix.covariance = position.sigma_m * position.sigma_m * Eigen::Matrix2d::Identity();
-    fixes.push_back(fix);
+    fixes.push_back(rough_fix(position, projection));
   }
   return fixes;
 }

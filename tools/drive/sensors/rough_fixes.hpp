@@ -8,6 +8,9 @@
 
 namespace waymark::drive {
 
+/// Returns a rough position as a fix, in the frame.
+[[nodiscard]] Fix rough_fix(const RoughPosition& position, const Projection& projection);
+
 /// Returns the rough positions of a log in the frame, sorted, stamps unique, on the scale of the drive.
 /// Those that are more than 50 km from their median are left out.
 [[nodiscard]] std::vector<Fix> rough_fixes(const DriveLogs::Log& log, TimeScale scale,

@@ -13,6 +13,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/model/surroundings.hpp>
 #include <waymark/tools/drive/nodes/start.hpp>
+#include <waymark/tools/drive/sensors/rough_fixes.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::live {
@@ -309,18 +310,6 @@ Fix Estimator::projected(const GeodeticFix& fix) {
   return place;
 }
 
-Fix Estimator::projected(const RoughPosition& position) {
-  const GeodeticPoint place = drive::geodetic_from_ecef(position.ecef);
-  const GridPoint point = projection_at(place).to_grid(place);
-  Fix fix;
-  fix.stamp = position.stamp;
-  fix.position = point.position;
-  fix.grid_scale = point.scale;
-  fix.antenna_m = position.antenna_m;
-  fix.covariance = position.sigma_m * position.sigma_m * Eigen::Matrix2d::Identity();
-  return fix;
-}
-
 bool Estimator::is_thinned(const GeodeticFix& fix) {
   const double period_s = description_.gnss[static_cast<std::size_t>(fix.source)].period_s;
   if (!(period_s > 0)) return false;
@@ -488,7 +477,7 @@ void Estimator::use_rough_places() {
   if (!rough_.any()) return;
   for (const RoughPosition& position : rough_.before(now_)) {
     if (!frame_ && position.sigma_m > kPlacesFrame_m) continue;
-    const Fix place = projected(position);
+    const Fix place = drive::rough_fix(position, projection_at(drive::geodetic_from_ecef(position.ecef)));
     grid_scale_ = place.grid_scale;
     note_place_at(place.stamp);
     if (!window_) {

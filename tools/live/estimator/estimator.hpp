@@ -107,7 +107,6 @@ class Estimator {
   void use_rough_places();
   [[nodiscard]] const drive::Projection& projection_at(const GeodeticPoint& place);
   [[nodiscard]] Fix projected(const GeodeticFix& fix);
-  [[nodiscard]] Fix projected(const RoughPosition& position);
   [[nodiscard]] bool is_thinned(const GeodeticFix& fix);
   /// Returns why a fix cannot be right; empty if it may be.
   [[nodiscard]] std::string reason_against(const Fix& fix);
