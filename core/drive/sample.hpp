@@ -40,6 +40,9 @@ struct Interval {
   double gap_s = 0;      ///< time between the readings around a bridged interval, all its parts together
   double speed_change_mps = 0;  ///< from beginning to end: speed and yaw rate are linear in between
   double yaw_rate_change_radps = 0;
+  /// Standard deviations of distance and turn as integrals: between readings the rates are not known.
+  double distance_sigma_m = 0;
+  double turn_sigma_rad = 0;
 
   friend bool operator==(const Interval&, const Interval&) = default;
 };

@@ -10,11 +10,21 @@ namespace waymark::plugins::odometry {
 namespace {
 
 /// Variances per second along and across the vehicle, and of its heading.
-Eigen::Vector3d rates(const Interval& interval, const ProcessNoise& noise) {
-  const double speed = std::abs(interval.speed_mps);
+Eigen::Vector3d rates(double speed_mps, const ProcessNoise& noise) {
+  const double speed = std::abs(speed_mps);
   return {noise.longitudinal_per_m * speed + noise.position_per_s,
           noise.lateral_per_m * speed + noise.position_per_s,
           noise.heading_per_m * speed + noise.heading_per_s};
+}
+
+/// What the sensors do, and what is not known of the motion between their readings. Where the yaw rate
+/// changes evenly, the constant twist ends v dw dt^2 / 12 beside the way.
+Eigen::Vector3d rates_between_readings(const Interval& interval, const ProcessNoise& noise) {
+  const double dt = interval.dt_s;
+  const Eigen::Vector3d sigma(interval.distance_sigma_m,
+                              interval.speed_mps * interval.yaw_rate_change_radps * dt * dt / 12,
+                              interval.turn_sigma_rad);
+  return rates(interval.speed_mps, noise) + sigma.cwiseAbs2() / dt;
 }
 
 /// A vehicle accelerates by about 1 m/s^2 for 2 s and turns faster by about 0.15 rad/s^2 for 1 s: white
@@ -24,7 +34,7 @@ Eigen::Vector3d rates_in_gap(const Interval& interval, double factor) {
   constexpr double kAcceleration = 4;            // m^2/s^3
   constexpr double kAngularAcceleration = 0.04;  // rad^2/s^3
   const double bridge = interval.gap_s * interval.gap_s / 12;
-  return factor * rates(interval, {}) +
+  return factor * rates(interval.speed_mps, {}) +
          bridge * Eigen::Vector3d(kAcceleration, kAcceleration, kAngularAcceleration);
 }
 
@@ -32,7 +42,7 @@ Eigen::Vector3d rates_in_gap(const Interval& interval, double factor) {
 
 Eigen::Matrix3d process_covariance(const Interval& interval, const ProcessNoise& noise) {
   const Eigen::Vector3d rate =
-      interval.bridged ? rates_in_gap(interval, noise.gap_factor) : rates(interval, noise);
+      interval.bridged ? rates_in_gap(interval, noise.gap_factor) : rates_between_readings(interval, noise);
   // Gauss-Legendre quadrature with three points. It is exact for straight motion, because the
   // integrand is quadratic in tau. For turns up to 0.2 rad per interval its relative error is 1e-9.
   const double root = std::sqrt(0.6);

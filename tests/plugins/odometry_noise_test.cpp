@@ -66,6 +66,21 @@ TEST_CASE("odometry noise: the covariance of an interval is that of its parts co
 }
 
 TEST_CASE(
+    "odometry noise: what the readings leave open about distance, turn and a bend adds to the covariance") {
+  Interval interval{.speed_mps = 10, .dt_s = 1};
+  const Eigen::Matrix3d known = process_covariance(interval, {});
+  interval.distance_sigma_m = 0.2;
+  interval.turn_sigma_rad = 0.01;
+  const Eigen::Matrix3d open = process_covariance(interval, {}) - known;
+  CHECK(open(0, 0) == Approx(0.04));
+  CHECK(open(2, 2) == Approx(1e-4));
+  CHECK(open(1, 1) == Approx(1e-4 * 100.0 / 3));  // a turn at any time of the interval, 10 m long
+  // The exact end of an even bend, 0.4 rad/s faster at the end, is v dw dt^2 / 12 beside the constant twist.
+  interval = {.speed_mps = 10, .dt_s = 1, .yaw_rate_change_radps = 0.4};
+  CHECK(process_covariance(interval, {})(1, 1) - known(1, 1) == Approx(std::pow(10 * 0.4 / 12, 2)));
+}
+
+TEST_CASE(
     "odometry noise: 1 km straight on at 10 m/s gives 1.1 % drift, nearly all of it through the heading") {
   const Uncertain all = drive(10, 0, std::vector<double>(2500, 0.04));
   CHECK(all.motion.position[0] == Approx(1000));

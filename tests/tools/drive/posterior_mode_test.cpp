@@ -75,6 +75,34 @@ TEST_CASE("posterior mode: a parameter that is pushed over its bound stays there
   CHECK(mode.at[1] == Approx(0.2).margin(0.01));
 }
 
+TEST_CASE("posterior mode: a parameter that is over its bound only until another is held comes back") {
+  // Without bounds the minimum is (1.6, 6). With x = 1 the best y is 6 - 9.5 (1.6 - 1), inside.
+  Eigen::Matrix2d information;
+  information << 1000, -95, -95, 10;
+  const Eigen::Vector2d best(1.6, 6);
+  const PosteriorCost cost{[&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) *gradient = information * (x - best);
+    return 0.5 * (x - best).dot(information * (x - best));
+  }};
+  const PosteriorBounds bounds{Eigen::Vector2d(-4, -4), Eigen::Vector2d(1, 1)};
+  const PosteriorMode mode = find_posterior_mode(cost, {Eigen::Vector2d(0.9, 0), information}, bounds);
+  CHECK(mode.at[0] == 1);
+  CHECK(mode.at[1] == Approx(0.3).margin(0.01));
+}
+
+TEST_CASE("posterior mode: it stays where the gradient ends, though the curvature is not positive there") {
+  // A saddle: the search along y has come to y = 0, where the cost has its maximum in y.
+  const PosteriorCost cost{[](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {
+    if (gradient != nullptr) *gradient = Eigen::Vector2d(4 * x[0], -std::sin(x[1]) + 0.02 * x[1]);
+    return 2 * x[0] * x[0] + std::cos(x[1]) + 0.01 * x[1] * x[1];
+  }};
+  const PosteriorMode mode =
+      find_posterior_mode(cost, {Eigen::Vector2d(0.5, 1e-4), Eigen::Matrix2d::Identity()}, within(4, 2));
+  Eigen::VectorXd gradient(2);
+  CHECK(cost.at(mode.at, &gradient) <= 1.0001);
+  CHECK(gradient.norm() < 0.02);
+}
+
 TEST_CASE("posterior mode: what the cost throws comes out of the search") {
   int calls = 0;
   const PosteriorCost cost{[&](const Eigen::VectorXd& x, Eigen::VectorXd* gradient) {

@@ -1,6 +1,7 @@
 // Nodes in time and dead reckoning: nothing about how a drive was sampled or split may change the motion.
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include <catch2/catch.hpp>
 
@@ -100,6 +101,60 @@ TEST_CASE("timeline: a fix in an interval splits it, and speed and yaw rate are 
   }
   CHECK(timeline.intervals[0].dt_s == Approx(0.03));
   CHECK(timeline.intervals[1].dt_s == Approx(0.07));
+}
+
+TEST_CASE("timeline: what is not known of the motion between slow samples is as large as it says") {
+  // White jerk: the acceleration wanders. Steps of 1 ms stand for the true motion, samples come at 1 Hz.
+  std::mt19937 random(1);
+  std::normal_distribution<double> jerk;
+  constexpr int kSteps = 1000;
+  constexpr int kSamples = 2000;
+  constexpr double kStep_s = 1.0 / kSteps;
+  std::vector<OdometrySample> odometry{sample(0, 15, 1.5)};
+  std::vector<double> distance;
+  double speed = 15;
+  double acceleration = 0;
+  for (int second = 1; second <= kSamples; ++second) {
+    distance.push_back(0);
+    for (int i = 0; i < kSteps; ++i) {
+      distance.back() += kStep_s * (speed + 0.5 * kStep_s * acceleration);
+      speed += kStep_s * acceleration;
+      acceleration += std::sqrt(kStep_s) * jerk(random);
+    }
+    odometry.push_back(sample(second, speed, 0.1 * speed));
+  }
+  TimelineOptions options;
+  options.gap_s = 2;
+  const Timeline timeline = build_timeline(odometry, {}, options);
+  double actual = 0;
+  double told = 0;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    const Interval& interval = timeline.intervals[i];
+    actual += std::pow(distance[i] - interval.speed_mps, 2);
+    told += std::pow(interval.distance_sigma_m, 2);
+    CHECK(interval.turn_sigma_rad == Approx(0.1 * interval.distance_sigma_m));
+  }
+  CHECK(actual / kSamples == Approx(1.0 / 120).epsilon(0.1));
+  CHECK(told / actual == Approx(1).epsilon(0.1));
+}
+
+TEST_CASE("timeline: even motion leaves nothing unknown, and halves know as much as the whole") {
+  std::vector<OdometrySample> odometry;
+  for (int i = 0; i <= 20; ++i) odometry.push_back(sample(0.5 * i, 5 + 0.7 * i, 0.02 * i));
+  for (const Interval& interval : build_timeline(odometry, {}, {.gap_s = 2}).intervals) {
+    CHECK(interval.distance_sigma_m < 1e-12);
+    CHECK(interval.turn_sigma_rad < 1e-12);
+  }
+  odometry[10].speed_mps += 1;
+  const Timeline whole = build_timeline(odometry, {}, {.gap_s = 2});
+  const Timeline split = build_timeline(odometry, std::vector<Fix>{fix_at(5.1)}, {.gap_s = 2});
+  REQUIRE(split.intervals.size() == whole.intervals.size() + 1);
+  CHECK(std::hypot(split.intervals[10].distance_sigma_m, split.intervals[11].distance_sigma_m) ==
+        Approx(whole.intervals[10].distance_sigma_m));
+  // Beside a gap nothing is told, and a single interval has no neighbour that could tell.
+  odometry.erase(odometry.begin() + 11, odometry.begin() + 16);
+  CHECK(build_timeline(odometry, {}, {.gap_s = 2}).intervals[10].distance_sigma_m == 0);
+  CHECK(build_timeline(std::span(odometry).first(2), {}, {.gap_s = 2}).intervals[0].distance_sigma_m == 0);
 }
 
 TEST_CASE("timeline: an epoch nearer than a millisecond shares the odometry's node") {

@@ -37,6 +37,8 @@ void merge(Interval& whole, const Interval& part) {
                                        part.yaw_rate_change_radps);
   whole.speed_mps = (whole.speed_mps * whole.dt_s + part.speed_mps * part.dt_s) / dt;
   whole.yaw_rate_radps = (whole.yaw_rate_radps * whole.dt_s + part.yaw_rate_radps * part.dt_s) / dt;
+  whole.distance_sigma_m = std::hypot(whole.distance_sigma_m, part.distance_sigma_m);
+  whole.turn_sigma_rad = std::hypot(whole.turn_sigma_rad, part.turn_sigma_rad);
   whole.dt_s = dt;
 }
 

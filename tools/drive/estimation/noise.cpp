@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/registry/options.hpp>
@@ -62,13 +63,30 @@ PosteriorCost cost_of(NoiseObjective& objective, NoiseEstimate& noise) {
           [&] { objective.stay(); }};
 }
 
-/// Finds the minimum. Where the curvature of the noise is known, its values are near it.
+/// Returns where to begin once more: where parameters have left their priors far behind, the others lost
+/// their way with them, and begin again at their priors. Empty if none has.
+std::optional<Eigen::VectorXd> second_start(const Eigen::VectorXd& found) {
+  constexpr double kFar = 2.5;
+  if (found.cwiseAbs().maxCoeff() < kFar) return {};
+  return (found.array().abs() < kFar).select(0, found);
+}
+
+/// Finds the minimum. Where the curvature of the noise is known, its values are near it. Otherwise the search
+/// may find two minima (a poor gyro with short or long errors of the fixes); the lower one counts.
 void minimize(NoiseObjective& objective, NoiseEstimate& noise) {
   const PosteriorBounds bounds = bounds_of(noise);
   const PosteriorCost cost = cost_of(objective, noise);
-  PosteriorMode near{coordinates_of(noise).cwiseMax(bounds.low).cwiseMin(bounds.high), noise.curvature};
-  if (noise.curvature.size() == 0) near = search_posterior(cost, near.at, bounds);
-  const PosteriorMode mode = find_posterior_mode(cost, near, bounds);
+  const Eigen::VectorXd start = coordinates_of(noise).cwiseMax(bounds.low).cwiseMin(bounds.high);
+  const auto from = [&](const Eigen::VectorXd& at) {
+    return find_posterior_mode(cost, search_posterior(cost, at, bounds), bounds);
+  };
+  const bool is_near = noise.curvature.size() > 0;
+  PosteriorMode mode = is_near ? find_posterior_mode(cost, {start, noise.curvature}, bounds) : from(start);
+  if (const auto again = is_near ? std::nullopt : second_start(mode.at)) {
+    const double least = cost.at(mode.at, nullptr);
+    const PosteriorMode other = from(*again);
+    if (cost.at(other.at, nullptr) < least) mode = other;
+  }
   place_at(mode.at, noise);
   noise.curvature = mode.curvature;
 }

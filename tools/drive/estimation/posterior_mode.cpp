@@ -4,7 +4,6 @@
 #include <cmath>
 #include <exception>
 #include <limits>
-#include <vector>
 
 #include <nlopt.h>
 
@@ -124,41 +123,34 @@ MatrixXd curvature_at(const Quadratic& fit, const PosteriorCost& cost, const Vec
   return 0.5 * (curvature + curvature.transpose());
 }
 
-/// Returns the inverse, with the curvature made positive where rounding or a saddle has left none.
-MatrixXd covariance_of(const MatrixXd& curvature) {
+/// Returns the curvature made positive where rounding or a saddle has left none, to a power.
+MatrixXd positive(const MatrixXd& curvature, double power) {
   const auto [values, vectors] = symmetric_eigen(curvature);
-  return vectors * values.cwiseAbs().cwiseMax(kLeastCurvature).cwiseInverse().asDiagonal() *
+  return vectors * values.cwiseAbs().cwiseMax(kLeastCurvature).array().pow(power).matrix().asDiagonal() *
          vectors.transpose();
 }
 
-/// Returns the least point of the quadratic between the bounds. Coordinates that it pushes over a
-/// bound are held there one after the other.
+MatrixXd covariance_of(const MatrixXd& curvature) {
+  return positive(curvature, -1);
+}
+
+/// Returns the least point of the quadratic between the bounds: one coordinate after the other (Gauss-Seidel
+/// with projection), which goes to the minimum where the curvature is positive.
 VectorXd least_point(const Quadratic& fit, const PosteriorBounds& bounds) {
-  const auto& [low, high] = bounds;
-  std::vector<Index> free;
-  for (Index i = 0; i < fit.centre.size(); ++i) free.push_back(i);
+  constexpr int kMostSweeps = 10000;
+  constexpr double kStill = 1e-9;  // in deviations of the priors
   VectorXd at = fit.centre;
-  while (!free.empty()) {
-    const VectorXd away = at - fit.centre;
-    const VectorXd slope = fit.gradient + fit.curvature * away;
-    const VectorXd step = -covariance_of(fit.curvature(free, free)) * slope(free);
-    Index worst = -1;
+  VectorXd slope = fit.gradient;
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     double most = 0;
-    for (Index k = 0; k < step.size(); ++k) {
-      const Index i = free[static_cast<std::size_t>(k)];
-      const double over = std::max(at[i] + step[k] - high[i], low[i] - at[i] - step[k]);
-      if (over > most) {
-        most = over;
-        worst = k;
-      }
+    for (Index i = 0; i < at.size(); ++i) {
+      const double to = std::clamp(at[i] - slope[i] / fit.curvature(i, i), bounds.low[i], bounds.high[i]);
+      const double step = to - at[i];
+      at[i] = to;
+      slope += step * fit.curvature.col(i);
+      most = std::max(most, std::abs(step));
     }
-    if (worst < 0) {
-      for (Index k = 0; k < step.size(); ++k) at[free[static_cast<std::size_t>(k)]] += step[k];
-      break;
-    }
-    const Index held = free[static_cast<std::size_t>(worst)];
-    at[held] = at[held] + step[worst] > high[held] ? high[held] : low[held];
-    free.erase(free.begin() + worst);
+    if (most < kStill) break;
   }
   return at;
 }
@@ -207,7 +199,8 @@ PosteriorMode find_posterior_mode(const PosteriorCost& cost, const PosteriorMode
   if (cost.stay) cost.stay();
   bool is_curvature_of_centre = false;
   const auto find_curvature = [&] {
-    fit.curvature = curvature_at(fit, cost, fitting_steps(fit.curvature.diagonal()), bounds);
+    // Where it is not positive, a quadratic promises nothing, or everything, far away.
+    fit.curvature = positive(curvature_at(fit, cost, fitting_steps(fit.curvature.diagonal()), bounds), 1);
     is_curvature_of_centre = true;
   };
   double gain_before = std::numeric_limits<double>::max();

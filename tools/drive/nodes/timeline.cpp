@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
+#include <optional>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -64,14 +66,53 @@ void append_node(Timeline& timeline, Stamp stamp, const Interval& whole, Stamp l
   part.yaw_rate_radps += (middle - 0.5) * whole.yaw_rate_change_radps;
   part.speed_change_mps *= share;
   part.yaw_rate_change_radps *= share;
+  part.distance_sigma_m *= std::sqrt(share);
+  part.turn_sigma_rad *= std::sqrt(share);
   timeline.stamps.push_back(stamp);
   timeline.intervals.push_back(part);
+}
+
+/// How much speed and yaw rate bend at a sample.
+struct Bend {
+  double speed_mps3 = 0;
+  double yaw_rate_radps3 = 0;
+};
+
+/// Returns the second derivatives at the middle one of three samples; empty beside a gap.
+std::optional<Bend> bend_at(const OdometrySample& before, const OdometrySample& at,
+                            const OdometrySample& after, double gap_s) {
+  const double first_s = seconds_between(before.stamp, at.stamp);
+  const double second_s = seconds_between(at.stamp, after.stamp);
+  if (before.assumed || at.assumed || after.assumed || std::max(first_s, second_s) > gap_s) return {};
+  const auto bend = [&](double from, double middle, double to) {
+    return 2 * ((to - middle) / second_s - (middle - from) / first_s) / (first_s + second_s);
+  };
+  return Bend{bend(before.speed_mps, at.speed_mps, after.speed_mps),
+              bend(before.yaw_rate_radps, at.yaw_rate_radps, after.yaw_rate_radps)};
+}
+
+void tell_integration_error(std::initializer_list<std::optional<Bend>> ends, double grid_scale,
+                            Interval& interval) {
+  constexpr double kShare = 1.0 / 80;
+  double speed = 0;
+  double yaw_rate = 0;
+  double count = 0;
+  for (const std::optional<Bend>& end : ends) {
+    if (!end) continue;
+    speed += end->speed_mps3 * end->speed_mps3;
+    yaw_rate += end->yaw_rate_radps3 * end->yaw_rate_radps3;
+    ++count;
+  }
+  if (count == 0) return;
+  const double factor = std::sqrt(kShare / count) * interval.dt_s * interval.dt_s * interval.dt_s;
+  interval.distance_sigma_m = factor * grid_scale * std::sqrt(speed);
+  interval.turn_sigma_rad = factor * std::sqrt(yaw_rate);
 }
 
 }  // namespace
 
 Interval motion_between(const OdometrySample& left, const OdometrySample& right, double grid_scale,
-                        double gap_s) {
+                        double gap_s, const OdometrySample* before, const OdometrySample* after) {
   Interval twist;
   twist.dt_s = seconds_between(left.stamp, right.stamp);
   twist.speed_mps = 0.5 * (left.speed_mps + right.speed_mps) * grid_scale;
@@ -79,7 +120,14 @@ Interval motion_between(const OdometrySample& left, const OdometrySample& right,
   twist.speed_change_mps = (right.speed_mps - left.speed_mps) * grid_scale;
   twist.yaw_rate_change_radps = right.yaw_rate_radps - left.yaw_rate_radps;
   twist.bridged = left.assumed || right.assumed || twist.dt_s > gap_s;
-  if (twist.bridged) twist.gap_s = twist.dt_s;
+  if (twist.bridged) {
+    twist.gap_s = twist.dt_s;
+    return twist;
+  }
+  const auto none = std::optional<Bend>();
+  tell_integration_error({before != nullptr ? bend_at(*before, left, right, gap_s) : none,
+                          after != nullptr ? bend_at(left, right, *after, gap_s) : none},
+                         grid_scale, twist);
   return twist;
 }
 
@@ -115,8 +163,9 @@ Timeline build_timeline(std::span<const OdometrySample> odometry, std::span<cons
     const OdometrySample& right = odometry[k];
     check_gap(odometry.front().stamp, left.stamp, seconds_between(left.stamp, right.stamp), options);
     const Stamp middle{left.stamp.nanoseconds + (right.stamp.nanoseconds - left.stamp.nanoseconds) / 2};
-    const Interval twist =
-        motion_between(left, right, grid_scale_at(middle, fixes, scale_hint), options.gap_s);
+    const Interval twist = motion_between(left, right, grid_scale_at(middle, fixes, scale_hint),
+                                          options.gap_s, k > 1 ? &odometry[k - 2] : nullptr,
+                                          k + 1 < odometry.size() ? &odometry[k + 1] : nullptr);
     // Epochs strictly inside, not near either end, split the interval.
     while (fix < fixes.size() && fixes[fix].stamp < right.stamp &&
            !shares_node(fixes[fix].stamp, right.stamp, options.snap_s)) {

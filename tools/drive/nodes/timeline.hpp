@@ -47,10 +47,17 @@ struct Timeline {
                                       const TimelineOptions& options);
 
 /// Returns the motion between two consecutive odometry samples: the mean of their twists.
+///
+/// How far the integrals may be off is told by how much speed and yaw rate bend at the samples. If
+/// acceleration and angular acceleration wander (white jerk of density s), a second difference over dt has
+/// the variance 2/3 s dt^3, and the error of the trapezoid s dt^5 / 120. So the variance of an integral
+/// is (second difference times dt)^2 / 80, the mean of those at both ends.
 /// @param grid_scale grid metres per metre on the ground
 /// @param gap_s a longer interval is bridged
+/// @param before, after the samples around them; null: there is none, or it is not known yet
 [[nodiscard]] Interval motion_between(const OdometrySample& left, const OdometrySample& right,
-                                      double grid_scale, double gap_s);
+                                      double grid_scale, double gap_s, const OdometrySample* before = nullptr,
+                                      const OdometrySample* after = nullptr);
 
 /// Returns the grid scale at a moment: that of the fix nearest in time; 1 without fixes.
 /// @param hint 0 for the first of several moments that ascend; it moves forward with the calls

@@ -265,11 +265,16 @@ void Estimator::advance(std::size_t source, const OdometrySample& sample) {
   if (window_) publish(false);
 }
 
+Interval Estimator::motion_to(const OdometrySample& sample, std::size_t place) const {
+  return drive::motion_between(odometry_[place - 1].sample, sample, grid_scale_, description_.timeline.gap_s,
+                               place > 1 ? &odometry_[place - 2].sample : nullptr);
+}
+
 // Between two samples the motion is the mean of both. In a gap fixes have nodes of their own, because the
 // nearest sample may be seconds away.
 void Estimator::add_motion(std::size_t source, const OdometrySample& sample) {
   const Reckoned& last = odometry_.back();
-  Interval whole = drive::motion_between(last.sample, sample, grid_scale_, description_.timeline.gap_s);
+  Interval whole = motion_to(sample, odometry_.size());
   if (last.giver != source && !whole.bridged)
     whole = odometries_.between(source, last.sample.stamp, sample.stamp, grid_scale_);
   const Eigen::Vector3d way = way_of(whole, standstill_mps_);
@@ -548,8 +553,7 @@ PlacedStretch Estimator::stretch() const {
   drive::Timeline timeline;
   for (const Reckoned& node : odometry_) timeline.stamps.push_back(node.sample.stamp);
   for (std::size_t i = 1; i < odometry_.size(); ++i) {
-    timeline.intervals.push_back(drive::motion_between(odometry_[i - 1].sample, odometry_[i].sample,
-                                                       grid_scale_, description_.timeline.gap_s));
+    timeline.intervals.push_back(motion_to(odometry_[i].sample, i));
     stretch.givers.push_back(timeline.intervals.back().bridged ? 0 : odometry_[i].giver);
   }
   const std::vector<Fix> fixes(fixes_.begin(), fixes_.end());
@@ -650,8 +654,7 @@ void Estimator::align_warm() {
     placed.poses.push_back(compose(to_pose(pose), to_pose(way)).vector());
   }
   for (std::size_t i = 1; i < odometry_.size(); ++i) {
-    placed.intervals.push_back(drive::motion_between(odometry_[i - 1].sample, odometry_[i].sample,
-                                                     grid_scale_, description_.timeline.gap_s));
+    placed.intervals.push_back(motion_to(odometry_[i].sample, i));
     placed.givers.push_back(placed.intervals.back().bridged ? 0 : odometry_[i].giver);
   }
   placed.fixes = measured_fixes();

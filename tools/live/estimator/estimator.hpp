@@ -100,6 +100,8 @@ class Estimator {
   void hear(std::size_t source, const OdometrySample& sample);
   void advance(std::size_t source, const OdometrySample& sample);
   void add_motion(std::size_t source, const OdometrySample& sample);
+  /// Returns the motion to a sample from the one before its place in odometry_; those after it are not used.
+  [[nodiscard]] Interval motion_to(const OdometrySample& sample, std::size_t place) const;
   [[nodiscard]] bool has_several_odometries() const { return description_.odometry.size() > 1; }
   void use_pending();
   void use(const GeodeticFix& fix);
