@@ -138,8 +138,8 @@ TEST_CASE("colours: on a terminal, headings bold, what is better green and what 
   const std::string folder = fresh_folder();
   const RunResult result = run_on({.columns = 120}, run_drive(folder));
   CHECK(contains(result.err, "\033[1magainst truth\033[0m"));
-  CHECK(contains(result.err, "\033[32m60.80\033[0m"));  // Max: 19.410 m raw, 7.608 m fused
-  CHECK(contains(result.err, "\033[31m-5.67\033[0m"));  // median: 3.025 m raw, 3.196 m fused
+  CHECK(contains(result.err, "\033[32m60.81\033[0m"));  // Max: 19.410 m raw, 7.607 m fused
+  CHECK(contains(result.err, "\033[31m-5.67\033[0m"));  // median: 3.025 m raw, 3.197 m fused
   CHECK(contains(result.err, "\033[2mnote:\033[0m "));
 }
 
