@@ -389,6 +389,31 @@ TEST_CASE("inspection: odometry in two logs becomes parts, columns that say the 
   CHECK(config.odometry.front().assembly.gyro_axis == "y");
 }
 
+TEST_CASE(
+    "inspection: a second complete odometry is a source in comments, which is parsed once they are taken away") {
+  const std::string first = odometry_csv("t_unix_s,v_kmh,yawrate_degps", 2.86);
+  const std::string second = odometry_csv("t_unix_s,v_kmh,yawrate_degps", 2.9, "visual odometry.csv");
+  const std::vector<LogInspection> logs = inspect_all({gnss_csv(), first, second});
+  const DriveProposal proposal = propose_drive(logs);
+  CHECK(proposal.odometry == std::vector<std::size_t>{1});
+  CHECK(proposal.further == std::vector<std::size_t>{2});
+  CHECK(proposal.unused.empty());
+  const std::string path = (waymark_test::scratch_dir() / "several.yaml").string();
+  const std::string yaml = drive_yaml(proposal, logs, path);
+  INFO(yaml);
+  CHECK(parse_drive_file(yaml, path).description.odometry.size() == 1);
+  std::string uncommented = yaml;
+  const std::size_t begin = uncommented.find("# sources:");
+  REQUIRE(begin != std::string::npos);
+  for (std::size_t at = begin; at != std::string::npos; at = uncommented.find("\n# ", at))
+    uncommented.erase(uncommented[at] == '\n' ? at + 1 : at, 2);
+  const DriveDescription config = parse_drive_file(uncommented, path).description;
+  REQUIRE(config.odometry.size() == 2);
+  CHECK(config.odometry[1].name == "visual_odometry");
+  CHECK(config.odometry[1].logs.front().file == second);
+  CHECK(config.odometry[1].logs.front().request.columns.at("yaw_rate").unit == "deg/s");
+}
+
 TEST_CASE("inspection: a drive.yaml without odometry or positions parses and says what to fill in") {
   const std::vector<LogInspection> logs = inspect_all({gnss_csv()});
   const DriveProposal proposal = propose_drive(logs);

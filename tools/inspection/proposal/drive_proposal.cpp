@@ -209,21 +209,39 @@ class Deciding {
     return of_receivers ? receiver && sign_of_truth(logs_[i]).empty() : !used_[i] && !has_positions(logs_[i]);
   }
 
+  /// Returns the channels of a complete odometry; empty if the log has none.
+  [[nodiscard]] Names whole_channels(std::size_t i) const {
+    const std::set<std::string> channels = channels_of(logs_[i]);
+    Names taken = speed_channels(channels);
+    const Names yaw = yaw_rate_channels(channels);
+    if (taken.empty() || yaw.empty()) return {};
+    for (const std::string& name : yaw)
+      if (std::find(taken.begin(), taken.end(), name) == taken.end()) taken.push_back(name);
+    return taken;
+  }
+
   bool take_whole(bool of_receivers) {
     if (proposal_.has_speed || proposal_.has_yaw_rate) return false;
     for (std::size_t i = 0; i < logs_.size(); ++i) {
       if (!may_give(i, of_receivers)) continue;
-      const std::set<std::string> channels = channels_of(logs_[i]);
-      Names taken = speed_channels(channels);
-      const Names yaw = yaw_rate_channels(channels);
-      if (taken.empty() || yaw.empty()) continue;
-      for (const std::string& name : yaw)
-        if (std::find(taken.begin(), taken.end(), name) == taken.end()) taken.push_back(name);
+      const Names taken = whole_channels(i);
+      if (taken.empty()) continue;
+      if (proposal_.has_speed) {
+        add_further(i, taken);
+        continue;
+      }
       add_odometry(i, taken);
       proposal_.has_speed = proposal_.has_yaw_rate = true;
-      return true;
     }
-    return false;
+    return proposal_.has_speed;
+  }
+
+  void add_further(std::size_t i, const Names& taken) {
+    proposal_.further.push_back(i);
+    proposal_.further_channels.push_back(taken);
+    used_[i] = true;
+    say(i, "a further odometry: " + joined(taken) +
+               "; below 'sources' in comments, to be used if it is another sensor and no copy");
   }
 
   void take_parts(bool of_receivers) {

@@ -17,6 +17,9 @@ struct DriveProposal {
   bool in_parts = false;
   /// the odometry has channels from which the quantity can be computed
   bool has_speed = false, has_yaw_rate = false;
+  /// complete logs of odometry beside that one, each with its quantities: other sensors, or copies
+  std::vector<std::size_t> further;
+  std::vector<std::vector<std::string>> further_channels;
   std::vector<std::size_t> gnss;
   std::vector<std::size_t>
       velocity;  ///< speed and course of a receiver without positions; it belongs to the first gnss
@@ -28,8 +31,8 @@ struct DriveProposal {
 /// Chooses the role of each log. A table with positions is the truth if it has a counter-clockwise
 /// heading or a name such as "truth", but never if it has the only positions. Other positions
 /// belong to a receiver. Speed and yaw rate in one log are odometry; each alone is a part of
-/// odometry. A channel that an earlier log gives is not used again. The log of a receiver gives
-/// odometry only if no other log does.
+/// odometry. A channel that an earlier log gives is not used again, but a log that has both
+/// is proposed as a further source. The log of a receiver gives odometry only if no other log does.
 [[nodiscard]] DriveProposal propose_drive(const std::vector<LogInspection>& logs);
 
 /// Returns a drive.yaml that can be parsed as it is. `# CHECK` marks values that were guessed.

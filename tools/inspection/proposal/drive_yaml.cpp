@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -38,6 +41,16 @@ std::string scalar(const std::string& text) {
       quoted += c;
   }
   return quoted + '"';
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
 }
 
 /// Keeps a comment on one line.
@@ -83,6 +96,7 @@ class Writer {
     line("# frame: {utm_zone: 32N}", "default: the zone of the first fix");
     odometry();
     gnss();
+    further_odometries();
     truth();
     for (const std::size_t i : proposal_.unused)
       line(fmt::format("# not used: {}", one_line(relative(logs_[i].path))));
@@ -259,6 +273,30 @@ class Writer {
                                                     proposal_.has_speed ? "yaw rate" : "speed"));
     vehicle();
     line("  # speed_delay: 0", "`waymark sync` estimates it, and yaw_rate_delay");
+  }
+
+  /// Writes further sources in comments: only the user knows whether a log is another sensor or a copy.
+  void further_odometries() {
+    if (proposal_.further.empty()) return;
+    const std::string before = std::exchange(text_, {});
+    line("sources:", "CHECK: uncomment what is another sensor, and no copy of the odometry above");
+    for (std::size_t i = 0; i < proposal_.further.size(); ++i) {
+      const LogInspection& log = logs_[proposal_.further[i]];
+      line("  " + source_name(log.path) + ":");
+      line("    kind: odometry");
+      log_lines(log, StreamKind::odometry, "    ", false, proposal_.further_channels[i]);
+    }
+    std::string commented;
+    for (const std::string_view part : lines_of(text_)) commented.append("# ").append(part).append("\n");
+    text_ = before + "\n" + commented;
+  }
+
+  /// Returns the name of a file as the name of a source.
+  static std::string source_name(const std::string& path) {
+    std::string name = fs::path(path).stem().string();
+    for (char& c : name)
+      if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') c = '_';
+    return name;
   }
 
   /// Writes the vehicle parameters that odometry from parts needs.
