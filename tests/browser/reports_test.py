@@ -59,16 +59,19 @@ class Pages(PageCase):
     def test_every_figure_has_a_title_a_description_and_files(self):
         for page in self.pages:
             self.browser.get(page.as_uri())
-            ids = [e.get_attribute("id") for e in self.browser.find_elements(By.CSS_SELECTOR, "[id]")]
+            ids, figures = self.browser.execute_script("""
+                const tell = (svg, part) => svg.querySelector(part).textContent;
+                return [[...document.querySelectorAll("[id]")].map(e => e.id),
+                        [...document.querySelectorAll("figure.figure")].map(figure => {
+                            const svg = figure.querySelector("svg");
+                            return [figure.id, svg.getAttribute("role"), tell(svg, "title"), tell(svg, "desc")];
+                        })];""")
             self.assertEqual(len(ids), len(set(ids)), page)
-            for figure in self.browser.find_elements(By.CSS_SELECTOR, "figure.figure"):
-                svg = figure.find_element(By.TAG_NAME, "svg")
-                self.assertIn(svg.get_attribute("role"), ("group", "img"))  # with or without a legend of buttons
-                for part in ("title", "desc"):
-                    text = self.browser.execute_script(
-                        "return arguments[0].querySelector(arguments[1]).textContent", svg, part)
-                    self.assertGreaterEqual(len(text), 3, figure.get_attribute("id"))
-                stem = page.parent / "figures" / f"{page.stem}-{figure.get_attribute('id')}"
+            for name, role, title, description in figures:
+                self.assertIn(role, ("group", "img"))  # with or without a legend of buttons
+                self.assertGreaterEqual(len(title), 3, name)
+                self.assertGreaterEqual(len(description), 3, name)
+                stem = page.parent / "figures" / f"{page.stem}-{name}"
                 for ending in (".svg", ".csv"):
                     self.assertTrue(stem.with_name(stem.name + ending).is_file(), stem)
 
@@ -295,8 +298,7 @@ class Pages(PageCase):
         view = self.view("trajectory")
         inside = [p for p in piece if view[0] < p[0] < view[1] and view[2] < p[1] < view[3]]
         self.assertGreater(len(inside), 20)
-        for point in inside:
-            x, y = self.place("trajectory", *point)
+        for point, (x, y) in zip(inside, self.places("trajectory", inside)):
             self.assertTrue(any(abs(x - dx) < 0.5 and abs(y - dy) < 0.5 for dx, dy in drawn), point)
 
     def test_print_leaves_out_what_paper_cannot_do(self):
