@@ -5,6 +5,8 @@
 
 #include <waymark/core/base/detail/processor.hpp>
 
+#if defined(__x86_64__)
+
 namespace {
 
 bool limited_to(const char* instructions) {
@@ -26,3 +28,5 @@ bool has_wide_vectors() {
 }
 
 }  // namespace waymark
+
+#endif

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the bill of materials (SBOM, SPDX 2.3 as JSON) of binaries that were built on this Debian machine.
 
-sbom.py VERSION BINARY... >waymark.spdx.json
+sbom.py VERSION OUTPUT BINARY...
 
 Packages, with the versions of this machine: the libraries that the binaries load, and those of
 tools/setup/packages.txt that building needs. If a library of that list is not loaded, its headers are compiled into the
@@ -75,9 +75,9 @@ def described(package):
 
 
 def main():
-    if len(sys.argv) < 3:
-        sys.exit("usage: sbom.py VERSION BINARY...")
-    version, binaries = sys.argv[1], sys.argv[2:]
+    if len(sys.argv) < 4:
+        sys.exit("usage: sbom.py VERSION OUTPUT BINARY...")
+    version, target, binaries = sys.argv[1], sys.argv[2], sys.argv[3:]
     loaded = {package["name"]: package for binary in binaries for package in loaded_packages(binary)}
     building = {package["name"]: package for package in packages_for_building()}
     if not loaded:
@@ -113,8 +113,7 @@ def main():
     # The same content has the same name.
     content = uuid.uuid5(uuid.NAMESPACE_URL, json.dumps(document, sort_keys=True))
     document["documentNamespace"] = f"https://spdx.org/spdxdocs/waymark-{version}-{content}"
-    json.dump(document, sys.stdout, indent=1)
-    print()
+    pathlib.Path(target).write_text(json.dumps(document, indent=1) + "\n")
 
 
 if __name__ == "__main__":
