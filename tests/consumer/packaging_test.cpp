@@ -26,6 +26,7 @@ std::string build(std::vector<std::string> flags) {
                                         "int main(int count, char** names) {\n"
                                         "  char text[64];\n"
                                         "  std::snprintf(text, sizeof text, \"%s\", names[count - 1]);\n"
+                                        "  std::fprintf(stderr, \"%s: %d\", text, count);\n"
                                         "  return text[0];\n"
                                         "}\n");
   flags.insert(flags.end(), {"-O2", source, "-o", folder + "print"});
