@@ -3,9 +3,9 @@
 
 mutations.py PROGRAM SOURCE_FOLDER [DRIVES [SEED]]   DRIVES: damaged drives, half of them in the drive.yaml
 
-Ends with 1 if a run ended by a signal, with a code of no bad input, or after 20 s; or if an error names no file.
+Ends with 1 if a run ended by a signal, with a code of no bad input, or after 20 s of computing; or if an error names no file.
 """
-import collections, os, pathlib, random, re, subprocess, sys, tempfile
+import collections, os, pathlib, random, re, resource, subprocess, sys, tempfile
 
 program, source = map(os.path.abspath, sys.argv[1:3])
 count = int(sys.argv[3]) if len(sys.argv) > 3 else 200
@@ -116,12 +116,9 @@ def main():
             files["drive.yaml"] = drive
             for name, text in files.items():
                 (folder / name).write_bytes(text.encode("utf-8"))
-            try:
-                done = subprocess.run([program, "run", "drive.yaml", "-m", "g1", "-o", "out", "-q"], cwd=folder, capture_output=True,
-                                      timeout=20)
-                code, error = done.returncode, done.stderr.decode(errors="replace")
-            except subprocess.TimeoutExpired:
-                code, error = "hang", ""
+            done = subprocess.run([program, "run", "drive.yaml", "-m", "g1", "-o", "out", "-q"], cwd=folder, capture_output=True,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (20, 20)), timeout=300)
+            code, error = done.returncode, done.stderr.decode(errors="replace")
             ends[code] += 1
             name = f"{number}: {what}, {kind}: "
             if code not in (0, 2, 3, 4, 5) or "internal error" in error:
