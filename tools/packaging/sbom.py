@@ -10,47 +10,40 @@ binaries (STATIC_LINK). SOURCE_DATE_EPOCH gives the time; without it, it is now.
 import datetime, json, os, pathlib, subprocess, sys, time, uuid
 
 
-def output(*command):
-    return subprocess.run(command, check=True, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"}).stdout
+def asked(*command):
+    """The lines of an answer. A question for several things is answered for those that there are."""
+    return subprocess.run(command, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"}).stdout.splitlines()
 
 
-def debian_package(name):
-    """Name, version, source and architecture of an installed package; None if it is not installed."""
+def debian_packages(names):
+    """Name, version, source and architecture of those that are installed."""
     form = "${db:Status-Status}\t${Package}\t${Version}\t${source:Package}\t${Architecture}\n"
-    asked = subprocess.run(["dpkg-query", "-W", "-f", form, name], capture_output=True, text=True)
-    for line in asked.stdout.splitlines():
+    for line in asked("dpkg-query", "-W", "-f", form, *names) if names else []:
         status, *fields = line.split("\t")
         if status == "installed":
-            return dict(zip(("name", "version", "source", "architecture"), fields))
-    return None
+            yield dict(zip(("name", "version", "source", "architecture"), fields))
 
 
-def owner(library):
-    """The package that a shared library belongs to; None for one of this build. Debian lists it under /lib or /usr/lib."""
-    for path in (library, "/usr" + library, library.removeprefix("/usr")):
-        asked = subprocess.run(["dpkg-query", "-S", path], capture_output=True, text=True)
-        if asked.returncode == 0:
-            return debian_package(asked.stdout.split(": ")[0].split(",")[0])
-    return None
+def loaded_libraries(binary):
+    """The files of the libraries that a binary names itself."""
+    needed = {line.split("[")[1].split("]")[0] for line in asked("readelf", "-W", "-d", binary) if "(NEEDED)" in line}
+    places = dict(line.split(" => ") for line in asked("ldd", binary) if " => " in line)
+    return [place.split(" (")[0] for name, place in places.items() if name.strip() in needed and place.startswith("/")]
 
 
-def loaded_packages(binary):
-    """The packages of the libraries that a binary names itself."""
-    needed = {line.split("[")[1].split("]")[0] for line in output("readelf", "-W", "-d", binary).splitlines() if "(NEEDED)" in line}
-    places = dict(line.split(" => ") for line in output("ldd", binary).splitlines() if " => " in line)
-    for name, place in places.items():
-        if name.strip() in needed and place.startswith("/"):
-            if package := owner(place.split(" (")[0]):
-                yield package
+def loaded_packages(binaries):
+    """The packages of the libraries that binaries load; not those of this build."""
+    files = {file for binary in binaries for file in loaded_libraries(binary)}
+    # Debian lists a library under /lib or /usr/lib, wherever the linker finds it.
+    spellings = sorted(files | {"/usr" + file for file in files} | {file.removeprefix("/usr") for file in files})
+    owners = {line.split(": ")[0].split(",")[0] for line in asked("dpkg-query", "-S", *spellings)} if files else set()
+    return debian_packages(sorted(owner for owner in owners if not owner.startswith("diversion ")))
 
 
 def packages_for_building():
     listed = pathlib.Path(__file__).resolve().parent.parent / "setup/packages.txt"
-    for line in listed.read_text().splitlines():
-        words = line.split()
-        if words and words[0] == "build":
-            if package := debian_package(words[1]):  # optional ones may be absent
-                yield package
+    words = [line.split() for line in listed.read_text().splitlines()]
+    return debian_packages([of[1] for of in words if of and of[0] == "build"])  # optional ones may be absent
 
 
 def described(package):
@@ -78,7 +71,7 @@ def main():
     if len(sys.argv) < 4:
         sys.exit("usage: sbom.py VERSION OUTPUT BINARY...")
     version, target, binaries = sys.argv[1], sys.argv[2], sys.argv[3:]
-    loaded = {package["name"]: package for binary in binaries for package in loaded_packages(binary)}
+    loaded = {package["name"]: package for package in loaded_packages(binaries)}
     building = {package["name"]: package for package in packages_for_building()}
     if not loaded:
         sys.exit("sbom.py: no library of a Debian package is loaded by " + ", ".join(binaries))
