@@ -91,7 +91,7 @@ def place_of(message):
     """How exactly an error says where: a line, a key of the drive.yaml, a file, or nothing."""
     if re.search(r"\.(yaml|csv):\d+", message):
         return "line"
-    if re.search(r"\.yaml: [a-z_]+(\.[a-z_]+)*\b", message) or re.search(r"\.csv: (column|'|no column)", message):
+    if re.search(r"\.yaml: [a-z_]+(\.[a-z_]+)*:", message) or re.search(r"\.csv: (column|'|no column)", message):
         return "key"
     return "file" if re.search(r"\.(yaml|csv)\b", message) else "nothing"
 
