@@ -18,6 +18,10 @@ cmake --preset package -B "$work" >/dev/null
 cmake --build "$work"
 cpack --config "$work/CPackConfig.cmake" -B "$work/cpack"
 mv "$work"/cpack/*.deb "$out"
+for package in "$out"/*.deb; do
+  dpkg-deb -x "$package" "$work/installed"
+done
+tools/packaging/check_hardening.sh "$work/installed"
 if command -v lintian >/dev/null; then
   lintian --fail-on error --tag-display-limit 0 "$out"/*.deb 2> >(grep -v "running with root privileges" >&2)
 else

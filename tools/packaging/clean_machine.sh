@@ -43,6 +43,7 @@ chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin DEB
   rm -r /usr/lib/*/waymark  # what the tutorial has installed
   apt-get install -y -qq ./*.deb >/dev/null
   waymark info >/dev/null
+  grep -q SPDX-2.3 /usr/share/doc/waymark/waymark.spdx.json
   python3 -c "import waymark; print(waymark.fuse(\"/usr/share/doc/waymark-doc/examples/berlin_potsdamer_platz/drive.yaml\"))"
   apt-get purge -y -qq "*waymark*" >/dev/null
   left=$(find /usr /etc /var/lib/dpkg/info -name "*waymark*")

@@ -121,10 +121,24 @@ TEST_CASE("drive: logs that cannot be used are bad input with a reason") {
       "columns present: time, velocity, yaw_rate");
 }
 
-TEST_CASE("drive: a missing log is named") {
+TEST_CASE("drive: a missing log is named, and where the drive.yaml names it") {
   const std::string folder = fresh_folder();
   write_drive(folder, {.more_yaml = "folder: elsewhere\n"});
   check_refused(folder, "elsewhere/odometry.csv: cannot read: No such file or directory");
+  write_text(folder + "drive.yaml", "odometry: {file: odometry.csv}\ngnss:\n  file: gone.csv\n");
+  check_refused(folder, "drive.yaml:3:3: " + folder + "gone.csv: cannot read: No such file or directory");
+}
+
+TEST_CASE("drive: an error of the whole drive is told with the drive.yaml") {
+  const std::string folder = fresh_folder();
+  write_drive(folder);
+  // one fix leaves the heading and with it a motion of the whole drive undetermined
+  const std::string fixes = read_text(folder + "gnss.csv");
+  const auto second_line_end = fixes.find('\n', fixes.find('\n') + 1) + 1;
+  write_text(folder + "gnss.csv", fixes.substr(0, second_line_end));
+  const RunResult result = run({"run", folder + "drive.yaml", "-m", "g1", "--out", folder + "out"});
+  CHECK(result.code == 3);
+  CHECK(contains(result.err, "waymark: error: " + folder + "drive.yaml: vertex "));
 }
 
 TEST_CASE("drive: a drive whose fixes are all rejected is bad input") {

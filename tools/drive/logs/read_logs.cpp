@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
@@ -14,6 +17,13 @@
 
 namespace waymark::drive {
 namespace {
+
+/// A file that cannot be read is wrong where it is named.
+void require_readable(const std::string& place, const std::string& file) {
+  if (::access(file.c_str(), R_OK) != 0)
+    throw InputError(
+        fmt::format("{}{}: cannot read: {}", place, file, std::generic_category().message(errno)));
+}
 
 /// Not every format supports sensors, and the reader of a plugin may be wrong.
 void check_readings(const SensorTable& readings, const LogConfig& log) {
@@ -58,6 +68,7 @@ void read_companions(const LogConfig& log, LogRequest& request, std::vector<Inpu
   }
   for (const auto& [key, paths] : companions) {
     for (const std::string& path : paths) {
+      require_readable(log.place, path);
       CompanionFile file = formats::read_companion(path);
       if (log.companions.contains(key))
         inputs.push_back({path, "fnv1a64:" + formats::fnv1a64_hex(file.text)});
@@ -96,6 +107,7 @@ DriveLogs::Log take_memory_log(const LogConfig& log) {
 
 DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, const LogWatch& watch) {
   if (log.samples) return take_memory_log(log);
+  require_readable(log.place, log.file);
   ChosenReader chosen = choose_reader(log, registry);
   std::vector<InputFile> inputs{{log.file, {}}};
   inputs.insert(inputs.end(), chosen.inputs.begin(), chosen.inputs.end());

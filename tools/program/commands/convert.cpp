@@ -66,7 +66,8 @@ ExitCode convert_drive(const ConvertOptions& options, const drive::DriveFile& fi
   require_not_read(options.output, loaded.files);
   drive::Fusion fusion(loaded.drive, registry, stop_if_interrupted);
   std::set<std::string> told;
-  const drive::ModeledDrive modeled = model_loaded(fusion, loaded.settings.front(), registry, console, told);
+  const drive::ModeledDrive modeled = at_drive(
+      loaded, [&] { return model_loaded(fusion, loaded.settings.front(), registry, console, told); });
   const formats::GraphDocument& document = modeled.document;
   stop_if_interrupted();
   announce_output(options.format, document, options.input, console);

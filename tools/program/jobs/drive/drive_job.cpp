@@ -43,6 +43,7 @@ LoadedDrive load_drive_for(const drive::DriveFile& file, const DriveChoice& choi
   tell(loaded.drive.report, console);
   for (const drive::InputFile& input : loaded.drive.inputs) loaded.files.push_back(input.path);
   loaded.files.push_back(description.path);
+  loaded.path = description.path;
   console.end_progress();
   return loaded;
 }

@@ -181,7 +181,9 @@ std::vector<formats::VertexCovariance> minimise_and_judge(const RunOfDrive& run,
   formats::GraphDocument& document = modeled.document;
   files.write_graph();
   console.detail("optimising " + modeling);
-  result.result = optimize_document(document, settings.minimization, run.registry, console, {}, modeling);
+  result.result = at_drive(run.loaded, [&] {
+    return optimize_document(document, settings.minimization, run.registry, console, {}, modeling);
+  });
   const Summary& summary = result.result.summary;
   record_optimization(result.result, document);
   files.write_fused_graph();  // the minimum is saved before anything else can fail
@@ -234,7 +236,8 @@ std::vector<drive::ModeledDrive> model_all(const RunOfDrive& run) {
   std::set<std::string> told;
   std::vector<drive::ModeledDrive> models;
   for (const drive::FusionSettings& settings : run.loaded.settings) {
-    models.push_back(model_loaded(fusion, settings, run.registry, run.console, told));
+    models.push_back(at_drive(
+        run.loaded, [&] { return model_loaded(fusion, settings, run.registry, run.console, told); }));
     run.console.stop_if_cancelled();
   }
   return models;
