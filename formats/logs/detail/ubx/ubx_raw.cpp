@@ -20,7 +20,6 @@ constexpr double kWeek_s = 604'800;
 /// The satellite of a signal of the first frequency. Receivers before F9 write 0 for every signal.
 std::optional<SatelliteName> satellite_of(int system, int number, int signal) {
   constexpr int kSbasFrom = 100;
-  constexpr int kLastGlonass = 32;  // 255: not known yet
   if (number == 0) return std::nullopt;
   switch (system) {
     case kUbxGps:

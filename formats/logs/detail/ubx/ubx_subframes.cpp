@@ -9,6 +9,8 @@ namespace waymark::formats {
 namespace {
 
 constexpr std::size_t kHead = 8;
+/// freqId of channel 0 of GLONASS.
+constexpr int kChannelZero = 7;
 /// A minute of subframes, if the receiver tells its week late.
 constexpr std::size_t kMostUndated = 512;
 
@@ -18,7 +20,7 @@ std::string UbxSubframes::take(const UbxPayload& payload, satellites::Ephemeride
   const std::size_t count = payload.size() < kHead ? 0 : payload.u8(4);
   if (payload.size() < kHead + 4 * count || count == 0)
     return fmt::format("RXM-SFRBX: {} bytes cannot hold {} words", payload.size(), count);
-  Subframe subframe{payload.u8(0), payload.u8(1), payload.u8(2), {}};
+  Subframe subframe{payload.u8(0), payload.u8(1), payload.u8(2), payload.u8(3) - kChannelZero, {}};
   for (std::size_t i = 0; i < count; ++i) subframe.words.push_back(payload.u32(kHead + 4 * i));
   if (moment_) {
     decode(subframe, ephemerides);
@@ -34,6 +36,7 @@ void UbxSubframes::set_moment(Stamp moment, satellites::Ephemerides& ephemerides
 }
 
 void UbxSubframes::decode(const Subframe& subframe, satellites::Ephemerides& ephemerides) {
+  using satellites::GlonassStrings;
   using satellites::InavMessages;
   using satellites::LnavMessages;
   const std::span words(subframe.words);
@@ -47,8 +50,16 @@ void UbxSubframes::decode(const Subframe& subframe, satellites::Ephemerides& eph
     const auto found = galileo_.take(subframe.satellite, words.first<8>(), *moment_, ephemerides);
     ephemerides_ += found == InavMessages::Found::ephemeris;
     wrong_parity_ += found == InavMessages::Found::wrong_checksum;
-  } else if (subframe.system == kUbxBeidou && subframe.signal == 0 && words.size() == 10) {
-    ephemerides_ += beidou_.take(subframe.satellite, words.first<10>(), *moment_, ephemerides);
+  } else if (subframe.system == kUbxBeidou && subframe.signal <= 1 && words.size() == 10) {
+    ephemerides_ +=
+        satellites::is_geostationary_beidou(subframe.satellite)
+            ? beidou_geostationary_.take(subframe.satellite, words.first<10>(), *moment_, ephemerides)
+            : beidou_.take(subframe.satellite, words.first<10>(), *moment_, ephemerides);
+  } else if (subframe.system == kUbxGlonass && subframe.satellite <= kLastGlonass && words.size() >= 4) {
+    const auto found =
+        glonass_.take(subframe.satellite, subframe.channel, words.first<4>(), *moment_, ephemerides);
+    ephemerides_ += found == GlonassStrings::Found::ephemeris;
+    wrong_parity_ += found == GlonassStrings::Found::wrong_checksum;
   }
 }
 

@@ -17,6 +17,9 @@ namespace waymark::formats {
 /// Numbers of systems in UBX.
 enum UbxSystem : int { kUbxGps = 0, kUbxSbas = 1, kUbxGalileo = 2, kUbxBeidou = 3, kUbxGlonass = 6 };
 
+/// Greater numbers of GLONASS are not known yet.
+inline constexpr int kLastGlonass = 32;
+
 /// Decodes the words of satellites. The week is that of the measurements: words before the first of these wait.
 class UbxSubframes {
  public:
@@ -32,7 +35,7 @@ class UbxSubframes {
  private:
   /// The words of a satellite in one message.
   struct Subframe {
-    int system = 0, satellite = 0, signal = 0;
+    int system = 0, satellite = 0, signal = 0, channel = 0;
     std::vector<std::uint32_t> words;
   };
   void decode(const Subframe& subframe, satellites::Ephemerides& ephemerides);
@@ -42,6 +45,8 @@ class UbxSubframes {
   satellites::LnavMessages gps_;
   satellites::InavMessages galileo_;
   satellites::D1Messages beidou_;
+  satellites::D2Messages beidou_geostationary_;
+  satellites::GlonassStrings glonass_;
   std::size_t ephemerides_ = 0, wrong_parity_ = 0;
 };
 
