@@ -727,6 +727,7 @@ void Estimator::publish(bool corrected) {
   pose.corrected = corrected;
   pose.resets = counts_.resets;
   pose.fix_age_s = last_fix_ ? seconds_between(*last_fix_, now_) : 0;
+  pose.height_m = window_->newest_height();
   pose.radius95_m = radius95_m();
   reports_.emplace_back(pose);
 }
