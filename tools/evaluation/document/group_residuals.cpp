@@ -14,7 +14,7 @@
 namespace waymark::evaluation {
 namespace {
 
-constexpr double kHalf = 0.5;
+constexpr double kHalfWeight = 0.5;
 constexpr double kToDegrees = 180 / std::numbers::pi;
 
 /// Measures single edges of a graph.
@@ -39,7 +39,7 @@ class Edges {
              .rms = std::abs(measured.residual),
              .whitened_rms = std::sqrt(std::max(0.0, squared) / static_cast<double>(error_.size())),
              .robust = loss != nullptr ? 1U : 0U,
-             .down_weighted = measured.weight < kHalf ? 1U : 0U,
+             .down_weighted = measured.weight < kHalfWeight ? 1U : 0U,
              .weight = measured.weight});
     return measured;
   }
@@ -122,12 +122,12 @@ GroupedResiduals residuals_of(Edges& edges, const GroupsOfSource& source) {
 }
 
 /// Returns the mean of two means, or of two rms by their squares.
-double joined(double a, std::size_t n, double b, std::size_t m) {
+double mean_of_both(double a, std::size_t n, double b, std::size_t m) {
   if (n == 0 || m == 0) return n == 0 ? b : a;
   return (static_cast<double>(n) * a + static_cast<double>(m) * b) / static_cast<double>(n + m);
 }
 
-std::string percent(double share) {
+std::string share_text(double share) {
   return std::isnan(share) ? "no loss" : text::decimals(100 * share, 1);
 }
 
@@ -147,7 +147,7 @@ void add_cells(const QuantityResiduals& of, text::Row& row) {
   row.push_back(fmt::to_string(of.measurements));
   row.push_back(text::readable(of.rms));
   row.push_back(text::readable(of.whitened_rms));
-  row.push_back(of.measurements == 0 ? "-" : percent(of.share_down_weighted()));
+  row.push_back(of.measurements == 0 ? "-" : share_text(of.share_down_weighted()));
 }
 
 nlohmann::ordered_json to_json(const GroupResiduals& group, const GroupedResiduals& residuals) {
@@ -181,10 +181,10 @@ double QuantityResiduals::share_down_weighted() const {
 void QuantityResiduals::add(const QuantityResiduals& other) {
   const std::size_t n = measurements;
   const std::size_t m = other.measurements;
-  rms = std::sqrt(joined(rms * rms, n, other.rms * other.rms, m));
+  rms = std::sqrt(mean_of_both(rms * rms, n, other.rms * other.rms, m));
   whitened_rms =
-      std::sqrt(joined(whitened_rms * whitened_rms, n, other.whitened_rms * other.whitened_rms, m));
-  weight = joined(weight, n, other.weight, m);
+      std::sqrt(mean_of_both(whitened_rms * whitened_rms, n, other.whitened_rms * other.whitened_rms, m));
+  weight = mean_of_both(weight, n, other.weight, m);
   measurements += m;
   robust += other.robust;
   down_weighted += other.down_weighted;

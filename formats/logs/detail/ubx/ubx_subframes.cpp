@@ -8,23 +8,23 @@
 namespace waymark::formats {
 namespace {
 
-constexpr std::size_t kHead = 8;
+constexpr std::size_t kSubframeHead = 8;
 /// freqId of channel 0 of GLONASS.
 constexpr int kChannelZero = 7;
 /// A minute of subframes, if the receiver tells its week late.
-constexpr std::size_t kMostUndated = 512;
+constexpr std::size_t kMostUndatedSubframes = 512;
 
 }  // namespace
 
 std::string UbxSubframes::take(const UbxPayload& payload, satellites::Ephemerides& ephemerides) {
-  const std::size_t count = payload.size() < kHead ? 0 : payload.u8(4);
-  if (payload.size() < kHead + 4 * count || count == 0)
+  const std::size_t count = payload.size() < kSubframeHead ? 0 : payload.u8(4);
+  if (payload.size() < kSubframeHead + 4 * count || count == 0)
     return fmt::format("RXM-SFRBX: {} bytes cannot hold {} words", payload.size(), count);
   Subframe subframe{payload.u8(0), payload.u8(1), payload.u8(2), payload.u8(3) - kChannelZero, {}};
-  for (std::size_t i = 0; i < count; ++i) subframe.words.push_back(payload.u32(kHead + 4 * i));
+  for (std::size_t i = 0; i < count; ++i) subframe.words.push_back(payload.u32(kSubframeHead + 4 * i));
   if (moment_) {
     decode(subframe, ephemerides);
-  } else if (undated_.size() < kMostUndated) {
+  } else if (undated_.size() < kMostUndatedSubframes) {
     undated_.push_back(std::move(subframe));
   }
   return {};
