@@ -49,12 +49,12 @@ bool checksum_is_right(const MessageBits& text) {
 Stamp time_of(std::uint32_t quarters, Stamp near) {
   constexpr double kMoscowAhead_s = 10'800;
   constexpr double kQuarter_s = 900;
-  constexpr double kDay_s = 86'400;
+  constexpr double kDayOfMoscow_s = 86'400;
   const Stamp moscow = convert(near, TimeScale::gps, TimeScale::utc).later(kMoscowAhead_s);
   const Stamp midnight{moscow.nanoseconds - moscow.nanoseconds % kDayNanoseconds};
   Stamp moment = midnight.later(kQuarter_s * quarters);
   const double ahead_s = seconds_between(moscow, moment);
-  if (std::abs(ahead_s) > kDay_s / 2) moment = moment.later(std::copysign(kDay_s, -ahead_s));
+  if (std::abs(ahead_s) > kDayOfMoscow_s / 2) moment = moment.later(std::copysign(kDayOfMoscow_s, -ahead_s));
   return convert(moment.later(-kMoscowAhead_s), TimeScale::utc, TimeScale::gps);
 }
 
