@@ -81,8 +81,8 @@ void UbxRawSurvey::take_frame(const formats::UbxFrame& frame) {
   std::string error;
   if (frame.key == formats::ubx::kRxmRawx) {
     error = formats::rawx_error(payload);
-    constexpr std::size_t kWeek = 8;
-    const bool knows_week = error.empty() && payload.u16(kWeek) > 0;  // not yet after a cold start
+    constexpr std::size_t kWeekField = 8;
+    const bool knows_week = error.empty() && payload.u16(kWeekField) > 0;  // not yet after a cold start
     if (knows_week) {
       const formats::UbxRawEpoch raw = formats::read_rxm_rawx(payload);
       data_.records += raw.epoch.satellites.size();
