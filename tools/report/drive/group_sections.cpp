@@ -25,10 +25,10 @@ using evaluation::GroupedMeasurement;
 using evaluation::GroupedResiduals;
 
 /// Of a group over time; below, stretches are too long to show more than an envelope.
-constexpr std::size_t kLeastPoints = 40;
-constexpr std::size_t kMostPoints = 600;
+constexpr std::size_t kLeastOfGroup = 40;
+constexpr std::size_t kMostOfGroup = 600;
 /// A line is interrupted if its measurements pause for longer.
-constexpr double kPause_s = 2;
+constexpr double kLongestPause_s = 2;
 /// Parts of a drive, for each of which a group has one point in the sky.
 constexpr int kPartsOfDrive = 60;
 
@@ -52,7 +52,8 @@ drawing::Series line_with_pauses(const drawing::Series& all, std::size_t most) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < all.x.size(); ++i) steps.push_back(all.x[i] - all.x[i - 1]);
   constexpr double kUsualSteps = 5;
-  const double pause = steps.empty() ? kPause_s : std::max(kPause_s, kUsualSteps * upper_median(steps));
+  const double pause =
+      steps.empty() ? kLongestPause_s : std::max(kLongestPause_s, kUsualSteps * upper_median(steps));
   drawing::Series line{.name = all.name, .mark = drawing::Mark::line, .look = all.look};
   const auto add = [&](double x, double y) {
     line.x.push_back(x);
@@ -85,7 +86,7 @@ class GroupFigures {
         groups_(groups),
         prefix_(drive.groups.size() > 1 ? for_id(groups.source) + "-" : ""),
         most_(std::clamp(kMostGroupPoints / std::max<std::size_t>(1, groups.groups.size() * quantities()),
-                         kLeastPoints, kMostPoints)) {}
+                         kLeastOfGroup, kMostOfGroup)) {}
 
   /// Shows where the measurements of a quantity come from, and how much the loss leaves of them.
   [[nodiscard]] drawing::Figure sky(std::size_t quantity) const {
