@@ -29,8 +29,9 @@ constexpr std::size_t kLeastOfGroup = 40;
 constexpr std::size_t kMostOfGroup = 600;
 /// A line is interrupted if its measurements pause for longer.
 constexpr double kLongestPause_s = 2;
-/// Parts of a drive, for each of which a group has one point in the sky.
-constexpr int kPartsOfDrive = 60;
+/// A group has one point in the sky for each part of the drive.
+constexpr double kShortestPart_s = 60;
+constexpr double kMostParts = 60;
 
 /// Returns the text as part of the id of a figure.
 std::string for_id(const std::string& text) {
@@ -95,8 +96,8 @@ class GroupFigures {
     figure.title = fmt::format("The sky: {}s", groups_.quantities[quantity].name);
     figure.description = fmt::format(
         "Where the {} are: the zenith in the middle, the horizon outside, grid north at the top. A point is the "
-        "mean weight that the loss leaves to the {}s of a {} in a {}th of the drive.",
-        groups_.many, groups_.quantities[quantity].name, groups_.one, kPartsOfDrive);
+        "mean weight that the loss leaves to the {}s of a {} in {:.0f} s.",
+        groups_.many, groups_.quantities[quantity].name, groups_.one, part_s());
     figure.x = {.title = "from the zenith to the east", .unit = "deg"};
     figure.y = {.title = "to the north", .unit = "deg"};
     figure.motion = drawing::Motion::map;
@@ -141,6 +142,11 @@ class GroupFigures {
     return m.stamp && std::isfinite(m.bearing_rad) && std::isfinite(m.elevation_rad) && m.elevation_rad >= 0;
   }
 
+  [[nodiscard]] double part_s() const {
+    const drawing::Range extent = epochs_extent(drive_);
+    return std::max(kShortestPart_s, (extent.high - extent.low) / kMostParts);
+  }
+
   static drawing::Series rings() {
     drawing::Series rings{
         .name = "elevation 0, 30, 60 deg", .mark = drawing::Mark::line, .look = drawing::Look::reference};
@@ -165,13 +171,12 @@ class GroupFigures {
   };
 
   [[nodiscard]] std::vector<SkyPoint> sky_points(std::size_t quantity) const {
-    const drawing::Range extent = epochs_extent(drive_);
+    const double begin = epochs_extent(drive_).low;
     std::map<std::pair<std::size_t, int>, SkyPoint> parts;
     for (const GroupedMeasurement& m : groups_.measurements) {
       if (m.quantity != quantity || !is_placed(m)) continue;
       const double seconds = drive_.seconds(*m.stamp);
-      const double share = (seconds - extent.low) / (extent.high - extent.low);
-      const int part = static_cast<int>(std::clamp(kPartsOfDrive * share, 0.0, kPartsOfDrive - 1.0));
+      const int part = static_cast<int>(std::max(0.0, (seconds - begin) / part_s()));
       const double from_zenith_deg = 90 - m.elevation_rad * 180 / std::numbers::pi;
       SkyPoint& point = parts[{m.group, part}];
       point.seconds += seconds;
