@@ -23,6 +23,7 @@
 
 #include <waymark/core/base/export.hpp>
 #include <waymark/core/drive/drive_context.hpp>
+#include <waymark/core/drive/measurement_groups.hpp>
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/core/graph/loss.hpp>
 #include <waymark/core/graph/vertex.hpp>
@@ -180,6 +181,8 @@ struct SensorInput {
   double grid_scale = 1;         ///< grid metres per metre on the ground, at the last fix before these
   std::string_view source = {};  ///< name of the source that the readings are of
   const DriveContext& context = DriveContext::none();
+  /// where the model may tell what its measurements are about, for reports; null: nobody asks
+  MeasurementGroups* groups = nullptr;
 };
 
 /// Connects poses with the readings of a further sensor: a compass, a scan matcher, a

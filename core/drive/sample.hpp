@@ -147,6 +147,8 @@ struct TruthPose {
   /// truth reference point, frame coordinates, m
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
   std::optional<double> heading_rad;  ///< counter-clockwise from grid east
+  /// above the ellipsoid, of a point of the vehicle; NaN: not given
+  double height_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A column that the log of a sensor must or may have.

@@ -56,6 +56,8 @@ using VertexIndex = std::int32_t;
 /// - `V::kLinearChart = true`: promises local(r, x [+] d) = local(r, x) + d, so the retraction is a
 ///   plain addition. Gaussian priors then use the identity as Jacobian of local(), and Ceres uses a
 ///   plain parameter block.
+/// - `V::kHeight = true`: the one number is the height of a point of the vehicle above the ellipsoid,
+///   m. With stamps and a truth that has heights, a run tells its error.
 /// - `V::position(const double*) -> Vector2d`: the place of the vertex in the plane.
 /// - `V::rigid_motion(const double* value, const Vector2d& centre, double extent, double*
 ///   columns)`: the change of the value under a rigid motion of the plane. The columns are
@@ -114,6 +116,7 @@ struct VertexType {
   std::vector<std::string> value_names;
   std::vector<std::string> value_units;  ///< empty: the type does not state them
   bool dense = false;
+  bool height = false;        ///< the value is a height of the vehicle
   bool linear_chart = false;  ///< local(r, x [+] d) = local(r, x) + d: true for additive types
 
   void (*retract)(double* value, const double* delta) = nullptr;
@@ -151,6 +154,7 @@ template <Vertex V>
     for (const auto& unit : V::value_units()) type.value_units.emplace_back(unit);
   }
   if constexpr (requires { V::kDense; }) type.dense = V::kDense;
+  if constexpr (requires { V::kHeight; }) type.height = V::kHeight;
   if constexpr (requires { V::kLinearChart; }) type.linear_chart = V::kLinearChart;
   type.retract = &detail::retract_guarded<V>;
   type.local = &detail::local_guarded<V>;

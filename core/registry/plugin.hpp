@@ -63,6 +63,7 @@ constexpr std::uint32_t layout_fingerprint() {
                                  sizeof(OptionValue),
                                  sizeof(SensorModelType),
                                  sizeof(SensorInput),
+                                 sizeof(MeasurementGroups),
                                  sizeof(Fix),
                                  sizeof(Interval),
                                  sizeof(LogReaderType),

@@ -52,8 +52,15 @@ class Ranges final : public SensorModel {
       const double range = number_of_reading(input.readings, row, 1, "range", kLargestLength_m);
       const Eigen::Vector2d antenna = place->ahead.position + rotate(place->ahead.heading, mount_.position);
       const double scale = grid_scale_at(input, input.readings.stamps[row]);
-      graph.add_edge(EdgeAnchorRange{scale * range, in_frame(anchor->second, input.context), antenna},
-                     {place->pose}, Eigen::Matrix<double, 1, 1>(1 / (sigma_ * sigma_)));
+      const EdgePlace edge =
+          graph.add_edge(EdgeAnchorRange{scale * range, in_frame(anchor->second, input.context), antenna},
+                         {place->pose}, Eigen::Matrix<double, 1, 1>(1 / (sigma_ * sigma_)));
+      if (input.groups == nullptr) continue;
+      input.groups->one = "anchor";  // the report of a run has a section by anchor
+      input.groups->many = "anchors";
+      input.groups->add({.edge = edge,
+                         .quantity = input.groups->quantity("range", "m"),
+                         .group = input.groups->group(id, "")});
     }
   }
 

@@ -83,6 +83,13 @@ double Ephemerides::carrier_hz(const SatelliteName& name) const {
   return found == glonass_.end() ? 0 : kGlonassG1_hz + found->second.front().channel * kGlonassStep_hz;
 }
 
+std::map<SatelliteName, std::size_t> Ephemerides::counts() const {
+  std::map<SatelliteName, std::size_t> counts;
+  for (const auto& [name, orbits] : kepler_) counts[name] = orbits.size();
+  for (const auto& [number, orbits] : glonass_) counts[{System::glonass, number}] = orbits.size();
+  return counts;
+}
+
 std::pair<Stamp, Stamp> Ephemerides::times() const {
   Stamp first{std::numeric_limits<std::int64_t>::max()};
   Stamp last{std::numeric_limits<std::int64_t>::min()};

@@ -33,6 +33,8 @@ class Ephemerides {
   /// Returns the first carrier of a satellite, Hz. Those of GLONASS need an ephemeris; 0 without one.
   [[nodiscard]] double carrier_hz(const SatelliteName& name) const;
 
+  /// Returns how many ephemerides each satellite has.
+  [[nodiscard]] std::map<SatelliteName, std::size_t> counts() const;
   [[nodiscard]] bool empty() const { return kepler_.empty() && glonass_.empty(); }
   /// The first and the last time of an ephemeris. Precondition: not empty.
   [[nodiscard]] std::pair<Stamp, Stamp> times() const;

@@ -40,6 +40,9 @@ struct KeplerOrbit {
   bool is_healthy = true;
 };
 
+/// Tells whether a satellite of BeiDou stands still over the equator: BDS-2 has 1 to 5, BDS-3 59 to 63.
+[[nodiscard]] bool is_geostationary_beidou(int number);
+
 /// Tells whether the elements are those of an orbit that navigation satellites have.
 [[nodiscard]] bool is_possible(const KeplerOrbit& orbit);
 
@@ -55,6 +58,9 @@ struct GlonassOrbit {
   int channel = 0;                                         ///< of its frequency, -7 .. 6
   bool is_healthy = true;
 };
+
+/// Tells whether the numbers are those of a GLONASS satellite.
+[[nodiscard]] bool is_possible(const GlonassOrbit& orbit);
 
 /// Computes a satellite of Kepler's elements (IS-GPS-200, 20.3.3.4.3; BeiDou's geostationary satellites by
 /// its BDS-SIS-ICD, 5.2.4.12). The velocity is the difference of positions half a second before and after:

@@ -43,6 +43,12 @@ OrbitMotion after(const OrbitMotion& motion, double dt, const Eigen::Vector3d& s
 
 }  // namespace
 
+bool is_possible(const GlonassOrbit& orbit) {
+  const double radius_m = orbit.position.norm();
+  return radius_m > 2e7 && radius_m < 3e7 && orbit.velocity.norm() < 1e4 && orbit.acceleration.norm() < 1 &&
+         std::abs(orbit.channel) <= 13;
+}
+
 SatelliteState state_of(const GlonassOrbit& orbit, Stamp moment) {
   const double dt = seconds_between(orbit.toe, moment);
   OrbitMotion motion;

@@ -24,11 +24,6 @@ Earth earth_of(System system) {
   return {3.986004418e14, 7.292115e-5};
 }
 
-/// Numbers of geostationary satellites: BDS-2 has 1 to 5, BDS-3 59 to 63.
-bool is_geostationary(const KeplerOrbit& orbit) {
-  return orbit.system == System::beidou && (orbit.number <= 5 || orbit.number >= 59);
-}
-
 double eccentric_anomaly(double mean, double eccentricity) {
   double anomaly = mean;
   for (int i = 0; i < kKeplerIterations; ++i) {
@@ -62,7 +57,7 @@ InPlane in_plane(const KeplerOrbit& orbit, double dt, double gravity) {
 Eigen::Vector3d position_at(const KeplerOrbit& orbit, double dt) {
   const Earth earth = earth_of(orbit.system);
   const InPlane plane = in_plane(orbit, dt, earth.gravity);
-  const bool geostationary = is_geostationary(orbit);
+  const bool geostationary = orbit.system == System::beidou && is_geostationary_beidou(orbit.number);
   const double turned = earth.rotation_radps * (orbit.toe_sow_s + (geostationary ? 0 : dt));
   const double node = orbit.node_rad + orbit.node_rate_radps * dt - turned;
   const Eigen::Vector3d place(plane.radius_m * std::cos(plane.latitude_rad),
@@ -85,6 +80,10 @@ double relativity_s(const KeplerOrbit& orbit, double dt) {
 }
 
 }  // namespace
+
+bool is_geostationary_beidou(int number) {
+  return number <= 5 || number >= 59;
+}
 
 bool is_possible(const KeplerOrbit& orbit) {
   constexpr double kWeek_s = 604'800;

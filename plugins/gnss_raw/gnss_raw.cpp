@@ -12,6 +12,7 @@
 #include <waymark/plugins/gnss_raw/detail/epochs.hpp>
 #include <waymark/plugins/gnss_raw/detail/local_sky.hpp>
 #include <waymark/plugins/gnss_raw/detail/noise.hpp>
+#include <waymark/plugins/gnss_raw/detail/satellite_groups.hpp>
 #include <waymark/plugins/gnss_raw/detail/single_point.hpp>
 #include <waymark/plugins/gnss_raw/detail/states.hpp>
 #include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
@@ -89,20 +90,23 @@ class GnssRaw final : public SensorModel {
     const double offset_m = sky.common_offset_m(epoch);
     const VertexIndex clock = states_.clock(epoch.stamp, offset_m, graph);
     const Eigen::Vector2d antenna = place.ahead.position + rotate(place.ahead.heading, antenna_);
+    const auto chord =
+        chord_at(input.nodes, place.node, seconds_between(input.nodes.stamps[place.node], epoch.stamp));
+    SatelliteGroups groups(input.groups);
     for (const SatelliteReading& reading : epoch.satellites) {
       if (!std::isnan(reading.pseudorange_m) && (!gps_alone_ || reading.system == kGps))
-        add_pseudorange(epoch.stamp, reading, sky, {place.pose, height, clock}, antenna, graph);
-      if (!std::isnan(reading.range_rate_mps) && uses_rates_)
-        add_range_rate(
-            epoch.stamp, reading, sky, clock,
-            chord_at(input.nodes, place.node, seconds_between(input.nodes.stamps[place.node], epoch.stamp)),
-            input.nodes, graph);
+        groups.add_pseudorange(
+            add_pseudorange(epoch.stamp, reading, sky, {place.pose, height, clock}, antenna, graph), reading,
+            sky);
+      if (!std::isnan(reading.range_rate_mps) && uses_rates_ && chord)
+        groups.add_range_rate(add_range_rate(epoch.stamp, reading, sky, clock, *chord, input.nodes, graph),
+                              reading, sky);
     }
   }
 
-  void add_pseudorange(Stamp stamp, const SatelliteReading& reading, const LocalSky& sky,
-                       const std::array<VertexIndex, 3>& pose_height_clock, const Eigen::Vector2d& antenna,
-                       Graph& graph) {
+  EdgePlace add_pseudorange(Stamp stamp, const SatelliteReading& reading, const LocalSky& sky,
+                            const std::array<VertexIndex, 3>& pose_height_clock,
+                            const Eigen::Vector2d& antenna, Graph& graph) {
     const RangeNoise noise = noise_.of(reading);
     EdgeGnssPseudorange edge;
     edge.satellite = sky.local(reading.position);
@@ -113,27 +117,26 @@ class GnssRaw final : public SensorModel {
     edge.spread = noise.lasting_m;
     edge.slow_spread = noise.slow_m;
     const auto [pose, height, clock] = pose_height_clock;
-    graph.add_edge(edge,
-                   {pose, height, clock, states_.system(reading.system, graph),
-                    states_.multipath().of(reading.system, reading.satellite, stamp, graph),
-                    states_.slow().of(reading.system, reading.satellite, stamp, graph)},
-                   Eigen::Matrix<double, 1, 1>(1 / (noise.white_m * noise.white_m)), noise_.tails());
+    return graph.add_edge(edge,
+                          {pose, height, clock, states_.system(reading.system, graph),
+                           states_.multipath().of(reading.system, reading.satellite, stamp, graph),
+                           states_.slow().of(reading.system, reading.satellite, stamp, graph)},
+                          Eigen::Matrix<double, 1, 1>(1 / (noise.white_m * noise.white_m)), noise_.tails());
   }
 
-  void add_range_rate(Stamp stamp, const SatelliteReading& reading, const LocalSky& sky, VertexIndex clock,
-                      const std::optional<Chord>& chord, const DriveNodes& nodes, Graph& graph) {
-    if (!chord) return;
+  EdgePlace add_range_rate(Stamp stamp, const SatelliteReading& reading, const LocalSky& sky,
+                           VertexIndex clock, const Chord& chord, const DriveNodes& nodes, Graph& graph) {
     const Eigen::Vector3d satellite = sky.local(reading.position);
     const Eigen::Vector3d towards = satellite.normalized();
     const Eigen::Vector3d velocity = sky.local_velocity(reading.velocity, satellite.norm());
     EdgeGnssRangeRate edge;
     edge.measured = reading.range_rate_mps - towards.dot(velocity);
     edge.direction = towards.head<2>();
-    edge.rate = sky.ground() / nodes.intervals[chord->from].dt_s;
+    edge.rate = sky.ground() / nodes.intervals[chord.from].dt_s;
     edge.antenna = antenna_;
     const double sigma = noise_.range_rate_sigma(reading, since_last_rate(reading, stamp));
-    graph.add_edge(edge, {nodes.poses[chord->from], nodes.poses[chord->to], clock},
-                   Eigen::Matrix<double, 1, 1>(1 / (sigma * sigma)), noise_.tails());
+    return graph.add_edge(edge, {nodes.poses[chord.from], nodes.poses[chord.to], clock},
+                          Eigen::Matrix<double, 1, 1>(1 / (sigma * sigma)), noise_.tails());
   }
 
   /// Returns the time since the last range rate of a satellite, s; a long one for the first.

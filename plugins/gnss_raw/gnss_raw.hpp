@@ -22,6 +22,7 @@ struct VertexGnssClock : PlaneState {
 /// Height of the antenna above the ellipsoid, m. It changes slowly.
 struct VertexGnssHeight : ScalarState {
   static constexpr std::string_view kTag = "VERTEX_GNSS_HEIGHT";
+  static constexpr bool kHeight = true;
   static constexpr std::array<std::string_view, 1> value_names() { return {"antenna_height"}; }
 };
 

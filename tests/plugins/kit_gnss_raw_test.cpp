@@ -3,6 +3,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/plugins/gnss_raw/detail/epochs.hpp>
+#include <waymark/plugins/gnss_raw/detail/satellite_groups.hpp>
 #include <waymark/plugins/gnss_raw/gnss_raw.hpp>
 
 #include "plugins/kit_drive.hpp"
@@ -273,6 +274,52 @@ TEST_CASE("gnss_raw: an epoch of two satellites is used, and gives no position o
   model->extend({drive.nodes(), drive.fixes, {0, 0}, two, 1, "raw", context}, drive.graph);
   CHECK(edges_of(drive.graph, "EDGE_GNSS_PSEUDORANGE") == 2);
   CHECK(edges_of(drive.graph, "EDGE_GNSS_RANGE_RATE") == 2);
+}
+
+TEST_CASE("gnss_raw: tells which satellite each edge is of, where it stands, and how strong it is") {
+  KitDrive drive = make_kit_drive({}, 3);
+  Noise noise(4);
+  SensorTable log = log_of(drive, {}, noise).table();
+  constexpr std::size_t kCn0Column = 11;
+  for (std::size_t row = 0; row < log.size(); ++row)
+    log.values[row * log.columns + kCn0Column] = 30 + static_cast<double>(row % 9);
+  DriveContext context;
+  context.geodesy = &sphere();
+  MeasurementGroups groups;
+  registry()
+      .make_sensor_model("gnss_raw", kWhite)
+      ->extend({drive.nodes(), drive.fixes, {0, 0}, log, 1, "raw", context, &groups}, drive.graph);
+  CHECK(groups.one == "satellite");
+  CHECK(groups.signal_name == "C/N0");
+  REQUIRE(groups.groups.size() == 9);
+  CHECK(groups.groups[0].name == "G01");
+  CHECK(groups.groups[0].family == "GPS");
+  CHECK(groups.groups[8].name == "R09");
+  CHECK(groups.groups[8].family == "GLONASS");
+  REQUIRE(groups.quantities.size() == 2);
+  CHECK(groups.quantities[0].unit == "m");
+  CHECK(groups.quantities[1].name == "range rate");
+  REQUIRE(groups.members.size() == 2 * log.size());
+  for (std::size_t m = 0; m < 18; ++m) {  // the first epoch
+    const MeasurementGroups::Member& member = groups.members[m];
+    const auto i = static_cast<double>(member.group);
+    const std::string tag = drive.graph.edge_type(member.edge.batch).tag;
+    CHECK(tag == (member.quantity == 0 ? "EDGE_GNSS_PSEUDORANGE" : "EDGE_GNSS_RANGE_RATE"));
+    CHECK(member.edge.edge == member.group);
+    CHECK(member.signal == 30 + i);
+    CHECK(member.elevation_rad == Approx((15 + 30.0 * (member.group % 3)) * kDegree).margin(1e-3));
+    CHECK(std::remainder(member.bearing_rad - 40 * i * kDegree, 2 * std::numbers::pi) ==
+          Approx(0).margin(1e-3));
+  }
+}
+
+TEST_CASE("gnss_raw: satellites have the names of RINEX") {
+  CHECK(satellite_name(1, 5) == "G05");
+  CHECK(satellite_name(2, 123) == "S23");
+  CHECK(satellite_name(8, 31) == "E31");
+  CHECK(satellite_name(32, 60) == "C60");
+  CHECK(satellite_name(16, 3) == "16-03");
+  CHECK(system_name(16) == "system 16");
 }
 
 TEST_CASE("gnss_raw: impossible rows are named") {

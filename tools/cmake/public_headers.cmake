@@ -13,6 +13,7 @@ set(WAYMARK_PUBLIC_HEADERS
   core/drive/frame.hpp
   core/drive/kept_vertex.hpp
   core/drive/log_reader.hpp
+  core/drive/measurement_groups.hpp
   core/drive/modeling.hpp
   core/drive/place_from_ranges.hpp
   core/drive/sample.hpp

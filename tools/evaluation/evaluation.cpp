@@ -29,6 +29,8 @@ void check(const EvaluationInput& input) {
                                   [](const Fix& fix) { return fix.antenna_m.allFinite(); });
   if (!levers || !input.truth_reference_m.allFinite())
     throw UsageError("evaluate: a lever arm is not finite");
+  if (!input.heights_m.empty() && input.heights_m.size() != n)
+    throw UsageError(fmt::format("evaluate: {} heights for {} poses", input.heights_m.size(), n));
   for (const StampedPose& fused : input.fused) {
     if (!fused.pose.allFinite())
       throw InputError(
@@ -100,6 +102,8 @@ void compare_with_truth(const EvaluationInput& input, std::size_t i, const Truth
   if (!input.fixes.empty())
     result.gnss_offset_m = input.fixes[i].position - rotate(heading, input.fixes[i].antenna_m) - truth_body;
   result.fused_offset_m = fused.head<2>() - truth_body;
+  if (!input.heights_m.empty() && std::isfinite(truth.height_m))
+    result.height_error_m = input.heights_m[i] - truth.height_m;
   if (truth.heading_rad) result.heading_error_rad = wrap_angle(fused[2] - *truth.heading_rad);
 }
 
@@ -119,6 +123,24 @@ std::vector<RelativePoseError> relative_errors(const EvaluationInput& input, con
   for (const double distance : kRelativeDistances)
     errors.push_back(relative_pose_error(truth, fused, distance));
   return errors;
+}
+
+/// Adds the errors in space, or the reason why there are none.
+void add_space(const EvaluationInput& input, const std::vector<EpochResult>& epochs,
+               TruthEvaluation& evaluation) {
+  std::vector<Eigen::Vector2d> offsets;
+  std::vector<double> heights;
+  for (const EpochResult& epoch : epochs) {
+    if (!epoch.fused_offset_m || !epoch.height_error_m) continue;
+    offsets.push_back(*epoch.fused_offset_m);
+    heights.push_back(*epoch.height_error_m);
+  }
+  if (!offsets.empty()) {
+    evaluation.space = space_metrics(offsets, heights);
+  } else {
+    evaluation.no_space =
+        std::string(input.heights_m.empty() ? "the graph has no height state" : kNoTruthHeights);
+  }
 }
 
 TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochResult>& epochs) {
@@ -157,6 +179,7 @@ TruthEvaluation evaluate_truth(const EvaluationInput& input, std::vector<EpochRe
   evaluation.relative = relative_errors(input, evaluation.match, epochs);
   evaluation.gnss_autocorrelation = gnss.autocorrelation();
   evaluation.fused_autocorrelation = fused.autocorrelation();
+  add_space(input, epochs, evaluation);
   if (!input.position_covariances.empty())
     evaluation.consistency = consistency_statistics(fused.stamps, fused.offsets, covariances);
   return evaluation;

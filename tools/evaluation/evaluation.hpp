@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,6 +20,7 @@
 #include <waymark/core/drive/drive_context.hpp>
 #include <waymark/core/drive/frame.hpp>
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/evaluation/document/group_residuals.hpp>
 #include <waymark/tools/evaluation/document/source_residuals.hpp>
 #include <waymark/tools/evaluation/numbers/autocorrelation.hpp>
 #include <waymark/tools/evaluation/numbers/consistency.hpp>
@@ -26,6 +28,7 @@
 #include <waymark/tools/evaluation/numbers/innovation.hpp>
 #include <waymark/tools/evaluation/numbers/metrics.hpp>
 #include <waymark/tools/evaluation/numbers/relative_pose_error.hpp>
+#include <waymark/tools/evaluation/numbers/space_metrics.hpp>
 #include <waymark/tools/evaluation/numbers/truth_interpolation.hpp>
 #include <waymark/tools/evaluation/numbers/withheld.hpp>
 #include <waymark/tools/evaluation/source_comparison.hpp>
@@ -46,6 +49,8 @@ struct EvaluationInput {
   std::vector<Eigen::Matrix2d> position_covariances;
   /// Standard deviations of the fused headings, rad; empty or one per pose.
   std::vector<double> heading_sigmas_rad{};
+  /// Heights above the ellipsoid, m, as a state of the graph has them; empty or one per pose.
+  std::vector<double> heights_m{};
   /// The graph takes the errors of the fixes as independent, with the covariances that they claim. Otherwise
   /// the normalised innovations have no meaning and are left out.
   bool independent_errors = true;
@@ -78,6 +83,7 @@ struct EpochResult {
   /// direction for along and across track: the heading of the truth, else its direction of motion
   std::optional<double> direction_rad;
   std::optional<double> heading_error_rad;  ///< fused - truth
+  std::optional<double> height_error_m{};   ///< fused - truth
   double nees = kUndefined;                 ///< d^T P^-1 d of the fused offset d
   double nu = kUndefined;                   ///< normalised innovation squared
   /// Fix - fused antenna, at the moment when the fix was measured: an estimated delay is applied.
@@ -121,6 +127,9 @@ struct QualityMetrics {
   PositionMetrics fused;     ///< at the same epochs
 };
 
+/// TruthEvaluation::no_space if only the truth lacks heights.
+inline constexpr std::string_view kNoTruthHeights = "the truth has no heights";
+
 struct TruthEvaluation {
   TruthMatch match;  ///< the matched epochs, and why others are not matched
   /// Raw fixes at every matched epoch, whatever the gate decided, withheld or not. The output of
@@ -138,6 +147,10 @@ struct TruthEvaluation {
   std::vector<RelativePoseError> relative{};
   /// Stated against actual error of the fused poses. Empty without covariances.
   std::optional<ConsistencyStatistics> consistency;
+  /// of the fused poses with their height. The height is that of the point that the state describes, such as
+  /// an antenna: a constant difference to the point of the truth is in its mean.
+  std::optional<SpaceMetrics> space{};
+  std::string no_space{};  ///< why there is none, as the rest of a sentence
   /// error_autocorrelation of raw fixes at kAutocorrelationLags.
   std::vector<double> gnss_autocorrelation;
   std::vector<double> fused_autocorrelation;
@@ -162,6 +175,8 @@ struct Evaluation {
   std::vector<EpochResult> epochs;           ///< one per fused pose
   SourceComparison sources;                  ///< empty from evaluate(): it takes further fusions
   std::vector<SourceResiduals> residuals{};  ///< empty from evaluate(): it takes the graph
+  /// of sensors that tell of groups, without GroupedResiduals::measurements; empty from evaluate()
+  std::vector<GroupedResiduals> groups{};
   std::vector<QualityMetrics> by_quality{};  ///< of the fixes; empty if no quality is told
 
   [[nodiscard]] std::size_t fixes() const { return accepted + rejected + withheld; }

@@ -186,23 +186,43 @@ void open(Pass& pass, const LogReader& reader, const std::string& path, const Lo
   }
 }
 
-/// An observation file has no fixes: its satellites are counted.
-void survey_raw(LogInspection& log, const InspectionOptions& options) {
+/// Counts the satellites of a log of raw measurements.
+/// @return the counts of its decoder
+template <typename Survey>
+LogData survey_raw(LogInspection& log, const InspectionOptions& options) {
   Pass pass;
-  auto survey = std::make_unique<RawSurvey>(log.path);
-  const RawSurvey& raw = *survey;
+  auto survey = std::make_unique<Survey>(log.path);
+  const RawSummarySource& raw = *survey;
   pass.decoder = std::move(survey);
   Pass* const passes[] = {&pass};
   read_passes(log.path, passes, options, log);
   if (!pass.trouble.empty()) log.troubles.push_back(pass.trouble);
-  log.records = pass.decoder->data().records;
-  log.corrupt = pass.decoder->data().corrupt;
-  log.corrupt_examples = pass.decoder->data().corrupt_examples;
-  if (raw.summary().stamps.count() == 0) return;
-  log.raw = raw.summary();
+  if (raw.summary().stamps.count() > 0) log.raw = raw.summary();
+  return std::move(pass.decoder->data());
+}
+
+/// An observation file has nothing but raw measurements.
+void survey_rinex(LogInspection& log, const InspectionOptions& options) {
+  add_counts(log, survey_raw<RinexSurvey>(log, options));
+  if (!log.raw) return;
   log.clock.reason = "RINEX names its dates; shown in UTC";
   log.notes.push_back("raw measurements need the broadcast ephemerides of the day: gnss: {file: " + log.path +
                       ", navigation: FILE}");
+}
+
+/// A UBX log may have raw measurements beside its fixes, and ephemerides beside these.
+void survey_raw_ubx(LogInspection& log, const InspectionOptions& options) {
+  const LogData data = survey_raw<UbxRawSurvey>(log, options);
+  const bool nothing_else = (!log.fixes || log.fixes->fixes == 0) && !log.odometry;
+  if (nothing_else) add_counts(log, data);
+  if (!log.raw) return;
+  std::vector<std::string> without;
+  for (const auto& [name, satellite] : log.raw->satellites)
+    if (satellite.pseudoranges > 0 && satellite.ephemerides == 0) without.push_back(name);
+  if (!without.empty())
+    log.notes.push_back(fmt::format(
+        "the log has no ephemeris of {}: such satellites need 'navigation: FILE' beside 'file: {}'",
+        fmt::join(without, ", "), log.path));
 }
 
 class StreamReading {
@@ -403,12 +423,13 @@ LogInspection inspect_log(const std::string& path, std::span<const LogReaderType
   find_companions(log, options);
   if (log.format == "csv" || formats::is_can_format(log.format)) survey(log, options);
   if (log.format == "rinex") {
-    survey_raw(log, options);
+    survey_rinex(log, options);
     log.suspicions = suspicions_of(log, options.now);
     return log;
   }
   const bool without_signals = log.can && log.can->signals.empty();
   if (!without_signals) read_streams(log, *reader.reader, options);
+  if (log.format == "ubx" && log.kinds.contains("RXM-RAWX")) survey_raw_ubx(log, options);
   log.suspicions = suspicions_of(log, options.now);
   return log;
 }

@@ -51,7 +51,7 @@ struct LogInspection {
   std::optional<CanSummary> can;
   std::optional<FixSummary> fixes;  ///< also for a truth
   std::optional<OdometrySummary> odometry;
-  std::optional<RawSummary> raw{};       ///< of an observation file
+  std::optional<RawSummary> raw{};       ///< of satellites
   std::optional<double> logger_ahead_s;  ///< its stamps minus the GNSS time in it, median
   std::vector<std::string> suspicions;   ///< one sentence each
 

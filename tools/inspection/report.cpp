@@ -228,10 +228,14 @@ void add_kinds(Text& text, const LogInspection& log) {
 void add_raw(Text& text, const RawSummary& raw) {
   text.line("epochs", fmt::format("{} at {}, with {} to {} satellites", raw.stamps.count(),
                                   rate_text(rate_of(raw.stamps)), raw.fewest, raw.most));
+  text.line("systems", raw.systems());
   text::Table table{.columns = {"satellite", "pseudoranges", "Doppler shifts", "mean C/N0 [dB-Hz]"}};
-  for (const auto& [name, satellite] : raw.satellites)
+  if (raw.holds_ephemerides) table.columns.emplace_back("ephemerides");
+  for (const auto& [name, satellite] : raw.satellites) {
     table.rows.push_back({name, std::to_string(satellite.pseudoranges), std::to_string(satellite.dopplers),
                           satellite.with_cn0 == 0 ? "-" : fmt::format("{:.1f}", satellite.mean_cn0_dbhz())});
+    if (raw.holds_ephemerides) table.rows.back().push_back(std::to_string(satellite.ephemerides));
+  }
   text.table(table);
 }
 

@@ -108,7 +108,8 @@ Json json_of(const RawSummary& raw) {
   for (const auto& [name, satellite] : raw.satellites)
     json["satellites"][name] = {{"pseudoranges", satellite.pseudoranges},
                                 {"dopplers", satellite.dopplers},
-                                {"mean_cn0_dbhz", text::number_or_null(satellite.mean_cn0_dbhz())}};
+                                {"mean_cn0_dbhz", text::number_or_null(satellite.mean_cn0_dbhz())},
+                                {"ephemerides", satellite.ephemerides}};
   return json;
 }
 

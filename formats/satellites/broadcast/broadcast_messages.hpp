@@ -21,7 +21,8 @@ struct MessageParts {
 
   /// Adds the ephemeris of the parts, unless it was given already or cannot be. @param key tells it from the next one
   /// @returns whether it was added
-  [[nodiscard]] bool give(const KeplerOrbit& orbit, std::uint64_t key, Ephemerides& ephemerides) {
+  template <typename Orbit>
+  [[nodiscard]] bool give(const Orbit& orbit, std::uint64_t key, Ephemerides& ephemerides) {
     if (issue == key || !is_possible(orbit)) return false;
     issue = key;
     ephemerides.add(orbit);
@@ -74,6 +75,32 @@ class D1Messages {
 
  private:
   std::map<int, MessageParts<3>> satellites_;
+};
+
+/// D2 of BeiDou B1I (BDS-SIS-ICD, 5.3), which geostationary satellites send: an ephemeris stands in the ten pages of
+/// subframe 1, 3 s apart.
+class D2Messages {
+ public:
+  /// @param words ten of 30 bits, each with its parity
+  /// @returns whether an ephemeris was added
+  bool take(int satellite, std::span<const std::uint32_t, 10> words, Stamp near, Ephemerides& ephemerides);
+
+ private:
+  std::map<int, MessageParts<10>> satellites_;
+};
+
+/// The strings of GLONASS G1 (GLONASS ICD 5.1, 4): an ephemeris stands in the strings 1 to 4.
+class GlonassStrings {
+ public:
+  enum class Found { nothing, ephemeris, wrong_checksum };
+
+  /// @param channel of the satellite's frequency, -7 .. 6
+  /// @param words four of 32 bits: the 85 bits of a string from the first word on
+  Found take(int satellite, int channel, std::span<const std::uint32_t, 4> words, Stamp near,
+             Ephemerides& ephemerides);
+
+ private:
+  std::map<int, MessageParts<4>> satellites_;
 };
 
 }  // namespace waymark::formats::satellites

@@ -144,6 +144,26 @@ TEST_CASE("rinex: an epoch that is cut off is corrupt, and those before it count
   CHECK(data.readings.size() < read(drive->observations, drive->navigation).readings.size());
 }
 
+TEST_CASE("rinex: an epoch with fewer satellites than it announces is corrupt, and the next one counts") {
+  auto drive = berlin();
+  if (!drive) return;
+  const LogData right = read(drive->observations, drive->navigation);
+  // The last line before the second epoch is lost: one satellite with its four observations.
+  const std::string date = "\n 16  6  6";
+  const std::size_t second = drive->observations.find(date, drive->observations.find(date) + 1);
+  const std::size_t lost = drive->observations.rfind('\n', second - 1);
+  std::string text = drive->observations;
+  text.erase(lost, second - lost);
+  const LogData data = read(text, drive->navigation);
+  CHECK(data.corrupt == 1);
+  CHECK_THAT(data.corrupt_examples.at(0),
+             Contains("the next epoch begins after 18 of 19 satellites of the epoch of line 13") &&
+                 Contains("the epoch is left out"));
+  const auto first_epoch =
+      std::count(right.readings.stamps.begin(), right.readings.stamps.end(), right.readings.stamps.front());
+  CHECK(data.readings.size() + static_cast<std::size_t>(first_epoch) == right.readings.size());
+}
+
 TEST_CASE("rinex: events are skipped with their lines, and a new list of observations is obeyed") {
   auto drive = berlin();
   if (!drive) return;

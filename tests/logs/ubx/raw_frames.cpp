@@ -5,11 +5,13 @@
 #include <initializer_list>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "logs/ubx/ubx_bytes.hpp"
 
 namespace waymark_test {
 
+using waymark::formats::satellites::GlonassOrbit;
 using waymark::formats::satellites::KeplerOrbit;
 
 namespace {
@@ -108,6 +110,55 @@ std::vector<std::uint32_t> d1_words(const Bits& data) {
   return words;
 }
 
+/// A number whose first bit is its sign.
+Bits sign_and_size(double value, std::size_t width, int exponent) {
+  return (value < 0 ? "1" : "0") + scaled(std::abs(value), width - 1, exponent);
+}
+
+/// The sums of GLONASS ICD 5.1, table 4.13, over bits that are numbered from 85 down. @param text the bits 85 to 9
+Bits glonass_checks(const Bits& text) {
+  using Range = std::pair<int, int>;
+  static const std::vector<std::vector<Range>> kSums{
+      {{9, 10},  {12, 13}, {15, 15}, {17, 17}, {19, 20}, {22, 22}, {24, 24}, {26, 26}, {28, 28},
+       {30, 30}, {32, 32}, {34, 35}, {37, 37}, {39, 39}, {41, 41}, {43, 43}, {45, 45}, {47, 47},
+       {49, 49}, {51, 51}, {53, 53}, {55, 55}, {57, 57}, {59, 59}, {61, 61}, {63, 63}, {65, 66},
+       {68, 68}, {70, 70}, {72, 72}, {74, 74}, {76, 76}, {78, 78}, {80, 80}, {82, 82}, {84, 84}},
+      {{9, 9},   {11, 12}, {14, 15}, {18, 19}, {21, 22}, {25, 26}, {29, 30},
+       {33, 34}, {36, 37}, {40, 41}, {44, 45}, {48, 49}, {52, 53}, {56, 57},
+       {60, 61}, {64, 65}, {67, 68}, {71, 72}, {75, 76}, {79, 80}, {83, 84}},
+      {{10, 12},
+       {16, 19},
+       {23, 26},
+       {31, 34},
+       {38, 41},
+       {46, 49},
+       {54, 57},
+       {62, 65},
+       {69, 72},
+       {77, 80},
+       {85, 85}},
+      {{13, 19}, {27, 34}, {42, 49}, {58, 65}, {73, 80}},
+      {{20, 34}, {50, 65}, {81, 85}},
+      {{35, 65}},
+      {{66, 85}}};
+  const auto sum_of = [&](int from, int to) {
+    char sum = '0';
+    for (int bit = from; bit <= to; ++bit) sum = exclusive_or(sum, text[static_cast<std::size_t>(85 - bit)]);
+    return sum;
+  };
+  Bits checks;  // bit 1 first
+  char all = sum_of(9, 85);
+  for (const auto& ranges : kSums) {
+    char sum = '0';
+    for (const auto& [from, to] : ranges) sum = exclusive_or(sum, sum_of(from, to));
+    checks += sum;
+    all = exclusive_or(all, sum);
+  }
+  checks += all;
+  std::reverse(checks.begin(), checks.end());
+  return checks;
+}
+
 }  // namespace
 
 std::string rawx_frame(int week, double second_of_week, const std::vector<RawxMeasurement>& measurements) {
@@ -128,10 +179,11 @@ std::string rawx_frame(int week, double second_of_week, const std::vector<RawxMe
   return ubx_frame(0x0215, payload.bytes());
 }
 
-std::string sfrbx_frame(int system, int satellite, int signal, const std::vector<std::uint32_t>& words) {
+std::string sfrbx_frame(int system, int satellite, int signal, const std::vector<std::uint32_t>& words,
+                        int channel) {
   UbxBytes payload(8 + 4 * words.size());
   payload.u8(0, system).u8(1, satellite).u8(2, signal).u8(4, static_cast<std::int64_t>(words.size()));
-  payload.u8(5, 3).u8(6, 2);
+  payload.u8(3, channel + 7).u8(5, 3).u8(6, 2);
   for (std::size_t i = 0; i < words.size(); ++i) payload.u32(8 + 4 * i, words[i]);
   return ubx_frame(0x0213, payload.bytes());
 }
@@ -227,6 +279,73 @@ std::vector<std::uint32_t> d1_subframe(const KeplerOrbit& orbit, int number, uns
   }
   data.resize(26 + 9 * 22, '0');
   return d1_words(data);
+}
+
+std::vector<std::uint32_t> d2_page(const KeplerOrbit& orbit, int page, unsigned second, unsigned week) {
+  const auto toc_s = std::fmod(static_cast<double>(orbit.toc.nanoseconds) * 1e-9 - 14, 604'800);
+  const Bits toe = bits(std::llround(orbit.toe_sow_s / 8), 17);
+  const Bits drift = scaled(orbit.clock_drift, 22, -50);
+  const Bits cuc = scaled(orbit.cuc, 18, -31);
+  const Bits cic = scaled(orbit.cic, 18, -31);
+  const Bits eccentricity = scaled(orbit.eccentricity, 32, -33);
+  const Bits inclination = angle(orbit.inclination_rad, 32, -31);
+  const Bits node_rate = angle(orbit.node_rate_radps, 24, -43);
+  const Bits perigee = angle(orbit.perigee_rad, 32, -31);
+  Bits data = bits(0x712, 11) + bits(0, 4) + bits(1, 3) + bits(second, 20) + bits(page, 4);
+  if (page == 1) {
+    data += bits(orbit.is_healthy ? 0 : 1, 1) + bits(1, 5) + bits(2, 4) + bits(week, 13);
+    data +=
+        bits(std::llround(toc_s / 8), 17) + bits(std::llround(orbit.group_delay_s * 1e10), 10) + bits(0, 10);
+  } else if (page == 3) {
+    data += bits(0, 6 + 22 + 10) + scaled(orbit.clock_bias_s, 24, -33) + drift.substr(0, 4);
+  } else if (page == 4) {
+    data += drift.substr(4) + scaled(orbit.clock_drift_rate_1_s, 11, -66) + bits(1, 5);
+    data += angle(orbit.mean_motion_difference_radps, 16, -43) + cuc.substr(0, 14);
+  } else if (page == 5) {
+    data += cuc.substr(14) + angle(orbit.mean_anomaly_rad, 32, -31) + scaled(orbit.cus, 18, -31) +
+            eccentricity.substr(0, 10);
+  } else if (page == 6) {
+    data += eccentricity.substr(10) + scaled(orbit.sqrt_a, 32, -19) + cic.substr(0, 10);
+  } else if (page == 7) {
+    data += cic.substr(10) + scaled(orbit.cis, 18, -31) + toe + inclination.substr(0, 21);
+  } else if (page == 8) {
+    data += inclination.substr(21) + scaled(orbit.crc, 18, -6) + scaled(orbit.crs, 18, -6) +
+            node_rate.substr(0, 19);
+  } else if (page == 9) {
+    data += node_rate.substr(19) + angle(orbit.node_rad, 32, -31) + perigee.substr(0, 27);
+  } else if (page == 10) {
+    data += perigee.substr(27) + angle(orbit.inclination_rate_radps, 14, -43);
+  }
+  data.resize(26 + 9 * 22, '0');
+  return d1_words(data);
+}
+
+std::vector<std::uint32_t> glonass_string(const GlonassOrbit& orbit, int number, int day, int interval) {
+  constexpr double kKilometre_m = 1000;
+  constexpr std::int64_t kDay_s = 86'400;
+  const waymark::Stamp utc = convert(orbit.toe, waymark::TimeScale::gps, waymark::TimeScale::utc);
+  const std::int64_t moscow_s = (utc.nanoseconds / 1'000'000'000 + 10'800) % kDay_s;
+  Bits text = "0" + bits(number, 4);
+  if (number <= 3) {
+    const Eigen::Index axis = number - 1;
+    if (number == 1) text += bits(0, 2 + 2) + bits(moscow_s / 3600, 5) + bits(moscow_s / 60 % 60, 6) + "0";
+    if (number == 2) text += bits(orbit.is_healthy ? 0 : 4, 3) + "0" + bits(moscow_s / 900, 7) + bits(0, 5);
+    if (number == 3) text += "0" + sign_and_size(orbit.clock_drift, 11, -40) + bits(0, 4);
+    text += sign_and_size(orbit.velocity[axis] / kKilometre_m, 24, -20);
+    text += sign_and_size(orbit.acceleration[axis] / kKilometre_m, 5, -30);
+    text += sign_and_size(orbit.position[axis] / kKilometre_m, 27, -11);
+  } else if (number == 4) {
+    text += sign_and_size(-orbit.clock_bias_s, 22, -30) + bits(0, 5) + bits(0, 5) + bits(0, 14) + "0" +
+            bits(2, 4) + bits(0, 3) + bits(day, 11) + bits(orbit.number, 5) + bits(1, 2);
+  } else {
+    text += bits(day, 11) + bits(0, 32) + "0" + bits(interval, 5);
+  }
+  text.resize(77, '0');
+  text += glonass_checks(text);
+  text.resize(128, '0');
+  std::vector<std::uint32_t> words;
+  for (std::size_t at = 0; at < text.size(); at += 32) words.push_back(number_of(text.substr(at, 32)));
+  return words;
 }
 
 }  // namespace waymark_test

@@ -22,8 +22,9 @@ struct RawxMeasurement {
 
 [[nodiscard]] std::string rawx_frame(int week, double second_of_week,
                                      const std::vector<RawxMeasurement>& measurements);
+/// @param channel of a GLONASS satellite
 [[nodiscard]] std::string sfrbx_frame(int system, int satellite, int signal,
-                                      const std::vector<std::uint32_t>& words);
+                                      const std::vector<std::uint32_t>& words, int channel = 0);
 
 /// Words of a subframe (1 to 3) of GPS, as a u-blox receiver gives them: 30 bits behind the last two of the word before,
 /// all of them inverted if the last one is set. @param issue 8 bits; @param week 10 bits
@@ -37,5 +38,12 @@ struct RawxMeasurement {
 /// A subframe (1 to 3) of BeiDou's D1. @param second of the week of its begin; @param week of BeiDou
 [[nodiscard]] std::vector<std::uint32_t> d1_subframe(const waymark::formats::satellites::KeplerOrbit& orbit,
                                                      int number, unsigned second, unsigned week);
+/// A page (1 to 10) of subframe 1 of BeiDou's D2. @param second of the week of its begin; @param week of BeiDou
+[[nodiscard]] std::vector<std::uint32_t> d2_page(const waymark::formats::satellites::KeplerOrbit& orbit,
+                                                 int page, unsigned second, unsigned week);
+/// A string (1 to 5) of GLONASS with its checks. The time of the orbit is a quarter of an hour.
+/// @param day of the interval of four years @param interval of four years from 1996
+[[nodiscard]] std::vector<std::uint32_t> glonass_string(
+    const waymark::formats::satellites::GlonassOrbit& orbit, int number, int day, int interval);
 
 }  // namespace waymark_test

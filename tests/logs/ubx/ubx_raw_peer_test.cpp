@@ -72,6 +72,41 @@ std::vector<KeplerOrbit> orbits_of(const std::string& path, char letter, int wee
   return orbits;
 }
 
+/// Reads the ephemerides of GLONASS from RINEX 2, as far as they are of one day: the stamps are UTC.
+std::vector<GlonassOrbit> glonass_orbits_of(const std::string& path) {
+  std::istringstream text(read_text_file(path));
+  std::string line;
+  while (std::getline(text, line) && line.find("END OF HEADER") == std::string::npos) {
+  }
+  std::vector<GlonassOrbit> orbits;
+  constexpr double kKilometre_m = 1000;
+  while (std::getline(text, line)) {
+    GlonassOrbit orbit;
+    orbit.number = std::stoi(line.substr(0, 2));
+    const double second_of_day = 3600 * std::stod(line.substr(12, 2)) + 60 * std::stod(line.substr(15, 2)) +
+                                 std::stod(line.substr(17, 5));
+    constexpr double kMonday_s = 86'400;
+    constexpr double kLeapSeconds = 17;
+    const bool is_of_the_day = std::stoi(line.substr(9, 2)) == 6;
+    orbit.toe = Stamp{1900 * kWeek_ns}.later(kMonday_s + second_of_day + kLeapSeconds);
+    std::vector<double> n;
+    add_numbers(line, 22, n);
+    for (int k = 0; k < 3; ++k) {
+      std::getline(text, line);
+      line.resize(79, ' ');
+      add_numbers(line, 3, n);
+    }
+    orbit.clock_bias_s = n[0], orbit.clock_drift = n[1];
+    orbit.position = kKilometre_m * Eigen::Vector3d(n[3], n[7], n[11]);
+    orbit.velocity = kKilometre_m * Eigen::Vector3d(n[4], n[8], n[12]);
+    orbit.acceleration = kKilometre_m * Eigen::Vector3d(n[5], n[9], n[13]);
+    orbit.is_healthy = n[6] == 0;
+    orbit.channel = static_cast<int>(n[10]);
+    if (is_of_the_day) orbits.push_back(orbit);
+  }
+  return orbits;
+}
+
 /// The first epochs of an observation file.
 std::vector<RawEpoch> epochs_of(const std::string& path, std::size_t count) {
   std::vector<RawEpoch> epochs;
@@ -207,7 +242,7 @@ TEST_CASE("ubx raw: rows and ephemerides of Berlin in UBX are those of RTKLIB's 
 }
 
 TEST_CASE(
-    "ubx raw: I/NAV of Galileo and D1 of BeiDou give the ephemerides that RTKLIB finds in the same words") {
+    "ubx raw: I/NAV of Galileo, D1 and D2 of BeiDou give the ephemerides that RTKLIB finds in the same words") {
   const auto navigation = shared_data("drives/urbannav_hk_tst/hksc137c.nav");
   if (!navigation) return;
   const Stamp moment = Stamp{2158 * kWeek_ns}.later(93'600);
@@ -215,10 +250,16 @@ TEST_CASE(
   std::vector<KeplerOrbit> orbits;
   Ephemerides ours;
   D1Messages beidou;
+  D2Messages geostationary;
   InavMessages galileo;
   for (const KeplerOrbit& orbit : orbits_at(orbits_of(*navigation, 'C', 2158), moment)) {
-    if (orbit.number <= 5 || orbit.number >= 59) continue;
     orbits.push_back(orbit);
+    for (int page = 1; is_geostationary_beidou(orbit.number) && page <= 10; ++page) {
+      const auto words = d2_page(orbit, page, 93'000U + 3U * static_cast<unsigned>(page), 802);
+      log += sfrbx_frame(3, orbit.number, 1, words);
+      geostationary.take(orbit.number, std::span<const std::uint32_t>(words).first<10>(), moment, ours);
+    }
+    if (is_geostationary_beidou(orbit.number)) continue;
     for (const int number : {1, 2, 3}) {
       const auto words = d1_subframe(orbit, number, 93'000U + 6U * static_cast<unsigned>(number), 802);
       log += sfrbx_frame(3, orbit.number, 0, words);
@@ -245,6 +286,46 @@ TEST_CASE(
   if (!files) return;
   const Ephemerides theirs = read_navigation(files->navigation);
   for (const KeplerOrbit& orbit : orbits) check_same(ours, theirs, orbit);
+}
+
+TEST_CASE("ubx raw: strings of GLONASS give the ephemerides that RTKLIB finds in the same words") {
+  const auto navigation = shared_data("drives/berlin_potsdamer_platz_raw/brdc1580.16g");
+  if (!navigation) return;
+  const Stamp moment = Stamp{1900 * kWeek_ns}.later(126'700);
+  std::string log = rawx_frame(1900, second_of_week(moment), {{0, 5, 0, 2e7, 1.0F, 45}});
+  std::vector<GlonassOrbit> orbits;
+  Ephemerides ours;
+  GlonassStrings strings;
+  for (const GlonassOrbit& orbit : glonass_orbits_of(*navigation)) {
+    if (std::abs(seconds_between(orbit.toe, moment)) > 900) continue;
+    orbits.push_back(orbit);
+    // 2016-06-06 is the day 158 of the first year of the interval 6, which begins in 2016.
+    for (const int number : {1, 2, 3, 4, 5}) {
+      const auto words = glonass_string(orbit, number, 158, 6);
+      log += sfrbx_frame(6, orbit.number, 0, words, orbit.channel);
+      strings.take(orbit.number, orbit.channel, std::span<const std::uint32_t>(words).first<4>(), moment,
+                   ours);
+    }
+  }
+  REQUIRE(orbits.size() > 15);
+  log += rawx_frame(1900, second_of_week(moment) + 1, {{0, 5, 0, 2e7, 1.0F, 45}});
+  const auto files = convert_by_rtklib(log);
+  if (!files) return;
+  const Ephemerides theirs = read_navigation(files->navigation);
+  for (const GlonassOrbit& orbit : orbits) {
+    const SatelliteName name{System::glonass, orbit.number};
+    INFO(to_string(name));
+    for (const double ahead_s : {-900.0, 0.0, 900.0}) {
+      const auto a = ours.state(name, orbit.toe.later(ahead_s));
+      const auto b = theirs.state(name, orbit.toe.later(ahead_s));
+      REQUIRE(a.has_value() == orbit.is_healthy);
+      REQUIRE(b.has_value() == orbit.is_healthy);
+      if (!a) continue;
+      CHECK((a->position - b->position).norm() < 1e-3);
+      CHECK(std::abs(a->clock_s - b->clock_s) < 1e-12);
+    }
+    CHECK(ours.carrier_hz(name) == theirs.carrier_hz(name));
+  }
 }
 
 }  // namespace ubx_raw_peer_test

@@ -230,6 +230,80 @@ TEST_CASE("ubx raw: D1 gives the orbit and the clock that were sent, if its subf
   check_same_orbit(ephemerides, sent);
 }
 
+TEST_CASE("ubx raw: D2 gives the orbit and the clock that were sent, if its pages follow one another") {
+  KeplerOrbit sent = orbit(System::beidou, 3, 5);
+  sent.sqrt_a = 6493.375;
+  sent.inclination_rad = std::numbers::pi * 0.03125;
+  D2Messages messages;
+  Ephemerides ephemerides;
+  const auto take = [&](int page, unsigned second) {
+    return messages.take(3, first_of<10>(d2_page(sent, page, second, 544)), at(kTow), ephemerides);
+  };
+  for (int page = 1; page < 10; ++page)
+    CHECK_FALSE(take(page, 129'000U + 3U * static_cast<unsigned>(page - 1)));
+  CHECK_FALSE(take(10, 129'057));  // of the next cycle
+  CHECK(take(10, 129'027));
+  CHECK_FALSE(take(10, 129'027));
+  check_same_orbit(ephemerides, sent);
+}
+
+TEST_CASE("ubx raw: strings of GLONASS give the orbit and the clock that were sent, over midnight too") {
+  GlonassOrbit sent;
+  sent.number = 11;
+  sent.channel = -4;
+  sent.position = {1000 * std::ldexp(30'000'001, -11), -1000 * std::ldexp(35'000'000, -11),
+                   1000 * std::ldexp(25'000'000, -11)};
+  sent.velocity = {-1000 * std::ldexp(1'500'000, -20), 1000 * std::ldexp(700'000, -20),
+                   1000 * std::ldexp(2'900'000, -20)};
+  sent.acceleration = {1000 * std::ldexp(2, -30), 0, -1000 * std::ldexp(3, -30)};
+  sent.clock_bias_s = -std::ldexp(54'321, -30);
+  sent.clock_drift = std::ldexp(3, -40);
+  const auto quarter = [](double second_of_week) {
+    return at(second_of_week + 17);
+  };  // 17 leap seconds in 2016
+  for (const auto& [toe_s, near_s] :
+       std::vector<std::pair<double, double>>{{kTow + 900, kTow + 100},
+                                              {86'400 - 10'800, 86'400 - 12'000},
+                                              {2 * 86'400 - 9'900, 2 * 86'400 - 11'000}}) {
+    sent.toe = quarter(toe_s);
+    GlonassStrings strings;
+    Ephemerides ephemerides;
+    const auto take = [&](int number) {
+      return strings.take(11, -4, first_of<4>(glonass_string(sent, number, 888, 6)), at(near_s), ephemerides);
+    };
+    using Found = GlonassStrings::Found;
+    CHECK(take(2) == Found::nothing);  // of a frame whose first string was lost
+    for (const int number : {1, 2, 3, 5}) CHECK(take(number) == Found::nothing);
+    CHECK(take(4) == Found::ephemeris);
+    for (const int number : {1, 2, 3, 4}) CHECK(take(number) == Found::nothing);  // once
+    const auto found = ephemerides.state({System::glonass, 11}, sent.toe.later(600));
+    REQUIRE(found);
+    const SatelliteState expected = state_of(sent, sent.toe.later(600));
+    CHECK((found->position - expected.position).norm() < 1e-6);
+    CHECK(found->clock_s == Approx(expected.clock_s).epsilon(1e-14));
+    CHECK(ephemerides.carrier_hz({System::glonass, 11}) == 1602e6 - 4 * 562.5e3);
+  }
+}
+
+TEST_CASE("ubx raw: no bit of a string of GLONASS may be wrong, and strings of two frames do not mix") {
+  GlonassOrbit sent;
+  sent.number = 2;
+  sent.position = {2.5e7, 0, 0};
+  sent.toe = at(kTow + 917);
+  GlonassStrings strings;
+  Ephemerides ephemerides;
+  using Found = GlonassStrings::Found;
+  for (std::size_t bit = 0; bit < 85; ++bit) {
+    auto words = glonass_string(sent, 2, 888, 6);
+    words[bit / 32] ^= 1U << (31 - bit % 32);
+    CHECK(strings.take(2, 0, first_of<4>(words), at(kTow), ephemerides) == Found::wrong_checksum);
+  }
+  for (const int number : {1, 2, 3, 2, 3, 4})  // the end of a frame and the begin of the next are lost
+    CHECK(strings.take(2, 0, first_of<4>(glonass_string(sent, number, 888, 6)), at(kTow), ephemerides) ==
+          Found::nothing);
+  CHECK(ephemerides.empty());
+}
+
 TEST_CASE("ubx raw: RXM-RAWX gives time, pseudorange, Doppler and C/N0 of the first frequency") {
   const std::string frame = rawx_frame(kWeek, 1234.5,
                                        {{0, 5, 0, 20'000'000.25, -1500.5F, 47},    // GPS L1 C/A

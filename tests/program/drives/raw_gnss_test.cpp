@@ -102,4 +102,49 @@ TEST_CASE("raw gnss: inspect counts the satellites of an observation file and pr
   CHECK(raw["satellites"]["G12"]["mean_cn0_dbhz"].get<double>() == Approx(49.8).margin(0.05));
 }
 
+TEST_CASE("raw gnss: a run tells the residuals, C/N0 and place of each satellite, and errors in space") {
+  const auto folder = berlin();
+  if (!folder) return;
+  write_text(*folder + "truth.csv",
+             read_text(*waymark_test::shared_data("drives/berlin_potsdamer_platz/truth_5hz.csv")));
+  write_text(
+      *folder + "drive.yaml",
+      "odometry: {file: odometry.csv}\ngnss: {file: rover.obs, navigation: [brdc.16n, brdc.16g]}\n"
+      "truth:\n  file: truth.csv\n  time: {week: 1900}\n  columns: {time: gps_sow_s, latitude: lat_deg, "
+      "longitude: lon_deg, height: h_m, heading: heading_rad_ccw_from_east}\n");
+  const RunResult result = run({"run", *folder + "drive.yaml", "-o", *folder + "out"});
+  INFO(result.out << result.err);
+  REQUIRE(result.code == 0);
+  CHECK(contains(result.out, "satellites of "));
+  CHECK(contains(result.out, "GLONASS"));
+  CHECK(contains(result.out, "against truth, in space"));
+  const Json metrics = Json::parse(read_text(*folder + "out/metrics.json"))["evaluations"][0];
+  CHECK(metrics["truth"]["space"]["height"]["n"] > 30);
+  CHECK(metrics["truth"]["space"]["rmse_m"] > metrics["truth"]["fused"]["position"]["rmse_m"]);
+  REQUIRE(metrics["groups"].size() == 1);
+  CHECK(metrics["groups"][0]["one"] == "satellite");
+  std::size_t pseudoranges = 0;
+  std::size_t best = 0;
+  for (const Json& satellite : metrics["groups"][0]["groups"]) {
+    pseudoranges += satellite["quantities"][0]["measurements"].get<std::size_t>();
+    if (satellite["name"] != "G12") continue;
+    best = satellite["quantities"][0]["measurements"];
+    CHECK(satellite["mean_signal"].get<double>() == Approx(49.8).margin(0.1));
+    CHECK(satellite["highest_elevation_rad"].get<double>() > 0.5);
+  }
+  CHECK(best == 48);
+  for (const Json& residuals : metrics["residuals"])
+    if (residuals["edge"] == "EDGE_GNSS_PSEUDORANGE") CHECK(residuals["measurements"] == pseudoranges);
+  const std::string page = read_text(*folder + "out/report.html");
+  for (const char* part : {"Measurements by satellite", "sky-pseudorange", "sky-range-rate",
+                           "pseudorange-gps", "range-rate-glonass", "c-n0-gps", "error-height"})
+    CHECK(contains(page, part));
+  // A truth without heights says what to do.
+  std::string text = read_text(*folder + "drive.yaml");
+  text.erase(text.find("height: h_m, "), 13);
+  write_text(*folder + "flat.yaml", text);
+  CHECK(contains(run({"run", *folder + "flat.yaml", "-o", *folder + "flat"}).out,
+                 "no errors in space: the truth has no heights"));
+}
+
 }  // namespace raw_gnss_test

@@ -365,6 +365,13 @@ TEST_CASE("extensions: ranges to anchors alone locate a drive without a receiver
   CHECK(evaluation.at("residuals").at(1).at("edge") == "EDGE_ANCHOR_RANGE");
   CHECK(evaluation.at("residuals").at(1).at("measurements") == 80);
   CHECK(contains(result.out, "Fused positions: RMSE"));  // there is no raw GNSS to compare with
+  // The sensor tells the anchor of each range: 80 ranges of few anchors.
+  CHECK(contains(result.out, "anchors of "));
+  const Json& groups = evaluation.at("groups").at(0).at("groups");
+  std::size_t ranges = 0;
+  for (const Json& anchor : groups) ranges += anchor.at("quantities").at(0).at("measurements").get<std::size_t>();
+  CHECK(groups.size() == anchors.size());
+  CHECK(ranges == 80);
 
   write_text(folder + "ranges.csv", "time,anchor,range\n1001,7,20\n");
   const RunResult unknown = run_with("range_sensor", {"run", drive, "-o", folder + "out"});

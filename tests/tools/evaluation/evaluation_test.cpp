@@ -67,6 +67,29 @@ TEST_CASE("evaluation: raw and fused are held against the truth") {
   CHECK_FALSE(e.withheld_fixes);
 }
 
+TEST_CASE("evaluation: heights are held against the truth, and 3-D errors are those of both") {
+  EvaluationInput input = northwards(false);
+  CHECK_FALSE(evaluate(input).truth->space);
+  CHECK(evaluate(input).truth->no_space == "the graph has no height state");
+  input.heights_m = {52, 52, 52, 52};
+  CHECK_FALSE(evaluate(input).truth->space);
+  CHECK(evaluate(input).truth->no_space == "the truth has no heights");
+  for (std::size_t i = 0; i < input.truth.size(); ++i)  // 50 m, and 1 m more for every second
+    input.truth[i].height_m = 50 + 0.2 * static_cast<double>(i);
+  const Evaluation e = evaluate(input);
+  REQUIRE(e.truth->space);
+  const SpaceMetrics& space = *e.truth->space;
+  CHECK(space.height.count == 4);
+  CHECK(space.height.mean == Approx(0.5));  // 2, 1, 0, -1
+  CHECK(space.height.rms == Approx(std::sqrt(6 / 4.0)));
+  CHECK(space.rmse_m == Approx(std::sqrt(1 + 6 / 4.0)));  // 1 m to the east
+  CHECK(space.max_m == Approx(std::sqrt(1 + 4.0)));
+  CHECK(*e.epochs[3].height_error_m == Approx(-1));
+  CHECK(e.truth->no_space.empty());
+  input.heights_m.pop_back();
+  CHECK_THROWS_AS(evaluate(input), UsageError);
+}
+
 TEST_CASE("evaluation: raw and fused are compared at the same epochs, rejected and withheld ones too") {
   EvaluationInput input = northwards(true);
   input.fixes[1].status = FixStatus::rejected;

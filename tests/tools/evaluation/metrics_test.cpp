@@ -8,6 +8,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/evaluation/numbers/metrics.hpp>
+#include <waymark/tools/evaluation/numbers/space_metrics.hpp>
 
 namespace metrics_test {
 
@@ -121,6 +122,20 @@ TEST_CASE("metrics: scalar statistics are those of a small sample") {
   CHECK(s.max_abs == 3);
   CHECK(std::isnan(scalar_statistics({}).mean));
   CHECK(std::isnan(scalar_statistics(std::vector<double>{1.0}).deviation));
+}
+
+TEST_CASE("metrics: in space the height is the third component") {
+  const std::vector<Eigen::Vector2d> offsets{{3, 0}, {0, 0}};
+  const std::vector<double> heights{4, 0};
+  const SpaceMetrics m = space_metrics(offsets, heights);
+  CHECK(m.max_m == Approx(5));
+  CHECK(m.rmse_m == Approx(std::sqrt(25 / 2.0)));
+  CHECK(m.precision_m == Approx(std::sqrt(2 * (1.5 * 1.5 + 2 * 2))));  // about (1.5, 0, 2), divisor 1
+  CHECK(m.height.mean == Approx(2));
+  CHECK(m.height.rms == Approx(std::sqrt(8.0)));
+  CHECK(std::isnan(space_metrics({}, {}).rmse_m));
+  CHECK(std::isnan(space_metrics(std::vector<Eigen::Vector2d>{{1, 2}}, std::vector<double>{2}).precision_m));
+  CHECK_THROWS_AS(space_metrics(offsets, {}), UsageError);
 }
 
 TEST_CASE("metrics: along is ahead, across is to the left") {

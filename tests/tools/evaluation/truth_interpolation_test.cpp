@@ -47,6 +47,16 @@ TEST_CASE("truth: position is linear between two truth poses") {
   CHECK(match.median_interval_s == Approx(1));
 }
 
+TEST_CASE("truth: height is linear between two poses that both have one") {
+  std::vector<TruthPose> truth{truth_pose(0, 0, 0), truth_pose(1, 10, 0), truth_pose(2, 20, 0)};
+  truth[0].height_m = 40;
+  truth[1].height_m = 44;
+  const TruthMatch match = interpolate_truth(truth, stamps({0.25, 1, 1.5}));
+  CHECK(match.at[0]->pose.height_m == Approx(41));
+  CHECK(match.at[1]->pose.height_m == 44);
+  CHECK(std::isnan(match.at[2]->pose.height_m));
+}
+
 TEST_CASE("truth: heading goes along the shorter arc, across +-pi") {
   const std::vector<TruthPose> truth{truth_pose(0, 0, 0, 170 * kDegree), truth_pose(1, 0, 0, -170 * kDegree)};
   const TruthMatch match = interpolate_truth(truth, stamps({0.25, 0.75}));

@@ -15,6 +15,7 @@
 #include <waymark/tools/inspection/inspection.hpp>
 #include <waymark/tools/inspection/proposal/drive_proposal.hpp>
 
+#include "logs/ubx/raw_frames.hpp"
 #include "support/paths.hpp"
 
 namespace inspection_test {
@@ -453,6 +454,42 @@ TEST_CASE("inspection: rubbish is an error with a remedy or a report, never a cr
   const LogInspection ubx = inspect(write("words.log", "hello\nworld\n"), "ubx");
   CHECK(has(inspection_text(ubx), "no position in the log"));
   CHECK_NOTHROW(inspection_json(words).dump());
+}
+
+TEST_CASE(
+    "inspect: raw measurements of a UBX log are counted by satellite, with the ephemerides of the log") {
+  using namespace waymark_test;
+  satellites::KeplerOrbit orbit;
+  orbit.number = 5;
+  orbit.sqrt_a = 5153;
+  orbit.toe_sow_s = 129'600;
+  std::string log;
+  for (int second = 0; second < 3; ++second)
+    log += rawx_frame(1900, 129'600 + second,
+                      {{0, 5, 0, 2.1e7, 100.0F, 40 + second},
+                       {3, 3, 0, 3.6e7, 10.0F, 30},
+                       {6, 2, 0, 2e7, 5.0F, 44, second > 0}});
+  for (const int number : {1, 2, 3})
+    log += sfrbx_frame(0, 5, 0, lnav_subframe(orbit, number, 7, 1900 % 1024));
+  log += rawx_frame(0, 100, {{0, 5, 0, 2.1e7, 100.0F, 40}});  // the receiver does not know the week
+  const LogInspection found =
+      inspect_log(write("raw.ubx", log), builtin_log_readers(), {.format = "ubx", .dbc = {}, .now = kNow});
+  REQUIRE(found.raw);
+  CHECK(found.raw->stamps.count() == 3);
+  CHECK(found.raw->fewest == 2);
+  CHECK(found.raw->most == 3);
+  CHECK(found.raw->systems() == "GPS 1, GLONASS 1, BeiDou 1");
+  CHECK(found.raw->satellites.at("G05").pseudoranges == 3);
+  CHECK(found.raw->satellites.at("G05").mean_cn0_dbhz() == Approx(41));
+  CHECK(found.raw->satellites.at("G05").ephemerides == 1);
+  CHECK(found.raw->satellites.at("R02").pseudoranges == 2);
+  CHECK(found.raw->satellites.at("C03").ephemerides == 0);
+  CHECK(found.corrupt == 0);
+  CHECK(found.notes.back().find("the log has no ephemeris of C03, R02") != std::string::npos);
+  const std::string text = inspection_text(found);
+  CHECK(text.find("GPS 1, GLONASS 1, BeiDou 1") != std::string::npos);
+  CHECK(text.find("ephemerides") != std::string::npos);
+  CHECK(inspection_json(found)["raw"]["satellites"]["G05"]["ephemerides"] == 1);
 }
 
 }  // namespace inspection_test

@@ -111,6 +111,7 @@ TruthPose Projection::project(const GeodeticTruth& truth) const {
   TruthPose result;
   result.stamp = truth.stamp;
   result.position = grid.position;
+  result.height_m = truth.height_m;
   if (truth.heading_rad)
     result.heading_rad = grid_heading_from_true(*truth.heading_rad, grid.convergence_rad);
   return result;

@@ -296,7 +296,7 @@ void GraphBuilder::extend(const DrivePart& part) {
     add_for(sensor.source, sensors_.loss(i), [&] {
       sensors_.extend(i, sensor.place,
                       {all, fixes, facts_.antenna_m, sensor.readings, grid_scale_, sensor.source,
-                       context_of(facts_.surroundings)},
+                       context_of(facts_.surroundings), part.groups.empty() ? nullptr : &part.groups[i]},
                       graph_);
     });
   }
@@ -309,9 +309,12 @@ BuiltGraph build_graph(const PlacedDrive& placed, std::span<const PreparedSensor
   const AcceptedFixes accepted = accepted_fixes(placed);
   GraphBuilder builder(facts_of(placed, settings), sensors, settings, registry);
   builder.check_drive(accepted.fixes, sensors);
+  std::vector<MeasurementGroups> groups(sensors.size());
   builder.extend({placed.timeline.stamps, placed.start.poses, placed.timeline.intervals, accepted.fixes,
-                  accepted.nodes, sensors, placed.runs});
+                  accepted.nodes, sensors, placed.runs, groups});
   BuiltGraph built;
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    if (!groups[i].members.empty()) built.groups.push_back({sensors[i].source, std::move(groups[i])});
   built.warnings = warnings_of_sensors_apart(sensors, builder.nodes());
   built.modelings = builder.modelings();
   built.shares = builder.shares();

@@ -70,6 +70,8 @@ struct DrivePart {
   std::span<const PreparedSensor> sensors = {};
   /// what the relative sources measured, if there are several; otherwise `intervals` say it
   std::span<const MotionRun> runs = {};
+  /// one for each sensor, to be filled by its model; empty: nobody asks
+  std::span<MeasurementGroups> groups = {};
 };
 
 /// A graph that grows with its drive. Vertices may leave it if dropped() is told so.
@@ -152,6 +154,7 @@ struct BuiltGraph {
   std::vector<std::string> warnings;                           ///< of the sensors
   std::vector<std::shared_ptr<const GnssModeling>> modelings;  ///< one for each absolute source
   SourceShares shares;
+  std::vector<GroupsOfSource> groups;  ///< of the sensors that tell of any
 };
 
 /// Builds the graph of the accepted fixes of a whole drive.

@@ -146,6 +146,7 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);
+  modeled.groups = std::move(built.groups);
   modeled.distance_m = distance_of(modeled.placed.timeline);
   formats::GraphDocument& document = modeled.document;
   document.graph = std::move(built.graph);

@@ -52,6 +52,7 @@ struct ModeledDrive {
   formats::GraphDocument document{};  ///< with provenance: provenance.hpp
   /// that built the graph of the document: one for each absolute source
   std::vector<std::shared_ptr<const GnssModeling>> modelings{};
+  std::vector<GroupsOfSource> groups{};  ///< of the measurements in the graph of the document
 
   /// Returns sentences about suspicious facts in the logs.
   [[nodiscard]] std::vector<std::string> warnings() const;

@@ -136,6 +136,28 @@ std::vector<StampedPose> evaluated_poses(const formats::GraphDocument& document)
   return poses;
 }
 
+std::vector<double> evaluated_heights(const formats::GraphDocument& document) {
+  const Graph& graph = document.graph;
+  std::vector<std::pair<Stamp, double>> states;
+  std::string source;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
+    const std::optional<Stamp> stamp = graph.stamp(v);
+    if (!stamp || !graph.vertex_type(v).height) continue;
+    const std::string own = formats::source_of(graph.id(v), document);
+    if (states.empty()) source = own;
+    if (own == source) states.emplace_back(*stamp, graph.value(v)[0]);
+  }
+  std::vector<double> heights;
+  if (states.empty()) return heights;
+  std::sort(states.begin(), states.end());
+  for (const StampedPose& pose : evaluated_poses(document)) {
+    const auto after = std::upper_bound(states.begin(), states.end(), pose.stamp,
+                                        [](Stamp stamp, const auto& state) { return stamp < state.first; });
+    heights.push_back((after == states.begin() ? after : std::prev(after))->second);
+  }
+  return heights;
+}
+
 std::vector<std::optional<Eigen::Matrix2d>> evaluated_covariances(const formats::GraphDocument& document) {
   std::vector<std::optional<Eigen::Matrix2d>> covariances;
   for (const formats::VertexCovariance* block : evaluated_blocks(document)) {

@@ -32,6 +32,11 @@ namespace waymark::drive {
 [[nodiscard]] std::vector<std::optional<double>> evaluated_heading_sigmas(
     const formats::GraphDocument& document);
 
+/// Returns the height at each of these vertices, m above the ellipsoid: that of the last height state
+/// (VertexType::height) up to its stamp, which holds until the next one. Empty if the graph has none. Of
+/// several sources with heights, those of the first one.
+[[nodiscard]] std::vector<double> evaluated_heights(const formats::GraphDocument& document);
+
 /// Returns the poses at the true times of the fixes: their stamps minus the estimated time offset,
 /// along the constant twist between the adjacent nodes. Empty if the graph estimates no offset.
 [[nodiscard]] std::vector<Eigen::Vector3d> poses_when_measured(const formats::GraphDocument& document);

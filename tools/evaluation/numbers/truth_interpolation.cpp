@@ -84,8 +84,10 @@ std::optional<double> direction_around(const SampledTruth& truth, std::size_t fi
 
 TruthPose interpolate(const TruthPose& a, const TruthPose& b, Stamp epoch) {
   const double share = seconds_between(a.stamp, epoch) / seconds_between(a.stamp, b.stamp);
-  TruthPose pose{
-      .stamp = epoch, .position = a.position + share * (b.position - a.position), .heading_rad = {}};
+  TruthPose pose{.stamp = epoch,
+                 .position = a.position + share * (b.position - a.position),
+                 .heading_rad = {},
+                 .height_m = a.height_m + share * (b.height_m - a.height_m)};
   if (a.heading_rad && b.heading_rad)
     pose.heading_rad = wrap_angle(*a.heading_rad + share * wrap_angle(*b.heading_rad - *a.heading_rad));
   return pose;

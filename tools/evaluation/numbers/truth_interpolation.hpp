@@ -42,8 +42,8 @@ struct TruthMatch {
   [[nodiscard]] std::size_t unmatched() const { return before_truth + after_truth + in_gap; }
 };
 
-/// Interpolates the truth at the epochs: the position linearly, the heading along the shorter arc.
-/// There is a heading only if both neighbours have one. It never extrapolates and never crosses a
+/// Interpolates the truth at the epochs: position and height linearly, the heading along the shorter
+/// arc. There is a heading or a height only if both neighbours have one. It never extrapolates and never crosses a
 /// gap (TruthOptions). An epoch with the stamp of a truth pose takes that pose, even beside a gap
 /// (the last one of several with that stamp). O(n log m) for n epochs and m truth poses.
 /// @param truth stamps not decreasing, on the scale of the epochs

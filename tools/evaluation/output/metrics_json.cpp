@@ -113,6 +113,13 @@ Json to_json(std::span<const RelativePoseError> errors) {
   return list;
 }
 
+Json to_json(const SpaceMetrics& m) {
+  return {{"height", to_json(m.height, "m")},
+          {"max_m", text::number_or_null(m.max_m)},
+          {"rmse_m", text::number_or_null(m.rmse_m)},
+          {"precision_m", text::number_or_null(m.precision_m)}};
+}
+
 Json to_json(const TruthEvaluation& t) {
   return {{"match", to_json(t.match)},
           {"gnss", to_json(t.gnss)},
@@ -122,6 +129,8 @@ Json to_json(const TruthEvaluation& t) {
           {"gnss_without_constant_offset", to_json(t.gnss_without_offset)},
           {"fused_without_constant_offset", to_json(t.fused_without_offset)},
           {"relative_pose_error", to_json(t.relative)},
+          {"space", t.space ? to_json(*t.space) : Json(nullptr)},
+          {"no_space", t.space ? Json(nullptr) : Json(t.no_space)},
           {"consistency", t.consistency ? to_json(*t.consistency) : Json(nullptr)},
           {"autocorrelation",
            {{"lags_s", Json(kAutocorrelationLags)},
@@ -202,7 +211,8 @@ Json to_json(const LabelledEvaluation& labelled) {
         {"withheld", to_json(e.prediction)}}},
       {"by_quality", to_json(e.by_quality)},
       {"sources", to_json(e.sources)},
-      {"residuals", source_residuals_json(e.residuals)}};
+      {"residuals", source_residuals_json(e.residuals)},
+      {"groups", grouped_residuals_json(e.groups)}};
 }
 
 }  // namespace

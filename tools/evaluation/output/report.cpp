@@ -110,6 +110,14 @@ std::string truth_block(std::span<const LabelledEvaluation> evaluations, const t
   return block(table, look) + block(better, look);
 }
 
+/// Says how good the height is, and the position in space, for results with a height.
+std::string space_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
+  text::Table table;
+  for (const auto& [label, evaluation] : evaluations)
+    if (evaluation.truth) add_space_row(label, *evaluation.truth, table);
+  return table.columns.empty() && table.notes.empty() ? "" : text::table_text(table, look) + "\n";
+}
+
 std::string track_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
   text::Table table{.columns = {"along / across track", "n", "along mean [m]", "along std [m]",
                                 "along rms [m]", "across mean [m]", "across std [m]", "across rms [m]",
@@ -231,6 +239,15 @@ std::string residuals_block(std::span<const LabelledEvaluation> evaluations, con
   return text;
 }
 
+/// Says how well the measurements of each kind of group fit: of each satellite system.
+std::string groups_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
+  std::string text;
+  for (const auto& [label, evaluation] : evaluations)
+    for (const GroupedResiduals& of : evaluation.groups)
+      text += block(family_table(of, evaluations.size() > 1 ? label : ""), look);
+  return text;
+}
+
 /// Counts the fixes of each quality, and compares raw with fused where there is a truth.
 std::string quality_block(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
   text::Table table{.columns = {"quality of the fixes", "fixes", "accepted", "matched", "raw median [m]",
@@ -248,12 +265,28 @@ std::string quality_block(std::span<const LabelledEvaluation> evaluations, const
 
 }  // namespace
 
+void add_space_row(const std::string& label, const TruthEvaluation& truth, text::Table& table) {
+  if (truth.space) {
+    const SpaceMetrics& m = *truth.space;
+    table.columns = {"against truth, in space", "n",           "height mean [m]", "height std [m]",
+                     "height rms [m]",          "3-D Max [m]", "3-D Prec [m]",    "3-D RMSE [m]"};
+    table.rows.push_back({label, std::to_string(m.height.count), metres(m.height.mean),
+                          metres(m.height.deviation), metres(m.height.rms), metres(m.max_m),
+                          metres(m.precision_m), metres(m.rmse_m)});
+  } else if (truth.no_space == kNoTruthHeights && table.notes.empty()) {
+    table.notes.push_back(
+        "no errors in space: the truth has no heights; name their column under "
+        "'truth: {columns: {height: ...}}'");
+  }
+}
+
 std::string metrics_table(std::span<const LabelledEvaluation> evaluations, const text::TextLook& look) {
-  return truth_block(evaluations, look) + track_block(evaluations, look) +
+  return truth_block(evaluations, look) + space_block(evaluations, look) + track_block(evaluations, look) +
          consistency_block(evaluations, look) + autocorrelation_block(evaluations, look) +
          withheld_block(evaluations, look) + quality_block(evaluations, look) +
          innovation_block(evaluations, look) + sources_block(evaluations, look) +
-         residuals_block(evaluations, look) + count_block(evaluations, look);
+         residuals_block(evaluations, look) + groups_block(evaluations, look) +
+         count_block(evaluations, look);
 }
 
 }  // namespace waymark::evaluation

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <waymark/tools/evaluation/evaluation.hpp>
+#include <waymark/tools/text/table.hpp>
 #include <waymark/tools/text/text_look.hpp>
 
 namespace waymark::evaluation {
@@ -22,8 +23,12 @@ struct ReportHeader {
   std::map<std::string, std::string> provenance;  ///< version, options, input hashes
 };
 
+/// Adds the errors of the height and in space as a row. A note says what to do if only the truth lacks
+/// heights; without a height state nothing is added.
+void add_space_row(const std::string& label, const TruthEvaluation& truth, text::Table& table);
+
 /// Returns the table for the terminal. Raw GNSS comes first, then every evaluation. The blocks are:
-/// against truth; improvement over raw GNSS; along and across track and heading; stated against
+/// against truth; improvement over raw GNSS; in space; along and across track and heading; stated against
 /// actual error; autocorrelation; withheld fixes; normalised innovations; counts. Blocks without
 /// data are left out. If raw GNSS rows differ between evaluations (another gate, other epochs),
 /// each is printed. Units are metres and degrees as in the headings; "-" is an undefined number.

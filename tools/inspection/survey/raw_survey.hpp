@@ -6,6 +6,9 @@
 
 #include <waymark/formats/logs/detail/common/line_decoder.hpp>
 #include <waymark/formats/logs/detail/rinex/rinex_observations.hpp>
+#include <waymark/formats/logs/detail/ubx/ubx_frames.hpp>
+#include <waymark/formats/logs/detail/ubx/ubx_subframes.hpp>
+#include <waymark/formats/satellites/ephemerides.hpp>
 #include <waymark/tools/inspection/survey/running_statistics.hpp>
 
 namespace waymark::inspection {
@@ -16,6 +19,7 @@ struct SatelliteSummary {
   std::size_t dopplers = 0;
   std::size_t with_cn0 = 0;
   double cn0_sum_dbhz = 0;
+  std::size_t ephemerides = 0;  ///< in the log
 
   /// NaN without C/N0.
   [[nodiscard]] double mean_cn0_dbhz() const;
@@ -25,13 +29,28 @@ struct RawSummary {
   StampSeries stamps;                                    ///< of the epochs, UTC
   std::map<std::string, SatelliteSummary> satellites{};  ///< by "G05"
   std::size_t fewest = 0, most = 0;                      ///< satellites in an epoch
+  bool holds_ephemerides = false;                        ///< logs of this kind may have them
+
+  void add(const formats::satellites::RawEpoch& epoch);
+  void add(const formats::satellites::Ephemerides& ephemerides);
+  /// Returns how many satellites of each system were measured: "GPS 9, GLONASS 7".
+  [[nodiscard]] std::string systems() const;
+};
+
+/// A decoder that makes such a summary.
+class RawSummarySource {
+ public:
+  virtual ~RawSummarySource() = default;
+  [[nodiscard]] const RawSummary& summary() const { return summary_; }
+
+ protected:
+  RawSummary summary_;
 };
 
 /// Reads a RINEX observation file without ephemerides.
-class RawSurvey final : public formats::LineDecoder {
+class RinexSurvey final : public formats::LineDecoder, public RawSummarySource {
  public:
-  explicit RawSurvey(const std::string& path);
-  [[nodiscard]] const RawSummary& summary() const { return summary_; }
+  explicit RinexSurvey(const std::string& path);
 
  protected:
   void take_line(std::string_view line, std::size_t number) override {
@@ -40,10 +59,21 @@ class RawSurvey final : public formats::LineDecoder {
   void end() override { observations_.finish(); }
 
  private:
-  void take_epoch(const formats::satellites::RawEpoch& epoch);
-
   formats::RinexObservations observations_;
-  RawSummary summary_;
+};
+
+/// Reads the messages RXM-RAWX and RXM-SFRBX of a UBX log.
+class UbxRawSurvey final : public formats::UbxFrameDecoder, public RawSummarySource {
+ public:
+  explicit UbxRawSurvey(const std::string& path) : UbxFrameDecoder(path, {}) {}
+
+ protected:
+  void take_frame(const formats::UbxFrame& frame) override;
+  void end() override;
+
+ private:
+  formats::UbxSubframes subframes_;
+  formats::satellites::Ephemerides ephemerides_;
 };
 
 }  // namespace waymark::inspection

@@ -470,6 +470,7 @@ void Estimator::publish(bool corrected) {
   pose.corrected = corrected;
   pose.resets = counts_.resets;
   pose.fix_age_s = places_.age_s(now_);
+  pose.height_m = window_->newest_height();
   pose.radius95_m = radius95_m(window_->covariance().topLeftCorner<2, 2>());
   reports_.emplace_back(pose);
 }

@@ -39,11 +39,12 @@ struct LivePose {
   double speed_mps = 0;       ///< ground metres per second, by the odometry
   double yaw_rate_radps = 0;  ///< by the odometry
   State state = State::waiting;
-  bool heading_known = false;  ///< false: heading and its variance mean nothing
-  bool corrected = false;      ///< a solution was made for it
-  std::uint32_t resets = 0;    ///< how often the estimate began anew
-  double fix_age_s = 0;        ///< since the last used fix
-  double radius95_m = 0;       ///< of the circle that holds the place with 95 %
+  bool heading_known = false;        ///< false: heading and its variance mean nothing
+  bool corrected = false;            ///< a solution was made for it
+  std::uint32_t resets = 0;          ///< how often the estimate began anew
+  double fix_age_s = 0;              ///< since the last used fix
+  std::optional<double> height_m{};  ///< above the ellipsoid, if a sensor estimates it
+  double radius95_m = 0;             ///< of the circle that holds the place with 95 %
 };
 
 /// A pose that leaves the window: its last estimate, with all that was measured up to a lag later.

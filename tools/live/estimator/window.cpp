@@ -80,7 +80,10 @@ void Window::add_known(std::span<const KnownState> states) {
 void Window::extend(const drive::DrivePart& part) {
   drive::DrivePart whole = part;
   if (readings_wait_) whole.sensors = sensors_;
+  const auto first = static_cast<VertexIndex>(graph_.vertex_count());
   builder_.extend(whole);
+  for (VertexIndex v = first; v < static_cast<VertexIndex>(graph_.vertex_count()); ++v)
+    if (graph_.vertex_type(v).height) height_ = graph_.id(v);
   if (!readings_wait_) return;
   for (drive::PreparedSensor& sensor : sensors_) {
     sensor.readings.stamps.clear();
@@ -189,6 +192,11 @@ std::vector<StampedPose> Window::drop_before(Stamp moment) {
 Eigen::Vector3d Window::newest_pose() const {
   const auto pose = graph_.value(builder_.nodes().poses.back());
   return {pose[0], pose[1], pose[2]};
+}
+
+std::optional<double> Window::newest_height() const {
+  const auto vertex = height_ ? graph_.find(*height_) : std::nullopt;
+  return vertex ? std::optional(graph_.value(*vertex)[0]) : std::nullopt;
 }
 
 Eigen::Vector2d Window::antenna_at(const Fix& fix) const {

@@ -75,6 +75,8 @@ class Window {
   [[nodiscard]] Stamp oldest() const { return builder_.nodes().stamps.front(); }
   [[nodiscard]] Stamp newest() const { return builder_.nodes().stamps.back(); }
   [[nodiscard]] Eigen::Vector3d newest_pose() const;
+  /// Returns the newest height state, m above the ellipsoid; empty if the graph has none.
+  [[nodiscard]] std::optional<double> newest_height() const;
   [[nodiscard]] Eigen::Matrix3d covariance() const { return predictor_.covariance(); }
   /// Returns where the antenna of a fix was at its stamp, as far as is known.
   [[nodiscard]] Eigen::Vector2d antenna_at(const Fix& fix) const;
@@ -95,6 +97,7 @@ class Window {
   WindowSolver solver_;
   Predictor predictor_;
   bool readings_wait_ = false;
+  std::optional<VertexId> height_{};  ///< of the newest height state
 };
 
 }  // namespace waymark::live

@@ -19,10 +19,16 @@ class Comparison {
  public:
   explicit Comparison(const drive::PreparedDrive& drive) : drive_(drive) {}
 
-  void add(Stamp stamp, const Eigen::Vector3d& pose, const Eigen::Matrix3d* covariance) {
-    const std::optional<Eigen::Vector2d> truth = at(stamp);
+  /// @param covariance null: not known @param height_m empty: not known
+  void add(Stamp stamp, const Eigen::Vector3d& pose, const Eigen::Matrix3d* covariance,
+           const std::optional<double>& height_m) {
+    const std::optional<Eigen::Vector3d> truth = at(stamp);
     if (!truth) return;
-    const Eigen::Vector2d off = pose.head<2>() + rotate(pose[2], drive_.truth_reference_m) - *truth;
+    const Eigen::Vector2d off = pose.head<2>() + rotate(pose[2], drive_.truth_reference_m) - truth->head<2>();
+    if (height_m && std::isfinite(truth->z())) {
+      squares_3d_ += off.squaredNorm() + (*height_m - truth->z()) * (*height_m - truth->z());
+      ++with_height_;
+    }
     ++errors_.poses;
     squares_ += off.squaredNorm();
     errors_.max_m = std::max(errors_.max_m, off.norm());
@@ -41,12 +47,14 @@ class Comparison {
     errors.rmse_m = std::sqrt(squares_ / count);
     errors.inside95 = static_cast<double>(inside_) / count;
     errors.nees = normalised_ / count;
+    if (with_height_ > 0) errors.rmse_3d_m = std::sqrt(squares_3d_ / static_cast<double>(with_height_));
     return errors;
   }
 
  private:
-  /// Returns the truth at a moment; empty where it has a gap.
-  [[nodiscard]] std::optional<Eigen::Vector2d> at(Stamp stamp) const {
+  /// Returns x, y and height of the truth at a moment, a height that it does not have as NaN; empty where it has a
+  /// gap.
+  [[nodiscard]] std::optional<Eigen::Vector3d> at(Stamp stamp) const {
     constexpr double kGap = 1.5;
     const std::vector<TruthPose>& truth = drive_.truth;
     const auto after = std::lower_bound(truth.begin(), truth.end(), stamp,
@@ -56,13 +64,18 @@ class Comparison {
     const double apart_s = seconds_between(before.stamp, after->stamp);
     if (apart_s > kGap) return std::nullopt;
     const double share = seconds_between(before.stamp, stamp) / apart_s;
-    return Eigen::Vector2d((1 - share) * before.position + share * after->position);
+    const auto in_space = [](const TruthPose& of) {
+      return Eigen::Vector3d(of.position.x(), of.position.y(), of.height_m);
+    };
+    return Eigen::Vector3d((1 - share) * in_space(before) + share * in_space(*after));
   }
 
   const drive::PreparedDrive& drive_;
   LagErrors errors_;
   double squares_ = 0;
   double normalised_ = 0;
+  double squares_3d_ = 0;
+  std::size_t with_height_ = 0;
   std::size_t inside_ = 0;
 };
 
@@ -90,10 +103,12 @@ LagResult replay(const std::vector<Sample>& samples, const drive::DriveFile& fil
     bool solved = false;
     for (const Report& report : estimator.reports()) {
       if (const auto* pose = std::get_if<LivePose>(&report)) {
-        if (pose->heading_known && !pose->corrected) at_once.add(pose->stamp, pose->pose, &pose->covariance);
+        if (pose->heading_known && !pose->corrected)
+          at_once.add(pose->stamp, pose->pose, &pose->covariance, pose->height_m);
         solved = solved || pose->corrected;
       }
-      if (const auto* pose = std::get_if<SettledPose>(&report)) later.add(pose->stamp, pose->pose, nullptr);
+      if (const auto* pose = std::get_if<SettledPose>(&report))
+        later.add(pose->stamp, pose->pose, nullptr, {});
     }
     return solved;
   };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,9 @@ struct LagErrors {
   double rmse_m = 0;
   double max_m = 0;
   double inside95 = 0;  ///< share of the poses whose truth lies in their region of 95 %; live poses only
-  double nees = 0;      ///< mean squared normalised error, 2 freedoms; live poses only
+  /// in three dimensions, of the poses with a height and a height of the truth; live poses only; NaN: there are none
+  double rmse_3d_m = std::numeric_limits<double>::quiet_NaN();
+  double nees = 0;  ///< mean squared normalised error, 2 freedoms; live poses only
 };
 
 struct LagResult {

@@ -30,6 +30,8 @@ std::pair<std::string, std::string> write_report(const DocumentResult& request,
                               .states = &request.states,
                               .residuals = &residuals,
                               .sparsity = request.sparsity ? &*request.sparsity : nullptr};
+  const auto groups = evaluation::residuals_by_group(request.document.graph, request.groups);
+  drive.groups = groups;
   drive.noise = request.noise;
   drive.went_in = request.went_in;
   drive.dead_reckoned = drive::dead_reckoned(request.document);

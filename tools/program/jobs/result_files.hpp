@@ -3,10 +3,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <waymark/core/drive/measurement_groups.hpp>
 #include <waymark/core/optimize/multi_start.hpp>
 #include <waymark/formats/graph/graph_document.hpp>
 #include <waymark/tools/drawing/page/page.hpp>
@@ -34,6 +36,7 @@ struct DocumentResult {
   std::vector<std::pair<std::string, std::string>> went_in{};
   std::vector<std::string> files{};               ///< written before, to be linked; paths
   const MapFile* map = nullptr;                   ///< beneath the trajectory; null: none
+  std::span<const GroupsOfSource> groups{};       ///< of the measurements in the graph of the document
   std::vector<drawing::Section> more_sections{};  ///< at the end of the report
 };
 

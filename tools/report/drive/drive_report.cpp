@@ -5,6 +5,7 @@
 #include <waymark/tools/report/drive/drive_figures.hpp>
 #include <waymark/tools/report/drive/drive_report.hpp>
 #include <waymark/tools/report/drive/drive_summary.hpp>
+#include <waymark/tools/report/drive/group_sections.hpp>
 #include <waymark/tools/report/drive/optimization_figures.hpp>
 #include <waymark/tools/report/drive/verdict.hpp>
 #include <waymark/tools/report/words.hpp>
@@ -187,6 +188,7 @@ drawing::Page drive_page(const ReportedDrive& drive) {
   add_receivers(drive, page);
   add_sources(drive, page);
   add_source_residuals(drive, page);
+  for (drawing::Section& section : group_sections(drive)) page.sections.push_back(std::move(section));
   add_states(drive, page);
   add_residuals(drive, page);
   add_optimization(drive, page);

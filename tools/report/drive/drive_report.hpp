@@ -1,6 +1,7 @@
 /// The report of one fused drive.
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,8 @@ struct ReportedDrive {
   const std::vector<evaluation::StateReport>* states = nullptr;  ///< null: not computed
   const evaluation::GraphResiduals* residuals = nullptr;         ///< null: not computed
   const evaluation::Sparsity* sparsity = nullptr;                ///< null: not computed
+  /// of the measurements, with each of them (group_residuals.hpp); empty: no sensor tells of groups
+  std::span<const evaluation::GroupedResiduals> groups{};
   text::Table noise{};  ///< the estimated noise; without rows: as stated
   std::vector<std::pair<std::string, std::string>> went_in{};  ///< the inputs: heading, text
   std::vector<StampedPose> dead_reckoned{};  ///< the drive by odometry alone; empty: not known

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <waymark/formats/logs/fix_quality.hpp>
+#include <waymark/tools/evaluation/output/report.hpp>
 #include <waymark/tools/report/drive/drive_figures.hpp>
 #include <waymark/tools/report/drive/drive_summary.hpp>
 #include <waymark/tools/report/drive/verdict.hpp>
@@ -65,6 +66,20 @@ text::Table truth_table(const ReportedDrive& drive) {
   add_without_offset("raw GNSS", truth.gnss_without_offset, table);
   add_without_offset("fused", truth.fused_without_offset, table);
   return table;
+}
+
+/// Adds the errors of the height and in space, or the remedy if only the truth lacks heights.
+void add_space(const evaluation::TruthEvaluation& truth, std::vector<drawing::PageBlock>& blocks) {
+  text::Table table;
+  evaluation::add_space_row("fused", truth, table);
+  if (table.rows.empty()) {
+    for (std::string& note : table.notes) blocks.emplace_back(drawing::Paragraph{std::move(note)});
+    return;
+  }
+  table.notes = {
+      "The height is a state of the graph, of the point that it describes: an antenna, for example. A constant "
+      "difference to the point of the truth is in the mean."};
+  blocks.emplace_back(std::move(table));
 }
 
 text::Table withheld_table(const evaluation::Evaluation& evaluation) {
@@ -192,7 +207,10 @@ text::Table account(const ReportedDrive& drive) {
 
 std::vector<drawing::PageBlock> metric_tables(const ReportedDrive& drive) {
   std::vector<drawing::PageBlock> blocks;
-  if (drive.evaluation.truth) blocks.emplace_back(truth_table(drive));
+  if (drive.evaluation.truth) {
+    blocks.emplace_back(truth_table(drive));
+    add_space(*drive.evaluation.truth, blocks);
+  }
   if (!drive.evaluation.at_withheld.empty() && drive.evaluation.withheld > 0)
     blocks.emplace_back(withheld_table(drive.evaluation));
   if (drive.evaluation.held_out) blocks.emplace_back(held_out_table(*drive.evaluation.held_out));

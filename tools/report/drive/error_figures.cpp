@@ -151,6 +151,13 @@ std::vector<drawing::Figure> errors_over_time(const ReportedDrive& drive) {
         return e.heading_error_rad ? std::optional(*e.heading_error_rad * kDegrees) : std::nullopt;
       }));
   add_if_seen(std::move(turned), figures);
+  drawing::Figure height =
+      time_figure(drive, "error-height", "Height error",
+                  "The height state of the graph minus the height of the truth, above the ellipsoid.",
+                  {.title = "height error", .unit = "m"});
+  height.series.push_back(over_time(drive, "fused", drawing::Look::fused,
+                                    [](const evaluation::EpochResult& e) { return e.height_error_m; }));
+  add_if_seen(std::move(height), figures);
   drawing::Figure speed =
       time_figure(drive, "speed", "Speed", "Speed of the fused body point; negative in reverse.",
                   {.title = "speed", .unit = "m/s"});

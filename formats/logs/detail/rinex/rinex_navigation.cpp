@@ -75,13 +75,9 @@ std::optional<satellites::GlonassOrbit> glonass_of(const NavigationRecord& recor
   orbit.acceleration = kKilometre * Eigen::Vector3d(n[5], n[9], n[13]);
   orbit.is_healthy = n[6] == 0;
   orbit.channel = std::abs(n[10]) < 1000 ? static_cast<int>(std::lround(n[10])) : 1000;
-  const double radius = orbit.position.norm();
   // Old files count channels -7 .. -1 as 249 and so on.
   if (orbit.channel > 127) orbit.channel -= 256;
-  if (!(radius > 2e7 && radius < 3e7) || !(orbit.velocity.norm() < 1e4) || std::abs(orbit.channel) > 13 ||
-      !(orbit.acceleration.norm() < 1))
-    return std::nullopt;
-  return orbit;
+  return is_possible(orbit) ? std::optional(orbit) : std::nullopt;
 }
 
 class NavigationReader {

@@ -243,14 +243,24 @@ void RinexObservations::take_names() {
   if (names_.size() == expected_) part_ = Part::satellites;
 }
 
+bool RinexObservations::begins_epoch() const {
+  if (version_.version >= 3) return line_.starts_with('>');
+  // The point of the seconds; observations have theirs at 10, 26, 42, ...
+  constexpr std::size_t kPoint = 18;
+  if (line_.size() < kPoint + 1 || line_[kPoint] != '.') return false;
+  const auto flag = rinex_count(line_, 28, 1);
+  const auto month = rinex_count(line_, 4, 2);
+  return flag && *flag <= 6 && month && *month <= 12 && rinex_count(line_, 29, 3);
+}
+
 void RinexObservations::take_satellite_line() {
+  if (begins_epoch()) {
+    lose_epoch(fmt::format("the next epoch begins after {} of {} satellites of the epoch of line {}", seen_,
+                           expected_, epoch_line_));
+    part_ = Part::between;
+    return take_epoch_line();
+  }
   if (version_.version >= 3) {
-    if (line_.starts_with('>')) {
-      lose_epoch(fmt::format("the next epoch begins after {} of {} satellites of the epoch of line {}", seen_,
-                             expected_, epoch_line_));
-      part_ = Part::between;
-      return take_epoch_line();
-    }
     take_measurement(line_);
     return end_satellite();
   }

@@ -62,6 +62,8 @@ class RinexObservations {
   void take_epoch_line();
   void begin_epoch(int flag, int count, const std::optional<Stamp>& stamp);
   void take_names();
+  /// Tells whether the line among those of satellites is the first of the next epoch.
+  [[nodiscard]] bool begins_epoch() const;
   void take_satellite_line();
   void take_measurement(std::string_view line);
   void end_satellite();

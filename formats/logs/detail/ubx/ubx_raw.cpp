@@ -1,8 +1,7 @@
 #include <waymark/formats/logs/detail/ubx/ubx_raw.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -16,18 +15,11 @@ using satellites::System;
 
 constexpr std::size_t kRawHead = 16;
 constexpr std::size_t kRawEach = 32;
-constexpr std::size_t kSubframeHead = 8;
-/// A minute of subframes, if the receiver tells its week late.
-constexpr std::size_t kMostUndated = 512;
 constexpr double kWeek_s = 604'800;
-
-/// Numbers of systems in UBX.
-enum UbxSystem : int { kUbxGps = 0, kUbxSbas = 1, kUbxGalileo = 2, kUbxBeidou = 3, kUbxGlonass = 6 };
 
 /// The satellite of a signal of the first frequency. Receivers before F9 write 0 for every signal.
 std::optional<SatelliteName> satellite_of(int system, int number, int signal) {
   constexpr int kSbasFrom = 100;
-  constexpr int kLastGlonass = 32;  // 255: not known yet
   if (number == 0) return std::nullopt;
   switch (system) {
     case kUbxGps:
@@ -59,6 +51,8 @@ bool holds(const satellites::RawEpoch& epoch, const SatelliteName& name) {
 }  // namespace
 
 std::string rawx_error(const UbxPayload& payload) {
+  if (payload.size() < kRawHead)
+    return fmt::format("RXM-RAWX: {} bytes, but the message has at least {}", payload.size(), kRawHead);
   const std::size_t count = payload.u8(11);
   const std::size_t length = kRawHead + kRawEach * count;
   if (payload.size() != length)
@@ -94,15 +88,15 @@ void UbxRawDecoder::take_frame(const UbxFrame& frame) {
   if (frame.key == ubx::kRxmRawx) {
     take_measurements(payload);
   } else if (frame.key == ubx::kRxmSfrbx && !rows_.has_navigation_files()) {
-    take_subframe(payload);
+    const std::string error = subframes_.take(payload, rows_.ephemerides());
+    if (error.empty()) return;
+    ++data_.records;
+    corrupt(byte(), error);
   }
 }
 
 void UbxRawDecoder::take_measurements(const UbxPayload& payload) {
-  const std::string error =
-      payload.size() < kRawHead
-          ? fmt::format("RXM-RAWX: {} bytes, but the message has at least {}", payload.size(), kRawHead)
-          : rawx_error(payload);
+  const std::string error = rawx_error(payload);
   if (!error.empty()) {
     ++data_.records;
     return corrupt(byte(), error);
@@ -113,49 +107,18 @@ void UbxRawDecoder::take_measurements(const UbxPayload& payload) {
   }
   const UbxRawEpoch raw = read_rxm_rawx(payload);
   unused_ += raw.unused;
-  moment_ = raw.epoch.moment;
-  for (const Subframe& subframe : std::exchange(undated_, {})) decode(subframe, *moment_);
+  subframes_.set_moment(raw.epoch.moment, rows_.ephemerides());
   rows_.take(raw.epoch);
-}
-
-void UbxRawDecoder::take_subframe(const UbxPayload& payload) {
-  const std::size_t count = payload.size() < kSubframeHead ? 0 : payload.u8(4);
-  if (payload.size() < kSubframeHead + 4 * count || count == 0) {
-    ++data_.records;
-    return corrupt(byte(), fmt::format("RXM-SFRBX: {} bytes cannot hold {} words", payload.size(), count));
-  }
-  Subframe subframe{payload.u8(0), payload.u8(1), payload.u8(2), {}};
-  for (std::size_t i = 0; i < count; ++i) subframe.words.push_back(payload.u32(kSubframeHead + 4 * i));
-  if (moment_) return decode(subframe, *moment_);
-  if (undated_.size() < kMostUndated) undated_.push_back(std::move(subframe));
-}
-
-void UbxRawDecoder::decode(const Subframe& subframe, Stamp near) {
-  using satellites::InavMessages;
-  using satellites::LnavMessages;
-  const std::span words(subframe.words);
-  satellites::Ephemerides& all = rows_.ephemerides();
-  constexpr int kE5bI = 5;
-  if (subframe.system == kUbxGps && subframe.signal == 0 && words.size() == 10) {
-    const auto found = gps_.take(subframe.satellite, words.first<10>(), near, all);
-    ephemerides_ += found == LnavMessages::Found::ephemeris;
-    wrong_parity_ += found == LnavMessages::Found::wrong_parity;
-  } else if (subframe.system == kUbxGalileo && (subframe.signal <= 1 || subframe.signal == kE5bI) &&
-             words.size() >= 8) {
-    const auto found = galileo_.take(subframe.satellite, words.first<8>(), near, all);
-    ephemerides_ += found == InavMessages::Found::ephemeris;
-    wrong_parity_ += found == InavMessages::Found::wrong_checksum;
-  } else if (subframe.system == kUbxBeidou && subframe.signal == 0 && words.size() == 10) {
-    ephemerides_ += beidou_.take(subframe.satellite, words.first<10>(), near, all);
-  }
 }
 
 void UbxRawDecoder::end() {
   rows_.finish();
   if (!rows_.has_navigation_files())
-    note(fmt::format("{} ephemerides come from {} messages RXM-SFRBX", ephemerides_, count(ubx::kRxmSfrbx)));
-  if (wrong_parity_ > 0)
-    note(fmt::format("{} messages RXM-SFRBX have a wrong parity and are left out", wrong_parity_));
+    note(fmt::format("{} ephemerides come from {} messages RXM-SFRBX", subframes_.ephemerides(),
+                     count(ubx::kRxmSfrbx)));
+  if (subframes_.wrong_parity() > 0)
+    note(
+        fmt::format("{} messages RXM-SFRBX have a wrong parity and are left out", subframes_.wrong_parity()));
   if (without_week_ > 0)
     note(fmt::format("{} messages RXM-RAWX come before the receiver knows the week and are left out",
                      without_week_));

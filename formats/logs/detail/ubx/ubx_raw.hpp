@@ -1,15 +1,12 @@
 /// Raw measurements and broadcast ephemerides of UBX logs (RXM-RAWX, RXM-SFRBX).
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include <waymark/formats/logs/detail/raw/raw_rows.hpp>
 #include <waymark/formats/logs/detail/ubx/ubx_frames.hpp>
 #include <waymark/formats/logs/detail/ubx/ubx_messages.hpp>
-#include <waymark/formats/satellites/broadcast/broadcast_messages.hpp>
+#include <waymark/formats/logs/detail/ubx/ubx_subframes.hpp>
 
 namespace waymark::formats {
 
@@ -36,22 +33,11 @@ class UbxRawDecoder final : public UbxFrameDecoder {
   void end() override;
 
  private:
-  /// A message RXM-SFRBX: words of a satellite.
-  struct Subframe {
-    int system = 0, satellite = 0, signal = 0;
-    std::vector<std::uint32_t> words;
-  };
   void take_measurements(const UbxPayload& payload);
-  void take_subframe(const UbxPayload& payload);
-  void decode(const Subframe& subframe, Stamp near);
 
   RawRows rows_;
-  std::optional<Stamp> moment_;    ///< of the last measurements
-  std::vector<Subframe> undated_;  ///< subframes before the first measurements, which tell the week
-  satellites::LnavMessages gps_;
-  satellites::InavMessages galileo_;
-  satellites::D1Messages beidou_;
-  std::size_t ephemerides_ = 0, wrong_parity_ = 0, without_week_ = 0, unused_ = 0;
+  UbxSubframes subframes_;
+  std::size_t without_week_ = 0, unused_ = 0;
 };
 
 }  // namespace waymark::formats

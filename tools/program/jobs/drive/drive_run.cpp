@@ -104,6 +104,9 @@ evaluation::Evaluation evaluate_minimum(const RunOfDrive& run, drive::ModeledDri
   if (!fixes.poses.empty()) further.push_back(as_prediction("with lasting errors", std::move(fixes)));
   if (run.options.causal) further.push_back(predict_causally(run, settings, document));
   evaluation::Evaluation evaluation = evaluate_document(document, run.loaded.drive.truth, further);
+  evaluation.groups = evaluation::residuals_by_group(document.graph, modeled.groups);
+  // The single measurements are as many as the readings; the report computes them again.
+  for (evaluation::GroupedResiduals& of : evaluation.groups) of.measurements = {};
   if (!document.covariances.empty() && evaluation.prediction.count == 0) {
     if (const auto lasting = lasting_innovations(document, modeled.modelings))
       evaluation.prediction = lasting->statistics;
@@ -150,13 +153,13 @@ std::vector<drawing::Section> compare_windows(const RunOfDrive& run, const drive
 }
 
 /// Writes trajectories, epochs and report of a document with all known covariances.
-void write_modeling(const RunOfDrive& run, const formats::GraphDocument& document, const std::string& drive,
+void write_modeling(const RunOfDrive& run, const drive::ModeledDrive& modeled, const std::string& drive,
                     std::optional<evaluation::Sparsity> sparsity, std::vector<drawing::Section> more_sections,
                     ModelingRun& result) {
   const std::string& modeling = result.evaluation.label;
   result.written =
       write_result({.drive = drive,
-                    .document = document,
+                    .document = modeled.document,
                     .evaluated = result.evaluation,
                     .truth = run.loaded.drive.truth,
                     .optimization = &result.result,
@@ -167,6 +170,7 @@ void write_modeling(const RunOfDrive& run, const formats::GraphDocument& documen
                                 {"left out", left_out(run.loaded.drive)}},
                     .files = {run.folder.graph(modeling), run.folder.fused_graph(modeling)},
                     .map = &run.map,
+                    .groups = modeled.groups,
                     .more_sections = std::move(more_sections)},
                    run.folder, run.loaded.settings.size(), run.console);
 }
@@ -219,7 +223,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   // The graph file has the covariances that were asked for, the trajectory all that are known.
   document.covariances.swap(covariances);
   if (run.writes())
-    write_modeling(run, document, header.drive, std::move(sparsity), std::move(more_sections), result);
+    write_modeling(run, modeled, header.drive, std::move(sparsity), std::move(more_sections), result);
   if (run.options.keeps_models) result.model = std::move(modeled);
   return result;
 }

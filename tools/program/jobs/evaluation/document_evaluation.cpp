@@ -47,6 +47,7 @@ evaluation::Evaluation evaluate_document(const formats::GraphDocument& document,
   evaluation::EvaluationInput input;
   input.fused = drive::evaluated_poses(document);
   input.when_measured = drive::poses_when_measured(document);
+  input.heights_m = drive::evaluated_heights(document);
   input.fixes = document.fixes;
   input.truth = truth;
   input.truth_reference_m = document.truth_reference_m;

@@ -1,5 +1,6 @@
 #include <waymark/tools/program/jobs/live/window_study.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -17,13 +18,19 @@ text::Table table_of(const std::vector<live::LagResult>& results, const std::str
   text::Table table{.title = "live, " + modeling,
                     .columns = {"window [s]", "poses", "RMSE [m]", "Max [m]", "inside 95 % [%]", "NEES",
                                 "RMSE at the lag [m]", "Max at the lag [m]", "cycle [us]"}};
-  for (const live::LagResult& result : results)
+  const bool in_space = std::any_of(results.begin(), results.end(), [](const live::LagResult& result) {
+    return std::isfinite(result.live.rmse_3d_m);
+  });
+  if (in_space) table.columns.emplace_back("3-D RMSE [m]");
+  for (const live::LagResult& result : results) {
     table.rows.push_back(
         {fmt::format("{}", result.window_s), fmt::format("{}", result.live.poses),
          fmt::format("{:.3f}", result.live.rmse_m), fmt::format("{:.2f}", result.live.max_m),
          fmt::format("{:.1f}", 100 * result.live.inside95), fmt::format("{:.2f}", result.live.nees),
          fmt::format("{:.3f}", result.settled.rmse_m), fmt::format("{:.2f}", result.settled.max_m),
          fmt::format("{:.0f}", result.cycle_us)});
+    if (in_space) table.rows.back().push_back(fmt::format("{:.3f}", result.live.rmse_3d_m));
+  }
   table.notes.push_back(
       "poses as they were said while driving, at the rate of the odometry, and when they left the window");
   return table;
