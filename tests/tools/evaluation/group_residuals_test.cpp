@@ -5,7 +5,7 @@
 
 #include <waymark/core/graph/loss.hpp>
 #include <waymark/tools/evaluation/document/group_residuals.hpp>
-#include <waymark/types_se2/g2o_edges.hpp>
+#include <waymark/types_se2/edge_se2.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace group_residuals_test {
