@@ -307,7 +307,8 @@ TEST_CASE("gnss_raw: tells which satellite each edge is of, where it stands, and
     CHECK(tag == (member.quantity == 0 ? "EDGE_GNSS_PSEUDORANGE" : "EDGE_GNSS_RANGE_RATE"));
     CHECK(member.edge.edge == member.group);
     CHECK(member.signal == 30 + i);
-    CHECK(member.elevation_rad == Approx((15 + 30.0 * (member.group % 3)) * kDegree).margin(1e-3));
+    CHECK(member.elevation_rad ==
+          Approx((15 + 30.0 * static_cast<double>(member.group % 3)) * kDegree).margin(1e-3));
     CHECK(std::remainder(member.bearing_rad - 40 * i * kDegree, 2 * std::numbers::pi) ==
           Approx(0).margin(1e-3));
   }
