@@ -107,8 +107,10 @@ DriveLogs::Log take_memory_log(const LogConfig& log) {
 
 DriveLogs::Log read_log(const LogConfig& log, const TypeRegistry& registry, const LogWatch& watch) {
   if (log.samples) return take_memory_log(log);
-  require_readable(log.place, log.file);
+  const bool is_opened_to_choose = log.format == "auto";
+  if (is_opened_to_choose) require_readable(log.place, log.file);
   ChosenReader chosen = choose_reader(log, registry);
+  if (!is_opened_to_choose) require_readable(log.place, log.file);
   std::vector<InputFile> inputs{{log.file, {}}};
   inputs.insert(inputs.end(), chosen.inputs.begin(), chosen.inputs.end());
   const formats::ReadProgress progress = [&](std::uint64_t done, std::uint64_t size) {

@@ -38,6 +38,13 @@ ScalarStatistics scalar(const text::JsonPlace& json, const std::string& unit) {
   return s;
 }
 
+SpaceMetrics space(const text::JsonPlace& json) {
+  return {.height = scalar(json.at("height"), "m"),
+          .max_m = json.number("max_m"),
+          .rmse_m = json.number("rmse_m"),
+          .precision_m = json.number("precision_m")};
+}
+
 SystemMetrics system(const text::JsonPlace& json) {
   return {position(json.at("position")),
           {scalar(json.at("along_track"), "m"), scalar(json.at("cross_track"), "m")},
@@ -117,6 +124,8 @@ TruthEvaluation truth(const text::JsonPlace& json) {
   if (json.has("fused_without_constant_offset"))
     t.fused_without_offset = offset_taken_out(json.at("fused_without_constant_offset"));
   if (json.has("relative_pose_error")) t.relative = relative_errors(json.at("relative_pose_error"));
+  if (json.has("space")) t.space = space(json.at("space"));
+  if (json.has("no_space")) t.no_space = json.text("no_space");
   if (json.has("consistency")) t.consistency = consistency(json.at("consistency"));
   t.gnss_autocorrelation = numbers(json.at("autocorrelation").at("gnss"));
   t.fused_autocorrelation = numbers(json.at("autocorrelation").at("fused"));
