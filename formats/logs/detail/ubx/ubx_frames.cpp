@@ -143,8 +143,7 @@ void UbxFrameDecoder::take(std::string_view piece) {
 void UbxFrameDecoder::finish() {
   scan(begun_, true);
   begun_.clear();
-  end();
-  if (strange_ > 0) note(fmt::format("{} bytes that belong to no UBX frame were skipped", strange_));
+  // end() may throw, and the kinds then tell what the log has instead.
   for (unsigned key = 0; key < 1U << 16U; ++key) {
     if (!counts_[key >> 8U]) {  // the class has not occurred yet
       key |= 0xFFU;
@@ -153,6 +152,8 @@ void UbxFrameDecoder::finish() {
     const auto kind = static_cast<std::uint16_t>(key);
     if (const std::size_t messages = count(kind); messages > 0) data_.kinds[ubx_name(kind)] = messages;
   }
+  end();
+  if (strange_ > 0) note(fmt::format("{} bytes that belong to no UBX frame were skipped", strange_));
 }
 
 std::size_t UbxFrameDecoder::count(std::uint16_t key) const {
