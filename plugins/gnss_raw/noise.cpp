@@ -75,7 +75,7 @@ std::vector<OptionInfo> noise_options() {
        .allowed = OptionWords{"cauchy", "gaussian"},
        .text = "'cauchy': a heavy-tailed loss on pseudoranges and range rates; 'gaussian': none"},
       {.name = "tail_scale",
-       .value = "1",
+       .value = "0.3",
        .allowed = OptionRange{0.1, 100},
        .text = "scale of the loss, in standard deviations"}};
 }
