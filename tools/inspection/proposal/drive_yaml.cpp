@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <optional>
 #include <span>
-#include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,16 +39,6 @@ std::string scalar(const std::string& text) {
       quoted += c;
   }
   return quoted + '"';
-}
-
-std::vector<std::string_view> lines_of(std::string_view text) {
-  std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    lines.push_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return lines;
 }
 
 /// Keeps a comment on one line.
@@ -105,6 +93,7 @@ class Writer {
 
  private:
   void line(const std::string& content, const std::string& comment = {}) {
+    if (commented_out_) text_ += "# ";
     text_ += content;
     if (!comment.empty()) {
       text_.append(content.size() < kCommentColumn ? kCommentColumn - content.size() : 2, ' ');
@@ -278,7 +267,8 @@ class Writer {
   /// Writes further sources in comments: only the user knows whether a log is another sensor or a copy.
   void further_odometries() {
     if (proposal_.further.empty()) return;
-    const std::string before = std::exchange(text_, {});
+    line("");
+    commented_out_ = true;
     line("sources:", "CHECK: uncomment what is another sensor, and no copy of the odometry above");
     for (std::size_t i = 0; i < proposal_.further.size(); ++i) {
       const LogInspection& log = logs_[proposal_.further[i]];
@@ -286,9 +276,7 @@ class Writer {
       line("    kind: odometry");
       log_lines(log, StreamKind::odometry, "    ", false, proposal_.further_channels[i]);
     }
-    std::string commented;
-    for (const std::string_view part : lines_of(text_)) commented.append("# ").append(part).append("\n");
-    text_ = before + "\n" + commented;
+    commented_out_ = false;
   }
 
   /// Returns the name of a file as the name of a source.
@@ -408,6 +396,7 @@ class Writer {
   const std::vector<LogInspection>& logs_;
   fs::path folder_;
   std::string text_;
+  bool commented_out_ = false;
   TimeScale scale_ = TimeScale::gps;
   std::string scale_reason_;
   std::optional<std::size_t> of_week_, dated_;
