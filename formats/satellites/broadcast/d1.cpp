@@ -1,10 +1,9 @@
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
+#include <waymark/formats/satellites/broadcast/beidou_subframe.hpp>
 #include <waymark/formats/satellites/broadcast/broadcast_messages.hpp>
 
 namespace waymark::formats::satellites {
 namespace {
-
-constexpr std::uint32_t kD1Preamble = 0x712;
 
 /// The two parts of the time of ephemeris stand in the subframes 2 and 3, in units of 8 s.
 double d1_toe(const MessageParts<3>& message) {
@@ -47,25 +46,21 @@ KeplerOrbit d1_orbit(int satellite, const MessageParts<3>& message, Stamp near) 
   return orbit;
 }
 
-/// The time of the week at which a subframe begins.
-std::uint32_t d1_second(const MessageBits& subframe) {
-  return subframe.whole({18, 8}, {30, 12});
-}
-
 }  // namespace
 
 bool D1Messages::take(int satellite, std::span<const std::uint32_t, 10> words, Stamp near,
                       Ephemerides& ephemerides) {
-  MessageBits subframe;
-  for (const std::uint32_t word : words) subframe.append(word, 30);
-  const std::uint32_t number = subframe.whole(15, 3);
-  if (subframe.whole(0, 11) != kD1Preamble || number < 1 || number > 3) return false;
+  const std::optional<MessageBits> subframe = beidou_subframe(words);
+  if (!subframe) return false;
+  const std::uint32_t number = subframe->whole(15, 3);
+  if (number < 1 || number > 3) return false;
   MessageParts<3>& message = satellites_[satellite];
-  message.parts[number - 1] = subframe;
+  message.parts[number - 1] = *subframe;
   if (!message.is_complete()) return false;
   // D1 names no issue in the subframes 2 and 3: they belong together if they follow one another, 6 s apart.
-  const std::uint32_t begin = d1_second(*message.parts[0]);
-  if (d1_second(*message.parts[1]) != begin + 6 || d1_second(*message.parts[2]) != begin + 12) return false;
+  const std::uint32_t begin = second_of_week(*message.parts[0]);
+  if (second_of_week(*message.parts[1]) != begin + 6 || second_of_week(*message.parts[2]) != begin + 12)
+    return false;
   const KeplerOrbit orbit = d1_orbit(satellite, message, near);
   const std::uint64_t key = static_cast<std::uint64_t>(orbit.toe_sow_s) << 32U |
                             message.parts[0]->whole(42, 6) << 8U | message.parts[0]->whole(287, 5);

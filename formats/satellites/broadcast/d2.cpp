@@ -1,12 +1,12 @@
 #include <initializer_list>
 
 #include <waymark/formats/logs/detail/common/gps_time.hpp>
+#include <waymark/formats/satellites/broadcast/beidou_subframe.hpp>
 #include <waymark/formats/satellites/broadcast/broadcast_messages.hpp>
 
 namespace waymark::formats::satellites {
 namespace {
 
-constexpr std::uint32_t kD2Preamble = 0x712;
 constexpr std::uint32_t kSecondsOfPage = 3;
 
 using D2Parts = MessageParts<10>;
@@ -74,26 +74,21 @@ KeplerOrbit d2_orbit(int satellite, const D2Parts& message, Stamp near) {
   return orbit;
 }
 
-/// The time of the week at which a subframe begins.
-std::uint32_t d2_second(const MessageBits& subframe) {
-  return subframe.whole({18, 8}, {30, 12});
-}
-
 }  // namespace
 
 bool D2Messages::take(int satellite, std::span<const std::uint32_t, 10> words, Stamp near,
                       Ephemerides& ephemerides) {
-  MessageBits subframe;
-  for (const std::uint32_t word : words) subframe.append(word, 30);
-  const std::uint32_t page = subframe.whole(42, 4);
-  if (subframe.whole(0, 11) != kD2Preamble || subframe.whole(15, 3) != 1 || page < 1 || page > 10)
-    return false;
+  const std::optional<MessageBits> subframe = beidou_subframe(words);
+  if (!subframe) return false;
+  const std::uint32_t page = subframe->whole(42, 4);
+  if (subframe->whole(15, 3) != 1 || page < 1 || page > 10) return false;
   D2Parts& message = satellites_[satellite];
-  message.parts[page - 1] = subframe;
+  message.parts[page - 1] = *subframe;
   if (!message.is_complete()) return false;
   // Pages belong together if they follow one another.
   for (std::uint32_t i = 1; i < 10; ++i)
-    if (d2_second(*message.parts[i]) != d2_second(*message.parts[0]) + kSecondsOfPage * i) return false;
+    if (second_of_week(*message.parts[i]) != second_of_week(*message.parts[0]) + kSecondsOfPage * i)
+      return false;
   const KeplerOrbit orbit = d2_orbit(satellite, message, near);
   const std::uint64_t key = static_cast<std::uint64_t>(orbit.toe_sow_s) << 32U |
                             message.parts[0]->whole(46, 6) << 8U | message.parts[3]->whole(91, 5);
