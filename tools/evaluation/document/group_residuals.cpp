@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/tools/evaluation/document/residuals.hpp>
 #include <waymark/tools/text/json_number.hpp>
 #include <waymark/tools/text/number_text.hpp>
 
@@ -27,7 +28,7 @@ class Edges {
     batch.linearize_edge(member.edge.edge, graph_.view(), error_, jacobians_);
     const double squared = error_.dot(batch.information(member.edge.edge) * error_);
     const Loss* loss = batch.loss(member.edge.edge);
-    GroupedMeasurement measured{.stamp = latest_stamp(batch.vertices(member.edge.edge)),
+    GroupedMeasurement measured{.stamp = latest_stamp(graph_, batch.vertices(member.edge.edge)),
                                 .quantity = member.quantity,
                                 .group = member.group,
                                 .residual = error_[0],
@@ -45,13 +46,6 @@ class Edges {
   }
 
  private:
-  [[nodiscard]] std::optional<Stamp> latest_stamp(std::span<const VertexIndex> vertices) const {
-    std::optional<Stamp> latest;
-    for (const VertexIndex v : vertices)
-      if (const auto stamp = graph_.stamp(v)) latest = latest ? std::max(*latest, *stamp) : *stamp;
-    return latest;
-  }
-
   const Graph& graph_;
   Eigen::VectorXd error_;
   std::vector<Eigen::MatrixXd> jacobians_;

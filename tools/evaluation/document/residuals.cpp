@@ -59,14 +59,6 @@ EdgeRole role_of(const Graph& graph, std::size_t batch) {
   return vertices.size() > 1 ? EdgeRole::process : EdgeRole::measurement;
 }
 
-std::optional<Stamp> latest_stamp(const Graph& graph, std::span<const VertexIndex> vertices) {
-  std::optional<Stamp> latest;
-  for (const VertexIndex v : vertices) {
-    if (const auto stamp = graph.stamp(v)) latest = latest ? std::max(*latest, *stamp) : *stamp;
-  }
-  return latest;
-}
-
 /// Adds the errors of all edges of a batch.
 void add_edges(const Graph& graph, std::size_t b, TypeResiduals& type) {
   const EdgeBatchBase& batch = graph.batch(b);
@@ -145,6 +137,14 @@ const char* to_string(EdgeRole role) {
 double GraphResiduals::expected_rms(std::int64_t unknowns) const {
   const auto all = static_cast<double>(components);
   return components > 0 ? std::sqrt(std::max(0.0, 1 - static_cast<double>(unknowns) / all)) : 0;
+}
+
+std::optional<Stamp> latest_stamp(const Graph& graph, std::span<const VertexIndex> vertices) {
+  std::optional<Stamp> latest;
+  for (const VertexIndex v : vertices) {
+    if (const auto stamp = graph.stamp(v)) latest = latest ? std::max(*latest, *stamp) : *stamp;
+  }
+  return latest;
 }
 
 GraphResiduals residuals_by_type(const Graph& graph, std::size_t most) {

@@ -22,6 +22,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,9 @@ struct GraphResiduals {
   /// @param unknowns scalar ones: Summary::unknowns
   [[nodiscard]] double expected_rms(std::int64_t unknowns) const;
 };
+
+/// Returns the latest stamp of the vertices of an edge; empty if none has one.
+[[nodiscard]] std::optional<Stamp> latest_stamp(const Graph& graph, std::span<const VertexIndex> vertices);
 
 /// Returns the residuals of every edge at the present values of the graph. The time is linear in
 /// the number of edges: 30 ms for 100,000.
