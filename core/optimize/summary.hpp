@@ -55,7 +55,7 @@ struct Summary {
 
   std::string algorithm;
   std::string solver;       ///< its name and its own choice
-  std::string ordering;     ///< "natural" or "amd"
+  std::string ordering;     ///< Structure::ordering()
   std::string error_forms;  ///< "EDGE_SE2 (t, theta), ...": the forms of the errors behind chi2
   std::size_t vertices = 0;
   std::size_t edges = 0;

@@ -14,6 +14,12 @@
 
 namespace WAYMARK_EXPORT waymark {
 
+/// A fill-reducing order of a symmetric block pattern, and the method that found it.
+struct BlockOrder {
+  std::vector<int> order;  ///< node order[k] is eliminated as number k
+  std::string method;      ///< "natural", "leaves first", "amd" or "time"
+};
+
 /// It can be copied, owns all its data, and keeps no reference to the graph. Returned spans
 /// and references are valid until the next build(), extend() or remove(). Any number of
 /// threads may read it.
@@ -65,7 +71,7 @@ class Structure {
   /// Adds the sums that the chunks collected in their slots for dense columns to their places,
   /// chunk by chunk.
   void add_slots(double* hessian, double* gradient) const;
-  /// Returns "natural", "leaves first" or "amd".
+  /// Returns "natural", "leaves first", "amd" or "time".
   [[nodiscard]] const std::string& ordering() const { return ordering_; }
   /// Returns how many block columns are ordered last because they touch very many edges.
   [[nodiscard]] int dense_columns() const { return dense_columns_; }
@@ -75,6 +81,9 @@ class Structure {
   static constexpr std::size_t kChunkVertices = 4096;
 
   void choose_unknowns(const Graph& graph, std::span<const char> held);
+  /// Takes the order of time if it needs less work.
+  void prefer_time_order(const Graph& graph, std::span<const std::int64_t> begin, std::span<const int> rows,
+                         std::span<const char> dense, BlockOrder& order) const;
   void keep_order(const Graph& graph, std::span<const VertexIndex> old_order);
   /// Tells whether the column of a vertex belongs to the last ones, whatever its degree.
   [[nodiscard]] bool comes_last(const Graph& graph, VertexIndex v) const;
@@ -106,19 +115,21 @@ class Structure {
   std::string ordering_ = "natural";
 };
 
-/// A fill-reducing order of a symmetric block pattern, and the method that found it.
-struct BlockOrder {
-  std::vector<int> order;  ///< node order[k] is eliminated as number k
-  std::string method;      ///< "natural", "leaves first" or "amd"
-};
-
 /// Orders the columns 0..n-1 of an upper triangle (rows of column j: rows[begin[j]..begin[j + 1]),
 /// ascending, without the diagonal). Columns marked dense come last. The other columns keep their
 /// natural order if that has little fill. Otherwise nodes with a single neighbour are put just
 /// before it, if that has little fill (GNSS nodes of a drive). Otherwise the order is approximate
-/// minimum degree (Amestoy, Davis, Duff 1996) on the block graph.
+/// minimum degree (Amestoy, Davis, Duff 1996) on the block graph. Structure::build compares that with the order
+/// of time if vertices have stamps.
 [[nodiscard]] BlockOrder order_blocks(std::span<const std::int64_t> begin, std::span<const int> rows,
                                       std::span<const char> dense);
+
+/// Returns the multiplications of a Cholesky factorisation in an order, about: the squares of the heights of
+/// the scalar columns of the factor, summed.
+/// @param order of all columns
+/// @param sizes scalar columns of each
+[[nodiscard]] double factor_work(std::span<const std::int64_t> begin, std::span<const int> rows,
+                                 std::span<const int> order, std::span<const int> sizes);
 
 /// Counts the off-diagonal blocks of the Cholesky factor in the natural order, without marked
 /// columns. Returns -1 if they exceed `limit`.

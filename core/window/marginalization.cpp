@@ -11,7 +11,7 @@
 #include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
-#include <waymark/core/window/detail/time_order.hpp>
+#include <waymark/core/system/detail/time_order.hpp>
 #include <waymark/core/window/marginalization.hpp>
 
 namespace waymark {

@@ -38,7 +38,7 @@ struct DensityRaster {
 };
 
 struct Sparsity {
-  std::string ordering;        ///< "natural", "leaves first" or "amd" (Structure::ordering)
+  std::string ordering;        ///< "natural", "leaves first", "amd" or "time" (Structure::ordering)
   std::size_t columns = 0;     ///< block columns: unknown vertices
   std::int64_t dimension = 0;  ///< scalar unknowns
   /// block columns that are ordered last because they touch very many edges

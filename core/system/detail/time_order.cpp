@@ -1,4 +1,4 @@
-#include <waymark/core/window/detail/time_order.hpp>
+#include <waymark/core/system/detail/time_order.hpp>
 
 #include <algorithm>
 #include <limits>
