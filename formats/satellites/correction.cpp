@@ -63,10 +63,9 @@ CorrectedMeasurement corrected(const PlacedMeasurement& measurement, Stamp momen
   result.placed = measurement;
   result.direction = direction_of(turned_with_earth(satellite.position, travel_s), place, geodetic);
   const double ratio = kL1_hz / measurement.carrier_hz;
-  const double ionosphere_m =
-      ephemerides.ionosphere
-          ? ratio * ratio * klobuchar_delay_m(*ephemerides.ionosphere, moment, geodetic, result.direction)
-          : 0;
+  const double ionosphere_m = ratio * ratio *
+                              klobuchar_delay_m(ephemerides.ionosphere.value_or(kTypicalIonosphere), moment,
+                                                geodetic, result.direction);
   result.pseudorange_m = measurement.raw.pseudorange_m + kLight_mps * satellite.clock_s - ionosphere_m -
                          troposphere_delay_m(geodetic, result.direction.elevation_rad);
   result.range_rate_mps =

@@ -58,7 +58,7 @@ struct CorrectedMeasurement {
 [[nodiscard]] std::optional<Eigen::Vector3d> rough_place(std::span<const PlacedMeasurement> measurements,
                                                          const Eigen::Vector3d& guess);
 
-/// Takes off the satellite's clock, the troposphere and, if there are coefficients, the ionosphere. A
+/// Takes off the satellite's clock, the troposphere and the ionosphere (kTypicalIonosphere without coefficients). A
 /// kilometre in the place makes less than a millimetre in the zenith and a few centimetres at the horizon.
 /// @param place of the receiver, ECEF, m
 [[nodiscard]] CorrectedMeasurement corrected(const PlacedMeasurement& measurement, Stamp moment,

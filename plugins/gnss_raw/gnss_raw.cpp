@@ -110,12 +110,13 @@ class GnssRaw final : public SensorModel {
     const RangeNoise noise = noise_.of(reading);
     EdgeGnssPseudorange edge;
     edge.satellite = sky.local(reading.position);
-    edge.measured = reading.pseudorange_m - states_.absorbed_m() - noise.delay_m - edge.satellite.norm();
+    edge.measured = reading.pseudorange_m - states_.absorbed_m() - edge.satellite.norm();
     edge.reference = sky.reference();
     edge.ground = sky.ground();
     edge.antenna = antenna;
     edge.spread = noise.lasting_m;
     edge.slow_spread = noise.slow_m;
+    edge.skew = noise_.reflection_skew();
     const auto [pose, height, clock] = pose_height_clock;
     return graph.add_edge(edge,
                           {pose, height, clock, states_.system(reading.system, graph),

@@ -2,6 +2,7 @@
 /// satellites, and the edges of pseudoranges and range rates.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -91,7 +92,9 @@ struct EdgeGnssSatelliteBiasDecay {
 };
 
 /// One pseudorange, corrected for the satellite's clock and the atmosphere:
-///   e = |s - p| - |s| + clock bias + system bias + spread * lasting + slow_spread * slow - measured.
+///   e = |s - p| - |s| + clock bias + system bias + spread * late(lasting) + slow_spread * slow - measured.
+/// late(x) = (exp(skew x) - 1) / skew, x without skew: a reflection is longer than the way it stands for, so
+/// large errors are late ones (a shifted log-normal distribution with the median 0).
 /// p is the antenna and s the satellite, in metres from a reference point near the antenna, along
 /// the axes of the grid there and upwards; s is turned by the rotation of the Earth while the signal
 /// travels. `measured` is the pseudorange minus |s|, so no digits are lost.
@@ -108,7 +111,8 @@ struct EdgeGnssPseudorange {
                       field<&EdgeGnssPseudorange::ground>("ground"),
                       field<&EdgeGnssPseudorange::antenna>("antenna"),
                       field<&EdgeGnssPseudorange::spread>("spread"),
-                      field<&EdgeGnssPseudorange::slow_spread>("slow_spread")};
+                      field<&EdgeGnssPseudorange::slow_spread>("slow_spread"),
+                      field<&EdgeGnssPseudorange::skew>("skew")};
   }
 
   template <typename T>
@@ -129,16 +133,29 @@ struct EdgeGnssPseudorange {
         (x * (x - T(2 * satellite[0])) + y * (y - T(2 * satellite[1])) + z * (z - T(2 * satellite[2]))) /
         (range + T(satellite.norm()));
     return Eigen::Matrix<T, 1, 1>(
-        T(excess + clock[0] + system + lasting * T(spread) + slow * T(slow_spread) - T(measured)));
+        T(excess + clock[0] + system + late(lasting) * T(spread) + slow * T(slow_spread) - T(measured)));
   }
 
+  template <typename T>
+  T late(const T& lasting) const {
+    using std::exp;
+    if (!(skew > 0)) return lasting;
+    const double bend = std::min(skew, kLargestSkew);
+    const T curved = lasting < T(kLinearFrom) ? lasting : T(kLinearFrom);
+    return (exp(T(curved * T(bend))) - T(1)) / T(bend) + (lasting - curved) * T(std::exp(bend * kLinearFrom));
+  }
+
+  /// late(x) goes on as a line from here, so that a step of the optimizer may be long.
+  static constexpr double kLinearFrom = 4;
+  static constexpr double kLargestSkew = 10;             ///< a larger one counts as this
   double measured = 0;                                   ///< pseudorange - |satellite|, m
   Eigen::Vector3d satellite = Eigen::Vector3d::UnitZ();  ///< m, from the reference point
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();   ///< x, y in the frame; height, m
   double ground = 1;                                     ///< metres on the ground per grid metre
   Eigen::Vector2d antenna = Eigen::Vector2d::Zero();     ///< in the body frame of the pose, m
-  double spread = 0;                                     ///< standard deviation of the lasting part, m
-  double slow_spread = 0;                                ///< standard deviation of the slow part, m
+  double spread = 0;       ///< standard deviation of the lasting part, m; with a skew, for small errors
+  double slow_spread = 0;  ///< standard deviation of the slow part, m
+  double skew = 0;         ///< of the lasting part, at least 0
 };
 
 /// One range rate (Doppler): e = clock drift - u (p_to - p_from) rate - measured, where u points from

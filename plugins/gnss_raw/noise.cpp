@@ -27,8 +27,7 @@ RangeNoise Noise::of(const SatelliteReading& reading) const {
   const double factor = weakness(reading) * std::sqrt(obliquity(reading));
   return {parameters_.pseudorange_sigma_m * factor, parameters_.multipath_sigma_m * factor,
           parameters_.slow_sigma_m * std::sqrt(obliquity(reading)) *
-              (reading.system == kGlonass ? kGlonassChannels : 1),
-          parameters_.reflection_delay_m * (weakness(reading) - 1)};
+              (reading.system == kGlonass ? kGlonassChannels : 1)};
 }
 
 double Noise::range_rate_sigma(const SatelliteReading& reading, double dt_s) const {
@@ -55,11 +54,12 @@ std::vector<OptionInfo> noise_options() {
        .allowed = OptionRange{0, 1000},
        .text =
            "error of a satellite's pseudorange that stays for an hour: orbit, ionosphere; 0: there is none"},
-      {.name = "reflection_delay",
-       .value = "0",
-       .unit = "m",
-       .allowed = OptionRange{0, 1000},
-       .text = "how late weak signals are: 10^((45 - C/N0) / 20) - 1 times this"},
+      {.name = "reflection_skew",
+       .value = "0.8",
+       .allowed = OptionRange{0, 2},
+       .text =
+           "how much larger late lasting errors are than early ones: a deviation x is (exp(skew x) - 1) / "
+           "skew; 0: alike"},
       {.name = "range_rate_sigma",
        .value = "0.1",
        .unit = "m/s",
@@ -86,7 +86,7 @@ Noise read_noise(const CheckedOptions& options) {
                 .range_rate_time_s = options.number("range_rate_time"),
                 .multipath_sigma_m = options.number("multipath_sigma"),
                 .slow_sigma_m = options.number("slow_sigma"),
-                .reflection_delay_m = options.number("reflection_delay"),
+                .reflection_skew = options.number("reflection_skew"),
                 .tails = options.word("tails") == "gaussian"
                              ? std::nullopt
                              : std::optional(builtin_loss("cauchy", options.number("tail_scale")))});

@@ -83,19 +83,31 @@ struct Receiver {
   double step_at_s = 1e9;  // the clock is set back by 1 ms
   double slow_m = 0;       // what each satellite's pseudoranges are wrong by, all the drive (sigma)
   double rate_time_s = 0;  // how long an error of a range rate lasts
+  double reflections_m =
+      0;  // errors that last for 10 s, and are rather late than early (sigma of small ones)
 };
+
+constexpr double kReflections_s = 10;
+constexpr double kReflectionSkew = 0.6;
 
 /// The errors of the satellites, one draw for each.
 class SatelliteErrors {
  public:
   SatelliteErrors(const Receiver& receiver, Noise& noise)
-      : decay_(receiver.rate_time_s > 0 ? std::exp(-1 / receiver.rate_time_s) : 0), noise_(noise) {
+      : decay_(receiver.rate_time_s > 0 ? std::exp(-1 / receiver.rate_time_s) : 0),
+        reflections_m_(receiver.reflections_m),
+        noise_(noise) {
     for (const Satellite& satellite : sky())
       slow_m_.push_back(receiver.slow_m * (satellite.system == 4 ? 2 : 1) * noise(1));
     for (std::size_t i = 0; i < slow_m_.size(); ++i) rate_mps_.push_back(noise(kRateSigma_mps));
+    if (reflections_m_ > 0)
+      for (std::size_t i = 0; i < slow_m_.size(); ++i) reflected_.push_back(noise(1));
   }
 
-  [[nodiscard]] double range_m(std::size_t satellite) { return slow_m_[satellite] + noise_(kSigma_m); }
+  [[nodiscard]] double range_m(std::size_t satellite) {
+    return slow_m_[satellite] + noise_(kSigma_m) +
+           (reflections_m_ > 0 ? reflection_m(reflected_[satellite]) : 0);
+  }
   /// A second after the last one.
   [[nodiscard]] double rate_mps(std::size_t satellite) {
     double& rate = rate_mps_[satellite];
@@ -104,9 +116,17 @@ class SatelliteErrors {
   }
 
  private:
+  /// A shifted log-normal distribution of median 0, a second after the last one.
+  double reflection_m(double& x) {
+    const double decay = std::exp(-1 / kReflections_s);
+    x = decay * x + std::sqrt(1 - decay * decay) * noise_(1);
+    return reflections_m_ * std::expm1(kReflectionSkew * x) / kReflectionSkew;
+  }
+
   double decay_;
+  double reflections_m_;
   Noise& noise_;
-  std::vector<double> slow_m_, rate_mps_;
+  std::vector<double> slow_m_, rate_mps_, reflected_;
 };
 
 /// Returns the log of a receiver on the vehicle, at the full seconds after the first.
@@ -180,6 +200,18 @@ TEST_CASE("gnss_raw: a pseudorange is the distance and the clock, without loss o
   edge.slow_spread = 2;
   CHECK(edge.error(Pose2<double>(100, 200, 0), 50.0, Eigen::Vector2d(0, 0), 2.0, 0.5, -1.5)[0] ==
         Approx(2 + 4 * 0.5 - 2 * 1.5).margin(1e-9));
+  // A log-normal error: a deviation of 2 makes a pseudorange longer by more than one of -2 makes it shorter.
+  edge.skew = 0.5;
+  const auto lasting = [&](double deviation) {
+    return edge.error(Pose2<double>(100, 200, 0), 50.0, Eigen::Vector2d(0, 0), 0.0, deviation, 0.0)[0];
+  };
+  CHECK(lasting(2) == Approx(4 * (std::exp(1) - 1) / 0.5));
+  CHECK(lasting(-2) == Approx(4 * (std::exp(-1) - 1) / 0.5));
+  CHECK(lasting(1e-6) == Approx(4e-6));
+  // From 4 on it is a line, without a bend.
+  const double step = lasting(1001) - lasting(1000);
+  CHECK(step == Approx(4 * std::exp(0.5 * 4)));
+  CHECK((lasting(4 + 1e-6) - lasting(4 - 1e-6)) / 2e-6 == Approx(step));
 }
 
 TEST_CASE("gnss_raw: a range rate falls by the speed towards the satellite") {
@@ -223,6 +255,14 @@ TEST_CASE("gnss_raw: so they are where an error of a range rate lasts for four e
   Options options = kWhite;
   options["range_rate_time"] = "4";
   check_consistency({.rate_time_s = 4}, options, 2);
+}
+
+TEST_CASE("gnss_raw: so they are where reflections last, and are rather late than early") {
+  Options options = kWhite;
+  options["multipath_sigma"] = "4";
+  options["multipath_time"] = "10";
+  options["reflection_skew"] = "0.6";
+  check_consistency({.reflections_m = 4}, options, 10);
 }
 
 TEST_CASE("gnss_raw: height, bias of a system and a clock that is set back are found") {

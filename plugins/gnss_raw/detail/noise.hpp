@@ -15,13 +15,12 @@ struct RangeNoise {
   double white_m = 1;    ///< standard deviation of the part that each epoch draws anew
   double lasting_m = 0;  ///< standard deviation of the part that lasts for seconds: reflections
   double slow_m = 0;     ///< standard deviation of the part that lasts for an hour: orbit, ionosphere
-  double delay_m = 0;    ///< expectation: reflected signals come late
 };
 
 /// With the factor w = 10^((45 - C/N0) / 20), 1 from 45 dB-Hz on and without C/N0, and the obliquity
 /// m = 1 / sin(elevation), 1 to 5:
 ///   white = pseudorange_sigma w sqrt(m), lasting = multipath_sigma w sqrt(m),
-///   slow = slow_sigma sqrt(m), twice that for GLONASS, delay = reflection_delay (w - 1).
+///   slow = slow_sigma sqrt(m), twice that for GLONASS.
 /// The receiver delays each of GLONASS's channels by another time, which adds some metres.
 class Noise {
  public:
@@ -31,7 +30,7 @@ class Noise {
     double range_rate_time_s = 1;
     double multipath_sigma_m = 1;
     double slow_sigma_m = 1;
-    double reflection_delay_m = 0;
+    double reflection_skew = 0;
     std::optional<Loss> tails{};
   };
 
@@ -43,6 +42,8 @@ class Noise {
   /// what it would tell alone, which is right for the mean of a first-order Gauss-Markov process.
   /// @param dt_s since the satellite's last one
   [[nodiscard]] double range_rate_sigma(const SatelliteReading& reading, double dt_s) const;
+  /// Returns EdgeGnssPseudorange::skew.
+  [[nodiscard]] double reflection_skew() const { return parameters_.reflection_skew; }
   [[nodiscard]] const std::optional<Loss>& tails() const { return parameters_.tails; }
 
  private:

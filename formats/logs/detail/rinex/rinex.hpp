@@ -11,7 +11,7 @@ namespace waymark::formats {
 /// another name is NaN.
 ///
 /// **Corrections** (formats/satellites): clock of the satellite with relativity and group delay, troposphere
-/// (Saastamoinen), ionosphere (Klobuchar) if a navigation file has coefficients of GPS.
+/// (Saastamoinen), ionosphere (Klobuchar with the coefficients of GPS, or typical ones).
 ///
 /// **Left out** and counted in notes: satellites without a usable ephemeris or below 5 degrees, systems other than
 /// GPS, GLONASS, Galileo and BeiDou, measurements without a pseudorange of the first frequency. Epochs before the first

@@ -37,11 +37,13 @@ text::Table table_of(const std::vector<live::LagResult>& results, const std::str
 }
 
 std::string csv_of(const std::vector<live::LagResult>& results) {
-  std::string csv = "window_s,poses,rmse_m,max_m,inside95,nees,settled_rmse_m,settled_max_m,cycle_us\n";
+  std::string csv =
+      "window_s,poses,rmse_m,max_m,inside95,nees,settled_rmse_m,settled_max_m,cycle_us,rmse_3d_m\n";
   for (const live::LagResult& result : results)
-    csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", result.window_s, result.live.poses, result.live.rmse_m,
-                       result.live.max_m, result.live.inside95, result.live.nees, result.settled.rmse_m,
-                       result.settled.max_m, result.cycle_us);
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", result.window_s, result.live.poses,
+                       result.live.rmse_m, result.live.max_m, result.live.inside95, result.live.nees,
+                       result.settled.rmse_m, result.settled.max_m, result.cycle_us,
+                       std::isfinite(result.live.rmse_3d_m) ? fmt::format("{}", result.live.rmse_3d_m) : "");
   return csv;
 }
 
