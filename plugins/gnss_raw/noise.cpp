@@ -44,7 +44,7 @@ std::vector<OptionInfo> noise_options() {
        .allowed = OptionRange{0.01, 1000},
        .text = "error of a strong signal's pseudorange that each epoch draws anew"},
       {.name = "multipath_sigma",
-       .value = "3",
+       .value = "2",
        .unit = "m",
        .allowed = OptionRange{0, 1000},
        .text = "error of a strong signal's pseudorange that lasts; 0: there is none"},
