@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <numeric>
 
 #include <Eigen/OrderingMethods>
@@ -39,51 +38,6 @@ std::int64_t count_fill(std::span<const std::int64_t> begin, std::span<const int
     }
   }
   return fill;
-}
-
-// The same paths as in count_fill, over the neighbours that come earlier.
-double factor_work(std::span<const std::int64_t> begin, std::span<const int> rows, std::span<const int> order,
-                   std::span<const int> sizes) {
-  const std::size_t n = begin.size() - 1;
-  std::vector<int> place(n);
-  for (std::size_t k = 0; k < n; ++k) place[at(order[k])] = static_cast<int>(k);
-  std::vector<std::int64_t> first(n + 1, 0);
-  const auto for_each_pair = [&](auto visit) {
-    for (std::size_t j = 0; j < n; ++j) {
-      for (auto e = begin[j]; e < begin[j + 1]; ++e) {
-        const int a = place[j];
-        const int b = place[at(rows[at(e)])];
-        visit(at(std::max(a, b)), std::min(a, b));
-      }
-    }
-  };
-  for_each_pair([&](std::size_t later, int) { ++first[later + 1]; });
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<int> earlier(rows.size());
-  std::vector<std::int64_t> next(first.begin(), first.end() - 1);
-  for_each_pair([&](std::size_t later, int before) { earlier[at(next[later]++)] = before; });
-
-  std::vector<int> parent(n, -1);
-  std::vector<int> seen(n, -1);
-  std::vector<int> height(n, 0);
-  for (std::size_t k = 0; k < n; ++k) {
-    const int row = static_cast<int>(k);
-    seen[k] = row;
-    for (auto e = first[k]; e < first[k + 1]; ++e) {
-      for (int j = earlier[at(e)]; seen[at(j)] != row; j = parent[at(j)]) {
-        if (parent[at(j)] < 0) parent[at(j)] = row;
-        seen[at(j)] = row;
-        height[at(j)] += sizes[at(order[k])];
-      }
-    }
-  }
-  double work = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const int size = sizes[at(order[k])];
-    const double rows_of = size + height[k];
-    work += size * rows_of * rows_of;
-  }
-  return work;
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include <waymark/core/base/detail/index.hpp>
+#include <waymark/core/linear/detail/factor_work.hpp>
 #include <waymark/core/system/detail/incidence.hpp>
 #include <waymark/core/system/detail/time_order.hpp>
 #include <waymark/core/system/structure.hpp>
@@ -147,8 +148,9 @@ void Structure::prefer_time_order(const Graph& graph, std::span<const std::int64
   std::vector<int> sizes;
   sizes.reserve(vertex_of_.size());
   for (const VertexIndex v : vertex_of_) sizes.push_back(graph.vertex_type(v).tangent_size);
-  if (factor_work(begin, rows, timed, sizes) < factor_work(begin, rows, order.order, sizes))
-    order = {std::move(timed), "time"};
+  const double unlimited = std::numeric_limits<double>::max();
+  const double work = detail::factor_work(begin, rows, order.order, sizes, unlimited);
+  if (detail::factor_work(begin, rows, timed, sizes, work) < work) order = {std::move(timed), "time"};
 }
 
 void Structure::extend(const Graph& graph, std::span<const char> held) {

@@ -119,17 +119,10 @@ class Structure {
 /// ascending, without the diagonal). Columns marked dense come last. The other columns keep their
 /// natural order if that has little fill. Otherwise nodes with a single neighbour are put just
 /// before it, if that has little fill (GNSS nodes of a drive). Otherwise the order is approximate
-/// minimum degree (Amestoy, Davis, Duff 1996) on the block graph. Structure::build compares that with the order
-/// of time if vertices have stamps.
+/// minimum degree (Amestoy, Davis, Duff 1996) on the block graph; Structure::build then compares it
+/// with the order of time.
 [[nodiscard]] BlockOrder order_blocks(std::span<const std::int64_t> begin, std::span<const int> rows,
                                       std::span<const char> dense);
-
-/// Returns the multiplications of a Cholesky factorisation in an order, about: the squares of the heights of
-/// the scalar columns of the factor, summed.
-/// @param order of all columns
-/// @param sizes scalar columns of each
-[[nodiscard]] double factor_work(std::span<const std::int64_t> begin, std::span<const int> rows,
-                                 std::span<const int> order, std::span<const int> sizes);
 
 /// Counts the off-diagonal blocks of the Cholesky factor in the natural order, without marked
 /// columns. Returns -1 if they exceed `limit`.

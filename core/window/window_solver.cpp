@@ -7,8 +7,8 @@
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/graph/detail/robust_information.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
-#include <waymark/core/window/detail/front.hpp>
 #include <waymark/core/system/detail/time_order.hpp>
+#include <waymark/core/window/detail/front.hpp>
 #include <waymark/core/window/window_solver.hpp>
 
 namespace waymark {

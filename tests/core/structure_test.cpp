@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <waymark/core/linear/detail/factor_work.hpp>
 #include <waymark/core/system/gauge.hpp>
 
 #include "support/dense.hpp"
@@ -327,9 +328,15 @@ TEST_CASE("ordering: the work of a factorisation is that of the heights of its c
   const std::vector<std::int64_t> begin = {0, 0, 1, 2, 3, 4};
   const std::vector<int> rows = {0, 0, 0, 0};
   const std::vector<int> sizes(5, 2);
-  CHECK(factor_work(begin, rows, std::vector<int>{1, 2, 3, 4, 0}, sizes) == 4 * 2 * 16 + 2 * 4);
-  CHECK(factor_work(begin, rows, std::vector<int>{0, 1, 2, 3, 4}, sizes) ==
+  const std::vector<int> leaves_first = {1, 2, 3, 4, 0};
+  const std::vector<int> hub_first = {0, 1, 2, 3, 4};
+  CHECK(detail::factor_work(begin, rows, leaves_first, sizes, 1e9) == 4 * 2 * 16 + 2 * 4);
+  CHECK(detail::factor_work(begin, rows, hub_first, sizes, 1e9) ==
         2 * (10 * 10 + 8 * 8 + 6 * 6 + 4 * 4 + 2 * 2));
+  // Beyond the limit it stops.
+  const double part = detail::factor_work(begin, rows, hub_first, sizes, 100);
+  CHECK(part > 100);
+  CHECK(part < 2 * (10 * 10 + 8 * 8 + 6 * 6 + 4 * 4 + 2 * 2));
 }
 
 namespace {
