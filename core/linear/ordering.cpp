@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 
 #include <waymark/core/base/detail/index.hpp>
+#include <waymark/core/linear/detail/factor_rows.hpp>
 #include <waymark/core/system/structure.hpp>
 
 namespace waymark {
@@ -13,28 +14,18 @@ using detail::at;
 
 }  // namespace
 
-// Row k of the factor is the union of the paths in the elimination tree from its entries towards k
-// (Gilbert, Ng, Peyton 1994). Tree and paths are followed together, without recursion.
 std::int64_t count_fill(std::span<const std::int64_t> begin, std::span<const int> rows,
                         std::span<const char> left_out, std::int64_t limit) {
   const std::size_t n = begin.size() - 1;
-  std::vector<int> parent(n, -1);
-  std::vector<int> seen(n, -1);
+  detail::FactorRows factor(n);
   std::int64_t fill = 0;
   for (std::size_t k = 0; k < n; ++k) {
     if (left_out[k]) continue;
-    const int row = static_cast<int>(k);
-    seen[k] = row;
+    factor.begin(k);
     for (auto e = begin[k]; e < begin[k + 1]; ++e) {
-      int j = rows[at(e)];
-      if (left_out[at(j)]) continue;
-      while (seen[at(j)] != row) {
-        int& up = parent[at(j)];
-        if (up < 0) up = row;
-        seen[at(j)] = row;
-        if (++fill > limit) return -1;
-        j = up;
-      }
+      if (left_out[at(rows[at(e)])]) continue;
+      factor.follow(rows[at(e)], [&](int) { ++fill; });
+      if (fill > limit) return -1;
     }
   }
   return fill;

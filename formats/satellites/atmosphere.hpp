@@ -15,7 +15,7 @@ struct KlobucharCoefficients {
 };
 
 /// What stands for coefficients that nobody has: those that GPS broadcast on 1 January 2004, when the Sun was
-/// neither quiet nor active. They are wrong by half of the delay, which is still better than all of it: a
+/// neither quiet nor active. They may be wrong by half of the delay, which is still better than all of it: a
 /// delay that is left makes heights too large by metres. RTKLIB falls back to the same ones.
 inline constexpr KlobucharCoefficients kTypicalIonosphere{{1.118e-8, -7.451e-9, -5.961e-8, 1.192e-7},
                                                           {1.167e5, -2.294e5, -1.311e5, 1.049e6}};

@@ -35,6 +35,7 @@ truth:
   time: {{week: 2158}}
 """
 SCALE, BIAS_RADPS, RATE_HZ = 1.008, 0.0008, 5
+BERLIN_START_S = 126641.7  # of its week; libRSF counts from here
 
 
 def rates_of(path):
@@ -44,7 +45,7 @@ def rates_of(path):
                 [r["range_rate_mps"], r["sat_vx_mps"], r["sat_vy_mps"], r["sat_vz_mps"]] for r in csv.DictReader(file)}
 
 
-def write_table(ranges, rates, start_s, path):
+def write_librsf_table(ranges, rates, path):
     """Joins libRSF's lines `pseudorange3 t range variance x y z satellite system elevation cn0` with range rates."""
     known = rates_of(rates)
     with open(ranges) as file, open(path, "w", newline="") as out:
@@ -55,7 +56,7 @@ def write_table(ranges, rates, start_s, path):
             if word != "pseudorange3":
                 continue
             t, distance, _, x, y, z, satellite, system, elevation, cn0 = numbers
-            stamp = float(t) + start_s
+            stamp = float(t) + BERLIN_START_S
             rate, vx, vy, vz = known.get((round(10 * stamp), int(float(system)), int(float(satellite))), [""] * 4)
             writer.writerow([f"{stamp:.3f}", int(float(system)), int(float(satellite)), distance, rate, x, y, z,
                              vx, vy, vz, elevation, cn0])
@@ -81,7 +82,7 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     raw, berlin, urbannav = (drives / name for name in
                              ("berlin_potsdamer_platz_raw", "berlin_potsdamer_platz", "urbannav_hk_tst"))
-    write_table(raw / "libRSF_input.txt", raw / "doppler_gps.csv", 126641.7, out / "librsf.csv")
+    write_librsf_table(raw / "libRSF_input.txt", raw / "doppler_gps.csv", out / "librsf.csv")
     imitate_odometry(urbannav / "truth_1hz.csv", out / "urbannav_odometry.csv")
     (out / "librsf.yaml").write_text(BERLIN.format(drive=berlin) + LIBRSF)
     (out / "rinex.yaml").write_text(BERLIN.format(drive=berlin) + f"""gnss:

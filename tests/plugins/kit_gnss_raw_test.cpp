@@ -83,8 +83,8 @@ struct Receiver {
   double step_at_s = 1e9;  // the clock is set back by 1 ms
   double slow_m = 0;       // what each satellite's pseudoranges are wrong by, all the drive (sigma)
   double rate_time_s = 0;  // how long an error of a range rate lasts
-  double reflections_m =
-      0;  // errors that last for 10 s, and are rather late than early (sigma of small ones)
+  // sigma of small errors that last for 10 s; large ones are rather late than early
+  double reflections_m = 0;
 };
 
 constexpr double kReflections_s = 10;

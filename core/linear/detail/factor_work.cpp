@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <waymark/core/base/detail/index.hpp>
+#include <waymark/core/linear/detail/factor_rows.hpp>
 
 namespace waymark::detail {
 namespace {
@@ -38,29 +39,23 @@ Earlier earlier_neighbours(std::span<const std::int64_t> begin, std::span<const 
 
 }  // namespace
 
-// Row k of the factor is the union of the paths in the elimination tree from its entries towards k (Gilbert,
-// Ng, Peyton 1994), as in count_fill.
 double factor_work(std::span<const std::int64_t> begin, std::span<const int> rows, std::span<const int> order,
                    std::span<const int> sizes, double limit) {
   const std::size_t n = order.size();
   const Earlier earlier = earlier_neighbours(begin, rows, order);
-  std::vector<int> parent(n, -1);
-  std::vector<int> seen(n, -1);
+  FactorRows factor(n);
   std::vector<double> height(n);
   double work = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const double size = sizes[at(order[k])];
     height[k] = size;
     work += size * size * size;
-    const int row = static_cast<int>(k);
-    seen[k] = row;
+    factor.begin(k);
     for (auto e = earlier.begin[k]; e < earlier.begin[k + 1]; ++e) {
-      for (int j = earlier.columns[at(e)]; seen[at(j)] != row; j = parent[at(j)]) {
-        if (parent[at(j)] < 0) parent[at(j)] = row;
-        seen[at(j)] = row;
+      factor.follow(earlier.columns[at(e)], [&](int j) {
         work += sizes[at(order[at(j)])] * size * (2 * height[at(j)] + size);
         height[at(j)] += size;
-      }
+      });
       if (work > limit) return work;
     }
   }

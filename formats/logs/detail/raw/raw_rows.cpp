@@ -209,9 +209,10 @@ void RawRows::add_notes() {
   if (low_ > 0) note(fmt::format("{} measurements below 5 degrees are left out", low_));
   if (given_up_ > 0) note(fmt::format("{} measurements before the first position are left out", given_up_));
   if (!ephemerides_.ionosphere)
-    note(
-        std::string(has_navigation_files() ? "no navigation file" : "no message of the log") +
-        " has coefficients of the ionosphere: those of a typical day stand for them; heights may be wrong by metres");
+    note(fmt::format(
+        "{} has coefficients of the ionosphere: those of a typical day stand for them; heights may "
+        "be wrong by metres",
+        has_navigation_files() ? "no navigation file" : "no message of the log"));
 }
 
 }  // namespace waymark::formats
