@@ -1,6 +1,8 @@
 // Ctrl-C: the state reached is kept and marked as unfinished; the exit code is the shell's 130.
+#include <chrono>
 #include <csignal>
 #include <thread>
+#include <utility>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -28,6 +30,29 @@ std::vector<std::string> slowly(std::vector<std::string> arguments) {
 }
 
 const std::string kKept = "; the best state so far is kept\n";
+
+/// Runs `optimize` on a pipe and sends it signals before the last line comes.
+RunResult interrupted_while_reading(const std::string& folder, int signal, int times) {
+  const std::string pipe = folder + "a.graph";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  std::thread writer([&] {
+    const int descriptor = ::open(pipe.c_str(), O_WRONLY);  // waits until the program reads
+    const std::string text = square_graph();
+    CHECK(::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+    // The shell that runs the program wrote its process id.
+    const auto process = static_cast<pid_t>(std::stol(read_text(folder + "pid")));
+    for (int i = 0; i < times; ++i) {
+      ::kill(process, signal);
+      std::this_thread::sleep_for(std::chrono::microseconds(200));  // or two pending ones are one
+    }
+    ::close(descriptor);
+  });
+  const RunResult result =
+      run({"-c", "echo $$ > pid; exec \"$0\" optimize a.graph -o b.graph", waymark_test::program_path()},
+          {.folder = folder, .program = "/bin/sh"});
+  writer.join();
+  return result;
+}
 
 }  // namespace
 
@@ -67,25 +92,15 @@ TEST_CASE("interrupt: an interrupted run keeps what it has and starts no further
 }
 
 TEST_CASE("interrupt: interrupted while reading: nothing is written, and that is said") {
-  // The program waits for its input from a pipe; Ctrl-C comes before the last line does.
-  const std::string folder = fresh_folder();
-  const std::string pipe = folder + "a.graph";
-  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  std::thread writer([&] {
-    const int descriptor = ::open(pipe.c_str(), O_WRONLY);  // waits until the program reads
-    const std::string text = square_graph();
-    CHECK(::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
-    // The shell that runs the program wrote its process id.
-    ::kill(static_cast<pid_t>(std::stol(read_text(folder + "pid"))), SIGINT);
-    ::close(descriptor);
-  });
-  const RunResult result =
-      run({"-c", "echo $$ > pid; exec \"$0\" optimize a.graph -o b.graph", waymark_test::program_path()},
-          {.folder = folder, .program = "/bin/sh"});
-  writer.join();
-  CHECK(result.code == 130);
-  CHECK(result.err == "waymark: error: interrupted before there was a result\n");
-  CHECK(names_in(folder) == std::vector<std::string>{"a.graph", "pid"});
+  // `timeout` of coreutils sends SIGTERM to its child and to the child's group: that is one request.
+  for (const auto& [signal, times] : {std::pair{SIGINT, 1}, {SIGTERM, 1}, {SIGTERM, 5}}) {
+    const std::string folder = fresh_folder();
+    const RunResult result = interrupted_while_reading(folder, signal, times);
+    INFO("signal " << signal << ", " << times << " times");
+    CHECK(result.code == 130);
+    CHECK(result.err == "waymark: error: interrupted before there was a result\n");
+    CHECK(names_in(folder) == std::vector<std::string>{"a.graph", "pid"});
+  }
 }
 
 }  // namespace interrupt_test

@@ -14,8 +14,10 @@ std::atomic<bool> interrupted{false};
 
 namespace {
 
+/// Only an impatient user kills: coreutils' `timeout` sends SIGTERM to its child and again to the
+/// child's group, and those who supervise a process have SIGKILL.
 extern "C" void on_interrupt(int signal) {
-  if (interrupted.exchange(true)) {
+  if (interrupted.exchange(true) && signal == SIGINT) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }

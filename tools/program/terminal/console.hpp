@@ -26,8 +26,8 @@ struct CommonOptions {
 
 /// Set by Ctrl-C. The optimizer checks it before every step.
 extern std::atomic<bool> interrupted;
-/// Makes Ctrl-C end a run in an orderly way; a second one kills it. File size limits and closed
-/// pipes become errors.
+/// Makes Ctrl-C and SIGTERM end a run in an orderly way; a second Ctrl-C kills it. File size limits
+/// and closed pipes become errors.
 void install_signal_handlers();
 
 /// Ctrl-C before there was a result to keep.
