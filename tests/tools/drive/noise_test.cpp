@@ -148,6 +148,12 @@ TEST_CASE("noise: what is stated is not estimated, what the drive cannot show ke
   CHECK(with.modeling_options.contains("multipath_sigma"));
   CHECK_FALSE(with.modeling_options.contains("heading_variance_per_s"));
   CHECK(with.odometry_options.contains("heading_variance_per_s"));
+
+  // Options of the odometry may be stated with its states too.
+  FusionSettings calibrated = complete_settings();
+  calibrated.calibration->insert_or_assign("heading_variance_per_s", "1e-6");
+  for (const NoiseParameter& parameter : estimate(drive, calibrated).parameters)
+    CHECK(parameter.option != "heading_variance_per_s");
 }
 
 namespace {

@@ -156,9 +156,9 @@ NoiseEstimate open_parameters(const CoarseDrive& coarse, std::size_t count, bool
   };
   const std::string& relative = facts.relative.front();
   const FusionSettings own = for_relative(settings, relative);
-  add_parameters(label(relative, count), own.odometry_model,
-                 registry.odometry_model(own.odometry_model).options, own.odometry_options, {},
-                 noise.parameters);
+  const std::vector<OptionInfo>& known = registry.odometry_model(own.odometry_model).options;
+  add_parameters(label(relative, count), own.odometry_model, known,
+                 with_calibration(own.odometry_options, own, known), {}, noise.parameters);
   if (!absolute) return noise;
   for (const AbsoluteGroup& group : facts.absolute) {
     const FusionSettings of = for_absolute(settings, group.name, registry);
