@@ -169,7 +169,7 @@ RowMajor retraction_jacobian(const VertexType& type, const double* value) {
   RowMajor jacobian(type.value_size, type.tangent_size);
   for (int k = 0; k < type.tangent_size; ++k) {
     std::array<std::vector<double>, 2> moved;
-    for (int side = 0; side < 2; ++side) {
+    for (const std::size_t side : {0U, 1U}) {
       std::vector<double> step(static_cast<std::size_t>(type.tangent_size), 0.0);
       step[static_cast<std::size_t>(k)] = side == 0 ? kStep : -kStep;
       moved[side].assign(value, value + type.value_size);

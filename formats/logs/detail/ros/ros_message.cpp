@@ -125,7 +125,7 @@ const char* read_cdr(RosType type, std::string_view bytes, RosReading& reading) 
   constexpr std::size_t kEncapsulation = 4;
   if (bytes.size() < kEncapsulation) return "the message is shorter than its type";
   // CDR_BE, CDR_LE, and PLAIN_CDR2 of the same orders, whose numbers are aligned to 4 bytes at most.
-  const unsigned kind = static_cast<unsigned char>(bytes[0]) << 8U | static_cast<unsigned char>(bytes[1]);
+  const int kind = static_cast<unsigned char>(bytes[0]) << 8 | static_cast<unsigned char>(bytes[1]);
   if (kind != 0 && kind != 1 && kind != 6 && kind != 7) return "its CDR encapsulation is not a plain one";
   const WireCursor from(bytes.substr(kEncapsulation), kind % 2 == 0, kind < 2 ? 8 : 4);
   return read_wire(type, from, false, reading);
