@@ -252,7 +252,7 @@ TEST_CASE("twist: rows split over two calls give the same edges") {
     const Options options = {{"scale", state}, {"yaw_rate_bias", state}, {"calibration_period", "1"}};
     BareDrive whole(every(0.1, 5));
     whole.add(readings, options);
-    for (const std::size_t split : {1, 50, 53, 166}) {
+    for (const std::size_t split : {1U, 50U, 53U, 166U}) {
       BareDrive parts(every(0.1, 5));
       const auto model = registry().make_sensor_model("twist", options);
       parts.extend(*model, part_of(readings, 0, split));

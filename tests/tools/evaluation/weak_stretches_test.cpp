@@ -52,7 +52,7 @@ TEST_CASE("weak stretches: a peak reaches as far as the value stays above its ha
 TEST_CASE("weak stretches: worst first, no more than asked for, and none of an even drive") {
   std::vector<EpochResult> epochs = minute();
   CHECK(weak_stretches(epochs, false).empty());
-  for (const std::size_t i : {5, 25, 45}) set_sigma(epochs[i], 2 + 0.1 * static_cast<double>(i));
+  for (const std::size_t i : {5U, 25U, 45U}) set_sigma(epochs[i], 2 + 0.1 * static_cast<double>(i));
   const auto weak = weak_stretches(epochs, false, 2);
   REQUIRE(weak.size() == 2);
   CHECK(weak[0].peak == Stamp::from_seconds(45));
