@@ -261,11 +261,12 @@ TEST_CASE("ubx raw: strings of GLONASS give the orbit and the clock that were se
   const auto quarter = [](double second_of_week) {
     return at(second_of_week + 17);
   };  // 17 leap seconds in 2016
-  for (const auto& [toe_s, near_s] :
+  for (const auto& [toe_s, received_s] :
        std::vector<std::pair<double, double>>{{kTow + 900, kTow + 100},
                                               {86'400 - 10'800, 86'400 - 12'000},
                                               {2 * 86'400 - 9'900, 2 * 86'400 - 11'000}}) {
     sent.toe = quarter(toe_s);
+    const double near_s = received_s;  // clang 14 captures no structured binding
     GlonassStrings strings;
     Ephemerides ephemerides;
     const auto take = [&](int number) {
