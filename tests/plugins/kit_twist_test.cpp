@@ -1,6 +1,8 @@
 // Sensor kit: twists of visual or lidar odometry.
 #include <numbers>
 
+#include <Eigen/LU>
+
 #include <waymark/plugins/twist/edge_twist.hpp>
 
 #include "plugins/kit_drive.hpp"

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <waymark/core/drive/signal_travel.hpp>

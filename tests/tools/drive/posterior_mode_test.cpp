@@ -1,6 +1,7 @@
 // The search for the most probable noise, on costs whose minimum and curvature are known.
 #include <cmath>
 
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
@@ -137,6 +138,11 @@ TEST_CASE("posterior mode: a curvature that is known costs no differences, and a
     if (factor == 1) CHECK(gradients <= 3);
     CHECK(gradients <= 9);
   }
+  // Not positive: the quadratic has its maximum up the slope, and promises no gain from going there.
+  const Eigen::Matrix2d hill = Eigen::Vector2d(-25, 100).asDiagonal();
+  const PosteriorMode mode = find_posterior_mode(cost, {Eigen::Vector2d(0.1, -0.2), hill}, within(4, 2));
+  CHECK(mode.at[0] == Approx(0.3).margin(0.002));
+  CHECK(mode.at[1] == Approx(-0.2).margin(0.001));
 }
 
 TEST_CASE("posterior mode: a derivative that is no number leaves the search at a number") {

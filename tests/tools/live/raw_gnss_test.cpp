@@ -5,6 +5,7 @@
 #include <map>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <waymark/tools/drive/coordinates/projection.hpp>

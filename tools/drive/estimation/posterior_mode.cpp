@@ -194,7 +194,8 @@ PosteriorMode search_posterior(const PosteriorCost& cost, const VectorXd& start,
 PosteriorMode find_posterior_mode(const PosteriorCost& cost, const PosteriorMode& near,
                                   const PosteriorBounds& bounds) {
   Quadratic fit;
-  fit.curvature = near.curvature;
+  // That of a piece of the drive, made longer, need not be: its least point would then be a corner.
+  fit.curvature = positive(near.curvature, 1);
   move_to(near.at, cost, fit);
   if (cost.stay) cost.stay();
   bool is_curvature_of_centre = false;
