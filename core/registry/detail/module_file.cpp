@@ -127,7 +127,7 @@ ModuleFile::ModuleFile(const std::string& path) {
   if (!file) throw UsageError(path + ": cannot read the plugin: " + std::strerror(errno));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   bytes_.resize(text.size());
-  std::memcpy(bytes_.data(), text.data(), text.size());
+  std::copy(text.begin(), text.end(), reinterpret_cast<char*>(bytes_.data()));
   const auto header = object_at<Elf64_Ehdr>(bytes_, 0);
   const bool shared_object = header && std::memcmp(header->e_ident, ELFMAG, SELFMAG) == 0 &&
                              header->e_ident[EI_CLASS] == ELFCLASS64 && header->e_type == ET_DYN &&

@@ -226,6 +226,30 @@ TEST_CASE("gate: short chords have no angle, the displacement alone decides") {
   CHECK(creeping.fixes[5].reason == "displacement");
 }
 
+TEST_CASE("gate: of fixes at two places in turn those are rejected that are there for less than a third") {
+  GateOptions off;
+  off.enabled = false;
+  const auto move = [](Scene& scene, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) scene.fixes[i].position += Eigen::Vector2d(0, 30);
+  };
+  // The end of the first burst and the beginning of the second enclose the right fixes.
+  Scene bursts = circle(1, 10, 300);
+  move(bursts, 0, 40);
+  move(bursts, 100, 130);
+  CHECK(bursts.judge(off).reasons.at("jump") == 30);
+  CHECK(bursts.rejected().front() == 100);
+
+  Scene more = circle(1, 10, 300);
+  for (const std::size_t burst : {40U, 120U, 220U}) move(more, burst, burst + 20);
+  CHECK(more.judge(off).reasons.at("jump") == 60);
+  CHECK(more.rejected().front() == 40);
+
+  Scene even = circle(1, 10, 300);
+  move(even, 0, 70);
+  move(even, 150, 220);
+  CHECK(even.judge(off).rejected == 0);
+}
+
 TEST_CASE("gate: at standstill only a jump is rejected") {
   Scene parked = straight(0, 10);
   parked.fixes[4].position = {2, 3};
@@ -300,6 +324,8 @@ TEST_CASE("gate: more rejected than accepted fixes are warned about with the rem
   summary.rejected = 450;
   CHECK_THAT(warning_of(summary), Catch::StartsWith("the gate rejects 450 of 500 fixes (90 %)") &&
                                       Catch::Contains("'correlated' needs no gate"));
+  summary.reasons = {{"frozen", 440}};  // told by a warning of its own
+  CHECK(warning_of(summary).empty());
 }
 
 TEST_CASE(
@@ -329,6 +355,37 @@ TEST_CASE(
   CHECK(fixes[8].status == FixStatus::accepted);
   CHECK(fixes[12].status == FixStatus::withheld);
   CHECK(fixes[25].status == FixStatus::accepted);
+}
+
+TEST_CASE("gate: a log that holds each fix until the next one has one fix of each") {
+  GateOptions off;
+  off.enabled = false;
+  const auto driven = [](std::size_t held) {
+    std::vector<Fix> fixes(100);
+    std::vector<Eigen::Vector3d> reckoned(100);
+    for (std::size_t i = 0; i < fixes.size(); ++i) {
+      fixes[i].stamp = Stamp::from_seconds(0.04 * static_cast<double>(i));
+      reckoned[i] = Eigen::Vector3d(0.6 * static_cast<double>(i), 0, 0);  // 15 m/s
+      fixes[i].position = reckoned[i / held * held].head<2>();
+    }
+    return std::pair(fixes, reckoned);
+  };
+  auto [fixes, reckoned] = driven(5);
+  const std::vector<FrozenFixes> found = find_frozen_fixes(fixes, reckoned);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].repeated.size() == 80);
+  CHECK(found[0].distance_m == Approx(20 * 4 * 0.6));
+  CHECK_THAT(warning_of(found[0], fixes[0].stamp),
+             Catch::StartsWith("the log holds each fix until the next one: 80"));
+  CHECK(apply_gate(fixes, reckoned, off).accepted == 20);
+  CHECK(fixes[5].status == FixStatus::accepted);
+
+  // Each a place of its own; and a vehicle that stands repeats itself rightly.
+  auto [all, reckoned_all] = driven(1);
+  CHECK(apply_gate(all, reckoned_all, off).rejected == 0);
+  for (Eigen::Vector3d& pose : reckoned) pose.setZero();
+  for (Fix& fix : fixes) fix.position.setZero();
+  CHECK(find_frozen_fixes(fixes, reckoned).empty());
 }
 
 }  // namespace gate_test

@@ -283,6 +283,20 @@ TEST_CASE("prepare: what cannot become a drive says why and what to do") {
   CHECK_THROWS_AS(prepare_drive(small_drive(), description), InputError);
 }
 
+TEST_CASE(
+    "prepare: stamps that leap by more than a day are told with their place, unless the window ends before") {
+  DriveLogs logs = small_drive();
+  std::vector<OdometrySample>& samples = logs.odometry.front().front().data.odometry;
+  for (std::size_t i = 91; i < samples.size(); ++i) samples[i].stamp = samples[i].stamp.later(1.7e9);
+  CHECK_THROWS_WITH(
+      prepare_drive(logs, small_description()),
+      StartsWith("odometry.csv: the stamps leap by 1.7e+09 s after 9 s of the log, where 91 of its 101 "
+                 "samples have passed"));
+  DriveDescription description = small_description();
+  description.to_s = 9;
+  CHECK(prepare_drive(logs, description).odometry.size() == 91);
+}
+
 TEST_CASE("prepare: a place that the UTM zone cannot hold is told with its log, its time and the remedy") {
   DriveLogs logs = small_drive();
   logs.gnss[0].data.fixes[3].longitude_deg = -160;

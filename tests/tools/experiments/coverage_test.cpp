@@ -94,7 +94,8 @@ StatedError error_in_the_middle(const SimulatedDrive& simulated, const PreparedD
   evaluation::EvaluationInput input = waymark_test::against_truth(document, simulated);
   for (const auto& covariance : evaluated_covariances(document))
     input.position_covariances.push_back(covariance.value());
-  const evaluation::EpochResult& epoch = evaluation::evaluate(input).epochs[input.fixes.size() / 2];
+  const evaluation::Evaluation result = evaluation::evaluate(input);
+  const evaluation::EpochResult& epoch = result.epochs[input.fixes.size() / 2];
   return {epoch.fused_offset_m.value(), epoch.position_covariance.value()};
 }
 

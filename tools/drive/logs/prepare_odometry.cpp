@@ -114,6 +114,22 @@ Candidate candidate_of(const std::vector<DriveLogs::Log>& logs, const OdometryCo
   return candidate;
 }
 
+/// Names the first interval between samples that is longer than a day: a wrong digit, or a clock that was
+/// set. Bridged, it would have a state of each kind for every few seconds. Empty if there is none.
+std::string leap_of(const std::vector<OdometrySample>& samples, const std::string& file) {
+  constexpr double kLongest_s = 86'400;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double leap_s = seconds_between(samples[i - 1].stamp, samples[i].stamp);
+    if (leap_s > kLongest_s)
+      return fmt::format(
+          "{}: the stamps leap by {:.6g} s after {:.9g} s of the log, where {} of its {} samples have passed: a "
+          "wrong stamp, or a clock that was set; correct it, or keep one side by 'time: {{from, to}}' or --from "
+          "and --to",
+          file, leap_s, seconds_between(samples.front().stamp, samples[i - 1].stamp), i, samples.size());
+  }
+  return {};
+}
+
 /// Cuts samples to the window of the drive. @param first stamp of the drive
 void cut_to_window(Stamp first, const DriveDescription& description, Candidate& candidate,
                    PrepareReport& report) {
@@ -123,7 +139,10 @@ void cut_to_window(Stamp first, const DriveDescription& description, Candidate& 
     return (description.from_s && after_first < nanoseconds(*description.from_s)) ||
            (description.to_s && after_first > nanoseconds(*description.to_s));
   });
-  if (samples.size() >= 2) return;
+  if (samples.size() >= 2) {
+    candidate.flaw = leap_of(samples, candidate.file);
+    return;
+  }
   candidate.flaw = fmt::format(
       "{}: the window from {} s to {} holds {} odometry samples of a log of {:.6g} s; widen 'time: "
       "{{from, to}}' or --from and --to",

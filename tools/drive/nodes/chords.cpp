@@ -94,6 +94,28 @@ bool undoes(const Jump& second, const Jump& first) {
   return (first.by + second.by).norm() <= 0.25 * first.by.norm();
 }
 
+/// Judges jumps of which each undoes the one before. Two of them enclose the wrong fixes, if these are less
+/// than half of the log. More have the fixes at two places in turn, and the end of one burst looks like the
+/// beginning of another: fixes at one of them are wrong only if those at the other last twice as long.
+void mark_undone(const ReckonedFixes& receiver, std::size_t first, std::size_t last,
+                 std::vector<Jump>& jumps) {
+  constexpr double kClear = 2;
+  const std::vector<Fix>& fixes = receiver.fixes;
+  if (last == first) return;
+  if (last == first + 1) {
+    jumps[first].undone =
+        jumps[first].stays_s < 0.5 * seconds_between(fixes.front().stamp, fixes.back().stamp);
+    return;
+  }
+  const Stamp begin = first == 0 ? fixes.front().stamp : fixes[jumps[first - 1].first].stamp;
+  double near_s = seconds_between(begin, fixes[jumps[first].first].stamp);  // where the fixes come from
+  double away_s = 0;
+  for (std::size_t j = first; j <= last; ++j) ((j - first) % 2 == 0 ? away_s : near_s) += jumps[j].stays_s;
+  const bool is_away_wrong = kClear * away_s <= near_s;
+  if (!is_away_wrong && kClear * near_s > away_s) return;
+  for (std::size_t j = is_away_wrong ? first : first + 1; j < last; j += 2) jumps[j].undone = true;
+}
+
 }  // namespace
 
 ReckonedFixes of_receiver(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna, int source) {
@@ -175,14 +197,15 @@ std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
   for (std::size_t i = 1; i < fixes.size(); ++i)
     if (const std::optional<Jump> jump = jump_to(receiver, i)) jumps.push_back(*jump);
   for (std::size_t j = 0; j < jumps.size(); ++j) {
-    const bool is_last = j + 1 == jumps.size();
-    if (!is_last) jumps[j].end = jumps[j + 1].first;
+    if (j + 1 < jumps.size()) jumps[j].end = jumps[j + 1].first;
     jumps[j].stays_s =
         seconds_between(fixes[jumps[j].first].stamp, fixes[std::min(jumps[j].end, fixes.size() - 1)].stamp);
-    const double log_s = seconds_between(fixes.front().stamp, fixes.back().stamp);
-    const bool returned = j > 0 && jumps[j - 1].undone;
-    jumps[j].undone =
-        !is_last && !returned && undoes(jumps[j + 1], jumps[j]) && jumps[j].stays_s < 0.5 * log_s;
+  }
+  for (std::size_t first = 0; first < jumps.size();) {
+    std::size_t last = first;
+    while (last + 1 < jumps.size() && undoes(jumps[last + 1], jumps[last])) ++last;
+    mark_undone(receiver, first, last, jumps);
+    first = last + 1;
   }
   return jumps;
 }

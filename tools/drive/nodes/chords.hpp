@@ -67,7 +67,7 @@ struct Jump {
   std::size_t end = 0;                           ///< the fix that jumps again, or the number of fixes
   Eigen::Vector2d by = Eigen::Vector2d::Zero();  ///< m, in the frame of the fixes
   double stays_s = 0;                            ///< from the first fix to `end`, or to the last one
-  /// the next jump undoes this one after less than half of the log: the fixes between are wrong
+  /// the next jump undoes this one, and there are more fixes elsewhere: those between are wrong
   bool undone = false;
 };
 

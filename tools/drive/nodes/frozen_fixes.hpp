@@ -1,5 +1,5 @@
 /// Finds fixes that repeat one position while the odometry moves: a receiver that lost its satellites
-/// and states the last position again.
+/// and states the last position again, or a log that holds each fix until the next one.
 #pragma once
 
 #include <span>
@@ -18,10 +18,13 @@ struct FrozenFixes {
   Stamp from;                         ///< of the first fix at this place
   Stamp to;
   double distance_m = 0;  ///< that the odometry moved meanwhile
+  bool held = false;      ///< all repeated fixes of a log that holds its fixes
 };
 
 /// Returns the places that at least two further fixes repeat to the last digit while the odometry moves
-/// away by 20 m or more. Coordinates with few digits repeat over shorter ways. Withheld fixes count.
+/// away by 20 m or more. Coordinates with few digits repeat over shorter ways. Where at least 20 fixes
+/// and half of those after a way of 5 cm or more repeat the one before, the log holds its fixes, and all
+/// repeated ones of that receiver are one entry. Withheld fixes count.
 /// @param fixes sorted by stamp
 /// @param dead_reckoned antenna poses at the fixes, in any frame; same length and order
 [[nodiscard]] std::vector<FrozenFixes> find_frozen_fixes(std::span<const Fix> fixes,

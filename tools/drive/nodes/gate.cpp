@@ -263,12 +263,16 @@ void require_accepted_fix(const GateSummary& summary) {
 }
 
 std::string warning_of(const GateSummary& summary) {
-  if (summary.rejected <= summary.accepted) return {};
+  std::size_t rejected = summary.rejected;
+  for (const char* told_apart : {"frozen", "jump"})
+    if (const auto of = summary.reasons.find(told_apart); of != summary.reasons.end()) rejected -= of->second;
+  if (rejected <= summary.accepted) return {};
+  const std::size_t judged = summary.accepted + rejected;
   return fmt::format(
       "the gate rejects {} of {} fixes ({:.0f} %), so the rest may be a chance agreement: the modeling "
       "'correlated' needs no gate; otherwise check the sign and unit of the yaw rate and the clocks of both "
       "logs, or widen gate: max_angle_deg and max_displacement_m",
-      summary.rejected, summary.accepted + summary.rejected, summary.rejected_percent());
+      rejected, judged, 100 * static_cast<double>(rejected) / static_cast<double>(judged));
 }
 
 }  // namespace waymark::drive

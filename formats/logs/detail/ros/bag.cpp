@@ -56,8 +56,8 @@ class BagDecoder final : public ChunkedLogDecoder<BagDecoder> {
     take_records(piece);
   }
 
-  [[nodiscard]] RecordStep begin(Level& level, std::string_view collected);
-  void passed(Level& /*level*/, std::string_view /*bytes*/) {}
+  [[nodiscard]] RecordStep begin_record(Level& level, std::string_view collected);
+  void pass_record(Level& /*level*/, std::string_view /*bytes*/) {}
 
  private:
   void end() override;
@@ -69,7 +69,7 @@ class BagDecoder final : public ChunkedLogDecoder<BagDecoder> {
   void begin_chunk(const BagHeader& header);
 };
 
-RecordStep BagDecoder::begin(Level& level, std::string_view collected) {
+RecordStep BagDecoder::begin_record(Level& level, std::string_view collected) {
   WireCursor from(collected);
   const std::uint64_t header_length = from.get<std::uint32_t>();
   if (header_length > kBagLongestHeader) {

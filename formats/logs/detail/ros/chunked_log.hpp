@@ -15,12 +15,17 @@
 
 namespace waymark::formats {
 
-/// The base of Decoder, which has `begin` and `passed` as RecordLevel calls them.
+/// The base of Decoder, which has `begin_record` and `pass_record` for `begin` and `passed` of RecordLevel.
 template <typename Decoder>
 class ChunkedLogDecoder : public RosLogDecoder {
  public:
-  using Level = RecordLevel<Decoder>;
+  using Level =
+      RecordLevel<ChunkedLogDecoder>;  // not of Decoder, which is no object yet while a base is made
 
+  RecordStep begin(Level& level, std::string_view collected) {
+    return decoder().begin_record(level, collected);
+  }
+  void passed(Level& level, std::string_view bytes) { decoder().pass_record(level, bytes); }
   void take_content(Level& /*level*/, std::string_view bytes) {
     if (chunk_failed_) return;
     if (const char* error = content_->take(bytes)) fail_chunk(error);
@@ -44,7 +49,7 @@ class ChunkedLogDecoder : public RosLogDecoder {
       : RosLogDecoder(path, request, format),
         magic_(magic),
         record_head_(record_head),
-        outer_(static_cast<Decoder&>(*this), record_head) {}
+        outer_(*this, record_head) {}
 
   /// Takes the bytes of the magic off a piece, as far as they are missing. @returns them
   std::string_view take_magic(std::string_view& piece) {
@@ -67,7 +72,7 @@ class ChunkedLogDecoder : public RosLogDecoder {
   /// Begins a chunk. @param size of its content @param crc32 of that; 0: not told
   /// @returns its content, to be opened
   ChunkContent& begin_content(std::uint64_t size, std::uint32_t crc32) {
-    inner_.emplace(static_cast<Decoder&>(*this), record_head_);
+    inner_.emplace(*this, record_head_);
     content_.emplace(size, [this](std::string_view bytes) { inner_->take(bytes); });
     chunk_crc_ = crc32;
     chunk_failed_ = false;
@@ -93,6 +98,7 @@ class ChunkedLogDecoder : public RosLogDecoder {
   }
 
  private:
+  Decoder& decoder() { return static_cast<Decoder&>(*this); }
   void give_held() {
     for (const HeldMessage& message : held_.take())
       take_message(message.channel, message.log_time, message.bytes, place());

@@ -35,8 +35,8 @@ class McapDecoder final : public ChunkedLogDecoder<McapDecoder> {
     take_records(piece);
   }
 
-  [[nodiscard]] RecordStep begin(Level& level, std::string_view collected);
-  void passed(Level& level, std::string_view bytes) {
+  [[nodiscard]] RecordStep begin_record(Level& level, std::string_view collected);
+  void pass_record(Level& level, std::string_view bytes) {
     if (is_outer(level)) add_to_crc(bytes);
   }
 
@@ -65,7 +65,7 @@ constexpr RecordStep mcap_collect(std::uint64_t size) {
   return {RecordStep::Then::collect, kMcapRecordHead + size};
 }
 
-RecordStep McapDecoder::begin(Level& level, std::string_view collected) {
+RecordStep McapDecoder::begin_record(Level& level, std::string_view collected) {
   WireCursor from(collected);
   const McapOpcode opcode{from.get<std::uint8_t>()};
   const auto length = from.get<std::uint64_t>();

@@ -134,7 +134,8 @@ CanLine VectorAsc::classic(CanLine result, CanCursor cursor) const {
   }
   if (kind != "d")
     return can_trouble(cursor.word_at, "expected 'd' (data) or 'r' (remote) after the direction");
-  return with_data(result, cursor, cursor.next_word(), base_);
+  const std::string_view size = cursor.next_word();
+  return with_data(result, cursor, size, base_);
 }
 
 /// "Rx 123 [name] brs esi dlc length bytes" behind the channel: CAN FD.
@@ -150,7 +151,8 @@ CanLine VectorAsc::flexible(CanLine result, CanCursor cursor) const {
   if (name_or_rate != "0" && name_or_rate != "1") (void)cursor.next_word();
   (void)cursor.next_word();  // ESI
   (void)cursor.next_word();  // DLC
-  return with_data(result, cursor, cursor.next_word(), 10);
+  const std::string_view size = cursor.next_word();
+  return with_data(result, cursor, size, 10);
 }
 
 bool VectorAsc::read_id(std::string_view text, CanLine& result) const {
