@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/estimation/latency.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
@@ -21,6 +22,29 @@ double distance_of(const Timeline& timeline) {
 
 constexpr const char* kTimeOffset = "time_offset";
 
+/// How far the fixes of a group may be along the way, in units of their accuracy, by what is not known of
+/// their delay.
+struct LeftUnknown {
+  double way_m = 0;
+  double of_accuracy = 0;
+};
+
+LeftUnknown left_unknown(const TimeOffset& offset, const AbsoluteGroup& group, const PlacedDrive& placed) {
+  std::vector<double> accuracies;
+  for (const Fix& fix : placed.fixes)
+    if (std::find(group.sources.begin(), group.sources.end(), fix.source) != group.sources.end())
+      accuracies.push_back(fix.accuracy_m());
+  double squared = 0;
+  double duration_s = 0;
+  for (const Interval& interval : placed.timeline.intervals) {
+    squared += interval.speed_mps * interval.speed_mps * interval.dt_s;
+    duration_s += interval.dt_s;
+  }
+  if (accuracies.empty() || !(duration_s > 0)) return {};
+  const double way_m = offset.sigma_s * std::sqrt(squared / duration_s);
+  return {way_m, way_m / upper_median(std::move(accuracies))};
+}
+
 /// Takes the fixes of a group as measured when their stamps say. An offset that is not needed costs RTK
 /// fixes at 30 m/s a decimetre.
 void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSettings& settings,
@@ -32,10 +56,17 @@ void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSetti
     (*settings.calibration)[kTimeOffset] = "off";
   }
   for (const int source : group.sources) modeled.placed.time_offsets_s[static_cast<std::size_t>(source)] = 0;
+  const LeftUnknown unknown = left_unknown(offset, group, modeled.placed);
   modeled.notes.push_back(fmt::format(
-      "{}the fixes are taken as not late: the drive says {:.3f} +- {:.3f} s, odds of {:.3g} to 1 for no delay",
+      "{}the fixes are taken as not late: the drive says {:.3f} +- {:.3f} s, odds of {:.3g} to 1 for no delay{}",
       modeled.placed.receivers.size() > 1 ? group.name + ": " : std::string(), offset.value_s, offset.sigma_s,
-      offset.odds_of_none()));
+      offset.odds_of_none(),
+      unknown.of_accuracy <= 1
+          ? std::string()
+          : fmt::format(
+                "; it hardly tells: if they may be late, '--calibrate on' adds the {:.2g} m along the way "
+                "that this leaves open to the covariances",
+                unknown.way_m)));
 }
 
 /// Finds the delay of the fixes, and the noise if it is estimated: each depends on the other.
@@ -53,13 +84,11 @@ std::vector<std::optional<TimeOffset>> estimate(const FusionSettings& settings,
   return delays.find(modeled.settings, modeled.placed);
 }
 
-/// Leaves out the delays that the drive gives good odds against, unless they are stated. Even odds are no
-/// knowledge: without the state, fixes that are 0.3 s late at 30 m/s would be 10 m off and claim 0.1 m.
+/// Leaves out the delays that the drive gives no better odds than their priors, unless they are stated.
 /// @param by_default the calibration of the drive was not stated
 /// @returns whether there was one
 bool leave_out_delays(const std::vector<std::optional<TimeOffset>>& offsets, bool by_default,
                       const FusionSettings& stated, FusionSettings& decision, ModeledDrive& modeled) {
-  constexpr double kGoodOdds = 5;
   if (!by_default || stated.modeling_options.contains(kTimeOffset)) return false;
   const std::vector<AbsoluteGroup> groups = groups_of(modeled.placed, decision);
   bool any = false;
@@ -67,7 +96,7 @@ bool leave_out_delays(const std::vector<std::optional<TimeOffset>>& offsets, boo
     const auto own = stated.sources.find(groups[g].name);
     const bool is_stated = own != stated.sources.end() && (own->second.options.contains(kTimeOffset) ||
                                                            own->second.calibration.contains(kTimeOffset));
-    if (is_stated || !offsets[g] || offsets[g]->odds_of_none() <= kGoodOdds) continue;
+    if (is_stated || !offsets[g] || offsets[g]->odds_of_none() <= 1) continue;
     leave_out(*offsets[g], groups[g], decision, modeled);
     any = true;
   }
