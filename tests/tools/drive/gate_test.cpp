@@ -324,7 +324,9 @@ TEST_CASE("gate: more rejected than accepted fixes are warned about with the rem
   summary.rejected = 450;
   CHECK_THAT(warning_of(summary), Catch::StartsWith("the gate rejects 450 of 500 fixes (90 %)") &&
                                       Catch::Contains("'correlated' needs no gate"));
-  summary.reasons = {{"frozen", 440}};  // told by a warning of its own
+  summary.reasons = {{"frozen", 440}};  // also a verdict of the gate
+  CHECK_FALSE(warning_of(summary).empty());
+  summary.reasons = {{"held", 440}};
   CHECK(warning_of(summary).empty());
 }
 
@@ -377,7 +379,9 @@ TEST_CASE("gate: a log that holds each fix until the next one has one fix of eac
   CHECK(found[0].distance_m == Approx(20 * 4 * 0.6));
   CHECK_THAT(warning_of(found[0], fixes[0].stamp),
              Catch::StartsWith("the log holds each fix until the next one: 80"));
-  CHECK(apply_gate(fixes, reckoned, off).accepted == 20);
+  const GateSummary summary = apply_gate(fixes, reckoned, off);
+  CHECK(summary.accepted == 20);
+  CHECK(summary.reasons.at("held") == 80);
   CHECK(fixes[5].status == FixStatus::accepted);
 
   // Each a place of its own; and a vehicle that stands repeats itself rightly.

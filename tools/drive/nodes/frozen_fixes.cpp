@@ -90,7 +90,7 @@ std::string warning_of(const FrozenFixes& frozen, Stamp start) {
   if (frozen.held)
     return fmt::format(
         "the log holds each fix until the next one: {} fixes repeat the position before them, while the odometry "
-        "moves by {:.0f} m in all; they are left out (rejected: frozen)",
+        "moves by {:.0f} m in all; they are left out (rejected: held)",
         frozen.repeated.size(), frozen.distance_m);
   return fmt::format(
       "{} fixes repeat one position from {:.1f} s to {:.1f} s after the first fix, while the odometry moves by "

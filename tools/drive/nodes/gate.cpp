@@ -185,10 +185,13 @@ void reject(Fix& fix, const char* reason) {
   fix.reason = reason;
 }
 
+/// Of repeated fixes that say nothing against the others: the log holds each fix until the next one.
+constexpr const char* kHeld = "held";
+
 /// A position that is repeated while the vehicle moves is no measurement, so this needs no gate.
 void reject_frozen(std::span<Fix> fixes, std::span<const Eigen::Vector3d> dead_reckoned) {
   for (const FrozenFixes& frozen : find_frozen_fixes(fixes, dead_reckoned))
-    for (const std::size_t i : frozen.repeated) reject(fixes[i], "frozen");
+    for (const std::size_t i : frozen.repeated) reject(fixes[i], frozen.held ? kHeld : "frozen");
 }
 
 /// Between a jump and the jump back the fixes agree among themselves, so that no gate sees them.
@@ -263,9 +266,8 @@ void require_accepted_fix(const GateSummary& summary) {
 }
 
 std::string warning_of(const GateSummary& summary) {
-  std::size_t rejected = summary.rejected;
-  for (const char* told_apart : {"frozen", "jump"})
-    if (const auto of = summary.reasons.find(told_apart); of != summary.reasons.end()) rejected -= of->second;
+  const auto held = summary.reasons.find(kHeld);
+  const std::size_t rejected = summary.rejected - (held == summary.reasons.end() ? 0 : held->second);
   if (rejected <= summary.accepted) return {};
   const std::size_t judged = summary.accepted + rejected;
   return fmt::format(
