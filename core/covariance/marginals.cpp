@@ -4,6 +4,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/system/normal_equations.hpp>
+#include <waymark/core/system/weakest_unknown.hpp>
 
 namespace waymark {
 namespace {
@@ -18,8 +19,8 @@ Marginals::Marginals(const Graph& graph) : graph_(graph), gauge_(find_gauge(grap
   (void)equations.linearize(graph.values());
   cholesky_.analyze(structure_.pattern());
   if (cholesky_.factorize(equations.hessian()) != FactorStatus::ok) {
-    throw InputError(
-        "the normal equations are not positive definite: some vertex is not determined by its edges");
+    throw InputError("the normal equations are not positive definite, so some vertex is not determined: " +
+                     describe_weakest(graph_, equations, cholesky_));
   }
 }
 

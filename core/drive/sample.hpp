@@ -44,6 +44,13 @@ struct Interval {
   double distance_sigma_m = 0;
   double turn_sigma_rad = 0;
 
+  /// Tells whether the vehicle stands: it is slower than `below_mps`, and does not turn on the spot, which
+  /// is faster than any gyro at rest reads (0.1 rad/s).
+  [[nodiscard]] bool stands(double below_mps) const {
+    constexpr double kTurns_radps = 0.1;
+    return std::abs(speed_mps) < below_mps && std::abs(yaw_rate_radps) < kTurns_radps;
+  }
+
   friend bool operator==(const Interval&, const Interval&) = default;
 };
 

@@ -12,6 +12,7 @@
 #include <waymark/core/system/detail/information_unit.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/core/system/normal_equations.hpp>
+#include <waymark/core/system/weakest_unknown.hpp>
 
 namespace waymark {
 namespace {
@@ -75,7 +76,10 @@ class Loop {
   void accept(double trial_chi2);
   void retreat();
   void finish_without_step();
-  std::string singular_message() const;
+  std::string singular_message();
+  /// Tells whether the last step was damped, which hides an unknown that the edges do not determine.
+  bool was_damped() const { return summary_.records.empty() || summary_.records.back().kind != "newton"; }
+  void name_undetermined();
   bool not_finite_without_unknowns() const;
   /// Returns ": " and what is not finite in the graph, if something is.
   std::string named_flaw() const;
@@ -173,19 +177,14 @@ bool Loop::converged_by(const Step& step, double step_size) {
   return true;
 }
 
-std::string Loop::singular_message() const {
+std::string Loop::singular_message() {
   const Eigen::VectorXd& diagonal = equations_.diagonal();
   if (!diagonal.allFinite()) {
     Graph at_present = graph_;
     at_present.set_values(values_);
     return "the normal equations are not finite: " + find_not_finite(at_present).value_or("");
   }
-  Eigen::Index weakest = 0;
-  diagonal.minCoeff(&weakest);
-  const VertexIndex v = equations_.vertex_of_unknown(weakest);
-  return text("the normal equations are not positive definite; the weakest unknown belongs to ",
-              graph_.vertex_type(v).tag, " ", to_string(graph_.id(v)), " (H_ii = ", diagonal[weakest],
-              "): it lacks edges or information");
+  return "the normal equations are not positive definite; " + describe_weakest(graph_, equations_, solver_);
 }
 
 /// Rounding may leave no acceptable step. No minimum is lower than 0, so a chi2 that is small itself leaves nothing to gain.
@@ -297,6 +296,22 @@ std::string Loop::named_flaw() const {
   return flaw ? ": " + *flaw : "";
 }
 
+/// If no minimum was reached, the message names an undetermined unknown; if one was, a note does.
+void Loop::name_undetermined() {
+  const bool gave_up = exhausted_ || summary_.termination == Termination::max_iterations ||
+                       summary_.termination == Termination::stalled;
+  const bool may_be_one_of_many = summary_.converged() && summary_.unknowns > 0 && was_damped();
+  if (!gave_up && !may_be_one_of_many) return;
+  if (solver_.factorize(equations_.hessian()) != FactorStatus::not_positive_definite) return;
+  if (summary_.converged()) {
+    summary_.notes.push_back(
+        "the minimum is not the only one, and the values of some vertices are arbitrary: " +
+        singular_message());
+  } else {
+    summary_.message += "; " + singular_message();
+  }
+}
+
 Summary Loop::run() {
   prepare();
   summary_.records.reserve(static_cast<std::size_t>(std::min(options_.max_iterations, 1000)));
@@ -326,12 +341,7 @@ Summary Loop::run() {
     finish(Termination::stalled, text("the steps ended at a stationary point with chi2 ", chi2_,
                                       "; the lowest chi2 on the way, ", best_chi2_, ", is kept"));
   }
-  // Damping hides an undetermined unknown. If no minimum was reached, the message names it.
-  const bool gave_up = exhausted_ || summary_.termination == Termination::max_iterations ||
-                       summary_.termination == Termination::stalled;
-  if (gave_up && solver_.factorize(equations_.hessian()) == FactorStatus::not_positive_definite) {
-    summary_.message += "; " + singular_message();
-  }
+  name_undetermined();
   summary_.final_chi2 = best_chi2_;
   if (summary_.unknowns > 0) {
     summary_.factor_size = solver_.factor_size();

@@ -25,9 +25,9 @@ std::vector<OptionInfo> options() {
       {"mount_deg", "0", "deg", OptionRange{-360, 360},
        "direction of the sensor's zero in the body, counter-clockwise from straight ahead"},
       {"sigma_deg", "1", "deg", OptionRange{1e-4, 180}, "sigma of readings that state none"},
-      {"offset", "off", "", OptionWords{"off", "constant"},
-       "offset of all readings of the drive, beside mount_deg: 'off' (0) or 'constant' (estimated)"},
-      {"offset_sigma_deg", "20", "deg", OptionRange{1e-4, 1000}, "sigma of the prior of the offset about 0"}};
+      {"offset", "constant", "", OptionWords{"constant", "off"},
+       "offset of all readings of the drive, beside mount_deg: 'constant' (estimated) or 'off' (0)"},
+      {"offset_sigma_deg", "5", "deg", OptionRange{1e-4, 1000}, "sigma of the prior of the offset about 0"}};
 }
 
 class Heading final : public SensorModel {

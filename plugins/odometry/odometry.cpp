@@ -45,7 +45,7 @@ class ConstantTwist final : public OdometryModel {
     for (std::size_t i = 0; i < nodes.intervals.size(); ++i) {
       const Interval& interval = nodes.intervals[i];
       const std::array<VertexIndex, 2> poses = {nodes.poses[i], nodes.poses[i + 1]};
-      if (std::abs(interval.speed_mps) < given_.standstill_speed && !interval.bridged) {
+      if (interval.stands(given_.standstill_speed) && !interval.bridged) {
         graph.add_edge(reading<EdgeSe2Standstill>(interval), poses, standstill_information(interval));
         if (bias_.is_calibrated()) add_gyro_at_rest(interval, bias_.at(nodes.stamps[i], graph), graph);
       } else if (yaw_.is_calibrated()) {
@@ -121,7 +121,8 @@ std::vector<OptionInfo> options() {
        NoisePrior{4e-6, 1.4}},
       {kGapFactor, "100", "", OptionRange{1, 1e6},
        "factor on the default process noise across a gap of the odometry, whatever the other options say"},
-      {"standstill_speed", "0.05", "m/s", OptionRange{0, 1}, "below this |speed| the vehicle stands"},
+      {"standstill_speed", "0.05", "m/s", OptionRange{0, 1},
+       "below this |speed| the vehicle stands, unless it turns on the spot (0.1 rad/s)"},
       {"standstill_position_variance_per_s", "1e-5", "m^2/s", OptionRange{1e-9, 1},
        "position variance per second at rest"},
       {"standstill_heading_variance_per_s", "1e-6", "rad^2/s", OptionRange{1e-12, 1},

@@ -57,7 +57,7 @@ TEST_CASE("heading: mounting is subtracted, and the turn from the node to the re
     KitDrive drive = make_kit_drive(recipe, 1);
     Readings readings("heading");
     readings.add(kit_stamp(0.1 + ahead), {{"heading", 0.45 + 0.5 * ahead + kPi / 2}});
-    drive.add_sensor("heading", readings.table(), {{"mount_deg", "90"}});
+    drive.add_sensor("heading", readings.table(), {{"mount_deg", "90"}, {"offset", "off"}});
     const std::size_t batch = drive.graph.batch_count() - 1;
     REQUIRE(drive.graph.edge_type(batch).tag == "EDGE_HEADING");
     std::vector<double> fields;
@@ -78,7 +78,7 @@ TEST_CASE("heading: n readings add n / sigma^2 to the information on a stiff dri
     KitDrive without = make_kit_drive(coarse_fixes(), static_cast<std::uint64_t>(seed));
     KitDrive with = without;
     Noise noise(static_cast<std::uint64_t>(1000 + seed));
-    with.add_sensor("heading", readings_of(with, 0, noise));
+    with.add_sensor("heading", readings_of(with, 0, noise), {{"offset", "off"}});
     const double n = static_cast<double>(edges_of(with.graph, "EDGE_HEADING"));
     REQUIRE(n == 60);
     const Solution before = solve(without);
@@ -106,8 +106,8 @@ TEST_CASE("heading: a compass with 8 degrees of deviation, which the drive finds
     KitDrive estimated = without;
     Noise noise(static_cast<std::uint64_t>(2000 + seed));
     const SensorTable readings = readings_of(without, kDeviation, noise);
-    believed.add_sensor("heading", readings);
-    estimated.add_sensor("heading", readings, {{"offset", "constant"}});
+    believed.add_sensor("heading", readings, {{"offset", "off"}});
+    estimated.add_sensor("heading", readings, {{"offset_sigma_deg", "20"}});
     const Solution before = solve(without);
     const Solution after = solve(estimated);
     // Believed, the compass turns the drive; with its deviation estimated it does no harm.
@@ -141,7 +141,7 @@ TEST_CASE("heading: rows that make no sense are named, those outside the drive o
   drive.add_sensor("heading", outside.table());
   CHECK(edges_of(drive.graph, "EDGE_HEADING") == 0);
   CHECK_THROWS_WITH(registry().make_sensor_model("heading", {{"offset", "maybe"}}),
-                    "heading: option 'offset' must be 'off' or 'constant', got 'maybe'");
+                    "heading: option 'offset' must be 'constant' or 'off', got 'maybe'");
   CHECK_THROWS_WITH(registry().make_sensor_model("heading", {{"mounting", "3"}}),
                     Contains("heading: unknown option 'mounting'; did you mean 'mount_deg'?"));
 }

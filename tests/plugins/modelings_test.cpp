@@ -165,4 +165,16 @@ TEST_CASE("odometry model: a standing vehicle's measurement is the identity what
   CHECK(graph.batch(0).information(0).diagonal().minCoeff() >= 1e5);
 }
 
+TEST_CASE("odometry model: a vehicle that turns on the spot does not stand") {
+  Graph graph;
+  const std::array<VertexIndex, 2> poses = {graph.add_vertex<VertexSe2>(VertexId{0}, {1, 2, 3}),
+                                            graph.add_vertex<VertexSe2>(VertexId{1}, {1, 2, 3.01})};
+  const Interval turning{0, 0.25, 0.04, false};
+  registry()
+      .make_odometry_model("constant_twist")
+      ->extend({{std::array{Stamp{0}, Stamp{40'000'000}}, poses, std::array{turning}}}, graph);
+  CHECK(graph.edge_type(0).tag == "EDGE_SE2_ODOMETRY");
+  CHECK(graph.chi2() == Approx(0).margin(1e-12));  // 0.25 rad/s for 0.04 s
+}
+
 }  // namespace modelings_test

@@ -183,7 +183,8 @@ class Arrays(unittest.TestCase):
         log = drive["truth"]["samples"]
         drive["sensors"] = [{
             "name": "heading", "time": {"week": 1900},
-            "samples": {"time": log["time"], "heading": log["heading"]}, "options": {"sigma_deg": 0.5}}]
+            "samples": {"time": log["time"], "heading": log["heading"]},
+            "options": {"sigma_deg": 0.5, "offset": "off"}}]
         without = waymark.fuse(described(), modeling="g2")
         result = waymark.fuse(drive, modeling="g2")
 

@@ -88,7 +88,8 @@ TEST_CASE("sensors: compass headings clockwise from north in degrees become head
   write_sensor_drive(folder,
                      "  - name: heading\n"
                      "    file: compass.csv\n"
-                     "    columns: {heading: {column: hdg, unit: deg, convention: cw_from_north}}\n");
+                     "    columns: {heading: {column: hdg, unit: deg, convention: cw_from_north}}\n"
+                     "    options: {offset: off}\n");
   write_log(folder + "compass.csv", "time,hdg", [](int t) {
     return std::string(",").append(std::to_string(std::fmod(90 - t * kYawRate / kDegree + 360, 360.0)));
   });
@@ -112,7 +113,7 @@ TEST_CASE("sensors: a compass with a deviation is calibrated by the drive, and t
                      "  name: heading\n"
                      "  file: compass.csv\n"
                      "  columns: {heading: {column: hdg, unit: deg}}\n"
-                     "  options: {offset: constant, sigma_deg: 0.5}\n");
+                     "  options: {offset_sigma_deg: 20, sigma_deg: 0.5}\n");
   write_log(folder + "compass.csv", "time,hdg",
             [](int t) { return std::string(",").append(std::to_string(t * kYawRate / kDegree + 12)); });
   (void)ran(folder);
@@ -261,7 +262,7 @@ TEST_CASE("sensors: an imitated dual antenna on the bundled drive") {
                  "  file: antenna.csv\n"
                  "  columns: {heading: {column: hdg, unit: deg, convention: cw_from_north}}\n"
                  "  time: {week: 1900}\n"
-                 "  options: {sigma_deg: 0.5}\n");
+                 "  options: {sigma_deg: 0.5, offset: off}\n");
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0, 0.5);
   std::istringstream truth(read_text(folder + "truth_5hz.csv"));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
@@ -68,7 +69,7 @@ TEST_CASE("slips: a speed in km/h is named at 5 Hz too, and in the report") {
   CHECK(contains(result.err, "times as far from the truth as raw GNSS"));
   const std::string report = read_text(folder + "out/report.html");
   CHECK(contains(report, "(3.6: km/h read as m/s)"));
-  CHECK(contains(report, "4 warnings. Fused positions"));
+  CHECK(contains(report, "5 warnings. Fused positions"));
   CHECK(contains(report, ">Warnings</h2>"));
 }
 
@@ -291,6 +292,52 @@ TEST_CASE("slips: fixes at latitude 0, longitude 0 are left out and counted") {
   const RunResult result = run({"convert", drive, "-o", folder + "a.graph"});
   CHECK(result.code == 0);
   CHECK(contains(result.err, "1 fixes at latitude 0, longitude 0 are left out"));
+}
+
+TEST_CASE("slips: wheels that lock for a second and a speed that repeats itself cost little") {
+  struct Fault {
+    const char* warning;  // nullptr: none is expected
+    double from_s;        // of the drive at speed
+    double length_s;
+    double most;  // error over that of the sound drive
+    std::function<double(double held, double speed)> speed;
+  };
+  const std::vector<Fault> faults = {
+      {nullptr, 0, 0, 0, [](double, double speed) { return speed; }},
+      {"leaps away and back faster than a vehicle accelerates, in 1 place", 5, 1, 1.15,
+       [](double, double speed) { return 0.1 * speed; }},
+      // the fixes of the canyon that stand in move by 10 m
+      {"the odometry repeats", 5, 8, 2.5, [](double held, double) { return held; }},
+  };
+  double sound_m = 0;
+  for (const Fault& fault : faults) {
+    const std::string folder = fresh_folder();
+    double begin = 0;
+    double fast_since = 0;
+    double held = 0;
+    const std::string drive = drive_with(folder, [&](double time, double speed, double yaw_rate) {
+      constexpr double kFast = 6;
+      if (speed < kFast) fast_since = time;
+      if (begin == 0 && fast_since > 0 && time - fast_since >= fault.from_s) {
+        begin = time;
+        held = speed;
+      }
+      const bool is_wrong = begin > 0 && time < begin + fault.length_s;
+      return line(time, is_wrong ? fault.speed(held, speed) : speed, yaw_rate);
+    });
+    REQUIRE(begin > 0);
+    const auto result = run({"run", drive, "--out", folder + "r"});
+    REQUIRE(result.code == 0);
+    const auto metrics = nlohmann::json::parse(read_text(folder + "r/metrics.json"));
+    const double rmse_m = metrics["evaluations"][0]["truth"]["fused"]["position"]["rmse_m"];
+    INFO(rmse_m << " m of " << sound_m << " m: " << result.err);
+    if (fault.warning == nullptr) {
+      sound_m = rmse_m;
+    } else {
+      CHECK(contains(result.err, fault.warning));
+      CHECK(rmse_m < fault.most * sound_m);
+    }
+  }
 }
 
 }  // namespace slips_test

@@ -299,7 +299,14 @@ TEST_CASE("usage: check names a graph whose edges leave a vertex undetermined") 
                  "EDGE_SE2_XY 1 2 0 1 1 0 0\n");
   const RunResult result = run({"check", graph});
   CHECK(result.code == 3);
-  CHECK(contains(result.out, "some vertex is not determined by its edges"));
+  CHECK(contains(result.out, "so some vertex is not determined: the weakest unknown belongs to VERTEX_XY 2"));
+  for (const char* algorithm : {"dogleg", "levenberg_marquardt"}) {
+    const RunResult optimized = run({"optimize", graph, "-o", graph + ".out", "--algorithm", algorithm});
+    INFO(optimized.err);
+    CHECK(optimized.code == 0);
+    CHECK(contains(optimized.err, "the minimum is not the only one"));
+    CHECK(contains(optimized.err, "VERTEX_XY 2"));
+  }
 }
 
 }  // namespace usage_test

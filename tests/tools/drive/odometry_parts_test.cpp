@@ -101,8 +101,25 @@ TEST_CASE("parts: four wheel speeds give speed of the rear axle and, with the tr
   const AssembledOdometry odometry = assemble_odometry(parts, how, 0.5);
   CHECK(odometry.samples[50].speed_mps == Approx(10));
   CHECK(odometry.samples[50].yaw_rate_radps == Approx(0.2));  // (10.15 - 9.85) / 1.5
+  CHECK(odometry.yaw_rate_from == "rear_wheels");
   how.speed_from = "front_wheels";
   CHECK(assemble_odometry(parts, how, 0.5).samples[50].speed_mps == Approx(11));
+}
+
+TEST_CASE("parts: a yaw rate that is known only now and then is warned of") {
+  const OdometryPart speed = part("speed", 10, 0, 100, constant(5));
+  const OdometryPart gyro = part("yaw_rate", 10, 0, 100, constant(0.1));
+  OdometryPart now_and_then = gyro;
+  std::vector<double>& values = now_and_then.readings.values;
+  for (std::size_t i = 101; i < 900; ++i)
+    values[i * gyro.readings.columns + column_of("yaw_rate")] = std::numeric_limits<double>::quiet_NaN();
+  const AssembledOdometry odometry =
+      assemble_odometry(std::vector<OdometryPart>{speed, now_and_then}, at_rate(10), 0.5);
+  REQUIRE(odometry.warnings.size() == 1);
+  CHECK_THAT(
+      odometry.warnings[0],
+      Catch::StartsWith("odometry: the yaw rate from 'yaw_rate' is known in 20.2 % of the 100 s of speed"));
+  CHECK(assemble_odometry(std::vector<OdometryPart>{speed, gyro}, at_rate(10), 0.5).warnings.empty());
 }
 
 TEST_CASE("parts: counters of ticks become speed, also where they start again from 0") {

@@ -198,6 +198,9 @@ TEST_CASE("timeline: standstill is the identity whatever the gyro says, and reve
   CHECK(dead_reckon(still, start, 0.05).back() == start);
   CHECK(dead_reckon(still, start, 0.03).back() != start);
 
+  const Timeline spins = build_timeline(constant_twist(10, 0, 0.3), {}, {});  // a robot on the spot
+  CHECK((dead_reckon(spins, start, 0.05).back() - start - Eigen::Vector3d(0, 0, 3)).norm() < 1e-9);
+
   const Timeline back = build_timeline(constant_twist(10, -2, 0), {}, {});
   const Eigen::Vector3d end = dead_reckon(back, Eigen::Vector3d(0, 0, std::numbers::pi / 2), 0.05).back();
   CHECK(end[1] == Approx(-20));

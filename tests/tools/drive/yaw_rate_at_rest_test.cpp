@@ -30,4 +30,12 @@ TEST_CASE("yaw rate at rest: one that never changes at rest is no gyro's, and a 
   CHECK_FALSE(yaw_rate_at_rest(wheels).is_known());
 }
 
+TEST_CASE("yaw rate at rest: turning on the spot is no rest") {
+  std::vector<OdometrySample> robot;
+  for (int i = 0; i < 200; ++i)
+    robot.push_back({.stamp = Stamp::from_seconds(0.1 * i), .yaw_rate_radps = i < 100 ? 0.0 : 0.5});
+  CHECK(yaw_rate_at_rest(robot).seconds == Approx(9.9));
+  CHECK(yaw_rate_at_rest(robot).is_derived());
+}
+
 }  // namespace yaw_rate_at_rest_test

@@ -128,7 +128,7 @@ FusionSettings decided(FusionSettings settings, const TypeRegistry& registry) {
 
 void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSettings& settings,
                        const TypeRegistry& registry) {
-  if (!rest.is_known()) return;
+  if (!rest.is_known() && !rest.is_derived()) return;
   constexpr double kSilent = 1;  // rad^2/s: says nothing
   constexpr const char* kAtRest = "gyro_at_rest_variance_per_s";
   const std::vector<OptionInfo>& known = registry.odometry_model(settings.odometry_model).options;

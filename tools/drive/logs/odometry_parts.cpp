@@ -114,8 +114,11 @@ class Assembler {
     speed_ = chosen("speed", kSpeedSources, how_.speed_from,
                     [&](std::string_view source) { return speed(source); });
     flip_in_reverse();
-    const TimeSeries yaw = chosen("yaw rate", kYawRateSources, how_.yaw_rate_from,
-                                  [&](std::string_view source) { return this->yaw_rate(source); });
+    const TimeSeries yaw =
+        chosen("yaw rate", kYawRateSources, how_.yaw_rate_from, [&](std::string_view source) {
+          result_.yaw_rate_from = source;
+          return this->yaw_rate(source);
+        });
     sample(yaw);
     return std::move(result_);
   }
@@ -364,8 +367,20 @@ class Assembler {
       throw InputError(
           "odometry: speed and yaw rate do not overlap in time; check 'time: {scale, "
           "week, offset}' of the parts");
+    warn_of_silence(1 / rate);
     note(fmt::format("{} samples at {:.4g} Hz{}", result_.samples.size(), rate,
                      how_.rate_hz > 0 ? "" : " (the rate of the yaw rate; state 'rate' for another)"));
+  }
+
+  /// A course is only known while the receiver moves.
+  void warn_of_silence(double period_s) {
+    const double span_s = seconds_between(speed_.stamps.front(), speed_.stamps.back());
+    const double share = static_cast<double>(result_.samples.size()) * period_s / span_s;
+    if (share >= 0.5) return;
+    result_.warnings.push_back(fmt::format(
+        "odometry: the yaw rate from '{}' is known in {:.1f} % of the {:.0f} s of speed, and the rest is a gap; "
+        "name a source that measures all the time by 'yaw_rate_from', a gyro or a heading (channels found: {})",
+        result_.yaw_rate_from, 100 * share, span_s, present()));
   }
 
   Channels channels_;

@@ -49,7 +49,9 @@ struct OdometryPart {
 
 struct AssembledOdometry {
   std::vector<OdometrySample> samples;
-  std::vector<std::string> notes;  ///< the source of each quantity
+  std::vector<std::string> notes;     ///< the source of each quantity
+  std::vector<std::string> warnings;  ///< of a yaw rate that is missing most of the time
+  std::string_view yaw_rate_from;     ///< one of kYawRateSources
 };
 
 /// Returns samples at whole multiples of the clock's period, from the later first reading to the

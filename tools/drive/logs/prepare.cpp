@@ -13,9 +13,12 @@
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/mending/fix_motion.hpp>
+#include <waymark/tools/drive/mending/frozen.hpp>
+#include <waymark/tools/drive/mending/reversing.hpp>
+#include <waymark/tools/drive/mending/speed_leaps.hpp>
+#include <waymark/tools/drive/mending/standing.hpp>
 #include <waymark/tools/drive/nodes/agreement.hpp>
-#include <waymark/tools/drive/nodes/fix_motion.hpp>
-#include <waymark/tools/drive/nodes/frozen.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 #include <waymark/tools/drive/sensors/rough_fixes.hpp>
 #include <waymark/tools/drive/sensors/sensor_logs.hpp>
@@ -90,23 +93,55 @@ void number_epochs(std::vector<Fix>& fixes, const DriveDescription& description,
 
 void note_yaw_rate(const std::string& source, const YawRateAtRest& rest, PrepareReport& report) {
   if (!rest.is_derived()) return;
+  const char* reason = rest.stated_derived ? "the yaw rate is one from wheels or steering"
+                                           : "the yaw rate never changes while the vehicle stands, so it is "
+                                             "taken for one from wheels or steering";
   report.notes.push_back(
-      source +
-      "the yaw rate never changes while the vehicle stands, so it is taken for one from wheels or "
-      "steering: its readings at rest show no bias, and the default calibration has yaw_per_speed");
+      source + reason + ": its readings at rest show no bias, and the default calibration has yaw_per_speed");
 }
 
-/// Frozen samples of one of several sources are left out: the others measure the motion.
-void leave_out_frozen(PreparedDrive& drive) {
+/// Gives speeds without a sign the one that the fixes show. @param source its name and ": ", or empty
+void find_signs(const std::string& source, std::vector<OdometrySample>& samples, PreparedDrive& drive) {
+  const std::vector<Reversing> backwards = find_reversing(samples, drive.fixes);
+  if (backwards.empty()) return;
+  drive.report.warnings.push_back(source + warning_of(backwards, samples));
+  drive_backwards(backwards, samples);
+}
+
+/// Speeds without a sign that are noise become 0. @param source its name and ": ", or empty
+void find_stops(const std::string& source, std::vector<OdometrySample>& samples, PrepareReport& report) {
+  double total_s = 0;
+  for (const Standing& time : find_standing(samples)) {
+    total_s += seconds_between(samples[time.first].stamp, samples[time.last].stamp);
+    for (std::size_t i = time.first; i <= time.last; ++i) samples[i].speed_mps = 0;
+  }
+  if (total_s > 0)
+    report.notes.push_back(fmt::format(
+        "{}the speed has no sign and reads noise for {:.0f} s in all: the vehicle is taken to stand there",
+        source, total_s));
+}
+
+/// Wrong samples of one of several sources are left out: the others measure the motion.
+void leave_out_wrong(PreparedDrive& drive) {
   for (PreparedOdometry& source : drive.relative) {
-    note_yaw_rate(source.name + ": ", source.yaw_rate_at_rest, drive.report);
+    const std::string name = source.name + ": ";
+    note_yaw_rate(name, source.yaw_rate_at_rest, drive.report);
     const Stamp start = source.samples.front().stamp;
+    find_stops(name, source.samples, drive.report);
+    const std::vector<SpeedLeap> leaps = find_speed_leaps(source.samples);
+    if (!leaps.empty()) drive.report.warnings.push_back(name + warning_of(leaps, source.samples));
+    for (std::size_t i = leaps.size(); i-- > 0;) {
+      const auto begin = source.samples.begin();
+      source.samples.erase(begin + static_cast<std::ptrdiff_t>(leaps[i].first),
+                           begin + static_cast<std::ptrdiff_t>(leaps[i].last + 1));
+    }
     for (const FrozenOdometry& time : find_frozen_odometry(source.samples, drive.fixes)) {
-      drive.report.warnings.push_back(source.name + ": " + warning_of(time, start));
+      drive.report.warnings.push_back(name + warning_of(time, start));
       std::erase_if(source.samples, [&](const OdometrySample& sample) {
         return sample.stamp >= time.from && sample.stamp <= time.to;
       });
     }
+    find_signs(name, source.samples, drive);
   }
 }
 
@@ -154,15 +189,25 @@ void mend_by_fixes(PreparedDrive& drive) {
     drive.report.warnings.push_back(warning_of(time, drive.odometry.front().stamp));
 }
 
+/// Replaces speeds that no vehicle has, and gives speeds their sign.
+void mend_by_itself(PreparedDrive& drive) {
+  find_stops("", drive.odometry, drive.report);
+  const std::vector<SpeedLeap> leaps = find_speed_leaps(drive.odometry);
+  if (!leaps.empty()) drive.report.warnings.push_back(warning_of(leaps, drive.odometry));
+  bridge_speed_leaps(leaps, drive.odometry);
+  find_signs("", drive.odometry, drive);
+}
+
 void judge_odometry(PreparedDrive& drive) {
   if (!drive.relative.empty()) {
-    leave_out_frozen(drive);
+    leave_out_wrong(drive);
     let_odometries_agree(drive);
     drop_silent_sources(drive);
     cover_gaps(drive);
     if (drive.relative.size() == 1) drive.relative.clear();
   } else {
     note_yaw_rate("", drive.yaw_rate_at_rest, drive.report);
+    mend_by_itself(drive);
   }
   if (!drive.fixes.empty()) mend_by_fixes(drive);
   if (std::string warning = warning_of_accelerations(drive.odometry); !warning.empty())

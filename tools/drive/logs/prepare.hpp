@@ -180,7 +180,7 @@ struct DriveLogs {
 ///    2n, ... of that receiver are withheld, and so are those in an outage and those of sources that are
 ///    withheld.
 /// 7. Everything is projected.
-/// 8. Odometry that repeats one reading while the fixes move is replaced (nodes/frozen.hpp).
+/// 8. Odometry that is wrong is mended, or left out (mending/).
 /// @throws InputError with the remedy for: fewer than two odometry samples, a receiver without a fix
 /// within the span of the odometry, truth that does not overlap the odometry, and a log of seconds of week
 /// that would need a date

@@ -18,8 +18,8 @@ namespace {
 /// Assembles logs with channels. @throws InputError if some are complete odometry and
 /// others are not
 void assemble_parts(const std::vector<DriveLogs::Log>& logs, const OdometryAssembly& assembly,
-                    const DriveDescription& description, std::vector<OdometrySample>& odometry,
-                    PrepareReport& report) {
+                    const DriveDescription& description, PreparedOdometry& source, PrepareReport& report) {
+  std::vector<OdometrySample>& odometry = source.samples;
   std::vector<OdometryPart> parts;
   for (const DriveLogs::Log& log : logs) {
     if (log.data.readings.size() == 0) continue;
@@ -42,7 +42,11 @@ void assemble_parts(const std::vector<DriveLogs::Log>& logs, const OdometryAssem
     }
   }();
   odometry = std::move(assembled.samples);
+  const std::string_view from = assembled.yaw_rate_from;
+  source.yaw_rate_at_rest.stated_derived =
+      from == "rear_wheels" || from == "rear_ticks" || from == "steering";
   report.notes.insert(report.notes.end(), assembled.notes.begin(), assembled.notes.end());
+  report.warnings.insert(report.warnings.end(), assembled.warnings.begin(), assembled.warnings.end());
 }
 
 /// Notes the gaps. The motion in a gap is unknown, and no noise model fits its error.
@@ -60,13 +64,13 @@ void note_gaps(double gap_s, Stamp start, PrepareReport& report) {
 }
 
 /// Reads one source: cleaned, without its delays. Fewer than two samples are no motion.
-std::vector<OdometrySample> samples_of(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& config,
-                                       const DriveDescription& description, StreamReport& stream,
-                                       PrepareReport& report) {
-  std::vector<OdometrySample> samples;
+void read_source(const std::vector<DriveLogs::Log>& logs, const OdometryConfig& config,
+                 const DriveDescription& description, PreparedOdometry& source, StreamReport& stream,
+                 PrepareReport& report) {
+  std::vector<OdometrySample>& samples = source.samples;
   for (const DriveLogs::Log& log : logs)
     append_log(log.data.odometry, log, description.scale(), samples, stream, report);
-  assemble_parts(logs, config.assembly, description, samples, report);
+  assemble_parts(logs, config.assembly, description, source, report);
   clean_stream(
       samples, stream,
       [](const OdometrySample& s) { return std::isfinite(s.speed_mps) && std::isfinite(s.yaw_rate_radps); },
@@ -75,10 +79,9 @@ std::vector<OdometrySample> samples_of(const std::vector<DriveLogs::Log>& logs, 
         return a.speed_mps == b.speed_mps && a.yaw_rate_radps == b.yaw_rate_radps;
       });
   note_cleaning("odometry samples", stream, report);
-  if (samples.size() < 2) return samples;
+  if (samples.size() < 2) return;
   if (config.speed_delay_s != 0 || config.yaw_rate_delay_s != 0)
     samples = without_delays(samples, config.speed_delay_s, config.yaw_rate_delay_s);
-  return samples;
 }
 
 /// A relative source while it is prepared.
@@ -98,7 +101,7 @@ Candidate candidate_of(const std::vector<DriveLogs::Log>& logs, const OdometryCo
                       .file = logs.front().file,
                       .gives_nodes = config.gives_nodes};
   std::vector<OdometrySample>& samples = candidate.source.samples;
-  samples = samples_of(logs, config, description, candidate.stream, report);
+  read_source(logs, config, description, candidate.source, candidate.stream, report);
   const bool had_motion = candidate.stream.read >= 2;
   if (samples.size() < 2 && had_motion && !config.delay_place.empty()) {
     candidate.flaw = fmt::format(
@@ -203,7 +206,9 @@ std::vector<PreparedOdometry> prepare_odometry(const DriveLogs& logs, const Driv
   for (Candidate& candidate : candidates) {
     PreparedOdometry& source = candidate.source;
     source.gap_s = longest_interval_s(description, source.samples);
+    const bool stated_derived = source.yaw_rate_at_rest.stated_derived;
     source.yaw_rate_at_rest = yaw_rate_at_rest(source.samples);
+    source.yaw_rate_at_rest.stated_derived = stated_derived;
     describe_stream(source.samples, source.gap_s, candidate.stream);
   }
   put_first(candidates);

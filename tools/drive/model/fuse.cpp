@@ -51,9 +51,11 @@ void leave_out(const TimeOffset& offset, const AbsoluteGroup& group, FusionSetti
                ModeledDrive& modeled) {
   if (modeled.placed.receivers.size() > 1 || settings.sources.contains(group.name)) {
     settings.sources[group.name].options[kTimeOffset] = "off";
+    modeled.without_delay.push_back(group.name);
   } else {
     settings.modeling_options[kTimeOffset] = "off";
     (*settings.calibration)[kTimeOffset] = "off";
+    modeled.without_delay.emplace_back();
   }
   for (const int source : group.sources) modeled.placed.time_offsets_s[static_cast<std::size_t>(source)] = 0;
   const LeftUnknown unknown = left_unknown(offset, group, modeled.placed);

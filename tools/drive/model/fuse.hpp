@@ -47,6 +47,8 @@ struct ModeledDrive {
   PlacedDrive placed;       ///< nodes, gate, initial guess
   NoiseEstimate noise;      ///< without parameters if the noise is as stated
   std::vector<std::string> sensor_warnings;
+  /// groups of receivers whose fixes are taken as not late; an only receiver is ""
+  std::vector<std::string> without_delay;
   std::vector<std::string> notes;     ///< sentences about what the drive decided
   double distance_m = 0;              ///< by the odometry
   formats::GraphDocument document{};  ///< with provenance: provenance.hpp

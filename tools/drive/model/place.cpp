@@ -8,6 +8,7 @@
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/start_search.hpp>
 #include <waymark/tools/drive/nodes/agreement.hpp>
+#include <waymark/tools/drive/nodes/constant_difference.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
@@ -86,6 +87,8 @@ void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
     placed.warnings.push_back(
         warning_of(disagreement, names[disagreement.source], placed.timeline.stamps.front()));
   }
+  for (const ConstantDifference& difference : constant_differences(placed.fixes, poses_of_fixes(placed)))
+    placed.warnings.push_back(warning_of(difference, placed.receivers));
   if (!found.empty())
     placed.start = make_start(placed.timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
 }

@@ -84,7 +84,7 @@ std::vector<double> odometry_headings(const Timeline& timeline, double bias, dou
   std::vector<double> headings{0};
   headings.reserve(timeline.stamps.size());
   for (const Interval& interval : timeline.intervals) {
-    const bool moves = std::abs(interval.speed_mps) >= standstill_mps;
+    const bool moves = !interval.stands(standstill_mps);
     headings.push_back(headings.back() + (moves ? (interval.yaw_rate_radps - bias) * interval.dt_s : 0));
   }
   return headings;

@@ -22,10 +22,6 @@ constexpr double kReweightFloor = 0.5;  // m: shorter distances count alike
 constexpr int kReweightings = 20;
 constexpr std::size_t kSmoothingHalf = 2;  // windows on either side
 
-bool moves(const Interval& interval, double standstill_mps) {
-  return std::abs(interval.speed_mps) >= standstill_mps;
-}
-
 Eigen::Vector2d weighted_mean(std::span<const Eigen::Vector2d> points, std::span<const double> weights) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double total = 0;
@@ -132,7 +128,7 @@ std::vector<double> moving_time(const Timeline& timeline, double standstill_mps)
   std::vector<double> moving{0};
   moving.reserve(timeline.stamps.size());
   for (const Interval& interval : timeline.intervals)
-    moving.push_back(moving.back() + (moves(interval, standstill_mps) ? interval.dt_s : 0));
+    moving.push_back(moving.back() + (interval.stands(standstill_mps) ? 0 : interval.dt_s));
   return moving;
 }
 
@@ -158,7 +154,7 @@ std::optional<double> standstill_bias(const Timeline& timeline, double standstil
   std::vector<std::pair<double, double>> rates;
   double total = 0;
   for (const Interval& interval : timeline.intervals) {
-    if (moves(interval, standstill_mps) || interval.bridged) continue;
+    if (!interval.stands(standstill_mps) || interval.bridged) continue;
     rates.emplace_back(interval.yaw_rate_radps, interval.dt_s);
     total += interval.dt_s;
   }
@@ -174,7 +170,7 @@ std::vector<Eigen::Vector3d> integrate_along(const Timeline& timeline, std::span
   for (std::size_t i = 0; i < timeline.intervals.size(); ++i) {
     const Interval& interval = timeline.intervals[i];
     Eigen::Vector2d position = poses.back().head<2>();
-    if (moves(interval, standstill_mps)) {
+    if (!interval.stands(standstill_mps)) {
       const Eigen::Vector3d twist(interval.speed_mps * interval.dt_s, 0, headings[i + 1] - headings[i]);
       position += rotate(headings[i], se2_exp(twist).position);
     }

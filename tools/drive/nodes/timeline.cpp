@@ -185,7 +185,7 @@ std::vector<Eigen::Vector3d> dead_reckon(const Timeline& timeline, const Eigen::
   poses.push_back(start);
   Pose2<double> pose(start[0], start[1], start[2]);
   for (const Interval& interval : timeline.intervals) {
-    if (std::abs(interval.speed_mps) >= standstill_mps) {
+    if (!interval.stands(standstill_mps)) {
       const double dt = interval.dt_s;
       const Eigen::Vector3d twist(interval.speed_mps * dt, 0, interval.yaw_rate_radps * dt);
       pose = compose(pose, se2_exp(twist));

@@ -64,8 +64,8 @@ struct Timeline {
 [[nodiscard]] double grid_scale_at(Stamp moment, std::span<const Fix> fixes, std::size_t& hint);
 
 /// Returns poses of all nodes by exact integration of the intervals from `start`. Headings are
-/// *not* wrapped, so they show windings. An interval with |speed| below `standstill_mps` is
-/// the identity.
+/// *not* wrapped, so they show windings. An interval that stands below
+/// `standstill_mps` is the identity.
 [[nodiscard]] std::vector<Eigen::Vector3d> dead_reckon(const Timeline& timeline, const Eigen::Vector3d& start,
                                                        double standstill_mps);
 

@@ -7,7 +7,7 @@ namespace waymark::drive {
 YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry) {
   constexpr double kStands_mps = 0.05;
   const auto stands = [](const OdometrySample& sample) {
-    return std::abs(sample.speed_mps) < kStands_mps && !sample.assumed;
+    return Interval{sample.speed_mps, sample.yaw_rate_radps}.stands(kStands_mps) && !sample.assumed;
   };
   YawRateAtRest rest;
   double squares = 0;

@@ -13,8 +13,10 @@ struct YawRateAtRest {
   double seconds = 0;         ///< between readings
   double variance_per_s = 0;  ///< white noise of its integral, rad^2/s, from successive differences
 
+  bool stated_derived = false;  ///< the drive.yaml takes it from wheels or steering
+
   [[nodiscard]] bool is_known() const { return seconds >= 5; }
-  [[nodiscard]] bool is_derived() const { return is_known() && variance_per_s == 0; }
+  [[nodiscard]] bool is_derived() const { return stated_derived || (is_known() && variance_per_s == 0); }
 };
 
 [[nodiscard]] YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry);

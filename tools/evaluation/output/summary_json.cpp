@@ -81,6 +81,7 @@ nlohmann::ordered_json run_summary_json(const std::vector<RunSummary>& runs) {
     summary = summary_json(run.result);
     summary["states"] = states_json(run.states);
     summary["noise"] = run.noise;
+    summary["without_delay"] = run.without_delay;
   }
   return summaries;
 }

@@ -24,10 +24,11 @@ struct RunSummary {
   std::string label;
   const MultiStartSummary& result;
   const std::vector<StateReport>& states;
-  const nlohmann::ordered_json& noise;  ///< the parameters that were estimated
+  const nlohmann::ordered_json& noise;            ///< the parameters that were estimated
+  const std::vector<std::string>& without_delay;  ///< groups of receivers; "": the only one
 };
 
-/// Returns the content of summary.json: minimisation, states and noise by label.
+/// Returns the content of summary.json: minimisation, states, noise and receivers without a delay by label.
 [[nodiscard]] nlohmann::ordered_json run_summary_json(const std::vector<RunSummary>& runs);
 
 /// How the minimisation of a run ended, as in summary.json.

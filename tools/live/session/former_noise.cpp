@@ -10,6 +10,19 @@
 #include <waymark/tools/drive/estimation/noise.hpp>
 
 namespace waymark::live {
+namespace {
+
+/// A delay that the whole drive did not show is no state of the window either.
+void leave_out_delays(const std::vector<std::string>& groups, drive::FusionSettings& settings) {
+  constexpr const char* kTimeOffset = "time_offset";
+  if (settings.calibration && settings.calibration->contains(kTimeOffset)) return;
+  for (const std::string& group : groups) {
+    Options& options = group.empty() ? settings.modeling_options : settings.sources[group].options;
+    options.try_emplace(kTimeOffset, "off");
+  }
+}
+
+}  // namespace
 
 void use_former_noise(const std::string& path, const TypeRegistry& registry,
                       drive::FusionSettings& settings) {
@@ -33,6 +46,7 @@ void use_former_noise(const std::string& path, const TypeRegistry& registry,
       parameter.value = entry.at("value").get<double>();
       noise.parameters.push_back(parameter);
     }
+    leave_out_delays(json[settings.modeling].value("without_delay", std::vector<std::string>()), settings);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(fmt::format("{}: noise: {}", file, error.what()));
   }

@@ -8,7 +8,8 @@
 
 namespace waymark::live {
 
-/// Takes the noise of the same modeling as options of the models; stated options stay.
+/// Takes the noise of the same modeling as options of the models, and the decision that fixes are not late;
+/// stated options stay.
 /// @param path summary.json of `run`, or its folder
 /// @throws InputError for a file that has no noise of the modeling
 void use_former_noise(const std::string& path, const TypeRegistry& registry, drive::FusionSettings& settings);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/program/jobs/result_warnings.hpp>
 
 namespace waymark::program {
@@ -83,6 +84,29 @@ void check_innovations(const evaluation::InnovationStatistics& fixes, std::vecto
           : ""));
 }
 
+/// Errors that last are states, which take in whatever the odometry does wrong.
+void check_distances(const std::vector<evaluation::EpochResult>& epochs, std::vector<std::string>& warnings) {
+  constexpr std::size_t kFewest = 30;
+  constexpr double kFactor = 10;
+  constexpr double kLeast_m = 10;
+  std::vector<double> claims;
+  double squares = 0;
+  for (const evaluation::EpochResult& epoch : epochs) {
+    if (epoch.status != FixStatus::accepted || !epoch.fix_residual_m) continue;
+    squares += epoch.fix_residual_m->squaredNorm();
+    claims.push_back(epoch.fix_sigma_m.norm() / std::sqrt(2));
+  }
+  if (claims.size() < kFewest) return;
+  const double distance_m = std::sqrt(squares / static_cast<double>(claims.size()));
+  const double claim_m = upper_median(std::move(claims));
+  if (!(distance_m > std::max(kLeast_m, kFactor * claim_m))) return;
+  warnings.push_back(fmt::format(
+      "the accepted fixes are {:.0f} m (rms) from the fused positions and claim {:.2g} m: the receiver is far worse "
+      "than it claims, or the odometry is wrong in places (slips, loses its sign in reverse, lags): compare both "
+      "in the report",
+      distance_m, claim_m));
+}
+
 void check_weights(const std::vector<evaluation::SourceResiduals>& sources,
                    std::vector<std::string>& warnings) {
   for (const evaluation::SourceResiduals& source : sources) {
@@ -105,6 +129,7 @@ std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateR
   check_states(states, *modeled.calibration, warnings);
   check_noise(noise, warnings);
   check_innovations(evaluation.post_fit, warnings);
+  check_distances(evaluation.epochs, warnings);
   check_weights(evaluation.residuals, warnings);
   if (!evaluation.truth) return warnings;
   check_qualities(evaluation, warnings);

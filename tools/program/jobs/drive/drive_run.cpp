@@ -207,6 +207,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   ModelingRun result;
   const drive::FusionSettings fused = modeled.settings;
   result.noise = modeled.noise;
+  result.without_delay = modeled.without_delay;
   result.description = describe_model(modeled, run.console.look());
   formats::GraphDocument& document = modeled.document;
   const ModelingFiles files(run, document, settings.modeling);
@@ -260,7 +261,8 @@ std::vector<std::string> write_common(const RunOfDrive& run, const std::vector<M
   std::vector<std::string> files = write_overview(results, header, metrics, run.folder, run.console);
   std::vector<evaluation::RunSummary> summaries;
   for (std::size_t i = 0; i < runs.size(); ++i)
-    summaries.push_back({runs[i].evaluation.label, runs[i].result, runs[i].states, noise[i]});
+    summaries.push_back(
+        {runs[i].evaluation.label, runs[i].result, runs[i].states, noise[i], runs[i].without_delay});
   files.push_back(run.folder.summary());
   formats::write_file_atomically(files.back(), json_text(evaluation::run_summary_json(summaries)));
   return files;

@@ -32,7 +32,8 @@ struct ModelingRun {
   MultiStartSummary result;
   std::vector<evaluation::StateReport> states;
   drive::NoiseEstimate noise;
-  std::string description;  ///< of the error model
+  std::vector<std::string> without_delay;  ///< drive::ModeledDrive::without_delay
+  std::string description;                 ///< of the error model
   WrittenResult written;
   std::string windows;  ///< live runs beside this one, as text
   /// At its minimum, with all covariances that are known: those that were asked for, and those at

@@ -12,20 +12,24 @@ namespace waymark::drive {
 
 /// A time in which the odometry was not measured.
 struct FrozenOdometry {
-  Stamp from;               ///< of its first sample
-  Stamp to;                 ///< of its last sample
-  double speed_mps = 0;     ///< that the samples repeat
-  double distance_m = 0;    ///< between the fixes in this time
-  bool with_turns = false;  ///< the samples repeat their yaw rate too
+  Stamp from;                 ///< of its first sample
+  Stamp to;                   ///< of its last sample
+  double speed_mps = 0;       ///< of its first sample
+  double yaw_rate_radps = 0;  ///< of its first sample
+  double distance_m = 0;      ///< between the fixes in this time
+  bool with_speed = false;    ///< the samples repeat their speed
+  bool with_turns = false;    ///< the samples repeat their yaw rate
 };
 
 /// Finds them with the fixes of the first receiver that are not withheld.
 ///
-/// A moving vehicle does not repeat a reading. If at most one pair of samples in 20 does, 3 s of one
-/// speed above 0.5 m/s and one yaw rate (20 samples or more) are such a time.
+/// A moving vehicle seldom repeats a reading. If at most 30 % of the pairs of samples repeat their speed, 3 s
+/// of one speed above 0.5 m/s and one yaw rate are such a time, and 5 s of one speed with a yaw rate that
+/// is alive: 20 samples, and five times as many as usual. So are 5 s of one yaw rate, unless it comes from
+/// wheels or steering.
 ///
-/// Otherwise the speed is the same in each sample for 5 s or more. If the vehicle does not stand by
-/// it, the yaw rate is the same as well. The fixes contradict it in at least four chords in a row, of 2 to
+/// Otherwise the speed is the same in each sample for 5 s or more. The fixes contradict it in at least
+/// four chords in a row, of 2 to
 /// 10 s each. Every chord differs from the odometry's distance by at least 5 m, 1 m/s and three
 /// sigmas of the fixes; all of them together by at least 30 m and ten sigmas. The chords have a
 /// common direction, within 60 degrees from each to the next: fixes of a standing receiver wander
@@ -35,8 +39,8 @@ struct FrozenOdometry {
 [[nodiscard]] std::vector<FrozenOdometry> find_frozen_odometry(std::span<const OdometrySample> odometry,
                                                                std::span<const Fix> fixes);
 
-/// Gives the samples of those times the motion of the fixes, and marks them as assumed. The speed is
-/// that of the receiver, or that of its positions over 5 s. The yaw rate is kept unless it is frozen.
+/// Gives the frozen readings of those times the motion of the fixes, and marks the samples as assumed. The
+/// speed is that of the receiver, or that of its positions over 5 s.
 /// @param fixes as for find_frozen_odometry
 void assume_motion_of_fixes(std::span<const FrozenOdometry> frozen, std::span<const Fix> fixes,
                             std::span<OdometrySample> odometry);

@@ -4,10 +4,11 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/tools/drive/nodes/fix_motion.hpp>
-#include <waymark/tools/drive/nodes/frozen.hpp>
+#include <waymark/tools/drive/mending/fix_motion.hpp>
+#include <waymark/tools/drive/mending/frozen.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
-#include <waymark/types_se2/se2.hpp>
+
+#include "winding_scene.hpp"
 
 namespace frozen_test {
 
@@ -16,10 +17,7 @@ namespace {
 using namespace waymark;
 using namespace waymark::drive;
 
-struct Scene {
-  std::vector<OdometrySample> odometry;  ///< 10 Hz
-  std::vector<Fix> fixes;                ///< 1 Hz, exact
-};
+using Scene = testing::WindingScene;
 
 double speed_at(double t) {
   return 10 + 2 * std::sin(0.3 * t);
@@ -31,21 +29,7 @@ double yaw_rate_at(double t) {
 
 /// 100 s of a winding way, without a stop.
 Scene scene() {
-  Scene result;
-  Pose2<double> pose;
-  for (int i = 0; i <= 1000; ++i) {
-    const double t = 0.1 * i;
-    result.odometry.push_back(
-        {.stamp = Stamp::from_seconds(t), .speed_mps = speed_at(t), .yaw_rate_radps = yaw_rate_at(t)});
-    if (i % 10 == 0) {
-      Fix fix;
-      fix.stamp = Stamp::from_seconds(t);
-      fix.position = pose.position;
-      result.fixes.push_back(fix);
-    }
-    pose = compose(pose, se2_exp<double>(Eigen::Vector3d(0.1 * speed_at(t), 0, 0.1 * yaw_rate_at(t))));
-  }
-  return result;
+  return testing::winding_scene(100, speed_at, yaw_rate_at);
 }
 
 /// The odometry repeats readings from 30 to 60 s.
@@ -127,6 +111,37 @@ TEST_CASE("frozen: a moving vehicle does not repeat its readings, even if the fi
   REQUIRE(found.size() == 1);
   CHECK(found[0].speed_mps == 10);
   CHECK(found[0].from.seconds() == Approx(30));
+}
+
+TEST_CASE("frozen: a speed or a yaw rate that repeats itself while the other one is alive is found") {
+  Scene speed = scene();
+  Scene turns = scene();
+  for (std::size_t i = 300; i <= 400; ++i) {
+    speed.odometry[i].speed_mps = speed_at(30);
+    turns.odometry[i].yaw_rate_radps = 0.05;
+  }
+  const std::vector<FrozenOdometry> of_speed = find_frozen_odometry(speed.odometry, speed.fixes);
+  REQUIRE(of_speed.size() == 1);
+  CHECK(of_speed[0].with_speed);
+  CHECK_FALSE(of_speed[0].with_turns);
+  const std::vector<FrozenOdometry> of_turns = find_frozen_odometry(turns.odometry, turns.fixes);
+  REQUIRE(of_turns.size() == 1);
+  CHECK_FALSE(of_turns[0].with_speed);
+  CHECK(of_turns[0].with_turns);
+  assume_motion_of_fixes(of_turns, turns.fixes, turns.odometry);
+  CHECK(turns.odometry[350].speed_mps == speed_at(35));
+  CHECK(turns.odometry[350].yaw_rate_radps == Approx(yaw_rate_at(35)).margin(0.03));
+  CHECK_THAT(warning_of(of_turns[0], {}),
+             Catch::Contains("repeats a yaw rate of 0.05 rad/s from 30.0 s to 40.0 s"));
+}
+
+TEST_CASE("frozen: a quantity that now and then repeats is not frozen until it repeats unusually long") {
+  Scene coarse = scene();
+  for (OdometrySample& sample : coarse.odometry)
+    sample.speed_mps = std::round(sample.speed_mps / 0.02) * 0.02;
+  CHECK(find_frozen_odometry(coarse.odometry, coarse.fixes).empty());
+  for (std::size_t i = 300; i <= 400; ++i) coarse.odometry[i].speed_mps = coarse.odometry[300].speed_mps;
+  CHECK(find_frozen_odometry(coarse.odometry, coarse.fixes).size() == 1);
 }
 
 TEST_CASE("frozen: odometry of few digits repeats readings without a failure") {

@@ -1,4 +1,4 @@
-#include <waymark/tools/drive/nodes/fix_motion.hpp>
+#include <waymark/tools/drive/mending/fix_motion.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,64 @@
+// A vehicle that stands while its speed reads noise without a sign.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <waymark/tools/drive/mending/standing.hpp>
+
+namespace standing_test {
+
+using namespace waymark;
+using namespace waymark::drive;
+
+namespace {
+
+/// 60 s of speeds at a rate.
+std::vector<OdometrySample> speeds(double rate_hz, const std::function<double(double)>& speed) {
+  std::vector<OdometrySample> odometry;
+  for (int i = 0; i < static_cast<int>(60 * rate_hz); ++i)
+    odometry.push_back({.stamp = Stamp::from_seconds(i / rate_hz), .speed_mps = speed(i / rate_hz)});
+  return odometry;
+}
+
+/// Noise of 0.1 m/s about a speed.
+class Noisy {
+ public:
+  double operator()(double speed) { return std::abs(speed + normal_(random_)); }
+
+ private:
+  std::mt19937_64 random_{3};
+  std::normal_distribution<double> normal_{0, 0.1};
+};
+
+}  // namespace
+
+TEST_CASE("standing: noise without a sign between two ways is a stop") {
+  for (const double rate_hz : {5.0, 10.0, 50.0}) {
+    Noisy noisy;
+    const auto odometry = speeds(rate_hz, [&](double t) { return noisy(t < 20 || t > 40 ? 5 : 0); });
+    const std::vector<Standing> found = find_standing(odometry);
+    REQUIRE(found.size() == 1);
+    CHECK(odometry[found[0].first].stamp.seconds() == Approx(20).margin(0.25));
+    CHECK(odometry[found[0].last].stamp.seconds() == Approx(40).margin(0.25));
+  }
+}
+
+TEST_CASE("standing: a vehicle that creeps does not stand") {
+  Noisy noisy;
+  CHECK(find_standing(speeds(25, [&](double) { return noisy(0.4); })).empty());
+  // stop and go: up to 0.4 m/s every 4 s
+  CHECK(find_standing(speeds(10, [](double t) { return 0.2 - 0.2 * std::cos(1.57 * t); })).empty());
+  CHECK(find_standing(speeds(25, [](double) { return 0.0; })).empty());
+}
+
+TEST_CASE("standing: noise with a sign adds up to nothing, and slow readings tell nothing") {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0, 0.1);
+  CHECK(find_standing(speeds(25, [&](double) { return normal(random); })).empty());
+  Noisy noisy;
+  CHECK(find_standing(speeds(2, [&](double) { return noisy(0); })).empty());
+}
+
+}  // namespace standing_test

@@ -1,0 +1,79 @@
+// Receivers that differ all drive long are named, with what they differ by and in which axes.
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include <waymark/tools/drive/nodes/constant_difference.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace constant_difference_test {
+
+using namespace waymark;
+using namespace waymark::drive;
+
+namespace {
+
+struct Scene {
+  std::vector<Fix> fixes;  ///< two receivers at 1 Hz
+  std::vector<Eigen::Vector3d> poses;
+};
+
+/// 10 minutes in a circle. Both receivers err by 2 m for 30 s at a time and claim 2.4 m.
+Scene circle(const Eigen::Vector2d& in_frame, const Eigen::Vector2d& in_body) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal(0, 2);
+  Scene scene;
+  std::array<Eigen::Vector2d, 2> error{};
+  for (int t = 0; t < 600; ++t) {
+    for (int source = 0; source < 2; ++source) {
+      Eigen::Vector2d& own = error[static_cast<std::size_t>(source)];
+      if (t % 30 == 0) own = {normal(random), normal(random)};
+      const double heading = 0.02 * t;
+      const Eigen::Vector3d pose(500 * std::sin(heading), -500 * std::cos(heading), heading);
+      Fix fix;
+      fix.stamp = Stamp::from_seconds(t + 0.3 * source);
+      fix.source = source;
+      fix.covariance = 2.4 * 2.4 * Eigen::Matrix2d::Identity();
+      fix.position = pose.head<2>() + own;
+      if (source == 1) fix.position += in_frame + rotate(heading, in_body);
+      scene.fixes.push_back(fix);
+      scene.poses.push_back(pose);
+    }
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("constant difference: another datum is told in the axes of the frame") {
+  const Scene scene = circle({8, -6}, {0, 0});
+  const std::vector<ConstantDifference> found = constant_differences(scene.fixes, scene.poses);
+  REQUIRE(found.size() == 1);
+  CHECK_FALSE(found[0].in_body);
+  CHECK((found[0].second_m - Eigen::Vector2d(8, -6)).norm() < 2.5);  // 20 errors of 2 m for each receiver
+  const std::array<std::string, 2> names{"front", "rear"};
+  const std::string warning = warning_of(found[0], names);
+  CHECK_THAT(warning, Catch::StartsWith("rear is ") && Catch::Contains("to the east") &&
+                          Catch::Contains("to the south") && Catch::Contains("another datum"));
+}
+
+TEST_CASE("constant difference: an antenna elsewhere is told in the axes of the vehicle") {
+  const Scene scene = circle({0, 0}, {-9, 1});
+  const std::vector<ConstantDifference> found = constant_differences(scene.fixes, scene.poses);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].in_body);
+  CHECK((found[0].second_m - Eigen::Vector2d(-9, 1)).norm() < 2.5);
+  const std::array<std::string, 2> names{"front", "rear"};
+  CHECK_THAT(warning_of(found[0], names), Catch::Contains("m behind and") && Catch::Contains("antenna: ["));
+}
+
+TEST_CASE("constant difference: receivers that agree within their claims are not named") {
+  const Scene alike = circle({0, 0}, {0, 0});
+  CHECK(constant_differences(alike.fixes, alike.poses).empty());
+  const Scene near = circle({2, 2}, {0, 0});
+  CHECK(constant_differences(near.fixes, near.poses).empty());
+}
+
+}  // namespace constant_difference_test

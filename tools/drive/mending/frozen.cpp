@@ -1,0 +1,275 @@
+#include <waymark/tools/drive/mending/frozen.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/drive/mending/fix_motion.hpp>
+#include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr double kShortestRun_s = 3;
+constexpr double kShortestOfOne_s = 5;  // while the other reading is alive
+constexpr std::size_t kFewestSamples = 20;
+constexpr double kShortestStandstill_s = 5;
+constexpr double kSameReading = 1e-9;
+constexpr double kMoves = 0.5;  // m/s
+constexpr double kShortestChord_s = 2;
+constexpr double kLongestChord_s = 10;
+constexpr std::size_t kFewestContradictions = 4;
+constexpr double kLargestTurn = std::numbers::pi / 3;
+constexpr double kMargin_s = 2;  // a chord contradicts some time after the motion began
+
+/// Samples [first, last] with one reading.
+struct Run {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
+using ReadingOf = double OdometrySample::*;
+
+bool repeats(const OdometrySample& a, const OdometrySample& b, ReadingOf channel) {
+  return std::abs(a.*channel - b.*channel) < kSameReading;
+}
+
+bool all_repeat(std::span<const OdometrySample> samples, ReadingOf channel) {
+  return std::all_of(samples.begin(), samples.end(),
+                     [&](const OdometrySample& sample) { return repeats(samples.front(), sample, channel); });
+}
+
+std::vector<Run> runs_of(std::span<const OdometrySample> odometry, ReadingOf channel) {
+  std::vector<Run> runs;
+  for (std::size_t first = 0, i = 1; i <= odometry.size(); ++i) {
+    if (i < odometry.size() && repeats(odometry[first], odometry[i], channel)) continue;
+    if (seconds_between(odometry[first].stamp, odometry[i - 1].stamp) >= kShortestRun_s)
+      runs.push_back({first, i - 1});
+    first = i;
+  }
+  return runs;
+}
+
+/// Returns from how many samples on a run of one reading is a failure: five times the longest one of a
+/// vehicle that moves, those of `runs` apart. Empty if readings do not normally differ from sample to sample.
+std::optional<std::size_t> unusual_run(std::span<const OdometrySample> odometry, const std::vector<Run>& runs,
+                                       ReadingOf channel) {
+  constexpr std::size_t kFewestPairs = 100;
+  constexpr double kLargestShare = 0.3;  // of equal pairs
+  constexpr std::size_t kFactor = 5;
+  std::size_t equal = 0;
+  std::size_t pairs = 0;
+  std::size_t in_runs = 0;
+  std::size_t longest = 1;
+  std::size_t length = 1;
+  auto run = runs.begin();
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    while (run != runs.end() && run->last < i) ++run;
+    if (std::abs(odometry[i].speed_mps) < kMoves) continue;
+    if (run != runs.end() && run->first < i) {
+      ++in_runs;
+      continue;
+    }
+    const bool repeated = repeats(odometry[i - 1], odometry[i], channel);
+    length = repeated ? length + 1 : 1;
+    longest = std::max(longest, length);
+    ++pairs;
+    equal += repeated;
+  }
+  const bool varies =
+      pairs >= kFewestPairs && static_cast<double>(equal) <= kLargestShare * static_cast<double>(pairs);
+  if (!varies || in_runs > pairs) return std::nullopt;
+  return std::max(kFewestSamples, kFactor * longest);
+}
+
+/// Two fixes between which the odometry is wrong.
+struct Contradiction {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  Eigen::Vector2d chord = Eigen::Vector2d::Zero();
+  double difference_m = 0;
+};
+
+/// Tells whether the receiver's own speed, if it has one, is that of the odometry.
+bool speeds_agree(const Fix& a, const Fix& b, double speed_mps) {
+  if (!a.speed_mps || !b.speed_mps) return false;
+  return std::abs(0.5 * (*a.speed_mps + *b.speed_mps) - speed_mps) < 1;
+}
+
+/// Returns the shortest chord from a fix that contradicts the speed.
+std::optional<Contradiction> contradiction(std::span<const Fix> fixes, std::size_t first, double speed_mps) {
+  for (std::size_t i = first + 1; i < fixes.size(); ++i) {
+    const double dt = seconds_between(fixes[first].stamp, fixes[i].stamp);
+    if (dt > kLongestChord_s) break;
+    if (dt < kShortestChord_s) continue;
+    const Eigen::Vector2d chord = fixes[i].position - fixes[first].position;
+    const double difference = std::abs(chord.norm() - speed_mps * dt);
+    const double enough = std::max({5.0, dt, 3 * std::max(fixes[first].accuracy_m(), fixes[i].accuracy_m())});
+    // A receiver that repeats its position proves nothing.
+    if (difference < enough || chord.isZero() || speeds_agree(fixes[first], fixes[i], speed_mps)) continue;
+    return Contradiction{first, i, chord, difference};
+  }
+  return std::nullopt;
+}
+
+bool same_direction(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return std::abs(angle_between(a, b)) < kLargestTurn;
+}
+
+/// Returns the contradictions in a row, of fixes during one run.
+std::vector<std::vector<Contradiction>> contradictions_of(std::span<const Fix> fixes, double speed_mps) {
+  std::vector<std::vector<Contradiction>> rows;
+  for (std::size_t i = 0; i < fixes.size();) {
+    const std::optional<Contradiction> found = contradiction(fixes, i, speed_mps);
+    if (!found) {
+      ++i;
+      continue;
+    }
+    const bool continues = !rows.empty() && rows.back().back().last == i &&
+                           same_direction(rows.back().back().chord, found->chord);
+    if (!continues) rows.emplace_back();
+    rows.back().push_back(*found);
+    i = found->last;
+  }
+  return rows;
+}
+
+std::optional<FrozenOdometry> judged(const std::vector<Contradiction>& row, std::span<const Fix> fixes,
+                                     const OdometrySample& first, const OdometrySample& last) {
+  FrozenOdometry frozen{first.stamp, last.stamp, first.speed_mps, first.yaw_rate_radps, 0, true, false};
+  double difference_m = 0;
+  double sigma_m = 0;
+  for (const Contradiction& part : row) {
+    difference_m += part.difference_m;
+    frozen.distance_m += part.chord.norm();
+    sigma_m = std::max(sigma_m, fixes[part.last].accuracy_m());
+  }
+  if (row.size() < kFewestContradictions || difference_m < std::max(30.0, 10 * sigma_m)) return std::nullopt;
+  const auto margin = static_cast<std::int64_t>(kMargin_s * 1e9);
+  frozen.from.nanoseconds =
+      std::max(first.stamp.nanoseconds, fixes[row.front().first].stamp.nanoseconds - margin);
+  frozen.to.nanoseconds = std::min(last.stamp.nanoseconds, fixes[row.back().last].stamp.nanoseconds + margin);
+  return frozen;
+}
+
+bool within(Stamp stamp, const FrozenOdometry& frozen) {
+  return frozen.from <= stamp && stamp <= frozen.to;
+}
+
+std::span<const OdometrySample> within(std::span<const OdometrySample> run, const FrozenOdometry& frozen) {
+  const auto inside = [&](const OdometrySample& sample) { return within(sample.stamp, frozen); };
+  const auto begin = std::find_if(run.begin(), run.end(), inside);
+  return {begin, std::find_if_not(begin, run.end(), inside)};
+}
+
+std::span<const Fix> within(const std::vector<Fix>& fixes, Stamp from, Stamp to) {
+  const auto begin =
+      std::find_if(fixes.begin(), fixes.end(), [&](const Fix& fix) { return fix.stamp >= from; });
+  return {begin, std::find_if(begin, fixes.end(), [&](const Fix& fix) { return fix.stamp > to; })};
+}
+
+double length_of(std::span<const Fix> fixes) {
+  double length = 0;
+  for (std::size_t i = 1; i < fixes.size(); ++i) length += (fixes[i].position - fixes[i - 1].position).norm();
+  return length;
+}
+
+bool drives(std::span<const OdometrySample> samples) {
+  return std::all_of(samples.begin(), samples.end(),
+                     [](const OdometrySample& sample) { return std::abs(sample.speed_mps) >= kMoves; });
+}
+
+double duration_of(std::span<const OdometrySample> samples) {
+  return seconds_between(samples.front().stamp, samples.back().stamp);
+}
+
+/// Finds times of one speed.
+void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes,
+                        std::vector<FrozenOdometry>& found) {
+  const std::vector<Run> runs = runs_of(odometry, &OdometrySample::speed_mps);
+  const std::optional<std::size_t> unusual = unusual_run(odometry, runs, &OdometrySample::speed_mps);
+  for (const Run& run : runs) {
+    const auto samples = odometry.subspan(run.first, run.last - run.first + 1);
+    const OdometrySample& first = samples.front();
+    const bool with_turns = all_repeat(samples, &OdometrySample::yaw_rate_radps);
+    const bool is_long = with_turns || duration_of(samples) >= kShortestOfOne_s;
+    const std::span<const Fix> during = within(fixes, first.stamp, samples.back().stamp);
+    if (unusual && is_long && samples.size() >= *unusual && drives(samples)) {
+      found.push_back({first.stamp, samples.back().stamp, first.speed_mps, first.yaw_rate_radps,
+                       length_of(during), true, with_turns});
+      continue;
+    }
+    if (duration_of(samples) < kShortestStandstill_s) continue;
+    for (const std::vector<Contradiction>& row : contradictions_of(during, std::abs(first.speed_mps))) {
+      std::optional<FrozenOdometry> frozen = judged(row, during, first, samples.back());
+      if (!frozen) continue;
+      frozen->with_turns = all_repeat(within(samples, *frozen), &OdometrySample::yaw_rate_radps);
+      found.push_back(*frozen);
+    }
+  }
+}
+
+/// Finds times of one yaw rate while the speed is alive. One from wheels or steering repeats itself on
+/// straight roads.
+void find_frozen_turns(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes,
+                       std::vector<FrozenOdometry>& found) {
+  const std::vector<Run> runs = runs_of(odometry, &OdometrySample::yaw_rate_radps);
+  const std::optional<std::size_t> unusual = unusual_run(odometry, runs, &OdometrySample::yaw_rate_radps);
+  if (!unusual || yaw_rate_at_rest(odometry).is_derived()) return;
+  const std::vector<FrozenOdometry> speeds = found;
+  for (const Run& run : runs) {
+    const auto samples = odometry.subspan(run.first, run.last - run.first + 1);
+    const Stamp from = samples.front().stamp;
+    const Stamp to = samples.back().stamp;
+    const bool is_known = std::any_of(speeds.begin(), speeds.end(), [&](const FrozenOdometry& other) {
+      return other.with_turns && other.from <= to && from <= other.to;
+    });
+    if (is_known || duration_of(samples) < kShortestOfOne_s || samples.size() < *unusual) continue;
+    if (!drives(samples)) continue;
+    found.push_back({from, to, samples.front().speed_mps, samples.front().yaw_rate_radps,
+                     length_of(within(fixes, from, to)), false, true});
+  }
+}
+
+}  // namespace
+
+std::vector<FrozenOdometry> find_frozen_odometry(std::span<const OdometrySample> odometry,
+                                                 std::span<const Fix> fixes) {
+  std::vector<FrozenOdometry> found;
+  const std::vector<Fix> all = fixes_for_motion(fixes);
+  find_frozen_speeds(odometry, all, found);
+  find_frozen_turns(odometry, all, found);
+  return found;
+}
+
+void assume_motion_of_fixes(std::span<const FrozenOdometry> frozen, std::span<const Fix> fixes,
+                            std::span<OdometrySample> odometry) {
+  if (frozen.empty()) return;
+  const MotionOfFixes motion(fixes);
+  for (OdometrySample& sample : odometry) {
+    for (const FrozenOdometry& time : frozen) {
+      if (!within(sample.stamp, time)) continue;
+      if (time.with_speed) sample.speed_mps = motion.speed(sample.stamp);
+      if (time.with_turns) sample.yaw_rate_radps = motion.yaw_rate(sample.stamp);
+      sample.assumed = true;
+    }
+  }
+}
+
+std::string warning_of(const FrozenOdometry& frozen, Stamp start) {
+  const std::string readings =
+      frozen.with_speed
+          ? fmt::format("{:.3g} m/s{}", frozen.speed_mps, frozen.with_turns ? " and its yaw rate" : "")
+          : fmt::format("a yaw rate of {:.3g} rad/s", frozen.yaw_rate_radps);
+  return fmt::format(
+      "the odometry repeats {} from {:.1f} s to {:.1f} s after its start, while the fixes move by "
+      "{:.0f} m: its readings are left out there, and the motion of the fixes is assumed with the noise of a "
+      "gap; check the log of the odometry, and the clocks of both logs",
+      readings, seconds_between(start, frozen.from), seconds_between(start, frozen.to), frozen.distance_m);
+}
+
+}  // namespace waymark::drive

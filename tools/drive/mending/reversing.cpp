@@ -1,0 +1,225 @@
+#include <waymark/tools/drive/mending/reversing.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include <fmt/format.h>
+
+#include <waymark/core/base/detail/median.hpp>
+#include <waymark/tools/drive/mending/fix_motion.hpp>
+#include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
+
+namespace waymark::drive {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kStands = 0.5;  // m/s
+constexpr double kShortest_m = 5;
+constexpr double kEnd_s = 30;        // the ends of a long way are compared with its neighbours
+constexpr double kFurthest_s = 120;  // a gyro drifts
+constexpr double kCoherence = 0.9;
+constexpr double kPreference = 0.3;  // for forwards
+constexpr double kHeaviest_m = 100;
+
+/// How the fixes of a time lie to the odometry.
+struct Alignment {
+  Complex turn;         ///< of length 1: from the odometry's frame to that of the fixes
+  double weight_m = 0;  ///< way, at most kHeaviest_m; 0: the fixes do not have the shape of the odometry
+};
+
+/// The way between two stops.
+struct Way {
+  Reversing samples;
+  Alignment begin;
+  Alignment end;
+  double length_m = 0;
+  bool backwards = false;
+};
+
+double median_yaw_rate_at_rest(std::span<const OdometrySample> odometry) {
+  constexpr double kRests = 0.05;  // m/s
+  if (!yaw_rate_at_rest(odometry).is_known()) return 0;
+  std::vector<double> readings;
+  for (const OdometrySample& sample : odometry)
+    if (std::abs(sample.speed_mps) < kRests) readings.push_back(sample.yaw_rate_radps);
+  return upper_median(std::move(readings));
+}
+
+/// Positions of the odometry at its samples, from the origin.
+std::vector<Complex> positions_of(std::span<const OdometrySample> odometry) {
+  const double bias = median_yaw_rate_at_rest(odometry);
+  std::vector<Complex> positions(1);
+  double heading = 0;
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    const OdometrySample& a = odometry[i - 1];
+    const OdometrySample& b = odometry[i];
+    const double dt = seconds_between(a.stamp, b.stamp);
+    const double turn = dt * (0.5 * (a.yaw_rate_radps + b.yaw_rate_radps) - bias);
+    positions.push_back(positions.back() +
+                        std::polar(0.5 * dt * (a.speed_mps + b.speed_mps), heading + 0.5 * turn));
+    heading += turn;
+  }
+  return positions;
+}
+
+/// Compares odometry and fixes.
+class Comparison {
+ public:
+  Comparison(std::span<const OdometrySample> odometry, std::span<const Fix> fixes)
+      : odometry_(odometry), fixes_(fixes_for_motion(fixes)), positions_(positions_of(odometry)) {}
+
+  [[nodiscard]] double length_m(std::size_t first, std::size_t last) const {
+    double length = 0;
+    for (std::size_t i = first + 1; i <= last; ++i) length += std::abs(positions_[i] - positions_[i - 1]);
+    return length;
+  }
+
+  /// Lays the odometry of a time on its fixes.
+  [[nodiscard]] Alignment alignment(Stamp from, Stamp to) const {
+    constexpr std::size_t kFewestFixes = 3;
+    constexpr double kLargestFactor = 1.6;
+    const auto is_earlier = [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; };
+    const auto begin = std::lower_bound(fixes_.begin(), fixes_.end(), from, is_earlier);
+    const auto end = std::lower_bound(begin, fixes_.end(), to, is_earlier);
+    const std::span<const Fix> during(begin, end);
+    if (during.size() < kFewestFixes) return {};
+    Complex middle_of_fixes;
+    Complex middle_of_odometry;
+    std::vector<Complex> places;
+    for (const Fix& fix : during) {
+      places.push_back(position_at(fix.stamp));
+      middle_of_fixes += place_of(fix);
+      middle_of_odometry += places.back();
+    }
+    const double count = static_cast<double>(during.size());
+    middle_of_fixes /= count;
+    middle_of_odometry /= count;
+    Complex product;
+    double of_fixes = 0;
+    double of_odometry = 0;
+    double accuracy_m = 0;
+    for (std::size_t i = 0; i < during.size(); ++i) {
+      const Complex fix = place_of(during[i]) - middle_of_fixes;
+      const Complex reckoned = places[i] - middle_of_odometry;
+      product += fix * std::conj(reckoned);
+      of_fixes += std::norm(fix);
+      of_odometry += std::norm(reckoned);
+      accuracy_m = std::max(accuracy_m, during[i].accuracy_m());
+    }
+    const double spread_m = std::sqrt(of_odometry / count);
+    const double factor = std::sqrt(of_fixes / of_odometry);
+    const bool is_clear = std::abs(product) >= kCoherence * std::sqrt(of_fixes * of_odometry) &&
+                          factor < kLargestFactor && factor > 1 / kLargestFactor;
+    if (spread_m < std::max(0.3 * kShortest_m, 0.5 * accuracy_m) || !is_clear) return {};
+    return {product / std::abs(product), std::min(kHeaviest_m, std::sqrt(12.0) * spread_m)};
+  }
+
+ private:
+  static Complex place_of(const Fix& fix) { return {fix.position.x(), fix.position.y()}; }
+
+  [[nodiscard]] Complex position_at(Stamp stamp) const {
+    const auto right =
+        std::lower_bound(odometry_.begin(), odometry_.end(), stamp,
+                         [](const OdometrySample& sample, Stamp at) { return sample.stamp < at; });
+    if (right == odometry_.begin()) return positions_.front();
+    if (right == odometry_.end()) return positions_.back();
+    const auto i = static_cast<std::size_t>(right - odometry_.begin());
+    const double share = seconds_between(odometry_[i - 1].stamp, stamp) /
+                         seconds_between(odometry_[i - 1].stamp, odometry_[i].stamp);
+    return (1 - share) * positions_[i - 1] + share * positions_[i];
+  }
+
+  std::span<const OdometrySample> odometry_;
+  std::vector<Fix> fixes_;
+  std::vector<Complex> positions_;
+};
+
+std::vector<Way> ways_of(std::span<const OdometrySample> odometry, const Comparison& comparison) {
+  std::vector<Way> ways;
+  for (std::size_t first = 0; first < odometry.size(); ++first) {
+    if (odometry[first].speed_mps < kStands) continue;
+    std::size_t last = first;
+    while (last + 1 < odometry.size() && odometry[last + 1].speed_mps >= kStands) ++last;
+    const Stamp from = odometry[first].stamp;
+    const Stamp to = odometry[last].stamp;
+    Way way{.samples = {first, last},
+            .begin = comparison.alignment(from, std::min(to, from.later(kEnd_s))),
+            .end = comparison.alignment(std::max(from, to.later(-kEnd_s)), to),
+            .length_m = comparison.length_m(first, last)};
+    if (way.length_m >= kShortest_m && way.begin.weight_m > 0 && way.end.weight_m > 0) ways.push_back(way);
+    first = last;
+  }
+  return ways;
+}
+
+/// How much better a way fits its neighbours in the direction that it has than in the other one.
+double fit_of(const std::vector<Way>& ways, std::size_t i, std::span<const OdometrySample> odometry) {
+  const double sign = ways[i].backwards ? -1 : 1;
+  double fit = sign * kPreference * ways[i].length_m;
+  const auto add = [&](const Way& earlier, const Way& later, const Way& other) {
+    const double apart_s =
+        seconds_between(odometry[earlier.samples.last].stamp, odometry[later.samples.first].stamp);
+    if (apart_s > kFurthest_s) return;
+    const double agree = (later.begin.turn * std::conj(earlier.end.turn)).real();
+    fit += sign * (other.backwards ? -1 : 1) * agree * std::min(earlier.end.weight_m, later.begin.weight_m);
+  };
+  for (std::size_t back = 1; back <= 2; ++back) {
+    if (i >= back) add(ways[i - back], ways[i], ways[i - back]);
+    if (i + back < ways.size()) add(ways[i], ways[i + back], ways[i + back]);
+  }
+  return fit;
+}
+
+}  // namespace
+
+std::vector<Reversing> find_reversing(std::span<const OdometrySample> odometry, std::span<const Fix> fixes) {
+  const bool has_sign = std::any_of(odometry.begin(), odometry.end(),
+                                    [](const OdometrySample& sample) { return sample.speed_mps < 0; });
+  if (has_sign || fixes.empty()) return {};
+  std::vector<Way> ways = ways_of(odometry, Comparison(odometry, fixes));
+  // Each turn makes the whole fit better, so that the loop ends.
+  for (std::size_t turns = 0; turns < ways.size(); ++turns) {
+    std::size_t worst = ways.size();
+    double least = 0;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const double fit = fit_of(ways, i, odometry);
+      if (fit >= least) continue;
+      least = fit;
+      worst = i;
+    }
+    if (worst == ways.size()) break;
+    ways[worst].backwards = !ways[worst].backwards;
+  }
+  std::vector<Reversing> found;
+  for (const Way& way : ways)
+    if (way.backwards) found.push_back(way.samples);
+  return found;
+}
+
+void drive_backwards(std::span<const Reversing> found, std::span<OdometrySample> odometry) {
+  const bool is_derived = yaw_rate_at_rest(odometry).is_derived();
+  for (const Reversing& time : found) {
+    for (OdometrySample& sample : odometry.subspan(time.first, time.last - time.first + 1)) {
+      sample.speed_mps = -sample.speed_mps;
+      if (is_derived) sample.yaw_rate_radps = -sample.yaw_rate_radps;
+    }
+  }
+}
+
+std::string warning_of(std::span<const Reversing> found, std::span<const OdometrySample> odometry) {
+  std::string times;
+  constexpr std::size_t kMost = 5;
+  for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i)
+    times += fmt::format("{}{:.1f} to {:.1f} s", i == 0 ? "" : ", ",
+                         seconds_between(odometry.front().stamp, odometry[found[i].first].stamp),
+                         seconds_between(odometry.front().stamp, odometry[found[i].last].stamp));
+  if (found.size() > kMost) times += fmt::format(" and {} more times", found.size() - kMost);
+  return fmt::format(
+      "no speed of the odometry is negative, but the fixes move backwards {} after its start: the vehicle is "
+      "taken to reverse there; give the speed its sign (a column or signal of the gear or the direction)",
+      times);
+}
+
+}  // namespace waymark::drive
