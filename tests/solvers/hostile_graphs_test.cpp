@@ -212,6 +212,28 @@ TEST_CASE("hostile graphs: sigmas of 1e-6 and 1e6 in one loop: a minimum, or a v
   CHECK(std::isfinite(judged.chi2));
 }
 
+TEST_CASE("hostile graphs: a minimum that is not the only one is said, with a vertex that moves freely") {
+  // Nothing tells the heading of 2, and 4 turns about it: both have information on every unknown. The
+  // smallest number on the diagonal is that of 3.
+  Graph graph;
+  std::array<VertexIndex, 5> v{};
+  for (int i = 0; i < 5; ++i)
+    v[static_cast<std::size_t>(i)] = graph.add_vertex<VertexSe2>(VertexId{i}, {0, 0, 0});
+  graph.set_fixed(v[0], true);
+  graph.add_edge(EdgeSe2{}, {v[0], v[1]}, Eigen::Matrix3d::Identity());
+  graph.add_edge(EdgeSe2{}, {v[1], v[2]}, Eigen::Vector3d(1, 1, 0).asDiagonal());
+  graph.add_edge(EdgeSe2{}, {v[2], v[4]}, 100 * Eigen::Matrix3d::Identity());
+  graph.add_edge(EdgeSe2{}, {v[0], v[3]}, 0.1 * Eigen::Matrix3d::Identity());
+  graph.set_value(v[4], std::array{0.1, 0.0, 0.0});
+  const MultiStartSummary result = optimize(graph);
+  INFO(result.summary.message);
+  CHECK(result.converged());
+  REQUIRE_FALSE(result.summary.notes.empty());
+  const std::string& note = result.summary.notes.back();
+  CHECK_THAT(note, Catch::StartsWith("the minimum is not the only one"));
+  CHECK_THAT(note, Catch::Contains("VERTEX_SE2 2 ") || Catch::Contains("VERTEX_SE2 4 "));
+}
+
 TEST_CASE("hostile graphs: a star of 100,000 edges, its hub fixed or free") {
   for (const int held : {0, 1}) {
     std::mt19937_64 random(5);
