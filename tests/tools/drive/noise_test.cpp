@@ -361,6 +361,39 @@ TEST_CASE("coarse: the middle of a drive is a drive with the nodes, fixes and mo
   }
 }
 
+TEST_CASE("coarse: a sample of a long drive has its windows, and gaps of the odometry between them") {
+  const PreparedDrive drive = make_drive({}, 5);
+  const CoarseDrive whole =
+      coarsen(place_drive(drive, timeline_of(drive), complete_settings(), registry()), {});
+  const std::vector<Stamp>& all = whole.drive.timeline.stamps;
+  const double length_s = seconds_between(all.front(), all.back());
+  const PlacedDrive sample = sample_of(whole, 3, 60).drive;
+  std::size_t gaps = 0;
+  double measured_s = 0;
+  REQUIRE(sample.timeline.intervals.size() == sample.timeline.stamps.size() - 1);
+  for (std::size_t i = 0; i < sample.timeline.intervals.size(); ++i) {
+    const Interval& interval = sample.timeline.intervals[i];
+    CHECK(interval.dt_s == Approx(seconds_between(sample.timeline.stamps[i], sample.timeline.stamps[i + 1])));
+    if (!interval.bridged) {
+      measured_s += interval.dt_s;
+      continue;
+    }
+    ++gaps;
+    CHECK(interval.gap_s == Approx(length_s / 3 - 60).margin(4));
+    // its motion leads from one window to the other
+    const Eigen::Vector3d& begin = sample.start.poses[i];
+    const Pose2<double> from(begin[0], begin[1], begin[2]);
+    const Pose2<double> end = compose(from, se2_exp<double>({interval.speed_mps * interval.dt_s, 0,
+                                                             interval.yaw_rate_radps * interval.dt_s}));
+    CHECK((end.position - sample.start.poses[i + 1].head<2>()).norm() < 1e-6);
+  }
+  CHECK(gaps == 2);
+  CHECK(measured_s == Approx(180).margin(6));
+  for (std::size_t i = 0; i < sample.fixes.size(); ++i)
+    CHECK(sample.timeline.stamps[sample.timeline.fix_node[i]] == sample.fixes[i].stamp);
+  CHECK(sample_of(whole, 3, 0.3 * length_s).drive.timeline.stamps == all);
+}
+
 TEST_CASE("fuse: modelings that agree on gate and guess share them, and give what each gives alone") {
   const PreparedDrive drive = make_drive({}, 7);
   Fusion fusion(drive, registry());

@@ -123,6 +123,71 @@ PlacedDrive without_course(const PlacedDrive& placed) {
   return result;
 }
 
+/// Nodes [first, last].
+struct NodeRange {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
+NodeRange nodes_within(const std::vector<Stamp>& stamps, Stamp begin, double length_s) {
+  const auto node_at = [&](Stamp moment) {
+    return std::lower_bound(stamps.begin(), stamps.end(), moment) - stamps.begin();
+  };
+  return {static_cast<std::size_t>(std::max<std::ptrdiff_t>(node_at(begin) - 1, 0)),
+          static_cast<std::size_t>(std::min(node_at(begin.later(length_s)), std::ssize(stamps) - 1))};
+}
+
+/// Returns an unknown motion from one pose to another: the arc that leaves the first along its heading. Its
+/// covariance is that of a gap, with which far ends know nothing of each other.
+Interval across(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double length_s) {
+  const Eigen::Vector2d way = rotate(-from[2], Eigen::Vector2d(to.head<2>() - from.head<2>()));
+  const double half_turn = way.isZero() ? 0 : std::atan2(way.y(), way.x());
+  const double stretch = std::abs(half_turn) < 1e-6 ? 1 : half_turn / std::sin(half_turn);
+  // an arc of a whole turn and more has no end
+  const bool is_arc = std::abs(stretch) < 10;
+  return {.speed_mps = is_arc ? stretch * way.norm() / length_s : 0,
+          .yaw_rate_radps = is_arc ? 2 * half_turn / length_s : 0,
+          .dt_s = length_s,
+          .bridged = true,
+          .gap_s = length_s};
+}
+
+/// Returns parts of a drive, one after the other.
+CoarseDrive parts_of(const CoarseDrive& whole, const std::vector<NodeRange>& ranges) {
+  const PlacedDrive& drive = whole.drive;
+  const std::vector<Stamp>& stamps = drive.timeline.stamps;
+  CoarseDrive parts;
+  PlacedDrive& result = parts.drive;
+  result = without_course(drive);
+  result.first_pose.reset();
+  Timeline& timeline = result.timeline;
+  std::vector<char> kept(stamps.size(), 0);
+  std::vector<std::size_t> place(stamps.size(), 0);
+  for (const NodeRange& range : ranges) {
+    if (!timeline.stamps.empty())
+      timeline.intervals.push_back(across(result.start.poses.back(), drive.start.poses[range.first],
+                                          seconds_between(timeline.stamps.back(), stamps[range.first])));
+    for (std::size_t node = range.first; node <= range.last; ++node) {
+      kept[node] = 1;
+      place[node] = timeline.stamps.size();
+      timeline.stamps.push_back(stamps[node]);
+      result.start.poses.push_back(drive.start.poses[node]);
+      if (node < range.last) timeline.intervals.push_back(drive.timeline.intervals[node]);
+    }
+  }
+  for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
+    const std::size_t node = drive.timeline.fix_node[i];
+    if (kept[node] == 0) continue;
+    timeline.fix_node.push_back(place[node]);
+    result.fixes.push_back(drive.fixes[i]);
+    result.fixes.back().vertex = vertex_of(place[node]);
+  }
+  if (!drive.relative.empty()) result.runs = motion_runs(timeline, drive.relative, result.fixes);
+  for (const PreparedSensor& sensor : whole.sensors)
+    parts.sensors.push_back(at_kept_nodes(sensor, drive.timeline, kept));
+  return parts;
+}
+
 }  // namespace
 
 CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> sensors, double fix_period_s,
@@ -144,7 +209,7 @@ CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> s
     coarse.timeline.stamps.push_back(timeline.stamps[node]);
     coarse.start.poses.push_back(placed.start.poses[node]);
   };
-  const auto stands = [&](const Interval& i) { return std::abs(i.speed_mps) < placed.standstill_mps; };
+  const auto stands = [&](const Interval& i) { return i.stands(placed.standstill_mps); };
   add_node(0);
   Merger merger(timeline.intervals.front());
   for (std::size_t i = 1; i < timeline.intervals.size(); ++i) {
@@ -172,36 +237,27 @@ CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> s
 }
 
 CoarseDrive middle_of(const CoarseDrive& whole, double length_s) {
-  const PlacedDrive& drive = whole.drive;
-  const std::vector<Stamp>& stamps = drive.timeline.stamps;
+  const std::vector<Stamp>& stamps = whole.drive.timeline.stamps;
   const double whole_s = seconds_between(stamps.front(), stamps.back());
-  const Stamp begin = stamps.front().later(0.5 * (whole_s - length_s));
-  const auto node_at = [&](Stamp moment) {
-    return std::lower_bound(stamps.begin(), stamps.end(), moment) - stamps.begin();
-  };
-  const std::ptrdiff_t first = std::max<std::ptrdiff_t>(node_at(begin) - 1, 0);
-  const std::ptrdiff_t last = std::min(node_at(begin.later(length_s)), std::ssize(stamps) - 1);
+  return parts_of(whole, {nodes_within(stamps, stamps.front().later(0.5 * (whole_s - length_s)), length_s)});
+}
 
-  CoarseDrive piece;
-  piece.drive = without_course(drive);
-  piece.drive.first_pose.reset();
-  Timeline& timeline = piece.drive.timeline;
-  timeline.stamps.assign(stamps.begin() + first, stamps.begin() + last + 1);
-  timeline.intervals.assign(drive.timeline.intervals.begin() + first,
-                            drive.timeline.intervals.begin() + last);
-  piece.drive.start.poses.assign(drive.start.poses.begin() + first, drive.start.poses.begin() + last + 1);
-  for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
-    const auto node = static_cast<std::ptrdiff_t>(drive.timeline.fix_node[i]);
-    if (node < first || node > last) continue;
-    timeline.fix_node.push_back(static_cast<std::size_t>(node - first));
-    piece.drive.fixes.push_back(drive.fixes[i]);
-    piece.drive.fixes.back().vertex = vertex_of(timeline.fix_node.back());
+CoarseDrive sample_of(CoarseDrive whole, std::size_t windows, double window_s) {
+  constexpr double kWorth = 1.3;
+  const std::vector<Stamp>& stamps = whole.drive.timeline.stamps;
+  const double whole_s = seconds_between(stamps.front(), stamps.back());
+  const double count = static_cast<double>(windows);
+  if (whole_s < kWorth * count * window_s || whole.drive.fixes.empty() || !whole.drive.relative.empty())
+    return whole;
+  std::vector<NodeRange> ranges;
+  for (std::size_t i = 0; i < windows; ++i) {
+    const double middle_s = (static_cast<double>(i) + 0.5) / count * whole_s;
+    const NodeRange range = nodes_within(stamps, stamps.front().later(middle_s - 0.5 * window_s), window_s);
+    // in a gap of the odometry there is nothing
+    if (range.last > range.first && (ranges.empty() || range.first > ranges.back().last))
+      ranges.push_back(range);
   }
-  if (!drive.relative.empty()) piece.drive.runs = motion_runs(timeline, drive.relative, piece.drive.fixes);
-  const std::vector<char> kept(timeline.stamps.size(), 1);
-  for (const PreparedSensor& sensor : whole.sensors)
-    piece.sensors.push_back(at_kept_nodes(sensor, timeline, kept));
-  return piece;
+  return ranges.empty() ? whole : parts_of(whole, ranges);
 }
 
 }  // namespace waymark::drive

@@ -23,4 +23,9 @@ struct CoarseDrive {
 /// Returns the middle of a coarse drive, of a length or a little more.
 [[nodiscard]] CoarseDrive middle_of(const CoarseDrive& whole, double length_s);
 
+/// Returns windows of a long drive at equal distances in time, with gaps of the odometry between them, so that
+/// what is estimated from it costs the same for an hour and a day. The whole if they are most of it, if there
+/// are no fixes, or if several odometries measured it.
+[[nodiscard]] CoarseDrive sample_of(CoarseDrive whole, std::size_t windows, double window_s);
+
 }  // namespace waymark::drive

@@ -15,7 +15,7 @@ Interval Reckoning::motion(std::size_t before, const OdometrySample& to) const {
 
 Reckoning::Node Reckoning::moved(const Node& from, const Interval& motion) const {
   Node to = from;
-  if (std::abs(motion.speed_mps) < standstill_mps_) return to;
+  if (motion.stands(standstill_mps_)) return to;
   const Eigen::Vector3d way(motion.speed_mps * motion.dt_s, 0, motion.yaw_rate_radps * motion.dt_s);
   to.pose = compose(to_pose(from.pose), se2_exp(way)).vector();
   to.way_m += std::abs(way[0]);
