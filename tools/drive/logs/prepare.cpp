@@ -109,14 +109,14 @@ void find_signs(const std::string& source, std::vector<OdometrySample>& samples,
 }
 
 /// Speeds without a sign that are noise become 0. @param source its name and ": ", or empty
-void find_stops(const std::string& source, std::vector<OdometrySample>& samples, PrepareReport& report) {
+void find_stops(const std::string& source, std::vector<OdometrySample>& samples, PreparedDrive& drive) {
   double total_s = 0;
-  for (const Standing& time : find_standing(samples)) {
+  for (const Standing& time : find_standing(samples, drive.fixes)) {
     total_s += seconds_between(samples[time.first].stamp, samples[time.last].stamp);
     for (std::size_t i = time.first; i <= time.last; ++i) samples[i].speed_mps = 0;
   }
   if (total_s > 0)
-    report.notes.push_back(fmt::format(
+    drive.report.notes.push_back(fmt::format(
         "{}the speed has no sign and reads noise for {:.0f} s in all: the vehicle is taken to stand there",
         source, total_s));
 }
@@ -127,7 +127,7 @@ void leave_out_wrong(PreparedDrive& drive) {
     const std::string name = source.name + ": ";
     note_yaw_rate(name, source.yaw_rate_at_rest, drive.report);
     const Stamp start = source.samples.front().stamp;
-    find_stops(name, source.samples, drive.report);
+    find_stops(name, source.samples, drive);
     const std::vector<SpeedLeap> leaps = find_speed_leaps(source.samples);
     if (!leaps.empty()) drive.report.warnings.push_back(name + warning_of(leaps, source.samples));
     for (std::size_t i = leaps.size(); i-- > 0;) {
@@ -191,7 +191,7 @@ void mend_by_fixes(PreparedDrive& drive) {
 
 /// Replaces speeds that no vehicle has, and gives speeds their sign.
 void mend_by_itself(PreparedDrive& drive) {
-  find_stops("", drive.odometry, drive.report);
+  find_stops("", drive.odometry, drive);
   const std::vector<SpeedLeap> leaps = find_speed_leaps(drive.odometry);
   if (!leaps.empty()) drive.report.warnings.push_back(warning_of(leaps, drive.odometry));
   bridge_speed_leaps(leaps, drive.odometry);

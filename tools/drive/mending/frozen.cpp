@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/mending/fix_motion.hpp>
 #include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 #include <waymark/types_se2/se2.hpp>
@@ -187,6 +188,18 @@ double duration_of(std::span<const OdometrySample> samples) {
   return seconds_between(samples.front().stamp, samples.back().stamp);
 }
 
+/// Tells whether the fixes have a speed for as long as they last: a vehicle on cruise control, or a tram.
+bool fixes_agree(std::span<const Fix> fixes, double speed_mps) {
+  constexpr double kShare = 0.06;  // scales of wheels, and what a chord is shorter than an arc
+  constexpr std::size_t kFewestHere = 4;
+  if (fixes.size() < kFewestHere) return false;
+  std::vector<double> accuracies;
+  for (const Fix& fix : fixes) accuracies.push_back(fix.accuracy_m());
+  const double way_m = speed_mps * seconds_between(fixes.front().stamp, fixes.back().stamp);
+  const double chord_m = (fixes.back().position - fixes.front().position).norm();
+  return std::abs(chord_m - way_m) < kShare * way_m + upper_median(std::move(accuracies));
+}
+
 /// Finds times of one speed.
 void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes,
                         std::vector<FrozenOdometry>& found) {
@@ -198,6 +211,8 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
     const bool with_turns = all_repeat(samples, &OdometrySample::yaw_rate_radps);
     const bool is_long = with_turns || duration_of(samples) >= kShortestOfOne_s;
     const std::span<const Fix> during = within(fixes, first.stamp, samples.back().stamp);
+    const bool fits = !with_turns && fixes_agree(during, std::abs(first.speed_mps));
+    if (fits) continue;
     if (unusual && is_long && samples.size() >= *unusual && drives(samples)) {
       found.push_back({first.stamp, samples.back().stamp, first.speed_mps, first.yaw_rate_radps,
                        length_of(during), true, with_turns});

@@ -25,7 +25,7 @@ struct FrozenOdometry {
 ///
 /// A moving vehicle seldom repeats a reading. If at most 30 % of the pairs of samples repeat their speed, 3 s
 /// of one speed above 0.5 m/s and one yaw rate are such a time, and 5 s of one speed with a yaw rate that
-/// is alive: 20 samples, and five times as many as usual. So are 5 s of one yaw rate, unless it comes from
+/// is alive (unless the fixes have that speed: cruise control): 20 samples, and five times as many as usual. So are 5 s of one yaw rate, unless it comes from
 /// wheels or steering.
 ///
 /// Otherwise the speed is the same in each sample for 5 s or more. The fixes contradict it in at least

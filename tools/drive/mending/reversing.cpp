@@ -172,6 +172,17 @@ double fit_of(const std::vector<Way>& ways, std::size_t i, std::span<const Odome
   return fit;
 }
 
+/// Extends a way to where its speed is least, before and after it: there the vehicle stands.
+Reversing to_the_stops(Reversing way, std::span<const OdometrySample> odometry) {
+  while (way.first > 0 && odometry[way.first - 1].speed_mps > 0 &&
+         odometry[way.first - 1].speed_mps <= odometry[way.first].speed_mps)
+    --way.first;
+  while (way.last + 1 < odometry.size() && odometry[way.last + 1].speed_mps > 0 &&
+         odometry[way.last + 1].speed_mps <= odometry[way.last].speed_mps)
+    ++way.last;
+  return way;
+}
+
 }  // namespace
 
 std::vector<Reversing> find_reversing(std::span<const OdometrySample> odometry, std::span<const Fix> fixes) {
@@ -194,7 +205,7 @@ std::vector<Reversing> find_reversing(std::span<const OdometrySample> odometry, 
   }
   std::vector<Reversing> found;
   for (const Way& way : ways)
-    if (way.backwards) found.push_back(way.samples);
+    if (way.backwards) found.push_back(to_the_stops(way.samples, odometry));
   return found;
 }
 

@@ -3,19 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include <waymark/core/base/detail/median.hpp>
+#include <waymark/tools/drive/mending/fix_motion.hpp>
+
 namespace waymark::drive {
 namespace {
 
 constexpr double kSlow_mps = 0.5;
 constexpr double kWindow_s = 3;
 constexpr std::size_t kFewestInWindow = 15;
-constexpr double kNoise = 0.4;  // change from sample to sample over speed
+constexpr double kNoise = 0.4;         // change from sample to sample over speed
+constexpr std::size_t kFewZeros = 10;  // at most one in 10
 
 /// Sums over the samples before each one.
 struct Sums {
   std::vector<double> speed{0};
   std::vector<double> change{0};
   std::vector<std::size_t> fast{0};
+  std::vector<std::size_t> zero{0};
 };
 
 Sums sums_of(std::span<const OdometrySample> odometry) {
@@ -25,19 +30,45 @@ Sums sums_of(std::span<const OdometrySample> odometry) {
     sums.speed.push_back(sums.speed.back() + speed);
     sums.change.push_back(sums.change.back() + (i == 0 ? 0 : std::abs(speed - odometry[i - 1].speed_mps)));
     sums.fast.push_back(sums.fast.back() + (speed < kSlow_mps ? 0 : 1));
+    sums.zero.push_back(sums.zero.back() + (speed == 0 ? 1 : 0));
   }
   return sums;
 }
 
 /// Tells whether samples [first, last] are noise about 0.
 bool is_noise(const Sums& sums, std::size_t first, std::size_t last) {
-  if (last - first + 1 < kFewestInWindow || sums.fast[last + 1] > sums.fast[first]) return false;
+  const std::size_t count = last - first + 1;
+  if (count < kFewestInWindow || sums.fast[last + 1] > sums.fast[first]) return false;
+  // noise is never exactly 0; readings that are have few digits
+  if (kFewZeros * (sums.zero[last + 1] - sums.zero[first]) > count) return false;
   return sums.change[last + 1] - sums.change[first + 1] > kNoise * (sums.speed[last + 1] - sums.speed[first]);
+}
+
+/// Tells whether the fixes stay while the readings say that the vehicle creeps on.
+bool fixes_stay(std::span<const Fix> fixes, Stamp from, Stamp to, double way_m) {
+  constexpr double kShare = 0.4;
+  constexpr std::size_t kEnd = 3;  // fixes whose median is an end
+  std::vector<const Fix*> during;
+  for (const Fix& fix : fixes)
+    if (fix.stamp >= from && fix.stamp <= to) during.push_back(&fix);
+  if (during.size() < 2 * kEnd) return false;
+  const auto middle = [&](std::size_t first) {
+    Eigen::Vector2d place;
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      std::vector<double> places;
+      for (std::size_t i = first; i < first + kEnd; ++i) places.push_back(during[i]->position[axis]);
+      place[axis] = upper_median(std::move(places));
+    }
+    return place;
+  };
+  const double moved_m = (middle(during.size() - kEnd) - middle(0)).norm();
+  const double accuracy_m = during[during.size() / 2]->accuracy_m();
+  return way_m > 3 * accuracy_m && moved_m < kShare * way_m;
 }
 
 }  // namespace
 
-std::vector<Standing> find_standing(std::span<const OdometrySample> odometry) {
+std::vector<Standing> find_standing(std::span<const OdometrySample> odometry, std::span<const Fix> fixes) {
   const bool has_sign = std::any_of(odometry.begin(), odometry.end(),
                                     [](const OdometrySample& sample) { return sample.speed_mps < 0; });
   if (has_sign) return {};
@@ -55,6 +86,14 @@ std::vector<Standing> find_standing(std::span<const OdometrySample> odometry) {
       found.push_back({first, last});
     }
   }
+  const std::vector<Fix> used = fixes.empty() ? std::vector<Fix>() : fixes_for_motion(fixes);
+  std::erase_if(found, [&](const Standing& time) {
+    const Stamp from = odometry[time.first].stamp;
+    const Stamp to = odometry[time.last].stamp;
+    const double mean = (sums.speed[time.last + 1] - sums.speed[time.first]) /
+                        static_cast<double>(time.last - time.first + 1);
+    return !fixes_stay(used, from, to, mean * seconds_between(from, to));
+  });
   return found;
 }
 

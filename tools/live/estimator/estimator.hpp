@@ -68,6 +68,8 @@ class Estimator {
   [[nodiscard]] const Counts& counts() const { return counts_; }
   /// Returns the frame; empty before the first fix unless it is stated.
   [[nodiscard]] const std::optional<Frame>& frame() const { return frame_; }
+  /// Places the frame at the first place of the drive, if none is known.
+  void begin_at(const GeodeticPoint& place) { (void)projection_at(place); }
   /// Returns the present estimate for a later run; empty while there is none.
   [[nodiscard]] std::optional<WarmStart> warm_start() const;
   /// Returns the vertices of the window.

@@ -15,6 +15,15 @@ bool needs_frame(const LogRequest& request) {
                      [](const SensorColumn& column) { return !column.sense.empty(); });
 }
 
+/// A drive may be without a fix for hours.
+void append(const SensorTable& more, SensorTable& rows) {
+  constexpr std::size_t kMost = 100'000;
+  if (rows.size() > kMost) rows = {};
+  rows.columns = more.columns;
+  rows.stamps.insert(rows.stamps.end(), more.stamps.begin(), more.stamps.end());
+  rows.values.insert(rows.values.end(), more.values.begin(), more.values.end());
+}
+
 }  // namespace
 
 Channel::Channel(Role role, const drive::LogConfig& log, std::size_t index, TimeScale scale,
@@ -61,14 +70,19 @@ std::vector<Sample> Channel::collect(const drive::Projection* projection) {
     samples.emplace_back(fix);
   }
   data.clocks.clear();
-  if (data.readings.size() == 0) return samples;
+  if (data.readings.size() == 0 && waiting_.size() == 0) return samples;
   SensorTable rows;
   rows.columns = data.readings.columns;
   std::swap(rows, data.readings);
+  if (role_ == Role::sensor && needs_frame(chosen_.request)) {
+    append(rows, waiting_);
+    if (projection == nullptr) return samples;
+    rows = std::exchange(waiting_, {});
+  }
   if (role_ == Role::odometry) {
     for (Stamp& stamp : rows.stamps) stamp = convert(stamp, own, scale_);
     for (const OdometrySample& sample : parts_.take(index_, rows)) samples.push_back(labelled(sample));
-  } else if (role_ == Role::sensor && (projection != nullptr || !needs_frame(chosen_.request))) {
+  } else if (role_ == Role::sensor) {
     drive::DriveLogs::Log log;
     log.scale = own;
     log.file = log_.file;

@@ -28,7 +28,8 @@ class Channel {
   Channel(Role role, const drive::LogConfig& log, std::size_t index, TimeScale scale, OdometryStream& parts,
           std::size_t odometry, const TypeRegistry& registry);
 
-  /// Decodes a piece. @param projection of the frame, once it is known
+  /// Decodes a piece. Readings that need the frame wait for it.
+  /// @param projection of the frame, once it is known
   /// @throws InputError for errors that concern the whole stream
   [[nodiscard]] std::vector<Sample> take(std::string_view piece, const drive::Projection* projection);
   /// Ends the stream: what was held back comes.
@@ -36,6 +37,8 @@ class Channel {
   /// The sender pauses: a record that waits for its next part is complete.
   [[nodiscard]] std::vector<Sample> pause(const drive::Projection* projection);
 
+  /// Tells whether readings wait for the frame.
+  [[nodiscard]] bool waits() const { return waiting_.size() > 0; }
   [[nodiscard]] const std::string& name() const { return log_.file; }
   [[nodiscard]] const LogData& data() const { return decoder_->data(); }
   [[nodiscard]] const std::vector<std::string>& notes() const { return chosen_.notes; }
@@ -52,6 +55,7 @@ class Channel {
   std::size_t odometry_;
   drive::ChosenReader chosen_;
   std::unique_ptr<LogDecoder> decoder_;
+  SensorTable waiting_;  ///< readings of places and headings from before the frame was known
 };
 
 }  // namespace waymark::live

@@ -79,18 +79,6 @@ class Comparison {
   std::size_t inside_ = 0;
 };
 
-std::vector<Sample> samples_of(const drive::DriveFile& file, const TypeRegistry& registry) {
-  Session session(file, {}, registry);
-  std::vector<Sample> samples;
-  for (std::size_t input = 0; input < session.inputs().size(); ++input) {
-    std::vector<Sample> own = session.decode_file(input);
-    samples.insert(samples.end(), std::make_move_iterator(own.begin()), std::make_move_iterator(own.end()));
-  }
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const Sample& a, const Sample& b) { return stamp_of(a) < stamp_of(b); });
-  return samples;
-}
-
 LagResult replay(const std::vector<Sample>& samples, const drive::DriveFile& file, double window_s,
                  const drive::PreparedDrive& drive, const TypeRegistry& registry) {
   LiveSettings live;
@@ -131,14 +119,13 @@ std::vector<LagResult> study_lags(const drive::DriveFile& file, const drive::Fus
                                   const TypeRegistry& registry, const std::function<void(double)>& begun) {
   drive::DriveFile own = file;
   own.settings = settings;
-  if (!own.description.gnss.empty()) own.description.sensors.clear();
   put_nodes_first(own.description);
   drive::resolve_sensors(own.description, registry);
   if (drive.frame.zone != 0) {
     own.description.utm_zone = drive.frame.north ? drive.frame.zone : -drive.frame.zone;
     own.description.utm_origin = Eigen::Vector2d(drive.frame.origin_easting_m, drive.frame.origin_northing_m);
   }
-  const std::vector<Sample> samples = samples_of(own, registry);
+  const std::vector<Sample> samples = Session(own, {}, registry).decode_files();
   std::vector<LagResult> results;
   for (const double window_s : windows_s) {
     if (begun) begun(window_s);

@@ -146,13 +146,7 @@ void replay_recording(Session& session, const std::string& file, const LoopOptio
 }
 
 void replay_logs(Session& session, double speed, const LoopOptions& options) {
-  std::vector<Sample> samples;
-  for (std::size_t input = 0; input < session.inputs().size(); ++input) {
-    std::vector<Sample> own = session.decode_file(input);
-    samples.insert(samples.end(), std::make_move_iterator(own.begin()), std::make_move_iterator(own.end()));
-  }
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const Sample& a, const Sample& b) { return stamp_of(a) < stamp_of(b); });
+  const std::vector<Sample> samples = session.decode_files();
   Chores chores(session, options);
   const Clock::time_point begin = Clock::now();
   for (const Sample& sample : samples) {

@@ -131,19 +131,32 @@ void Session::take(const Sample& sample) {
       .add(microseconds_since(begin));
 }
 
-std::vector<Sample> Session::decode_file(std::size_t input) {
+std::vector<Sample> Session::decode_files() {
   std::vector<Sample> samples;
   const auto append = [&](std::vector<Sample> more) {
     samples.insert(samples.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   };
-  const std::string error = formats::read_in_pieces(inputs_[input].file, [&](std::string_view piece) {
-    for (const std::size_t channel : inputs_[input].channels)
-      append(channels_[channel].take(piece, projection()));
+  for (const Input& input : inputs_) {
+    const std::string error = formats::read_in_pieces(input.file, [&](std::string_view piece) {
+      for (const std::size_t channel : input.channels) append(channels_[channel].take(piece, projection()));
+    });
+    for (const std::size_t channel : input.channels) append(channels_[channel].finish(projection()));
+    if (!error.empty()) tell("unreadable", error);
+  }
+  const auto by_stamp = [](const Sample& a, const Sample& b) { return stamp_of(a) < stamp_of(b); };
+  std::stable_sort(samples.begin(), samples.end(), by_stamp);
+  // The first fix gives the frame, for which places and headings of sensors wait.
+  const auto first = std::find_if(samples.begin(), samples.end(), [](const Sample& sample) {
+    return std::holds_alternative<GeodeticFix>(sample);
   });
-  for (const std::size_t channel : inputs_[input].channels) append(channels_[channel].finish(projection()));
-  if (!error.empty()) tell("unreadable", error);
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const Sample& a, const Sample& b) { return stamp_of(a) < stamp_of(b); });
+  const bool any_waits =
+      std::any_of(channels_.begin(), channels_.end(), [](const Channel& channel) { return channel.waits(); });
+  if (any_waits && first != samples.end()) {
+    const auto& fix = std::get<GeodeticFix>(*first);
+    estimator_.begin_at({fix.latitude_deg, fix.longitude_deg});
+    for (Channel& channel : channels_) append(channel.pause(projection()));
+    std::stable_sort(samples.begin(), samples.end(), by_stamp);
+  }
   return samples;
 }
 

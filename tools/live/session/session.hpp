@@ -47,8 +47,8 @@ class Session {
   void take(std::size_t input, std::string_view bytes);
   /// Takes a sample of a replay.
   void take(const Sample& sample);
-  /// Decodes a whole file of an input. @returns its samples
-  [[nodiscard]] std::vector<Sample> decode_file(std::size_t input);
+  /// Decodes the files of all inputs. @returns their samples, sorted by stamp
+  [[nodiscard]] std::vector<Sample> decode_files();
   /// Tells the outputs what an input or an output has to say.
   void tell(const std::string& kind, const std::string& text);
   /// Accepts clients, and sends what waits.

@@ -144,6 +144,12 @@ TEST_CASE("frozen: a quantity that now and then repeats is not frozen until it r
   CHECK(find_frozen_odometry(coarse.odometry, coarse.fixes).size() == 1);
 }
 
+TEST_CASE("frozen: a constant speed that the fixes have is cruise control") {
+  const auto cruises = [](double t) { return t > 30 && t < 60 ? speed_at(30) : speed_at(t); };
+  const Scene cruise = testing::winding_scene(100, cruises, yaw_rate_at);
+  CHECK(find_frozen_odometry(cruise.odometry, cruise.fixes).empty());
+}
+
 TEST_CASE("frozen: odometry of few digits repeats readings without a failure") {
   Scene scene;
   for (int i = 0; i <= 1000; ++i) {

@@ -22,6 +22,19 @@ std::vector<OdometrySample> speeds(double rate_hz, const std::function<double(do
   return odometry;
 }
 
+/// Fixes of 1 Hz along the x axis, exact.
+std::vector<Fix> fixes_at(const std::function<double(double)>& place) {
+  std::vector<Fix> fixes;
+  for (int i = 0; i < 60; ++i) {
+    Fix fix;
+    fix.stamp = Stamp::from_seconds(i);
+    fix.position.x() = place(i);
+    fix.covariance *= 0.04;
+    fixes.push_back(fix);
+  }
+  return fixes;
+}
+
 /// Noise of 0.1 m/s about a speed.
 class Noisy {
  public:
@@ -38,7 +51,8 @@ TEST_CASE("standing: noise without a sign between two ways is a stop") {
   for (const double rate_hz : {5.0, 10.0, 50.0}) {
     Noisy noisy;
     const auto odometry = speeds(rate_hz, [&](double t) { return noisy(t < 20 || t > 40 ? 5 : 0); });
-    const std::vector<Standing> found = find_standing(odometry);
+    const auto fixes = fixes_at([](double t) { return 5 * (t < 20 ? t : std::max(20.0, t - 20)); });
+    const std::vector<Standing> found = find_standing(odometry, fixes);
     REQUIRE(found.size() == 1);
     CHECK(odometry[found[0].first].stamp.seconds() == Approx(20).margin(0.25));
     CHECK(odometry[found[0].last].stamp.seconds() == Approx(40).margin(0.25));
@@ -46,19 +60,33 @@ TEST_CASE("standing: noise without a sign between two ways is a stop") {
 }
 
 TEST_CASE("standing: a vehicle that creeps does not stand") {
+  const auto at_rest = fixes_at([](double) { return 0; });
   Noisy noisy;
-  CHECK(find_standing(speeds(25, [&](double) { return noisy(0.4); })).empty());
+  CHECK(find_standing(speeds(25, [&](double) { return noisy(0.4); }), at_rest).empty());
   // stop and go: up to 0.4 m/s every 4 s
-  CHECK(find_standing(speeds(10, [](double t) { return 0.2 - 0.2 * std::cos(1.57 * t); })).empty());
-  CHECK(find_standing(speeds(25, [](double) { return 0.0; })).empty());
+  CHECK(find_standing(speeds(10, [](double t) { return 0.2 - 0.2 * std::cos(1.57 * t); }), at_rest).empty());
+  CHECK(find_standing(speeds(25, [](double) { return 0.0; }), at_rest).empty());
+}
+
+TEST_CASE("standing: where readings of a traffic jam look like noise, the fixes decide") {
+  for (const double speed : {0.1, 0.15, 0.2}) {
+    Noisy noisy;
+    const auto odometry = speeds(25, [&](double) { return noisy(speed); });
+    CHECK(find_standing(odometry, fixes_at([&](double t) { return speed * t; })).empty());
+    CHECK(find_standing(odometry, {}).empty());
+  }
+  // a speed in steps of 1 km/h flickers between 0 and 0.28 m/s
+  const auto steps = speeds(25, [](double t) { return std::fmod(t, 0.12) < 0.06 ? 0.0 : 0.278; });
+  CHECK(find_standing(steps, fixes_at([](double) { return 0; })).empty());
 }
 
 TEST_CASE("standing: noise with a sign adds up to nothing, and slow readings tell nothing") {
+  const auto at_rest = fixes_at([](double) { return 0; });
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, 0.1);
-  CHECK(find_standing(speeds(25, [&](double) { return normal(random); })).empty());
+  CHECK(find_standing(speeds(25, [&](double) { return normal(random); }), at_rest).empty());
   Noisy noisy;
-  CHECK(find_standing(speeds(2, [&](double) { return noisy(0); })).empty());
+  CHECK(find_standing(speeds(2, [&](double) { return noisy(0); }), at_rest).empty());
 }
 
 }  // namespace standing_test
