@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
 
 #include <waymark/types_se2/se2.hpp>
 
@@ -52,10 +55,63 @@ std::vector<const Fix*> of_one_receiver(const std::vector<Fix>& fixes) {
                            [](const auto& a, const auto& b) { return a.size() < b.size(); });
 }
 
+namespace {
+
+/// Returns the receiver's speed at a moment, linear between fixes; nothing outside and in gaps.
+std::optional<double> told_speed(const std::vector<const Fix*>& told, Stamp at) {
+  const auto right = std::lower_bound(told.begin(), told.end(), at,
+                                      [](const Fix* fix, Stamp stamp) { return fix->stamp < stamp; });
+  if (right == told.begin() || right == told.end() || !neighbours(**(right - 1), **right))
+    return std::nullopt;
+  const Fix& a = **(right - 1);
+  const Fix& b = **right;
+  const double share = seconds_between(a.stamp, at) / seconds_between(a.stamp, b.stamp);
+  return (1 - share) * *a.speed_mps + share * *b.speed_mps;
+}
+
+}  // namespace
+
+bool velocity_lags(const std::vector<const Fix*>& fixes) {
+  constexpr double kReach_s = 3;
+  constexpr double kStep_s = 0.1;
+  constexpr double kLeast_s = 0.25;
+  constexpr double kBetter = 0.8;  // of the squares
+  constexpr std::size_t kFewest = 30;
+  std::vector<const Fix*> told;
+  std::copy_if(fixes.begin(), fixes.end(), std::back_inserter(told),
+               [](const Fix* fix) { return fix->speed_mps.has_value(); });
+  const std::vector<const Fix*> apart = spaced(told);
+  const auto mean_square = [&](double lag_s) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < apart.size(); ++i) {
+      if (!neighbours(*apart[i - 1], *apart[i])) continue;
+      const double dt = seconds_between(apart[i - 1]->stamp, apart[i]->stamp);
+      const double moved = (apart[i]->position - apart[i - 1]->position).norm() / dt / apart[i]->grid_scale;
+      const auto speed = told_speed(told, halfway(apart[i - 1]->stamp, apart[i]->stamp).later(lag_s));
+      if (!speed || moved > kFastest) continue;
+      sum += std::pow(moved - *speed, 2);
+      ++count;
+    }
+    return count < kFewest ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(count);
+  };
+  const double at_once = mean_square(0);
+  double least = at_once;
+  double best_s = 0;
+  for (double lag_s = -kReach_s; lag_s <= kReach_s + 1e-9; lag_s += kStep_s) {
+    const double here = mean_square(lag_s);
+    if (here < least) {
+      least = here;
+      best_s = lag_s;
+    }
+  }
+  return std::abs(best_s) >= kLeast_s && least < kBetter * at_once;
+}
+
 GnssMotion gnss_speeds(const std::vector<const Fix*>& fixes) {
   const auto given =
       std::count_if(fixes.begin(), fixes.end(), [](const Fix* f) { return f->speed_mps.has_value(); });
-  if (2 * static_cast<std::size_t>(given) > fixes.size()) {
+  if (2 * static_cast<std::size_t>(given) > fixes.size() && !velocity_lags(fixes)) {
     GnssMotion result{"receiver's speed", {}};
     for (const Fix* fix : fixes) {
       if (fix->speed_mps && *fix->speed_mps < kFastest)
@@ -78,7 +134,7 @@ GnssMotion gnss_speeds(const std::vector<const Fix*>& fixes) {
 GnssMotion gnss_turns(const std::vector<const Fix*>& fixes) {
   const auto usable = [](const Fix* f) { return f->heading_rad && f->speed_mps.value_or(0) >= kSlow; };
   const auto given = std::count_if(fixes.begin(), fixes.end(), usable);
-  if (2 * static_cast<std::size_t>(given) > fixes.size() / 2) {
+  if (2 * static_cast<std::size_t>(given) > fixes.size() / 2 && !velocity_lags(fixes)) {
     GnssMotion result{"receiver's course", {}};
     for (std::size_t i = 1; i < fixes.size(); ++i) {
       if (usable(fixes[i - 1]) && usable(fixes[i]))

@@ -23,9 +23,13 @@ struct GnssMotion {
 
 /// Returns the fixes of the receiver with the most fixes. They must outlive the result.
 [[nodiscard]] std::vector<const Fix*> of_one_receiver(const std::vector<Fix>& fixes);
-/// Returns Doppler speeds if most fixes have them, else distances between fixes over their time.
+/// Tells whether the speeds of a receiver fit its own positions better by a fifth (in squares) when they are
+/// moved in time by 0.25 s or more: receivers filter them. They tell nothing of the clock of the positions then.
+/// @param fixes of one receiver, sorted by stamp
+[[nodiscard]] bool velocity_lags(const std::vector<const Fix*>& fixes);
+/// Returns Doppler speeds if most fixes have them and they do not lag, else distances between fixes over their time.
 [[nodiscard]] GnssMotion gnss_speeds(const std::vector<const Fix*>& fixes);
-/// Returns the changes of Doppler courses if most fixes have them, else the angles between chords.
+/// Returns the changes of Doppler courses if most fixes have them and the speeds do not lag, else the angles between chords.
 [[nodiscard]] GnssMotion gnss_turns(const std::vector<const Fix*>& fixes);
 
 }  // namespace waymark::drive

@@ -78,6 +78,21 @@ void add_output(const std::string& text, const LiveCommand& command, bool may_wa
                      std::make_unique<live::ByteOutput>(address, std::move(header), may_wait), rate_hz);
 }
 
+/// A log that is not there, among logs that lie still, will not come. A device may be plugged in later.
+void require_files(const live::Session& session) {
+  std::error_code unknown;
+  std::size_t lie_still = 0;
+  std::string missing;
+  for (const live::Session::Input& input : session.inputs()) {
+    const bool may_come =
+        input.file == "-" || input.file.find("://") != std::string::npos || input.file.rfind("/dev/", 0) == 0;
+    if (std::filesystem::is_regular_file(input.file, unknown)) ++lie_still;
+    if (!may_come && missing.empty() && !std::filesystem::exists(input.file, unknown)) missing = input.file;
+  }
+  if (!missing.empty() && lie_still + 1 >= session.inputs().size())
+    throw InputError(missing + ": no such file, and the other logs of the drive are files");
+}
+
 /// Logs that are files lie still: they are replayed.
 bool is_replay(const live::Session& session) {
   return std::all_of(session.inputs().begin(), session.inputs().end(), [](const live::Session::Input& input) {
@@ -157,6 +172,7 @@ ExitCode run(const LiveCommand& command) {
   if (!command.noise.empty()) live::use_former_noise(command.noise, registry, file.settings);
   const double speed = speed_of(command.speed);
   live::Session session(file, command.settings, registry);
+  if (command.play.empty()) require_files(session);
   const bool replays = !command.play.empty() || is_replay(session);
   if (replays && !command.record.empty())
     throw UsageError("--record: the logs of this drive are recorded already");

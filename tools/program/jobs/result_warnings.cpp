@@ -107,6 +107,23 @@ void check_distances(const std::vector<evaluation::EpochResult>& epochs, std::ve
       distance_m, claim_m));
 }
 
+/// A few wrong readings of a sensor without a loss bend the drive, and the blame falls on others.
+void check_sensors(const std::vector<evaluation::SourceResiduals>& sources,
+                   std::vector<std::string>& warnings) {
+  constexpr std::size_t kFewest = 10;
+  constexpr double kTooLarge = 2;
+  for (const evaluation::SourceResiduals& source : sources) {
+    const bool is_sensor = source.kind != "odometry" && source.kind != "gnss";
+    if (!is_sensor || source.robust > 0 || source.measurements < kFewest || !(source.rms > kTooLarge))
+      continue;
+    warnings.push_back(fmt::format(
+        "the {} readings of {} are {:.2g} times as far from the result as their sigmas say, the worst one {:.2g} "
+        "times: some are wrong, or the sigmas are too small; the sensor's 'loss: \"cauchy:1\"' leaves out those "
+        "that are wrong",
+        source.measurements, source.source, source.rms, source.largest));
+  }
+}
+
 void check_weights(const std::vector<evaluation::SourceResiduals>& sources,
                    std::vector<std::string>& warnings) {
   for (const evaluation::SourceResiduals& source : sources) {
@@ -130,6 +147,7 @@ std::vector<std::string> warnings_of_result(const std::vector<evaluation::StateR
   check_noise(noise, warnings);
   check_innovations(evaluation.post_fit, warnings);
   check_distances(evaluation.epochs, warnings);
+  check_sensors(evaluation.residuals, warnings);
   check_weights(evaluation.residuals, warnings);
   if (!evaluation.truth) return warnings;
   check_qualities(evaluation, warnings);
