@@ -309,4 +309,26 @@ TEST_CASE("usage: check names a graph whose edges leave a vertex undetermined") 
   }
 }
 
+TEST_CASE("usage: optimize says that edges are wrong where the minimum is far above what they promise") {
+  // 20 poses on a line, of which each edge says 1 m to 1 cm; `loop` is what the last one says of the first
+  const auto optimized = [](const std::string& loop, const std::vector<std::string>& options) {
+    std::string graph = "GRAPH 1\n";
+    for (int i = 0; i < 20; ++i)
+      graph += "VERTEX_SE2 " + std::to_string(i) + " " + std::to_string(i) + " 0 0\n";
+    graph += "FIX 0\n";
+    for (int i = 0; i < 19; ++i)
+      graph += "EDGE_SE2 " + std::to_string(i) + " " + std::to_string(i + 1) + " 1 0 0 1e4 0 0 1e4 0 1e4\n";
+    graph += "EDGE_SE2 0 19 " + loop + " 1e4 0 0 1e4 0 1e4\n";
+    const std::string file = write_text(fresh_folder() + "loop.graph", graph);
+    std::vector<std::string> arguments = {"optimize", file, "-o", file + ".out"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(arguments);
+  };
+  const RunResult wrong = optimized("10 5 1", {});
+  CHECK(wrong.code == 0);
+  CHECK(contains(wrong.err, "some edges are wrong (try --loss cauchy:1, or --robust gnc)"));
+  CHECK_FALSE(contains(optimized("19.02 0.01 0", {}).err, "warning"));
+  CHECK_FALSE(contains(optimized("10 5 1", {"--loss", "cauchy:1"}).err, "some edges are wrong"));
+}
+
 }  // namespace usage_test

@@ -13,6 +13,7 @@
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/mending/creeping.hpp>
 #include <waymark/tools/drive/mending/fix_motion.hpp>
 #include <waymark/tools/drive/mending/frozen.hpp>
 #include <waymark/tools/drive/mending/reversing.hpp>
@@ -121,6 +122,16 @@ void find_stops(const std::string& source, std::vector<OdometrySample>& samples,
         source, total_s));
 }
 
+/// Leaves out the samples [first, last] of each finding.
+template <typename Finding>
+void leave_out(const std::vector<Finding>& found, std::vector<OdometrySample>& samples) {
+  for (std::size_t i = found.size(); i-- > 0;) {
+    const auto begin = samples.begin();
+    samples.erase(begin + static_cast<std::ptrdiff_t>(found[i].first),
+                  begin + static_cast<std::ptrdiff_t>(found[i].last + 1));
+  }
+}
+
 /// Wrong samples of one of several sources are left out: the others measure the motion.
 void leave_out_wrong(PreparedDrive& drive) {
   for (PreparedOdometry& source : drive.relative) {
@@ -130,17 +141,16 @@ void leave_out_wrong(PreparedDrive& drive) {
     find_stops(name, source.samples, drive);
     const std::vector<SpeedLeap> leaps = find_speed_leaps(source.samples);
     if (!leaps.empty()) drive.report.warnings.push_back(name + warning_of(leaps, source.samples));
-    for (std::size_t i = leaps.size(); i-- > 0;) {
-      const auto begin = source.samples.begin();
-      source.samples.erase(begin + static_cast<std::ptrdiff_t>(leaps[i].first),
-                           begin + static_cast<std::ptrdiff_t>(leaps[i].last + 1));
-    }
+    leave_out(leaps, source.samples);
     for (const FrozenOdometry& time : find_frozen_odometry(source.samples, drive.fixes)) {
       drive.report.warnings.push_back(name + warning_of(time, start));
       std::erase_if(source.samples, [&](const OdometrySample& sample) {
         return sample.stamp >= time.from && sample.stamp <= time.to;
       });
     }
+    const std::vector<Creeping> creeping = find_creeping(source.samples, drive.fixes);
+    if (!creeping.empty()) drive.report.warnings.push_back(name + warning_of(creeping, source.samples));
+    leave_out(creeping, source.samples);
     find_signs(name, source.samples, drive);
   }
 }
@@ -195,6 +205,9 @@ void mend_by_itself(PreparedDrive& drive) {
   const std::vector<SpeedLeap> leaps = find_speed_leaps(drive.odometry);
   if (!leaps.empty()) drive.report.warnings.push_back(warning_of(leaps, drive.odometry));
   bridge_speed_leaps(leaps, drive.odometry);
+  const std::vector<Creeping> creeping = find_creeping(drive.odometry, drive.fixes);
+  if (!creeping.empty()) drive.report.warnings.push_back(warning_of(creeping, drive.odometry));
+  creep(creeping, drive.odometry);
   find_signs("", drive.odometry, drive);
 }
 

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/optimize/multi_start.hpp>
 #include <waymark/formats/graph/graph_text.hpp>
 #include <waymark/formats/text/text_file.hpp>
 #include <waymark/tools/evaluation/output/summary_json.hpp>
@@ -26,6 +29,24 @@ struct OptimizeOptions {
   bool lenient = false;
 };
 
+bool has_losses(const Graph& graph) {
+  for (std::size_t b = 0; b < graph.batch_count(); ++b)
+    for (std::size_t e = 0; e < graph.batch(b).size(); ++e)
+      if (graph.batch(b).loss(e) != nullptr) return true;
+  return false;
+}
+
+/// A minimum of least squares with a few wrong edges is the minimum, and wrong.
+void warn_of_wrong_edges(const Summary& summary, const Graph& graph, const Console& console) {
+  constexpr double kFar = 4;
+  const double plausible = plausible_chi2(graph);
+  if (!summary.converged() || !(summary.final_chi2 > kFar * plausible) || has_losses(graph)) return;
+  console.warning(fmt::format(
+      "chi2 is {:.4g} at the minimum, where edges that are as good as they say have at most {:.4g}: some edges are "
+      "wrong (try --loss cauchy:1, or --robust gnc), or all of them say too much",
+      summary.final_chi2, plausible));
+}
+
 ExitCode optimize_file(const OptimizeOptions& options) {
   const Console console(options.common);
   const TypeRegistry registry = make_registry(options.common);
@@ -48,6 +69,7 @@ ExitCode optimize_file(const OptimizeOptions& options) {
   const MultiStartSummary result =
       optimize_document(document, options.minimization, registry, console, minimizer);
   record_optimization(result, document);
+  warn_of_wrong_edges(result.summary, document.graph, console);
   if (graduated) {
     document.provenance.emplace_back(
         "outliers", std::to_string(graduated->result.outliers.size()) + " edges left out by gnc");

@@ -1,0 +1,72 @@
+// Wheel sensors that read 0 below some speed: the fixes show that the vehicle creeps.
+#include <catch2/catch.hpp>
+
+#include <random>
+
+#include <waymark/tools/drive/mending/creeping.hpp>
+
+#include "winding_scene.hpp"
+
+namespace creeping_test {
+
+using namespace waymark;
+using namespace waymark::drive;
+using waymark::testing::winding_scene;
+using waymark::testing::WindingScene;
+
+namespace {
+
+constexpr double kZone = 0.7;  // m/s
+
+/// 200 s at 6 m/s, between 80 and 100 s at a creeping speed, as a sensor with a dead zone tells it.
+WindingScene scene(double creeping) {
+  WindingScene result = winding_scene(
+      200, [&](double t) { return t > 80 && t < 100 ? creeping : 6 + std::sin(t); },
+      [](double) { return 0.01; });
+  for (OdometrySample& sample : result.odometry)
+    if (sample.speed_mps < kZone) sample.speed_mps = 0;
+  for (int i = 0; i < 20; ++i)  // a start shows the edge of the zone
+    result.odometry[static_cast<std::size_t>(i)].speed_mps = kZone + 0.3 * i;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("creeping: a vehicle that creeps within the dead zone gets the speed of the fixes") {
+  WindingScene made = scene(0.5);
+  CHECK(dead_zone_mps(made.odometry) == Approx(kZone).margin(0.31));
+  const std::vector<Creeping> found = find_creeping(made.odometry, made.fixes);
+  REQUIRE(found.size() == 1);
+  CHECK(made.odometry[found[0].first].stamp.seconds() == Approx(80).margin(0.11));
+  CHECK(found[0].speed_mps == Approx(0.5).epsilon(0.01));
+  CHECK_THAT(warning_of(found, made.odometry),
+             Catch::Contains("the fixes move by 10 m while it reads 0, in 1 place"));
+  creep(found, made.odometry);
+  CHECK(made.odometry[900].speed_mps == found[0].speed_mps);
+  CHECK(made.odometry[900].assumed);
+}
+
+TEST_CASE("creeping: a vehicle that stands has fixes that drift, and no speed") {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0, 1);
+  WindingScene made = scene(0);
+  Eigen::Vector2d drift(0, 0);  // 2 m that last 30 s
+  for (Fix& fix : made.fixes) {
+    drift = std::exp(-1.0 / 30) * drift +
+            2 * std::sqrt(1 - std::exp(-2.0 / 30)) * Eigen::Vector2d(normal(random), normal(random));
+    fix.position += drift;
+    fix.covariance = 4 * Eigen::Matrix2d::Identity();
+  }
+  CHECK(find_creeping(made.odometry, made.fixes).empty());
+}
+
+TEST_CASE("creeping: a sensor without a dead zone is believed") {
+  WindingScene made = scene(0.5);
+  for (std::size_t i = 0; i < 20; ++i) made.odometry[i].speed_mps = 0.05 + 0.3 * static_cast<double>(i);
+  made.odometry[21].speed_mps = 0.02;
+  made.odometry[22].speed_mps = 0.04;
+  CHECK(dead_zone_mps(made.odometry) == 0);
+  CHECK(find_creeping(made.odometry, made.fixes).empty());
+}
+
+}  // namespace creeping_test

@@ -1,0 +1,144 @@
+#include <waymark/tools/drive/mending/creeping.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <waymark/tools/drive/mending/fix_motion.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark::drive {
+namespace {
+
+constexpr double kLeastZone = 0.25;  // m/s
+constexpr double kShortestCreep_s = 3;
+constexpr double kLargestAngle = 35 * std::numbers::pi / 180;
+
+/// A line through fixes: where they go per second.
+struct Line {
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
+  double duration_s = 0;
+};
+
+std::optional<Line> line_through(std::span<const Fix> fixes) {
+  constexpr std::size_t kFewestInLine = 4;
+  if (fixes.size() < kFewestInLine) return std::nullopt;
+  const double count = static_cast<double>(fixes.size());
+  double middle_s = 0;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const Fix& fix : fixes) {
+    middle_s += seconds_between(fixes.front().stamp, fix.stamp) / count;
+    middle += fix.position / count;
+  }
+  double squares = 0;
+  Eigen::Vector2d products = Eigen::Vector2d::Zero();
+  for (const Fix& fix : fixes) {
+    const double away_s = seconds_between(fixes.front().stamp, fix.stamp) - middle_s;
+    squares += away_s * away_s;
+    products += away_s * (fix.position - middle);
+  }
+  if (!(squares > 0)) return std::nullopt;
+  return Line{products / squares, seconds_between(fixes.front().stamp, fixes.back().stamp)};
+}
+
+/// Returns the chord of 5 m or more that ends at a fix, or begins there.
+std::optional<Eigen::Vector2d> way_beside(const std::vector<Fix>& fixes, std::size_t at, bool before) {
+  constexpr double kDirection = 5;       // m
+  constexpr std::size_t kFurthest = 60;  // fixes
+  for (std::size_t away = 1; away <= kFurthest; ++away) {
+    if (before ? away > at : at + away >= fixes.size()) break;
+    const Eigen::Vector2d chord = before ? Eigen::Vector2d(fixes[at].position - fixes[at - away].position)
+                                         : Eigen::Vector2d(fixes[at + away].position - fixes[at].position);
+    if (chord.norm() >= kDirection) return chord;
+  }
+  return std::nullopt;
+}
+
+bool leads_along(const Eigen::Vector2d& velocity, const std::vector<Fix>& fixes, std::size_t first,
+                 std::size_t last) {
+  const auto is_near = [&](const std::optional<Eigen::Vector2d>& way) {
+    return way && std::abs(angle_between(*way, velocity)) < kLargestAngle;
+  };
+  return is_near(way_beside(fixes, first, true)) || is_near(way_beside(fixes, last, false));
+}
+
+/// Returns the speed of the fixes from one moment to another if the vehicle creeps.
+std::optional<double> creeping_speed(const std::vector<Fix>& fixes, Stamp from, Stamp to, double zone_mps) {
+  constexpr double kErrorsLast_s = 30;
+  constexpr double kSigmas = 2.5;
+  constexpr double kLeast_m = 0.3;
+  const auto is_earlier = [](const Fix& fix, Stamp stamp) { return fix.stamp < stamp; };
+  const auto begin = std::lower_bound(fixes.begin(), fixes.end(), from, is_earlier);
+  const auto end = std::lower_bound(begin, fixes.end(), to, is_earlier);
+  const std::optional<Line> line = line_through(std::span<const Fix>(begin, end));
+  if (!line) return std::nullopt;
+  const double speed = line->velocity.norm();
+  const double drift = std::sqrt(2 * (1 - std::exp(-line->duration_s / kErrorsLast_s)));
+  const double least_m = std::max(kLeast_m, kSigmas * drift * begin->accuracy_m());
+  if (speed > 1.2 * zone_mps || speed * line->duration_s < least_m) return std::nullopt;
+  const auto first = static_cast<std::size_t>(begin - fixes.begin());
+  const auto last = static_cast<std::size_t>(end - fixes.begin()) - 1;
+  return leads_along(line->velocity, fixes, first, last) ? std::optional(speed) : std::nullopt;
+}
+
+}  // namespace
+
+double dead_zone_mps(std::span<const OdometrySample> odometry) {
+  constexpr std::size_t kFewestReadings = 100;
+  constexpr std::size_t kRare = 1000;  // readings on the way through the zone
+  std::vector<double> speeds;
+  for (const OdometrySample& sample : odometry)
+    if (sample.speed_mps != 0 && !sample.assumed) speeds.push_back(std::abs(sample.speed_mps));
+  if (speeds.size() < kFewestReadings) return 0;
+  const auto slow = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / kRare);
+  std::nth_element(speeds.begin(), slow, speeds.end());
+  return *slow >= kLeastZone ? *slow : 0;
+}
+
+std::vector<Creeping> find_creeping(std::span<const OdometrySample> odometry, std::span<const Fix> fixes) {
+  std::vector<Creeping> found;
+  const double zone_mps = dead_zone_mps(odometry);
+  if (zone_mps == 0 || fixes.empty()) return found;
+  const std::vector<Fix> used = fixes_for_motion(fixes);
+  for (std::size_t first = 0; first < odometry.size(); ++first) {
+    if (odometry[first].speed_mps != 0 || odometry[first].assumed) continue;
+    std::size_t last = first;
+    while (last + 1 < odometry.size() && odometry[last + 1].speed_mps == 0) ++last;
+    const Stamp from = odometry[first].stamp;
+    const Stamp to = odometry[last].stamp;
+    if (seconds_between(from, to) >= kShortestCreep_s)
+      if (const auto speed = creeping_speed(used, from, to, zone_mps)) found.push_back({first, last, *speed});
+    first = last;
+  }
+  return found;
+}
+
+void creep(std::span<const Creeping> found, std::span<OdometrySample> odometry) {
+  for (const Creeping& time : found) {
+    for (OdometrySample& sample : odometry.subspan(time.first, time.last - time.first + 1)) {
+      sample.speed_mps = time.speed_mps;
+      sample.assumed = true;
+    }
+  }
+}
+
+std::string warning_of(std::span<const Creeping> found, std::span<const OdometrySample> odometry) {
+  double total_s = 0;
+  double way_m = 0;
+  for (const Creeping& time : found) {
+    const double length_s = seconds_between(odometry[time.first].stamp, odometry[time.last].stamp);
+    total_s += length_s;
+    way_m += length_s * time.speed_mps;
+  }
+  return fmt::format(
+      "the speed of the odometry has no readings between 0 and {:.2g} m/s, and the fixes move by {:.0f} m while it "
+      "reads 0, in {} {} of {:.0f} s together, the first {:.1f} s after its start: their speed is assumed there, "
+      "with the noise of a gap",
+      dead_zone_mps(odometry), way_m, found.size(), found.size() == 1 ? "place" : "places", total_s,
+      seconds_between(odometry.front().stamp, odometry[found.front().first].stamp));
+}
+
+}  // namespace waymark::drive

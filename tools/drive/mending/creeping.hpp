@@ -1,0 +1,37 @@
+/// Finds times in which a vehicle creeps unseen: many wheel sensors read 0 below some speed.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <waymark/core/drive/sample.hpp>
+
+namespace waymark::drive {
+
+/// Samples [first, last] that read 0 while the fixes move.
+struct Creeping {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  double speed_mps = 0;  ///< of the fixes
+};
+
+/// Returns the slowest speed that the odometry shows beside 0, if that is 0.25 m/s or more; else 0.
+[[nodiscard]] double dead_zone_mps(std::span<const OdometrySample> odometry);
+
+/// Finds them, if the odometry has a dead zone. For 3 s or more all readings are 0. A line through the fixes of
+/// that time has a speed within the dead zone (and a fifth), and leads along the way of the fixes before or after
+/// it, within 35 degrees. It is longer than 0.3 m, and than 2.5 sigmas of what errors that last 30 s drift.
+/// @param odometry sorted by stamp
+/// @param fixes sorted by stamp; those of the first receiver that are not withheld are used
+[[nodiscard]] std::vector<Creeping> find_creeping(std::span<const OdometrySample> odometry,
+                                                  std::span<const Fix> fixes);
+
+/// Gives the samples of those times the speed of the fixes, and marks them as assumed.
+void creep(std::span<const Creeping> found, std::span<OdometrySample> odometry);
+
+/// Returns the warning for all of them. @param found at least one
+[[nodiscard]] std::string warning_of(std::span<const Creeping> found,
+                                     std::span<const OdometrySample> odometry);
+
+}  // namespace waymark::drive
