@@ -213,6 +213,26 @@ TEST_CASE("live: what cannot be is refused with its remedy") {
   check_refused(run({"live", drive, "-o", "json:" + folder + "no/such/place"}), 5, "cannot write");
 }
 
+TEST_CASE("live: a replay uses the sensors of the drive, and ends if one of its files is missing") {
+  const std::string folder = fresh_folder();
+  REQUIRE(
+      run({"simulate", "--preset", "mixed", "--duration", "60", "--seed", "3", "-o", folder + "d"}).code ==
+      0);
+  const std::string yaml = read_text(folder + "d/drive.yaml");
+  // the heading of the truth in place of a compass; it needs the frame, which comes with the first fix
+  const auto with_compass = [&](const std::string& file) {
+    return write_text(folder + "d/" + file + ".yaml",
+                      yaml + "\nsensors: {name: heading, file: " + file +
+                          ", columns: {time: time_s, heading: heading_rad}}\n");
+  };
+  const RunResult used = run({"live", with_compass("truth.csv"), "-o", "csv:" + folder + "a.csv"});
+  INFO(used.err);
+  REQUIRE(used.code == 0);
+  CHECK(contains(used.err + used.out, " heading"));
+  CHECK_FALSE(contains(used.err + used.out, " 0 heading"));
+  check_refused(run({"live", with_compass("absent.csv"), "-o", "csv:-"}), 3, "absent.csv: no such file");
+}
+
 TEST_CASE("run --window: a live run loses little beside the batch run, and less with a longer lag") {
   const std::string folder = fresh_folder();
   REQUIRE(
@@ -231,7 +251,7 @@ TEST_CASE("run --window: a live run loses little beside the batch run, and less 
     std::istringstream cells(rows[i]);
     for (std::string cell; std::getline(cells, cell, ',');) table.back().push_back(std::stod(cell));
     REQUIRE(table.back().size() == 9);  // no height, so no error in space
-    CHECK(table.back()[1] > 5000);  // poses, at 25 Hz
+    CHECK(table.back()[1] > 5000);      // poses, at 25 Hz
   }
   // What comes later helps.
   const double live_rmse = table[2][2];

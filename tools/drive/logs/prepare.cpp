@@ -199,8 +199,8 @@ void mend_by_fixes(PreparedDrive& drive) {
     drive.report.warnings.push_back(warning_of(time, drive.odometry.front().stamp));
 }
 
-/// Replaces speeds that no vehicle has, and gives speeds their sign.
-void mend_by_itself(PreparedDrive& drive) {
+/// Replaces speeds that no vehicle has, or that the fixes show to be otherwise, and gives speeds their sign.
+void mend_speeds(PreparedDrive& drive) {
   find_stops("", drive.odometry, drive);
   const std::vector<SpeedLeap> leaps = find_speed_leaps(drive.odometry);
   if (!leaps.empty()) drive.report.warnings.push_back(warning_of(leaps, drive.odometry));
@@ -220,7 +220,7 @@ void judge_odometry(PreparedDrive& drive) {
     if (drive.relative.size() == 1) drive.relative.clear();
   } else {
     note_yaw_rate("", drive.yaw_rate_at_rest, drive.report);
-    mend_by_itself(drive);
+    mend_speeds(drive);
   }
   if (!drive.fixes.empty()) mend_by_fixes(drive);
   if (std::string warning = warning_of_accelerations(drive.odometry); !warning.empty())
