@@ -143,7 +143,8 @@ std::string clock_warning(const PreparedDrive& drive) {
   constexpr std::size_t kFewest = 30;
   if (drive.fixes.size() < kFewest || drive.odometry.size() < kFewest) return {};
   const std::vector<const Fix*> receiver = of_one_receiver(drive.fixes);
-  if (!fits_elsewhere(LagSearch(drive.odometry, gnss_speeds(receiver), gnss_turns(receiver)))) return {};
+  const auto [speeds, turns] = receiver_motion(receiver);
+  if (!fits_elsewhere(LagSearch(drive.odometry, speeds, turns))) return {};
   const std::optional<ClockOffset> offset =
       common_offset(estimate_clock_offsets(drive.odometry, drive.fixes, {}));
   if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return {};

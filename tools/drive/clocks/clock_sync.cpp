@@ -165,8 +165,7 @@ SyncReport estimate_clock_offsets(const std::vector<OdometrySample>& odometry, c
                                   const SyncOptions& options) {
   if (fixes.empty() || odometry.size() < 2) return {};
   const std::vector<const Fix*> receiver = of_one_receiver(fixes);
-  const GnssMotion speeds = gnss_speeds(receiver);
-  const GnssMotion turns = gnss_turns(receiver);
+  const auto [speeds, turns] = receiver_motion(receiver);
   const std::optional<Lag> lag = LagSearch(odometry, speeds, turns).find(options.largest_s);
   if (!lag) return {};
   TimeSeries speed = series_of(odometry, &OdometrySample::speed_mps);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <optional>
 
+#include <waymark/tools/drive/logs/time_series.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
@@ -57,84 +57,37 @@ std::vector<const Fix*> of_one_receiver(const std::vector<Fix>& fixes) {
 
 namespace {
 
-/// Returns the receiver's speed at a moment, linear between fixes; nothing outside and in gaps.
-std::optional<double> told_speed(const std::vector<const Fix*>& told, Stamp at) {
-  const auto right = std::lower_bound(told.begin(), told.end(), at,
-                                      [](const Fix* fix, Stamp stamp) { return fix->stamp < stamp; });
-  if (right == told.begin() || right == told.end() || !neighbours(**(right - 1), **right))
-    return std::nullopt;
-  const Fix& a = **(right - 1);
-  const Fix& b = **right;
-  const double share = seconds_between(a.stamp, at) / seconds_between(a.stamp, b.stamp);
-  return (1 - share) * *a.speed_mps + share * *b.speed_mps;
-}
-
-}  // namespace
-
-bool velocity_lags(const std::vector<const Fix*>& fixes) {
-  constexpr double kReach_s = 3;
-  constexpr double kStep_s = 0.1;
-  constexpr double kLeast_s = 0.25;
-  constexpr double kBetter = 0.8;  // of the squares
-  constexpr std::size_t kFewest = 30;
-  std::vector<const Fix*> told;
-  std::copy_if(fixes.begin(), fixes.end(), std::back_inserter(told),
-               [](const Fix* fix) { return fix->speed_mps.has_value(); });
-  const std::vector<const Fix*> apart = spaced(told);
-  const auto mean_square = [&](double lag_s) {
-    double sum = 0;
-    std::size_t count = 0;
-    for (std::size_t i = 1; i < apart.size(); ++i) {
-      if (!neighbours(*apart[i - 1], *apart[i])) continue;
-      const double dt = seconds_between(apart[i - 1]->stamp, apart[i]->stamp);
-      const double moved = (apart[i]->position - apart[i - 1]->position).norm() / dt / apart[i]->grid_scale;
-      const auto speed = told_speed(told, halfway(apart[i - 1]->stamp, apart[i]->stamp).later(lag_s));
-      if (!speed || moved > kFastest) continue;
-      sum += std::pow(moved - *speed, 2);
-      ++count;
-    }
-    return count < kFewest ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(count);
-  };
-  const double at_once = mean_square(0);
-  double least = at_once;
-  double best_s = 0;
-  for (double lag_s = -kReach_s; lag_s <= kReach_s + 1e-9; lag_s += kStep_s) {
-    const double here = mean_square(lag_s);
-    if (here < least) {
-      least = here;
-      best_s = lag_s;
-    }
-  }
-  return std::abs(best_s) >= kLeast_s && least < kBetter * at_once;
-}
-
-GnssMotion gnss_speeds(const std::vector<const Fix*>& fixes) {
-  const auto given =
-      std::count_if(fixes.begin(), fixes.end(), [](const Fix* f) { return f->speed_mps.has_value(); });
-  if (2 * static_cast<std::size_t>(given) > fixes.size() && !velocity_lags(fixes)) {
-    GnssMotion result{"receiver's speed", {}};
-    for (const Fix* fix : fixes) {
-      if (fix->speed_mps && *fix->speed_mps < kFastest)
-        result.stretches.push_back(
-            {fix->stamp.later(-kDopplerWindow / 2), fix->stamp.later(kDopplerWindow / 2), *fix->speed_mps});
-    }
-    return result;
-  }
-  GnssMotion result{"distance between fixes", {}};
+/// Distances between fixes over their time.
+std::vector<Stretch> chord_speeds(const std::vector<const Fix*>& fixes) {
+  std::vector<Stretch> stretches;
   const std::vector<const Fix*> apart = spaced(fixes);
   for (std::size_t i = 1; i < apart.size(); ++i) {
     if (!neighbours(*apart[i - 1], *apart[i])) continue;
     const double speed = (apart[i]->position - apart[i - 1]->position).norm() /
                          seconds_between(apart[i - 1]->stamp, apart[i]->stamp) / apart[i]->grid_scale;
-    if (speed < kFastest) result.stretches.push_back({apart[i - 1]->stamp, apart[i]->stamp, speed});
+    if (speed < kFastest) stretches.push_back({apart[i - 1]->stamp, apart[i]->stamp, speed});
+  }
+  return stretches;
+}
+
+GnssMotion gnss_speeds(const std::vector<const Fix*>& fixes, bool lags) {
+  const auto given =
+      std::count_if(fixes.begin(), fixes.end(), [](const Fix* f) { return f->speed_mps.has_value(); });
+  if (lags || 2 * static_cast<std::size_t>(given) <= fixes.size())
+    return {"distance between fixes", chord_speeds(fixes)};
+  GnssMotion result{"receiver's speed", {}};
+  for (const Fix* fix : fixes) {
+    if (fix->speed_mps && *fix->speed_mps < kFastest)
+      result.stretches.push_back(
+          {fix->stamp.later(-kDopplerWindow / 2), fix->stamp.later(kDopplerWindow / 2), *fix->speed_mps});
   }
   return result;
 }
 
-GnssMotion gnss_turns(const std::vector<const Fix*>& fixes) {
+GnssMotion gnss_turns(const std::vector<const Fix*>& fixes, bool lags) {
   const auto usable = [](const Fix* f) { return f->heading_rad && f->speed_mps.value_or(0) >= kSlow; };
   const auto given = std::count_if(fixes.begin(), fixes.end(), usable);
-  if (2 * static_cast<std::size_t>(given) > fixes.size() / 2 && !velocity_lags(fixes)) {
+  if (2 * static_cast<std::size_t>(given) > fixes.size() / 2 && !lags) {
     GnssMotion result{"receiver's course", {}};
     for (std::size_t i = 1; i < fixes.size(); ++i) {
       if (usable(fixes[i - 1]) && usable(fixes[i]))
@@ -154,6 +107,52 @@ GnssMotion gnss_turns(const std::vector<const Fix*>& fixes) {
              halfway(apart[i - 1]->stamp, apart[i]->stamp), std::atan2(second.y(), second.x()));
   }
   return result;
+}
+
+}  // namespace
+
+bool velocity_lags(const std::vector<const Fix*>& fixes) {
+  constexpr double kReach_s = 3;
+  constexpr double kStep_s = 0.1;
+  constexpr double kLeast_s = 0.25;
+  constexpr double kBetter = 0.8;  // of the squares
+  constexpr std::size_t kFewest = 30;
+  std::vector<const Fix*> told;
+  std::copy_if(fixes.begin(), fixes.end(), std::back_inserter(told),
+               [](const Fix* fix) { return fix->speed_mps.has_value(); });
+  TimeSeries speeds;
+  for (const Fix* fix : told) {
+    speeds.stamps.push_back(fix->stamp);
+    speeds.values.push_back(*fix->speed_mps);
+  }
+  const std::vector<Stretch> chords = chord_speeds(told);
+  const auto mean_square = [&](double lag_s) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const Stretch& chord : chords) {
+      const auto speed = value_at(speeds, halfway(chord.from, chord.to).later(lag_s), kLongestInterval);
+      if (!speed) continue;
+      sum += std::pow(chord.value - *speed, 2);
+      ++count;
+    }
+    return count < kFewest ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(count);
+  };
+  const double at_once = mean_square(0);
+  double least = at_once;
+  double best_s = 0;
+  for (double lag_s = -kReach_s; lag_s <= kReach_s + 1e-9; lag_s += kStep_s) {
+    const double here = mean_square(lag_s);
+    if (here < least) {
+      least = here;
+      best_s = lag_s;
+    }
+  }
+  return std::abs(best_s) >= kLeast_s && least < kBetter * at_once;
+}
+
+ReceiverMotion receiver_motion(const std::vector<const Fix*>& fixes) {
+  const bool lags = velocity_lags(fixes);
+  return {gnss_speeds(fixes, lags), gnss_turns(fixes, lags)};
 }
 
 }  // namespace waymark::drive

@@ -27,9 +27,14 @@ struct GnssMotion {
 /// moved in time by 0.25 s or more: receivers filter them. They tell nothing of the clock of the positions then.
 /// @param fixes of one receiver, sorted by stamp
 [[nodiscard]] bool velocity_lags(const std::vector<const Fix*>& fixes);
-/// Returns Doppler speeds if most fixes have them and they do not lag, else distances between fixes over their time.
-[[nodiscard]] GnssMotion gnss_speeds(const std::vector<const Fix*>& fixes);
-/// Returns the changes of Doppler courses if most fixes have them and the speeds do not lag, else the angles between chords.
-[[nodiscard]] GnssMotion gnss_turns(const std::vector<const Fix*>& fixes);
+
+/// The motion of one receiver: Doppler speeds and the changes of Doppler courses if most fixes have them and
+/// they do not lag, else distances between fixes over their time, and the angles between chords.
+struct ReceiverMotion {
+  GnssMotion speeds;
+  GnssMotion turns;
+};
+/// @param fixes of one receiver, sorted by stamp
+[[nodiscard]] ReceiverMotion receiver_motion(const std::vector<const Fix*>& fixes);
 
 }  // namespace waymark::drive

@@ -129,17 +129,16 @@ RowFilter read_filter(const YamlSection& section) {
   return filter;
 }
 
-/// Addresses of live sources ("gpsd://localhost", "-") are no files of a folder.
-bool is_address(const std::string& file) {
-  return file == "-" || file.find("://") != std::string::npos;
-}
-
 std::string resolved(const std::string& folder, const std::string& file) {
   if (is_address(file)) return file;
   return (std::filesystem::path(folder) / file).lexically_normal().string();
 }
 
 }  // namespace
+
+bool is_address(const std::string& file) {
+  return file == "-" || file.find("://") != std::string::npos;
+}
 
 std::vector<std::string_view> log_keys(std::initializer_list<std::string_view> own) {
   std::vector<std::string_view> keys{"file", "format", "topic", "separator", "where", "columns", "time"};

@@ -15,6 +15,9 @@ namespace waymark::drive {
 /// The words for a time scale, for drives and logs.
 inline constexpr std::array<std::string_view, 3> kTimeScaleWords{"gps", "utc", "unix"};
 
+/// Tells whether a log is an address of a live source ("gpsd://localhost", "-"), not a file of a folder.
+[[nodiscard]] bool is_address(const std::string& file);
+
 /// Returns the keys that define how a log is read, and those of the section.
 [[nodiscard]] std::vector<std::string_view> log_keys(std::initializer_list<std::string_view> own = {});
 

@@ -257,7 +257,8 @@ CoarseDrive sample_of(CoarseDrive whole, std::size_t windows, double window_s) {
     if (range.last > range.first && (ranges.empty() || range.first > ranges.back().last))
       ranges.push_back(range);
   }
-  return ranges.empty() ? whole : parts_of(whole, ranges);
+  if (ranges.empty()) return whole;
+  return parts_of(whole, ranges);
 }
 
 }  // namespace waymark::drive

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <map>
 #include <utility>
 
@@ -113,8 +114,8 @@ void find_signs(const std::string& source, std::vector<OdometrySample>& samples,
 void find_stops(const std::string& source, std::vector<OdometrySample>& samples, PreparedDrive& drive) {
   double total_s = 0;
   for (const Standing& time : find_standing(samples, drive.fixes)) {
-    total_s += seconds_between(samples[time.first].stamp, samples[time.last].stamp);
-    for (std::size_t i = time.first; i <= time.last; ++i) samples[i].speed_mps = 0;
+    total_s += time.duration_s(samples);
+    for (OdometrySample& sample : time.of(std::span(samples))) sample.speed_mps = 0;
   }
   if (total_s > 0)
     drive.report.notes.push_back(fmt::format(
@@ -122,8 +123,8 @@ void find_stops(const std::string& source, std::vector<OdometrySample>& samples,
         source, total_s));
 }
 
-/// Leaves out the samples [first, last] of each finding.
-template <typename Finding>
+/// Leaves out the samples of each finding.
+template <std::derived_from<SampleRange> Finding>
 void leave_out(const std::vector<Finding>& found, std::vector<OdometrySample>& samples) {
   for (std::size_t i = found.size(); i-- > 0;) {
     const auto begin = samples.begin();

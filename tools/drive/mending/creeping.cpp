@@ -110,7 +110,8 @@ std::vector<Creeping> find_creeping(std::span<const OdometrySample> odometry, st
     const Stamp from = odometry[first].stamp;
     const Stamp to = odometry[last].stamp;
     if (seconds_between(from, to) >= kShortestCreep_s)
-      if (const auto speed = creeping_speed(used, from, to, zone_mps)) found.push_back({first, last, *speed});
+      if (const auto speed = creeping_speed(used, from, to, zone_mps))
+        found.push_back({{first, last}, *speed});
     first = last;
   }
   return found;
@@ -118,7 +119,7 @@ std::vector<Creeping> find_creeping(std::span<const OdometrySample> odometry, st
 
 void creep(std::span<const Creeping> found, std::span<OdometrySample> odometry) {
   for (const Creeping& time : found) {
-    for (OdometrySample& sample : odometry.subspan(time.first, time.last - time.first + 1)) {
+    for (OdometrySample& sample : time.of(odometry)) {
       sample.speed_mps = time.speed_mps;
       sample.assumed = true;
     }
@@ -129,7 +130,7 @@ std::string warning_of(std::span<const Creeping> found, std::span<const Odometry
   double total_s = 0;
   double way_m = 0;
   for (const Creeping& time : found) {
-    const double length_s = seconds_between(odometry[time.first].stamp, odometry[time.last].stamp);
+    const double length_s = time.duration_s(odometry);
     total_s += length_s;
     way_m += length_s * time.speed_mps;
   }

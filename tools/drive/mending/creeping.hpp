@@ -6,13 +6,12 @@
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/drive/mending/sample_range.hpp>
 
 namespace waymark::drive {
 
-/// Samples [first, last] that read 0 while the fixes move.
-struct Creeping {
-  std::size_t first = 0;
-  std::size_t last = 0;
+/// Samples that read 0 while the fixes move.
+struct Creeping : SampleRange {
   double speed_mps = 0;  ///< of the fixes
 };
 

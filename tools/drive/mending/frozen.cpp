@@ -9,6 +9,7 @@
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/mending/fix_motion.hpp>
+#include <waymark/tools/drive/mending/sample_range.hpp>
 #include <waymark/tools/drive/nodes/yaw_rate_at_rest.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -27,11 +28,8 @@ constexpr std::size_t kFewestContradictions = 4;
 constexpr double kLargestTurn = std::numbers::pi / 3;
 constexpr double kMargin_s = 2;  // a chord contradicts some time after the motion began
 
-/// Samples [first, last] with one reading.
-struct Run {
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
+/// Samples with one reading.
+using Run = SampleRange;
 
 using ReadingOf = double OdometrySample::*;
 
@@ -206,7 +204,7 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
   const std::vector<Run> runs = runs_of(odometry, &OdometrySample::speed_mps);
   const std::optional<std::size_t> unusual = unusual_run(odometry, runs, &OdometrySample::speed_mps);
   for (const Run& run : runs) {
-    const auto samples = odometry.subspan(run.first, run.last - run.first + 1);
+    const auto samples = run.of(odometry);
     const OdometrySample& first = samples.front();
     const bool with_turns = all_repeat(samples, &OdometrySample::yaw_rate_radps);
     const bool is_long = with_turns || duration_of(samples) >= kShortestOfOne_s;
@@ -237,7 +235,7 @@ void find_frozen_turns(std::span<const OdometrySample> odometry, const std::vect
   if (!unusual || yaw_rate_at_rest(odometry).is_derived()) return;
   const std::vector<FrozenOdometry> speeds = found;
   for (const Run& run : runs) {
-    const auto samples = odometry.subspan(run.first, run.last - run.first + 1);
+    const auto samples = run.of(odometry);
     const Stamp from = samples.front().stamp;
     const Stamp to = samples.back().stamp;
     const bool is_known = std::any_of(speeds.begin(), speeds.end(), [&](const FrozenOdometry& other) {

@@ -144,7 +144,7 @@ std::vector<Way> ways_of(std::span<const OdometrySample> odometry, const Compari
     while (last + 1 < odometry.size() && odometry[last + 1].speed_mps >= kStands) ++last;
     const Stamp from = odometry[first].stamp;
     const Stamp to = odometry[last].stamp;
-    Way way{.samples = {first, last},
+    Way way{.samples = {{first, last}},
             .begin = comparison.alignment(from, std::min(to, from.later(kEnd_s))),
             .end = comparison.alignment(std::max(from, to.later(-kEnd_s)), to),
             .length_m = comparison.length_m(first, last)};
@@ -212,7 +212,7 @@ std::vector<Reversing> find_reversing(std::span<const OdometrySample> odometry, 
 void drive_backwards(std::span<const Reversing> found, std::span<OdometrySample> odometry) {
   const bool is_derived = yaw_rate_at_rest(odometry).is_derived();
   for (const Reversing& time : found) {
-    for (OdometrySample& sample : odometry.subspan(time.first, time.last - time.first + 1)) {
+    for (OdometrySample& sample : time.of(odometry)) {
       sample.speed_mps = -sample.speed_mps;
       if (is_derived) sample.yaw_rate_radps = -sample.yaw_rate_radps;
     }

@@ -6,14 +6,12 @@
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/drive/mending/sample_range.hpp>
 
 namespace waymark::drive {
 
-/// Samples [first, last] of the odometry between two stops, driven backwards.
-struct Reversing {
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
+/// Samples between two stops, driven backwards.
+struct Reversing : SampleRange {};
 
 /// Finds them if no speed is negative. A way between two stops (below 0.5 m/s) is compared with those before
 /// and after it: turned by the angle that lays the odometry of one on its fixes, the odometry of the

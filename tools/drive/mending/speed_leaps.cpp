@@ -92,8 +92,8 @@ std::vector<SpeedLeap> find_speed_leaps(std::span<const OdometrySample> odometry
     if (!away) continue;
     const std::optional<std::size_t> back = speeds.back_after(base, *away);
     if (!back) continue;
-    found.push_back({base + 1, *back - 1});
-    samples += *back - base - 1;
+    found.push_back({{base + 1, *back - 1}});
+    samples += found.back().size();
     base = *back - 1;
   }
   if (kRare * samples > odometry.size()) found.clear();
@@ -105,7 +105,7 @@ void bridge_speed_leaps(std::span<const SpeedLeap> leaps, std::span<OdometrySamp
     const OdometrySample& before = odometry[leap.first - 1];
     const OdometrySample& after = odometry[leap.last + 1];
     const double length_s = seconds_between(before.stamp, after.stamp);
-    for (OdometrySample& sample : odometry.subspan(leap.first, leap.last - leap.first + 1)) {
+    for (OdometrySample& sample : leap.of(odometry)) {
       const double share = seconds_between(before.stamp, sample.stamp) / length_s;
       sample.speed_mps = before.speed_mps + share * (after.speed_mps - before.speed_mps);
       sample.assumed = true;

@@ -7,14 +7,12 @@
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/drive/mending/sample_range.hpp>
 
 namespace waymark::drive {
 
-/// Samples [first, last] between a leap and the leap back.
-struct SpeedLeap {
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
+/// Samples between a leap and the leap back.
+struct SpeedLeap : SampleRange {};
 
 /// Finds them. A leap is a change of 2.5 m/s more than 15 m/s^2 allow (and 8 sigmas of the change from
 /// sample to sample) within 0.3 s or one interval. It counts if another one leads back, within 5 s, to a

@@ -83,16 +83,17 @@ std::vector<Standing> find_standing(std::span<const OdometrySample> odometry, st
     if (!found.empty() && first <= found.back().last) {
       found.back().last = last;
     } else {
-      found.push_back({first, last});
+      found.push_back({{first, last}});
     }
   }
-  const std::vector<Fix> used = fixes.empty() ? std::vector<Fix>() : fixes_for_motion(fixes);
+  if (found.empty()) return found;
+  const std::vector<Fix> used = fixes_for_motion(fixes);
   std::erase_if(found, [&](const Standing& time) {
     const Stamp from = odometry[time.first].stamp;
     const Stamp to = odometry[time.last].stamp;
-    const double mean = (sums.speed[time.last + 1] - sums.speed[time.first]) /
-                        static_cast<double>(time.last - time.first + 1);
-    return !fixes_stay(used, from, to, mean * seconds_between(from, to));
+    const double mean =
+        (sums.speed[time.last + 1] - sums.speed[time.first]) / static_cast<double>(time.size());
+    return !fixes_stay(used, from, to, mean * time.duration_s(odometry));
   });
   return found;
 }

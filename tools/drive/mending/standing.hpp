@@ -5,14 +5,12 @@
 #include <vector>
 
 #include <waymark/core/drive/sample.hpp>
+#include <waymark/tools/drive/mending/sample_range.hpp>
 
 namespace waymark::drive {
 
-/// Samples [first, last] of a vehicle that stands.
-struct Standing {
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
+/// Samples of a vehicle that stands.
+struct Standing : SampleRange {};
 
 /// Finds them. Speeds without a sign that are noise about 0 add up to a way that nobody drives: 0.1 m/s to
 /// 24 m in 5 minutes. All readings of 3 s are below 0.5 m/s, seldom exactly 0, and change from sample to

@@ -4,12 +4,12 @@
 
 namespace waymark::drive {
 
-YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry) {
+YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry, bool stated_derived) {
   constexpr double kStands_mps = 0.05;
   const auto stands = [](const OdometrySample& sample) {
     return Interval{sample.speed_mps, sample.yaw_rate_radps}.stands(kStands_mps) && !sample.assumed;
   };
-  YawRateAtRest rest;
+  YawRateAtRest rest{.stated_derived = stated_derived};
   double squares = 0;
   std::size_t count = 0;
   for (std::size_t i = 1; i < odometry.size(); ++i) {

@@ -19,6 +19,7 @@ struct YawRateAtRest {
   [[nodiscard]] bool is_derived() const { return stated_derived || (is_known() && variance_per_s == 0); }
 };
 
-[[nodiscard]] YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry);
+[[nodiscard]] YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry,
+                                             bool stated_derived = false);
 
 }  // namespace waymark::drive

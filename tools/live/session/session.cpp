@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_file.hpp>
+#include <waymark/tools/drive/description/log_config.hpp>
 #include <waymark/tools/drive/sensors/sensor_logs.hpp>
 #include <waymark/tools/live/session/state_file.hpp>
 
@@ -58,8 +59,7 @@ Session::Session(drive::DriveFile file, const LiveSettings& settings, const Type
 void Session::add_channel(Channel::Role role, const drive::LogConfig& stated, std::size_t index,
                           std::size_t odometry) {
   drive::LogConfig log = stated;
-  const bool live = log.file == "-" || log.file.find("://") != std::string::npos;
-  if (live && log.format == "auto") {
+  if (drive::is_address(log.file) && log.format == "auto") {
     if (log.file.rfind("gpsd://", 0) == 0) {
       log.format = "gpsd_json";
     } else if (log.file.rfind("can://", 0) == 0) {

@@ -13,6 +13,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/description/log_config.hpp>
 #include <waymark/tools/live/session/former_noise.hpp>
 #include <waymark/tools/live/session/live_loop.hpp>
 #include <waymark/tools/program/commands/commands.hpp>
@@ -84,8 +85,7 @@ void require_files(const live::Session& session) {
   std::size_t lie_still = 0;
   std::string missing;
   for (const live::Session::Input& input : session.inputs()) {
-    const bool may_come =
-        input.file == "-" || input.file.find("://") != std::string::npos || input.file.rfind("/dev/", 0) == 0;
+    const bool may_come = drive::is_address(input.file) || input.file.rfind("/dev/", 0) == 0;
     if (std::filesystem::is_regular_file(input.file, unknown)) ++lie_still;
     if (!may_come && missing.empty() && !std::filesystem::exists(input.file, unknown)) missing = input.file;
   }

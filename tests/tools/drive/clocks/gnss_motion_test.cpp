@@ -36,16 +36,16 @@ TEST_CASE("gnss motion: speeds that lag behind the positions are found, and the 
     const std::vector<Fix> fixes = fixes_with(lag_s);
     INFO(lag_s);
     CHECK(velocity_lags(of_one_receiver(fixes)));
-    CHECK(gnss_speeds(of_one_receiver(fixes)).source == "distance between fixes");
-    CHECK(gnss_turns(of_one_receiver(fixes)).source == "angle between fixes");
+    CHECK(receiver_motion(of_one_receiver(fixes)).speeds.source == "distance between fixes");
+    CHECK(receiver_motion(of_one_receiver(fixes)).turns.source == "angle between fixes");
   }
 }
 
 TEST_CASE("gnss motion: speeds on time are better than chords") {
   const std::vector<Fix> fixes = fixes_with(0);
   CHECK_FALSE(velocity_lags(of_one_receiver(fixes)));
-  CHECK(gnss_speeds(of_one_receiver(fixes)).source == "receiver's speed");
-  CHECK(gnss_turns(of_one_receiver(fixes)).source == "receiver's course");
+  CHECK(receiver_motion(of_one_receiver(fixes)).speeds.source == "receiver's speed");
+  CHECK(receiver_motion(of_one_receiver(fixes)).turns.source == "receiver's course");
 }
 
 }  // namespace gnss_motion_test
