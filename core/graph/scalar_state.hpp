@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <waymark/core/base/export.hpp>
@@ -29,13 +30,20 @@ struct ScalarState {
   static void local(const double* from, const double* to, double* delta) { delta[0] = to[0] - from[0]; }
 };
 
-/// Ties a vertex of plain numbers (a ScalarState, a point or an offset in the plane) to 0 with an
-/// EDGE_GAUSSIAN_PRIOR. @param sigma of each number, in its unit, above 0
-inline void add_prior_about_zero(Graph& graph, VertexIndex state, double sigma) {
+/// Ties a vertex of plain numbers (a ScalarState, a point or an offset in the plane) to known ones with an
+/// EDGE_GAUSSIAN_PRIOR. @param known as many as the vertex has @param sigma of each, in its unit, above 0
+inline void add_prior(Graph& graph, VertexIndex state, std::span<const double> known, double sigma) {
   const VertexType& type = graph.vertex_type(state);
-  const std::vector<double> zeros(static_cast<std::size_t>(type.value_size + type.tangent_size), 0.0);
-  graph.add_edge(gaussian_prior_type(), std::array{state}, zeros,
+  std::vector<double> fields(known.begin(), known.end());
+  fields.resize(static_cast<std::size_t>(type.value_size + type.tangent_size), 0.0);
+  graph.add_edge(gaussian_prior_type(), std::array{state}, fields,
                  Eigen::MatrixXd::Identity(type.tangent_size, type.tangent_size) / (sigma * sigma));
+}
+
+/// Ties such a vertex to 0. @param sigma as for add_prior()
+inline void add_prior_about_zero(Graph& graph, VertexIndex state, double sigma) {
+  const std::vector<double> zeros(static_cast<std::size_t>(graph.vertex_type(state).value_size), 0.0);
+  add_prior(graph, state, zeros, sigma);
 }
 
 }  // namespace waymark

@@ -71,6 +71,9 @@ struct NoisePrior {
   bool shrinks_with_claim = false;
   /// It is estimated only where the fixes are of several kinds (SolutionKind); else it has no effect.
   bool between_kinds = false;
+  /// It is estimated only where another option, one of words, has this one; else it has no effect.
+  std::string where_option = {};
+  std::string where_word = {};
 };
 
 /// An option of a registered type.

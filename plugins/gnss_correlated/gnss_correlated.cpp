@@ -1,8 +1,6 @@
 #include <waymark/plugins/gnss_correlated/gnss_bias.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <span>
@@ -13,6 +11,7 @@
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
+#include <waymark/types_se2/plugin_kit/gauss_markov_process.hpp>
 #include <waymark/types_se2/plugin_kit/gnss_modeling.hpp>
 
 namespace waymark::plugins::gnss_correlated {
@@ -78,104 +77,8 @@ struct ErrorModel {
   }
 };
 
-/// A Gauss-Markov process along the fixes of one receiver.
-template <Vertex V, Edge Decay, Edge Between>
-class ProcessAlongFixes {
- public:
-  /// @param first_sigma of the first state, beside sigma
-  ProcessAlongFixes(double sigma, double time_s, double first_sigma = 0)
-      : sigma_(sigma), time_s_(time_s), first_sigma_(std::hypot(sigma, first_sigma)) {}
-
-  /// Returns the vertex of a fix.
-  [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
-    forget_dropped(graph);
-    if (!states_.empty() && stamp < states_.back().stamp) return between(stamp, graph);
-    const VertexIndex last = states_.empty() ? -1 : states_.back().vertex.in(graph);
-    if (last >= 0 && states_.back().stamp == stamp) return last;
-    const VertexIndex next = graph.add_vertex<V>(graph.free_id(), {0, 0});
-    graph.set_stamp(next, stamp);
-    if (last < 0) {
-      add_prior_about_zero(graph, next, first_sigma_);
-    } else {
-      Decay edge;
-      edge.decay = decay_to(stamp, states_.back());
-      graph.add_edge(edge, {last, next},
-                     Eigen::Matrix2d::Identity() / (sigma_ * sigma_ * (1 - edge.decay * edge.decay)));
-    }
-    states_.push_back({stamp, {}});
-    return states_.back().vertex.keep(next, graph);
-  }
-
-  /// Adds root times what the states of the fixes tell of the process at a moment: it has no memory beyond
-  /// its neighbours.
-  void add_expectation(Stamp stamp, const Graph& graph, const Eigen::Matrix2d& root,
-                       ExpectedError& error) const {
-    const auto after = first_not_before(stamp);
-    const double a = after == states_.begin() ? 0 : decay_to(stamp, *std::prev(after));
-    const double b = after == states_.end() ? 0 : decay_to(stamp, *after);
-    const double share = 1 - a * a * b * b;
-    if (a > 0) error.terms.push_back({std::prev(after)->vertex.in(graph), a * (1 - b * b) / share * root});
-    if (b > 0) error.terms.push_back({after->vertex.in(graph), b * (1 - a * a) / share * root});
-    error.rest += sigma_ * sigma_ * (1 - a * a) * (1 - b * b) / share * root * root.transpose();
-  }
-
- private:
-  struct State {
-    Stamp stamp;
-    KeptVertex vertex;
-  };
-  /// Returns the vertex of a fix that is older than the last one. The states around it stay as they are.
-  [[nodiscard]] VertexIndex between(Stamp stamp, Graph& graph) {
-    const auto after = first_not_before(stamp);
-    const VertexIndex later = after->vertex.in(graph);
-    if (after->stamp == stamp) return later;
-    const VertexIndex own = graph.add_vertex<V>(graph.free_id(), {0, 0});
-    graph.set_stamp(own, stamp);
-    const double b = decay_to(stamp, *after);
-    if (after == states_.begin()) {
-      Decay edge;
-      edge.decay = b;
-      graph.add_edge(edge, {later, own}, Eigen::Matrix2d::Identity() / (sigma_ * sigma_ * (1 - b * b)));
-    } else {
-      const auto before = std::prev(after);
-      const double a = decay_to(stamp, *before);
-      const double share = 1 - a * a * b * b;
-      Between edge;
-      edge.before = a * (1 - b * b) / share;
-      edge.after = b * (1 - a * a) / share;
-      const double variance = sigma_ * sigma_ * (1 - a * a) * (1 - b * b) / share;
-      graph.add_edge(edge, {before->vertex.in(graph), later, own}, Eigen::Matrix2d::Identity() / variance);
-    }
-    State state{stamp, {}};
-    state.vertex.keep(own, graph);
-    states_.insert(after, state);
-    return own;
-  }
-
-  /// Forgets states that have left the graph, but for the last one.
-  void forget_dropped(const Graph& graph) {
-    std::size_t gone = 0;
-    while (gone + 1 < states_.size() && states_[gone].vertex.in(graph) < 0) ++gone;
-    states_.erase(states_.begin(), states_.begin() + static_cast<std::ptrdiff_t>(gone));
-  }
-
-  [[nodiscard]] auto first_not_before(Stamp stamp) const {
-    return std::lower_bound(states_.begin(), states_.end(), stamp,
-                            [](const State& state, Stamp moment) { return state.stamp < moment; });
-  }
-
-  [[nodiscard]] double decay_to(Stamp stamp, const State& state) const {
-    return std::exp(-std::abs(seconds_between(state.stamp, stamp)) / time_s_);
-  }
-
-  double sigma_;
-  double time_s_;
-  double first_sigma_;
-  std::vector<State> states_;  ///< in order of time
-};
-
-using Bias = ProcessAlongFixes<VertexGnssBias, EdgeGnssBiasDecay, EdgeGnssBiasBetween>;
-using Multipath = ProcessAlongFixes<VertexGnssMultipath, EdgeGnssMultipathDecay, EdgeGnssMultipathBetween>;
+using Bias = GaussMarkovProcess<VertexGnssBias, EdgeGnssBiasDecay, EdgeGnssBiasBetween>;
+using Multipath = GaussMarkovProcess<VertexGnssMultipath, EdgeGnssMultipathDecay, EdgeGnssMultipathBetween>;
 
 /// measured = antenna + bias + multipath + white noise: see README.md.
 class GnssCorrelated final : public GnssModeling {

@@ -166,9 +166,9 @@ void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeGnssSatelliteBiasDecay>();
   registry.add_edge<EdgeGnssPseudorange>();
   registry.add_edge<EdgeGnssRangeRate>();
-  registry.add_sensor_model({"gnss_raw", "pseudoranges and range rates of a GNSS receiver, with its clock",
-                             raw_columns(), options(),
-                             [](const CheckedOptions& given) { return std::make_unique<GnssRaw>(given); }});
+  registry.add_sensor_model(
+      {"gnss_raw", "pseudoranges and range rates of a GNSS receiver, with its clock", raw_columns(),
+       options(), [](const CheckedOptions& given) { return std::make_unique<GnssRaw>(given); }, "none"});
 }
 
 }  // namespace

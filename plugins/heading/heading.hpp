@@ -1,5 +1,5 @@
-/// Absolute headings from a dual antenna or a compass. The reading is used as it is, or with a
-/// constant deviation that is estimated.
+/// Absolute headings from a dual antenna or a compass. The reading is used as it is, with a constant
+/// deviation that is estimated, or with one that wanders about it too.
 #pragma once
 
 #include <array>
@@ -22,6 +22,50 @@ struct VertexHeadingOffset : ScalarState {
   static void local(const double* from, const double* to, double* delta) {
     delta[0] = wrap_angle(to[0] - from[0]);
   }
+};
+
+/// What the deviation of a heading sensor is about a moment, beside VERTEX_HEADING_OFFSET, in rad: iron beside
+/// the road, the slope, reflections at the antennas.
+struct VertexHeadingWander : ScalarState {
+  static constexpr std::string_view kTag = "VERTEX_HEADING_WANDER";
+  static constexpr std::array<std::string_view, 1> value_names() { return {"heading_wander"}; }
+  static constexpr std::array<std::string_view, 1> value_units() { return {"rad"}; }
+};
+
+/// One step of a Gauss-Markov process of first order: e = w_to - decay w_from, decay = exp(-dt / tau). Radians.
+struct EdgeHeadingWanderDecay {
+  static constexpr std::string_view kTag = "EDGE_HEADING_WANDER_DECAY";
+  static constexpr std::string_view kForm = "difference";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexHeadingWander, VertexHeadingWander>;
+  static constexpr auto fields() { return std::array{field<&EdgeHeadingWanderDecay::decay>("decay")}; }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const T& from, const T& to) const {
+    return Eigen::Matrix<T, 1, 1>(T(to - from * T(decay)));
+  }
+
+  double decay = 1;
+};
+
+/// The same process at a moment between two others: e = w - (before w_earlier + after w_later). Radians.
+struct EdgeHeadingWanderBetween {
+  static constexpr std::string_view kTag = "EDGE_HEADING_WANDER_BETWEEN";
+  static constexpr std::string_view kForm = "difference";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexHeadingWander, VertexHeadingWander, VertexHeadingWander>;
+  static constexpr auto fields() {
+    return std::array{field<&EdgeHeadingWanderBetween::before>("before"),
+                      field<&EdgeHeadingWanderBetween::after>("after")};
+  }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const T& earlier, const T& later, const T& between) const {
+    return Eigen::Matrix<T, 1, 1>(T(between - earlier * T(before) - later * T(after)));
+  }
+
+  double before = 0.5;
+  double after = 0.5;
 };
 
 /// e = wrap(heading - measured). Radians, counter-clockwise from the frame's x axis (grid east).
@@ -61,6 +105,22 @@ struct EdgeHeadingOffset {
     e = error(pose, offset);
     by_pose << 0, 0, 1;
     by_offset << 1;
+  }
+
+  double measured = 0;
+};
+
+/// e = wrap(heading + offset + wander - measured). Radians.
+struct EdgeHeadingWandering {
+  static constexpr std::string_view kTag = "EDGE_HEADING_WANDERING";
+  static constexpr std::string_view kForm = "angle";
+  static constexpr int kErrorDimension = 1;
+  using Vertices = VertexList<VertexSe2, VertexHeadingOffset, VertexHeadingWander>;
+  static constexpr auto fields() { return std::array{field<&EdgeHeadingWandering::measured>("measured")}; }
+
+  template <typename T>
+  Eigen::Matrix<T, 1, 1> error(const Pose2<T>& pose, const T& offset, const T& wander) const {
+    return Eigen::Matrix<T, 1, 1>(wrap_angle(T(pose.heading + offset + wander - T(measured))));
   }
 
   double measured = 0;

@@ -33,7 +33,10 @@ std::vector<OptionInfo> options() {
   std::vector<OptionInfo> all = {
       {"sigma", "0.2", "m", OptionRange{1e-6, 1e4},
        "sigma of x and y, or of the range, if the row states none"},
-      {"sigma_bearing_deg", "0.5", "deg", OptionRange{1e-4, 180}, "sigma of bearings that state none"}};
+      {"sigma_bearing_deg", "0.5", "deg", OptionRange{1e-4, 180}, "sigma of bearings that state none"},
+      {"map_sigma", "0.1", "m", OptionRange{0, 1e3},
+       "sigma of the places in the map, x and y; 0: the map is exact",
+       NoisePrior{.mean = 0.1, .deviation = 1.5}}};
   for (const OptionInfo& option : mount_options()) all.push_back(option);
   return all;
 }
@@ -41,14 +44,16 @@ std::vector<OptionInfo> options() {
 /// Maps the ids of the landmarks of a drive to their vertices.
 class Landmarks {
  public:
-  /// Returns the vertex of a landmark. Its first sight creates the vertex: fixed at the place in
-  /// the map, or else free at the place where it was seen.
+  explicit Landmarks(double map_sigma_m) : map_sigma_m_(map_sigma_m) {}
+
+  /// Returns the vertex of a landmark. Its first sight creates the vertex: at the place in the map, or
+  /// else free at the place where it was seen.
   VertexIndex vertex(std::int64_t id, const Eigen::Vector2d& seen_at, Graph& graph) {
     return vertices_[id].in_or(graph, [&] {
       const auto known = map_.find(id);
       const Eigen::Vector2d place = known == map_.end() ? seen_at : known->second;
       const VertexIndex made = graph.add_vertex<VertexXy>(graph.free_id(), {place[0], place[1]});
-      graph.set_fixed(made, known != map_.end());
+      if (known != map_.end()) hold_at_map(made, place, graph);
       return made;
     });
   }
@@ -71,7 +76,7 @@ class Landmarks {
       const VertexIndex seen = is_new ? vertices_[id].in(graph) : -1;
       if (seen < 0) continue;
       graph.set_value(seen, std::array{place[0], place[1]});
-      graph.set_fixed(seen, true);
+      hold_at_map(seen, place, graph);
     }
   }
 
@@ -84,6 +89,16 @@ class Landmarks {
   }
 
  private:
+  /// One error of the map counts once, however often its landmark is seen.
+  void hold_at_map(VertexIndex landmark, const Eigen::Vector2d& place, Graph& graph) const {
+    if (map_sigma_m_ > 0) {
+      add_prior(graph, landmark, std::array{place[0], place[1]}, map_sigma_m_);
+    } else {
+      graph.set_fixed(landmark, true);
+    }
+  }
+
+  double map_sigma_m_;
   std::map<std::int64_t, KeptVertex> vertices_;
   std::map<std::int64_t, Eigen::Vector2d> map_;
 };
@@ -93,7 +108,8 @@ class LandmarkSensor final : public SensorModel {
   explicit LandmarkSensor(const CheckedOptions& options)
       : sigma_(options.number("sigma")),
         sigma_bearing_(kDegree * options.number("sigma_bearing_deg")),
-        mount_(read_mount(options)) {}
+        mount_(read_mount(options)),
+        landmarks_(options.number("map_sigma")) {}
 
   void extend(const SensorInput& input, Graph& graph) override {
     landmarks_.read_map(input.readings, graph);

@@ -207,7 +207,7 @@ void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeTwistBiasWalk>();
   registry.add_sensor_model(
       {"twist", "twists from visual or lidar odometry, or from any other relative source", columns(),
-       options(), [](const CheckedOptions& options) { return std::make_unique<Twist>(options); }});
+       options(), [](const CheckedOptions& options) { return std::make_unique<Twist>(options); }, "none"});
 }
 
 }  // namespace

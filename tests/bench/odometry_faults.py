@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Damages the odometry of simulated drives, fuses them, and prints the errors beside those of the sound drives.
 
-    odometry_faults.py PROGRAM FOLDER [--presets urban,rural,highway] [--seeds 3,4] [--faults slip,lock,...]
+    odometry_faults.py PROGRAM FOLDER [--presets urban,rural,highway] [--seeds 3,4] [--faults slip,lock,...] [--live]
 
 PROGRAM is the waymark program; drives and results are written below FOLDER. Faults begin 150 s after the start, or
-where the vehicle next drives above 4 m/s; those that change the sign begin at a stop.
+where the vehicle next drives above 4 m/s; those that change the sign begin at a stop. With --live the drives are
+replayed, and the poses are those that were published at their time.
 """
 
 import argparse
 import bisect
+import csv
 import datetime
 import json
 import math
@@ -145,19 +147,46 @@ FAULTS = {
 }
 
 
-def fused(program, folder, fault, preset, seed):
-    """Returns (raw RMSE, fused RMSE, inside 95 %), or None where the drive has no place for the fault."""
+def drive_with(program, folder, fault, preset, seed):
+    """Writes a drive with a fault. Returns whether it has a place for the fault."""
     subprocess.run([program, "simulate", "-q", "--preset", preset, "--seed", seed, "-o", folder], check=True)
     header, rows = read_csv(folder + "/odometry.csv")
     if not FAULTS[fault](folder, rows):
-        return None
+        return False
     write_csv(folder + "/odometry.csv", header, rows, (3, 5, 7))
-    subprocess.run([program, "run", "-q", folder + "/drive.yaml", "-o", folder + "/out"], check=True,
-                   stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    return True
+
+
+def quietly(command):
+    subprocess.run(command, check=True, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+
+
+def fused(program, folder):
+    """Returns (RMSE, inside 95 % [%])."""
+    quietly([program, "run", "-q", folder + "/drive.yaml", "-o", folder + "/out"])
     with open(folder + "/out/metrics.json") as file:
         truth = json.load(file)["evaluations"][0]["truth"]
-    return (truth["gnss"]["position"]["rmse_m"], truth["fused"]["position"]["rmse_m"],
-            100 * truth["consistency"]["coverage_95"])
+    return truth["fused"]["position"]["rmse_m"], 100 * truth["consistency"]["coverage_95"]
+
+
+def lived(program, folder):
+    """Returns the same of the poses that were published at once, from the first tracking on."""
+    quietly([program, "live", "-q", folder + "/drive.yaml", "-o", "csv:" + folder + "/live.csv?rate=5"])
+    _, truth = read_csv(folder + "/truth.csv")
+    metres = math.pi * 6371000 / 180
+    squares, inside, tracks = [], 0, False
+    with open(folder + "/live.csv") as file:
+        for row in csv.DictReader(file):
+            tracks = tracks or row["state"] == "tracking"
+            if not tracks:
+                continue
+            place = interpolated(truth, float(row["time"]))
+            y = metres * (float(row["latitude"]) - place[1])
+            x = metres * (float(row["longitude"]) - place[2]) * math.cos(math.radians(place[1]))
+            xx, xy, yy = (float(row[name]) for name in ("var_x", "cov_xy", "var_y"))
+            inside += (yy * x * x - 2 * xy * x * y + xx * y * y) / (xx * yy - xy * xy) < 5.991
+            squares.append(x * x + y * y)
+    return math.sqrt(sum(squares) / len(squares)), 100 * inside / len(squares)
 
 
 def main():
@@ -167,6 +196,7 @@ def main():
     parser.add_argument("--presets", default="urban,rural,highway")
     parser.add_argument("--seeds", default="3,4")
     parser.add_argument("--faults", default=",".join(FAULTS))
+    parser.add_argument("--live", action="store_true")
     given = parser.parse_args()
     drives = [(preset, seed) for preset in given.presets.split(",") for seed in given.seeds.split(",")]
     print("RMSE of fused positions [m] (inside 95 % [%])")
@@ -175,8 +205,10 @@ def main():
         cells = []
         for preset, seed in drives:
             folder = os.path.join(given.folder, "_".join([fault.replace(" ", "_"), preset, seed]))
-            result = fused(given.program, folder, fault, preset, seed)
-            cells.append("-" if result is None else "%.2f (%.0f)" % result[1:])
+            if not drive_with(given.program, folder, fault, preset, seed):
+                cells.append("-")
+                continue
+            cells.append("%.2f (%.0f)" % (lived if given.live else fused)(given.program, folder))
         print("%-18s" % fault + "".join("%15s" % cell for cell in cells), flush=True)
 
 

@@ -61,9 +61,9 @@ void fuzz_options(std::string_view, const std::uint8_t* bytes, std::size_t size)
     const std::string once = flow_text(parse_flow(text));
     if (flow_text(parse_flow(once)) != once) broken("a value is written as another one: " + once);
   });
-  for (const auto& [type, origin] : registry.gnss_modelings())
-    for (const OptionInfo& option : type.options)
-      may_refuse([&] { (void)registry.make_gnss_modeling(type.name, {{option.name, text}}); });
+  for (const auto& modeling : registry.gnss_modelings())
+    for (const OptionInfo& option : modeling.type.options)
+      may_refuse([&] { (void)registry.make_gnss_modeling(modeling.type.name, {{option.name, text}}); });
 }
 
 void fuzz_module(std::string_view, const std::uint8_t* bytes, std::size_t size) {

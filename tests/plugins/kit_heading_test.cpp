@@ -1,4 +1,6 @@
 // Sensor kit: absolute headings, plain and with a deviation to be estimated.
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include <waymark/core/base/error.hpp>
@@ -107,7 +109,7 @@ TEST_CASE("heading: a compass with 8 degrees of deviation, which the drive finds
     Noise noise(static_cast<std::uint64_t>(2000 + seed));
     const SensorTable readings = readings_of(without, kDeviation, noise);
     believed.add_sensor("heading", readings, {{"offset", "off"}});
-    estimated.add_sensor("heading", readings, {{"offset_sigma_deg", "20"}});
+    estimated.add_sensor("heading", readings, {{"offset", "constant"}, {"offset_sigma_deg", "20"}});
     const Solution before = solve(without);
     const Solution after = solve(estimated);
     // Believed, the compass turns the drive; with its deviation estimated it does no harm.
@@ -126,6 +128,58 @@ TEST_CASE("heading: a compass with 8 degrees of deviation, which the drive finds
   check_mean_chi_square(state, 1, kSeeds);
 }
 
+TEST_CASE("heading: what wanders for 20 seconds is a state, and does not count as often as it is read") {
+  constexpr double kWander = 4 * kDegree;
+  constexpr double kTime_s = 20;
+  constexpr int kSeeds = 40;
+  double normalised = 0;
+  double normalised_as_constant = 0;
+  KitRecipe recipe = coarse_fixes();
+  recipe.noise.heading_per_s = 1e-4;  // a poor gyro: what the compass says counts
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    KitDrive wandering = make_kit_drive(recipe, static_cast<std::uint64_t>(seed));
+    KitDrive constant = wandering;
+    Noise noise(static_cast<std::uint64_t>(3000 + seed));
+    SensorTable readings = readings_of(wandering, 0, noise);
+    double wander = noise(kWander);
+    const double decay = std::exp(-1 / kTime_s);
+    for (double& value : readings.values) {
+      if (std::isnan(value)) continue;
+      value = wrap_angle(value + wander);
+      wander = decay * wander + noise(kWander * std::sqrt(1 - decay * decay));
+    }
+    constant.add_sensor("heading", readings, {{"offset", "constant"}});
+    wandering.add_sensor("heading", readings, {{"wander_sigma_deg", "4"}, {"wander_time", "20"}});
+    CHECK(edges_of(wandering.graph, "EDGE_HEADING_WANDERING") == 60);
+    CHECK(edges_of(wandering.graph, "EDGE_HEADING_WANDER_DECAY") == 59);
+    normalised += solve(wandering).normalised(300);
+    normalised_as_constant += solve(constant).normalised(300);
+  }
+  check_mean_chi_square(normalised, 3, kSeeds);
+  CHECK(normalised_as_constant > 2 * normalised);
+}
+
+TEST_CASE("heading: readings that come in disorder have the process of those in order") {
+  KitDrive ordered = make_kit_drive(coarse_fixes(), 1);
+  KitDrive disordered = ordered;
+  Noise noise(7);
+  const SensorTable readings = readings_of(ordered, 0.05, noise);
+  SensorTable reversed = readings;
+  std::reverse(reversed.stamps.begin(), reversed.stamps.end());
+  for (std::size_t row = 0; row < readings.size(); ++row)
+    for (std::size_t column = 0; column < readings.columns; ++column)
+      reversed.values[row * readings.columns + column] = readings.at(readings.size() - 1 - row, column);
+  ordered.add_sensor("heading", readings);
+  disordered.add_sensor("heading", reversed);
+  const Solution one = solve(ordered);
+  const Solution other = solve(disordered);
+  for (const int node : {0, 300, 600}) {
+    CHECK(other.errors[static_cast<std::size_t>(node)][2] ==
+          Approx(one.errors[static_cast<std::size_t>(node)][2]).margin(1e-7));
+    CHECK(other.sigma(node, 2) == Approx(one.sigma(node, 2)).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("heading: rows that make no sense are named, those outside the drive or in a gap left out") {
   KitRecipe recipe;
   recipe.seconds = 1;
@@ -141,7 +195,7 @@ TEST_CASE("heading: rows that make no sense are named, those outside the drive o
   drive.add_sensor("heading", outside.table());
   CHECK(edges_of(drive.graph, "EDGE_HEADING") == 0);
   CHECK_THROWS_WITH(registry().make_sensor_model("heading", {{"offset", "maybe"}}),
-                    "heading: option 'offset' must be 'constant' or 'off', got 'maybe'");
+                    "heading: option 'offset' must be 'wandering' or 'constant' or 'off', got 'maybe'");
   CHECK_THROWS_WITH(registry().make_sensor_model("heading", {{"mounting", "3"}}),
                     Contains("heading: unknown option 'mounting'; did you mean 'mount_deg'?"));
 }

@@ -164,6 +164,34 @@ TEST_CASE("landmarks: seen again on the second lap they hold a drive without GNS
   }
 }
 
+TEST_CASE("landmarks: an error of the map counts once, however often its landmark is seen") {
+  constexpr double kMapSigma = 0.5;
+  constexpr int kSeeds = 20;
+  double normalised = 0;
+  double normalised_as_exact = 0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    KitDrive drive = make_kit_drive(two_laps(), seed);
+    KitDrive exact = drive;
+    Noise noise(7000 + seed);
+    SensorTable readings = sightings(drive, false, true, noise);
+    std::map<int, Eigen::Vector2d> errors;
+    for (std::size_t row = 0; row < readings.size(); ++row) {
+      double* values = &readings.values[row * readings.columns];
+      const auto [error, is_new] = errors.try_emplace(static_cast<int>(values[0]));
+      if (is_new) error->second = {noise(kMapSigma), noise(kMapSigma)};
+      values[readings.columns - 2] += error->second[0];  // map_x, map_y
+      values[readings.columns - 1] += error->second[1];
+    }
+    drive.add_sensor("landmarks", readings, {{"map_sigma", "0.5"}});
+    exact.add_sensor("landmarks", readings, {{"map_sigma", "0"}});
+    CHECK_FALSE(drive.graph.fixed(find_state(drive.graph, "VERTEX_XY")));
+    normalised += solve(drive).normalised(kNodesPerSecond * 30);
+    normalised_as_exact += solve(exact).normalised(kNodesPerSecond * 30);
+  }
+  check_mean_chi_square(normalised, 3, kSeeds);
+  CHECK(normalised_as_exact > 4 * normalised);
+}
+
 TEST_CASE("landmarks: on a map they place the vehicle to their own accuracy") {
   constexpr int kSeeds = 20;
   double squared = 0;
@@ -171,7 +199,7 @@ TEST_CASE("landmarks: on a map they place the vehicle to their own accuracy") {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     KitDrive drive = make_kit_drive(two_laps(), seed);
     Noise noise(6000 + seed);
-    drive.add_sensor("landmarks", sightings(drive, false, true, noise));
+    drive.add_sensor("landmarks", sightings(drive, false, true, noise), {{"map_sigma", "0"}});
     const Solution solution = solve(drive);
     squared += std::pow(solution.rms_position(), 2);
     normalised += solution.normalised(kNodesPerSecond * 30);

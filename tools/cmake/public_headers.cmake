@@ -63,6 +63,7 @@ set(WAYMARK_PUBLIC_HEADERS
   types_se2/edge_gnss.hpp
   types_se2/edge_se2.hpp
   types_se2/g2o_edges.hpp
+  types_se2/plugin_kit/gauss_markov_process.hpp
   types_se2/plugin_kit/gnss_modeling.hpp
   types_se2/plugin_kit/sensor_readings.hpp
   types_se2/plugin_kit/state_along_drive.hpp

@@ -113,7 +113,7 @@ TEST_CASE("sensors: a compass with a deviation is calibrated by the drive, and t
                      "  name: heading\n"
                      "  file: compass.csv\n"
                      "  columns: {heading: {column: hdg, unit: deg}}\n"
-                     "  options: {offset_sigma_deg: 20, sigma_deg: 0.5}\n");
+                     "  options: {offset: constant, offset_sigma_deg: 20, sigma_deg: 0.5}\n");
   write_log(folder + "compass.csv", "time,hdg",
             [](int t) { return std::string(",").append(std::to_string(t * kYawRate / kDegree + 12)); });
   (void)ran(folder);

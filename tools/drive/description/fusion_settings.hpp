@@ -117,10 +117,15 @@ void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSetting
 [[nodiscard]] std::optional<Loss> loss_of_fixes(const std::string& loss, const TypeRegistry& registry,
                                                 const std::string& place = "loss");
 
-/// Returns the loss that is stated for the measurements of a relative source or a sensor.
+/// Returns the loss that is stated for the measurements of a relative source.
 /// @throws UsageError as loss_of_fixes
 [[nodiscard]] std::optional<Loss> loss_of_source(const FusionSettings& settings, const std::string& source,
                                                  const TypeRegistry& registry);
+
+/// Returns the loss of the measurements of a sensor: the stated one, or that of its type.
+/// @param source of the sensor @throws UsageError as loss_of_fixes
+[[nodiscard]] std::optional<Loss> loss_of_sensor(const FusionSettings& settings, const std::string& source,
+                                                 const SensorModelType& type, const TypeRegistry& registry);
 
 /// Converts "NAME:SCALE" to a loss. @throws UsageError as loss_of_fixes
 [[nodiscard]] Loss named_loss(const std::string& text, const std::string& place,

@@ -28,6 +28,16 @@ NoisePrior prior_for(const NoisePrior& general, double accuracy_m) {
   return prior;
 }
 
+/// Tells whether a noise parameter has an effect with these options.
+bool takes_effect(const NoisePrior& prior, const std::vector<OptionInfo>& known, const Options& given) {
+  if (prior.where_option.empty()) return true;
+  if (const auto stated = given.find(prior.where_option); stated != given.end())
+    return stated->second == prior.where_word;
+  return std::any_of(known.begin(), known.end(), [&](const OptionInfo& option) {
+    return option.name == prior.where_option && option.value == prior.where_word;
+  });
+}
+
 /// Adds options with a prior that are not stated.
 void add_parameters(const std::string& source, const std::string& owner, const std::vector<OptionInfo>& known,
                     const Options& given, const ClaimedAccuracies& claimed,
@@ -35,6 +45,7 @@ void add_parameters(const std::string& source, const std::string& owner, const s
   for (const OptionInfo& option : known) {
     if (!option.prior || given.contains(option.name)) continue;
     if (option.prior->between_kinds && claimed.kinds() < 2) continue;
+    if (!takes_effect(*option.prior, known, given)) continue;
     NoiseParameter parameter;
     parameter.source = source;
     parameter.owner = owner;

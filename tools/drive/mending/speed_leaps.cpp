@@ -11,12 +11,9 @@
 namespace waymark::drive {
 namespace {
 
-constexpr double kLeast = 2.5;      // m/s
 constexpr double kImpossible = 15;  // m/s^2, beyond what tyres hold
 constexpr double kPossible = 10;    // m/s^2
 constexpr double kSigmas = 8;
-constexpr double kLeapLasts_s = 0.3;
-constexpr double kLongest_s = 5;
 
 /// The speeds of the odometry, and what is usual from one to the next.
 class Speeds {
@@ -24,7 +21,7 @@ class Speeds {
   explicit Speeds(std::span<const OdometrySample> odometry) : odometry_(odometry) {
     std::vector<double> changes;
     for (std::size_t i = 1; i < odometry.size(); ++i)
-      if (std::abs(odometry[i].speed_mps) > kLeast) changes.push_back(std::abs(change(i - 1, i)));
+      if (std::abs(odometry[i].speed_mps) > kLeastLeap_mps) changes.push_back(std::abs(change(i - 1, i)));
     if (!changes.empty()) usual_ = 1.4826 * upper_median(std::move(changes));
   }
 
@@ -35,23 +32,22 @@ class Speeds {
     return seconds_between(odometry_[from].stamp, odometry_[to].stamp);
   }
   [[nodiscard]] bool leaps(std::size_t from, std::size_t to) const {
-    return std::abs(change(from, to)) > kLeast + kImpossible * time_s(from, to) + kSigmas * usual_;
+    return is_speed_leap(change(from, to), time_s(from, to), usual_);
   }
 
   /// Returns the sample to which the speed leaps from `from`, if it does.
   [[nodiscard]] std::optional<std::size_t> leap_after(std::size_t from) const {
     for (std::size_t to = from + 1; to < odometry_.size(); ++to) {
       if (leaps(from, to)) return to;
-      if (time_s(from, to) > kLeapLasts_s) break;
+      if (time_s(from, to) > kLeapTakes_s) break;
     }
     return std::nullopt;
   }
 
   /// Returns the sample at which a speed is back that leapt away from `base` to `away`, if it comes back.
   [[nodiscard]] std::optional<std::size_t> back_after(std::size_t base, std::size_t away) const {
-    for (std::size_t at = away + 1; at < odometry_.size() && time_s(base, at) <= kLongest_s; ++at) {
-      if (std::abs(change(base, at)) > 1 + kPossible * time_s(base, at) || !leaps_back(base, away, at))
-        continue;
+    for (std::size_t at = away + 1; at < odometry_.size() && time_s(base, at) <= kLeapLasts_s; ++at) {
+      if (!is_possible_change(change(base, at), time_s(base, at)) || !leaps_back(base, away, at)) continue;
       return end_of_leap(at, change(base, away) < 0);
     }
     return std::nullopt;
@@ -62,7 +58,7 @@ class Speeds {
   [[nodiscard]] bool leaps_back(std::size_t base, std::size_t away, std::size_t at) const {
     for (std::size_t from = at; from-- > away;) {
       if (leaps(from, at) && change(from, at) * change(base, away) < 0) return true;
-      if (time_s(from, at) > kLeapLasts_s) break;
+      if (time_s(from, at) > kLeapTakes_s) break;
     }
     return false;
   }
@@ -81,6 +77,14 @@ class Speeds {
 };
 
 }  // namespace
+
+bool is_speed_leap(double change_mps, double time_s, double usual_mps) {
+  return std::abs(change_mps) > kLeastLeap_mps + kImpossible * time_s + kSigmas * usual_mps;
+}
+
+bool is_possible_change(double change_mps, double time_s) {
+  return std::abs(change_mps) <= 1 + kPossible * time_s;
+}
 
 std::vector<SpeedLeap> find_speed_leaps(std::span<const OdometrySample> odometry) {
   constexpr std::size_t kRare = 20;

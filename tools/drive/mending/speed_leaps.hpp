@@ -11,6 +11,17 @@
 
 namespace waymark::drive {
 
+/// How long a leap takes, and how long it lasts until the leap back, at most.
+constexpr double kLeapTakes_s = 0.3;
+constexpr double kLeapLasts_s = 5;
+/// Changes of smaller speeds do not count.
+constexpr double kLeastLeap_mps = 2.5;
+
+/// Tells whether no vehicle changes its speed so. @param usual_mps sigma of the change from sample to sample
+[[nodiscard]] bool is_speed_leap(double change_mps, double time_s, double usual_mps);
+/// Tells whether a vehicle may have changed its speed so.
+[[nodiscard]] bool is_possible_change(double change_mps, double time_s);
+
 /// Samples between a leap and the leap back.
 struct SpeedLeap : SampleRange {};
 

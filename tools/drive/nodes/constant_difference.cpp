@@ -86,6 +86,7 @@ std::optional<ConstantDifference> judged(const std::pair<int, int>& sources, con
   const Middle body = middle_of(all.in_body);
   ConstantDifference difference{.first = sources.first, .second = sources.second};
   difference.in_body = body.value.norm() > kBody * frame.value.norm();
+  difference.turned = difference.in_body || frame.value.norm() > kBody * body.value.norm();
   difference.second_m = difference.in_body ? body.value : frame.value;
   difference.first_claims_m = upper_median(all.first_claims_m);
   difference.second_claims_m = upper_median(all.second_claims_m);
@@ -106,7 +107,12 @@ std::vector<ConstantDifference> constant_differences(std::span<const Fix> fixes,
   return found;
 }
 
-std::string warning_of(const ConstantDifference& difference, std::span<const std::string> names) {
+std::string warning_of(const ConstantDifference& difference, std::span<const std::string> names,
+                       const std::string& time) {
+  constexpr const char* kPlace = "state the place of the antennas (antenna: [forwards, left])";
+  constexpr const char* kDatum =
+      "one of them has another datum, reference station or projection; leave it out, or state accuracies that "
+      "contain this (accuracy: {default_sigma: ...})";
   const Eigen::Vector2d& by = difference.second_m;
   const std::string where =
       difference.in_body
@@ -115,14 +121,14 @@ std::string warning_of(const ConstantDifference& difference, std::span<const std
           : fmt::format("{:.2g} m to the {} and {:.2g} m to the {}", std::abs(by.x()),
                         by.x() < 0 ? "west" : "east", std::abs(by.y()), by.y() < 0 ? "south" : "north");
   return fmt::format(
-      "{} is {:.3g} m away from {} all drive long, {}, though they claim {:.2g} and {:.2g} m: {}. The fused "
+      "{} is {:.3g} m away from {} {}, {}, though they claim {:.2g} and {:.2g} m: {}. The fused "
       "positions lie between them, and their covariances do not tell",
       names[static_cast<std::size_t>(difference.second)], by.norm(),
-      names[static_cast<std::size_t>(difference.first)], where, difference.second_claims_m,
+      names[static_cast<std::size_t>(difference.first)], time, where, difference.second_claims_m,
       difference.first_claims_m,
-      difference.in_body ? "state the place of the antennas (antenna: [forwards, left])"
-                         : "one of them has another datum, reference station or projection; leave it out, or "
-                           "state accuracies that contain this (accuracy: {default_sigma: ...})");
+      !difference.turned   ? std::string(kPlace) + "; or " + kDatum
+      : difference.in_body ? kPlace
+                           : kDatum);
 }
 
 }  // namespace waymark::drive

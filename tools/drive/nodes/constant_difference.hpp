@@ -18,7 +18,8 @@ struct ConstantDifference {
   int second = 0;                                      ///< Fix::source
   Eigen::Vector2d second_m = Eigen::Vector2d::Zero();  ///< its antenna minus where it should be, median
   bool in_body =
-      false;  ///< along the vehicle: x forwards, y to the left; otherwise in the frame: east, north
+      false;            ///< along the vehicle: x forwards, y to the left; otherwise in the frame: east, north
+  bool turned = false;  ///< whether the vehicle has turned enough to tell the two apart
   double first_claims_m = 0;  ///< median accuracy
   double second_claims_m = 0;
 };
@@ -31,8 +32,8 @@ struct ConstantDifference {
 [[nodiscard]] std::vector<ConstantDifference> constant_differences(std::span<const Fix> fixes,
                                                                    std::span<const Eigen::Vector3d> poses);
 
-/// @param names by Fix::source
-[[nodiscard]] std::string warning_of(const ConstantDifference& difference,
-                                     std::span<const std::string> names);
+/// @param names by Fix::source @param time in which it was seen
+[[nodiscard]] std::string warning_of(const ConstantDifference& difference, std::span<const std::string> names,
+                                     const std::string& time = "all drive long");
 
 }  // namespace waymark::drive

@@ -20,8 +20,9 @@ SensorModels::SensorModels(std::span<const PreparedSensor> sensors, const Fusion
                            const TypeRegistry& registry) {
   for (const PreparedSensor& sensor : sensors) {
     at_place_of(sensor.place, sensor.name, [&] {
-      models_.push_back({sensor.name, registry.make_sensor_model(sensor.name, options_of(sensor, settings)),
-                         loss_of_source(settings, sensor.source, registry)});
+      models_.push_back(
+          {sensor.name, registry.make_sensor_model(sensor.name, options_of(sensor, settings)),
+           loss_of_sensor(settings, sensor.source, registry.sensor_model(sensor.name), registry)});
     });
   }
 }

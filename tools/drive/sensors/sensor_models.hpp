@@ -30,7 +30,7 @@ class SensorModels {
   /// @throws InputError from the model
   void extend(std::size_t index, const std::string& place, const SensorInput& input, Graph& graph);
 
-  /// Returns the loss of its measurements, if one is stated.
+  /// Returns the loss of its measurements, if they have one.
   [[nodiscard]] const std::optional<Loss>& loss(std::size_t index) const { return models_[index].loss; }
 
  private:

@@ -31,6 +31,7 @@ Estimator::Estimator(drive::DriveDescription description, const drive::FusionSet
       registry_(registry),
       intake_(live.reorder_s, live.longest_gap_s),
       odometries_(description_.odometry.size(), description_.timeline.gap_s),
+      guards_(description_.odometry.size()),
       rough_(description_, registry),
       reckoning_(description_.timeline.gap_s, 0),
       judge_(description_, settings_, live_, registry) {
@@ -144,6 +145,8 @@ void Estimator::work() {
                               seconds_between(jump->from, jump->to)));
     reckoning_.clear();
     odometries_.clear();
+    guards_.assign(guards_.size(), {});
+    receivers_.clear();
     fixes_.clear();
     pending_.clear();
     judge_.clear();
@@ -176,10 +179,25 @@ void Estimator::use_pending() {
   for (Sample& sample : later) pending_.push_back(std::move(sample));
 }
 
-void Estimator::hear(std::size_t source, const OdometrySample& sample) {
+OdometrySample Estimator::guarded(std::size_t source, const OdometrySample& sample) {
+  SpeedGuard& guard = guards_[source];
+  const bool known = guard.before_leap().has_value();
+  const OdometrySample judged = guard.judged(sample);
+  if (judged.assumed && !known)
+    refuse(
+        FurtherOdometry{sample.stamp, source, 0, 0}, "leap",
+        fmt::format("the speed leaps from {:.3g} to {:.3g} m/s: the wheels lock or spin, or the reading is "
+                    "wrong; until it leaps back, the speed before is assumed, with the noise of a gap",
+                    guard.before_leap()->speed_mps, sample.speed_mps));
+  return judged;
+}
+
+void Estimator::hear(std::size_t source, const OdometrySample& read) {
   const std::string& name = description_.odometry[source].name;
   counts_.taken[name] += 1;
+  const OdometrySample sample = guarded(source, read);
   if (!has_several_odometries()) return advance(0, sample);
+  if (sample.assumed) return;  // the others know better
   if (!odometries_.take(source, sample)) {
     counts_.taken[name] -= 1;
     refuse(FurtherOdometry{sample.stamp, source, 0, 0}, "late",
@@ -307,6 +325,18 @@ void Estimator::use(const GeodeticFix& geodetic) {
   cycle();
   publish(true);
   drop();
+  compare_receivers(fix);
+}
+
+void Estimator::compare_receivers(const Fix& fix) {
+  if (!window_ || description_.gnss.size() < 2) return;
+  const double turn = window_->newest_pose()[2] - reckoning_.nodes().back().pose[2];
+  receivers_.take(fix, reckoning_.at(fix.stamp).pose, turn);
+  std::vector<std::string> names;
+  for (const drive::GnssConfig& receiver : description_.gnss) names.push_back(receiver.name);
+  for (const drive::ConstantDifference& difference : receivers_.news())
+    say("receivers", names[static_cast<std::size_t>(difference.second)],
+        drive::warning_of(difference, names, "for minutes"));
 }
 
 void Estimator::begin_at_believed() {

@@ -22,6 +22,8 @@
 #include <waymark/tools/drive/description/drive_description.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/live/estimator/fix_judge.hpp>
+#include <waymark/tools/live/estimator/guards/receiver_comparison.hpp>
+#include <waymark/tools/live/estimator/guards/speed_guard.hpp>
 #include <waymark/tools/live/estimator/intake.hpp>
 #include <waymark/tools/live/estimator/odometries.hpp>
 #include <waymark/tools/live/estimator/reckoning.hpp>
@@ -78,10 +80,12 @@ class Estimator {
  private:
   void work();
   void hear(std::size_t source, const OdometrySample& sample);
+  [[nodiscard]] OdometrySample guarded(std::size_t source, const OdometrySample& sample);
   void advance(std::size_t source, const OdometrySample& sample);
   void add_motion(std::size_t source, const OdometrySample& sample);
   [[nodiscard]] bool has_several_odometries() const { return description_.odometry.size() > 1; }
   void use_pending();
+  void compare_receivers(const Fix& fix);
   void use(const GeodeticFix& fix);
   void use(const SensorReading& reading);
   void use_rough_places();
@@ -109,9 +113,11 @@ class Estimator {
   const TypeRegistry& registry_;
   Intake intake_;
   Odometries odometries_;
+  std::vector<SpeedGuard> guards_;  // by odometry
   RoughPlaces rough_;
   Reckoning reckoning_;
   FixJudge judge_;
+  ReceiverComparison receivers_;
   std::unique_ptr<Window> window_;
   std::optional<Frame> frame_;
   std::optional<drive::Projection> projection_;

@@ -38,11 +38,8 @@ Json sensor_json(const SensorModelType& type, const std::string& origin) {
                        {"required", c.required},
                        {"description", c.description}});
   }
-  return {{"name", type.name},
-          {"origin", origin},
-          {"description", type.description},
-          {"columns", columns},
-          {"options", options_json(type.options)}};
+  return {{"name", type.name},  {"origin", origin},  {"description", type.description},
+          {"columns", columns}, {"loss", type.loss}, {"options", options_json(type.options)}};
 }
 
 std::string plugins_text(const Json& plugins, const text::TextLook& look) {
@@ -154,6 +151,7 @@ std::string registry_text(const Json& json, const text::TextLook& look) {
                             width_of(columns, "unit"), column["description"].get<std::string>(),
                             column["required"].get<bool>() ? "" : " (optional)");
       }
+      if (entry.contains("loss")) text += "    loss " + entry["loss"].get<std::string>() + "\n";
       const Json options = entry.value("options", Json::array());
       for (const Json& option : options) {
         const std::string unit = option["unit"];

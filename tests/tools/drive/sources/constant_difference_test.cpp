@@ -52,6 +52,7 @@ TEST_CASE("constant difference: another datum is told in the axes of the frame")
   const std::vector<ConstantDifference> found = constant_differences(scene.fixes, scene.poses);
   REQUIRE(found.size() == 1);
   CHECK_FALSE(found[0].in_body);
+  CHECK(found[0].turned);
   CHECK((found[0].second_m - Eigen::Vector2d(8, -6)).norm() < 2.5);  // 20 errors of 2 m for each receiver
   const std::array<std::string, 2> names{"front", "rear"};
   const std::string warning = warning_of(found[0], names);
@@ -74,6 +75,23 @@ TEST_CASE("constant difference: receivers that agree within their claims are not
   CHECK(constant_differences(alike.fixes, alike.poses).empty());
   const Scene near = circle({2, 2}, {0, 0});
   CHECK(constant_differences(near.fixes, near.poses).empty());
+}
+
+TEST_CASE("constant difference: a straight way does not tell an antenna from a datum") {
+  Scene scene = circle({0, 0}, {0, 0});
+  for (std::size_t i = 0; i < scene.fixes.size(); ++i) {
+    const double x = 10 * seconds_between(Stamp{}, scene.fixes[i].stamp);
+    scene.fixes[i].position +=
+        Eigen::Vector2d(x + (scene.fixes[i].source == 1 ? 8 : 0), 0) - scene.poses[i].head<2>();
+    scene.poses[i] = {x, 0, 0};
+  }
+  const std::vector<ConstantDifference> found = constant_differences(scene.fixes, scene.poses);
+  REQUIRE(found.size() == 1);
+  CHECK_FALSE(found[0].turned);
+  const std::array<std::string, 2> names{"front", "rear"};
+  CHECK_THAT(warning_of(found[0], names, "for minutes"), Catch::Contains("for minutes") &&
+                                                             Catch::Contains("another datum") &&
+                                                             Catch::Contains("antenna: ["));
 }
 
 }  // namespace constant_difference_test

@@ -1,13 +1,15 @@
 // What models see of a drive, and what is stated for single sources: options, losses, noise, places.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
 
 #include <waymark/core/base/error.hpp>
-#include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
+#include <waymark/tools/drive/description/drive_file.hpp>
+#include <waymark/tools/drive/estimation/noise.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 #include <waymark/tools/drive/sensors/place_columns.hpp>
@@ -193,6 +195,7 @@ TEST_CASE("source models: the noise of a sensor is estimated from the drive") {
   FusionSettings settings = stated_noise();
   settings.estimates_noise = true;
   settings.odometry_options = {};
+  settings.sources["beacons"].loss = "none";  // a loss has a sigma of its own
   const FusedDrive fused = fuse(circle(2), settings, registry_with());
   const auto& parameters = fused.model.noise.parameters;
   const auto sigma = std::find_if(parameters.begin(), parameters.end(),
@@ -206,6 +209,7 @@ TEST_CASE("source models: the noise of a sensor is estimated from the drive") {
 TEST_CASE("source models: a loss by the name of the source weighs wild readings down") {
   FusionSettings settings = stated_noise();
   const TypeRegistry registry = registry_with();
+  settings.sources["beacons"].loss = "none";
   const double without = rms_of(fuse(circle(0.3, true), settings, registry));
   settings.sources["beacons"].loss = "cauchy:2";
   const FusedDrive fused = fuse(circle(0.3, true), settings, registry);
@@ -225,6 +229,50 @@ TEST_CASE("source models: a loss by the name of the source weighs wild readings 
   CHECK(rows[1].down_weighted >= 13);
   CHECK(rows[1].down_weighted <= 17);
   CHECK(rows[1].largest == Approx(std::sqrt(2.0) * 100 / 0.5).epsilon(0.02));
+}
+
+TEST_CASE("source models: a sensor has the loss of its type unless the drive states one") {
+  const auto robust_of = [](const FusionSettings& settings, const std::string& loss) {
+    TypeRegistry registry = waymark_test::registry();
+    SensorModelType type = positions_type(nullptr);
+    if (!loss.empty()) type.loss = loss;
+    registry.add_sensor_model(type);
+    return evaluation::residuals_by_source(fuse(circle(0.3, true), settings, registry).model.document)[1]
+        .robust;
+  };
+  CHECK(SensorModelType{}.loss == "cauchy:2.4");
+  CHECK(rms_of(fuse(circle(0.3, true), stated_noise(), registry_with())) < 0.2);
+  CHECK(robust_of(stated_noise(), "") == 241);
+  CHECK(robust_of(stated_noise(), "none") == 0);
+  FusionSettings settings = stated_noise();
+  settings.sources["beacons"].loss = "none";
+  CHECK(robust_of(settings, "") == 0);
+  CHECK_THROWS_WITH(robust_of(stated_noise(), "cauchi:2"), Contains("cauchi") && Contains("cauchy"));
+}
+
+TEST_CASE("source models: a noise parameter that belongs to a word of another option needs it") {
+  const auto names_of = [](const Options& options) {
+    TypeRegistry registry = waymark_test::registry();
+    SensorModelType type = positions_type(nullptr);
+    type.options.push_back({"kind", "plain", "", OptionWords{"plain", "other"}, "kind of the errors"});
+    type.options[0].prior->where_option = "kind";
+    type.options[0].prior->where_word = "other";
+    registry.add_sensor_model(type);
+    FusionSettings settings = stated_noise();
+    settings.odometry_options = {};
+    PreparedDrive drive = circle(2);
+    drive.sensors[0].options = options;
+    const PlacedDrive placed = place_drive(drive, timeline_of(drive), settings, registry);
+    std::vector<std::string> names;
+    for (const NoiseParameter& parameter :
+         estimate_noise(placed, drive.sensors, settings, registry).parameters)
+      names.push_back(parameter.name());
+    return names;
+  };
+  const auto with = names_of({{"kind", "other"}});
+  CHECK(std::find(with.begin(), with.end(), "beacons.sigma") != with.end());
+  const auto without = names_of({});
+  CHECK(std::find(without.begin(), without.end(), "beacons.sigma") == without.end());
 }
 
 TEST_CASE("source models: an unknown loss of a source is refused") {

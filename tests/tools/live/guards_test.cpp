@@ -1,0 +1,151 @@
+// What is wrong with the sources while driving: wheels that lock or spin, and receivers that differ for minutes.
+#include <cmath>
+#include <variant>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include <waymark/tools/live/estimator/guards/receiver_comparison.hpp>
+#include <waymark/tools/live/estimator/guards/speed_guard.hpp>
+
+#include "live_drive.hpp"
+
+namespace guards_test {
+
+using namespace waymark;
+using namespace waymark::live;
+using waymark_test::LiveDrive;
+using waymark_test::Said;
+
+namespace {
+
+constexpr double kDt_s = 0.04;
+
+/// Gives the guard speeds at 25 Hz; returns what it makes of them.
+std::vector<OdometrySample> judged(const std::vector<double>& speeds) {
+  SpeedGuard guard;
+  std::vector<OdometrySample> samples;
+  for (std::size_t i = 0; i < speeds.size(); ++i)
+    samples.push_back(
+        guard.judged({Stamp::from_seconds(1000 + kDt_s * static_cast<double>(i)), speeds[i], 0.1}));
+  return samples;
+}
+
+/// Speeds that swing slowly about 15 m/s, by at most 1.5 m/s^2.
+std::vector<double> swinging(std::size_t count) {
+  std::vector<double> speeds;
+  for (std::size_t i = 0; i < count; ++i)
+    speeds.push_back(15 + 5 * std::sin(0.3 * kDt_s * static_cast<double>(i)));
+  return speeds;
+}
+
+std::size_t assumed(const std::vector<OdometrySample>& samples) {
+  std::size_t count = 0;
+  for (const OdometrySample& sample : samples) count += sample.assumed;
+  return count;
+}
+
+double rms(const std::vector<double>& errors) {
+  double squares = 0;
+  for (const double error : errors) squares += error * error;
+  return std::sqrt(squares / static_cast<double>(errors.size()));
+}
+
+}  // namespace
+
+TEST_CASE("speed guard: wheels that spin and lock are held at the speed before, and nothing else is",
+          "[live]") {
+  std::vector<double> speeds = swinging(2000);
+  for (std::size_t i = 500; i < 525; ++i) speeds[i] *= 2.5;
+  for (std::size_t i = 1000; i < 1025; ++i) speeds[i] *= 0.05;
+  const std::vector<OdometrySample> samples = judged(speeds);
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    INFO(i);
+    const std::size_t before = i >= 500 && i < 525 ? 499 : i >= 1000 && i < 1025 ? 999 : i;
+    CHECK(samples[i].speed_mps == speeds[before]);
+    CHECK(samples[i].assumed == (before != i));
+    CHECK(samples[i].yaw_rate_radps == 0.1);
+  }
+}
+
+TEST_CASE("speed guard: wheels need some readings to spin up and to come back", "[live]") {
+  std::vector<double> speeds = swinging(1500);
+  const std::vector<double> sound = speeds;
+  for (std::size_t i = 500; i < 530; ++i) speeds[i] += i < 503 ? 5.0 * static_cast<double>(i - 499) : 20;
+  for (std::size_t i = 530; i < 533; ++i) speeds[i] += 5.0 * static_cast<double>(533 - i);
+  const std::vector<OdometrySample> samples = judged(speeds);
+  for (std::size_t i = 533; i < speeds.size(); ++i) CHECK(samples[i].speed_mps == sound[i]);
+  for (std::size_t i = 500; i < 530; ++i) CHECK(samples[i].assumed);
+}
+
+TEST_CASE("speed guard: what a vehicle can do is believed", "[live]") {
+  std::vector<double> speeds(250, 20);
+  for (int i = 1; i <= 50; ++i) speeds.push_back(20 - 10 * kDt_s * i);  // 10 m/s^2 to a standstill
+  speeds.insert(speeds.end(), 250, 0);
+  CHECK(assumed(judged(speeds)) == 0);
+}
+
+TEST_CASE("speed guard: a leap that does not come back is believed after five seconds", "[live]") {
+  std::vector<double> speeds = swinging(1000);
+  for (std::size_t i = 500; i < speeds.size(); ++i) speeds[i] += 12;
+  const std::vector<OdometrySample> samples = judged(speeds);
+  CHECK(assumed(samples) == 124);
+  CHECK(samples[623].assumed);  // 4.96 s after the sample before the leap
+  CHECK_FALSE(samples[624].assumed);
+}
+
+TEST_CASE("speed guard: a speed that repeated itself was wrong before its leap, not after it", "[live]") {
+  std::vector<double> speeds = swinging(1000);
+  for (std::size_t i = 300; i < 500; ++i) speeds[i] = speeds[300] + 10;
+  CHECK(assumed(judged(speeds)) == 124);  // the freeze begins with a leap; five seconds later it is believed
+  std::vector<double> slowly = swinging(1000);
+  for (std::size_t i = 300; i < 500; ++i) slowly[i] = slowly[300];
+  for (std::size_t i = 500; i < 1000; ++i) slowly[i] += 8;
+  CHECK(assumed(judged(slowly)) == 0);
+}
+
+TEST_CASE("speed guard: a speed that leaps all the time is rough, and believed", "[live]") {
+  std::vector<double> speeds = swinging(3000);
+  for (std::size_t i = 0; i < speeds.size(); ++i)
+    if (i / 25 % 3 == 0) speeds[i] += 10;
+  const std::vector<OdometrySample> samples = judged(speeds);
+  CHECK(assumed(samples) < 300);
+  CHECK_FALSE(samples.back().assumed);
+}
+
+TEST_CASE("a slip of a second is told once, and costs no accuracy", "[live]") {
+  const LiveDrive sound = waymark_test::live_drive("rural", 300);
+  LiveDrive slipping = sound;
+  std::size_t slipped = 0;
+  for (Sample& sample : slipping.arrivals) {
+    auto* odometry = std::get_if<OdometrySample>(&sample);
+    if (odometry == nullptr || slipped > 25 || (slipped == 0 && odometry->speed_mps < 10)) continue;
+    if (seconds_between(stamp_of(sound.arrivals.front()), odometry->stamp) < 100) continue;
+    odometry->speed_mps *= 2.5;
+    ++slipped;
+  }
+  REQUIRE(slipped > 20);
+  const Said before = waymark_test::listen(sound.arrivals);
+  const Said after = waymark_test::listen(slipping.arrivals);
+  CHECK(before.count("leap") == 0);
+  CHECK(after.count("leap") == 1);
+  CHECK(rms(waymark_test::errors_m(after, slipping)) < 1.1 * rms(waymark_test::errors_m(before, sound)));
+}
+
+TEST_CASE("receivers that differ for minutes by more than they claim are told once", "[live]") {
+  const LiveDrive drive = waymark_test::live_drive("three-absolute", 300);
+  waymark_test::Arrivals shifted = drive.arrivals;
+  for (Sample& sample : shifted)
+    if (auto* fix = std::get_if<GeodeticFix>(&sample); fix != nullptr && fix->source == 1)
+      fix->latitude_deg += 8 / 111200.0;  // 8 m to the north
+  const std::vector<std::string> names = {"one", "two", "three"};
+  CHECK(waymark_test::listen(drive.arrivals, {}, "correlated", names).count("receivers") == 0);
+  const Said said = waymark_test::listen(shifted, {}, "correlated", names);
+  // Once for each of the other receivers at most. The errors of the first one are as large as the claims of both.
+  CHECK(said.count("receivers") >= 1);
+  CHECK(said.count("receivers") <= 2);
+  for (const Event& event : said.events)
+    if (event.kind == "receivers") CHECK(event.text.find("two") != std::string::npos);
+}
+
+}  // namespace guards_test
