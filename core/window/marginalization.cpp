@@ -26,10 +26,12 @@ struct Factor {
 };
 
 /// Marks the states of the prefix that stay: those without a stamp, which belong to no time, and those
-/// that join a vertex with a place outside of the prefix. Removed, they would join all of these.
+/// that join a vertex with a place outside of the prefix. Removed, they would join all of these. So do
+/// places without a stamp in a graph with stamps: landmarks, which would come back as others.
 std::vector<char> states_in_use(const Graph& graph, VertexIndex count) {
   const auto has_place = [&](VertexIndex v) { return graph.vertex_type(v).position != nullptr; };
-  const bool has_stamps = count > 0 && graph.stamp(0).has_value();
+  bool has_stamps = false;
+  for (VertexIndex v = 0; v < count && !has_stamps; ++v) has_stamps = graph.stamp(v).has_value();
   std::vector<char> in_use(at(count), 0);
   for (VertexIndex v = 0; v < count; ++v)
     in_use[at(v)] = has_stamps && !has_place(v) && !graph.stamp(v).has_value();
@@ -40,7 +42,7 @@ std::vector<char> states_in_use(const Graph& graph, VertexIndex count) {
                                      [&](VertexIndex v) { return v >= count && has_place(v); });
       if (!stays) return;
       for (const VertexIndex v : vertices)
-        if (v < count && !has_place(v)) in_use[at(v)] = 1;
+        if (v < count && (!has_place(v) || (has_stamps && !graph.stamp(v)))) in_use[at(v)] = 1;
     });
   }
   return in_use;

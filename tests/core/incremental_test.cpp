@@ -317,6 +317,42 @@ TEST_CASE("marginalisation: a fixed origin stays while edges of the window need 
   }
 }
 
+TEST_CASE(
+    "marginalisation: a landmark stays while the window sees it, and what the map says of it counts once") {
+  // Nodes a second apart before one landmark, whose place the map knows to 0.5 m. However many are dropped, the
+  // landmark is known as from all of them together.
+  Graph graph;
+  const Eigen::Matrix2d unit = Eigen::Matrix2d::Identity();
+  constexpr int kNodes = 30;
+  VertexIndex landmark = -1;
+  for (int i = 0; i < kNodes; ++i) {
+    const VertexIndex node = graph.add_vertex<VertexXy>(graph.free_id(), {0.1 * i, 0});
+    graph.set_stamp(node, Stamp::from_seconds(i));
+    if (i == 0) {
+      graph.add_edge(EdgePosition{{0, 0}}, {node}, unit);
+      landmark = graph.add_vertex<VertexXy>(graph.free_id(), {10, 0});
+      graph.add_edge(EdgePosition{{10, 0}}, {landmark}, 4 * unit);
+    } else {
+      graph.add_edge(EdgeStep{{0.1, 0}}, {i == 1 ? 0 : node - 1, node}, 100 * unit);
+    }
+    graph.add_edge(EdgeStep{{10 - 0.1 * i, 0}}, {node, landmark}, 25 * unit);
+  }
+  const VertexId id = graph.id(landmark);
+  const VertexIndex last = static_cast<VertexIndex>(graph.vertex_count()) - 1;
+  const Eigen::MatrixXd expected = marginal_covariances(graph, std::array{landmark})[0];
+  const Eigen::MatrixXd pose = marginal_covariances(graph, std::array{last})[0];
+  for (int dropped = 0; dropped < 20; ++dropped) {
+    const VertexIndex first = graph.find(id) == 0 ? 1 : 0;
+    (void)marginalize_prefix(graph, first == 0 ? 1 : 2);
+  }
+  const std::optional<VertexIndex> kept = graph.find(id);
+  REQUIRE(kept);
+  CHECK(graph.vertex_count() < kNodes - 15);
+  const VertexIndex newest = static_cast<VertexIndex>(graph.vertex_count()) - 1;
+  CHECK((marginal_covariances(graph, std::array{*kept})[0] - expected).norm() < 1e-9);
+  CHECK((marginal_covariances(graph, std::array{newest})[0] - pose).norm() < 1e-9);
+}
+
 TEST_CASE("incremental: a window running along a drive stays close to the batch solution") {
   // The drive's first 2 s come at once: a single fix leaves the heading undetermined. 16 s of drive
   // in the window, two steps an update. Bound: a tenth of the batch solution's own standard

@@ -29,22 +29,22 @@ class GaussMarkovProcess {
   GaussMarkovProcess(double sigma, double time_s, double first_sigma = 0)
       : sigma_(sigma), time_s_(time_s), first_sigma_(std::hypot(sigma, first_sigma)) {}
 
-  /// Returns the state at a moment; the first call for it makes the state. Moments may come in any order.
+  /// Returns the state at a moment; the first call for it makes the state, at its expectation. Moments may
+  /// come in any order.
   [[nodiscard]] VertexIndex at(Stamp stamp, Graph& graph) {
     forget_dropped(graph);
-    if (!states_.empty() && stamp < states_.back().stamp) return between(stamp, graph);
-    const VertexIndex last = states_.empty() ? -1 : states_.back().vertex.in(graph);
-    if (!states_.empty() && states_.back().stamp == stamp) return last;
-    const VertexIndex next = graph.add_vertex<V>(graph.free_id(), kZero);
-    graph.set_stamp(next, stamp);
+    if (states_.empty()) return begin(stamp, graph);
+    if (stamp < states_.back().stamp) return between(stamp, graph);
+    const VertexIndex last = states_.back().vertex.in(graph);
     if (last < 0) {
-      add_prior_about_zero(graph, next, first_sigma_);
-    } else {
-      Decay edge;
-      edge.decay = decay_to(stamp, states_.back());
-      graph.add_edge(edge, {last, next},
-                     Information::Identity() / (sigma_ * sigma_ * (1 - edge.decay * edge.decay)));
+      states_.clear();
+      return begin(stamp, graph);
     }
+    if (states_.back().stamp == stamp) return last;
+    Decay edge;
+    edge.decay = decay_to(stamp, states_.back());
+    const VertexIndex next = add_state(stamp, edge.decay * value_of(last, graph), graph);
+    graph.add_edge(edge, {last, next}, information_of(1 - edge.decay * edge.decay));
     states_.push_back({stamp, {}});
     return states_.back().vertex.keep(next, graph);
   }
@@ -62,34 +62,48 @@ class GaussMarkovProcess {
   }
 
  private:
-  using Information = Eigen::Matrix<double, V::kTangentSize, V::kTangentSize>;
-  static constexpr std::array<double, V::kValueSize> kZero{};
+  static constexpr int kSize = V::kTangentSize;
+  using Value = Eigen::Matrix<double, kSize, 1>;
+  using Information = Eigen::Matrix<double, kSize, kSize>;
 
   struct State {
     Stamp stamp;
     KeptVertex vertex;
   };
+
+  [[nodiscard]] VertexIndex begin(Stamp stamp, Graph& graph) {
+    const VertexIndex first = add_state(stamp, Value::Zero(), graph);
+    add_prior_about_zero(graph, first, first_sigma_);
+    states_.push_back({stamp, {}});
+    return states_.back().vertex.keep(first, graph);
+  }
+
   /// Returns the state at a moment before the last one. The states around it stay as they are.
   [[nodiscard]] VertexIndex between(Stamp stamp, Graph& graph) {
     const auto after = first_not_before(stamp);
     const VertexIndex later = after->vertex.in(graph);
     if (after->stamp == stamp) return later;
-    const VertexIndex own = graph.add_vertex<V>(graph.free_id(), kZero);
-    graph.set_stamp(own, stamp);
-    const double b = decay_to(stamp, *after);
-    if (after == states_.begin()) {
+    const bool is_first = after == states_.begin();
+    const VertexIndex earlier = is_first ? -1 : std::prev(after)->vertex.in(graph);
+    VertexIndex own = 0;
+    if (later < 0 || (!is_first && earlier < 0)) {  // a neighbour has left the window before it
+      own = add_state(stamp, Value::Zero(), graph);
+      add_prior_about_zero(graph, own, sigma_);
+    } else if (is_first) {
       Decay edge;
-      edge.decay = b;
-      graph.add_edge(edge, {later, own}, Information::Identity() / (sigma_ * sigma_ * (1 - b * b)));
+      edge.decay = decay_to(stamp, *after);
+      own = add_state(stamp, edge.decay * value_of(later, graph), graph);
+      graph.add_edge(edge, {later, own}, information_of(1 - edge.decay * edge.decay));
     } else {
-      const auto before = std::prev(after);
-      const double a = decay_to(stamp, *before);
+      const double a = decay_to(stamp, *std::prev(after));
+      const double b = decay_to(stamp, *after);
       const double share = 1 - a * a * b * b;
       Between edge;
       edge.before = a * (1 - b * b) / share;
       edge.after = b * (1 - a * a) / share;
-      const double variance = sigma_ * sigma_ * (1 - a * a) * (1 - b * b) / share;
-      graph.add_edge(edge, {before->vertex.in(graph), later, own}, Information::Identity() / variance);
+      own = add_state(stamp, edge.before * value_of(earlier, graph) + edge.after * value_of(later, graph),
+                      graph);
+      graph.add_edge(edge, {earlier, later, own}, information_of((1 - a * a) * (1 - b * b) / share));
     }
     State state{stamp, {}};
     state.vertex.keep(own, graph);
@@ -97,7 +111,22 @@ class GaussMarkovProcess {
     return own;
   }
 
-  /// Forgets states that have left the graph.
+  [[nodiscard]] static Value value_of(VertexIndex state, const Graph& graph) {
+    return Eigen::Map<const Value>(graph.value(state).data());
+  }
+  [[nodiscard]] VertexIndex add_state(Stamp stamp, const Value& value, Graph& graph) const {
+    std::array<double, V::kValueSize> numbers{};
+    std::copy(value.begin(), value.end(), numbers.begin());
+    const VertexIndex state = graph.add_vertex<V>(graph.free_id(), numbers);
+    graph.set_stamp(state, stamp);
+    return state;
+  }
+  /// @param share of the variance that is not known
+  [[nodiscard]] Information information_of(double share) const {
+    return Information::Identity() / (sigma_ * sigma_ * share);
+  }
+
+  /// Forgets states that have left the graph: the earliest ones, and none behind one that is left.
   void forget_dropped(const Graph& graph) {
     std::size_t gone = 0;
     while (gone < states_.size() && states_[gone].vertex.in(graph) < 0) ++gone;

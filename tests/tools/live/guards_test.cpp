@@ -1,4 +1,5 @@
 // What is wrong with the sources while driving: wheels that lock or spin, and receivers that differ for minutes.
+#include <algorithm>
 #include <cmath>
 #include <variant>
 #include <vector>
@@ -104,6 +105,21 @@ TEST_CASE("speed guard: a speed that repeated itself was wrong before its leap, 
   CHECK(assumed(judged(slowly)) == 0);
 }
 
+TEST_CASE("speed guard: a slip that outlasts the guard comes back at once", "[live]") {
+  std::vector<double> speeds = swinging(1000);
+  const std::vector<double> sound = speeds;
+  for (std::size_t i = 500; i < 700; ++i) speeds[i] += 12;
+  const std::vector<OdometrySample> samples = judged(speeds);
+  for (std::size_t i = 700; i < 1000; ++i) CHECK(samples[i].speed_mps == sound[i]);
+}
+
+TEST_CASE("speed guard: a sample that is older than the last one is no leap", "[live]") {
+  SpeedGuard guard;
+  for (int i = 0; i < 100; ++i) (void)guard.judged({Stamp::from_seconds(i * kDt_s), 10, 0});
+  CHECK_FALSE(guard.judged({Stamp::from_seconds(3), 10.2, 0}).assumed);
+  CHECK_FALSE(guard.judged({Stamp::from_seconds(100 * kDt_s), 10, 0}).assumed);
+}
+
 TEST_CASE("speed guard: a speed that leaps all the time is rough, and believed", "[live]") {
   std::vector<double> speeds = swinging(3000);
   for (std::size_t i = 0; i < speeds.size(); ++i)
@@ -130,6 +146,35 @@ TEST_CASE("a slip of a second is told once, and costs no accuracy", "[live]") {
   CHECK(before.count("leap") == 0);
   CHECK(after.count("leap") == 1);
   CHECK(rms(waymark_test::errors_m(after, slipping)) < 1.1 * rms(waymark_test::errors_m(before, sound)));
+}
+
+TEST_CASE("a wrong reading of a compass does not move what is published at once", "[live]") {
+  const LiveDrive drive = waymark_test::live_drive("rural", 240);
+  drive::DriveDescription description = waymark_test::live_description();
+  description.sensors.push_back(
+      {.name = "heading", .log = {}, .options = {}, .place = "", .source = "compass"});
+  const auto with_readings = [&](double wrong_rad) {
+    waymark_test::Arrivals arrivals;
+    int count = 0;
+    for (const Sample& sample : drive.arrivals) {
+      arrivals.push_back(sample);
+      const auto* odometry = std::get_if<OdometrySample>(&sample);
+      if (odometry == nullptr || ++count % 5 != 0) continue;
+      const auto truth =
+          std::lower_bound(drive.simulated.truth.begin(), drive.simulated.truth.end(), odometry->stamp,
+                           [](const auto& of, Stamp s) { return of.stamp < s; });
+      if (truth == drive.simulated.truth.end()) continue;
+      const double off = count % 50 == 0 && count > 1500 ? wrong_rad : 0;  // one in ten
+      arrivals.push_back(SensorReading{odometry->stamp, 0, {*truth->heading_rad + off, 0.02}});
+    }
+    return arrivals;
+  };
+  const auto largest = [&](const waymark_test::Arrivals& arrivals) {
+    const std::vector<double> errors =
+        waymark_test::errors_m(waymark_test::listen(description, arrivals), drive);
+    return *std::max_element(errors.begin(), errors.end());
+  };
+  CHECK(largest(with_readings(2)) < 1.1 * largest(with_readings(0)));
 }
 
 TEST_CASE("receivers that differ for minutes by more than they claim are told once", "[live]") {

@@ -152,7 +152,8 @@ std::vector<Tick> even_ticks(Range range, int count) {
   std::vector<Tick> result;
   const double first = std::ceil(range.low / step - 1e-9);
   const double last = std::floor((range.high - first * step) / step + 1e-9);
-  for (int k = 0; k <= static_cast<int>(std::min(last, 100.0)); ++k) {
+  const int most = last >= 0 ? static_cast<int>(std::min(last, 100.0)) : -1;  // not a number: no ticks
+  for (int k = 0; k <= most; ++k) {
     const double value = (first + k) * step;
     result.push_back({value, tick_label(value, step)});
   }

@@ -8,6 +8,7 @@
 
 #include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/core/linear/block_cholesky.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
@@ -28,13 +29,28 @@ std::vector<Eigen::Vector3d> reckoned(const Timeline& timeline, const Eigen::Vec
   return poses;
 }
 
-/// Returns the middle of the fixed vertices with a place, such as the landmarks of a map.
+/// Marks the vertices whose place is known before the drive: fixed ones, and those with a prior of their own.
+std::vector<char> known_places(const Graph& graph) {
+  std::vector<char> known(graph.vertex_count(), 0);
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v)
+    known[static_cast<std::size_t>(v)] = graph.fixed(v);
+  for (std::size_t b = 0; b < graph.batch_count(); ++b) {
+    if (graph.edge_type(b).tag != GaussianPriorBatch::kTag) continue;
+    for (std::size_t e = 0; e < graph.batch(b).size(); ++e)
+      if (const auto of = graph.batch(b).vertices(e); of.size() == 1)
+        known[static_cast<std::size_t>(of[0])] = 1;
+  }
+  return known;
+}
+
+/// Returns the middle of the places that are known, such as the landmarks of a map.
 std::optional<Eigen::Vector2d> middle_of_known_places(const Graph& graph) {
+  const std::vector<char> known = known_places(graph);
   Eigen::Vector2d sum(0, 0);
   int count = 0;
   for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph.vertex_count()); ++v) {
     const VertexType& type = graph.vertex_type(v);
-    if (!graph.fixed(v) || type.value_size < 2 || type.position == nullptr) continue;
+    if (known[static_cast<std::size_t>(v)] == 0 || type.value_size < 2 || type.position == nullptr) continue;
     sum += Eigen::Vector2d(graph.value(v)[0], graph.value(v)[1]);
     ++count;
   }

@@ -197,7 +197,7 @@ void Estimator::hear(std::size_t source, const OdometrySample& read) {
   counts_.taken[name] += 1;
   const OdometrySample sample = guarded(source, read);
   if (!has_several_odometries()) return advance(0, sample);
-  if (sample.assumed) return;  // the others know better
+  if (sample.assumed && odometries_.another_speaks(source, sample.stamp)) return;  // it knows better
   if (!odometries_.take(source, sample)) {
     counts_.taken[name] -= 1;
     refuse(FurtherOdometry{sample.stamp, source, 0, 0}, "late",

@@ -41,6 +41,14 @@ bool Odometries::take(std::size_t source, const OdometrySample& sample) {
   return true;
 }
 
+bool Odometries::another_speaks(std::size_t source, Stamp now) const {
+  for (std::size_t i = 0; i < sources_.size(); ++i)
+    if (i != source && !sources_[i].samples.empty() &&
+        seconds_between(sources_[i].samples.back().stamp, now) <= sources_[i].silence_s)
+      return true;
+  return false;
+}
+
 bool Odometries::covers(const Source& source, Stamp last, Stamp moment) const {
   return !source.samples.empty() && source.begin <= last &&
          seconds_between(source.samples.back().stamp, moment) <= source.silence_s;

@@ -32,6 +32,8 @@ class Odometries {
 
   /// Takes a sample of a source. @returns whether it is later than those before
   [[nodiscard]] bool take(std::size_t source, const OdometrySample& sample);
+  /// Tells whether a source beside this one has had a sample lately.
+  [[nodiscard]] bool another_speaks(std::size_t source, Stamp now) const;
   /// Returns the samples of a source, which has just had one, that are to be nodes; none if the nodes are
   /// another one's. @param last node; empty: there is none
   [[nodiscard]] std::vector<OdometrySample> nodes(std::size_t source, std::optional<Stamp> last) const;

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <waymark/core/graph/detail/robust_information.hpp>
+
 namespace waymark::live {
 
 /// Quadratic model over the known vertices and the new ones.
@@ -56,13 +58,18 @@ void Predictor::add_edge(const Graph& graph, std::size_t batch, std::size_t edge
   std::vector<Eigen::MatrixXd> jacobians;
   graph.batch(batch).linearize_edge(edge, graph.view(), e, jacobians);
   const Eigen::MatrixXd omega = graph.batch(batch).information(edge);
+  const double squared = e.dot(omega * e);
+  const Loss* loss = graph.batch(batch).loss(edge);
+  const LossValue value = loss == nullptr ? LossValue{squared, 1, 0} : loss->at(squared);
+  const Eigen::MatrixXd information = robust_information(value, squared, omega, e);
+  const Eigen::VectorXd weighted = value.weight * (omega * e);
   const std::span<const VertexIndex> vertices = graph.batch(batch).vertices(edge);
   std::vector<Eigen::Index> rows;
   for (const VertexIndex v : vertices) rows.push_back(joint.row_of(v));
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     if (rows[k] < 0) continue;
-    const Eigen::MatrixXd left = jacobians[k].transpose() * omega;
-    joint.gradient.segment(rows[k], left.rows()) += left * e;
+    const Eigen::MatrixXd left = jacobians[k].transpose() * information;
+    joint.gradient.segment(rows[k], left.rows()) += jacobians[k].transpose() * weighted;
     for (std::size_t l = 0; l < vertices.size(); ++l)
       if (rows[l] >= 0)
         joint.information.block(rows[k], rows[l], left.rows(), jacobians[l].cols()) += left * jacobians[l];

@@ -65,26 +65,39 @@ bool SpeedGuard::has_repeated(const OdometrySample& sample) const {
   return changed_ && seconds_between(*changed_, sample.stamp) > kFrozen_s;
 }
 
+/// Tells whether a leap that was taken for the vehicle's speed comes back at last.
+bool SpeedGuard::is_late_return(const OdometrySample& sample, const OdometrySample& from) const {
+  return given_up_ * (sample.speed_mps - from.speed_mps) < 0;
+}
+
+bool SpeedGuard::is_rough() const {
+  return held_s_ > std::max(drive::kLeapLasts_s, seen_s_ / kRare);
+}
+
 OdometrySample SpeedGuard::judged(OdometrySample sample) {
-  if (rough_) return sample;
+  if (!recent_.empty() && sample.stamp <= recent_.back().stamp) return sample;
   const std::optional<OdometrySample> from = leapt_from(sample);
   const bool is_on_its_way =
       back_ && seconds_between(*back_, sample.stamp) <= drive::kLeapTakes_s;  // of the leap back
   if (before_) {
     const bool ends = seconds_between(before_->stamp, sample.stamp) > drive::kLeapLasts_s;
     if (ends || (from && is_back(sample, *from))) {
+      given_up_ = ends ? sample.speed_mps - before_->speed_mps : 0;
       before_.reset();
       recent_.clear();
       back_ = sample.stamp;
     }
+  } else if (from && is_late_return(sample, *from)) {
+    given_up_ = 0;
+    recent_.clear();
+    back_ = sample.stamp;
   } else if (from && (is_on_its_way || has_repeated(sample))) {
     recent_.clear();
   } else if (from) {
     before_ = from;
   }
   if (before_ && !recent_.empty()) held_s_ += seconds_between(recent_.back().stamp, sample.stamp);
-  rough_ = held_s_ > std::max(drive::kLeapLasts_s, seen_s_ / kRare);
-  if (rough_) before_.reset();
+  if (is_rough()) before_.reset();
   remember(sample);
   if (before_) {
     sample.speed_mps = before_->speed_mps;
