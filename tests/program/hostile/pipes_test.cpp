@@ -8,6 +8,7 @@
 #include "program/support/material.hpp"
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace pipes_test {
 
@@ -22,6 +23,8 @@ RunResult shell(const std::string& folder, const std::string& line) {
 }  // namespace
 
 TEST_CASE("pipes: text without an end is refused with little memory") {
+  if (waymark_test::kAddressSanitized)
+    return waymark_test::skip("AddressSanitizer needs the address space that is limited here");
   const std::string folder = fresh_folder();
   // 1.2 GB of address space hold the program and its libraries, and 60 s would fill them many times.
   const std::string limit = "ulimit -v 1200000; yes LINE | exec timeout 60 \"$WAYMARK\" ";

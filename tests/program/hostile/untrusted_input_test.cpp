@@ -8,6 +8,7 @@
 
 #include "program/support/program.hpp"
 #include "support/paths.hpp"
+#include "support/skip.hpp"
 
 namespace untrusted_input_test {
 
@@ -60,6 +61,8 @@ TEST_CASE("untrusted: a name longer than any file's is bad input, wherever it st
 }
 
 TEST_CASE("untrusted: endless devices are refused by what they begin with") {
+  if (waymark_test::kAddressSanitized)
+    return waymark_test::skip("AddressSanitizer needs the address space that is limited here");
   for (const char* command :
        {"check", "inspect", "doctor", "sync", "evaluate", "run -o out", "convert -o out.graph"}) {
     for (const char* device : {"/dev/zero", "/dev/urandom"}) {
