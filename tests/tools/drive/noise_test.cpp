@@ -182,7 +182,9 @@ TEST_CASE("noise: the derivatives of the objective are those of its differences"
   const CoarseDrive coarse = coarsen(placed, {});
   NoiseObjective objective(coarse, settings, registry());
   const Eigen::VectorXd minimum = coordinates_of(noise);
-  for (const double away : {0.0, 0.6, -0.6}) {
+  // The cost is bent, and steps a little, where weights of losses reach their bounds, and the minimum itself may
+  // be such a place.
+  for (const double away : {0.2, 0.6, -0.6}) {
     const Eigen::VectorXd at = minimum.array() + away;
     place_at(at, noise);
     Eigen::VectorXd gradient;
