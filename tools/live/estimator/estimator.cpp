@@ -332,9 +332,11 @@ void Estimator::compare_receivers(const Fix& fix) {
   if (!window_ || description_.gnss.size() < 2) return;
   const double turn = window_->newest_pose()[2] - reckoning_.nodes().back().pose[2];
   receivers_.take(fix, reckoning_.at(fix.stamp).pose, turn);
+  const std::vector<drive::ConstantDifference> news = receivers_.news();
+  if (news.empty()) return;
   std::vector<std::string> names;
   for (const drive::GnssConfig& receiver : description_.gnss) names.push_back(receiver.name);
-  for (const drive::ConstantDifference& difference : receivers_.news())
+  for (const drive::ConstantDifference& difference : news)
     say("receivers", names[static_cast<std::size_t>(difference.second)],
         drive::warning_of(difference, names, "for minutes"));
 }

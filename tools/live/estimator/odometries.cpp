@@ -42,16 +42,12 @@ bool Odometries::take(std::size_t source, const OdometrySample& sample) {
 }
 
 bool Odometries::another_speaks(std::size_t source, Stamp now) const {
-  for (std::size_t i = 0; i < sources_.size(); ++i)
-    if (i != source && !sources_[i].samples.empty() &&
-        seconds_between(sources_[i].samples.back().stamp, now) <= sources_[i].silence_s)
-      return true;
-  return false;
+  return std::any_of(sources_.begin(), sources_.end(),
+                     [&](const Source& other) { return &other != &sources_[source] && other.speaks(now); });
 }
 
 bool Odometries::covers(const Source& source, Stamp last, Stamp moment) const {
-  return !source.samples.empty() && source.begin <= last &&
-         seconds_between(source.samples.back().stamp, moment) <= source.silence_s;
+  return source.begin <= last && source.speaks(moment);
 }
 
 std::vector<OdometrySample> Odometries::nodes(std::size_t source, std::optional<Stamp> last) const {

@@ -54,6 +54,10 @@ class Odometries {
     double silence_s = 0;                // a longer one is a silence
     std::optional<Stamp> joined;         // the last node that it joins
     std::optional<Stamp> asked;          // the last sample whose node was looked for
+    /// Tells whether it has had a sample lately.
+    [[nodiscard]] bool speaks(Stamp now) const {
+      return !samples.empty() && seconds_between(samples.back().stamp, now) <= silence_s;
+    }
   };
   [[nodiscard]] bool covers(const Source& source, Stamp last, Stamp moment) const;
   void find_ways(std::size_t index, std::span<const Stamp> nodes, double grid_scale,
