@@ -7,7 +7,7 @@
 
 #include <waymark/core/base/detail/index.hpp>
 #include <waymark/core/base/error.hpp>
-#include <waymark/core/graph/detail/robust_information.hpp>
+#include <waymark/core/graph/detail/weighed_edge.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/linear/detail/information_root.hpp>
@@ -130,17 +130,12 @@ void Elimination::add(Factor factor) {
 }
 
 void Elimination::add_edge(const EdgeBatchBase& batch, const EdgeType& type, std::size_t edge) {
-  Eigen::VectorXd e;
-  std::vector<Eigen::MatrixXd> jacobians;
-  batch.linearize_edge(edge, graph_.view(), e, jacobians);
-  const Eigen::MatrixXd omega = batch.information(edge);
-  const double squared = e.dot(omega * e);
-  const Loss* loss = batch.loss(edge);
-  const LossValue value = loss == nullptr ? LossValue{squared, 1, 0} : loss->at(squared);
-  const Eigen::MatrixXd root = information_root(robust_information(value, squared, omega, e));
+  const detail::WeighedEdge weighed = detail::weigh(batch, edge, graph_.view());
+  const std::vector<Eigen::MatrixXd>& jacobians = weighed.jacobians;
+  const Eigen::MatrixXd root = information_root(weighed.information());
   // The root is that of w Omega, with its part along e multiplied by the factor. The gradient is
   // J^T w Omega e.
-  const Eigen::VectorXd b = root * e / curvature_factor(value, squared);
+  const Eigen::VectorXd b = root * weighed.error / curvature_factor(weighed.loss, weighed.squared);
 
   const std::span<const VertexIndex> named = batch.vertices(edge);
   std::vector<std::size_t> order;
@@ -167,7 +162,7 @@ void Elimination::add_edge(const EdgeBatchBase& batch, const EdgeType& type, std
     throw InputError(type.tag + " at vertex " + to_string(graph_.id(named.front())) +
                      ": error or derivative is not finite, so it cannot be marginalised");
   }
-  constant_ += value.rho - b.squaredNorm();
+  constant_ += weighed.loss.rho - b.squaredNorm();
   add(std::move(factor));
 }
 

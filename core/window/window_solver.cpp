@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <waymark/core/base/detail/index.hpp>
-#include <waymark/core/graph/detail/robust_information.hpp>
+#include <waymark/core/graph/detail/weighed_edge.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/system/detail/time_order.hpp>
 #include <waymark/core/window/detail/front.hpp>
@@ -197,28 +197,22 @@ void WindowSolver::Elimination::assemble(const EdgeName& name) {
 void WindowSolver::Elimination::assemble_prior(const EdgeName& name) {
   const EdgeBatchBase& batch = graph_.batch(name.batch);
   const std::span<const VertexIndex> vertices = batch.vertices(name.edge);
-  Eigen::VectorXd e;
-  std::vector<Eigen::MatrixXd> jacobians;
-  batch.linearize_edge(name.edge, graph_.view(), e, jacobians);
-  const Eigen::MatrixXd omega = batch.information(name.edge);
-  const double squared = e.dot(omega * e);
-  const Loss* loss = batch.loss(name.edge);
-  const LossValue value = loss == nullptr ? LossValue{squared, 1, 0} : loss->at(squared);
-  chi2_ += value.rho;
-  const Eigen::MatrixXd information = robust_information(value, squared, omega, e);
-  const Eigen::VectorXd weighted = value.weight * (omega * e);
+  const detail::WeighedEdge edge = detail::weigh(batch, name.edge, graph_.view());
+  chi2_ += edge.loss.rho;
+  const Eigen::MatrixXd information = edge.information();
+  const Eigen::VectorXd pull = edge.pull();
   rows_.clear();
   for (const VertexIndex v : vertices)
     rows_.push_back(is_unknown(v) ? front_.row_of(v, graph_.vertex_type(v).tangent_size, tangent_of_[at(v)])
                                   : -1);
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     if (rows_[k] < 0) continue;
-    const Eigen::VectorXd gradient = jacobians[k].transpose() * weighted;
+    const Eigen::VectorXd gradient = edge.jacobians[k].transpose() * pull;
     front_.add_gradient(rows_[k], static_cast<int>(gradient.size()), gradient.data());
-    const Eigen::MatrixXd left = jacobians[k].transpose() * information;
+    const Eigen::MatrixXd left = edge.jacobians[k].transpose() * information;
     for (std::size_t l = 0; l <= k; ++l) {
       if (rows_[l] < 0) continue;
-      const Eigen::MatrixXd block = left * jacobians[l];
+      const Eigen::MatrixXd block = left * edge.jacobians[l];
       front_.add_block(rows_[k], static_cast<int>(block.rows()), rows_[l], static_cast<int>(block.cols()),
                        block.data(), static_cast<int>(block.rows()));
     }

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include <waymark/core/graph/detail/robust_information.hpp>
+#include <waymark/core/graph/detail/weighed_edge.hpp>
 
 namespace waymark::live {
 
@@ -54,22 +54,17 @@ void Predictor::mark(const Graph& graph) {
 }
 
 void Predictor::add_edge(const Graph& graph, std::size_t batch, std::size_t edge, Joint& joint) const {
-  Eigen::VectorXd e;
-  std::vector<Eigen::MatrixXd> jacobians;
-  graph.batch(batch).linearize_edge(edge, graph.view(), e, jacobians);
-  const Eigen::MatrixXd omega = graph.batch(batch).information(edge);
-  const double squared = e.dot(omega * e);
-  const Loss* loss = graph.batch(batch).loss(edge);
-  const LossValue value = loss == nullptr ? LossValue{squared, 1, 0} : loss->at(squared);
-  const Eigen::MatrixXd information = robust_information(value, squared, omega, e);
-  const Eigen::VectorXd weighted = value.weight * (omega * e);
+  const detail::WeighedEdge weighed = detail::weigh(graph.batch(batch), edge, graph.view());
+  const std::vector<Eigen::MatrixXd>& jacobians = weighed.jacobians;
+  const Eigen::MatrixXd information = weighed.information();
+  const Eigen::VectorXd pull = weighed.pull();
   const std::span<const VertexIndex> vertices = graph.batch(batch).vertices(edge);
   std::vector<Eigen::Index> rows;
   for (const VertexIndex v : vertices) rows.push_back(joint.row_of(v));
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     if (rows[k] < 0) continue;
     const Eigen::MatrixXd left = jacobians[k].transpose() * information;
-    joint.gradient.segment(rows[k], left.rows()) += jacobians[k].transpose() * weighted;
+    joint.gradient.segment(rows[k], left.rows()) += jacobians[k].transpose() * pull;
     for (std::size_t l = 0; l < vertices.size(); ++l)
       if (rows[l] >= 0)
         joint.information.block(rows[k], rows[l], left.rows(), jacobians[l].cols()) += left * jacobians[l];
