@@ -6,6 +6,7 @@
 
 #include <waymark/core/graph/edge_batch.hpp>
 #include <waymark/types_se2/edge_gnss.hpp>
+#include <waymark/types_se2/plugin_kit/gauss_markov_process.hpp>
 
 namespace waymark::plugins::gnss_correlated {
 
@@ -24,61 +25,22 @@ struct VertexGnssMultipath : PlaneState {
   static constexpr std::array<std::string_view, 2> value_names() { return {"x", "y"}; }
 };
 
-/// One step of a first-order Gauss-Markov process: e = x_to - decay x_from, decay = exp(-dt / tau).
-struct EdgeGnssBiasDecay {
+/// One step of the slow error.
+struct EdgeGnssBiasDecay : GaussMarkovDecay<EdgeGnssBiasDecay, VertexGnssBias> {
   static constexpr std::string_view kTag = "EDGE_GNSS_BIAS_DECAY";
-  static constexpr std::string_view kForm = "difference";
-  static constexpr int kErrorDimension = 2;
-  using Vertices = VertexList<VertexGnssBias, VertexGnssBias>;
-  static constexpr auto fields() { return std::array{field<&EdgeGnssBiasDecay::decay>("decay")}; }
-
-  template <typename T>
-  Vector2<T> error(const Vector2<T>& from, const Vector2<T>& to) const {
-    return to - from * T(decay);
-  }
-
-  double decay = 1;
 };
 
-/// The same step for the part of the error that lasts for seconds.
-struct EdgeGnssMultipathDecay : EdgeGnssBiasDecay {
-  static constexpr std::string_view kTag = "EDGE_GNSS_MULTIPATH_DECAY";
-  using Vertices = VertexList<VertexGnssMultipath, VertexGnssMultipath>;
-  static constexpr auto fields() {
-    return std::array{field<&EdgeGnssBiasDecay::decay, EdgeGnssMultipathDecay>("decay")};
-  }
-};
-
-/// The same process at a moment between two others, for a fix that arrives after a later one:
-///   e = x - (before x_before + after x_after).
-/// Given its neighbours, a Gauss-Markov process has no memory.
-struct EdgeGnssBiasBetween {
+/// The slow error of a fix that arrives after a later one.
+struct EdgeGnssBiasBetween : GaussMarkovBetween<EdgeGnssBiasBetween, VertexGnssBias> {
   static constexpr std::string_view kTag = "EDGE_GNSS_BIAS_BETWEEN";
-  static constexpr std::string_view kForm = "difference";
-  static constexpr int kErrorDimension = 2;
-  using Vertices = VertexList<VertexGnssBias, VertexGnssBias, VertexGnssBias>;
-  static constexpr auto fields() {
-    return std::array{field<&EdgeGnssBiasBetween::before>("before"),
-                      field<&EdgeGnssBiasBetween::after>("after")};
-  }
-
-  template <typename T>
-  Vector2<T> error(const Vector2<T>& earlier, const Vector2<T>& later, const Vector2<T>& between) const {
-    return between - earlier * T(before) - later * T(after);
-  }
-
-  double before = 0.5;
-  double after = 0.5;
 };
 
 /// The same for the part of the error that lasts for seconds.
-struct EdgeGnssMultipathBetween : EdgeGnssBiasBetween {
+struct EdgeGnssMultipathDecay : GaussMarkovDecay<EdgeGnssMultipathDecay, VertexGnssMultipath> {
+  static constexpr std::string_view kTag = "EDGE_GNSS_MULTIPATH_DECAY";
+};
+struct EdgeGnssMultipathBetween : GaussMarkovBetween<EdgeGnssMultipathBetween, VertexGnssMultipath> {
   static constexpr std::string_view kTag = "EDGE_GNSS_MULTIPATH_BETWEEN";
-  using Vertices = VertexList<VertexGnssMultipath, VertexGnssMultipath, VertexGnssMultipath>;
-  static constexpr auto fields() {
-    return std::array{field<&EdgeGnssBiasBetween::before, EdgeGnssMultipathBetween>("before"),
-                      field<&EdgeGnssBiasBetween::after, EdgeGnssMultipathBetween>("after")};
-  }
 };
 
 /// EDGE_GNSS_POSITION_LATE with the correlated errors in the measurement:

@@ -11,7 +11,6 @@
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
-#include <waymark/types_se2/plugin_kit/gauss_markov_process.hpp>
 #include <waymark/types_se2/plugin_kit/gnss_modeling.hpp>
 
 namespace waymark::plugins::gnss_correlated {

@@ -9,6 +9,7 @@
 
 #include <waymark/core/graph/edge.hpp>
 #include <waymark/core/graph/scalar_state.hpp>
+#include <waymark/types_se2/plugin_kit/gauss_markov_process.hpp>
 #include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark::plugins::gnss_raw {
@@ -75,20 +76,9 @@ struct EdgeGnssHeightWalk {
   double change = 0;  ///< the expected change, m; usually 0
 };
 
-/// One step of a first-order Gauss-Markov process: e = x_to - decay x_from, decay = exp(-dt / tau).
-struct EdgeGnssSatelliteBiasDecay {
+/// One step of such a part.
+struct EdgeGnssSatelliteBiasDecay : GaussMarkovDecay<EdgeGnssSatelliteBiasDecay, VertexGnssSatelliteBias> {
   static constexpr std::string_view kTag = "EDGE_GNSS_SATELLITE_BIAS_DECAY";
-  static constexpr std::string_view kForm = "difference";
-  static constexpr int kErrorDimension = 1;
-  using Vertices = VertexList<VertexGnssSatelliteBias, VertexGnssSatelliteBias>;
-  static constexpr auto fields() { return std::array{field<&EdgeGnssSatelliteBiasDecay::decay>("decay")}; }
-
-  template <typename T>
-  Eigen::Matrix<T, 1, 1> error(const T& from, const T& to) const {
-    return Eigen::Matrix<T, 1, 1>(T(to - from * T(decay)));
-  }
-
-  double decay = 1;
 };
 
 /// One pseudorange, corrected for the satellite's clock and the atmosphere:

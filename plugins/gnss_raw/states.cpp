@@ -92,7 +92,7 @@ VertexIndex LastingErrors::of(int system, int satellite, Stamp stamp, Graph& gra
     add_prior_about_zero(graph, next, 1);
   } else {
     const double decay = std::exp(-dt / parameters_.time_s);
-    graph.add_edge(EdgeGnssSatelliteBiasDecay{decay}, {last, next},
+    graph.add_edge(EdgeGnssSatelliteBiasDecay{{decay}}, {last, next},
                    Eigen::Matrix<double, 1, 1>(1 / (1 - decay * decay)));
   }
   error.since = stamp;

@@ -8,7 +8,6 @@
 #include <waymark/core/drive/kept_vertex.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
-#include <waymark/types_se2/plugin_kit/gauss_markov_process.hpp>
 #include <waymark/types_se2/plugin_kit/sensor_readings.hpp>
 
 namespace waymark::plugins::heading {

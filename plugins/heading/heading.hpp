@@ -7,6 +7,7 @@
 
 #include <waymark/core/graph/scalar_state.hpp>
 #include <waymark/types_se2/edge_se2.hpp>
+#include <waymark/types_se2/plugin_kit/gauss_markov_process.hpp>
 
 namespace waymark::plugins::heading {
 
@@ -32,40 +33,14 @@ struct VertexHeadingWander : ScalarState {
   static constexpr std::array<std::string_view, 1> value_units() { return {"rad"}; }
 };
 
-/// One step of a Gauss-Markov process of first order: e = w_to - decay w_from, decay = exp(-dt / tau). Radians.
-struct EdgeHeadingWanderDecay {
+/// One step of the wander, in radians.
+struct EdgeHeadingWanderDecay : GaussMarkovDecay<EdgeHeadingWanderDecay, VertexHeadingWander> {
   static constexpr std::string_view kTag = "EDGE_HEADING_WANDER_DECAY";
-  static constexpr std::string_view kForm = "difference";
-  static constexpr int kErrorDimension = 1;
-  using Vertices = VertexList<VertexHeadingWander, VertexHeadingWander>;
-  static constexpr auto fields() { return std::array{field<&EdgeHeadingWanderDecay::decay>("decay")}; }
-
-  template <typename T>
-  Eigen::Matrix<T, 1, 1> error(const T& from, const T& to) const {
-    return Eigen::Matrix<T, 1, 1>(T(to - from * T(decay)));
-  }
-
-  double decay = 1;
 };
 
-/// The same process at a moment between two others: e = w - (before w_earlier + after w_later). Radians.
-struct EdgeHeadingWanderBetween {
+/// The wander at a moment between two others, in radians.
+struct EdgeHeadingWanderBetween : GaussMarkovBetween<EdgeHeadingWanderBetween, VertexHeadingWander> {
   static constexpr std::string_view kTag = "EDGE_HEADING_WANDER_BETWEEN";
-  static constexpr std::string_view kForm = "difference";
-  static constexpr int kErrorDimension = 1;
-  using Vertices = VertexList<VertexHeadingWander, VertexHeadingWander, VertexHeadingWander>;
-  static constexpr auto fields() {
-    return std::array{field<&EdgeHeadingWanderBetween::before>("before"),
-                      field<&EdgeHeadingWanderBetween::after>("after")};
-  }
-
-  template <typename T>
-  Eigen::Matrix<T, 1, 1> error(const T& earlier, const T& later, const T& between) const {
-    return Eigen::Matrix<T, 1, 1>(T(between - earlier * T(before) - later * T(after)));
-  }
-
-  double before = 0.5;
-  double after = 0.5;
 };
 
 /// e = wrap(heading - measured). Radians, counter-clockwise from the frame's x axis (grid east).

@@ -6,21 +6,78 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <waymark/core/drive/kept_vertex.hpp>
 #include <waymark/core/drive/modeling.hpp>
+#include <waymark/core/graph/edge.hpp>
+#include <waymark/core/graph/fields.hpp>
 #include <waymark/core/graph/scalar_state.hpp>
 
 namespace waymark {
 
+namespace detail {
+
+/// Returns a multiple of a state that is one plain number or several, as the error of an edge.
+template <typename T>
+[[nodiscard]] Eigen::Matrix<T, 1, 1> multiple(double factor, const T& x) {
+  return Eigen::Matrix<T, 1, 1>(T(x * T(factor)));
+}
+template <typename T, int N>
+[[nodiscard]] Eigen::Matrix<T, N, 1> multiple(double factor, const Eigen::Matrix<T, N, 1>& x) {
+  return x * T(factor);
+}
+
+}  // namespace detail
+
+/// One step of a Gauss-Markov process: e = x_to - decay x_from, decay = exp(-dt / time constant).
+///   struct EdgeClockDecay : GaussMarkovDecay<EdgeClockDecay, VertexClock> {
+///     static constexpr std::string_view kTag = "EDGE_CLOCK_DECAY";
+///   };
+/// @tparam Self the edge type that is derived from it @tparam V its states: plain numbers
+template <typename Self, Vertex V>
+struct GaussMarkovDecay {
+  static constexpr std::string_view kForm = "difference";
+  static constexpr int kErrorDimension = V::kTangentSize;
+  using Vertices = VertexList<V, V>;
+  static constexpr auto fields() { return std::array{field<&GaussMarkovDecay::decay, Self>("decay")}; }
+
+  template <typename T, typename State>
+  Eigen::Matrix<T, kErrorDimension, 1> error(const State& from, const State& to) const {
+    return detail::multiple(1, to) - detail::multiple(decay, from);
+  }
+
+  double decay = 1;
+};
+
+/// The same process at a moment between two others: e = x - (before x_earlier + after x_later). Given its
+/// neighbours, such a process has no memory.
+template <typename Self, Vertex V>
+struct GaussMarkovBetween {
+  static constexpr std::string_view kForm = "difference";
+  static constexpr int kErrorDimension = V::kTangentSize;
+  using Vertices = VertexList<V, V, V>;
+  static constexpr auto fields() {
+    return std::array{field<&GaussMarkovBetween::before, Self>("before"),
+                      field<&GaussMarkovBetween::after, Self>("after")};
+  }
+
+  template <typename T, typename State>
+  Eigen::Matrix<T, kErrorDimension, 1> error(const State& earlier, const State& later,
+                                             const State& between) const {
+    return detail::multiple(1, between) - detail::multiple(before, earlier) - detail::multiple(after, later);
+  }
+
+  double before = 0.5;
+  double after = 0.5;
+};
+
 /// A stationary Gauss-Markov process of first order, in n independent directions.
 /// @tparam V its states: plain numbers, n of them
-/// @tparam Decay e = to - decay from, over two states; it has a member `decay`
-/// @tparam Between e = x - (before earlier + after later), over (earlier, later, x): given its neighbours,
-/// such a process has no memory. It has members `before` and `after`.
+/// @tparam Decay a GaussMarkovDecay of them @tparam Between a GaussMarkovBetween of them
 template <Vertex V, Edge Decay, Edge Between>
 class GaussMarkovProcess {
  public:
