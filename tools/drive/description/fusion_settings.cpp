@@ -168,15 +168,8 @@ Loss named_loss(const std::string& text, const std::string& place, const TypeReg
 }
 
 std::optional<Loss> loss_of_source(const FusionSettings& settings, const std::string& source,
-                                   const TypeRegistry& registry) {
-  const std::optional<std::string>& stated = stated_for(settings, source).loss;
-  return stated ? loss_of_fixes(*stated, registry, source + ": loss") : std::nullopt;
-}
-
-std::optional<Loss> loss_of_sensor(const FusionSettings& settings, const std::string& source,
-                                   const SensorModelType& type, const TypeRegistry& registry) {
-  const std::optional<std::string>& stated = stated_for(settings, source).loss;
-  return loss_of_fixes(stated.value_or(type.loss), registry, source + ": loss");
+                                   const TypeRegistry& registry, const std::string& unstated) {
+  return loss_of_fixes(stated_for(settings, source).loss.value_or(unstated), registry, source + ": loss");
 }
 
 std::optional<Loss> loss_of_fixes(const std::string& loss, const TypeRegistry& registry,

@@ -117,15 +117,11 @@ void adapt_to_yaw_rate(const YawRateAtRest& rest, bool by_default, FusionSetting
 [[nodiscard]] std::optional<Loss> loss_of_fixes(const std::string& loss, const TypeRegistry& registry,
                                                 const std::string& place = "loss");
 
-/// Returns the loss that is stated for the measurements of a relative source.
-/// @throws UsageError as loss_of_fixes
+/// Returns the loss that is stated for the measurements of a relative source or a sensor.
+/// @param unstated the loss where none is stated, as text @throws UsageError as loss_of_fixes
 [[nodiscard]] std::optional<Loss> loss_of_source(const FusionSettings& settings, const std::string& source,
-                                                 const TypeRegistry& registry);
-
-/// Returns the loss of the measurements of a sensor: the stated one, or that of its type.
-/// @param source of the sensor @throws UsageError as loss_of_fixes
-[[nodiscard]] std::optional<Loss> loss_of_sensor(const FusionSettings& settings, const std::string& source,
-                                                 const SensorModelType& type, const TypeRegistry& registry);
+                                                 const TypeRegistry& registry,
+                                                 const std::string& unstated = "none");
 
 /// Converts "NAME:SCALE" to a loss. @throws UsageError as loss_of_fixes
 [[nodiscard]] Loss named_loss(const std::string& text, const std::string& place,

@@ -22,7 +22,7 @@ SensorModels::SensorModels(std::span<const PreparedSensor> sensors, const Fusion
     at_place_of(sensor.place, sensor.name, [&] {
       models_.push_back(
           {sensor.name, registry.make_sensor_model(sensor.name, options_of(sensor, settings)),
-           loss_of_sensor(settings, sensor.source, registry.sensor_model(sensor.name), registry)});
+           loss_of_source(settings, sensor.source, registry, registry.sensor_model(sensor.name).loss)});
     });
   }
 }
