@@ -60,7 +60,7 @@ GraphDocument document_of(Fusion& fusion, FusionSettings settings, const std::st
 
 Summary solve(GraphDocument& document, const std::string& algorithm, const TypeRegistry& registry) {
   const auto method = registry.make_algorithm(algorithm);
-  const auto solver = registry.make_linear_solver("eigen");
+  const auto solver = registry.make_linear_solver("block_cholesky");
   return optimize(document.graph, *method, *solver, {});
 }
 
