@@ -124,10 +124,11 @@ void check_sensors(const std::vector<evaluation::SourceResiduals>& sources,
   }
 }
 
+/// A narrow loss takes weight from errors that are no larger than their sigmas too; they are not meant.
 void check_weights(const std::vector<evaluation::SourceResiduals>& sources,
                    std::vector<std::string>& warnings) {
   for (const evaluation::SourceResiduals& source : sources) {
-    if (source.robust == 0 || 3 * source.down_weighted <= source.robust) continue;
+    if (source.robust == 0 || 3 * source.down_weighted <= source.robust || source.rms <= 1) continue;
     warnings.push_back(fmt::format(
         "the loss takes more than half of its weight from {} of {} measurements of {} ({:.0f} %): what is left "
         "may be a chance agreement: {}",
