@@ -19,7 +19,11 @@ const DriveSource& DriveContext::source(std::string_view name) const {
 }
 
 const Geodesy& DriveContext::require_geodesy() const {
-  if (geodesy == nullptr) throw UsageError("the frame of this drive has no known place on the Earth");
+  if (geodesy == nullptr)
+    throw UsageError(
+        "the frame of this drive has no known place on the Earth: no fix and no epoch of a sensor "
+        "gives one (raw GNSS needs five pseudoranges at once); state 'frame: {utm_zone: ..., origin: "
+        "[...]}'");
   return *geodesy;
 }
 

@@ -246,6 +246,15 @@ struct SensorModelType {
   /// their worth (Holland and Welsch 1977), and a few that are wrong (a landmark taken for another, a loop that
   /// is none, iron beside a compass) cannot bend the drive.
   std::string loss = "cauchy:2.4";
+  /// How options with a prior are estimated.
+  struct NoiseSearch {
+    /// From readings at least this far apart, s: those whose errors are nearly the same cost time and tell
+    /// little. 0: from all of them
+    double period_s = 0;
+    /// With these in place of the user's: the marginal likelihood takes edges for linear.
+    Options options = {};
+  };
+  NoiseSearch noise_search = {};
 };
 
 }  // namespace waymark

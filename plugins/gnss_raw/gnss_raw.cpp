@@ -156,6 +156,9 @@ class GnssRaw final : public SensorModel {
   std::map<std::pair<int, int>, Stamp> last_rates_;
 };
 
+/// A part of the time for which reflections last.
+constexpr double kNoisePeriod_s = 5;
+
 void register_types(TypeRegistry& registry) {
   registry.add_vertex<VertexGnssClock>();
   registry.add_vertex<VertexGnssHeight>();
@@ -166,9 +169,13 @@ void register_types(TypeRegistry& registry) {
   registry.add_edge<EdgeGnssSatelliteBiasDecay>();
   registry.add_edge<EdgeGnssPseudorange>();
   registry.add_edge<EdgeGnssRangeRate>();
-  registry.add_sensor_model(
-      {"gnss_raw", "pseudoranges and range rates of a GNSS receiver, with its clock", raw_columns(),
-       options(), [](const CheckedOptions& given) { return std::make_unique<GnssRaw>(given); }, "none"});
+  registry.add_sensor_model({"gnss_raw",
+                             "pseudoranges and range rates of a GNSS receiver, with its clock",
+                             raw_columns(),
+                             options(),
+                             [](const CheckedOptions& given) { return std::make_unique<GnssRaw>(given); },
+                             "none",
+                             {.period_s = kNoisePeriod_s, .options = {{"reflection_skew", "0"}}}});
 }
 
 }  // namespace

@@ -21,11 +21,20 @@ double obliquity(const SatelliteReading& reading) {
   return 1 / std::max(kLowest, std::sin(reading.elevation_rad));
 }
 
+/// Returns the standard deviation of late(x) in EdgeGnssPseudorange, for x of deviation 1: that of a log-normal
+/// distribution.
+double deviation_of_late(double skew) {
+  if (!(skew > 0)) return 1;
+  const double growth = std::exp(skew * skew);
+  return std::sqrt(growth * (growth - 1)) / skew;
+}
+
 }  // namespace
 
 RangeNoise Noise::of(const SatelliteReading& reading) const {
   const double factor = weakness(reading) * std::sqrt(obliquity(reading));
-  return {parameters_.pseudorange_sigma_m * factor, parameters_.multipath_sigma_m * factor,
+  return {parameters_.pseudorange_sigma_m * factor,
+          parameters_.multipath_sigma_m * factor / deviation_of_late(parameters_.reflection_skew),
           parameters_.slow_sigma_m * std::sqrt(obliquity(reading)) *
               (reading.system == kGlonass ? kGlonassChannels : 1)};
 }
@@ -44,16 +53,18 @@ std::vector<OptionInfo> noise_options() {
        .allowed = OptionRange{0.01, 1000},
        .text = "error of a strong signal's pseudorange that each epoch draws anew"},
       {.name = "multipath_sigma",
-       .value = "2",
+       .value = "3.3",
        .unit = "m",
        .allowed = OptionRange{0, 1000},
-       .text = "error of a strong signal's pseudorange that lasts; 0: there is none"},
+       .text = "error of a strong signal's pseudorange that lasts; 0: there is none",
+       .prior = NoisePrior{.mean = 3.3, .deviation = 0.7}},
       {.name = "slow_sigma",
        .value = "2",
        .unit = "m",
        .allowed = OptionRange{0, 1000},
        .text =
-           "error of a satellite's pseudorange that stays for an hour: orbit, ionosphere; 0: there is none"},
+           "error of a satellite's pseudorange that stays for an hour: orbit, ionosphere; 0: there is none",
+       .prior = NoisePrior{.mean = 2, .deviation = 0.5}},
       {.name = "reflection_skew",
        .value = "0.8",
        .allowed = OptionRange{0, 2},

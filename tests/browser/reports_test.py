@@ -10,6 +10,7 @@ import math
 import os
 import pathlib
 import re
+import sys
 import tempfile
 
 from page_case import ActionChains, By, Keys, PageCase, main, run
@@ -31,8 +32,12 @@ class Pages(PageCase):
         run("evaluate", cls.folder / "gated/g2.fused.graph", cls.folder / "all/g1.fused.graph", "--truth", bundled,
             "-o", cls.folder / "evaluated")
         run("compare", cls.folder / "gated", cls.folder / "all", cls.folder / "long", "-o", cls.folder / "compared")
-        run("bench", cls.folder / "gated/g2.graph", cls.folder / "long/g1.graph", "-a", "all", "--repeat", "2",
+        run("bench", cls.folder / "gated/g2.graph", cls.folder / "all/g1.graph", "-a", "all", "--repeat", "2",
             "-o", cls.folder / "bench")
+        sys.path.insert(0, str(cls.source / "tests/bench"))
+        raw_gnss = __import__("raw_gnss_receivers")
+        raw_gnss.make_drive(cls.program, "open", 1, 60, cls.folder / "receiver")
+        run("run", cls.folder / "receiver/raw.yaml", "-o", cls.folder / "satellites")
         run("reproduce", bundled, "-o", cls.folder / "reproduced")
         run("reproduce", bundled, "--ablation", "-o", cls.folder / "ablation")
         cls.pages = sorted(cls.folder.rglob("*.html"))
@@ -42,7 +47,7 @@ class Pages(PageCase):
     def test_every_page_loads_alone_and_silently(self):
         names = {str(page.relative_to(self.folder)) for page in self.pages}
         self.assertEqual(names, {"gated/report.html", "all/report.html", "all/g1.html", "all/correlated.html",
-                                 "long/report.html", "evaluated/report.html", "evaluated/g1.fused.html",
+                                 "long/report.html", "satellites/report.html", "evaluated/report.html", "evaluated/g1.fused.html",
                                  "evaluated/g2.fused.html", "compared/comparison.html", "bench/bench.html",
                                  "reproduced/reproduction.html", "ablation/ablation.html"})
         for page in self.pages:
@@ -300,6 +305,27 @@ class Pages(PageCase):
         self.assertGreater(len(inside), 20)
         for point, (x, y) in zip(inside, self.places("trajectory", inside)):
             self.assertTrue(any(abs(x - dx) < 0.5 and abs(y - dy) < 0.5 for dx, dy in drawn), point)
+
+    def test_each_satellite_stands_in_the_table_and_in_the_sky(self):
+        with (self.folder / "receiver/raw.csv").open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        elevations = {f"G{int(r['satellite']):02d}": math.degrees(float(r["elevation"])) for r in rows}
+        self.open("satellites/report.html")
+        cells = [[cell.text for cell in row.find_elements(By.TAG_NAME, "td")]
+                 for row in self.browser.find_elements(By.XPATH, "//section[h2[contains(., 'by satellite')]]//tbody/tr")]
+        table = {row[0]: row for row in cells if len(row) > 8}
+        self.assertEqual(set(table), set(elevations))
+        for name, row in table.items():
+            self.assertEqual(int(row[2]), sum(f"G{int(r['satellite']):02d}" == name for r in rows))
+        self.wake("sky-pseudorange")
+        points = [r for r in self.rows("satellites/report.html", "sky-pseudorange") if "weight" in r["note"]]
+        self.assertEqual({r["note"].split(",")[0] for r in points}, set(elevations))
+        for point in points:
+            name = point["note"].split(",")[0]
+            east, north = (float(value) for key, value in point.items() if "[deg]" in key)
+            self.assertAlmostEqual(90 - math.hypot(east, north), elevations[name], delta=2)  # within a minute
+        self.move_to("sky-pseudorange", *self.place("sky-pseudorange", east, north)).perform()
+        self.assertIn(name, self.tip("sky-pseudorange"))
 
     def test_print_leaves_out_what_paper_cannot_do(self):
         self.open("gated/report.html")

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/covariance/evidence.hpp>
 #include <waymark/plugins/gnss_raw/detail/epochs.hpp>
 #include <waymark/plugins/gnss_raw/detail/satellite_groups.hpp>
 #include <waymark/plugins/gnss_raw/gnss_raw.hpp>
@@ -257,12 +258,48 @@ TEST_CASE("gnss_raw: so they are where an error of a range rate lasts for four e
   check_consistency({.rate_time_s = 4}, options, 2);
 }
 
+constexpr double kSlow_m = 3;
+constexpr double kSpread_m = 4;
+
+/// Returns the standard deviation of expm1(skew x) / skew for a standard normal x.
+double late_deviation() {
+  const double growth = std::exp(kReflectionSkew * kReflectionSkew);
+  return std::sqrt(growth * (growth - 1)) / kReflectionSkew;
+}
+
 TEST_CASE("gnss_raw: so they are where reflections last, and are rather late than early") {
   Options options = kWhite;
-  options["multipath_sigma"] = "4";
+  options["multipath_sigma"] = shortest(kSpread_m * late_deviation());
   options["multipath_time"] = "10";
   options["reflection_skew"] = "0.6";
-  check_consistency({.reflections_m = 4}, options, 10);
+  check_consistency({.reflections_m = kSpread_m}, options, 10);
+}
+
+/// Returns the sum of the -log likelihoods of a few drives, each at its minimum, as the search for noise sees
+/// them: reflections early and late alike.
+double unlikeliness(double multipath_sigma, double slow_sigma) {
+  constexpr std::uint64_t kDrives = 6;
+  Options options = kWhite;
+  options["multipath_sigma"] = shortest(multipath_sigma);
+  options["slow_sigma"] = shortest(slow_sigma);
+  options["multipath_time"] = "10";
+  options["reflection_skew"] = "0";
+  double sum = 0;
+  for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {
+    KitDrive drive = raw_drive({.slow_m = kSlow_m, .reflections_m = kSpread_m}, seed, options);
+    (void)solve(drive);
+    sum += evidence(drive.graph).negative_log();
+  }
+  return sum;
+}
+
+TEST_CASE("gnss_raw: the likelihood of drives tells how large reflections and slow errors are") {
+  const double reflections_m = kSpread_m * late_deviation();
+  const double right = unlikeliness(reflections_m, kSlow_m);
+  CHECK(right < unlikeliness(reflections_m / 1.5, kSlow_m));
+  CHECK(right < unlikeliness(reflections_m * 1.5, kSlow_m));
+  CHECK(right < unlikeliness(reflections_m, kSlow_m / 2));
+  CHECK(right < unlikeliness(reflections_m, kSlow_m * 2));
 }
 
 TEST_CASE("gnss_raw: height, bias of a system and a clock that is set back are found") {

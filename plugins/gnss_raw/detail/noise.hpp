@@ -13,14 +13,15 @@ namespace waymark::plugins::gnss_raw {
 /// The error of one pseudorange, m.
 struct RangeNoise {
   double white_m = 1;    ///< standard deviation of the part that each epoch draws anew
-  double lasting_m = 0;  ///< standard deviation of the part that lasts for seconds: reflections
+  double lasting_m = 0;  ///< EdgeGnssPseudorange::spread of the part that lasts for seconds: reflections
   double slow_m = 0;     ///< standard deviation of the part that lasts for an hour: orbit, ionosphere
 };
 
 /// With the factor w = 10^((45 - C/N0) / 20), 1 from 45 dB-Hz on and without C/N0, and the obliquity
 /// m = 1 / sin(elevation), 1 to 5:
-///   white = pseudorange_sigma w sqrt(m), lasting = multipath_sigma w sqrt(m),
+///   white = pseudorange_sigma w sqrt(m), lasting = multipath_sigma w sqrt(m) / d(reflection_skew),
 ///   slow = slow_sigma sqrt(m), twice that for GLONASS.
+/// d(skew) is the deviation of late errors of a unit spread, exp(skew^2 / 2) sqrt(exp(skew^2) - 1) / skew.
 /// The receiver delays each of GLONASS's channels by another time, which adds some metres.
 class Noise {
  public:

@@ -338,6 +338,25 @@ TEST_CASE("coarse: straight ways are merged up to a second, turns as far as a tw
   CHECK(turning.timeline.intervals.size() > 2 * steady.timeline.intervals.size());
 }
 
+TEST_CASE("coarse: readings a period apart are kept, all rows of each, and jitter costs none") {
+  PreparedSensor sensor;
+  sensor.readings.columns = 1;
+  const auto add = [&](double seconds, double value) {
+    sensor.readings.stamps.push_back(Stamp::from_seconds(seconds));
+    sensor.readings.values.push_back(value);
+  };
+  for (int i = 0; i <= 10; ++i) {  // epochs of two rows
+    const double jitter = i == 5 ? -0.2 : 0;
+    add(i + jitter, i);
+    add(i + jitter + 0.0004, i);
+  }
+  const PreparedSensor all = thinned(sensor, 0);
+  CHECK(all.readings.values == sensor.readings.values);
+  const PreparedSensor few = thinned(sensor, 5);
+  CHECK(few.readings.values == std::vector<double>{0, 0, 5, 5, 10, 10});
+  CHECK(few.readings.size() == 6);
+}
+
 TEST_CASE("coarse: the middle of a drive is a drive with the nodes, fixes and motion of its time") {
   const PreparedDrive drive = make_drive({}, 5);
   const CoarseDrive whole =

@@ -11,6 +11,8 @@ namespace waymark::drive {
 namespace {
 
 constexpr double kReadingPeriod_s = 0.25;
+/// Of a period.
+constexpr double kWithoutJitter = 0.9;
 
 std::vector<std::size_t> kept_fixes(const std::vector<Fix>& fixes, double period_s) {
   std::map<int, Stamp> last;
@@ -18,7 +20,8 @@ std::vector<std::size_t> kept_fixes(const std::vector<Fix>& fixes, double period
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (fixes[i].status != FixStatus::accepted) continue;
     const auto before = last.find(fixes[i].source);
-    if (before != last.end() && seconds_between(before->second, fixes[i].stamp) < 0.9 * period_s) continue;
+    if (before != last.end() && seconds_between(before->second, fixes[i].stamp) < kWithoutJitter * period_s)
+      continue;
     last[fixes[i].source] = fixes[i].stamp;
     kept.push_back(i);
   }
@@ -85,7 +88,7 @@ void need_nodes_of(const PreparedSensor& sensor, const Timeline& timeline, doubl
                    std::vector<char>& needed) {
   std::optional<Stamp> last;
   for (const Stamp stamp : sensor.readings.stamps) {
-    if (last && seconds_between(*last, stamp) < 0.9 * period_s) continue;
+    if (last && seconds_between(*last, stamp) < kWithoutJitter * period_s) continue;
     const auto node = node_of(timeline, stamp);
     if (!node) continue;
     needed[*node] = 1;
@@ -93,19 +96,27 @@ void need_nodes_of(const PreparedSensor& sensor, const Timeline& timeline, doubl
   }
 }
 
-/// Returns a sensor with the readings of the nodes that are kept.
-PreparedSensor at_kept_nodes(const PreparedSensor& sensor, const Timeline& timeline,
-                             const std::vector<char>& kept) {
+/// Returns a sensor with the readings whose stamp is kept.
+template <typename Keeps>
+PreparedSensor with_readings(const PreparedSensor& sensor, const Keeps& keeps) {
   PreparedSensor result = sensor;
   result.readings = {{}, {}, sensor.readings.columns};
   for (std::size_t row = 0; row < sensor.readings.size(); ++row) {
-    const auto node = node_of(timeline, sensor.readings.stamps[row]);
-    if (!node || kept[*node] == 0) continue;
+    if (!keeps(sensor.readings.stamps[row])) continue;
     result.readings.stamps.push_back(sensor.readings.stamps[row]);
     for (std::size_t column = 0; column < sensor.readings.columns; ++column)
       result.readings.values.push_back(sensor.readings.at(row, column));
   }
   return result;
+}
+
+/// Returns a sensor with the readings of the nodes that are kept.
+PreparedSensor at_kept_nodes(const PreparedSensor& sensor, const Timeline& timeline,
+                             const std::vector<char>& kept) {
+  return with_readings(sensor, [&](Stamp stamp) {
+    const auto node = node_of(timeline, stamp);
+    return node && kept[*node] != 0;
+  });
 }
 
 /// Returns what does not depend on nodes and fixes.
@@ -234,6 +245,17 @@ CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> s
   for (const PreparedSensor& sensor : sensors)
     result.sensors.push_back(at_kept_nodes(sensor, timeline, is_kept));
   return result;
+}
+
+PreparedSensor thinned(const PreparedSensor& sensor, double period_s) {
+  constexpr double kOneReading_s = 1e-3;
+  std::optional<Stamp> last;
+  return with_readings(sensor, [&](Stamp stamp) {
+    if (last && seconds_between(*last, stamp) <= kOneReading_s) return true;
+    if (last && seconds_between(*last, stamp) < kWithoutJitter * period_s) return false;
+    last = stamp;
+    return true;
+  });
 }
 
 CoarseDrive middle_of(const CoarseDrive& whole, double length_s) {

@@ -20,6 +20,10 @@ struct CoarseDrive {
 [[nodiscard]] CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                   double fix_period_s = 7.5, double node_period_s = 1);
 
+/// Returns a sensor with readings that lie a period apart (a tenth less, for jitter). Rows within a millisecond
+/// are one reading.
+[[nodiscard]] PreparedSensor thinned(const PreparedSensor& sensor, double period_s);
+
 /// Returns the middle of a coarse drive, of a length or a little more.
 [[nodiscard]] CoarseDrive middle_of(const CoarseDrive& whole, double length_s);
 

@@ -206,6 +206,18 @@ void append(const NoiseEstimate& part, NoiseEstimate& noise) {
   noise.curvature = std::move(curvature);
 }
 
+/// Returns sensors as their types want them for this search.
+std::vector<PreparedSensor> for_noise_search(std::span<const PreparedSensor> sensors,
+                                             const TypeRegistry& registry) {
+  std::vector<PreparedSensor> result;
+  for (const PreparedSensor& sensor : sensors) {
+    const SensorModelType::NoiseSearch& search = registry.sensor_model(sensor.name).noise_search;
+    PreparedSensor& changed = result.emplace_back(thinned(sensor, search.period_s));
+    for (const auto& [option, value] : search.options) changed.options[option] = value;
+  }
+  return result;
+}
+
 /// Visits the parts of a drive one after the other. A visit may change the noise of its part, for those
 /// that follow. @returns all of the noise
 template <typename Visit>
@@ -214,7 +226,8 @@ NoiseEstimate visit_parts(const PlacedDrive& placed, std::span<const PreparedSen
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
   FusionSettings known = settings;
-  const CoarseDrive all = sample_of(coarsen(placed, sensors), kWindows, kWindow_s);
+  const CoarseDrive all =
+      sample_of(coarsen(placed, for_noise_search(sensors, registry)), kWindows, kWindow_s);
   const std::size_t count = std::max<std::size_t>(placed.relative.size(), 1);
   for (std::size_t source = 0; source < count; ++source) {
     Part part{with_only(source, all), known, {}};

@@ -319,8 +319,8 @@ PreparedDrive prepare_drive(const DriveLogs& logs, const DriveDescription& descr
   if (drive.frame.zone != 0) projection.emplace(drive.frame);
   if (!projection && !truth.empty())
     throw InputError(description.path +
-                     ": the truth is geodetic and the drive has a local frame; state "
-                     "'frame: {utm_zone: ..., origin: [...]}'");
+                     ": the truth is geodetic, but no fix and no epoch of a sensor places the drive on the "
+                     "Earth; state 'frame: {utm_zone: ..., origin: [...]}'");
   for (const GeodeticFix& fix : fixes) {
     const std::string& file = logs.gnss.at(static_cast<std::size_t>(fix.source)).file;
     drive.fixes.push_back(projected(file, fix.stamp, drive, [&] { return projection->project(fix); }));
