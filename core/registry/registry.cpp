@@ -5,6 +5,7 @@
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/core/graph/gaussian_prior.hpp>
 #include <waymark/core/registry/detail/guarded_models.hpp>
+#include <waymark/core/registry/detail/option_check.hpp>
 #include <waymark/core/registry/registry.hpp>
 
 namespace waymark {
@@ -40,6 +41,7 @@ void check_name(const std::string& name, const std::string& origin, const char* 
 template <typename T>
 void add(RegistryTable<T>& table, T type, const std::string& origin, const char* kind) {
   check_name(name_of(type), origin, kind);
+  if constexpr (requires { type.options; }) require_sound_priors(type.name + " of " + origin, type.options);
   for (const Registered<T>& entry : table) {
     if (name_of(entry.type) != name_of(type)) continue;
     throw UsageError(std::string(kind) + " '" + name_of(type) + "' of " + origin +
@@ -100,6 +102,10 @@ void TypeRegistry::add_gnss_modeling(GnssModelingType type) {
   add(gnss_modelings_, std::move(type), origin_, "GNSS modeling");
 }
 void TypeRegistry::add_sensor_model(SensorModelType type) {
+  for (const auto& [option, value] : type.noise_search.options)
+    if (!has_option(type.options, option))
+      throw UsageError(type.name + " of " + origin_ +
+                       ": noise_search: " + problem_with_name("option", option, type.options));
   add(sensor_models_, std::move(type), origin_, "sensor model");
 }
 void TypeRegistry::add_log_reader(LogReaderType type) {

@@ -1,4 +1,6 @@
 // Every option of every registered type: its default is allowed, and its text names all of its words.
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "support/registry.hpp"
@@ -32,6 +34,22 @@ TEST_CASE("every option: its default is allowed, and its text names all of its w
   check_options(registry.odometry_models());
   check_options(registry.gnss_modelings());
   check_options(registry.sensor_models());
+}
+
+TEST_CASE(
+    "every sensor: the loss of its measurements is registered, and its search for noise has values allowed") {
+  const TypeRegistry registry = waymark_test::full_registry();
+  for (const auto& [type, origin] : registry.sensor_models()) {
+    INFO(type.name << " of " << origin);
+    if (type.loss != "none") CHECK(registry.find_loss(type.loss.substr(0, type.loss.find(':'))) != nullptr);
+    for (const auto& [name, value] : type.noise_search.options) {
+      const Options alone = {{name, value}};
+      const auto option = std::find_if(type.options.begin(), type.options.end(),
+                                       [&](const OptionInfo& known) { return known.name == name; });
+      REQUIRE(option != type.options.end());
+      CHECK_NOTHROW(CheckedOptions(type.name, alone, {&*option, 1}));
+    }
+  }
 }
 
 TEST_CASE("every odometry model: the option that takes the gap's factor is one of its numbers") {

@@ -3,7 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include <waymark/core/registry/options.hpp>
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/registry.hpp>
 
 namespace options_test {
 
@@ -101,6 +102,45 @@ TEST_CASE("options: the description ends with the range, as people write numbers
   CHECK(described({2.5e-7, 360}) == "text; in [2.5e-7, 360]");
   CHECK(described({.low = 0, .high = 1e100, .low_open = true}) == "text; in (0, 1e100]");
   CHECK(known().back().description() == "'decoupled' or 'literal'");
+}
+
+/// What the registry says of a sensor whose option `sigma` has this prior; empty: it takes it.
+std::string refusal(const NoisePrior& prior) {
+  SensorModelType type;
+  type.name = "radar";
+  type.options = known();
+  type.options.push_back({.name = "sigma", .value = "1", .allowed = OptionRange{1e-3, 10}, .prior = prior});
+  TypeRegistry registry;
+  try {
+    registry.add_sensor_model(type);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("options: a prior that cannot be meant is refused when its type is registered") {
+  CHECK(refusal({.mean = 1, .deviation = 0.5}).empty());
+  CHECK(refusal({.mean = 1, .where_option = "error", .where_word = "literal"}).empty());
+  const std::string begin = "radar of waymark: the prior of option 'sigma' ";
+  CHECK(refusal({.mean = 11}) == begin + "has its mean outside [1e-3, 10]");
+  CHECK(refusal({.mean = 1, .deviation = 0}) == begin + "needs a deviation above 0");
+  CHECK(refusal({.mean = 1, .where_option = "errors", .where_word = "literal"}) ==
+        begin + "names an option 'errors' that is not there");
+  CHECK(refusal({.mean = 1, .where_option = "error", .where_word = "litteral"}) ==
+        begin + "names a word 'litteral' that option 'error' does not have");
+  CHECK(refusal({.mean = 1, .where_option = "radius", .where_word = "1"}) ==
+        begin + "names a word '1' that option 'radius' does not have");
+}
+
+TEST_CASE("options: those of a search for noise must be there") {
+  SensorModelType type;
+  type.name = "radar";
+  type.options = known();
+  type.noise_search.options = {{"eror", "literal"}};
+  TypeRegistry registry;
+  CHECK_THROWS_WITH(registry.add_sensor_model(type),
+                    "radar of waymark: noise_search: unknown option 'eror'; did you mean 'error'?");
 }
 
 }  // namespace options_test

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <waymark/core/base/error.hpp>
 #include <waymark/core/base/suggest.hpp>
 #include <waymark/core/registry/detail/option_rules.hpp>
 #include <waymark/core/registry/flow_text.hpp>
@@ -154,6 +155,29 @@ std::vector<double> OptionValue::numbers() const {
 
 void OptionValue::wrong_kind(const char* kind) {
   throw std::logic_error(std::string("an option is read as ") + kind + ", which it is not declared to be");
+}
+
+void require_sound_priors(const std::string& owner, std::span<const OptionInfo> options) {
+  for (const OptionInfo& option : options) {
+    if (!option.prior) continue;
+    const NoisePrior& prior = *option.prior;
+    const auto require = [&](bool holds, const std::string& rule) {
+      if (!holds) throw UsageError(owner + ": the prior of option '" + option.name + "' " + rule);
+    };
+    const auto* range = std::get_if<OptionRange>(&option.allowed);
+    require(range != nullptr, "needs an option that is a number");
+    require(range->contains(prior.mean), "has its mean outside " + range->text());
+    require(prior.linear || prior.mean > 0, "is one of a logarithm and needs a mean above 0");
+    require(prior.deviation > 0, "needs a deviation above 0");
+    if (prior.where_option.empty()) continue;
+    const auto where = std::find_if(options.begin(), options.end(), [&](const OptionInfo& other) {
+      return other.name == prior.where_option;
+    });
+    require(where != options.end(), "names an option '" + prior.where_option + "' that is not there");
+    const auto* words = std::get_if<OptionWords>(&where->allowed);
+    require(words != nullptr && std::find(words->begin(), words->end(), prior.where_word) != words->end(),
+            "names a word '" + prior.where_word + "' that option '" + prior.where_option + "' does not have");
+  }
 }
 
 }  // namespace waymark
