@@ -3,7 +3,8 @@
 
 SHARED_DATA holds drives/berlin_potsdamer_platz, drives/berlin_potsdamer_platz_raw and drives/urbannav_hk_tst.
 OUTDIR gets librsf.yaml (libRSF's pseudoranges with range rates of GPS), rinex.yaml (the RINEX file of the same
-receiver) and urbannav.yaml (RINEX). UrbanNav has no odometry: it is imitated from the truth, 5 Hz, with a scale of
+receiver) and urbannav.yaml (RINEX); and, to compare, drives with fixes: receiver_fixes.yaml (the u-blox's own, every
+second), single_point_fixes.yaml (from libRSF's pseudoranges), urbannav_fixes.yaml (RTKLIB's). UrbanNav has no odometry: it is imitated from the truth, 5 Hz, with a scale of
 0.8 % and a gyro bias of 0.8 mrad/s. Nothing but Python is needed.
 """
 import csv
@@ -34,6 +35,18 @@ truth:
   columns: {{time: gps_sow_s, latitude: lat_deg, longitude: lon_deg, height: h_m, heading: heading_rad_ccw_from_east}}
   time: {{week: 2158}}
 """
+RECEIVER_FIXES = """gnss:
+  file: {drive}/gnss_5hz.csv
+  columns: {{time: gps_sow_s, latitude: lat_deg, longitude: lon_deg, height: h_m, accuracy: hacc_m_first_60s_only}}
+  time: {{week: 1900}}
+  accuracy: {{meaning: drms, default_sigma: 5}}
+  period: 1
+"""
+SINGLE_POINT_FIXES = """gnss:
+  file: single_point_fixes.csv
+  columns: {time: t, latitude: latitude, longitude: longitude, accuracy: sigma}
+  time: {week: 1900}
+"""
 SCALE, BIAS_RADPS, RATE_HZ = 1.008, 0.0008, 5
 BERLIN_START_S = 126641.7  # of its week; libRSF counts from here
 
@@ -60,6 +73,16 @@ def write_librsf_table(ranges, rates, path):
             rate, vx, vy, vz = known.get((round(10 * stamp), int(float(system)), int(float(satellite))), [""] * 4)
             writer.writerow([f"{stamp:.3f}", int(float(system)), int(float(satellite)), distance, rate, x, y, z,
                              vx, vy, vz, elevation, cn0])
+
+
+def write_single_point_fixes(fixes, path):
+    """Puts fixes of libRSF's time on that of the week, with their mean sigma per axis."""
+    with open(fixes) as file, open(path, "w", newline="") as out:
+        writer = csv.writer(out)
+        writer.writerow(["t", "latitude", "longitude", "sigma"])
+        for r in csv.DictReader(file):
+            sigma = math.hypot(float(r["sig_e_m"]), float(r["sig_n_m"])) / math.sqrt(2)
+            writer.writerow([f"{float(r['t_s']) + BERLIN_START_S:.3f}", r["lat_deg"], r["lon_deg"], f"{sigma:.3f}"])
 
 
 def imitate_odometry(truth, path):
@@ -94,6 +117,11 @@ def main():
   file: {urbannav}/20210517.light-urban.tste.ublox.m8t.GC.obs
   navigation: {urbannav}/hksc137c.nav
 """)
+    (out / "receiver_fixes.yaml").write_text(BERLIN.format(drive=berlin) + RECEIVER_FIXES.format(drive=berlin))
+    write_single_point_fixes(raw / "spp_fixes_own.csv", out / "single_point_fixes.csv")
+    (out / "single_point_fixes.yaml").write_text(BERLIN.format(drive=berlin) + SINGLE_POINT_FIXES)
+    (out / "urbannav_fixes.yaml").write_text(
+        URBANNAV.format(drive=urbannav) + f"gnss: {{file: {urbannav}/rtklib_single_m8t.pos}}\n")
 
 
 if __name__ == "__main__":
