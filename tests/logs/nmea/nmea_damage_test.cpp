@@ -97,6 +97,10 @@ TEST_CASE("nmea: how surely a log is known") {
   const Recognition sure = NmeaReader().recognise(rmc("000001") + gga("000001") + "# comment\n" + "$GPRM");
   CHECK(sure.certainty == Approx(2.0 / 3));
   CHECK(sure.evidence == "2 of 3 lines are NMEA sentences with a right checksum");
+  const Recognition bare =
+      NmeaReader().recognise("$GPRMC,000001,A,4810.8,N,01133.9,E,10,90,010409\n$GPXYZ,1,2\n");
+  CHECK(bare.certainty == 0.5);
+  CHECK(bare.evidence == "1 of 2 lines are NMEA sentences of known kinds without a checksum");
   CHECK(NmeaReader().recognise("time,speed\n1,2\n").certainty == 0);
   CHECK(NmeaReader().recognise("").certainty == 0);
 }

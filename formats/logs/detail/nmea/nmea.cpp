@@ -263,14 +263,22 @@ std::unique_ptr<LogDecoder> NmeaReader::open(const std::string& path, const LogR
 Recognition NmeaReader::recognise(std::string_view head) const {
   HeadLines lines(head);
   std::size_t right = 0;
+  std::size_t bare = 0;
   while (lines.next()) {
     std::string_view line = lines.line();
+    bool is_right = false;
+    bool is_bare = false;
     while (const std::optional<NmeaSentence> sentence = next_nmea_sentence(line)) {
-      if (sentence->checksum != NmeaChecksum::right) continue;
-      ++right;
-      break;
+      is_right = is_right || sentence->checksum == NmeaChecksum::right;
+      is_bare = is_bare ||
+                (sentence->checksum == NmeaChecksum::none && nmea_kind(sentence->address) != NmeaKind::other);
     }
+    right += is_right ? 1 : 0;
+    bare += is_bare ? 1 : 0;
   }
+  // Some loggers leave all checksums out.
+  if (right == 0 && bare > 0)
+    return lines.share(bare, "are NMEA sentences of known kinds without a checksum");
   return lines.share(right, "are NMEA sentences with a right checksum");
 }
 
