@@ -11,7 +11,7 @@ namespace waymark::drive {
 namespace {
 
 constexpr double kReadingPeriod_s = 0.25;
-/// Of a period.
+/// Readings and fixes that lie a period apart may come a tenth of it earlier.
 constexpr double kWithoutJitter = 0.9;
 
 std::vector<std::size_t> kept_fixes(const std::vector<Fix>& fixes, double period_s) {
