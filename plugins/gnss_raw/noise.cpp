@@ -33,8 +33,7 @@ double deviation_of_late(double skew) {
 
 RangeNoise Noise::of(const SatelliteReading& reading) const {
   const double factor = weakness(reading) * std::sqrt(obliquity(reading));
-  return {parameters_.pseudorange_sigma_m * factor,
-          parameters_.multipath_sigma_m * factor / deviation_of_late(parameters_.reflection_skew),
+  return {parameters_.pseudorange_sigma_m * factor, parameters_.multipath_spread_m * factor,
           parameters_.slow_sigma_m * std::sqrt(obliquity(reading)) *
               (reading.system == kGlonass ? kGlonassChannels : 1)};
 }
@@ -92,12 +91,13 @@ std::vector<OptionInfo> noise_options() {
 }
 
 Noise read_noise(const CheckedOptions& options) {
+  const double skew = options.number("reflection_skew");
   return Noise({.pseudorange_sigma_m = options.number("pseudorange_sigma"),
                 .range_rate_sigma_mps = options.number("range_rate_sigma"),
                 .range_rate_time_s = options.number("range_rate_time"),
-                .multipath_sigma_m = options.number("multipath_sigma"),
+                .multipath_spread_m = options.number("multipath_sigma") / deviation_of_late(skew),
                 .slow_sigma_m = options.number("slow_sigma"),
-                .reflection_skew = options.number("reflection_skew"),
+                .reflection_skew = skew,
                 .tails = options.word("tails") == "gaussian"
                              ? std::nullopt
                              : std::optional(builtin_loss("cauchy", options.number("tail_scale")))});

@@ -29,7 +29,7 @@ class Noise {
     double pseudorange_sigma_m = 1;
     double range_rate_sigma_mps = 1;
     double range_rate_time_s = 1;
-    double multipath_sigma_m = 1;
+    double multipath_spread_m = 1;  ///< multipath_sigma / d(reflection_skew)
     double slow_sigma_m = 1;
     double reflection_skew = 0;
     std::optional<Loss> tails{};

@@ -11,18 +11,21 @@ namespace waymark::drive {
 namespace {
 
 constexpr double kReadingPeriod_s = 0.25;
-/// Readings and fixes that lie a period apart may come a tenth of it earlier.
-constexpr double kWithoutJitter = 0.9;
+
+/// Tells whether a moment is less than a period after the last one that was kept; a tenth less is jitter.
+bool comes_too_soon(const std::optional<Stamp>& last, Stamp moment, double period_s) {
+  constexpr double kWithoutJitter = 0.9;
+  return last && seconds_between(*last, moment) < kWithoutJitter * period_s;
+}
 
 std::vector<std::size_t> kept_fixes(const std::vector<Fix>& fixes, double period_s) {
-  std::map<int, Stamp> last;
+  std::map<int, std::optional<Stamp>> last_of_receiver;
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (fixes[i].status != FixStatus::accepted) continue;
-    const auto before = last.find(fixes[i].source);
-    if (before != last.end() && seconds_between(before->second, fixes[i].stamp) < kWithoutJitter * period_s)
-      continue;
-    last[fixes[i].source] = fixes[i].stamp;
+    std::optional<Stamp>& last = last_of_receiver[fixes[i].source];
+    if (comes_too_soon(last, fixes[i].stamp, period_s)) continue;
+    last = fixes[i].stamp;
     kept.push_back(i);
   }
   return kept;
@@ -88,7 +91,7 @@ void need_nodes_of(const PreparedSensor& sensor, const Timeline& timeline, doubl
                    std::vector<char>& needed) {
   std::optional<Stamp> last;
   for (const Stamp stamp : sensor.readings.stamps) {
-    if (last && seconds_between(*last, stamp) < kWithoutJitter * period_s) continue;
+    if (comes_too_soon(last, stamp, period_s)) continue;
     const auto node = node_of(timeline, stamp);
     if (!node) continue;
     needed[*node] = 1;
@@ -252,7 +255,7 @@ PreparedSensor thinned(const PreparedSensor& sensor, double period_s) {
   std::optional<Stamp> last;
   return with_readings(sensor, [&](Stamp stamp) {
     if (last && seconds_between(*last, stamp) <= kOneReading_s) return true;
-    if (last && seconds_between(*last, stamp) < kWithoutJitter * period_s) return false;
+    if (comes_too_soon(last, stamp, period_s)) return false;
     last = stamp;
     return true;
   });
