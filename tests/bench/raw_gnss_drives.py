@@ -4,8 +4,9 @@
 SHARED_DATA holds drives/berlin_potsdamer_platz, drives/berlin_potsdamer_platz_raw and drives/urbannav_hk_tst.
 OUTDIR gets librsf.yaml (libRSF's pseudoranges with range rates of GPS), rinex.yaml (the RINEX file of the same
 receiver) and urbannav.yaml (RINEX); and, to compare, drives with fixes: receiver_fixes.yaml (the u-blox's own, every
-second), single_point_fixes.yaml (from libRSF's pseudoranges), urbannav_fixes.yaml (RTKLIB's). UrbanNav has no odometry: it is imitated from the truth, 5 Hz, with a scale of
-0.8 % and a gyro bias of 0.8 mrad/s. Nothing but Python is needed.
+second), single_point_fixes.yaml (from libRSF's pseudoranges), urbannav_fixes.yaml (RTKLIB's). UrbanNav has no
+odometry: it is imitated from the truth, 5 Hz, with a scale of 0.8 % and a gyro bias of 0.8 mrad/s. Nothing but Python
+is needed.
 """
 import csv
 import math

@@ -15,6 +15,9 @@ import tempfile
 
 from page_case import ActionChains, By, Keys, PageCase, main, run
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
+import raw_gnss_receivers
+
 POSES_OF_LONG_DRIVE = 104949
 
 
@@ -34,9 +37,7 @@ class Pages(PageCase):
         run("compare", cls.folder / "gated", cls.folder / "all", cls.folder / "long", "-o", cls.folder / "compared")
         run("bench", cls.folder / "gated/g2.graph", cls.folder / "all/g1.graph", "-a", "all", "--repeat", "2",
             "-o", cls.folder / "bench")
-        sys.path.insert(0, str(cls.source / "tests/bench"))
-        raw_gnss = __import__("raw_gnss_receivers")
-        raw_gnss.make_drive(cls.program, "open", 1, 60, cls.folder / "receiver")
+        raw_gnss_receivers.make_drive(cls.program, "open", 1, 60, cls.folder / "receiver")
         run("run", cls.folder / "receiver/raw.yaml", "-o", cls.folder / "satellites")
         run("reproduce", bundled, "-o", cls.folder / "reproduced")
         run("reproduce", bundled, "--ablation", "-o", cls.folder / "ablation")
@@ -47,8 +48,8 @@ class Pages(PageCase):
     def test_every_page_loads_alone_and_silently(self):
         names = {str(page.relative_to(self.folder)) for page in self.pages}
         self.assertEqual(names, {"gated/report.html", "all/report.html", "all/g1.html", "all/correlated.html",
-                                 "long/report.html", "satellites/report.html", "evaluated/report.html", "evaluated/g1.fused.html",
-                                 "evaluated/g2.fused.html", "compared/comparison.html", "bench/bench.html",
+                                 "long/report.html", "satellites/report.html", "evaluated/report.html",
+                                 "evaluated/g1.fused.html", "evaluated/g2.fused.html", "compared/comparison.html", "bench/bench.html",
                                  "reproduced/reproduction.html", "ablation/ablation.html"})
         for page in self.pages:
             with self.subTest(page=page.relative_to(self.folder)):

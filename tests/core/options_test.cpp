@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <waymark/core/base/error.hpp>
+#include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/registry.hpp>
 
 namespace options_test {
