@@ -71,12 +71,13 @@ Eigen::Vector2d unexplained(const ReckonedFixes& receiver, std::size_t before, s
 std::optional<Jump> jump_to(const ReckonedFixes& receiver, std::size_t i) {
   constexpr double kSmallest_m = 20;
   constexpr double kSigmas = 5;
-  constexpr double kLongest_s = 5;
+  constexpr double kLongest_s = 60;
+  constexpr double kDrift = 0.1;  // of the odometry, and of the heading in which it is laid
   const std::vector<Fix>& fixes = receiver.fixes;
   if (seconds_between(fixes[i - 1].stamp, fixes[i].stamp) > kLongest_s) return std::nullopt;
   const double claimed_m = std::max(fixes[i].accuracy_m(), fixes[i - 1].accuracy_m());
-  const double least_m = std::max(kSmallest_m, kSigmas * claimed_m);
   const ChordPair step = chord(receiver, i - 1, i);
+  const double least_m = std::max({kSmallest_m, kSigmas * claimed_m, kDrift * step.odometry.norm()});
   if (step.gnss.norm() + step.odometry.norm() < least_m) return std::nullopt;
   const std::optional<std::size_t> before = fix_10_s_from(receiver, i - 1, -1);
   const std::optional<std::size_t> after = fix_10_s_from(receiver, i, 1);

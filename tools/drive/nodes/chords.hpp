@@ -71,9 +71,9 @@ struct Jump {
   bool undone = false;
 };
 
-/// Finds jumps between fixes at most 5 s apart: 20 m or more, and more than 5 sigmas of the fixes, are
-/// not the motion of the odometry, laid along the fixes of 10 s before. For 10 s before and after, all
-/// fixes agree with the odometry within a quarter of that.
+/// Finds jumps between fixes at most a minute apart: 20 m or more, more than 5 sigmas of the fixes, and
+/// more than a tenth of the way, are not the motion of the odometry, laid along the fixes of 10 s before.
+/// For 10 s before and after, all fixes agree with the odometry within a quarter of that.
 [[nodiscard]] std::vector<Jump> jumps_of(const ReckonedFixes& receiver);
 
 }  // namespace waymark::drive
