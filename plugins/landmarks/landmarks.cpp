@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include <waymark/core/drive/kept_vertex.hpp>
+#include <waymark/core/graph/scalar_state.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
 #include <waymark/types_se2/plugin_kit/sensor_readings.hpp>

@@ -1,4 +1,5 @@
 // Every ruling of the outlier gate (tools/drive/README.md, "The gate").
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -224,6 +225,45 @@ TEST_CASE("gate: short chords have no angle, the displacement alone decides") {
   creeping.fixes[5].position[1] += 20;
   creeping.judge();
   CHECK(creeping.fixes[5].reason == "displacement");
+}
+
+TEST_CASE(
+    "gate: fixes that slide away and back, or come back while none are received, are rejected as well") {
+  GateOptions off;
+  off.enabled = false;
+  const auto wave = [](Scene& scene) {  // so that there is something usual to compare with
+    for (std::size_t i = 0; i < scene.fixes.size(); ++i)
+      scene.fixes[i].position[0] += 0.5 * std::sin(0.7 * static_cast<double>(i));
+  };
+  for (const double slide_s : {4.0, 8.0, 16.0}) {
+    INFO("they slide for " << slide_s << " s");
+    Scene slides = circle(1, 10, 400);
+    wave(slides);
+    for (std::size_t i = 0; i < 400; ++i) {
+      const double away = std::min(static_cast<double>(i) - 100, 250 - static_cast<double>(i)) / slide_s;
+      slides.fixes[i].position += std::clamp(away, 0.0, 1.0) * Eigen::Vector2d(24, 32);
+    }
+    REQUIRE(slides.judge(off).reasons.contains("jump"));
+    CHECK(slides.rejected().front() >= 98);
+    CHECK(slides.rejected().front() <= 103);  // the first of a slide are as good as right
+    CHECK(slides.rejected().back() >= 245);
+    CHECK(slides.rejected().back() <= 255);  // to 5 s
+  }
+
+  Scene gap;
+  const Scene whole = circle(1, 10, 400);
+  for (std::size_t i = 0; i < 400; ++i)
+    if (i < 240 || i >= 255) gap.add(static_cast<double>(i), whole.fixes[i].position);
+  wave(gap);
+  for (std::size_t i = 100; i < 240; ++i) gap.fixes[i].position += Eigen::Vector2d(24, 32);
+  CHECK(gap.judge(off).reasons.at("jump") == 140);
+
+  // One slide says only that fixes and odometry differ.
+  Scene once = circle(1, 10, 400);
+  wave(once);
+  for (std::size_t i = 100; i < 400; ++i)
+    once.fixes[i].position += std::min(1.0, (static_cast<double>(i) - 100) / 8) * Eigen::Vector2d(24, 32);
+  CHECK(once.judge(off).rejected == 0);
 }
 
 TEST_CASE("gate: of fixes at two places in turn those are rejected that are there for less than a third") {

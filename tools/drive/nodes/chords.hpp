@@ -32,6 +32,9 @@ struct ChordPair {
   bool follows = false;    ///< it begins at the end of the previous chord
 };
 
+/// Returns the way from a fix to a later one. Its heading is 0.
+[[nodiscard]] ChordPair chord_between(const ReckonedFixes& receiver, std::size_t first, std::size_t last);
+
 /// Returns chords one after another. Each is extended until it is complete.
 /// @param is_complete of a chord
 /// @param longest_s a chord that lasts longer is left out
@@ -60,20 +63,5 @@ struct Median {
 };
 /// @param values not empty
 [[nodiscard]] Median median_with_sigma(std::vector<double> values);
-
-/// A time from which the fixes are elsewhere, by the odometry.
-struct Jump {
-  std::size_t first = 0;                         ///< fix of the receiver that is elsewhere
-  std::size_t end = 0;                           ///< the fix that jumps again, or the number of fixes
-  Eigen::Vector2d by = Eigen::Vector2d::Zero();  ///< m, in the frame of the fixes
-  double stays_s = 0;                            ///< from the first fix to `end`, or to the last one
-  /// the next jump undoes this one, and there are more fixes elsewhere: those between are wrong
-  bool undone = false;
-};
-
-/// Finds jumps between fixes at most a minute apart: 20 m or more, more than 5 sigmas of the fixes, and
-/// more than a tenth of the way, are not the motion of the odometry, laid along the fixes of 10 s before.
-/// For 10 s before and after, all fixes agree with the odometry within a quarter of that.
-[[nodiscard]] std::vector<Jump> jumps_of(const ReckonedFixes& receiver);
 
 }  // namespace waymark::drive

@@ -7,6 +7,7 @@
 #include <waymark/tools/drive/coordinates/coordinate_slips.hpp>
 #include <waymark/tools/drive/nodes/chords.hpp>
 #include <waymark/tools/drive/nodes/frozen_fixes.hpp>
+#include <waymark/tools/drive/nodes/jumps.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
@@ -193,7 +194,8 @@ std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
   const std::vector<Jump> jumps = jumps_of(receiver);
   for (std::size_t i = 0; i < jumps.size(); ++i) {
     const bool jumps_back = i > 0 && jumps[i - 1].undone;
-    if (!jumps_back && (jumps[i].undone || jumps[i].by.norm() >= kLarge_m))
+    const bool at_once = jumps[i].first == jumps[i].settled;  // a slide that stays may be the odometry's
+    if (!jumps_back && (jumps[i].undone || (at_once && jumps[i].by.norm() >= kLarge_m)))
       sentences.push_back(in_words(jumps[i], receiver));
   }
   if (sentences.size() > kMost) {

@@ -1,0 +1,290 @@
+#include <waymark/tools/drive/nodes/jumps.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <tuple>
+
+#include <Eigen/Geometry>
+
+#include <waymark/core/base/detail/median.hpp>
+#include <waymark/types_se2/se2.hpp>
+
+namespace waymark::drive {
+namespace {
+
+/// Times that a slide may take.
+constexpr std::array<double, 3> kSlides_s = {5, 10, 20};
+
+/// The fixes stay for so long on both sides of a jump.
+constexpr double kSettled_s = 10;
+/// Of a jump: what the fixes beside it may differ from the odometry.
+constexpr double kQuarter = 0.25;
+
+double disagreement(const ReckonedFixes& receiver, std::size_t first, std::size_t last) {
+  const ChordPair pair = chord_between(receiver, first, last);
+  return std::abs(pair.gnss.norm() - pair.odometry.norm());
+}
+
+double seconds_from(const ReckonedFixes& receiver, std::size_t first, std::size_t last) {
+  return seconds_between(receiver.fixes[first].stamp, receiver.fixes[last].stamp);
+}
+
+/// Returns the fix 10 s before (step -1) or after (step 1) another one. Empty
+/// if the log ends earlier.
+std::optional<std::size_t> fix_10_s_from(const ReckonedFixes& receiver, std::size_t from, int step) {
+  for (auto i = static_cast<std::ptrdiff_t>(from); i >= 0 && i < std::ssize(receiver.fixes); i += step) {
+    const auto at = static_cast<std::size_t>(i);
+    if (std::abs(seconds_from(receiver, from, at)) >= kSettled_s) return at;
+  }
+  return std::nullopt;
+}
+
+/// Tells whether all fixes from `first` to `last` are as far from `from` as the
+/// odometry says.
+bool agree(const ReckonedFixes& receiver, std::size_t from, std::size_t first, std::size_t last,
+           double tolerance_m) {
+  for (std::size_t i = first; i <= last; ++i)
+    if (disagreement(receiver, from, i) >= tolerance_m) return false;
+  return true;
+}
+
+/// Returns the size from which a chord between two fixes is no noise of them.
+double least_m(const ReckonedFixes& receiver, std::size_t from, std::size_t to) {
+  constexpr double kSmallest_m = 20;
+  constexpr double kSigmas = 5;
+  return std::max(kSmallest_m,
+                  kSigmas * std::max(receiver.fixes[to].accuracy_m(), receiver.fixes[from].accuracy_m()));
+}
+
+/// Returns the part of a chord that the odometry does not explain, if the fixes
+/// are turned by an angle against it.
+Eigen::Vector2d unexplained(const ChordPair& step, double angle) {
+  return step.gnss - Eigen::Rotation2Dd(angle) * step.odometry;
+}
+
+/// Returns the jump from one fix to another. Empty unless both sides of it
+/// agree with the odometry.
+std::optional<Jump> jump_between(const ReckonedFixes& receiver, std::size_t from, std::size_t to,
+                                 const Eigen::Vector2d& by) {
+  if (by.norm() < least_m(receiver, from, to)) return std::nullopt;
+  const std::optional<std::size_t> before = fix_10_s_from(receiver, from, -1);
+  const std::optional<std::size_t> after = fix_10_s_from(receiver, to, 1);
+  const double tolerance_m = kQuarter * by.norm();
+  if (!before || !after || !agree(receiver, from, *before, from, tolerance_m) ||
+      !agree(receiver, to, to, *after, tolerance_m))
+    return std::nullopt;
+  return Jump{.first = from + 1, .settled = to, .by = by};
+}
+
+/// Returns the jump to fix i from the one before it. Empty if there is none.
+std::optional<Jump> jump_to(const ReckonedFixes& receiver, std::size_t i) {
+  constexpr double kLongest_s = 5;
+  if (seconds_from(receiver, i - 1, i) > kLongest_s) return std::nullopt;
+  const ChordPair step = chord_between(receiver, i - 1, i);
+  if (step.gnss.norm() + step.odometry.norm() < least_m(receiver, i - 1, i)) return std::nullopt;
+  const std::optional<std::size_t> before = fix_10_s_from(receiver, i - 1, -1);
+  if (!before) return std::nullopt;
+  const ChordPair way = chord_between(receiver, *before, i - 1);
+  return jump_between(receiver, i - 1, i, unexplained(step, angle_between(way.odometry, way.gnss)));
+}
+
+/// How the odometry lies along the fixes on one side of a moment.
+struct Side {
+  double angle = std::numeric_limits<double>::quiet_NaN();   ///< by which the fixes are
+                                                             ///< turned against it
+  double usual_m = std::numeric_limits<double>::infinity();  ///< of the differences, laid so
+};
+
+/// What the odometry does not explain between two fixes further apart than
+/// neighbours.
+struct Residual {
+  std::size_t from = 0;
+  std::size_t to = 0;
+  Eigen::Vector2d by = Eigen::Vector2d::Zero();
+  double beside_m = 0;  ///< largest difference before and after it
+  bool moves = false;
+};
+
+/// Returns fixes at least half a second apart.
+std::vector<std::size_t> sparse_fixes(const ReckonedFixes& receiver) {
+  constexpr double kApart_s = 0.5;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < receiver.fixes.size(); ++i)
+    if (kept.empty() || seconds_from(receiver, kept.back(), i) >= kApart_s) kept.push_back(i);
+  return kept;
+}
+
+/// Returns how far four in five ways of the fixes are at most from those of the odometry.
+double four_fifths(const std::vector<ChordPair>& ways, double angle) {
+  std::vector<double> sizes;
+  for (const ChordPair& way : ways) sizes.push_back(unexplained(way, angle).norm());
+  const auto place = sizes.begin() + std::ssize(sizes) * 4 / 5;
+  std::nth_element(sizes.begin(), place, sizes.end());
+  return *place;
+}
+
+/// Lays the odometry along the fixes before (step -1) or after (step 1) each of
+/// the kept ones: 200 m of them, at most a minute, at least 10 s. Where the
+/// vehicle stands, the angle is the last one known.
+std::vector<Side> sides_of(const ReckonedFixes& receiver, const std::vector<std::size_t>& kept, int step) {
+  constexpr double kWay_m = 200;
+  constexpr double kShortest_m = 30;
+  constexpr double kShortest_s = 20;
+  constexpr double kLongest_s = 60;
+  const auto count = std::ssize(kept);
+  std::vector<Side> sides(kept.size());
+  double angle = std::numeric_limits<double>::quiet_NaN();
+  for (std::ptrdiff_t n = 0; n < count; ++n) {
+    const std::ptrdiff_t i = step < 0 ? n : count - 1 - n;
+    const std::size_t here = kept[static_cast<std::size_t>(i)];
+    std::vector<ChordPair> ways;
+    for (std::ptrdiff_t j = i + step; j >= 0 && j < count; j += step) {
+      const std::size_t there = kept[static_cast<std::size_t>(j)];
+      const double apart_s = std::abs(seconds_from(receiver, here, there));
+      if (apart_s > kLongest_s) break;
+      ways.push_back(chord_between(receiver, here, there));
+      if (apart_s >= kShortest_s && ways.back().odometry.norm() >= kWay_m) break;
+    }
+    if (ways.empty()) continue;
+    const auto longest = std::max_element(
+        ways.begin(), ways.end(),
+        [](const ChordPair& a, const ChordPair& b) { return a.odometry.norm() < b.odometry.norm(); });
+    if (longest->odometry.norm() >= kShortest_m) angle = angle_between(longest->odometry, longest->gnss);
+    Side& side = sides[static_cast<std::size_t>(i)];
+    side = {angle, four_fifths(ways, angle)};
+  }
+  return sides;
+}
+
+/// Returns what the odometry does not explain in a time, from every kept fix.
+/// It is laid along the fixes before as far as the middle, and from there along
+/// those after.
+std::vector<Residual> residuals_over(double slide_s, const ReckonedFixes& receiver,
+                                     const std::vector<std::size_t>& kept, const std::vector<Side>& before,
+                                     const std::vector<Side>& after) {
+  constexpr double kMoves_m = 20;
+  constexpr double kLongest_s = 30;
+  std::vector<Residual> residuals;
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    while (to < kept.size() && seconds_from(receiver, kept[i], kept[to]) < slide_s) ++to;
+    if (to == kept.size()) break;
+    const double angle = before[i].angle;
+    const double turned = after[to].angle;
+    if (!std::isfinite(angle) || !std::isfinite(turned)) continue;
+    if (seconds_from(receiver, kept[i], kept[to]) > kLongest_s) continue;
+    const ChordPair step = chord_between(receiver, kept[i], kept[to]);
+    const Eigen::Vector2d middle = receiver.antenna[kept[(i + to) / 2]].head<2>();
+    const Eigen::Vector2d first = middle - receiver.antenna[kept[i]].head<2>();
+    const Eigen::Vector2d second = receiver.antenna[kept[to]].head<2>() - middle;
+    residuals.push_back({kept[i], kept[to],
+                         step.gnss - Eigen::Rotation2Dd(angle) * first - Eigen::Rotation2Dd(turned) * second,
+                         std::max(before[i].usual_m, after[to].usual_m), step.odometry.norm() >= kMoves_m});
+  }
+  return residuals;
+}
+
+/// Returns how large a residual usually is while the vehicle moves. Infinite if
+/// few are known.
+double usual_m(const std::vector<Residual>& residuals) {
+  constexpr std::size_t kFewest = 20;
+  std::vector<double> sizes;
+  for (const Residual& residual : residuals)
+    if (residual.moves) sizes.push_back(residual.by.norm());
+  return sizes.size() < kFewest ? std::numeric_limits<double>::infinity() : upper_median(std::move(sizes));
+}
+
+/// Returns what may be a jump that takes longer than from a fix to the next
+/// one, the clearest first.
+std::vector<Jump> slides_of(const ReckonedFixes& receiver) {
+  constexpr double kUnusual = 5;
+  const std::vector<std::size_t> kept = sparse_fixes(receiver);
+  const std::vector<Side> before = sides_of(receiver, kept, -1);
+  const std::vector<Side> after = sides_of(receiver, kept, 1);
+  std::vector<Jump> slides;
+  for (const double slide_s : kSlides_s) {
+    const std::vector<Residual> residuals = residuals_over(slide_s, receiver, kept, before, after);
+    const double usual = usual_m(residuals);
+    for (const auto& [from, to, by, beside_m, moves] : residuals) {
+      const double least = std::max(kUnusual * usual, least_m(receiver, from, to));
+      if (by.norm() < least || beside_m > kQuarter * by.norm()) continue;
+      slides.push_back({.first = from + 1, .settled = to, .by = by, .usual_m = usual});
+    }
+  }
+  const auto clearness = [](const Jump& slide) { return slide.by.norm() / slide.usual_m; };
+  std::stable_sort(slides.begin(), slides.end(),
+                   [&](const Jump& a, const Jump& b) { return clearness(a) > clearness(b); });
+  return slides;
+}
+
+/// Adds the slides that are not within 10 s of a jump or a clearer slide: the fixes beside those slide too.
+void add_slides(const ReckonedFixes& receiver, const std::vector<Jump>& slides, std::vector<Jump>& jumps) {
+  for (const Jump& slide : slides) {
+    const bool is_known = std::any_of(jumps.begin(), jumps.end(), [&](const Jump& jump) {
+      return seconds_from(receiver, slide.settled, jump.first) <= kSettled_s &&
+             seconds_from(receiver, jump.settled, slide.first) <= kSettled_s;
+    });
+    if (!is_known) jumps.push_back(slide);
+  }
+  std::sort(jumps.begin(), jumps.end(), [](const Jump& a, const Jump& b) { return a.first < b.first; });
+}
+
+/// Tells whether the second of two jumps takes the fixes back.
+bool undoes(const Jump& second, const Jump& first) {
+  constexpr double kUsual = 3;
+  constexpr double kHalf = 0.5;
+  const double size_m = first.by.norm();
+  const double uncertain_m = kUsual * std::hypot(first.usual_m, second.usual_m);
+  return (first.by + second.by).norm() <= std::clamp(uncertain_m, kQuarter * size_m, kHalf * size_m);
+}
+
+/// Judges jumps of which each undoes the one before. Two of them enclose the
+/// wrong fixes, if these are less than half of the log. More have the fixes at
+/// two places in turn, and the end of one burst looks like the beginning of
+/// another: fixes at one of them are wrong only if those at the other last
+/// twice as long.
+void mark_undone(const ReckonedFixes& receiver, std::size_t first, std::size_t last,
+                 std::vector<Jump>& jumps) {
+  constexpr double kClear = 2;
+  const std::vector<Fix>& fixes = receiver.fixes;
+  if (last == first) return;
+  if (last == first + 1) {
+    jumps[first].undone =
+        jumps[first].stays_s < 0.5 * seconds_between(fixes.front().stamp, fixes.back().stamp);
+    return;
+  }
+  const Stamp begin = first == 0 ? fixes.front().stamp : fixes[jumps[first - 1].first].stamp;
+  double near_s = seconds_between(begin, fixes[jumps[first].first].stamp);  // where the fixes come from
+  double away_s = 0;
+  for (std::size_t j = first; j <= last; ++j) ((j - first) % 2 == 0 ? away_s : near_s) += jumps[j].stays_s;
+  const bool is_away_wrong = kClear * away_s <= near_s;
+  if (!is_away_wrong && kClear * near_s > away_s) return;
+  for (std::size_t j = is_away_wrong ? first : first + 1; j < last; j += 2) jumps[j].undone = true;
+}
+
+}  // namespace
+
+std::vector<Jump> jumps_of(const ReckonedFixes& receiver) {
+  const std::size_t count = receiver.fixes.size();
+  std::vector<Jump> jumps;
+  for (std::size_t i = 1; i < count; ++i)
+    if (const std::optional<Jump> jump = jump_to(receiver, i)) jumps.push_back(*jump);
+  add_slides(receiver, slides_of(receiver), jumps);
+  for (std::size_t j = 0; j < jumps.size(); ++j) {
+    jumps[j].end = j + 1 < jumps.size() ? jumps[j + 1].settled : count;
+    jumps[j].stays_s = seconds_from(receiver, jumps[j].first, std::min(jumps[j].end, count - 1));
+  }
+  for (std::size_t first = 0; first < jumps.size();) {
+    std::size_t last = first;
+    while (last + 1 < jumps.size() && undoes(jumps[last + 1], jumps[last])) ++last;
+    mark_undone(receiver, first, last, jumps);
+    first = last + 1;
+  }
+  return jumps;
+}
+
+}  // namespace waymark::drive
