@@ -7,7 +7,8 @@
 ///    at these values is not already that of a minimum, the first registered start is computed
 ///    too. The one with lower chi2 is taken, because a Newton step costs more than a start in
 ///    such a graph.
-/// 2. If that run ends at a minimum with a plausible chi2, it is the result.
+/// 2. If that run ends at a minimum with a plausible chi2, it is the result. In a graph with few loops twice
+///    the degrees of freedom are plausible: a long drive shows every error of its sigmas in chi2.
 /// 3. Otherwise, or if the gauge cannot be judged at the given values, the other starts are tried,
 ///    each for a limited number of steps. This ends if a minimum is plausible, or if a second start
 ///    has ended at the lowest minimum so far. The lowest one is kept and run to its end.

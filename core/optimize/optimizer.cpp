@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -41,6 +42,16 @@ std::string text(const Part&... part) {
   return out.str();
 }
 
+/// Steps that reweight heavy-tailed losses converge linearly. Newton's steps with the whole curvature are tried
+/// where the decrement is this share of chi2, and shrinks by less than a tenth at a time.
+constexpr double kNearMinimum = 1e-4;
+constexpr double kSlowly = 0.1;
+/// The whole curvature is given up if the decrement does not shrink to that. The first one is larger than the last one of
+/// the reweighted steps, which do not see how far it is.
+constexpr double kContraction = 0.5;
+constexpr double kFirst = 20;
+/// It is tried again where the decrement has shrunk to that.
+constexpr double kAgain = 0.1;
 /// A difference of two sums below this share of chi2 is rounding, not a decrease.
 constexpr double kChi2Rounding = 1e-12;
 
@@ -70,6 +81,10 @@ class Loop {
   void prepare();
   bool converged_at_gradient();
   bool step_once();
+  bool converges_slowly() const;
+  bool step_with_whole_curvature();
+  bool give_up_whole_curvature();
+  IterationRecord begin_record();
   bool converged_by(const Step& step, double step_size);
   void finish(Termination termination, std::string message);
   double linearize(const std::vector<double>& values);
@@ -107,7 +122,10 @@ class Loop {
   double gradient_ = 0;
   double unit_ = 1;  // of the information: a chi2 far below it is small
   Step step_;
-  bool exhausted_ = false;  // the algorithm had no step left
+  bool exhausted_ = false;                                     // the algorithm had no step left
+  bool whole_curvature_ = false;                               // of the losses, in the present linearisation
+  double tried_at_ = std::numeric_limits<double>::infinity();  // decrement at which that was given up
+  bool has_losses_ = false;
   bool done_ = false;
 };
 
@@ -126,6 +144,7 @@ void Loop::prepare() {
     if (made_.pattern().dimension() > 0) solver_.analyze(made_.pattern());
   }
   unit_ = information_unit(graph_);
+  has_losses_ = has_losses(graph_);
   summary_.ordering = structure_.ordering();
   summary_.vertices = graph_.vertex_count();
   summary_.edges = graph_.edge_count();
@@ -200,6 +219,74 @@ void Loop::finish_without_step() {
   }
 }
 
+IterationRecord Loop::begin_record() {
+  IterationRecord record;
+  record.iteration = ++summary_.iterations;
+  record.predicted_decrease = step_.predicted_decrease;
+  record.newton_decrement = step_.newton_decrement;
+  record.gradient = gradient_;
+  record.step = step_.delta.lpNorm<Eigen::Infinity>();
+  record.control = step_.control;
+  record.kind = step_.kind;
+  return record;
+}
+
+bool Loop::converges_slowly() const {
+  const std::vector<IterationRecord>& records = summary_.records;
+  if (!has_losses_ || records.size() < 2) return false;
+  const IterationRecord& last = records.back();
+  const IterationRecord& before = records[records.size() - 2];
+  const bool full = last.accepted && before.accepted && last.kind == "newton" && before.kind == "newton";
+  return full && last.newton_decrement > kSlowly * before.newton_decrement &&
+         last.newton_decrement <= std::min(kNearMinimum * (unit_ + chi2_), kAgain * tried_at_);
+}
+
+/// Goes on with the steps of the algorithm. @returns false: nothing has moved
+bool Loop::give_up_whole_curvature() {
+  whole_curvature_ = false;
+  tried_at_ = summary_.records.back().newton_decrement;
+  linearize(values_);
+  return false;
+}
+
+/// Takes one step of Newton's, with the concave parts of the losses. It converges quadratically, if there is a
+/// minimum of that curvature nearby. @returns whether the values have moved
+bool Loop::step_with_whole_curvature() {
+  const auto linearize_whole = [this] {
+    const Timer timer(summary_.linearize_seconds);
+    equations_.linearize_with_concave_terms(values_);
+  };
+  const bool is_first = !whole_curvature_;
+  if (is_first) linearize_whole();
+  whole_curvature_ = true;
+  {
+    const Timer timer(summary_.solve_seconds);
+    if (solver_.factorize(equations_.hessian()) != FactorStatus::ok) return give_up_whole_curvature();
+    step_.delta = -equations_.gradient();
+    solver_.solve({step_.delta.data(), static_cast<std::size_t>(step_.delta.size())},
+                  {step_.delta.data(), static_cast<std::size_t>(step_.delta.size())});
+  }
+  step_.newton_decrement = step_.predicted_decrease = -step_.delta.dot(equations_.gradient());
+  step_.full_newton = true;
+  step_.kind = "newton";
+  const double most = (is_first ? kFirst : kContraction) * summary_.records.back().newton_decrement;
+  if (!(step_.newton_decrement >= 0 && step_.newton_decrement <= most)) return give_up_whole_curvature();
+  equations_.retract(values_, step_.delta, trial_);
+  const double trial_chi2 = equations_.chi2(trial_);
+  if (!(chi2_ - trial_chi2 >= -kChi2Rounding * chi2_)) return give_up_whole_curvature();
+  IterationRecord record = begin_record();
+  const bool converged = converged_by(step_, record.step);
+  record.chi2 = trial_chi2;
+  record.decrease = chi2_ - trial_chi2;
+  record.accepted = true;
+  accept(trial_chi2);
+  if (!converged) linearize_whole();
+  record.seconds = seconds_since(start_);
+  summary_.records.push_back(record);
+  if (options_.observer) options_.observer(record);
+  return true;
+}
+
 // Takes one step: from the present linearisation to the next one, or to the end.
 bool Loop::step_once() {
   // 1. Propose.
@@ -220,14 +307,7 @@ bool Loop::step_once() {
     retreat();
     return true;
   }
-  IterationRecord record;
-  record.iteration = ++summary_.iterations;
-  record.predicted_decrease = step_.predicted_decrease;
-  record.newton_decrement = step_.newton_decrement;
-  record.gradient = gradient_;
-  record.step = step_.delta.lpNorm<Eigen::Infinity>();
-  record.control = step_.control;
-  record.kind = step_.kind;
+  IterationRecord record = begin_record();
 
   // 2. Test convergence, only on full Newton steps. The last step is still taken unless chi2 rises.
   const bool converged = converged_by(step_, record.step);
@@ -332,7 +412,8 @@ Summary Loop::run() {
     } else if (summary_.iterations >= options_.max_iterations) {
       finish(Termination::max_iterations, text("not converged after ", summary_.iterations, " iterations"));
     } else {
-      moved = step_once();
+      const bool whole = whole_curvature_ || converges_slowly();
+      moved = whole ? step_with_whole_curvature() : step_once();
     }
   }
   // Full steps that went uphill may end at a minimum above earlier values. The values that are then
@@ -353,6 +434,13 @@ Summary Loop::run() {
 }
 
 }  // namespace
+
+bool has_losses(const Graph& graph) {
+  for (std::size_t b = 0; b < graph.batch_count(); ++b)
+    for (std::size_t e = 0; e < graph.batch(b).size(); ++e)
+      if (graph.batch(b).loss(e) != nullptr) return true;
+  return false;
+}
 
 void OptimizerOptions::check() const {
   const auto require = [](bool valid, const char* field, double value, const char* rule) {

@@ -45,8 +45,12 @@ struct OptimizerOptions {
   void check() const;
 };
 
-/// Minimises chi2 of the graph. Afterwards the graph holds the best values found, whatever
-/// the outcome.
+/// Tells whether any edge has a loss, so that chi2 is no sum of squares. O(edges).
+[[nodiscard]] bool has_losses(const Graph& graph);
+
+/// Minimises chi2 of the graph; afterwards it holds the best values found, whatever the outcome. Newton's steps with
+/// the whole curvature of the losses end the run where heavy tails make the algorithm converge slowly near a
+/// minimum.
 /// @throws UsageError for invalid options; InputError if the gauge is undetermined (see find_gauge)
 Summary optimize(Graph& graph, Algorithm& algorithm, LinearSolver& solver, const OptimizerOptions& options);
 

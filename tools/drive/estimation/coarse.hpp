@@ -29,7 +29,8 @@ struct CoarseDrive {
 
 /// Returns windows of a long drive at equal distances in time, with gaps of the odometry between them, so that
 /// what is estimated from it costs the same for an hour and a day. The whole if they are most of it, if there
-/// are no fixes, or if several odometries measured it.
-[[nodiscard]] CoarseDrive sample_of(CoarseDrive whole, std::size_t windows, double window_s);
+/// are no fixes, or if several odometries measured it. Two hours tell the parameters of the noise to a tenth.
+/// (From 25 minutes of an hour, the positions of simulated drives were 1 to 10 % worse.)
+[[nodiscard]] CoarseDrive sample_of(CoarseDrive whole, std::size_t windows = 12, double window_s = 600);
 
 }  // namespace waymark::drive

@@ -106,7 +106,7 @@ std::vector<std::optional<TimeOffset>> found_in(const Round& round, const Fusion
 
 TimeOffsetSearch::TimeOffsetSearch(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                                    const TypeRegistry& registry, const std::function<void()>& between)
-    : coarse_(coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s)),
+    : coarse_(sample_of(coarsen(placed, sensors, kFixPeriod_s, kNodePeriod_s))),
       registry_(registry),
       between_(between) {}
 

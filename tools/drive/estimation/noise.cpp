@@ -15,11 +15,6 @@
 namespace waymark::drive {
 namespace {
 
-/// The noise of a drive of many hours is estimated from two of them, which tell its parameters to a tenth. (From
-/// 25 minutes of an hour, the positions of simulated drives were 1 to 10 % worse.)
-constexpr std::size_t kWindows = 12;
-constexpr double kWindow_s = 600;
-
 /// The prior for receivers that claim an accuracy. @param accuracy_m median; 0: none is claimed
 NoisePrior prior_for(const NoisePrior& general, double accuracy_m) {
   constexpr double kCoarse_m = 0.5;
@@ -226,8 +221,7 @@ NoiseEstimate visit_parts(const PlacedDrive& placed, std::span<const PreparedSen
   const auto start = std::chrono::steady_clock::now();
   NoiseEstimate noise;
   FusionSettings known = settings;
-  const CoarseDrive all =
-      sample_of(coarsen(placed, for_noise_search(sensors, registry)), kWindows, kWindow_s);
+  const CoarseDrive all = sample_of(coarsen(placed, for_noise_search(sensors, registry)));
   const std::size_t count = std::max<std::size_t>(placed.relative.size(), 1);
   for (std::size_t source = 0; source < count; ++source) {
     Part part{with_only(source, all), known, {}};

@@ -228,6 +228,11 @@ std::string warning_of_accelerations(std::span<const OdometrySample> odometry) {
       kLargest, 100 * share);
 }
 
+std::vector<std::string> warnings_of_jumps(std::span<const Fix> fixes,
+                                           std::span<const Eigen::Vector3d> antenna, int source) {
+  return jumps_in_words(of_receiver(fixes, antenna, source));
+}
+
 std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
                                                      std::span<const Eigen::Vector3d> antenna,
                                                      const std::optional<GeodeticPoint>& place) {

@@ -34,4 +34,9 @@ namespace waymark::drive {
 /// 2 m/s: a wrong unit of the yaw rate also shows without turns in the fixes. Empty otherwise.
 [[nodiscard]] std::string warning_of_accelerations(std::span<const OdometrySample> odometry);
 
+/// Names the jumps of one receiver, as compare_odometry_with_fixes() does for the first one.
+[[nodiscard]] std::vector<std::string> warnings_of_jumps(std::span<const Fix> fixes,
+                                                         std::span<const Eigen::Vector3d> antenna,
+                                                         int source);
+
 }  // namespace waymark::drive

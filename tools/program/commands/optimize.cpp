@@ -29,13 +29,6 @@ struct OptimizeOptions {
   bool lenient = false;
 };
 
-bool has_losses(const Graph& graph) {
-  for (std::size_t b = 0; b < graph.batch_count(); ++b)
-    for (std::size_t e = 0; e < graph.batch(b).size(); ++e)
-      if (graph.batch(b).loss(e) != nullptr) return true;
-  return false;
-}
-
 /// A minimum of least squares with a few wrong edges is the minimum, and wrong.
 void warn_of_wrong_edges(const Summary& summary, const Graph& graph, const Console& console) {
   constexpr double kFar = 4;
