@@ -46,7 +46,7 @@ std::string text(const Part&... part) {
 /// where the decrement is this share of chi2, and shrinks by less than a tenth at a time.
 constexpr double kNearMinimum = 1e-4;
 constexpr double kSlowly = 0.1;
-/// The whole curvature is given up if the decrement does not shrink to that. The first one is larger than the last one of
+/// The whole curvature is given up if the decrement does not shrink to that. The first one is larger than that of
 /// the reweighted steps, which do not see how far it is.
 constexpr double kContraction = 0.5;
 constexpr double kFirst = 20;

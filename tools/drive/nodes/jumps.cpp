@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <tuple>
 
 #include <Eigen/Geometry>
 
@@ -18,7 +17,6 @@ namespace {
 
 /// Times that a slide may take.
 constexpr std::array<double, 3> kSlides_s = {5, 10, 20};
-
 /// The fixes stay for so long on both sides of a jump.
 constexpr double kSettled_s = 10;
 /// Of a jump: what the fixes beside it may differ from the odometry.
@@ -33,8 +31,7 @@ double seconds_from(const ReckonedFixes& receiver, std::size_t first, std::size_
   return seconds_between(receiver.fixes[first].stamp, receiver.fixes[last].stamp);
 }
 
-/// Returns the fix 10 s before (step -1) or after (step 1) another one. Empty
-/// if the log ends earlier.
+/// Returns the fix 10 s before (step -1) or after (step 1) another one. Empty if the log ends earlier.
 std::optional<std::size_t> fix_10_s_from(const ReckonedFixes& receiver, std::size_t from, int step) {
   for (auto i = static_cast<std::ptrdiff_t>(from); i >= 0 && i < std::ssize(receiver.fixes); i += step) {
     const auto at = static_cast<std::size_t>(i);
@@ -43,8 +40,7 @@ std::optional<std::size_t> fix_10_s_from(const ReckonedFixes& receiver, std::siz
   return std::nullopt;
 }
 
-/// Tells whether all fixes from `first` to `last` are as far from `from` as the
-/// odometry says.
+/// Tells whether all fixes from `first` to `last` are as far from `from` as the odometry says.
 bool agree(const ReckonedFixes& receiver, std::size_t from, std::size_t first, std::size_t last,
            double tolerance_m) {
   for (std::size_t i = first; i <= last; ++i)
@@ -60,14 +56,12 @@ double least_m(const ReckonedFixes& receiver, std::size_t from, std::size_t to) 
                   kSigmas * std::max(receiver.fixes[to].accuracy_m(), receiver.fixes[from].accuracy_m()));
 }
 
-/// Returns the part of a chord that the odometry does not explain, if the fixes
-/// are turned by an angle against it.
+/// Returns the part of a chord that the odometry does not explain, if the fixes are turned by an angle against it.
 Eigen::Vector2d unexplained(const ChordPair& step, double angle) {
   return step.gnss - Eigen::Rotation2Dd(angle) * step.odometry;
 }
 
-/// Returns the jump from one fix to another. Empty unless both sides of it
-/// agree with the odometry.
+/// Returns the jump from one fix to another. Empty unless both sides of it agree with the odometry.
 std::optional<Jump> jump_between(const ReckonedFixes& receiver, std::size_t from, std::size_t to,
                                  const Eigen::Vector2d& by) {
   if (by.norm() < least_m(receiver, from, to)) return std::nullopt;
@@ -94,18 +88,16 @@ std::optional<Jump> jump_to(const ReckonedFixes& receiver, std::size_t i) {
 
 /// How the odometry lies along the fixes on one side of a moment.
 struct Side {
-  double angle = std::numeric_limits<double>::quiet_NaN();   ///< by which the fixes are
-                                                             ///< turned against it
-  double usual_m = std::numeric_limits<double>::infinity();  ///< of the differences, laid so
+  double angle = std::numeric_limits<double>::quiet_NaN();   ///< by which the fixes are turned against it
+  double usual_m = std::numeric_limits<double>::infinity();  ///< four in five differ by at most that
 };
 
-/// What the odometry does not explain between two fixes further apart than
-/// neighbours.
+/// What the odometry does not explain between two fixes further apart than neighbours.
 struct Residual {
   std::size_t from = 0;
   std::size_t to = 0;
   Eigen::Vector2d by = Eigen::Vector2d::Zero();
-  double beside_m = 0;  ///< largest difference before and after it
+  double beside_m = 0;  ///< the larger Side::usual_m before and after it
   bool moves = false;
 };
 
@@ -127,9 +119,9 @@ double four_fifths(const std::vector<ChordPair>& ways, double angle) {
   return *place;
 }
 
-/// Lays the odometry along the fixes before (step -1) or after (step 1) each of
-/// the kept ones: 200 m of them, at most a minute, at least 10 s. Where the
-/// vehicle stands, the angle is the last one known.
+/// Lays the odometry along the fixes before (step -1) or after (step 1) each of the kept ones: 200 m of them, at
+/// least 20 s (in a shorter time a slide looks like a turned way), at most a minute. Where the vehicle stands,
+/// the angle is the last one known.
 std::vector<Side> sides_of(const ReckonedFixes& receiver, const std::vector<std::size_t>& kept, int step) {
   constexpr double kWay_m = 200;
   constexpr double kShortest_m = 30;
@@ -160,9 +152,8 @@ std::vector<Side> sides_of(const ReckonedFixes& receiver, const std::vector<std:
   return sides;
 }
 
-/// Returns what the odometry does not explain in a time, from every kept fix.
-/// It is laid along the fixes before as far as the middle, and from there along
-/// those after.
+/// Returns what the odometry does not explain in a time, from every kept fix. It is laid along the fixes before as
+/// far as the middle, and from there along those after.
 std::vector<Residual> residuals_over(double slide_s, const ReckonedFixes& receiver,
                                      const std::vector<std::size_t>& kept, const std::vector<Side>& before,
                                      const std::vector<Side>& after) {
@@ -188,8 +179,7 @@ std::vector<Residual> residuals_over(double slide_s, const ReckonedFixes& receiv
   return residuals;
 }
 
-/// Returns how large a residual usually is while the vehicle moves. Infinite if
-/// few are known.
+/// Returns how large a residual usually is while the vehicle moves. Infinite if few are known.
 double usual_m(const std::vector<Residual>& residuals) {
   constexpr std::size_t kFewest = 20;
   std::vector<double> sizes;
@@ -198,8 +188,7 @@ double usual_m(const std::vector<Residual>& residuals) {
   return sizes.size() < kFewest ? std::numeric_limits<double>::infinity() : upper_median(std::move(sizes));
 }
 
-/// Returns what may be a jump that takes longer than from a fix to the next
-/// one, the clearest first.
+/// Returns what may be a jump that takes longer than from a fix to the next one, the clearest first.
 std::vector<Jump> slides_of(const ReckonedFixes& receiver) {
   constexpr double kUnusual = 5;
   const std::vector<std::size_t> kept = sparse_fixes(receiver);
@@ -242,11 +231,9 @@ bool undoes(const Jump& second, const Jump& first) {
   return (first.by + second.by).norm() <= std::clamp(uncertain_m, kQuarter * size_m, kHalf * size_m);
 }
 
-/// Judges jumps of which each undoes the one before. Two of them enclose the
-/// wrong fixes, if these are less than half of the log. More have the fixes at
-/// two places in turn, and the end of one burst looks like the beginning of
-/// another: fixes at one of them are wrong only if those at the other last
-/// twice as long.
+/// Judges jumps of which each undoes the one before. Two of them enclose the wrong fixes, if these are less
+/// than half of the log. More have the fixes at two places in turn, and the end of one burst looks like the
+/// beginning of another: fixes at one of them are wrong only if those at the other last twice as long.
 void mark_undone(const ReckonedFixes& receiver, std::size_t first, std::size_t last,
                  std::vector<Jump>& jumps) {
   constexpr double kClear = 2;

@@ -12,10 +12,9 @@ namespace waymark::drive {
 
 /// The fixes leave where the odometry goes on, at once or in a slide.
 struct Jump {
-  std::size_t first = 0;  ///< fix of the receiver that has left
-  std::size_t settled =
-      0;                ///< fix that is elsewhere for good: `first`, unless the fixes slide or are missing
-  std::size_t end = 0;  ///< fix at which the next jump is over, or the number of fixes
+  std::size_t first = 0;    ///< fix of the receiver that has left
+  std::size_t settled = 0;  ///< fix that is elsewhere for good; `first` if the fixes leave at once
+  std::size_t end = 0;      ///< fix at which the next jump is over, or the number of fixes
   Eigen::Vector2d by = Eigen::Vector2d::Zero();  ///< m, in the frame of the fixes
   double usual_m = 0;  ///< what the odometry usually leaves unexplained in such a time; 0: at once
   double stays_s = 0;  ///< from `first` to `end`, or to the last fix
@@ -25,8 +24,8 @@ struct Jump {
 
 /// Finds jumps: 20 m or more, and more than 5 sigmas of the fixes, are not the motion of the odometry, laid
 /// along the fixes before. For 10 s before and after, all fixes agree with the odometry within a quarter of
-/// that. Between two fixes at most 5 s apart that is enough. What takes longer, at most 80 s (a receiver
-/// that smooths its positions, a gap), must also be six times what is usual between the fixes of this drive
+/// that. Between two fixes at most 5 s apart that is enough. What takes longer, at most 30 s (a receiver
+/// that smooths its positions, a gap), must also be five times what is usual between the fixes of this drive
 /// and its odometry in such a time.
 [[nodiscard]] std::vector<Jump> jumps_of(const ReckonedFixes& receiver);
 
