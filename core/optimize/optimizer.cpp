@@ -125,7 +125,6 @@ class Loop {
   bool exhausted_ = false;                                     // the algorithm had no step left
   bool whole_curvature_ = false;                               // of the losses, in the present linearisation
   double tried_at_ = std::numeric_limits<double>::infinity();  // decrement at which that was given up
-  bool has_losses_ = false;
   bool done_ = false;
 };
 
@@ -144,7 +143,6 @@ void Loop::prepare() {
     if (made_.pattern().dimension() > 0) solver_.analyze(made_.pattern());
   }
   unit_ = information_unit(graph_);
-  has_losses_ = has_losses(graph_);
   summary_.ordering = structure_.ordering();
   summary_.vertices = graph_.vertex_count();
   summary_.edges = graph_.edge_count();
@@ -159,7 +157,7 @@ void Loop::prepare() {
 
 double Loop::linearize(const std::vector<double>& values) {
   const Timer timer(summary_.linearize_seconds);
-  return equations_.linearize(values);
+  return whole_curvature_ ? equations_.linearize_with_concave_terms(values) : equations_.linearize(values);
 }
 
 bool Loop::converged_at_gradient() {
@@ -233,12 +231,13 @@ IterationRecord Loop::begin_record() {
 
 bool Loop::converges_slowly() const {
   const std::vector<IterationRecord>& records = summary_.records;
-  if (!has_losses_ || records.size() < 2) return false;
+  if (records.size() < 2) return false;
   const IterationRecord& last = records.back();
   const IterationRecord& before = records[records.size() - 2];
   const bool full = last.accepted && before.accepted && last.kind == "newton" && before.kind == "newton";
   return full && last.newton_decrement > kSlowly * before.newton_decrement &&
-         last.newton_decrement <= std::min(kNearMinimum * (unit_ + chi2_), kAgain * tried_at_);
+         last.newton_decrement <= std::min(kNearMinimum * (unit_ + chi2_), kAgain * tried_at_) &&
+         has_losses(graph_);
 }
 
 /// Goes on with the steps of the algorithm. @returns false: nothing has moved
@@ -252,13 +251,9 @@ bool Loop::give_up_whole_curvature() {
 /// Takes one step of Newton's, with the concave parts of the losses. It converges quadratically, if there is a
 /// minimum of that curvature nearby. @returns whether the values have moved
 bool Loop::step_with_whole_curvature() {
-  const auto linearize_whole = [this] {
-    const Timer timer(summary_.linearize_seconds);
-    equations_.linearize_with_concave_terms(values_);
-  };
   const bool is_first = !whole_curvature_;
-  if (is_first) linearize_whole();
   whole_curvature_ = true;
+  if (is_first) linearize(values_);
   {
     const Timer timer(summary_.solve_seconds);
     if (solver_.factorize(equations_.hessian()) != FactorStatus::ok) return give_up_whole_curvature();
@@ -280,7 +275,7 @@ bool Loop::step_with_whole_curvature() {
   record.decrease = chi2_ - trial_chi2;
   record.accepted = true;
   accept(trial_chi2);
-  if (!converged) linearize_whole();
+  if (!converged) linearize(values_);
   record.seconds = seconds_since(start_);
   summary_.records.push_back(record);
   if (options_.observer) options_.observer(record);

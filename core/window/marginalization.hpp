@@ -43,8 +43,8 @@ struct Marginalization {
 /// time; in such a graph, places without a stamp (landmarks) that join one that stays; and fixed vertices
 /// that remaining edges touch. Fixed vertices count as known, and so do those in `held`. A held vertex goes
 /// with the prefix, and the prior then anchors the rest at its place. A fixed origin that no remaining edge
-/// touches (GNSS outage) goes too; a caller that needs it later adds it again with the same id. Robust losses enter with their weights and second-order terms at
-/// the present values (robust_information.hpp), and are frozen from then on.
+/// touches (GNSS outage) goes too; a caller that needs it later adds it again with the same id. Robust losses
+/// enter with their weights and second-order terms at the present values (robust_information.hpp), frozen.
 ///
 /// @param held per vertex, or empty: vertices that are known besides the fixed ones, as find_gauge
 /// returns them. Without it, a graph that nothing anchors stays so to first order. The prior is

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include <waymark/core/base/error.hpp>
 #include <waymark/core/linear/dense_decompositions.hpp>
 #include <waymark/core/registry/options.hpp>
 #include <waymark/core/registry/plugin.hpp>
@@ -111,7 +110,8 @@ class GnssCorrelated final : public GnssModeling {
     const VertexIndex origin = origin_.in_or(graph, [&] { return add_origin(graph); });
     const VertexIndex offset =
         offset_.in_or(graph, [&] { return make_offset(graph, input.moments.front().assumed_offset_s); });
-    const std::optional<Loss> loss = input.loss || !model_.heavy_tails ? input.loss : student_loss();
+    const std::optional<Loss> loss =
+        input.loss || !model_.heavy_tails ? input.loss : builtin_loss("cauchy", kStudentScale);
     const double peak = model_.heavy_tails ? kStudentInformation : 1;
     claimed_ = input.claimed.kinds() > 0 ? input.claimed : claimed_accuracies(input.fixes);
     if (!multipath_) multipath_ = Multipath(1, model_.multipath_time_s);
@@ -138,13 +138,6 @@ class GnssCorrelated final : public GnssModeling {
   }
 
  private:
-  static std::optional<Loss> student_loss() {
-    for (const LossType& type : builtin_losses()) {
-      if (type.name == "cauchy") return Loss{type.name, type.evaluate, kStudentScale};
-    }
-    throw UsageError("correlated: there is no loss 'cauchy'");
-  }
-
   [[nodiscard]] VertexIndex make_offset(Graph& graph, double assumed_s) const {
     if (time_offset_sigma_s_ > 0) return add_time_offset(graph, time_offset_sigma_s_, assumed_s);
     const VertexIndex none = graph.add_vertex<VertexTimeOffset>(graph.free_id(), {assumed_s});

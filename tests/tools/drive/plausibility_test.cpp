@@ -121,6 +121,27 @@ TEST_CASE("plausibility: a jump that lasts is named with its size and time, a si
   CHECK(warnings(single).empty());
 }
 
+TEST_CASE("plausibility: of another receiver the jumps are named, unless the odometry is in a wrong unit") {
+  const std::vector<std::string> names = {"front", "roof"};
+  for (const double speed_factor : {1.0, 3.6}) {
+    Scene both = scene(speed_factor, 1, 200);
+    Scene roof = both;
+    for (std::size_t i = 0; i < roof.fixes.size(); ++i) {
+      roof.fixes[i].source = 1;
+      if (i >= 80 && i < 120) roof.fixes[i].position.y() += 200;
+    }
+    both.fixes.insert(both.fixes.end(), roof.fixes.begin(), roof.fixes.end());
+    both.antenna.insert(both.antenna.end(), roof.antenna.begin(), roof.antenna.end());
+    const auto said = compare_odometry_with_fixes(both.fixes, both.antenna, {}, names);
+    REQUIRE(said.size() == 1);
+    if (speed_factor == 1)
+      CHECK_THAT(said[0],
+                 Catch::StartsWith("roof: the fixes jump by 200 m at 80.0 s after the first fix, and back"));
+    else
+      CHECK_THAT(said[0], Catch::Contains("check the unit of the speed"));
+  }
+}
+
 TEST_CASE("plausibility: an impossible acceleration is named without any fix") {
   std::vector<OdometrySample> odometry(100);
   for (OdometrySample& sample : odometry) sample = {.stamp = {}, .speed_mps = 10, .yaw_rate_radps = 0.9};

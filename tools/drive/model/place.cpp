@@ -140,13 +140,9 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
       dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
   const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.fixes);
   placed.warnings = drive.report.warnings;
-  for (std::string& warning : compare_odometry_with_fixes(placed.fixes, antenna, place_of(drive)))
+  for (std::string& warning :
+       compare_odometry_with_fixes(placed.fixes, antenna, place_of(drive), placed.receivers))
     placed.warnings.push_back(std::move(warning));
-  for (std::size_t source = 0; source < placed.receivers.size(); ++source) {
-    if (placed.fixes.empty() || static_cast<int>(source) == placed.fixes.front().source) continue;
-    for (const std::string& jump : warnings_of_jumps(placed.fixes, antenna, static_cast<int>(source)))
-      placed.warnings.push_back(placed.receivers[source] + ": " + jump);
-  }
   placed.gate = apply_gate(placed.fixes, antenna, gates_of(placed, settings, registry));
   require_accepted_fix(placed.gate);
   if (std::string warning = warning_of(placed.gate); !warning.empty())

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
 
 #include <Eigen/Geometry>
 
@@ -61,29 +60,23 @@ Eigen::Vector2d unexplained(const ChordPair& step, double angle) {
   return step.gnss - Eigen::Rotation2Dd(angle) * step.odometry;
 }
 
-/// Returns the jump from one fix to another. Empty unless both sides of it agree with the odometry.
-std::optional<Jump> jump_between(const ReckonedFixes& receiver, std::size_t from, std::size_t to,
-                                 const Eigen::Vector2d& by) {
-  if (by.norm() < least_m(receiver, from, to)) return std::nullopt;
-  const std::optional<std::size_t> before = fix_10_s_from(receiver, from, -1);
-  const std::optional<std::size_t> after = fix_10_s_from(receiver, to, 1);
-  const double tolerance_m = kQuarter * by.norm();
-  if (!before || !after || !agree(receiver, from, *before, from, tolerance_m) ||
-      !agree(receiver, to, to, *after, tolerance_m))
-    return std::nullopt;
-  return Jump{.first = from + 1, .settled = to, .by = by};
-}
-
 /// Returns the jump to fix i from the one before it. Empty if there is none.
 std::optional<Jump> jump_to(const ReckonedFixes& receiver, std::size_t i) {
   constexpr double kLongest_s = 5;
   if (seconds_from(receiver, i - 1, i) > kLongest_s) return std::nullopt;
   const ChordPair step = chord_between(receiver, i - 1, i);
-  if (step.gnss.norm() + step.odometry.norm() < least_m(receiver, i - 1, i)) return std::nullopt;
+  const double least = least_m(receiver, i - 1, i);
+  if (step.gnss.norm() + step.odometry.norm() < least) return std::nullopt;
   const std::optional<std::size_t> before = fix_10_s_from(receiver, i - 1, -1);
-  if (!before) return std::nullopt;
+  const std::optional<std::size_t> after = fix_10_s_from(receiver, i, 1);
+  if (!before || !after) return std::nullopt;
   const ChordPair way = chord_between(receiver, *before, i - 1);
-  return jump_between(receiver, i - 1, i, unexplained(step, angle_between(way.odometry, way.gnss)));
+  const Eigen::Vector2d by = unexplained(step, angle_between(way.odometry, way.gnss));
+  const double tolerance_m = kQuarter * by.norm();
+  if (by.norm() < least || !agree(receiver, i - 1, *before, i - 1, tolerance_m) ||
+      !agree(receiver, i, i, *after, tolerance_m))
+    return std::nullopt;
+  return Jump{.first = i, .settled = i, .by = by};
 }
 
 /// How the odometry lies along the fixes on one side of a moment.
@@ -119,35 +112,42 @@ double four_fifths(const std::vector<ChordPair>& ways, double angle) {
   return *place;
 }
 
-/// Lays the odometry along the fixes before (step -1) or after (step 1) each of the kept ones: 200 m of them, at
-/// least 20 s (in a shorter time a slide looks like a turned way), at most a minute. Where the vehicle stands,
-/// the angle is the last one known.
-std::vector<Side> sides_of(const ReckonedFixes& receiver, const std::vector<std::size_t>& kept, int step) {
+/// Returns the ways to the kept fixes before (step -1) or after (step 1) one of them: as far as 200 m, at least
+/// 20 s (in a shorter time a slide looks like a turned way), at most a minute.
+std::vector<ChordPair> ways_beside(const ReckonedFixes& receiver, const std::vector<std::size_t>& kept,
+                                   std::ptrdiff_t from, int step) {
   constexpr double kWay_m = 200;
-  constexpr double kShortest_m = 30;
   constexpr double kShortest_s = 20;
   constexpr double kLongest_s = 60;
+  const std::size_t here = kept[static_cast<std::size_t>(from)];
+  std::vector<ChordPair> ways;
+  for (std::ptrdiff_t j = from + step; j >= 0 && j < std::ssize(kept); j += step) {
+    const std::size_t there = kept[static_cast<std::size_t>(j)];
+    const double apart_s = std::abs(seconds_from(receiver, here, there));
+    if (apart_s > kLongest_s) break;
+    ways.push_back(chord_between(receiver, here, there));
+    if (apart_s >= kShortest_s && ways.back().odometry.norm() >= kWay_m) break;
+  }
+  return ways;
+}
+
+/// Lays the odometry along the fixes on one side of each of the kept ones. Where the vehicle stands, the angle is
+/// the last one known.
+std::vector<Side> sides_of(const ReckonedFixes& receiver, const std::vector<std::size_t>& kept, int step) {
+  constexpr double kShortest_m = 30;
   const auto count = std::ssize(kept);
+  const auto is_shorter = [](const ChordPair& a, const ChordPair& b) {
+    return a.odometry.norm() < b.odometry.norm();
+  };
   std::vector<Side> sides(kept.size());
   double angle = std::numeric_limits<double>::quiet_NaN();
   for (std::ptrdiff_t n = 0; n < count; ++n) {
     const std::ptrdiff_t i = step < 0 ? n : count - 1 - n;
-    const std::size_t here = kept[static_cast<std::size_t>(i)];
-    std::vector<ChordPair> ways;
-    for (std::ptrdiff_t j = i + step; j >= 0 && j < count; j += step) {
-      const std::size_t there = kept[static_cast<std::size_t>(j)];
-      const double apart_s = std::abs(seconds_from(receiver, here, there));
-      if (apart_s > kLongest_s) break;
-      ways.push_back(chord_between(receiver, here, there));
-      if (apart_s >= kShortest_s && ways.back().odometry.norm() >= kWay_m) break;
-    }
+    const std::vector<ChordPair> ways = ways_beside(receiver, kept, i, step);
     if (ways.empty()) continue;
-    const auto longest = std::max_element(
-        ways.begin(), ways.end(),
-        [](const ChordPair& a, const ChordPair& b) { return a.odometry.norm() < b.odometry.norm(); });
+    const auto longest = std::max_element(ways.begin(), ways.end(), is_shorter);
     if (longest->odometry.norm() >= kShortest_m) angle = angle_between(longest->odometry, longest->gnss);
-    Side& side = sides[static_cast<std::size_t>(i)];
-    side = {angle, four_fifths(ways, angle)};
+    sides[static_cast<std::size_t>(i)] = {angle, four_fifths(ways, angle)};
   }
   return sides;
 }

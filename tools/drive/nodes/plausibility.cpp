@@ -228,14 +228,10 @@ std::string warning_of_accelerations(std::span<const OdometrySample> odometry) {
       kLargest, 100 * share);
 }
 
-std::vector<std::string> warnings_of_jumps(std::span<const Fix> fixes,
-                                           std::span<const Eigen::Vector3d> antenna, int source) {
-  return jumps_in_words(of_receiver(fixes, antenna, source));
-}
-
 std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
                                                      std::span<const Eigen::Vector3d> antenna,
-                                                     const std::optional<GeodeticPoint>& place) {
+                                                     const std::optional<GeodeticPoint>& place,
+                                                     std::span<const std::string> receivers) {
   std::vector<std::string> warnings;
   std::vector<Fix> live(fixes.begin(), fixes.end());
   std::vector<Eigen::Vector3d> reckoned(antenna.begin(), antenna.end());
@@ -246,12 +242,18 @@ std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
   std::erase_if(live, [&](const Fix&) { return is_frozen[at++] != 0; });
   at = 0;
   std::erase_if(reckoned, [&](const Eigen::Vector3d&) { return is_frozen[at++] != 0; });
-  const ReckonedFixes receiver = of_receiver(live, reckoned, fixes.empty() ? 0 : fixes.front().source);
+  const int first = fixes.empty() ? 0 : fixes.front().source;
+  const ReckonedFixes receiver = of_receiver(live, reckoned, first);
   Shape shape = shape_of(receiver);
   if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
   warnings.insert(warnings.end(), shape.sentences.begin(), shape.sentences.end());
   if (shape.spoils_jumps) return warnings;
   for (std::string& jump : jumps_in_words(receiver)) warnings.push_back(std::move(jump));
+  for (int source = 0; source < std::ssize(receivers); ++source) {
+    if (source == first) continue;
+    for (const std::string& jump : jumps_in_words(of_receiver(live, reckoned, source)))
+      warnings.push_back(receivers[static_cast<std::size_t>(source)] + ": " + jump);
+  }
   return warnings;
 }
 

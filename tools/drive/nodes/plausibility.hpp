@@ -22,21 +22,17 @@ namespace waymark::drive {
 /// - Fixes repeat one position while the odometry moves (frozen_fixes.hpp).
 /// - The fixes jump by 50 m or more and stay there for 10 s or more, or by 20 m or more and back.
 /// Where the fixes fit once their coordinates are mended (coordinate_slips.hpp), the sentence names that.
-/// @param fixes those of the first receiver are compared
+/// @param fixes those of the first receiver are compared; of the others only the jumps are named
 /// @param antenna dead-reckoned antenna poses at the fixes, in any frame, with headings that are not
 /// wrapped; same length and order as `fixes`
 /// @param place of the drive; empty: not known
+/// @param receivers names by Fix::source
 [[nodiscard]] std::vector<std::string> compare_odometry_with_fixes(
     std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
-    const std::optional<GeodeticPoint>& place = {});
+    const std::optional<GeodeticPoint>& place = {}, std::span<const std::string> receivers = {});
 
 /// Returns a warning if the acceleration across the vehicle exceeds 10 m/s^2 in 5 % of the samples above
 /// 2 m/s: a wrong unit of the yaw rate also shows without turns in the fixes. Empty otherwise.
 [[nodiscard]] std::string warning_of_accelerations(std::span<const OdometrySample> odometry);
-
-/// Names the jumps of one receiver, as compare_odometry_with_fixes() does for the first one.
-[[nodiscard]] std::vector<std::string> warnings_of_jumps(std::span<const Fix> fixes,
-                                                         std::span<const Eigen::Vector3d> antenna,
-                                                         int source);
 
 }  // namespace waymark::drive
