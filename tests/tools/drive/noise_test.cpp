@@ -8,9 +8,11 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/estimation/noise_objective.hpp>
+#include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/model/fuse.hpp>
 
 #include <waymark/types_se2/se2.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
 
 #include "support/registry.hpp"
 
@@ -264,6 +266,76 @@ TEST_CASE("noise: the search ends where the caller asks for it, with nothing") {
   CHECK_THROWS_AS(find_deviations(placed, {}, settings, registry(), noise, between), Ended);
   FusionSettings whole;
   CHECK_THROWS_AS(Fusion(drive, registry(), between).fuse(whole), Ended);
+}
+
+TEST_CASE("noise: what is not known of it widens covariances as much as noise that is drawn") {
+  const PreparedDrive drive = make_drive({}, 3);
+  const FusionSettings settings = complete_settings();
+  const PlacedDrive placed = place_drive(drive, timeline_of(drive), settings, registry());
+  const NoiseEstimate noise = estimate_noise(placed, {}, settings, registry());
+  const CoarseDrive coarse = coarsen(placed, {});
+  NoiseObjective objective(coarse, settings, registry());
+  (void)objective.at(noise);
+  objective.stay();
+  const std::vector<PoseBelief> here = objective.beliefs_at(noise);
+  const Eigen::VectorXd at = coordinates_of(noise);
+  constexpr double kDeviation = 0.3;
+  const Eigen::MatrixXd covariance =
+      kDeviation * kDeviation * Eigen::MatrixXd::Identity(at.size(), at.size());
+  const std::vector<PoseSpread> spread = spread_over_noise(objective, noise, covariance);
+  REQUIRE(spread.size() == here.size());
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal(0, kDeviation);
+  constexpr int kPairs = 60;
+  const std::vector<std::size_t> nodes = {here.size() / 4, here.size() / 2};
+  std::vector<double> drawn(nodes.size());
+  NoiseEstimate other = noise;
+  for (int pair = 0; pair < kPairs; ++pair) {
+    const Eigen::VectorXd away = at.unaryExpr([&](double) { return normal(random); });
+    for (const double side : {-1.0, 1.0}) {
+      place_at(at + side * away, other);
+      const std::vector<PoseBelief> there = objective.beliefs_at(other);
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const PoseBelief& moved = there[nodes[i]];
+        const PoseBelief& still = here[nodes[i]];
+        drawn[i] += (moved.covariance - still.covariance).topLeftCorner<2, 2>().trace() +
+                    (moved.pose - still.pose).head<2>().squaredNorm();
+      }
+    }
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    INFO("node " << nodes[i]);
+    const double widened = spread[nodes[i]].covariance.topLeftCorner<2, 2>().trace();
+    CHECK(widened == Approx(drawn[i] / (2 * kPairs)).epsilon(0.2));
+    CHECK(widened > 0.02 * here[nodes[i]].covariance.topLeftCorner<2, 2>().trace());
+  }
+  const std::vector<PoseSpread> known = spread_over_noise(objective, noise, 1e-4 * covariance);
+  CHECK(known[nodes[0]].covariance.isZero());
+}
+
+TEST_CASE("noise: a spread is added at its time, to poses alone") {
+  Graph graph;
+  const auto pose_at = [&](double seconds) {
+    const VertexIndex v = graph.add_vertex<VertexSe2>(graph.free_id(), Pose2<double>(0, 0, 0));
+    graph.set_stamp(v, Stamp::from_seconds(seconds));
+    return v;
+  };
+  const VertexIndex before = pose_at(90);
+  const VertexIndex between = pose_at(102.5);
+  const VertexIndex after = pose_at(130);
+  const VertexIndex timeless = graph.add_vertex<VertexSe2>(graph.free_id(), Pose2<double>(0, 0, 0));
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  std::vector<formats::VertexCovariance> covariances;
+  for (const VertexIndex v : {before, between, after, timeless}) covariances.push_back({v, one});
+  covariances.push_back({before, one.topLeftCorner<2, 2>()});
+  const std::vector<PoseSpread> spread = {{Stamp::from_seconds(100), 4 * one},
+                                          {Stamp::from_seconds(110), 8 * one}};
+  widen(covariances, graph, spread);
+  CHECK(covariances[0].covariance.isApprox(5 * one));
+  CHECK(covariances[1].covariance.isApprox(6 * one));
+  CHECK(covariances[2].covariance.isApprox(9 * one));
+  CHECK(covariances[3].covariance == one);
+  CHECK(covariances[4].covariance.isIdentity(0));
 }
 
 TEST_CASE("noise: a modeling without such options and fixes that leave nothing open have none") {

@@ -121,6 +121,24 @@ TEST_CASE("plausibility: a jump that lasts is named with its size and time, a si
   CHECK(warnings(single).empty());
 }
 
+TEST_CASE("plausibility: who is wrong after a gap cannot be told if the fixes do not come back") {
+  Scene whole = scene(1, 1, 300);
+  Scene gap;
+  for (std::size_t i = 0; i < whole.fixes.size(); ++i) {
+    if (i >= 140 && i < 155) continue;
+    Fix fix = whole.fixes[i];
+    fix.position += Eigen::Vector2d(std::sin(2.3 * double(i)), std::cos(3.1 * double(i)));
+    if (i >= 155) fix.position.y() += 60;
+    gap.fixes.push_back(fix);
+    gap.antenna.push_back(whole.antenna[i]);
+  }
+  CHECK(warnings(gap).empty());
+  for (std::size_t i = 185; i < gap.fixes.size(); ++i) gap.fixes[i].position.y() -= 60;
+  const auto said = warnings(gap);
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::StartsWith("the fixes jump by") && Catch::Contains("and back after"));
+}
+
 TEST_CASE("plausibility: of another receiver the jumps are named, unless the odometry is in a wrong unit") {
   const std::vector<std::string> names = {"front", "roof"};
   for (const double speed_factor : {1.0, 3.6}) {

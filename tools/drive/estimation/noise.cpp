@@ -9,6 +9,7 @@
 #include <waymark/core/registry/options.hpp>
 #include <waymark/tools/drive/estimation/coarse.hpp>
 #include <waymark/tools/drive/estimation/noise_objective.hpp>
+#include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/estimation/posterior_mode.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 
@@ -108,6 +109,7 @@ struct Part {
   CoarseDrive coarse;
   FusionSettings settings;  ///< with what the parts before it have estimated
   NoiseEstimate noise;
+  bool has_absolute = true;  ///< its parameters have those of the absolute sources among them
 };
 
 /// Takes the values of the same parameters and their curvature, if all of them are known.
@@ -191,6 +193,7 @@ NoiseEstimate open_parameters(const CoarseDrive& coarse, std::size_t count, bool
 
 /// Adds what was estimated apart from the rest.
 void append(const NoiseEstimate& part, NoiseEstimate& noise) {
+  if (!part.spread.empty()) noise.spread = part.spread;
   noise.parameters.insert(noise.parameters.end(), part.parameters.begin(), part.parameters.end());
   noise.evaluations += part.evaluations;
   const Eigen::Index before = noise.curvature.rows();
@@ -224,8 +227,8 @@ NoiseEstimate visit_parts(const PlacedDrive& placed, std::span<const PreparedSen
   const CoarseDrive all = sample_of(coarsen(placed, for_noise_search(sensors, registry)));
   const std::size_t count = std::max<std::size_t>(placed.relative.size(), 1);
   for (std::size_t source = 0; source < count; ++source) {
-    Part part{with_only(source, all), known, {}};
-    part.noise = open_parameters(part.coarse, count, source == 0, known, registry);
+    Part part{with_only(source, all), known, {}, source == 0};
+    part.noise = open_parameters(part.coarse, count, part.has_absolute, known, registry);
     if (part.noise.parameters.empty()) continue;
     visit(part);
     append(part.noise, noise);
@@ -264,6 +267,7 @@ void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> 
       NoiseParameter& parameter = part.noise.parameters[static_cast<std::size_t>(i)];
       parameter.deviation = std::sqrt(covariance(i, i)) * parameter.prior.deviation;
     }
+    if (part.has_absolute) part.noise.spread = spread_over_noise(objective, part.noise, covariance);
     part.noise.evaluations = objective.evaluations();
   });
   known.evaluations += noise.evaluations;

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include <waymark/core/drive/stamp.hpp>
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 
@@ -37,11 +38,18 @@ struct NoiseParameter {
   [[nodiscard]] bool observed() const { return deviation < 0.9 * prior.deviation; }
 };
 
+/// What is added to the covariance of a pose because its noise is not known well (noise_spread.hpp).
+struct PoseSpread {
+  Stamp stamp;
+  Eigen::Matrix3d covariance;  ///< x, y in frame axes, m; heading, rad
+};
+
 struct NoiseEstimate {
   std::vector<NoiseParameter> parameters;
   /// n x n, of -log of prior times likelihood by coordinates (noise_objective.hpp), as the search left it
   Eigen::MatrixXd curvature;
-  int evaluations = 0;  ///< evaluations of the marginal likelihood
+  std::vector<PoseSpread> spread;  ///< in order of time; empty: not known
+  int evaluations = 0;             ///< evaluations of the marginal likelihood
   double seconds = 0;
 };
 
@@ -63,7 +71,8 @@ struct NoiseEstimate {
                                            const NoiseEstimate& near = {},
                                            const std::function<void()>& between = {});
 
-/// Finds how well the values are known, where they stand. @param settings as of the estimate
+/// Finds how well the values are known, where they stand, and what that means for the poses; for this, those of
+/// further relative sources count as known. @param settings as of the estimate
 void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
                      const FusionSettings& settings, const TypeRegistry& registry, NoiseEstimate& noise,
                      const std::function<void()>& between = {});

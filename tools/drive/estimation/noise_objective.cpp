@@ -4,9 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include <waymark/core/base/error.hpp>
+#include <waymark/core/covariance/marginals.hpp>
 #include <waymark/core/optimize/optimizer.hpp>
 #include <waymark/core/system/gauge.hpp>
 #include <waymark/tools/drive/model/build.hpp>
+#include <waymark/types_se2/vertex_se2.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -80,7 +83,7 @@ void NoiseObjective::build(const NoiseEstimate& noise) {
   evidence_ = std::make_unique<RepeatedEvidence>(graph_, kept_.structure());
 }
 
-bool NoiseObjective::polish() {
+bool NoiseObjective::polish(double tolerance) {
   constexpr int kMostSteps = 8;
   values_ = graph_.values();
   std::vector<double> next;
@@ -91,19 +94,19 @@ bool NoiseObjective::polish() {
     Eigen::VectorXd move = -equations_->gradient();
     cholesky_.solve(span_of(move), span_of(move));
     const double decrement = -move.dot(equations_->gradient());
-    if (!(decrement >= 0 && decrement < before)) return decrement <= kExact * (1 + chi2);
+    if (!(decrement >= 0 && decrement < before)) return decrement <= tolerance * (1 + chi2);
     equations_->retract(values_, move, next);
     values_.swap(next);
-    if (decrement <= kExact * (1 + chi2)) return true;
+    if (decrement <= tolerance * (1 + chi2)) return true;
     before = kContraction * decrement;
   }
   return false;
 }
 
-void NoiseObjective::find_poses() {
+void NoiseObjective::find_poses(double tolerance) {
   if (!stays_at_.empty()) {
     graph_.set_values(stays_at_);
-    if (polish()) return;
+    if (polish(tolerance)) return;
     graph_.set_values(stays_at_);
   }
   OptimizerOptions options;
@@ -111,9 +114,9 @@ void NoiseObjective::find_poses() {
   options.max_iterations = 200;
   optimize(graph_, kept_, *algorithm_, options);
   const std::vector<double> near = graph_.values();
-  if (polish()) return;
+  if (polish(tolerance)) return;
   graph_.set_values(near);
-  options.decrement_tolerance = kExact;
+  options.decrement_tolerance = tolerance;
   optimize(graph_, kept_, *algorithm_, options);
   values_ = graph_.values();
 }
@@ -121,7 +124,7 @@ void NoiseObjective::find_poses() {
 double NoiseObjective::at(const NoiseEstimate& noise) {
   ++evaluations_;
   build(noise);
-  find_poses();
+  find_poses(kExact);
   here_ = evidence_->at(values_);
   const double cost = here_.negative_log() + negative_log_prior(noise);
   return std::isfinite(cost) ? cost : kImpossible;
@@ -142,6 +145,31 @@ double NoiseObjective::with_gradient(const NoiseEstimate& noise, Eigen::VectorXd
   for (std::size_t i = 0; i < noise.parameters.size(); ++i)
     gradient[static_cast<Eigen::Index>(i)] += derivative(noise, i, residual);
   return cost;
+}
+
+std::vector<PoseBelief> NoiseObjective::beliefs_at(const NoiseEstimate& noise) {
+  build(noise);
+  find_poses(kNearMinimum);
+  graph_.set_values(values_);
+  std::vector<VertexIndex> poses;
+  for (VertexIndex v = 0; v < static_cast<VertexIndex>(graph_.vertex_count()); ++v) {
+    if (graph_.vertex_type(v).tag == VertexSe2::kTag && graph_.stamp(v) && !graph_.fixed(v))
+      poses.push_back(v);
+  }
+  std::sort(poses.begin(), poses.end(),
+            [&](VertexIndex a, VertexIndex b) { return graph_.stamp(a) < graph_.stamp(b); });
+  std::vector<PoseBelief> beliefs;
+  beliefs.reserve(poses.size());
+  try {
+    const CovarianceBlocks covariances = marginal_covariances(graph_, poses);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Eigen::Vector3d pose(graph_.value(poses[i]).data());
+      beliefs.push_back({*graph_.stamp(poses[i]), pose, covariances[i]});
+    }
+  } catch (const InputError&) {
+    return {};  // the curvature is not positive definite
+  }
+  return beliefs;
 }
 
 std::vector<double> NoiseObjective::moved_poses(const Eigen::VectorXd& residual) {

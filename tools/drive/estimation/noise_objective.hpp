@@ -30,6 +30,13 @@ namespace waymark::drive {
 void place_at(double coordinate, NoiseParameter& parameter);
 void place_at(const Eigen::VectorXd& coordinates, NoiseEstimate& noise);
 
+/// A pose of the coarse drive at some noise.
+struct PoseBelief {
+  Stamp stamp;
+  Eigen::Vector3d pose;        ///< x, y in frame axes, m; heading, rad
+  Eigen::Matrix3d covariance;  ///< in the same axes
+};
+
 class NoiseObjective {
  public:
   /// All of them must outlive this object. @param settings state none of the parameters
@@ -43,6 +50,9 @@ class NoiseObjective {
   [[nodiscard]] double at(const NoiseEstimate& noise);
   /// Returns the same. @param gradient receives the derivatives by the coordinates
   [[nodiscard]] double with_gradient(const NoiseEstimate& noise, Eigen::VectorXd& gradient);
+  /// Returns the poses at a noise, in order of time, to a small part of what they are known to. The search for
+  /// them begins as in at(). Empty if their covariances are not defined there.
+  [[nodiscard]] std::vector<PoseBelief> beliefs_at(const NoiseEstimate& noise);
   /// Stays at the poses of the last call. Before the first call it is at the initial guess.
   void stay() { stays_at_ = values_; }
   /// Returns how many times L was computed, with or without its derivatives.
@@ -52,12 +62,12 @@ class NoiseObjective {
   /// Builds the graph of a noise. Vertices and edges are the same every time.
   void build(const NoiseEstimate& noise);
   /// Takes Newton's steps with the whole curvature from the poses of the graph. @returns whether they
-  /// reached a minimum
-  [[nodiscard]] bool polish();
+  /// reached a minimum, to a tolerance as OptimizerOptions::decrement_tolerance
+  [[nodiscard]] bool polish(double tolerance);
   /// Factorises the curvature at the poses, and keeps the gradient. @returns whether it has a factor
   [[nodiscard]] bool factorize_curvature();
   /// Minimises chi2 over the poses, and keeps them.
-  void find_poses();
+  void find_poses(double tolerance);
   /// Returns where the minimum moves if the gradient becomes that of equations_, with the factor of the
   /// minimum. @param residual the gradient that is left there
   [[nodiscard]] std::vector<double> moved_poses(const Eigen::VectorXd& residual);

@@ -7,6 +7,7 @@
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/estimation/latency.hpp>
+#include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/drive/model/provenance.hpp>
 
@@ -194,12 +195,16 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
   return modeled;
 }
 
+void add_covariances(ModeledDrive& modeled, const std::string& which) {
+  add_covariances(modeled.document, which);
+  widen(modeled.document.covariances, modeled.document.graph, modeled.noise.spread);
+}
+
 FusedDrive minimized(ModeledDrive model, const TypeRegistry& registry, const MinimizationWatch& watch) {
   FusedDrive fused{std::move(model), {}};
-  formats::GraphDocument& document = fused.model.document;
   const Minimization& how = fused.model.settings.minimization;
-  fused.minimum = minimize(document.graph, how, registry, watch);
-  if (fused.minimum.summary.converged()) add_covariances(document, how.covariances);
+  fused.minimum = minimize(fused.model.document.graph, how, registry, watch);
+  if (fused.minimum.summary.converged()) add_covariances(fused.model, how.covariances);
   return fused;
 }
 

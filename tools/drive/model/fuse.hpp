@@ -108,6 +108,11 @@ class Fusion {
   std::list<std::pair<Key, PlacedDrive>> placed_;
 };
 
+/// Fills the covariances of a drive at its minimum. Those of poses contain what is not known of the noise
+/// (noise_spread.hpp). Errors are those of add_covariances() of a document.
+/// @param which "none", "fixes" or "all"
+void add_covariances(ModeledDrive& modeled, const std::string& which);
+
 /// Finds the minimum of a modeled drive, and the covariances that its settings request.
 [[nodiscard]] FusedDrive minimized(ModeledDrive model, const TypeRegistry& registry,
                                    const MinimizationWatch& watch = {});

@@ -194,7 +194,7 @@ std::vector<std::string> jumps_in_words(const ReckonedFixes& receiver) {
   const std::vector<Jump> jumps = jumps_of(receiver);
   for (std::size_t i = 0; i < jumps.size(); ++i) {
     const bool jumps_back = i > 0 && jumps[i - 1].undone;
-    const bool at_once = jumps[i].first == jumps[i].settled;  // a slide that stays may be the odometry's
+    const bool at_once = jumps[i].usual_m == 0;  // what takes time and stays may be the odometry's
     if (!jumps_back && (jumps[i].undone || (at_once && jumps[i].by.norm() >= kLarge_m)))
       sentences.push_back(in_words(jumps[i], receiver));
   }

@@ -92,7 +92,6 @@ class Estimator {
   [[nodiscard]] const drive::Projection& projection_at(const GeodeticPoint& place);
   [[nodiscard]] Fix projected(const GeodeticFix& fix);
   void begin_at_believed();
-  void note_place_at(Stamp stamp);
   void align();
   void align_warm();
   void begin_window(PlacedStretch stretch, std::optional<drive::FirstPose> first_pose);

@@ -48,16 +48,16 @@ drive::DriveDescription read_drive(const std::string& path) {
 }
 
 /// Covariances are computed only at a minimum, because elsewhere they mean nothing.
-evaluation::Evaluation evaluate_fused(formats::GraphDocument& document, const std::vector<TruthPose>& truth,
+evaluation::Evaluation evaluate_fused(drive::ModeledDrive& fused, const std::vector<TruthPose>& truth,
                                       bool converged) {
   if (converged) {
     try {
-      drive::add_covariances(document, "fixes");
+      drive::add_covariances(fused, "fixes");
     } catch (const InputError&) {
-      document.covariances.clear();  // H is singular at the place where g2o's rule ended the run
+      fused.document.covariances.clear();  // H is singular at the place where g2o's rule ended the run
     }
   }
-  return evaluate_document(document, truth);
+  return evaluate_document(fused.document, truth);
 }
 
 /// Progress of all runs of all drives.

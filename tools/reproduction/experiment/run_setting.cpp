@@ -53,9 +53,9 @@ drive::ModeledDrive inflated(const StudiedDrive& drive, const Setting& setting,
   return drive::Fusion(prepared, registry).model(setting.fusion);
 }
 
-/// Fuses the drive. The outcome has everything but its evaluation. Returns the optimised document.
-formats::GraphDocument fuse(StudiedDrive& drive, const Setting& setting, const Laboratory& laboratory,
-                            Outcome& outcome) {
+/// Fuses the drive. The outcome has everything but noise and evaluation. Returns the drive at the minimum.
+drive::ModeledDrive fuse(StudiedDrive& drive, const Setting& setting, const Laboratory& laboratory,
+                         Outcome& outcome) {
   const TypeRegistry& registry = laboratory.registry;
   drive::ModeledDrive model = drive.model(setting);
   outcome.accepted = model.placed.gate.accepted;
@@ -69,13 +69,12 @@ formats::GraphDocument fuse(StudiedDrive& drive, const Setting& setting, const L
     outcome.ending = minimize(model.document.graph, setting, registry, laboratory.cancel);
   }
   if (setting.outliers == OutlierTreatment::inflation) {
-    model = inflated(drive, setting, laboratory.evaluate(model.document, {}, false), registry);
+    model = inflated(drive, setting, laboratory.evaluate(model, {}, false), registry);
     outcome.ending = minimize(model.document.graph, setting, registry, laboratory.cancel);
   }
   if (!setting.objective.empty())
     outcome.poses = vehicle_poses(model.document.graph, model.placed.timeline.stamps.size());
-  outcome.noise = std::move(model.noise);
-  return std::move(model.document);
+  return model;
 }
 
 }  // namespace
@@ -85,12 +84,14 @@ Outcome run_setting(StudiedDrive& drive, const Setting& setting, const Laborator
   Outcome outcome;
   outcome.setting = setting;
   try {
-    formats::GraphDocument document = fuse(drive, setting, laboratory, outcome);
+    drive::ModeledDrive fused = fuse(drive, setting, laboratory, outcome);
     if (setting.evaluated) {
-      outcome.evaluation = laboratory.evaluate(document, drive.drive().truth, outcome.ending.converged);
+      outcome.evaluation = laboratory.evaluate(fused, drive.drive().truth, outcome.ending.converged);
       outcome.evaluation.epochs = {};
       if (outcome.evaluation.truth) outcome.evaluation.truth->match.at = {};
     }
+    outcome.noise = std::move(fused.noise);
+    outcome.noise.spread = {};
   } catch (const InputError& error) {
     outcome.failure = error.what();
   } catch (const UsageError& error) {

@@ -17,8 +17,8 @@ namespace waymark::reproduction {
 /// The equipment that all runs of settings share.
 struct Laboratory {
   const TypeRegistry& registry;
-  /// Evaluates a fused document. @param converged whether the document is at a minimum
-  std::function<evaluation::Evaluation(formats::GraphDocument& document, const std::vector<TruthPose>& truth,
+  /// Evaluates a fused drive. @param converged whether its document is at a minimum
+  std::function<evaluation::Evaluation(drive::ModeledDrive& fused, const std::vector<TruthPose>& truth,
                                        bool converged)>
       evaluate;
   /// Called before every run with its description. It may throw to end all runs.
@@ -39,7 +39,7 @@ struct Outcome {
   Ending ending;
   std::size_t accepted = 0;  ///< accepted fixes
   std::size_t rejected = 0;
-  drive::NoiseEstimate noise;  ///< without parameters if the noise is as stated
+  drive::NoiseEstimate noise;  ///< without parameters if the noise is as stated; without its spread
   /// without its lists of epochs; empty if the setting is not evaluated
   evaluation::Evaluation evaluation;
   /// Distance from the lowest minimum found for the objective of the setting (compare_outcomes).

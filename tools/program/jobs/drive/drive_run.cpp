@@ -82,15 +82,14 @@ evaluation::Prediction predict_causally(const RunOfDrive& run, drive::FusionSett
   return causal;
 }
 
-/// Gives a document the covariances of all its vertices.
+/// Gives a drive the covariances of all its vertices.
 void add_all_covariances(const RunOfDrive& run, const drive::FusionSettings& settings,
-                         formats::GraphDocument& document) {
-  if (settings.minimization.covariances == "all") return;  // it has them
+                         drive::ModeledDrive& modeled) {
   run.console.progress(settings.modeling + ": covariances");
   try {
-    drive::add_covariances(document, "all");
+    drive::add_covariances(modeled, "all");
   } catch (const InputError& error) {
-    warn("stated errors cannot be judged: " + std::string(error.what()), document, run.console);
+    warn("stated errors cannot be judged: " + std::string(error.what()), modeled.document, run.console);
   }
   run.console.end_progress();
 }
@@ -176,7 +175,7 @@ void write_modeling(const RunOfDrive& run, const drive::ModeledDrive& modeled, c
 }
 
 /// Optimises a modeled drive, and evaluates its minimum. Afterwards the document has the covariances that
-/// were asked for. @return all covariances that are known
+/// were asked for, of the graph as it is. @return all that are known, with what is not known of the noise
 std::vector<formats::VertexCovariance> minimise_and_judge(const RunOfDrive& run, drive::ModeledDrive& modeled,
                                                           const drive::FusionSettings& settings,
                                                           const ModelingFiles& files, ModelingRun& result) {
@@ -192,7 +191,7 @@ std::vector<formats::VertexCovariance> minimise_and_judge(const RunOfDrive& run,
   record_optimization(result.result, document);
   files.write_fused_graph();  // the minimum is saved before anything else can fail
   std::vector<formats::VertexCovariance> asked_for = document.covariances;
-  if (summary.converged()) add_all_covariances(run, settings, document);
+  if (summary.converged()) add_all_covariances(run, settings, modeled);
   result.states = states_of_minimum(document, summary, console);
   result.evaluation = {modeling, evaluate_minimum(run, modeled, summary, settings)};
   std::vector<formats::VertexCovariance> known = std::exchange(document.covariances, std::move(asked_for));

@@ -10,6 +10,7 @@
 
 #include <waymark/core/base/detail/median.hpp>
 #include <waymark/core/base/error.hpp>
+#include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/drive/model/poses_at_fixes.hpp>
 #include <waymark/tools/drive/model/without_source.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
@@ -132,13 +133,16 @@ evaluation::SourceReport report_with(const drive::PreparedDrive& drive, const dr
 }
 
 /// Fuses the drive without a source, and adds what differs.
+/// @param spread of the noise, which is the same with all sources
 void add_result_without(const drive::PreparedDrive& drive, const drive::SourceOfDrive& source,
                         const drive::FusionSettings& settings, const Covariances& all,
-                        const TypeRegistry& registry, evaluation::SourceReport& report) {
+                        std::span<const drive::PoseSpread> spread, const TypeRegistry& registry,
+                        evaluation::SourceReport& report) {
   const drive::PreparedDrive rest = drive::without_source(drive, source);
-  const drive::FusedDrive fused = drive::fuse(rest, settings, registry);
+  drive::FusedDrive fused = drive::fuse(rest, settings, registry);
   if (!fused.minimum.summary.converged()) throw InputError(fused.minimum.summary.message);
-  const formats::GraphDocument& document = fused.model.document;
+  formats::GraphDocument& document = fused.model.document;
+  drive::widen(document.covariances, document.graph, spread);
   const Covariances covariances = covariances_of(document);
   report.without_sigma_m = median_sigma(covariances);
   report.share = share_lost(all, covariances);
@@ -167,7 +171,7 @@ evaluation::SourceComparison compare_sources(const drive::PreparedDrive& drive, 
     if (!drive::can_do_without(drive, source) || console.cancel()) continue;
     console.progress("without " + source.name);
     try {
-      add_result_without(drive, source, settings, all, registry, report);
+      add_result_without(drive, source, settings, all, modeled.noise.spread, registry, report);
     } catch (const InputError& error) {
       warn("there is no result without " + source.name + ": " + error.what(), modeled.document, console);
     }
