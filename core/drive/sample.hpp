@@ -29,6 +29,8 @@ struct OdometrySample {
   double yaw_rate_radps = 0;  ///< counter-clockwise seen from above, rad/s
   /// not measured: a stand-in for a sensor that failed; its intervals are bridged
   bool assumed = false;
+  /// the vehicle turns without moving, slower than Interval::stands() can tell from one reading
+  bool turns_on_spot = false;
 };
 
 /// The motion between two consecutive nodes of a drive. Speed and yaw rate are means over dt.
@@ -43,12 +45,13 @@ struct Interval {
   /// Standard deviations of distance and turn as integrals: between readings the rates are not known.
   double distance_sigma_m = 0;
   double turn_sigma_rad = 0;
+  bool turns_on_spot = false;  ///< as OdometrySample::turns_on_spot
 
-  /// Tells whether the vehicle stands: it is slower than `below_mps`, and does not turn on the spot, which
-  /// is faster than any gyro at rest reads (0.1 rad/s).
+  /// Tells whether the vehicle stands: it is slower than `below_mps`, and does not turn on the spot. Faster
+  /// than 0.1 rad/s is more than any gyro at rest reads.
   [[nodiscard]] bool stands(double below_mps) const {
     constexpr double kTurns_radps = 0.1;
-    return std::abs(speed_mps) < below_mps && std::abs(yaw_rate_radps) < kTurns_radps;
+    return !turns_on_spot && std::abs(speed_mps) < below_mps && std::abs(yaw_rate_radps) < kTurns_radps;
   }
 
   friend bool operator==(const Interval&, const Interval&) = default;

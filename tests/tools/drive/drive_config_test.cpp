@@ -350,7 +350,7 @@ sensors:
     file: compass.csv
     separator: ";"
     columns: {heading: {column: hdg, unit: deg, convention: cw_from_north}}
-    time: {scale: unix, offset: 0.1}
+    time: {scale: unix, offset: 1300319576.61}
     options: {sigma_deg: 0.5}
   - {name: gnss_velocity}
 )");
@@ -363,7 +363,7 @@ sensors:
   CHECK(compass.log->request.separator == ';');
   CHECK(compass.log->request.columns.at("heading").convention == "cw_from_north");
   CHECK(compass.log->request.time_scale == TimeScale::unix_time);
-  CHECK(compass.log->request.time_offset_s == 0.1);
+  CHECK(compass.log->request.time_offset_s == 1300319576.61);  // a logger that counts from its start
   CHECK(compass.options.at("sigma_deg") == "0.5");
   CHECK(!config.description.sensors[1].log);
 

@@ -313,6 +313,35 @@ TEST_CASE("noise: what is not known of it widens covariances as much as noise th
   CHECK(known[nodes[0]].covariance.isZero());
 }
 
+TEST_CASE("noise: a long drive may stand through its middle") {
+  constexpr double kStop_s = 1200;
+  PreparedDrive drive = make_drive({}, 3);
+  const PreparedDrive moving = drive;
+  const auto half = std::ssize(moving.odometry) / 2;
+  const auto half_fixes = std::ssize(moving.fixes) / 2;
+  drive.odometry.resize(static_cast<std::size_t>(half));
+  drive.fixes.resize(static_cast<std::size_t>(half_fixes));
+  for (double t = 0.1; t < kStop_s; t += 0.1)
+    drive.odometry.push_back({.stamp = moving.odometry[static_cast<std::size_t>(half - 1)].stamp.later(t)});
+  for (double t = 1; t < kStop_s; ++t) {
+    Fix fix = drive.fixes.back();
+    fix.stamp = moving.fixes[static_cast<std::size_t>(half_fixes - 1)].stamp.later(t);
+    ++fix.epoch;
+    fix.position.x() += 1e-3 * std::sin(t);
+    drive.fixes.push_back(fix);
+  }
+  for (auto i = half; i < std::ssize(moving.odometry); ++i) {
+    drive.odometry.push_back(moving.odometry[static_cast<std::size_t>(i)]);
+    drive.odometry.back().stamp = drive.odometry.back().stamp.later(kStop_s);
+  }
+  for (auto i = half_fixes; i < std::ssize(moving.fixes); ++i) {
+    drive.fixes.push_back(moving.fixes[static_cast<std::size_t>(i)]);
+    drive.fixes.back().stamp = drive.fixes.back().stamp.later(kStop_s);
+  }
+  const NoiseEstimate noise = estimate(drive, complete_settings());
+  CHECK(find(noise, "multipath_sigma").observed());
+}
+
 TEST_CASE("noise: a spread is added at its time, to poses alone") {
   Graph graph;
   const auto pose_at = [&](double seconds) {

@@ -121,6 +121,21 @@ TEST_CASE("plausibility: a jump that lasts is named with its size and time, a si
   CHECK(warnings(single).empty());
 }
 
+TEST_CASE("plausibility: after a slow way the direction of a long step is not known") {
+  // A fix in 5 s. The vehicle creeps 1 m in 10 s, and then drives 60 m between two fixes.
+  Scene slow;
+  double way = 0;
+  for (int k = 0; k < 60; ++k) {
+    if (k > 0) way += k % 12 < 4 ? 0.5 : 60;
+    Fix fix;
+    fix.stamp = Stamp::from_seconds(5 * k);
+    fix.position = {way + 2 * std::sin(2.3 * k), 2 * std::cos(3.1 * k)};
+    slow.fixes.push_back(fix);
+    slow.antenna.emplace_back(way, 0, 0);
+  }
+  CHECK(warnings(slow).empty());
+}
+
 TEST_CASE("plausibility: who is wrong after a gap cannot be told if the fixes do not come back") {
   Scene whole = scene(1, 1, 300);
   Scene gap;

@@ -27,7 +27,7 @@ constexpr std::array kSeparatorValues{',', ';', '\t', ' ', ',', ';', '\t', '\0'}
 /// Keys of files that belong to a log.
 constexpr std::array<std::string_view, 3> kCompanions{"dbc", "timestamps", "navigation"};
 constexpr NumberRule kWeek{0, 9999, "a GPS week from 0 to 9999"};
-constexpr NumberRule kOffset{-1e9, 1e9, "a number of seconds"};
+constexpr NumberRule kOffset{-4e9, 4e9, "a number of seconds, at most 4e9"};
 
 ColumnRequest read_column(const YamlSection& columns, const std::string& key) {
   ColumnRequest request;

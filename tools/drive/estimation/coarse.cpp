@@ -229,7 +229,8 @@ CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> s
   for (std::size_t i = 1; i < timeline.intervals.size(); ++i) {
     const Interval& next = timeline.intervals[i];
     const Interval& open = merger.open();
-    const bool alike = stands(open) == stands(next) && open.bridged == next.bridged;
+    const bool alike = stands(open) == stands(next) && open.bridged == next.bridged &&
+                       open.turns_on_spot == next.turns_on_spot;
     if (alike && needed[i] == 0 && open.dt_s + next.dt_s <= node_period_s && merger.add(next)) continue;
     coarse.timeline.intervals.push_back(open);
     add_node(i);

@@ -144,8 +144,12 @@ void begin_with_piece(const Part& part, const TypeRegistry& registry, const std:
   if (whole_s < kLongDrive * kPiece_s) return;
   const CoarseDrive piece = middle_of(part.coarse, kPiece_s);
   NoiseEstimate found = noise;
-  NoiseObjective objective(piece, part.settings, registry, between);
-  minimize(objective, found);
+  try {
+    NoiseObjective objective(piece, part.settings, registry, between);
+    minimize(objective, found);
+  } catch (const InputError&) {
+    return;  // the vehicle stands there all the time: the piece determines no poses
+  }
   if (!(whole.at(found) < whole.at(noise))) return;
   const auto prior = Eigen::MatrixXd::Identity(found.curvature.rows(), found.curvature.cols());
   found.curvature = prior + whole_s / measured_s(piece) * (found.curvature - prior);

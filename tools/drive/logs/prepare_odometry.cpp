@@ -206,6 +206,7 @@ std::vector<PreparedOdometry> prepare_odometry(const DriveLogs& logs, const Driv
   for (Candidate& candidate : candidates) {
     PreparedOdometry& source = candidate.source;
     source.gap_s = longest_interval_s(description, source.samples);
+    mark_turns_on_spot(source.samples);
     source.yaw_rate_at_rest = yaw_rate_at_rest(source.samples, source.yaw_rate_at_rest.stated_derived);
     describe_stream(source.samples, source.gap_s, candidate.stream);
   }

@@ -198,6 +198,17 @@ bool fixes_agree(std::span<const Fix> fixes, double speed_mps) {
   return std::abs(chord_m - way_m) < kShare * way_m + upper_median(std::move(accuracies));
 }
 
+/// Tells whether the fixes of a stop go away and come back: reflections, or positions that a receiver without
+/// signals extrapolates. The gyro lives, so the odometry does.
+bool come_back(std::span<const Fix> fixes) {
+  constexpr double kShare = 0.5;
+  if (fixes.empty()) return false;
+  const auto away = [&](const Fix& fix) { return (fix.position - fixes.front().position).norm(); };
+  double farthest = 0;
+  for (const Fix& fix : fixes) farthest = std::max(farthest, away(fix));
+  return away(fixes.back()) < kShare * farthest;
+}
+
 /// Finds times of one speed.
 void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vector<Fix>& fixes,
                         std::vector<FrozenOdometry>& found) {
@@ -217,6 +228,7 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
       continue;
     }
     if (duration_of(samples) < kShortestStandstill_s) continue;
+    if (!with_turns && std::abs(first.speed_mps) < kMoves && come_back(during)) continue;
     for (const std::vector<Contradiction>& row : contradictions_of(during, std::abs(first.speed_mps))) {
       std::optional<FrozenOdometry> frozen = judged(row, during, first, samples.back());
       if (!frozen) continue;

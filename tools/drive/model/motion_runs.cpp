@@ -43,6 +43,9 @@ class Motion {
     interval.speed_change_mps =
         grid_scale * (speed_integral_.mean(to, to) - speed_integral_.mean(from, from));
     interval.yaw_rate_change_radps = yaw_rate_integral_.mean(to, to) - yaw_rate_integral_.mean(from, from);
+    const auto before = [](const OdometrySample& sample, Stamp stamp) { return sample.stamp < stamp; };
+    const auto next = std::lower_bound(samples_.begin(), samples_.end(), to, before);
+    interval.turns_on_spot = next != samples_.end() && next->turns_on_spot;
     return interval;
   }
 

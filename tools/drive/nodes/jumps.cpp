@@ -65,12 +65,14 @@ std::optional<Jump> jump_to(const ReckonedFixes& receiver, std::size_t i) {
   constexpr double kLongest_s = 5;
   if (seconds_from(receiver, i - 1, i) > kLongest_s) return std::nullopt;
   const ChordPair step = chord_between(receiver, i - 1, i);
-  const double least = least_m(receiver, i - 1, i);
+  double least = least_m(receiver, i - 1, i);
   if (step.gnss.norm() + step.odometry.norm() < least) return std::nullopt;
   const std::optional<std::size_t> before = fix_10_s_from(receiver, i - 1, -1);
   const std::optional<std::size_t> after = fix_10_s_from(receiver, i, 1);
   if (!before || !after) return std::nullopt;
   const ChordPair way = chord_between(receiver, *before, i - 1);
+  // A short way turns a long step by what its fixes are off.
+  if (step.odometry.norm() > way.odometry.norm()) least *= step.odometry.norm() / way.odometry.norm();
   const Eigen::Vector2d by = unexplained(step, angle_between(way.odometry, way.gnss));
   const double tolerance_m = kQuarter * by.norm();
   if (by.norm() < least || !agree(receiver, i - 1, *before, i - 1, tolerance_m) ||

@@ -119,6 +119,7 @@ Interval motion_between(const OdometrySample& left, const OdometrySample& right,
   twist.yaw_rate_radps = 0.5 * (left.yaw_rate_radps + right.yaw_rate_radps);
   twist.speed_change_mps = (right.speed_mps - left.speed_mps) * grid_scale;
   twist.yaw_rate_change_radps = right.yaw_rate_radps - left.yaw_rate_radps;
+  twist.turns_on_spot = left.turns_on_spot && right.turns_on_spot;
   twist.bridged = left.assumed || right.assumed || twist.dt_s > gap_s;
   if (twist.bridged) {
     twist.gap_s = twist.dt_s;

@@ -19,7 +19,13 @@ struct YawRateAtRest {
   [[nodiscard]] bool is_derived() const { return stated_derived || (is_known() && variance_per_s == 0); }
 };
 
+/// Turns on the spot do not count if they are marked.
 [[nodiscard]] YawRateAtRest yaw_rate_at_rest(std::span<const OdometrySample> odometry,
                                              bool stated_derived = false);
+
+/// Marks the samples at which the vehicle turns without moving, however slowly (a robot, a turntable): for two
+/// seconds or more the mean yaw rate at rest is another than the usual one by 0.015 rad/s, and by five
+/// deviations of its noise. The bias of a gyro does not change by so much during a stop.
+void mark_turns_on_spot(std::span<OdometrySample> odometry);
 
 }  // namespace waymark::drive

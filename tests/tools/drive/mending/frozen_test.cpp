@@ -1,6 +1,7 @@
 // Odometry that stops measuring while the vehicle drives on: its time is found, and the motion of the fixes stands in.
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include <catch2/catch.hpp>
 
@@ -103,6 +104,21 @@ TEST_CASE("frozen: a yaw rate that is alive is kept") {
   assume_motion_of_fixes(found, scene.fixes, scene.odometry);
   CHECK(scene.odometry[450].yaw_rate_radps == yaw_rate_at(45));
   CHECK(scene.odometry[450].speed_mps == Approx(speed_at(45)).margin(0.5));
+}
+
+TEST_CASE("frozen: while a gyro is alive, fixes that go away from a stop and come back prove nothing") {
+  const auto bow = [](int second) {
+    return Eigen::Vector2d(0, 100 * std::sin(std::numbers::pi * (second - 30) / 30.0));
+  };
+  Scene scene = standing(bow);
+  for (std::size_t i = 300; i <= 600; ++i)
+    scene.odometry[i].yaw_rate_radps = 1e-3 * std::sin(2.7 * static_cast<double>(i));
+  CHECK(find_frozen_odometry(scene.odometry, scene.fixes).empty());
+  // Without them the vehicle is gone.
+  scene = frozen_at(0, 0);
+  for (std::size_t i = 300; i <= 600; ++i)
+    scene.odometry[i].yaw_rate_radps = yaw_rate_at(0.1 * static_cast<double>(i));
+  CHECK(find_frozen_odometry(scene.odometry, scene.fixes).size() == 1);
 }
 
 TEST_CASE("frozen: a moving vehicle does not repeat its readings, even if the fixes fit") {
