@@ -121,6 +121,22 @@ TEST_CASE("plausibility: a jump that lasts is named with its size and time, a si
   CHECK(warnings(single).empty());
 }
 
+TEST_CASE("plausibility: fixes that jump as the vehicle starts are named") {
+  Scene start;
+  double way = 0;
+  for (int k = 0; k < 200; ++k) {
+    if (k > 80) way += std::min(10.0, 0.5 * (k - 80));
+    Fix fix;
+    fix.stamp = Stamp::from_seconds(k);
+    fix.position = {way, k > 80 && k < 130 ? 200.0 : 0.0};
+    start.fixes.push_back(fix);
+    start.antenna.emplace_back(way, 0, 0);
+  }
+  const auto said = warnings(start);
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::StartsWith("the fixes jump by 200 m at 81.0 s"));
+}
+
 TEST_CASE("plausibility: after a slow way the direction of a long step is not known") {
   // A fix in 5 s. The vehicle creeps 1 m in 10 s, and then drives 60 m between two fixes.
   Scene slow;

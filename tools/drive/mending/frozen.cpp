@@ -198,8 +198,17 @@ bool fixes_agree(std::span<const Fix> fixes, double speed_mps) {
   return std::abs(chord_m - way_m) < kShare * way_m + upper_median(std::move(accuracies));
 }
 
+/// Tells whether the yaw rate is that of a vehicle that stands or goes straight on: one that comes back to a place
+/// has turned.
+bool never_turns(std::span<const OdometrySample> samples) {
+  constexpr double kTurns_radps = 0.1;
+  return std::all_of(samples.begin(), samples.end(), [](const OdometrySample& sample) {
+    return std::abs(sample.yaw_rate_radps) < kTurns_radps;
+  });
+}
+
 /// Tells whether the fixes of a stop go away and come back: reflections, or positions that a receiver without
-/// signals extrapolates. The gyro lives, so the odometry does.
+/// signals extrapolates.
 bool come_back(std::span<const Fix> fixes) {
   constexpr double kShare = 0.5;
   if (fixes.empty()) return false;
@@ -228,7 +237,8 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
       continue;
     }
     if (duration_of(samples) < kShortestStandstill_s) continue;
-    if (!with_turns && std::abs(first.speed_mps) < kMoves && come_back(during)) continue;
+    const bool stood = std::abs(first.speed_mps) < kMoves && !with_turns && never_turns(samples);
+    if (stood && come_back(during)) continue;
     for (const std::vector<Contradiction>& row : contradictions_of(during, std::abs(first.speed_mps))) {
       std::optional<FrozenOdometry> frozen = judged(row, during, first, samples.back());
       if (!frozen) continue;

@@ -71,8 +71,10 @@ std::optional<Jump> jump_to(const ReckonedFixes& receiver, std::size_t i) {
   const std::optional<std::size_t> after = fix_10_s_from(receiver, i, 1);
   if (!before || !after) return std::nullopt;
   const ChordPair way = chord_between(receiver, *before, i - 1);
+  const double step_m = step.odometry.norm();
+  const double way_m = way.odometry.norm();
   // A short way turns a long step by what its fixes are off.
-  if (step.odometry.norm() > way.odometry.norm()) least *= step.odometry.norm() / way.odometry.norm();
+  if (step_m > way_m) least += std::min(2 * step_m, least * step_m / way_m);
   const Eigen::Vector2d by = unexplained(step, angle_between(way.odometry, way.gnss));
   const double tolerance_m = kQuarter * by.norm();
   if (by.norm() < least || !agree(receiver, i - 1, *before, i - 1, tolerance_m) ||
