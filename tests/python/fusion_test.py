@@ -94,11 +94,21 @@ class SameAsTheProgram(unittest.TestCase):
         np.testing.assert_allclose(covariance, np.swapaxes(covariance, 1, 2), rtol=1e-9)
         self.assertGreater(np.linalg.eigvalsh(covariance).min(), 0)
 
-    def test_covariances_are_the_marginals_of_the_graph(self):
-        graph = self.result.graph()
-        ids = self.result.trajectory.id[:: len(self.result.trajectory) // 5]
-        rows = np.isin(self.result.trajectory.id, ids)
-        np.testing.assert_allclose(graph.marginals(ids), self.result.trajectory.covariance[rows], rtol=1e-6)
+    def marginals_and_covariances(self, result):
+        ids = result.trajectory.id[:: len(result.trajectory) // 5]
+        return result.graph().marginals(ids), result.trajectory.covariance[np.isin(result.trajectory.id, ids)]
+
+    def test_covariances_are_the_marginals_of_the_graph_if_the_noise_is_known(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            stated = waymark.fuse(DRIVE, noise="stated")
+        np.testing.assert_allclose(*self.marginals_and_covariances(stated), rtol=1e-6)
+
+    def test_covariances_are_larger_by_what_is_not_known_of_the_noise(self):
+        marginals, covariances = self.marginals_and_covariances(self.result)
+        growth = np.trace(covariances, axis1=1, axis2=2) / np.trace(marginals, axis1=1, axis2=2)
+        self.assertGreater(growth.min(), 1)
+        self.assertLess(growth.max(), 2)
 
     def test_states_and_noise_are_those_of_summary_json(self):
         summary = json.loads(self.file("summary.json").read_text())["correlated"]
