@@ -198,12 +198,10 @@ bool fixes_agree(std::span<const Fix> fixes, double speed_mps) {
   return std::abs(chord_m - way_m) < kShare * way_m + upper_median(std::move(accuracies));
 }
 
-/// Tells whether the yaw rate is that of a vehicle that stands or goes straight on: one that comes back to a place
-/// has turned.
-bool never_turns(std::span<const OdometrySample> samples) {
-  constexpr double kTurns_radps = 0.1;
+/// Tells whether all readings are those of a vehicle that stands. One that comes back to a place has turned.
+bool all_at_rest(std::span<const OdometrySample> samples) {
   return std::all_of(samples.begin(), samples.end(), [](const OdometrySample& sample) {
-    return std::abs(sample.yaw_rate_radps) < kTurns_radps;
+    return Interval{.speed_mps = sample.speed_mps, .yaw_rate_radps = sample.yaw_rate_radps}.stands(kMoves);
   });
 }
 
@@ -237,8 +235,7 @@ void find_frozen_speeds(std::span<const OdometrySample> odometry, const std::vec
       continue;
     }
     if (duration_of(samples) < kShortestStandstill_s) continue;
-    const bool stood = std::abs(first.speed_mps) < kMoves && !with_turns && never_turns(samples);
-    if (stood && come_back(during)) continue;
+    if (!with_turns && all_at_rest(samples) && come_back(during)) continue;
     for (const std::vector<Contradiction>& row : contradictions_of(during, std::abs(first.speed_mps))) {
       std::optional<FrozenOdometry> frozen = judged(row, during, first, samples.back());
       if (!frozen) continue;

@@ -11,6 +11,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/folder_lock.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/drive/estimation/noise_spread.hpp>
 #include <waymark/tools/evaluation/output/summary_json.hpp>
 #include <waymark/tools/program/jobs/drive/drive_text.hpp>
 #include <waymark/tools/program/jobs/evaluation/document_evaluation.hpp>
@@ -87,7 +88,10 @@ void add_all_covariances(const RunOfDrive& run, const drive::FusionSettings& set
                          drive::ModeledDrive& modeled) {
   run.console.progress(settings.modeling + ": covariances");
   try {
-    drive::add_covariances(modeled, "all");
+    if (settings.minimization.covariances == "all")  // those of the graph are there
+      drive::widen(modeled.document.covariances, modeled.document.graph, modeled.noise.spread);
+    else
+      drive::add_covariances(modeled, "all");
   } catch (const InputError& error) {
     warn("stated errors cannot be judged: " + std::string(error.what()), modeled.document, run.console);
   }
