@@ -73,7 +73,16 @@ Said listen(const Arrivals& arrivals, const LiveSettings& settings, const std::s
 
 Said listen(const drive::DriveDescription& description, const Arrivals& arrivals,
             const LiveSettings& settings, const std::string& modeling) {
-  Estimator estimator(description, live_fusion(modeling), settings, registry());
+  return listen(description, arrivals, settings, live_fusion(modeling));
+}
+
+Said listen(const drive::DriveDescription& description, const Arrivals& arrivals,
+            const LiveSettings& settings, const drive::FusionSettings& fusion) {
+  Estimator estimator(description, fusion, settings, registry());
+  return heard(estimator, arrivals);
+}
+
+Said heard(Estimator& estimator, const Arrivals& arrivals) {
   Said said;
   const auto hear = [&] {
     for (const Report& report : estimator.reports()) {

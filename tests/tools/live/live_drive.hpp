@@ -46,6 +46,11 @@ struct Said {
 [[nodiscard]] Said listen(const waymark::drive::DriveDescription& description, const Arrivals& arrivals,
                           const waymark::live::LiveSettings& settings = {},
                           const std::string& modeling = "correlated");
+[[nodiscard]] Said listen(const waymark::drive::DriveDescription& description, const Arrivals& arrivals,
+                          const waymark::live::LiveSettings& settings,
+                          const waymark::drive::FusionSettings& fusion);
+/// Gives arrivals to an estimator, to their end. @returns what it says
+[[nodiscard]] Said heard(waymark::live::Estimator& estimator, const Arrivals& arrivals);
 
 /// Distances of the poses with a heading from the truth, m.
 [[nodiscard]] std::vector<double> errors_m(const Said& said, const LiveDrive& drive);

@@ -12,7 +12,7 @@
 
 #include <waymark/core/window/window_solver.hpp>
 #include <waymark/tools/live/estimator/odometries.hpp>
-#include <waymark/tools/live/estimator/window.hpp>
+#include <waymark/tools/live/estimator/window/window.hpp>
 #include <waymark/tools/live/outputs/byte_output.hpp>
 #include <waymark/tools/live/outputs/lines.hpp>
 #include <waymark/types_se2/se2.hpp>

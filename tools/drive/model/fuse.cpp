@@ -166,7 +166,7 @@ const PlacedDrive& Fusion::placed(const FusionSettings& settings) {
   return placed_.emplace_back(key, place_drive(drive_, *timeline_, settings, registry_)).second;
 }
 
-ModeledDrive Fusion::model(const FusionSettings& settings) {
+ModeledDrive Fusion::estimated(const FusionSettings& settings) {
   ModeledDrive modeled;
   FusionSettings decision = decided(settings, registry_);
   adapt(drive_, !settings.calibration, decision, registry_);
@@ -177,6 +177,11 @@ ModeledDrive Fusion::model(const FusionSettings& settings) {
     (void)estimate(decision, drive_.sensors, registry_, between_, delays, modeled);
   if (!modeled.noise.parameters.empty())
     find_deviations(modeled.placed, drive_.sensors, decision, registry_, modeled.noise, between_);
+  return modeled;
+}
+
+ModeledDrive Fusion::model(const FusionSettings& settings) {
+  ModeledDrive modeled = estimated(settings);
   BuiltGraph built = build_graph(modeled.placed, drive_.sensors, modeled.settings, registry_);
   modeled.sensor_warnings = std::move(built.warnings);
   modeled.modelings = std::move(built.modelings);

@@ -83,6 +83,9 @@ class Fusion {
   Fusion(const PreparedDrive& drive, const TypeRegistry& registry, std::function<void()> between = {})
       : drive_(drive), registry_(registry), between_(std::move(between)) {}
 
+  /// Does the steps before the graph: placing, delays and noise. The document is empty.
+  /// @throws errors of the steps
+  [[nodiscard]] ModeledDrive estimated(const FusionSettings& settings);
   /// Does the steps up to the graph. @throws errors of the steps
   [[nodiscard]] ModeledDrive model(const FusionSettings& settings);
   /// Does all steps. @throws errors of the steps

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <waymark/core/drive/drive_context.hpp>
-#include <waymark/tools/drive/logs/prepare.hpp>
 #include <waymark/tools/drive/coordinates/projection.hpp>
+#include <waymark/tools/drive/logs/prepare.hpp>
 
 namespace waymark::drive {
 

@@ -5,11 +5,12 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 
 #include <waymark/core/base/angle.hpp>
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/sensors/rough_fixes.hpp>
-#include <waymark/tools/live/estimator/start/window_setup.hpp>
+#include <waymark/tools/live/estimator/window/window_setup.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::live {
@@ -20,13 +21,15 @@ constexpr double kLongestStretch = 10;    // s of poses that leave the window to
 constexpr double kPlacesFrame_m = 1000;   // a frame is not chosen by a rougher place
 constexpr double kRoughStart_s = 30;      // positions of single epochs are wrong alike for many seconds
 constexpr double kLooksBack = 60;         // s, for the alignment
+constexpr double kRemembered_s = 1800;    // of the drive, to learn from
 
 }  // namespace
 
 Estimator::Estimator(drive::DriveDescription description, const drive::FusionSettings& settings,
                      const LiveSettings& live, const TypeRegistry& registry)
     : description_(std::move(description)),
-      settings_(drive::decided(settings, registry)),
+      stated_(settings),
+      setup_{drive::decided(settings, registry), {}},
       live_(live),
       registry_(registry),
       intake_(live.reorder_s, live.longest_gap_s),
@@ -34,25 +37,40 @@ Estimator::Estimator(drive::DriveDescription description, const drive::FusionSet
       guards_(description_.odometry.size()),
       rough_(description_, registry),
       reckoning_(description_.timeline.gap_s, 0),
-      judge_(description_, settings_, live_, registry) {
+      judge_(description_, setup_.settings, live_, registry),
+      so_far_(description_, kRemembered_s) {
   if (description_.odometry.empty()) throw UsageError("live fusion needs an odometry");
   if (description_.gnss.empty() && !rough_.any())
     throw UsageError("live fusion needs a receiver, or a sensor that places the vehicle");
   const double gap_s = description_.timeline.gap_s;
-  reckoning_ = Reckoning(
-      gap_s, drive::make_odometry_model(drive::for_relative(settings_, description_.odometry.front().name),
-                                        description_.timeline.gap_noise_factor, registry_)
-                 ->standstill_speed());
+  reckoning_ = Reckoning(gap_s, drive::make_odometry_model(
+                                    drive::for_relative(setup_.settings, description_.odometry.front().name),
+                                    description_.timeline.gap_noise_factor, registry_)
+                                    ->standstill_speed());
 }
 
 Estimator::~Estimator() = default;
 
 void Estimator::begin_with(const WarmStart& start) {
   warm_ = start;
+  if (*setup_.settings.estimates_noise) {
+    noise_ = start.noise;
+    std::erase_if(noise_.parameters,
+                  [this](const drive::NoiseParameter& parameter) { return !is_open(parameter); });
+    setup_.settings = drive::with_noise(std::move(setup_.settings), noise_);
+  }
   if (start.frame.zone != 0 && !frame_) {
     frame_ = start.frame;
     projection_.emplace(*frame_);
   }
+}
+
+/// Tells whether a model of this drive has the parameter: the former run may have had others.
+bool Estimator::is_open(const drive::NoiseParameter& parameter) const {
+  const drive::FusionSettings& settings = setup_.settings;
+  return parameter.owner == settings.modeling || parameter.owner == settings.odometry_model ||
+         std::any_of(description_.sensors.begin(), description_.sensors.end(),
+                     [&](const drive::SensorConfig& sensor) { return sensor.name == parameter.owner; });
 }
 
 std::string Estimator::source_of(const Sample& sample) const {
@@ -67,17 +85,11 @@ std::string Estimator::source_of(const Sample& sample) const {
 }
 
 void Estimator::say(const std::string& kind, const std::string& source, const std::string& text) {
-  reports_.emplace_back(Event{now_, kind, source, text});
+  says_.say(now_, kind, source, text);
 }
 
 void Estimator::refuse(const Sample& sample, const std::string& reason, const std::string& text) {
-  const std::string source = source_of(sample);
-  std::size_t& count = counts_.refused[source + ": " + reason];
-  ++count;
-  // Repetitions fill no log: the first one is told, and then every power of ten.
-  const double power = std::log10(static_cast<double>(count));
-  if (power == std::floor(power))
-    say(reason, source, count == 1 ? text : fmt::format("{} (so far {} times)", text, count));
+  says_.refuse(now_, source_of(sample), reason, text);
 }
 
 void Estimator::take(Sample sample) {
@@ -119,7 +131,8 @@ void Estimator::take(Sample sample) {
   const bool silent = !reckoning_.empty() && seconds_between(now_, stamp_of(copy)) > live_.silence_s;
   if (fix != nullptr && std::isfinite(fix->latitude_deg) && std::isfinite(fix->longitude_deg) &&
       (reckoning_.empty() || silent)) {
-    if (silent) change_state(State::lost, fmt::format("no odometry for {:.1f} s", live_.silence_s));
+    if (silent)
+      says_.change_state(now_, State::lost, fmt::format("no odometry for {:.1f} s", live_.silence_s));
     Fix place = projected(*fix);
     publish_place(place);
   }
@@ -130,13 +143,8 @@ void Estimator::finish() {
   intake_.finish();
   work();
   use_pending();
-  if (!window_) return;
-  for (const StampedPose& pose : window_->remaining())
-    reports_.emplace_back(SettledPose{pose.stamp, pose.pose, counts_.resets});
-}
-
-std::vector<Report> Estimator::reports() {
-  return std::exchange(reports_, {});
+  learner_.forget();
+  if (window_) says_.settle(window_->remaining());
 }
 
 void Estimator::work() {
@@ -151,8 +159,11 @@ void Estimator::work() {
     pending_.clear();
     judge_.clear();
     places_.forget_last();
+    so_far_.clear();
+    learner_.forget();
   }
   while (std::optional<Sample> sample = intake_.next()) {
+    so_far_.take(*sample);
     if (const auto* odometry = std::get_if<OdometrySample>(&*sample)) {
       hear(0, *odometry);
     } else if (const auto* further = std::get_if<FurtherOdometry>(&*sample)) {
@@ -194,12 +205,12 @@ OdometrySample Estimator::guarded(std::size_t source, const OdometrySample& samp
 
 void Estimator::hear(std::size_t source, const OdometrySample& read) {
   const std::string& name = description_.odometry[source].name;
-  counts_.taken[name] += 1;
+  says_.counts.taken[name] += 1;
   const OdometrySample sample = guarded(source, read);
   if (!has_several_odometries()) return advance(0, sample);
   if (sample.assumed && odometries_.another_speaks(source, sample.stamp)) return;  // it knows better
   if (!odometries_.take(source, sample)) {
-    counts_.taken[name] -= 1;
+    says_.counts.taken[name] -= 1;
     refuse(FurtherOdometry{sample.stamp, source, 0, 0}, "late",
            "a sample is older than others of its source");
     return;
@@ -244,6 +255,7 @@ void Estimator::advance(std::size_t source, const OdometrySample& sample) {
     cycle();
     drop();
   }
+  learn();
   judge_state();
   if (window_) publish(false);
 }
@@ -286,8 +298,9 @@ Fix Estimator::projected(const GeodeticFix& fix) {
   Fix place = projection_at({fix.latitude_deg, fix.longitude_deg}).project(fix);
   place.told = fix.told;
   place.accuracy_claimed = fix.accuracy_claimed;
-  place.antenna_m = settings_.lever_arm ? description_.gnss[static_cast<std::size_t>(fix.source)].antenna_m
-                                        : Eigen::Vector2d(0, 0);
+  place.antenna_m = setup_.settings.lever_arm
+                        ? description_.gnss[static_cast<std::size_t>(fix.source)].antenna_m
+                        : Eigen::Vector2d(0, 0);
   return place;
 }
 
@@ -298,7 +311,7 @@ void Estimator::use(const GeodeticFix& geodetic) {
     return;
   }
   if (judge_.is_thinned(geodetic)) {
-    counts_.refused[source_of(geodetic) + ": thinned"] += 1;
+    says_.counts.refused[source_of(geodetic) + ": thinned"] += 1;
     return;
   }
   Fix fix = projected(geodetic);
@@ -308,12 +321,13 @@ void Estimator::use(const GeodeticFix& geodetic) {
     const double off_m = window_ ? (fix.position - window_->antenna_at(fix)).norm() : 0;
     refuse(geodetic, reason,
            fmt::format("a fix is not used ({}), {:.1f} m from the estimate", reason, off_m));
-    if (reason == "absurd" && judge_.convinces(fix, reckoning_)) begin_at_believed();
+    const bool is_elsewhere = reason == "absurd" || reason == "jump";
+    if (is_elsewhere && judge_.convinces(fix, reckoning_)) begin_at_believed();
     return;
   }
   const ClaimedAccuracies claimed = judge_.accept(fix);
-  counts_.taken[source_of(geodetic)] += 1;
-  if (!places_.note(fix.stamp)) ++counts_.late_fixes;
+  says_.counts.taken[source_of(geodetic)] += 1;
+  if (!places_.note(fix.stamp)) ++says_.counts.late_fixes;
   if (!window_) {
     const auto place = std::upper_bound(fixes_.begin(), fixes_.end(), fix.stamp,
                                         [](Stamp stamp, const Fix& other) { return stamp < other.stamp; });
@@ -353,7 +367,7 @@ void Estimator::use(const SensorReading& reading) {
     refuse(reading, "impossible", error);
     return;
   }
-  counts_.taken[source_of(reading)] += 1;
+  says_.counts.taken[source_of(reading)] += 1;
   rough_.take(reading);
   if (!window_) {
     readings_.push_back(reading);
@@ -370,7 +384,7 @@ void Estimator::use_rough_places() {
     if (!frame_ && position.sigma_m > kPlacesFrame_m) continue;
     const Fix place = drive::rough_fix(position, projection_at(drive::geodetic_from_ecef(position.ecef)));
     reckoning_.set_grid_scale(place.grid_scale);
-    if (!places_.note(place.stamp)) ++counts_.late_fixes;
+    if (!places_.note(place.stamp)) ++says_.counts.late_fixes;
     if (!window_) {
       fixes_.push_back(place);
       publish_place(place);
@@ -387,11 +401,11 @@ void Estimator::use_rough_places() {
 void Estimator::cycle() {
   last_cycle_ = now_;
   if (window_->solve()) {
-    ++counts_.solutions;
+    ++says_.counts.solutions;
     failures_ = 0;
     return;
   }
-  ++counts_.failures;
+  ++says_.counts.failures;
   say("failure", "", "the window has no minimum; the last one is kept");
   if (++failures_ >= live_.failures_to_reset)
     reset("reset", fmt::format("{} solutions in a row have failed", failures_));
@@ -401,16 +415,60 @@ void Estimator::drop() {
   // A stretch at a time: after it everything is linearised anew.
   const double stretch_s = std::clamp(live_.window_s / 6, kSecondsWithoutFix, kLongestStretch);
   if (!window_ || seconds_between(window_->oldest(), now_) < live_.window_s + stretch_s) return;
-  for (const StampedPose& pose : window_->drop_before(now_.later(-live_.window_s)))
-    reports_.emplace_back(SettledPose{pose.stamp, pose.pose, counts_.resets});
+  says_.settle(window_->drop_before(now_.later(-live_.window_s)));
+}
+
+void Estimator::learn() {
+  if (std::optional<Learned> learned = learner_.result(now_)) adopt(std::move(*learned));
+  if (window_ && learner_.is_due(now_, so_far_.length_s())) begin_search();
+}
+
+void Estimator::begin_search() {
+  const auto task = std::make_shared<const SearchTask>(SearchTask{
+      so_far_, description_, stated_, *frame_, window_->inputs(), window_->oldest(), says_.counts.resets});
+  learner_.begin(now_, so_far_.length_s(),
+                 [task, &registry = registry_](const std::function<void()>& between) {
+                   return search(*task, registry, between);
+                 });
+}
+
+// The window is built again with the noise that the drive shows, and has the newest samples too.
+void Estimator::adopt(Learned learned) {
+  ++says_.counts.lessons;
+  const Lesson& lesson = learned.lesson;
+  const auto of_the_last = [&](const std::string& text) {
+    return fmt::format("the last {:.0f} s: {}", lesson.length_s, text);
+  };
+  for (const std::string& warning : lesson.warnings)
+    says_.say_once(now_, "warning", of_the_last(warning), warning);
+  if (!lesson.failure.empty())
+    says_.say_once(now_, "noise", of_the_last("they tell no noise: " + lesson.failure), lesson.failure);
+  if (lesson.noise.parameters.empty()) return;
+  setup_ = lesson.setup;
+  noise_ = lesson.noise;
+  spread_ = lesson.spread;
+  const std::string words = in_words(lesson.noise);
+  say("noise", "",
+      fmt::format("the last {:.0f} s tell: {}", lesson.length_s,
+                  words.empty() ? "no noise better than the usual" : words));
+  if (!window_ || !learned.window || learned.resets != says_.counts.resets) return;
+  learned.window->catch_up(window_->inputs(), learned.inputs);
+  if (!learned.window->solve()) return;
+  const std::vector<StampedPose> former = window_->remaining();
+  for (const StampedPose& pose : former)
+    if (pose.stamp < learned.window->oldest()) says_.settle({&pose, 1});
+  window_ = std::move(learned.window);
+  ++says_.counts.solutions;
+  last_cycle_ = now_;
+  publish(true);
 }
 
 void Estimator::reset(const std::string& kind, const std::string& text) {
   if (window_) {
-    for (const StampedPose& pose : window_->remaining())
-      reports_.emplace_back(SettledPose{pose.stamp, pose.pose, counts_.resets});
-    ++counts_.resets;
+    says_.settle(window_->remaining());
+    ++says_.counts.resets;
   }
+  says_.forget_settled();
   window_.reset();
   warm_.reset();
   judge_.forget_absurd();
@@ -424,7 +482,7 @@ void Estimator::reset(const std::string& kind, const std::string& text) {
 void Estimator::begin_window(PlacedStretch stretch, std::optional<drive::FirstPose> first_pose) {
   if (!rough_.any()) stretch.fixes.assign(fixes_.begin(), fixes_.end());
   std::unique_ptr<Window> window =
-      make_window(description_, settings_, *frame_, std::move(first_pose), registry_);
+      make_window(description_, setup_, *frame_, std::move(first_pose), registry_);
   for (const SensorReading& reading : readings_)
     if (reading.stamp >= stretch.stamps.front())
       window->add_reading(reading.sensor, reading.stamp, reading.values);
@@ -442,7 +500,7 @@ void Estimator::begin_window(PlacedStretch stretch, std::optional<drive::FirstPo
   readings_.clear();
   smooth_ = window_->newest_pose();
   last_cycle_ = now_;
-  ++counts_.solutions;
+  ++says_.counts.solutions;
   publish(true);
   drop();
 }
@@ -467,24 +525,24 @@ void Estimator::align() {
   }
   if (rough_.any() && seconds_between(fixes_.front().stamp, now_) < kRoughStart_s) return;
   if (heading_is_known(fixes_, reckoning_, live_))
-    begin_window(laid_along(fixes_, reckoning_, settings_), std::nullopt);
-}
-
-void Estimator::change_state(State state, const std::string& why) {
-  if (state == state_) return;
-  say("state", "",
-      fmt::format("{} -> {}{}{}", to_string(state_), to_string(state), why.empty() ? "" : ": ", why));
-  state_ = state;
+    begin_window(laid_along(fixes_, reckoning_, setup_.settings), std::nullopt);
 }
 
 void Estimator::judge_state() {
   if (!window_) {
     const bool has_both = reckoning_.nodes().size() >= 2 && places_.any();
-    return change_state(has_both ? State::aligning : State::waiting, "");
+    return says_.change_state(now_, has_both ? State::aligning : State::waiting, "");
   }
   const JudgedState judged =
-      judge_estimate(state_, radius95_m(window_->covariance().topLeftCorner<2, 2>()), places_, now_, live_);
-  change_state(judged.state, judged.why);
+      judge_estimate(says_.state(), radius95_m(covariance().topLeftCorner<2, 2>()), places_, now_, live_);
+  says_.change_state(now_, judged.state, judged.why);
+}
+
+// Of the newest pose: what the window leaves open of it, and what the drive so far leaves open of the noise.
+Eigen::Matrix3d Estimator::covariance() const {
+  const Eigen::Matrix3d known_noise = window_->covariance();
+  const Eigen::Matrix3d widened = known_noise + spread_;
+  return Eigen::LLT<Eigen::Matrix3d>(widened).info() == Eigen::Success ? widened : known_noise;
 }
 
 void Estimator::publish(bool corrected) {
@@ -492,19 +550,19 @@ void Estimator::publish(bool corrected) {
   LivePose pose;
   pose.stamp = now_;
   pose.pose = window_->newest_pose();
-  pose.covariance = window_->covariance();
+  pose.covariance = covariance();
   pose.smooth = smooth_;
   const OdometrySample& newest = reckoning_.nodes().back().sample;
   pose.speed_mps = newest.speed_mps;
   pose.yaw_rate_radps = newest.yaw_rate_radps;
-  pose.state = state_;
+  pose.state = says_.state();
   pose.heading_known = true;
   pose.corrected = corrected;
-  pose.resets = counts_.resets;
+  pose.resets = says_.counts.resets;
   pose.fix_age_s = places_.age_s(now_);
   pose.height_m = window_->newest_height();
-  pose.radius95_m = radius95_m(window_->covariance().topLeftCorner<2, 2>());
-  reports_.emplace_back(pose);
+  pose.radius95_m = radius95_m(pose.covariance.topLeftCorner<2, 2>());
+  says_.publish(pose);
 }
 
 void Estimator::publish_place(const Fix& fix) {
@@ -514,10 +572,10 @@ void Estimator::publish_place(const Fix& fix) {
   pose.pose = {fix.position[0], fix.position[1], 0};
   pose.covariance.topLeftCorner<2, 2>() = fix.covariance;
   pose.covariance(2, 2) = std::pow(180 * kDegree, 2) / 3;  // of a heading that may be any
-  pose.state = state_;
-  pose.resets = counts_.resets;
+  pose.state = says_.state();
+  pose.resets = says_.counts.resets;
   pose.radius95_m = radius95_m(fix.accuracy_m() * fix.accuracy_m() * Eigen::Matrix2d::Identity());
-  reports_.emplace_back(pose);
+  says_.publish(pose);
 }
 
 std::optional<WarmStart> Estimator::warm_start() const {
@@ -526,8 +584,9 @@ std::optional<WarmStart> Estimator::warm_start() const {
   start.stamp = now_;
   start.frame = *frame_;
   start.pose = window_->newest_pose();
-  start.covariance = window_->covariance();
+  start.covariance = covariance();
   start.states = window_->open_states();
+  start.noise = noise_;
   return start;
 }
 

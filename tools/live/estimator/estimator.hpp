@@ -9,10 +9,10 @@
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,6 +21,7 @@
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/description/drive_description.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/live/estimator/announcements.hpp>
 #include <waymark/tools/live/estimator/fix_judge.hpp>
 #include <waymark/tools/live/estimator/guards/receiver_comparison.hpp>
 #include <waymark/tools/live/estimator/guards/speed_guard.hpp>
@@ -32,19 +33,10 @@
 #include <waymark/tools/live/estimator/settings.hpp>
 #include <waymark/tools/live/estimator/start/alignment.hpp>
 #include <waymark/tools/live/estimator/state_rules.hpp>
-#include <waymark/tools/live/estimator/window.hpp>
+#include <waymark/tools/live/estimator/window/window.hpp>
+#include <waymark/tools/live/learning/learner.hpp>
 
 namespace waymark::live {
-
-/// Counts of everything that was taken. Nothing is dropped in silence.
-struct Counts {
-  std::map<std::string, std::size_t> taken;    ///< by source
-  std::map<std::string, std::size_t> refused;  ///< by "source: reason"
-  std::size_t solutions = 0;
-  std::size_t failures = 0;  ///< of solutions
-  std::uint32_t resets = 0;
-  std::size_t late_fixes = 0;  ///< that entered at their own time
-};
 
 class Estimator {
  public:
@@ -56,6 +48,9 @@ class Estimator {
             const LiveSettings& live, const TypeRegistry& registry);
   ~Estimator();
 
+  /// Lets the search for the noise run elsewhere, in another thread for example. By default take() does it
+  /// when its time has come. Call it before the first sample.
+  void learn_beside(Beside beside) { learner_.run_beside(std::move(beside)); }
   /// Begins at a pose that is known from a former run. Call it before the first sample.
   void begin_with(const WarmStart& start);
 
@@ -64,10 +59,10 @@ class Estimator {
   /// Ends the input: what waits for other samples is used.
   void finish();
   /// Returns what there is to say since the last call, in order.
-  [[nodiscard]] std::vector<Report> reports();
+  [[nodiscard]] std::vector<Report> reports() { return says_.take(); }
 
-  [[nodiscard]] State state() const { return state_; }
-  [[nodiscard]] const Counts& counts() const { return counts_; }
+  [[nodiscard]] State state() const { return says_.state(); }
+  [[nodiscard]] const Counts& counts() const { return says_.counts; }
   /// Returns the frame; empty before the first fix unless it is stated.
   [[nodiscard]] const std::optional<Frame>& frame() const { return frame_; }
   /// Places the frame at the first place of the drive, if none is known.
@@ -97,17 +92,22 @@ class Estimator {
   void begin_window(PlacedStretch stretch, std::optional<drive::FirstPose> first_pose);
   void cycle();
   void drop();
+  void learn();
+  void begin_search();
+  [[nodiscard]] Eigen::Matrix3d covariance() const;
+  void adopt(Learned learned);
   void reset(const std::string& kind, const std::string& text);
   void publish(bool corrected);
   void publish_place(const Fix& fix);
-  void change_state(State state, const std::string& why);
   void judge_state();
   void say(const std::string& kind, const std::string& source, const std::string& text);
   void refuse(const Sample& sample, const std::string& reason, const std::string& text);
+  [[nodiscard]] bool is_open(const drive::NoiseParameter& parameter) const;
   [[nodiscard]] std::string source_of(const Sample& sample) const;
 
   drive::DriveDescription description_;
-  drive::FusionSettings settings_;
+  drive::FusionSettings stated_;  // without what was learned
+  FusionSetup setup_;             // of the windows to come
   LiveSettings live_;
   const TypeRegistry& registry_;
   Intake intake_;
@@ -117,6 +117,11 @@ class Estimator {
   Reckoning reckoning_;
   FixJudge judge_;
   ReceiverComparison receivers_;
+  DriveSoFar so_far_;
+  Learner learner_;
+  drive::NoiseEstimate noise_;                        // the last that was learned
+  Eigen::Matrix3d spread_ = Eigen::Matrix3d::Zero();  // of the newest pose: noise_spread.hpp
+  std::set<std::string> told_;                        // warnings, without their numbers
   std::unique_ptr<Window> window_;
   std::optional<Frame> frame_;
   std::optional<drive::Projection> projection_;
@@ -132,9 +137,7 @@ class Estimator {
   Eigen::Vector3d smooth_ = Eigen::Vector3d::Zero();
   int failures_ = 0;
 
-  State state_ = State::waiting;
-  Counts counts_;
-  std::vector<Report> reports_;
+  Announcements says_;
 };
 
 }  // namespace waymark::live

@@ -1,10 +1,12 @@
 #include <waymark/tools/live/estimator/fix_judge.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <Eigen/LU>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/tools/drive/nodes/gate.hpp>
 #include <waymark/types_se2/se2.hpp>
 
@@ -13,6 +15,10 @@ namespace {
 
 constexpr std::size_t kClaims = 300;
 constexpr std::size_t kJudged = 20;
+constexpr double kAgreed_s = 12;   // that fixes are compared with
+constexpr double kSettled_s = 8;   // of them, at least
+constexpr double kQuarter = 0.25;  // of a jump, by which fixes beside it may differ
+constexpr double kNextFix_s = 5;   // after the last one: the estimate has not left it
 
 }  // namespace
 
@@ -66,17 +72,97 @@ bool FixJudge::is_absurd(const Fix& fix, const Window& window) const {
   return off.dot(spread.inverse() * off) > live_.absurd;
 }
 
+namespace {
+
+/// Returns a step from the middle of the residuals so far, and how many of them are within a quarter of it.
+template <typename Residuals, typename Of>
+std::pair<double, std::size_t> step_from(const Residuals& agreed, const Eigen::Vector2d& to, Of of) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const auto& residual : agreed) {
+    x.push_back(of(residual).x());
+    y.push_back(of(residual).y());
+  }
+  const Eigen::Vector2d middle(upper_median(std::move(x)), upper_median(std::move(y)));
+  const double step_m = (to - middle).norm();
+  const auto near = std::count_if(agreed.begin(), agreed.end(), [&](const auto& residual) {
+    return (of(residual) - middle).norm() <= kQuarter * step_m;
+  });
+  return {step_m, static_cast<std::size_t>(near)};
+}
+
+}  // namespace
+
+/// Tells whether the fixes of a receiver have left a place that they agreed on with the estimate, by more than
+/// dead reckoning from there explains, and not come back. Before and after, slow errors are the same in the frame,
+/// and delays in the axes of the vehicle.
+bool FixJudge::has_jumped(const Residual& residual, int source, const Window& window) const {
+  constexpr double kSmallest_m = 15;
+  constexpr double kSigmas = 5;
+  constexpr double kMost = 0.75;
+  constexpr double kBack = 0.5;
+  constexpr double kKnown = 3;  // deviations of the estimate
+  const auto known = receivers_.find(source);
+  if (known == receivers_.end()) return false;
+  const Receiver& receiver = known->second;
+  const std::deque<Residual>& agreed = receiver.agreed;
+  if (agreed.size() < 3 || residual.stamp <= agreed.back().stamp) return false;
+  const auto [step_m, near] =
+      std::min(step_from(agreed, residual.off, [](const Residual& of) { return of.off; }),
+               step_from(agreed, residual.body, [](const Residual& of) { return of.body; }));
+  const double least_m =
+      std::max(kSmallest_m, kSigmas * std::max(residual.accuracy_m, agreed.back().accuracy_m));
+  const double open_m = std::sqrt(window.covariance().topLeftCorner<2, 2>().trace());
+  if (step_m < (receiver.left ? kBack * least_m : least_m)) return false;
+  // The same step as at first is no drift of the dead reckoning.
+  const bool is_same = receiver.left && (residual.off - receiver.left->off).norm() <= kQuarter * step_m;
+  if (step_m < kKnown * open_m && !is_same) return false;
+  return receiver.left || (seconds_between(agreed.back().stamp, residual.stamp) <= kNextFix_s &&
+                           seconds_between(agreed.front().stamp, agreed.back().stamp) >= kSettled_s &&
+                           static_cast<double>(near) >= kMost * static_cast<double>(agreed.size()));
+}
+
+/// Fixes that leave an estimate with which they agreed for long are wrong more often than it is.
+void FixJudge::doubt(const Fix& fix) {
+  constexpr double kHalf = 0.5;
+  constexpr double kLongest_s = 60;
+  Receiver& receiver = receivers_[fix.source];
+  if (receiver.left) return;
+  receiver.left = residual_;
+  const bool agreed = !receiver.agreed.empty() && receiver.agrees_since &&
+                      seconds_between(receiver.agreed.back().stamp, fix.stamp) <= kNextFix_s;
+  receiver.doubted_s =
+      agreed ? std::min(kLongest_s, kHalf * seconds_between(*receiver.agrees_since, fix.stamp)) : 0;
+}
+
 std::string FixJudge::reason_against(const Fix& fix, const Reckoning& reckoning, const Window* window) {
+  residual_.reset();
+  if (window != nullptr) {
+    const Eigen::Vector2d off = fix.position - window->antenna_at(fix);
+    residual_ = Residual{fix.stamp, off, rotate(-window->newest_pose()[2], off), fix.accuracy_m()};
+  }
   if (repeats(fix, reckoning)) return "frozen";
   if (std::string reason = judged_by_gate(fix, reckoning); !reason.empty()) return reason;
-  return window != nullptr && is_absurd(fix, *window) ? "absurd" : "";
+  if (window == nullptr) return "";
+  const std::string reason = is_absurd(fix, *window)                       ? "absurd"
+                             : has_jumped(*residual_, fix.source, *window) ? "jump"
+                                                                           : "";
+  if (!reason.empty()) doubt(fix);
+  return reason;
 }
 
 ClaimedAccuracies FixJudge::accept(const Fix& fix) {
   absurd_.clear();
-  std::vector<Fix>& used = receivers_[fix.source].used;
+  Receiver& receiver = receivers_[fix.source];
+  std::vector<Fix>& used = receiver.used;
   used.push_back(fix);
   if (used.size() > 2 * kClaims) used.erase(used.begin(), used.end() - kClaims);
+  receiver.left.reset();
+  if (!receiver.agrees_since) receiver.agrees_since = fix.stamp;
+  if (residual_ && (receiver.agreed.empty() || receiver.agreed.back().stamp < fix.stamp)) {
+    receiver.agreed.push_back(*residual_);
+    while (seconds_between(receiver.agreed.front().stamp, fix.stamp) > kAgreed_s) receiver.agreed.pop_front();
+  }
   return claimed_accuracies(used);
 }
 
@@ -89,7 +175,17 @@ bool FixJudge::convinces(const Fix& fix, const Reckoning& reckoning) {
     if (std::abs(step_m - way_m) > allowed_m || fix.stamp <= before.stamp) absurd_.clear();
   }
   absurd_.push_back(fix);
-  return absurd_.size() >= static_cast<std::size_t>(live_.fixes_that_convince);
+  return absurd_.size() >= static_cast<std::size_t>(live_.fixes_that_convince) &&
+         seconds_between(absurd_.front().stamp, fix.stamp) >= receivers_[fix.source].doubted_s;
+}
+
+void FixJudge::forget_absurd() {
+  absurd_.clear();
+  for (auto& [source, receiver] : receivers_) {
+    receiver.agreed.clear();
+    receiver.agrees_since.reset();
+    receiver.left.reset();
+  }
 }
 
 std::vector<Fix> FixJudge::take_believed() {

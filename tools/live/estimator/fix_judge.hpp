@@ -16,7 +16,7 @@
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/live/estimator/reckoning.hpp>
 #include <waymark/tools/live/estimator/settings.hpp>
-#include <waymark/tools/live/estimator/window.hpp>
+#include <waymark/tools/live/estimator/window/window.hpp>
 
 namespace waymark::live {
 
@@ -29,23 +29,34 @@ class FixJudge {
 
   /// Tells whether a period of the receiver has had its fix already.
   [[nodiscard]] bool is_thinned(const GeodeticFix& fix);
-  /// Returns why a fix cannot be right: "frozen", "absurd", or the gate's reason; empty if it may be.
+  /// Returns why a fix cannot be right: "frozen", "jump", "absurd", or the gate's reason; empty if it may be.
   /// @param window null: there is no estimate yet
   [[nodiscard]] std::string reason_against(const Fix& fix, const Reckoning& reckoning, const Window* window);
   /// Takes a fix that may be right. @returns what its receiver has claimed lately
   [[nodiscard]] ClaimedAccuracies accept(const Fix& fix);
-  /// Takes an absurd fix. @returns whether so many in a row agree with each other that it is the estimate
-  /// which is wrong
+  /// Takes a fix that is elsewhere: a jump, or absurd. @returns whether so many in a row agree with each other,
+  /// for so long, that it is the estimate which is wrong
   [[nodiscard]] bool convinces(const Fix& fix, const Reckoning& reckoning);
   /// Returns the absurd fixes in a row, and forgets them.
   [[nodiscard]] std::vector<Fix> take_believed();
   /// Forgets the absurd fixes in a row.
-  void forget_absurd() { absurd_.clear(); }
+  void forget_absurd();
   /// Forgets the receivers.
   void clear() { receivers_.clear(); }
 
  private:
+  /// How far an accepted fix was from the estimate before it.
+  struct Residual {
+    Stamp stamp;
+    Eigen::Vector2d off = Eigen::Vector2d::Zero();   ///< m, in the frame
+    Eigen::Vector2d body = Eigen::Vector2d::Zero();  ///< m, the same in the axes of the vehicle
+    double accuracy_m = 0;
+  };
   struct Receiver {
+    std::deque<Residual> agreed;           // of the last seconds
+    std::optional<Stamp> agrees_since;     // without a fix that is elsewhere
+    double doubted_s = 0;                  // so long fixes that are elsewhere are not believed
+    std::optional<Residual> left{};        // the first of the last fixes, which are elsewhere
     std::vector<Fix> used;                 // the last ones: their claims
     std::deque<Fix> judged;                // the last seconds, all of them, with the dead reckoning
     std::deque<Eigen::Vector3d> reckoned;  // antenna at these
@@ -57,13 +68,16 @@ class FixJudge {
   [[nodiscard]] std::string judged_by_gate(const Fix& fix, const Reckoning& reckoning);
   [[nodiscard]] bool repeats(const Fix& fix, const Reckoning& reckoning);
   [[nodiscard]] bool is_absurd(const Fix& fix, const Window& window) const;
+  [[nodiscard]] bool has_jumped(const Residual& residual, int source, const Window& window) const;
+  void doubt(const Fix& fix);
 
   const drive::DriveDescription& description_;
   const drive::FusionSettings& settings_;
   const LiveSettings& live_;
   const TypeRegistry& registry_;
   std::map<int, Receiver> receivers_;
-  std::vector<Fix> absurd_;  // the last ones in a row
+  std::vector<Fix> absurd_;             // the last ones in a row
+  std::optional<Residual> residual_{};  // of the fix that is judged
 };
 
 }  // namespace waymark::live

@@ -7,7 +7,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
-#include <waymark/tools/drive/estimation/noise.hpp>
+#include <waymark/tools/live/session/noise_json.hpp>
 
 namespace waymark::live {
 namespace {
@@ -38,14 +38,7 @@ void use_former_noise(const std::string& path, const TypeRegistry& registry,
         file, settings.modeling));
   drive::NoiseEstimate noise;
   try {
-    for (const nlohmann::json& entry : json[settings.modeling]["noise"]) {
-      drive::NoiseParameter parameter;
-      parameter.source = entry.at("source").get<std::string>();
-      parameter.owner = entry.at("owner").get<std::string>();
-      parameter.option = entry.at("option").get<std::string>();
-      parameter.value = entry.at("value").get<double>();
-      noise.parameters.push_back(parameter);
-    }
+    noise = noise_from_json(json[settings.modeling]["noise"]);
     leave_out_delays(json[settings.modeling].value("without_delay", std::vector<std::string>()), settings);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(fmt::format("{}: noise: {}", file, error.what()));

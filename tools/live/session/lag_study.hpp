@@ -32,7 +32,7 @@ struct LagResult {
 };
 
 /// Replays the logs of a drive through the estimator, once for each window.
-/// @param settings with the noise among the options: what a former drive would have told
+/// @param settings as stated; the noise is that of the drive so far, unless it is stated
 /// @param drive the prepared one: its frame and its truth
 /// @param begun called before each window; it may throw to stop
 /// @throws UsageError if the drive cannot be live

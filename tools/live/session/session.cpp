@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <utility>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/logs/log_file.hpp>
@@ -16,10 +21,6 @@ namespace {
 
 constexpr double kSaveEvery = 30;       // s on the clock of the drive
 constexpr std::size_t kEventsKept = 8;  // for the dashboard
-
-double microseconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
-}
 
 drive::DriveFile resolved(drive::DriveFile file, const TypeRegistry& registry) {
   drive::resolve_sensors(file.description, registry);
@@ -36,13 +37,36 @@ std::vector<OdometryStream> streams_of(const drive::DriveDescription& descriptio
   return streams;
 }
 
+/// Searches give way to everything else.
+std::future<Learned> in_another_thread(std::function<Learned()> work) {
+  constexpr int kLastOfAll = 19;
+  return std::async(std::launch::async, [work = std::move(work)] {
+    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLastOfAll);
+    return work();
+  });
+}
+
 }  // namespace
+
+Stopwatch::Stopwatch(const Estimator& estimator, Latencies& latencies)
+    : estimator_(estimator),
+      latencies_(latencies),
+      solutions_(estimator.counts().solutions),
+      lessons_(estimator.counts().lessons) {}
+
+void Stopwatch::stop() {
+  LatencyHistogram& of = estimator_.counts().lessons > lessons_       ? latencies_.learn
+                         : estimator_.counts().solutions > solutions_ ? latencies_.solve
+                                                                      : latencies_.predict;
+  of.add(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin_).count());
+}
 
 Session::Session(drive::DriveFile file, const LiveSettings& settings, const TypeRegistry& registry)
     : file_(resolved(std::move(file), registry)),
       registry_(registry),
       parts_(streams_of(file_.description)),
       estimator_(file_.description, file_.settings, settings, registry) {
+  estimator_.learn_beside(in_another_thread);
   const drive::DriveDescription& description = file_.description;
   for (std::size_t odometry = 0; odometry < description.odometry.size(); ++odometry)
     for (std::size_t i = 0; i < description.odometry[odometry].logs.size(); ++i)
@@ -96,7 +120,8 @@ const drive::Projection* Session::projection() {
 }
 
 void Session::take(std::size_t input, std::string_view bytes) {
-  const auto begin = std::chrono::steady_clock::now();
+  Stopwatch watch(estimator_, latencies_);
+  bool any = false;
   for (const std::size_t channel : inputs_[input].channels) {
     std::vector<Sample> samples;
     try {
@@ -106,13 +131,10 @@ void Session::take(std::size_t input, std::string_view bytes) {
       tell("unreadable", error.what());
       continue;
     }
-    const std::uint64_t solutions = estimator_.counts().solutions;
-    const bool any = !samples.empty();
+    any = any || !samples.empty();
     hand_over(std::move(samples));
-    if (!any) continue;
-    (estimator_.counts().solutions > solutions ? latencies_.solve : latencies_.predict)
-        .add(microseconds_since(begin));
   }
+  if (any) watch.stop();
 }
 
 void Session::hand_over(std::vector<Sample> samples) {
@@ -123,12 +145,10 @@ void Session::hand_over(std::vector<Sample> samples) {
 }
 
 void Session::take(const Sample& sample) {
-  const auto begin = std::chrono::steady_clock::now();
-  const std::uint64_t solutions = estimator_.counts().solutions;
+  Stopwatch watch(estimator_, latencies_);
   estimator_.take(sample);
   say();
-  (estimator_.counts().solutions > solutions ? latencies_.solve : latencies_.predict)
-      .add(microseconds_since(begin));
+  watch.stop();
 }
 
 std::vector<Sample> Session::decode_files() {

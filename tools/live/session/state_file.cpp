@@ -8,6 +8,7 @@
 
 #include <waymark/core/base/error.hpp>
 #include <waymark/formats/text/text_file.hpp>
+#include <waymark/tools/live/session/noise_json.hpp>
 
 namespace waymark::live {
 namespace {
@@ -52,6 +53,12 @@ void write_state_file(const std::string& path, const WarmStart& state) {
   for (const KnownState& known : state.states)
     json["states"].push_back(
         {{"type", known.tag}, {"value", known.value}, {"covariance", numbers_of(known.covariance)}});
+  json["noise"] = Json::array();
+  for (const drive::NoiseParameter& parameter : state.noise.parameters)
+    json["noise"].push_back({{"source", parameter.source},
+                             {"owner", parameter.owner},
+                             {"option", parameter.option},
+                             {"value", parameter.value}});
   formats::write_file_atomically(path, json.dump(1) + "\n");
 }
 
@@ -75,6 +82,7 @@ WarmStart read_state_file(const std::string& path) {
       state.states.push_back({known.at("type").get<std::string>(),
                               known.at("value").get<std::vector<double>>(),
                               square_of(known.at("covariance"))});
+    if (json.contains("noise")) state.noise = noise_from_json(json.at("noise"));
     return state;
   } catch (const Json::exception& error) {
     throw InputError(path + ": no state of a live run: " + error.what() + "; remove the file to begin anew");

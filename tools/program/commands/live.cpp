@@ -39,6 +39,7 @@ struct LiveCommand {
   std::string speed = "max";
   std::string state;
   std::string noise;
+  std::string way_of_noise;
   std::string report;
   bool status = false;
   live::LiveSettings settings;
@@ -127,11 +128,13 @@ nlohmann::ordered_json summary_of(const live::Session& session) {
                               {"corrupt", session.corrupt()},
                               {"late_fixes", counts.late_fixes},
                               {"solutions", counts.solutions},
+                              {"lessons", counts.lessons},
                               {"failures", counts.failures},
                               {"resets", counts.resets},
                               {"lines_dropped", session.lines_dropped()}};
   json["latency"] = {{"predict", json_of(session.latencies().predict)},
-                     {"solve", json_of(session.latencies().solve)}};
+                     {"solve", json_of(session.latencies().solve)},
+                     {"learn", json_of(session.latencies().learn)}};
   return json;
 }
 
@@ -157,6 +160,8 @@ void print_summary(const live::Session& session, const Console& console) {
     console.tell("predict     " + text_of(session.latencies().predict));
   if (session.latencies().solve.count() > 0)
     console.tell("solve       " + text_of(session.latencies().solve));
+  if (session.latencies().learn.count() > 0)
+    console.tell("learn       " + text_of(session.latencies().learn));
   if (session.lines_dropped() > 0)
     console.warning(
         fmt::format("{} lines were dropped for readers that were too slow", session.lines_dropped()));
@@ -168,6 +173,7 @@ ExitCode run(const LiveCommand& command) {
   choice.data_folder = command.data_folder;
   drive::DriveFile file = read_drive_file(command.input, choice);
   if (!command.modeling.empty()) file.settings.modeling = command.modeling;
+  if (!command.way_of_noise.empty()) file.settings.estimates_noise = command.way_of_noise == "estimate";
   const TypeRegistry registry = make_registry(command.common, file.description.plugins);
   if (!command.noise.empty()) live::use_former_noise(command.noise, registry, file.settings);
   const double speed = speed_of(command.speed);
@@ -264,6 +270,12 @@ void add_live(CLI::App& app, Action& action) {
         ->type_name("SECONDS")
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
+    command
+        ->add_option("--noise", options->way_of_noise,
+                     "Noise parameters: estimated from the drive so far, or as stated (default: the modeling "
+                     "decides)")
+        ->type_name("WAY")
+        ->check(CLI::IsMember({"estimate", "stated"}));
     command
         ->add_option("--noise-from", options->noise,
                      "Take the noise that a former 'run' estimated: its folder or summary.json")

@@ -10,10 +10,11 @@
 #include <waymark/core/drive/frame.hpp>
 #include <waymark/core/drive/sample.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
+#include <waymark/tools/drive/estimation/noise.hpp>
 #include <waymark/tools/drive/model/place.hpp>
 #include <waymark/tools/live/estimator/reckoning.hpp>
 #include <waymark/tools/live/estimator/settings.hpp>
-#include <waymark/tools/live/estimator/window.hpp>
+#include <waymark/tools/live/estimator/window/window.hpp>
 
 namespace waymark::live {
 
@@ -24,6 +25,7 @@ struct WarmStart {
   std::optional<Eigen::Vector3d> pose{};  ///< none: only the states are known
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   std::vector<KnownState> states{};
+  drive::NoiseEstimate noise{};  ///< values alone; without parameters: nothing was learned
 };
 
 /// Tells whether the way that the fixes show is long beside their errors: else it has no direction.

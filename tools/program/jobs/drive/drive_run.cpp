@@ -143,12 +143,12 @@ class ModelingFiles {
 };
 
 /// Compares with live runs, if that was asked for. Returns the sections of the report about them.
-std::vector<drawing::Section> compare_windows(const RunOfDrive& run, const drive::FusionSettings& fused,
+std::vector<drawing::Section> compare_windows(const RunOfDrive& run, const drive::FusionSettings& settings,
                                               ModelingRun& result) {
   if (run.options.windows_s.empty() || run.console.cancel()) return {};
   const auto& truth = result.evaluation.evaluation.truth;
   WindowStudy study =
-      study_windows({run.file, fused, run.loaded.drive, run.options.windows_s, *run.options.folder,
+      study_windows({run.file, settings, run.loaded.drive, run.options.windows_s, *run.options.folder,
                      truth ? truth->fused.position.rmse_m : std::nan("")},
                     run.registry, run.console);
   result.windows = study.text + "\n";
@@ -208,7 +208,6 @@ std::vector<formats::VertexCovariance> minimise_and_judge(const RunOfDrive& run,
 ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
                          const drive::FusionSettings& settings, evaluation::ReportHeader& header) {
   ModelingRun result;
-  const drive::FusionSettings fused = modeled.settings;
   result.noise = modeled.noise;
   result.without_delay = modeled.without_delay;
   result.description = describe_model(modeled, run.console.look());
@@ -223,7 +222,7 @@ ModelingRun run_modeling(const RunOfDrive& run, drive::ModeledDrive modeled,
   const std::size_t recorded = result.result.summary.converged() ? 1 : 2;
   if (document.provenance.size() > before + recorded) files.write_fused_graph();
   add_provenance(document, settings.modeling, header);
-  std::vector<drawing::Section> more_sections = compare_windows(run, fused, result);
+  std::vector<drawing::Section> more_sections = compare_windows(run, settings, result);
   // The graph file has the covariances that were asked for, the trajectory all that are known.
   document.covariances.swap(covariances);
   if (run.writes())

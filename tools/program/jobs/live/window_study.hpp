@@ -13,7 +13,7 @@ namespace waymark::program {
 
 struct WindowStudyInput {
   const drive::DriveFile& file;
-  const drive::FusionSettings& settings;  ///< with the noise of the run among the options
+  const drive::FusionSettings& settings;  ///< as stated: the noise is found on the way
   const drive::PreparedDrive& drive;
   std::span<const double> windows_s;
   std::string folder;       ///< of the results

@@ -1,6 +1,7 @@
-#include <waymark/tools/live/estimator/window.hpp>
+#include <waymark/tools/live/estimator/window/window.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <utility>
@@ -14,22 +15,31 @@
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::live {
+namespace {
 
-Window::Window(drive::DriveFacts facts, std::vector<drive::PreparedSensor> sensors,
+constexpr double kInputsKept_s = 600;
+
+}  // namespace
+
+Window::Window(const drive::DriveFacts& facts, std::vector<drive::PreparedSensor> sensors,
                const drive::FusionSettings& settings, const TypeRegistry& registry)
     : sensors_(std::move(sensors)),
       registry_(registry),
       several_odometries_(facts.relative.size() > 1),
-      builder_(std::move(facts), sensors_, settings, registry),
+      builder_(facts, sensors_, settings, registry),
       graph_(builder_.graph()),
-      solver_(graph_) {}
+      solver_(graph_) {
+  inputs_.set_before({facts.first_pose, {}});
+}
 
 namespace {
 
-/// Returns the intervals by the odometry that they come from.
-std::vector<drive::MotionRun> runs_of(const PlacedStretch& stretch) {
+constexpr double kPiece_s = 1;  // of a stretch
+
+/// Returns intervals by the odometry that they come from. @param first, last nodes that they join
+std::vector<drive::MotionRun> runs_of(const PlacedStretch& stretch, std::size_t first, std::size_t last) {
   std::vector<drive::MotionRun> runs;
-  for (std::size_t i = 0; i < stretch.intervals.size(); ++i) {
+  for (std::size_t i = first; i < last; ++i) {
     if (runs.empty() || runs.back().source != stretch.givers[i])
       runs.push_back({.source = stretch.givers[i], .nodes = {i}, .intervals = {}, .beside = {0}});
     runs.back().nodes.push_back(i + 1);
@@ -41,18 +51,56 @@ std::vector<drive::MotionRun> runs_of(const PlacedStretch& stretch) {
 
 }  // namespace
 
-bool Window::begin(const PlacedStretch& stretch) {
+/// @param first, last nodes of the stretch
+void Window::add_nodes(const PlacedStretch& stretch, std::size_t first, std::size_t last) {
+  const std::size_t before = first == 0 ? 0 : first - 1;  // the node where the motion begins
   std::vector<drive::MotionRun> runs;
-  if (several_odometries_) runs = runs_of(stretch);
-  extend({.stamps = stretch.stamps,
-          .poses = stretch.poses,
-          .intervals = stretch.intervals,
+  if (several_odometries_) runs = runs_of(stretch, before, last);
+  for (std::size_t i = first; i <= last; ++i)
+    inputs_.add(i == 0 ? NodeInput{stretch.stamps[0], stretch.poses[0]}
+                       : NodeInput{stretch.stamps[i], stretch.poses[i], stretch.intervals[i - 1],
+                                   stretch.givers[i - 1]});
+  extend({.stamps = std::span(stretch.stamps).subspan(first, last - first + 1),
+          .poses = std::span(stretch.poses).subspan(first, last - first + 1),
+          .intervals = std::span(stretch.intervals).subspan(before, last - before),
           .fixes = {},
           .fix_nodes = {},
           .runs = runs});
+}
+
+// Nodes, ways, readings and fixes are added a second at a time, in the order in which they come: states that follow
+// one another in time are then summed out one after the other.
+bool Window::begin(const PlacedStretch& stretch) {
   std::map<int, std::vector<Fix>> by_source;
   for (const Fix& fix : stretch.fixes) by_source[fix.source].push_back(fix);
-  for (const Fix& fix : stretch.fixes) add_fix(fix, claimed_accuracies(by_source[fix.source]));
+  std::map<int, ClaimedAccuracies> claimed;
+  for (const auto& [source, fixes] : by_source) claimed[source] = claimed_accuracies(fixes);
+  std::vector<SensorTable> waiting;
+  for (drive::PreparedSensor& sensor : sensors_) {
+    waiting.push_back(sensor.readings);
+    sensor.readings.stamps.clear();
+    sensor.readings.values.clear();
+  }
+  readings_wait_ = false;
+  std::vector<std::size_t> next_row(waiting.size(), 0);
+  auto fix = stretch.fixes.begin();
+  auto way = stretch.ways.begin();
+  for (std::size_t first = 0, last = 0; first < stretch.stamps.size(); first = last + 1) {
+    last = first;
+    while (last + 1 < stretch.stamps.size() &&
+           seconds_between(stretch.stamps[first], stretch.stamps[last]) < kPiece_s)
+      ++last;
+    const bool ends = last + 1 == stretch.stamps.size();
+    for (std::size_t s = 0; s < waiting.size(); ++s)
+      for (std::size_t& row = next_row[s];
+           row < waiting[s].size() && (ends || waiting[s].stamps[row] <= stretch.stamps[last]); ++row)
+        give_reading(s, waiting[s].stamps[row],
+                     std::span(waiting[s].values).subspan(row * waiting[s].columns, waiting[s].columns));
+    add_nodes(stretch, first, last);
+    for (; way != stretch.ways.end() && way->to <= stretch.stamps[last]; ++way) add_way(*way);
+    for (; fix != stretch.fixes.end() && (ends || fix->stamp <= stretch.stamps[last]); ++fix)
+      add_fix(*fix, claimed[fix->source]);
+  }
   drive::Minimization how;
   const std::unique_ptr<Algorithm> algorithm = registry_.make_algorithm(how.algorithm, how.options);
   const std::unique_ptr<LinearSolver> solver =
@@ -61,7 +109,39 @@ bool Window::begin(const PlacedStretch& stretch) {
   return summary.converged() && solve();
 }
 
+bool Window::begin_again(const WindowInputs& inputs, Stamp oldest) {
+  for (const auto& [number, reading] : inputs.readings())
+    add_reading(reading.sensor, reading.stamp, reading.values);
+  if (!begin(inputs.stretch())) return false;
+  if (!inputs.before().states.empty()) add_known(inputs.before().states);
+  (void)drop_before(oldest);
+  return solve();
+}
+
+void Window::catch_up(const WindowInputs& inputs, std::uint64_t first) {
+  std::vector<std::pair<std::uint64_t, std::function<void()>>> later;
+  const auto collect = [&](const auto& kind, auto add) {
+    for (const auto& [number, input] : kind)
+      if (number >= first) later.emplace_back(number, [&input = input, add] { add(input); });
+  };
+  collect(inputs.nodes(), [this](const NodeInput& node) { add_node(node.stamp, node.interval, node.giver); });
+  collect(inputs.fixes(), [this](const ClaimedFix& fix) { add_fix(fix.fix, fix.claimed); });
+  collect(inputs.readings(), [this](const SensorReading& reading) {
+    add_reading(reading.sensor, reading.stamp, reading.values);
+  });
+  collect(inputs.ways(), [this](const MeasuredWay& way) { add_way(way); });
+  std::sort(later.begin(), later.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [number, add] : later) add();
+  use_readings();
+}
+
+const WindowInputs& Window::inputs() {
+  inputs_.correct(remaining());
+  return inputs_;
+}
+
 void Window::add_known(std::span<const KnownState> states) {
+  inputs_.set_before({inputs_.before().first_pose, {states.begin(), states.end()}});
   for (const VertexId id : predictor_.vertices()) {
     const VertexIndex v = graph_.find(id).value_or(-1);
     if (v < 0 || graph_.vertex_type(v).position != nullptr) continue;
@@ -96,6 +176,7 @@ void Window::add_node(Stamp stamp, const Interval& interval, std::size_t giver) 
   const Eigen::Vector3d from = newest_pose();
   const Eigen::Vector3d twist(interval.speed_mps * interval.dt_s, 0, interval.yaw_rate_radps * interval.dt_s);
   const Eigen::Vector3d to = compose(Pose2<double>(from[0], from[1], from[2]), se2_exp(twist)).vector();
+  inputs_.add(NodeInput{stamp, to, interval, giver});
   const std::size_t last = poses() - 1;
   drive::MotionRun run;
   if (several_odometries_)
@@ -111,6 +192,7 @@ void Window::add_node(Stamp stamp, const Interval& interval, std::size_t giver) 
 }
 
 void Window::add_way(const MeasuredWay& way) {
+  inputs_.add(way);
   const std::span<const Stamp> nodes = stamps();
   const auto index = [&](Stamp stamp) {
     return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), stamp) - nodes.begin());
@@ -132,6 +214,7 @@ void Window::add_way(const MeasuredWay& way) {
 }
 
 void Window::add_fix(const Fix& fix, const ClaimedAccuracies& claimed) {
+  inputs_.add(ClaimedFix{fix, claimed});
   builder_.set_claimed(fix.source, claimed);
   const auto first = static_cast<VertexIndex>(graph_.vertex_count());
   predictor_.mark(graph_);
@@ -140,6 +223,11 @@ void Window::add_fix(const Fix& fix, const ClaimedAccuracies& claimed) {
 }
 
 void Window::add_reading(std::size_t sensor, Stamp stamp, std::span<const double> values) {
+  inputs_.add(SensorReading{stamp, sensor, {values.begin(), values.end()}});
+  give_reading(sensor, stamp, values);
+}
+
+void Window::give_reading(std::size_t sensor, Stamp stamp, std::span<const double> values) {
   SensorTable& table = sensors_[sensor].readings;
   const auto place = std::upper_bound(table.stamps.begin(), table.stamps.end(), stamp);
   const auto row = place - table.stamps.begin();
@@ -186,6 +274,8 @@ std::vector<StampedPose> Window::drop_before(Stamp moment) {
     settled.clear();  // the removed edges do not determine a pose: it stays until more are removed
   }
   predictor_.mark(graph_);
+  inputs_.correct(settled);
+  inputs_.forget_before(std::min(oldest(), newest().later(-kInputsKept_s)));
   return settled;
 }
 

@@ -1,4 +1,4 @@
-#include <waymark/tools/live/estimator/predictor.hpp>
+#include <waymark/tools/live/estimator/window/predictor.hpp>
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include <waymark/tools/live/estimator/start/window_setup.hpp>
+#include <waymark/tools/live/estimator/window/window_setup.hpp>
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,7 @@
 namespace waymark::live {
 namespace {
 
-drive::DriveFacts facts_of(const drive::DriveDescription& description, const drive::FusionSettings& settings,
+drive::DriveFacts facts_of(const drive::DriveDescription& description, const FusionSetup& setup,
                            const Frame& frame) {
   drive::DriveFacts facts;
   for (const drive::OdometryConfig& odometry : description.odometry) facts.relative.push_back(odometry.name);
@@ -21,11 +21,14 @@ drive::DriveFacts facts_of(const drive::DriveDescription& description, const dri
   surroundings.scale = description.scale();
   facts.surroundings = std::make_shared<const drive::DriveSurroundings>(surroundings, std::vector<Fix>());
   for (std::size_t source = 0; source < description.gnss.size(); ++source) {
-    const std::string name = drive::group_of(settings, description.gnss[source].name);
+    const std::string name = drive::group_of(setup.settings, description.gnss[source].name);
     auto group = std::find_if(facts.absolute.begin(), facts.absolute.end(),
                               [&](const drive::AbsoluteGroup& known) { return known.name == name; });
-    if (group == facts.absolute.end())
+    if (group == facts.absolute.end()) {
       group = facts.absolute.insert(facts.absolute.end(), drive::AbsoluteGroup{.name = name, .sources = {}});
+      // The node of a fix that is early is not there yet.
+      if (source < setup.delays_s.size()) group->time_offset_s = std::max(0.0, setup.delays_s[source]);
+    }
     group->sources.push_back(static_cast<int>(source));
   }
   return facts;
@@ -44,13 +47,12 @@ std::vector<drive::PreparedSensor> sensors_of(const drive::DriveDescription& des
 
 }  // namespace
 
-std::unique_ptr<Window> make_window(const drive::DriveDescription& description,
-                                    const drive::FusionSettings& settings, const Frame& frame,
-                                    std::optional<drive::FirstPose> first_pose,
+std::unique_ptr<Window> make_window(const drive::DriveDescription& description, const FusionSetup& setup,
+                                    const Frame& frame, std::optional<drive::FirstPose> first_pose,
                                     const TypeRegistry& registry) {
-  drive::DriveFacts facts = facts_of(description, settings, frame);
+  drive::DriveFacts facts = facts_of(description, setup, frame);
   facts.first_pose = std::move(first_pose);
-  return std::make_unique<Window>(std::move(facts), sensors_of(description), settings, registry);
+  return std::make_unique<Window>(facts, sensors_of(description), setup.settings, registry);
 }
 
 }  // namespace waymark::live

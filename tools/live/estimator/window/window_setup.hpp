@@ -3,18 +3,27 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <waymark/core/registry/registry.hpp>
 #include <waymark/tools/drive/description/drive_description.hpp>
 #include <waymark/tools/drive/description/fusion_settings.hpp>
 #include <waymark/tools/drive/model/place.hpp>
-#include <waymark/tools/live/estimator/window.hpp>
+#include <waymark/tools/live/estimator/window/window.hpp>
 
 namespace waymark::live {
 
-/// Returns a window without nodes. @param settings from decided() @param registry must outlive it
+/// How the fusion of a drive is set up.
+struct FusionSetup {
+  drive::FusionSettings settings;  ///< from decided()
+  /// how late the fixes of each receiver are beside their stated delay, about which a delay is linearised, s;
+  /// empty: 0
+  std::vector<double> delays_s{};
+};
+
+/// Returns a window without nodes. @param registry must outlive it
 [[nodiscard]] std::unique_ptr<Window> make_window(const drive::DriveDescription& description,
-                                                  const drive::FusionSettings& settings, const Frame& frame,
+                                                  const FusionSetup& setup, const Frame& frame,
                                                   std::optional<drive::FirstPose> first_pose,
                                                   const TypeRegistry& registry);
 

@@ -16,31 +16,16 @@
 #include <waymark/core/window/window_solver.hpp>
 #include <waymark/tools/drive/model/build.hpp>
 #include <waymark/tools/live/estimator/odometries.hpp>
-#include <waymark/tools/live/estimator/predictor.hpp>
+#include <waymark/tools/live/estimator/window/predictor.hpp>
+#include <waymark/tools/live/estimator/window/window_inputs.hpp>
 
 namespace waymark::live {
-
-/// A stretch of a drive that is placed in the frame: what a window begins with.
-struct PlacedStretch {
-  std::vector<Stamp> stamps;
-  std::vector<Eigen::Vector3d> poses;
-  std::vector<Interval> intervals;
-  std::vector<std::size_t> givers;  ///< the odometry of each interval
-  std::vector<Fix> fixes;           ///< accepted ones, in order of time
-};
-
-/// What is known of states before the first measurement, from a former run.
-struct KnownState {
-  std::string tag;  ///< of the vertex type
-  std::vector<double> value;
-  Eigen::MatrixXd covariance;  ///< of its tangent
-};
 
 class Window {
  public:
   /// @param settings from decided(), with the noise among the options
   /// @param registry must outlive the object
-  Window(drive::DriveFacts facts, std::vector<drive::PreparedSensor> sensors,
+  Window(const drive::DriveFacts& facts, std::vector<drive::PreparedSensor> sensors,
          const drive::FusionSettings& settings, const TypeRegistry& registry);
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -50,6 +35,11 @@ class Window {
   [[nodiscard]] bool begin(const PlacedStretch& stretch);
   /// Adds what is known of the open states. Call it after begin().
   void add_known(std::span<const KnownState> states);
+  /// Begins with what another window was given, and finds the minimum. Poses older than the given moment are
+  /// then summed out. @returns false if there is no minimum
+  [[nodiscard]] bool begin_again(const WindowInputs& inputs, Stamp oldest);
+  /// Adds what another window was given since it had so many inputs. @param first inputs before it are known
+  void catch_up(const WindowInputs& inputs, std::uint64_t first);
 
   /// Adds a node at the end of an interval, at its predicted pose. @param giver the odometry of the interval
   void add_node(Stamp stamp, const Interval& interval, std::size_t giver);
@@ -84,9 +74,13 @@ class Window {
   [[nodiscard]] std::vector<KnownState> open_states() const;
   [[nodiscard]] std::size_t poses() const { return builder_.nodes().stamps.size(); }
   [[nodiscard]] const Graph& graph() const { return graph_; }
+  /// Returns what it was given in the last ten minutes, at the present estimate.
+  [[nodiscard]] const WindowInputs& inputs();
   [[nodiscard]] std::vector<StampedPose> remaining() const;
 
  private:
+  void add_nodes(const PlacedStretch& stretch, std::size_t first, std::size_t last);
+  void give_reading(std::size_t sensor, Stamp stamp, std::span<const double> values);
   void extend(const drive::DrivePart& part);
 
   std::vector<drive::PreparedSensor> sensors_;  // each with the readings that wait for the next part
@@ -96,6 +90,7 @@ class Window {
   Graph& graph_;
   WindowSolver solver_;
   Predictor predictor_;
+  WindowInputs inputs_;
   bool readings_wait_ = false;
   std::optional<VertexId> height_{};  ///< of the newest height state
 };

@@ -1,0 +1,116 @@
+#include <waymark/tools/live/learning/drive_so_far.hpp>
+
+#include <algorithm>
+
+namespace waymark::live {
+namespace {
+
+template <typename Kept>
+void forget_before(Stamp moment, std::vector<std::deque<Kept>>& sources) {
+  for (std::deque<Kept>& source : sources)
+    while (!source.empty() && source.front().stamp < moment) source.pop_front();
+}
+
+}  // namespace
+
+DriveSoFar::DriveSoFar(const drive::DriveDescription& description, double kept_s)
+    : odometries_(description.odometry.size()),
+      fixes_(description.gnss.size()),
+      readings_(description.sensors.size()),
+      scale_(description.scale()),
+      kept_s_(kept_s) {
+  for (const drive::OdometryConfig& odometry : description.odometry) odometry_names_.push_back(odometry.name);
+  for (const drive::GnssConfig& receiver : description.gnss) receiver_names_.push_back(receiver.name);
+  for (const drive::SensorConfig& sensor : description.sensors)
+    sensor_names_.push_back(sensor.source.empty() ? sensor.name : sensor.source);
+}
+
+void DriveSoFar::take(const Sample& sample) {
+  if (const auto* odometry = std::get_if<OdometrySample>(&sample)) {
+    odometries_.front().push_back(*odometry);
+  } else if (const auto* further = std::get_if<FurtherOdometry>(&sample)) {
+    odometries_[further->source].push_back({further->stamp, further->speed_mps, further->yaw_rate_radps});
+  } else if (const auto* fix = std::get_if<GeodeticFix>(&sample)) {
+    fixes_[static_cast<std::size_t>(fix->source)].push_back(*fix);
+  } else {
+    const auto& reading = std::get<SensorReading>(sample);
+    readings_[reading.sensor].push_back(reading);
+  }
+  const Stamp oldest = stamp_of(sample).later(-kept_s_);
+  forget_before(oldest, odometries_);
+  forget_before(oldest, fixes_);
+  forget_before(oldest, readings_);
+}
+
+void DriveSoFar::clear() {
+  for (auto& odometry : odometries_) odometry.clear();
+  for (auto& receiver : fixes_) receiver.clear();
+  for (auto& sensor : readings_) sensor.clear();
+}
+
+double DriveSoFar::length_s() const {
+  double longest_s = 0;
+  for (const auto& samples : odometries_)
+    if (!samples.empty())
+      longest_s = std::max(longest_s, seconds_between(samples.front().stamp, samples.back().stamp));
+  return longest_s;
+}
+
+drive::DriveLogs DriveSoFar::logs() const {
+  drive::DriveLogs logs;
+  const auto log_named = [&](const std::string& name) {
+    drive::DriveLogs::Log log;
+    log.scale = scale_;
+    log.file = name;
+    return log;
+  };
+  for (std::size_t i = 0; i < odometries_.size(); ++i) {
+    logs.odometry.push_back({log_named(odometry_names_[i])});
+    logs.odometry.back().front().data.odometry.assign(odometries_[i].begin(), odometries_[i].end());
+  }
+  for (std::size_t i = 0; i < fixes_.size(); ++i) {
+    logs.gnss.push_back(log_named(receiver_names_[i]));
+    logs.gnss.back().data.fixes.assign(fixes_[i].begin(), fixes_[i].end());
+    logs.velocity.emplace_back();
+  }
+  for (const std::string& name : sensor_names_) logs.sensors.push_back(log_named(name));
+  return logs;
+}
+
+std::vector<SensorTable> DriveSoFar::readings() const {
+  std::vector<SensorTable> tables;
+  for (const std::deque<SensorReading>& sensor : readings_) {
+    SensorTable& table = tables.emplace_back();
+    for (const SensorReading& reading : sensor) {
+      table.columns = reading.values.size();
+      table.stamps.push_back(reading.stamp);
+      table.values.insert(table.values.end(), reading.values.begin(), reading.values.end());
+    }
+  }
+  return tables;
+}
+
+drive::DriveDescription described_so_far(drive::DriveDescription description, const Frame& frame) {
+  description.from_s.reset();
+  description.to_s.reset();
+  description.truth.reset();
+  description.first_pose.reset();
+  description.outage = {};
+  for (drive::OdometryConfig& odometry : description.odometry) {
+    odometry.speed_delay_s = 0;
+    odometry.yaw_rate_delay_s = 0;
+  }
+  for (drive::GnssConfig& receiver : description.gnss) {
+    receiver.delay_s = 0;
+    receiver.withhold_every = 0;
+    receiver.withheld = false;
+    receiver.velocity.reset();
+  }
+  if (frame.zone != 0) {
+    description.utm_zone = frame.north ? frame.zone : -frame.zone;
+    description.utm_origin = Eigen::Vector2d(frame.origin_easting_m, frame.origin_northing_m);
+  }
+  return description;
+}
+
+}  // namespace waymark::live

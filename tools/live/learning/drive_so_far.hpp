@@ -1,0 +1,45 @@
+/// What the sources have said lately, as the logs of a drive: what is done with a whole drive can be done with
+/// it, on a copy.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include <waymark/tools/drive/logs/prepare.hpp>
+#include <waymark/tools/live/estimator/intake.hpp>
+
+namespace waymark::live {
+
+class DriveSoFar {
+ public:
+  /// @param description of the drive @param kept_s older samples are forgotten
+  DriveSoFar(const drive::DriveDescription& description, double kept_s);
+
+  /// Takes a sample without its stated delay.
+  void take(const Sample& sample);
+  void clear();
+  /// Returns the time from the first to the last sample of the odometries.
+  [[nodiscard]] double length_s() const;
+  /// Returns odometry and fixes; the logs of sensors are empty.
+  [[nodiscard]] drive::DriveLogs logs() const;
+  /// Returns the readings of each sensor, in the frame.
+  [[nodiscard]] std::vector<SensorTable> readings() const;
+
+ private:
+  std::vector<std::deque<OdometrySample>> odometries_;
+  std::vector<std::deque<GeodeticFix>> fixes_;       // by receiver
+  std::vector<std::deque<SensorReading>> readings_;  // by sensor
+  std::vector<std::string> odometry_names_;
+  std::vector<std::string> receiver_names_;
+  std::vector<std::string> sensor_names_;
+  TimeScale scale_;
+  double kept_s_;
+};
+
+/// Returns the description that fits these logs: nothing of them is cut off, late or withheld.
+/// @param frame of the estimate
+[[nodiscard]] drive::DriveDescription described_so_far(drive::DriveDescription description,
+                                                       const Frame& frame);
+
+}  // namespace waymark::live

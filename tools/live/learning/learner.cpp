@@ -1,0 +1,46 @@
+#include <waymark/tools/live/learning/learner.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace waymark::live {
+namespace {
+
+constexpr double kGrowth = 1.5;             // of the drive, until the next search
+constexpr double kRarest_s = 600;           // between two searches
+constexpr double kAllowed_s = 10;           // for a search, at least
+constexpr double kAllowedShare = 1.0 / 15;  // of the drive, for a search in it
+
+/// Ends a search whose result nobody wants.
+struct Stopped {};
+
+}  // namespace
+
+bool Learner::is_due(Stamp now, double length_s) const {
+  if (future_.valid()) return false;
+  return length_s >= next_s_ || (last_ && seconds_between(*last_, now) >= kRarest_s);
+}
+
+void Learner::begin(Stamp now, double length_s, Work work) {
+  last_ = now;
+  ready_ = now.later(std::max(kAllowed_s, kAllowedShare * length_s));
+  next_s_ = std::max(next_s_, length_s) * kGrowth;
+  stop_ = std::make_shared<std::atomic<bool>>(false);
+  future_ = beside_([work = std::move(work), stop = stop_] {
+    return work([&stop = *stop] {
+      if (stop) throw Stopped();
+    });
+  });
+}
+
+std::optional<Learned> Learner::result(Stamp now) {
+  if (!future_.valid() || now < ready_) return std::nullopt;
+  return future_.get();
+}
+
+void Learner::forget() {
+  if (stop_) *stop_ = true;
+  future_ = {};
+}
+
+}  // namespace waymark::live
