@@ -14,6 +14,7 @@
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/mending/carried.hpp>
 #include <waymark/tools/drive/mending/creeping.hpp>
 #include <waymark/tools/drive/mending/fix_motion.hpp>
 #include <waymark/tools/drive/mending/frozen.hpp>
@@ -133,6 +134,15 @@ void leave_out(const std::vector<Finding>& found, std::vector<OdometrySample>& s
   }
 }
 
+/// Samples of wheels that stand while the vehicle is carried are left out. @param source its name and ": ", or empty
+void leave_out_carried(const std::string& source, std::vector<OdometrySample>& samples,
+                       PreparedDrive& drive) {
+  const std::vector<Carried> carried = find_carried(samples, drive.fixes);
+  for (const Carried& time : carried)
+    drive.report.warnings.push_back(source + warning_of(time, samples, samples.front().stamp));
+  leave_out(carried, samples);
+}
+
 /// Wrong samples of one of several sources are left out: the others measure the motion.
 void leave_out_wrong(PreparedDrive& drive) {
   for (PreparedOdometry& source : drive.relative) {
@@ -140,6 +150,7 @@ void leave_out_wrong(PreparedDrive& drive) {
     note_yaw_rate(name, source.yaw_rate_at_rest, drive.report);
     const Stamp start = source.samples.front().stamp;
     find_stops(name, source.samples, drive);
+    leave_out_carried(name, source.samples, drive);
     const std::vector<SpeedLeap> leaps = find_speed_leaps(source.samples);
     if (!leaps.empty()) drive.report.warnings.push_back(name + warning_of(leaps, source.samples));
     leave_out(leaps, source.samples);
@@ -203,6 +214,7 @@ void mend_by_fixes(PreparedDrive& drive) {
 /// Replaces speeds that no vehicle has, or that the fixes show to be otherwise, and gives speeds their sign.
 void mend_speeds(PreparedDrive& drive) {
   find_stops("", drive.odometry, drive);
+  if (drive.timeline.gap_policy == GapPolicy::bridge) leave_out_carried("", drive.odometry, drive);
   const std::vector<SpeedLeap> leaps = find_speed_leaps(drive.odometry);
   if (!leaps.empty()) drive.report.warnings.push_back(warning_of(leaps, drive.odometry));
   bridge_speed_leaps(leaps, drive.odometry);
