@@ -218,6 +218,34 @@ std::string drive_off_by(const std::string& folder, double seconds) {
 
 }  // namespace
 
+TEST_CASE("slips: the clock, sign and unit of a second odometry are compared with the fixes, by its name") {
+  const std::string folder = fresh_folder();
+  REQUIRE(run({"simulate", "--preset", "two-odometries", "--duration", "300", "--seed", "3", "-o",
+               folder + "drive"})
+              .code == 0);
+  const std::string file = folder + "drive/visual.csv";
+  const std::string log = read_text(file);
+  const auto warnings_with = [&](double late_s, double scale, double sign) {
+    std::istringstream rows(log);
+    std::string text;
+    for (std::string row; std::getline(rows, row);) {
+      double time = 0, speed = 0, yaw_rate = 0;
+      if (std::sscanf(row.c_str(), "%lf,%lf,%lf", &time, &speed, &yaw_rate) == 3)
+        text += line(time + late_s, scale * speed, sign * yaw_rate);
+      else
+        text += row + "\n";
+    }
+    write_text(file, text);
+    return run({"run", folder + "drive/drive.yaml", "-o", folder + "out"}).err;
+  };
+  CHECK_FALSE(contains(warnings_with(0, 1, 1), "warning"));
+  const std::string late = warnings_with(0.7, 1, 1);
+  CHECK(contains(late, "warning: visual's clock seems 0.7"));
+  CHECK(contains(late, "for its log"));
+  CHECK(contains(warnings_with(0, 1, -1), "warning: visual: the odometry turns against the fixes"));
+  CHECK(contains(warnings_with(0, 3.6, 1), "warning: visual: the odometry's distance between fixes is 3."));
+}
+
 TEST_CASE("slips: a clock off by 1 s or by leap seconds is named before the fusion, and --sync mends it") {
   const std::string folder = fresh_folder();
   const RunResult second = run({"run", drive_off_by(folder, 1), "-o", folder + "out"});

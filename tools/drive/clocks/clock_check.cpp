@@ -14,6 +14,7 @@
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/logs/prepare_steps.hpp>
 #include <waymark/tools/drive/logs/streams.hpp>
+#include <waymark/tools/drive/nodes/plausibility.hpp>
 
 namespace waymark::drive {
 namespace {
@@ -139,19 +140,46 @@ bool fits_elsewhere(const LagSearch& search) {
   return better || !fits;
 }
 
-std::string clock_warning(const PreparedDrive& drive) {
+/// Returns the offset of the clock of an odometry, if the fixes show that it has one.
+std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
+                                        const std::vector<Fix>& fixes) {
   constexpr std::size_t kFewest = 30;
-  if (drive.fixes.size() < kFewest || drive.odometry.size() < kFewest) return {};
-  const std::vector<const Fix*> receiver = of_one_receiver(drive.fixes);
+  if (fixes.size() < kFewest || odometry.size() < kFewest) return std::nullopt;
+  const std::vector<const Fix*> receiver = of_one_receiver(fixes);
   const auto [speeds, turns] = receiver_motion(receiver);
-  if (!fits_elsewhere(LagSearch(drive.odometry, speeds, turns))) return {};
-  const std::optional<ClockOffset> offset =
-      common_offset(estimate_clock_offsets(drive.odometry, drive.fixes, {}));
-  if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return {};
-  return fmt::format(
-      "the odometry's clock seems {:.2f} +- {:.2f} s late against the fixes{}, correlation {:.3f}: {}",
-      offset->late_s, std::hypot(offset->sigma_s, kSmoothing_s), offset_in_words(*offset),
-      offset->correlation, remedy(*offset));
+  if (!fits_elsewhere(LagSearch(odometry, speeds, turns))) return std::nullopt;
+  const std::optional<ClockOffset> offset = common_offset(estimate_clock_offsets(odometry, fixes, {}));
+  if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return std::nullopt;
+  return offset;
+}
+
+/// @param odometry "the odometry" or the name of one of several @param cure what to do
+std::string clock_warning(const std::string& odometry, const ClockOffset& offset, const std::string& cure) {
+  return fmt::format("{}'s clock seems {:.2f} +- {:.2f} s late against the fixes{}, correlation {:.3f}: {}",
+                     odometry, offset.late_s, std::hypot(offset.sigma_s, kSmoothing_s),
+                     offset_in_words(offset), offset.correlation, cure);
+}
+
+/// Returns what the fixes of the first receiver say against an odometry beside the one of the nodes.
+std::vector<std::string> warnings_of(const PreparedOdometry& source, const PreparedDrive& drive) {
+  constexpr std::size_t kFewest = 30;
+  const std::vector<OdometrySample>& samples = source.samples;
+  std::vector<Fix> fixes;
+  for (const Fix& fix : drive.fixes)
+    if (fix.source == drive.fixes.front().source && fix.stamp >= samples.front().stamp &&
+        fix.stamp <= samples.back().stamp)
+      fixes.push_back(fix);
+  if (fixes.size() < kFewest || samples.size() < kFewest) return {};
+  if (const std::optional<ClockOffset> offset = offset_shown(samples, fixes))
+    return {clock_warning(source.name, *offset,
+                          fmt::format("state 'time: {{offset: {:.2f}}}' for its log", -offset->late_s))};
+  constexpr double kStands_mps = 0.01;
+  const Timeline timeline = build_timeline(samples, fixes, {.gap_s = source.gap_s});
+  const std::vector<Eigen::Vector3d> poses = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStands_mps);
+  std::vector<std::string> warnings;
+  for (const std::string& shape : compare_shapes(fixes, antenna_at_fixes(timeline, poses, fixes)))
+    warnings.push_back(source.name + ": " + shape);
+  return warnings;
 }
 
 }  // namespace
@@ -211,8 +239,12 @@ PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription
   const PrepareReport& report = drive.report;
   if (report.fixes_outside_odometry > drive.fixes.size() + report.fixes_thinned)
     refuse_wrong_clock(logs, description);
-  if (std::string warning = clock_warning(drive); !warning.empty())
-    drive.report.warnings.push_back(std::move(warning));
+  std::vector<std::string>& warnings = drive.report.warnings;
+  if (const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes))
+    warnings.push_back(clock_warning("the odometry", *offset, remedy(*offset)));
+  for (std::size_t source = 1; source < drive.relative.size(); ++source)
+    for (std::string& warning : warnings_of(drive.relative[source], drive))
+      warnings.push_back(std::move(warning));
   return drive;
 }
 

@@ -19,7 +19,8 @@ struct ClockOffset;
 /// Returns ", " and the name of an estimated offset, for messages. Empty: it has none.
 [[nodiscard]] std::string offset_in_words(const ClockOffset& offset);
 
-/// prepare_drive(), and a warning if odometry and fixes fit at another offset of their clocks.
+/// prepare_drive(), and a warning if odometry and fixes fit at another offset of their clocks. Of several
+/// odometries each one is compared: its clock, its turns and its distances.
 /// @throws InputError what prepare_drive throws; and if most fixes lie outside the odometry and their motion
 /// fits elsewhere, or nowhere: it names the offset and the remedy
 [[nodiscard]] PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description);

@@ -31,6 +31,12 @@ namespace waymark::drive {
     std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
     const std::optional<GeodeticPoint>& place = {}, std::span<const std::string> receivers = {});
 
+/// Returns the sentences about turns and distances alone. @param fixes of one receiver
+/// @param antenna, place as above
+[[nodiscard]] std::vector<std::string> compare_shapes(std::span<const Fix> fixes,
+                                                      std::span<const Eigen::Vector3d> antenna,
+                                                      const std::optional<GeodeticPoint>& place = {});
+
 /// Returns a warning if the acceleration across the vehicle exceeds 10 m/s^2 in 5 % of the samples above
 /// 2 m/s: a wrong unit of the yaw rate also shows without turns in the fixes. Empty otherwise.
 [[nodiscard]] std::string warning_of_accelerations(std::span<const OdometrySample> odometry);

@@ -122,17 +122,22 @@ bool FixJudge::has_jumped(const Residual& residual, int source, const Window& wi
                            static_cast<double>(near) >= kMost * static_cast<double>(agreed.size()));
 }
 
-/// Fixes that leave an estimate with which they agreed for long are wrong more often than it is.
-void FixJudge::doubt(const Fix& fix) {
+/// Fixes that leave an estimate at once, with which they agreed for long, are wrong more often than it is. Fixes
+/// that leave it more and more are those of another motion: the odometry is wrong.
+void FixJudge::doubt(const Fix& fix, bool at_once) {
   constexpr double kHalf = 0.5;
   constexpr double kLongest_s = 60;
+  constexpr double kDrift_mps = 1;  // of dead reckoning
   Receiver& receiver = receivers_[fix.source];
-  if (receiver.left) return;
+  if (receiver.left) {
+    const double moved_m = (residual_->off - receiver.left->off).norm();
+    const double since_s = seconds_between(receiver.left->stamp, fix.stamp);
+    if (moved_m > kQuarter * receiver.left->off.norm() + kDrift_mps * since_s) receiver.doubted_s = 0;
+    return;
+  }
   receiver.left = residual_;
-  const bool agreed = !receiver.agreed.empty() && receiver.agrees_since &&
-                      seconds_between(receiver.agreed.back().stamp, fix.stamp) <= kNextFix_s;
   receiver.doubted_s =
-      agreed ? std::min(kLongest_s, kHalf * seconds_between(*receiver.agrees_since, fix.stamp)) : 0;
+      at_once ? std::min(kLongest_s, kHalf * seconds_between(*receiver.agrees_since, fix.stamp)) : 0;
 }
 
 std::string FixJudge::reason_against(const Fix& fix, const Reckoning& reckoning, const Window* window) {
@@ -144,10 +149,9 @@ std::string FixJudge::reason_against(const Fix& fix, const Reckoning& reckoning,
   if (repeats(fix, reckoning)) return "frozen";
   if (std::string reason = judged_by_gate(fix, reckoning); !reason.empty()) return reason;
   if (window == nullptr) return "";
-  const std::string reason = is_absurd(fix, *window)                       ? "absurd"
-                             : has_jumped(*residual_, fix.source, *window) ? "jump"
-                                                                           : "";
-  if (!reason.empty()) doubt(fix);
+  const bool jumped = has_jumped(*residual_, fix.source, *window);
+  const std::string reason = is_absurd(fix, *window) ? "absurd" : jumped ? "jump" : "";
+  if (!reason.empty()) doubt(fix, jumped);
   return reason;
 }
 

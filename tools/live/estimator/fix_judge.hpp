@@ -69,7 +69,7 @@ class FixJudge {
   [[nodiscard]] bool repeats(const Fix& fix, const Reckoning& reckoning);
   [[nodiscard]] bool is_absurd(const Fix& fix, const Window& window) const;
   [[nodiscard]] bool has_jumped(const Residual& residual, int source, const Window& window) const;
-  void doubt(const Fix& fix);
+  void doubt(const Fix& fix, bool at_once);
 
   const drive::DriveDescription& description_;
   const drive::FusionSettings& settings_;
