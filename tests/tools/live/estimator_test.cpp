@@ -347,6 +347,23 @@ TEST_CASE("a receiver that comes back elsewhere is believed after half the time 
   CHECK(said.state == State::tracking);
 }
 
+TEST_CASE("two receivers that come back elsewhere at the same stamps are believed too", "[live]") {
+  LiveDrive drive = live_drive("rural", 120);
+  const Stamp moved = stamp_of(drive.arrivals.front()).later(60);
+  Arrivals both;
+  for (Sample& sample : drive.arrivals) {
+    if (is_fix(sample) && stamp_of(sample) > moved) fix_of(sample).latitude_deg += 0.018;
+    both.push_back(sample);
+    if (!is_fix(sample)) continue;
+    both.push_back(sample);
+    fix_of(both.back()).source = 1;
+  }
+  const Said said = listen(both, {}, "correlated", {"front", "rear"});
+  CHECK(said.counts.resets == 1);
+  CHECK(said.state == State::tracking);
+  CHECK(largest(errors_m(said, drive)) > 1900);  // the truth was not carried
+}
+
 TEST_CASE("fixes that jump and come back are left out, whatever the size of the jump", "[live]") {
   const double jump_m = GENERATE(25.0, 60.0, 500.0);
   LiveDrive drive = live_drive("rural", 300);

@@ -322,7 +322,7 @@ void Estimator::use(const GeodeticFix& geodetic) {
     refuse(geodetic, reason,
            fmt::format("a fix is not used ({}), {:.1f} m from the estimate", reason, off_m));
     const bool is_elsewhere = reason == "absurd" || reason == "jump";
-    if (is_elsewhere && judge_.convinces(fix, reckoning_)) begin_at_believed();
+    if (is_elsewhere && judge_.convinces(fix, reckoning_)) begin_at_believed(fix.source);
     return;
   }
   const ClaimedAccuracies claimed = judge_.accept(fix);
@@ -355,8 +355,8 @@ void Estimator::compare_receivers(const Fix& fix) {
         drive::warning_of(difference, names, "for minutes"));
 }
 
-void Estimator::begin_at_believed() {
-  const std::vector<Fix> believed = judge_.take_believed();
+void Estimator::begin_at_believed(int source) {
+  const std::vector<Fix> believed = judge_.take_believed(source);
   reset("reset",
         fmt::format("{} fixes in a row contradict the estimate and agree with each other", believed.size()));
   fixes_.assign(believed.begin(), believed.end());
@@ -471,7 +471,7 @@ void Estimator::reset(const std::string& kind, const std::string& text) {
   says_.forget_settled();
   window_.reset();
   warm_.reset();
-  judge_.forget_absurd();
+  judge_.forget_elsewhere();
   fixes_.clear();
   readings_.clear();
   failures_ = 0;

@@ -86,7 +86,7 @@ class Estimator {
   void use_rough_places();
   [[nodiscard]] const drive::Projection& projection_at(const GeodeticPoint& place);
   [[nodiscard]] Fix projected(const GeodeticFix& fix);
-  void begin_at_believed();
+  void begin_at_believed(int source);
   void align();
   void align_warm();
   void begin_window(PlacedStretch stretch, std::optional<drive::FirstPose> first_pose);

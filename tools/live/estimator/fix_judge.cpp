@@ -156,7 +156,7 @@ std::string FixJudge::reason_against(const Fix& fix, const Reckoning& reckoning,
 }
 
 ClaimedAccuracies FixJudge::accept(const Fix& fix) {
-  absurd_.clear();
+  for (auto& [source, other] : receivers_) other.elsewhere.clear();
   Receiver& receiver = receivers_[fix.source];
   std::vector<Fix>& used = receiver.used;
   used.push_back(fix);
@@ -171,29 +171,31 @@ ClaimedAccuracies FixJudge::accept(const Fix& fix) {
 }
 
 bool FixJudge::convinces(const Fix& fix, const Reckoning& reckoning) {
-  if (!absurd_.empty()) {
-    const Fix& before = absurd_.back();
+  Receiver& receiver = receivers_[fix.source];
+  std::vector<Fix>& row = receiver.elsewhere;
+  if (!row.empty()) {
+    const Fix& before = row.back();
     const double way_m = (reckoning.at(fix.stamp).pose - reckoning.at(before.stamp).pose).head<2>().norm();
     const double step_m = (fix.position - before.position).norm();
     const double allowed_m = 10 + 3 * (fix.accuracy_m() + before.accuracy_m());
-    if (std::abs(step_m - way_m) > allowed_m || fix.stamp <= before.stamp) absurd_.clear();
+    if (std::abs(step_m - way_m) > allowed_m || fix.stamp <= before.stamp) row.clear();
   }
-  absurd_.push_back(fix);
-  return absurd_.size() >= static_cast<std::size_t>(live_.fixes_that_convince) &&
-         seconds_between(absurd_.front().stamp, fix.stamp) >= receivers_[fix.source].doubted_s;
+  row.push_back(fix);
+  return row.size() >= static_cast<std::size_t>(live_.fixes_that_convince) &&
+         seconds_between(row.front().stamp, fix.stamp) >= receiver.doubted_s;
 }
 
-void FixJudge::forget_absurd() {
-  absurd_.clear();
+void FixJudge::forget_elsewhere() {
   for (auto& [source, receiver] : receivers_) {
+    receiver.elsewhere.clear();
     receiver.agreed.clear();
     receiver.agrees_since.reset();
     receiver.left.reset();
   }
 }
 
-std::vector<Fix> FixJudge::take_believed() {
-  return std::exchange(absurd_, {});
+std::vector<Fix> FixJudge::take_believed(int source) {
+  return std::exchange(receivers_[source].elsewhere, {});
 }
 
 }  // namespace waymark::live

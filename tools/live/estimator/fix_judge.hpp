@@ -37,10 +37,10 @@ class FixJudge {
   /// Takes a fix that is elsewhere: a jump, or absurd. @returns whether so many in a row agree with each other,
   /// for so long, that it is the estimate which is wrong
   [[nodiscard]] bool convinces(const Fix& fix, const Reckoning& reckoning);
-  /// Returns the absurd fixes in a row, and forgets them.
-  [[nodiscard]] std::vector<Fix> take_believed();
-  /// Forgets the absurd fixes in a row.
-  void forget_absurd();
+  /// Returns the fixes of a receiver in a row that are elsewhere, and forgets them.
+  [[nodiscard]] std::vector<Fix> take_believed(int source);
+  /// Forgets what agreed with the estimate, and what is elsewhere.
+  void forget_elsewhere();
   /// Forgets the receivers.
   void clear() { receivers_.clear(); }
 
@@ -57,6 +57,7 @@ class FixJudge {
     std::optional<Stamp> agrees_since;     // without a fix that is elsewhere
     double doubted_s = 0;                  // so long fixes that are elsewhere are not believed
     std::optional<Residual> left{};        // the first of the last fixes, which are elsewhere
+    std::vector<Fix> elsewhere{};          // the last ones in a row, while none of any receiver is used
     std::vector<Fix> used;                 // the last ones: their claims
     std::deque<Fix> judged;                // the last seconds, all of them, with the dead reckoning
     std::deque<Eigen::Vector3d> reckoned;  // antenna at these
@@ -76,7 +77,6 @@ class FixJudge {
   const LiveSettings& live_;
   const TypeRegistry& registry_;
   std::map<int, Receiver> receivers_;
-  std::vector<Fix> absurd_;             // the last ones in a row
   std::optional<Residual> residual_{};  // of the fix that is judged
 };
 
