@@ -101,13 +101,14 @@ for connection in range(2):
     client.close()
 time.sleep(0.5)
 )");
-  const RunResult result = shell(folder,
-                                 "mkfifo odometry\n"
-                                 "python3 strange.py " +
-                                     port(1) +
-                                     " & server=$!\n"
-                                     "sleep 0.3; $1 live live.yaml -o json:live.jsonl 2> log & pid=$!\n"
-                                     "wait $server; kill -TERM $pid; wait $pid; echo code $?; cat log\n");
+  const RunResult result =
+      shell(folder,
+            "mkfifo odometry\n"
+            "python3 strange.py " +
+                port(1) +
+                " & server=$!\n"
+                "sleep 0.3; $1 live live.yaml --noise stated -o json:live.jsonl 2> log & pid=$!\n"
+                "wait $server; kill -TERM $pid; wait $pid; echo code $?; cat log\n");
   INFO(result.out << result.err);
   CHECK(contains(result.out, "code 0"));
   const std::string lines = read_text(folder + "live.jsonl");

@@ -1,4 +1,5 @@
 // The noise of the drive so far: what a live estimate learns, when, and what that changes.
+#include <atomic>
 #include <cmath>
 #include <future>
 #include <random>
@@ -117,6 +118,18 @@ TEST_CASE("what is learned beside the estimate, in a thread or at once, is the s
     return heard(estimator, drive.arrivals).text();
   };
   CHECK(text_with(std::launch::async) == text_with(std::launch::deferred));
+}
+
+TEST_CASE("a search that is stopped from outside is waited for no longer, and the estimate goes on",
+          "[live]") {
+  const LiveDrive drive = live_drive("urban", 200);
+  const std::atomic<bool> stop{true};
+  Estimator estimator(live_description(), settings_of(true), {}, registry());
+  estimator.stop_learning_with(stop);
+  const Said said = heard(estimator, drive.arrivals);
+  CHECK(said.count("noise") == 0);
+  CHECK(said.counts.lessons == 0);
+  CHECK(said.state == State::tracking);
 }
 
 TEST_CASE("each pose is settled once, in order, though windows are built again", "[live]") {

@@ -7,6 +7,7 @@
 ///   for (const Report& report : estimator.reports()) ...
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -51,6 +52,8 @@ class Estimator {
   /// Lets the search for the noise run elsewhere, in another thread for example. By default take() does it
   /// when its time has come. Call it before the first sample.
   void learn_beside(Beside beside) { learner_.run_beside(std::move(beside)); }
+  /// Ends a search when this is set, also while take() waits for it. @param stop must outlive the object
+  void stop_learning_with(const std::atomic<bool>& stop) { learner_.stop_with(stop); }
   /// Begins at a pose that is known from a former run. Call it before the first sample.
   void begin_with(const WarmStart& start);
 

@@ -26,16 +26,20 @@ void Learner::begin(Stamp now, double length_s, Work work) {
   ready_ = now.later(std::max(kAllowed_s, kAllowedShare * length_s));
   next_s_ = std::max(next_s_, length_s) * kGrowth;
   stop_ = std::make_shared<std::atomic<bool>>(false);
-  future_ = beside_([work = std::move(work), stop = stop_] {
-    return work([&stop = *stop] {
-      if (stop) throw Stopped();
+  future_ = beside_([work = std::move(work), stop = stop_, outside = stop_from_outside_] {
+    return work([&stop = *stop, outside] {
+      if (stop || (outside != nullptr && *outside)) throw Stopped();
     });
   });
 }
 
 std::optional<Learned> Learner::result(Stamp now) {
   if (!future_.valid() || now < ready_) return std::nullopt;
-  return future_.get();
+  try {
+    return future_.get();
+  } catch (const Stopped&) {
+    return std::nullopt;
+  }
 }
 
 void Learner::forget() {

@@ -26,11 +26,13 @@ class Learner {
 
   /// Lets work run elsewhere. By default it is done where its result is needed.
   void run_beside(Beside beside) { beside_ = std::move(beside); }
+  /// Ends searches when this is set, whoever waits for them. @param stop must outlive the object
+  void stop_with(const std::atomic<bool>& stop) { stop_from_outside_ = &stop; }
   /// Tells whether to begin. @param length_s of the drive so far
   [[nodiscard]] bool is_due(Stamp now, double length_s) const;
   /// Begins. @param work is called once; it must own what it uses
   void begin(Stamp now, double length_s, Work work);
-  /// Returns what was learned, when its time has come.
+  /// Returns what was learned, when its time has come. Empty, too, if the search was stopped from outside.
   [[nodiscard]] std::optional<Learned> result(Stamp now);
   /// Stops the work; its result is lost.
   void forget();
@@ -41,6 +43,7 @@ class Learner {
   };
   std::future<Learned> future_;
   std::shared_ptr<std::atomic<bool>> stop_;
+  const std::atomic<bool>* stop_from_outside_ = nullptr;
   Stamp ready_;                  // when its result is used
   double next_s_ = 60;           // length of the drive at the next search
   std::optional<Stamp> last_{};  // when the last search began

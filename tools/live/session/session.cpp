@@ -37,11 +37,11 @@ std::vector<OdometryStream> streams_of(const drive::DriveDescription& descriptio
   return streams;
 }
 
-/// Searches give way to everything else.
+/// Searches give way, but not so much that a machine with other work lets the estimate wait for them.
 std::future<Learned> in_another_thread(std::function<Learned()> work) {
-  constexpr int kLastOfAll = 19;
+  constexpr int kNice = 5;
   return std::async(std::launch::async, [work = std::move(work)] {
-    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLastOfAll);
+    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice);
     return work();
   });
 }

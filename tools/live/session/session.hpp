@@ -2,6 +2,7 @@
 /// of a replay; what goes out are lines.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -60,6 +61,9 @@ class Session {
   /// Reads a state of a former run if the file exists, and writes it every 30 s and at the end.
   /// @throws InputError for a file that is none
   void use_state_file(const std::string& path);
+
+  /// Ends what runs beside the estimate when this is set. @param stop must outlive the object
+  void stop_with(const std::atomic<bool>& stop) { estimator_.stop_learning_with(stop); }
 
   /// Takes bytes of an input. Empty: the sender pauses.
   void take(std::size_t input, std::string_view bytes);

@@ -178,6 +178,7 @@ ExitCode run(const LiveCommand& command) {
   if (!command.noise.empty()) live::use_former_noise(command.noise, registry, file.settings);
   const double speed = speed_of(command.speed);
   live::Session session(file, command.settings, registry);
+  session.stop_with(interrupted);
   if (command.play.empty()) require_files(session);
   const bool replays = !command.play.empty() || is_replay(session);
   if (replays && !command.record.empty())
