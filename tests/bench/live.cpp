@@ -41,8 +41,9 @@ std::unique_ptr<Estimator> make(double window_s) {
   description.gnss.back().name = "gnss";
   LiveSettings settings;
   settings.window_s = window_s;
-  return std::make_unique<Estimator>(description, drive::FusionSettings{}, settings,
-                                     waymark_test::registry());
+  drive::FusionSettings stated;
+  stated.estimates_noise = false;  // searches run beside an estimate
+  return std::make_unique<Estimator>(description, stated, settings, waymark_test::registry());
 }
 
 /// One sample of the kind, in a window that is full: a fix with its solution, or odometry.
