@@ -18,12 +18,6 @@ using namespace waymark_test;
 
 namespace {
 
-double rms(const std::vector<double>& errors) {
-  double squares = 0;
-  for (const double error : errors) squares += error * error;
-  return std::sqrt(squares / static_cast<double>(errors.size()));
-}
-
 double largest(const std::vector<double>& errors) {
   return *std::max_element(errors.begin(), errors.end());
 }

@@ -46,12 +46,6 @@ std::size_t assumed(const std::vector<OdometrySample>& samples) {
   return count;
 }
 
-double rms(const std::vector<double>& errors) {
-  double squares = 0;
-  for (const double error : errors) squares += error * error;
-  return std::sqrt(squares / static_cast<double>(errors.size()));
-}
-
 }  // namespace
 
 TEST_CASE("speed guard: wheels that spin and lock are held at the speed before, and nothing else is",
@@ -145,7 +139,8 @@ TEST_CASE("a slip of a second is told once, and costs no accuracy", "[live]") {
   const Said after = waymark_test::listen(slipping.arrivals);
   CHECK(before.count("leap") == 0);
   CHECK(after.count("leap") == 1);
-  CHECK(rms(waymark_test::errors_m(after, slipping)) < 1.1 * rms(waymark_test::errors_m(before, sound)));
+  CHECK(waymark_test::rms(waymark_test::errors_m(after, slipping)) <
+        1.1 * waymark_test::rms(waymark_test::errors_m(before, sound)));
 }
 
 TEST_CASE("a wrong reading of a compass does not move what is published at once", "[live]") {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <future>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -20,12 +22,8 @@ using namespace waymark_test;
 
 namespace {
 
-/// Of the second half.
 double late_rms(const std::vector<double>& errors) {
-  double squares = 0;
-  const std::size_t half = errors.size() / 2;
-  for (std::size_t i = half; i < errors.size(); ++i) squares += errors[i] * errors[i];
-  return std::sqrt(squares / static_cast<double>(errors.size() - half));
+  return rms(std::span(errors).last(errors.size() - errors.size() / 2));
 }
 
 const Eigen::Vector3d& truth_at(Stamp stamp, const LiveDrive& drive) {

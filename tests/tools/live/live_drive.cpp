@@ -124,6 +124,12 @@ std::optional<Eigen::Vector2d> off_truth(Stamp stamp, const Eigen::Vector3d& pos
 
 }  // namespace
 
+double rms(std::span<const double> errors) {
+  double squares = 0;
+  for (const double error : errors) squares += error * error;
+  return std::sqrt(squares / static_cast<double>(errors.size()));
+}
+
 std::vector<double> errors_m(const Said& said, const LiveDrive& drive) {
   std::vector<double> errors;
   for (const LivePose& pose : said.poses) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -52,6 +53,7 @@ struct Said {
 /// Gives arrivals to an estimator, to their end. @returns what it says
 [[nodiscard]] Said heard(waymark::live::Estimator& estimator, const Arrivals& arrivals);
 
+[[nodiscard]] double rms(std::span<const double> errors);
 /// Distances of the poses with a heading from the truth, m.
 [[nodiscard]] std::vector<double> errors_m(const Said& said, const LiveDrive& drive);
 /// Those of the poses at the end of the lag.

@@ -33,12 +33,6 @@ Stamp at(double seconds) {
   return Stamp{1'000'000'000'000}.later(seconds);
 }
 
-double rms(const std::vector<double>& errors) {
-  double squares = 0;
-  for (const double error : errors) squares += error * error;
-  return std::sqrt(squares / static_cast<double>(errors.size()));
-}
-
 /// Lets an estimator with two odometries hear a drive, without what `leaves_out` names.
 template <typename LeavesOut>
 Said listen_to_both(const LiveDrive& drive, const LeavesOut& leaves_out, bool first_only = false) {
@@ -187,8 +181,8 @@ TEST_CASE("two odometries are both used, and the pose is better for it", "[live]
     CHECK(two.counts.taken.at("visual") > 1000);
     // The nodes are those of the first one.
     CHECK(two.poses.size() == one.poses.size());
-    alone += std::pow(rms(waymark_test::errors_m(one, drive)), 2);
-    both += std::pow(rms(waymark_test::errors_m(two, drive)), 2);
+    alone += std::pow(waymark_test::rms(waymark_test::errors_m(one, drive)), 2);
+    both += std::pow(waymark_test::rms(waymark_test::errors_m(two, drive)), 2);
   }
   CAPTURE(alone, both);
   CHECK(both < alone);
@@ -211,7 +205,8 @@ TEST_CASE("an odometry that falls silent is replaced by the next one, and takes 
     CHECK(said.counts.failures == 0);
     CHECK(said.count("odometry") >= 2);
     CHECK(longest_silence_s(said) < 1);
-    CHECK(rms(waymark_test::errors_m(said, drive)) < 1.5 * rms(waymark_test::errors_m(whole, drive)));
+    CHECK(waymark_test::rms(waymark_test::errors_m(said, drive)) <
+          1.5 * waymark_test::rms(waymark_test::errors_m(whole, drive)));
   }
   SECTION("the second one is switched on later and dies") {
     const Said said = listen_to_both(drive, [&](const Sample& sample) {
@@ -220,7 +215,8 @@ TEST_CASE("an odometry that falls silent is replaced by the next one, and takes 
     });
     CHECK(said.counts.resets == 0);
     CHECK(said.counts.failures == 0);
-    CHECK(rms(waymark_test::errors_m(said, drive)) < 1.5 * rms(waymark_test::errors_m(whole, drive)));
+    CHECK(waymark_test::rms(waymark_test::errors_m(said, drive)) <
+          1.5 * waymark_test::rms(waymark_test::errors_m(whole, drive)));
   }
 }
 

@@ -140,11 +140,12 @@ bool fits_elsewhere(const LagSearch& search) {
   return better || !fits;
 }
 
+constexpr std::size_t kFewestCompared = 30;  // fixes, and samples
+
 /// Returns the offset of the clock of an odometry, if the fixes show that it has one.
 std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
                                         const std::vector<Fix>& fixes) {
-  constexpr std::size_t kFewest = 30;
-  if (fixes.size() < kFewest || odometry.size() < kFewest) return std::nullopt;
+  if (fixes.size() < kFewestCompared || odometry.size() < kFewestCompared) return std::nullopt;
   const std::vector<const Fix*> receiver = of_one_receiver(fixes);
   const auto [speeds, turns] = receiver_motion(receiver);
   if (!fits_elsewhere(LagSearch(odometry, speeds, turns))) return std::nullopt;
@@ -162,14 +163,13 @@ std::string clock_warning(const std::string& odometry, const ClockOffset& offset
 
 /// Returns what the fixes of the first receiver say against an odometry beside the one of the nodes.
 std::vector<std::string> warnings_of(const PreparedOdometry& source, const PreparedDrive& drive) {
-  constexpr std::size_t kFewest = 30;
   const std::vector<OdometrySample>& samples = source.samples;
   std::vector<Fix> fixes;
   for (const Fix& fix : drive.fixes)
     if (fix.source == drive.fixes.front().source && fix.stamp >= samples.front().stamp &&
         fix.stamp <= samples.back().stamp)
       fixes.push_back(fix);
-  if (fixes.size() < kFewest || samples.size() < kFewest) return {};
+  if (fixes.size() < kFewestCompared || samples.size() < kFewestCompared) return {};
   if (const std::optional<ClockOffset> offset = offset_shown(samples, fixes))
     return {clock_warning(source.name, *offset,
                           fmt::format("state 'time: {{offset: {:.2f}}}' for its log", -offset->late_s))};

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include <waymark/core/drive/drive_context.hpp>
+#include <waymark/core/drive/frame.hpp>
 #include <waymark/core/drive/log_reader.hpp>
 #include <waymark/core/drive/stamp.hpp>
 #include <waymark/core/registry/options.hpp>
@@ -62,7 +63,10 @@ struct SensorConfig {
   std::optional<LogConfig> log;  ///< empty: the sensor has no log
   Options options;
   std::string place;        ///< "drive.yaml:12:5: " of the entry, for messages
-  std::string source = {};  ///< name of the source; that of the sensor model if none is stated
+  std::string source = {};  ///< name of the source, if one is stated
+
+  /// Returns the name of the source; that of the sensor model if none is stated.
+  [[nodiscard]] const std::string& source_name() const { return source.empty() ? name : source; }
 };
 
 /// The pose of the body point at the first node, as it is stated.
@@ -111,6 +115,12 @@ struct DriveDescription {
   OutagePattern outage;  ///< fixes in it are left out of the graph, for evaluation
 
   [[nodiscard]] TimeScale scale() const { return time_scale.value_or(TimeScale::gps); }
+  /// States a frame that is known; one without a zone says nothing.
+  void state_frame(const Frame& frame) {
+    if (frame.zone == 0) return;
+    utm_zone = frame.north ? frame.zone : -frame.zone;
+    utm_origin = Eigen::Vector2d(frame.origin_easting_m, frame.origin_northing_m);
+  }
 };
 
 }  // namespace waymark::drive

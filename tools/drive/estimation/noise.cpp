@@ -243,6 +243,15 @@ NoiseEstimate visit_parts(const PlacedDrive& placed, std::span<const PreparedSen
   return noise;
 }
 
+/// Returns where the settings have a parameter: at its source, or at the models of that name.
+std::vector<Options*> options_with(const NoiseParameter& parameter, FusionSettings& settings) {
+  if (!parameter.source.empty()) return {&settings.sources[parameter.source].options};
+  std::vector<Options*> found;
+  if (parameter.owner == settings.odometry_model) found.push_back(&settings.odometry_options);
+  if (parameter.owner == settings.modeling) found.push_back(&settings.modeling_options);
+  return found;
+}
+
 }  // namespace
 
 NoiseEstimate estimate_noise(const PlacedDrive& placed, std::span<const PreparedSensor> sensors,
@@ -280,16 +289,15 @@ void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> 
 }
 
 FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise) {
-  for (const NoiseParameter& parameter : noise.parameters) {
-    const std::string value = shortest(parameter.value);
-    if (!parameter.source.empty()) {
-      settings.sources[parameter.source].options.try_emplace(parameter.option, value);
-      continue;
-    }
-    if (parameter.owner == settings.odometry_model)
-      settings.odometry_options.try_emplace(parameter.option, value);
-    if (parameter.owner == settings.modeling) settings.modeling_options.try_emplace(parameter.option, value);
-  }
+  for (const NoiseParameter& parameter : noise.parameters)
+    for (Options* options : options_with(parameter, settings))
+      options->try_emplace(parameter.option, shortest(parameter.value));
+  return settings;
+}
+
+FusionSettings without_noise(FusionSettings settings, const NoiseEstimate& noise) {
+  for (const NoiseParameter& parameter : noise.parameters)
+    for (Options* options : options_with(parameter, settings)) options->erase(parameter.option);
   return settings;
 }
 

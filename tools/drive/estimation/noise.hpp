@@ -81,4 +81,7 @@ void find_deviations(const PlacedDrive& placed, std::span<const PreparedSensor> 
 /// Stated options are kept.
 [[nodiscard]] FusionSettings with_noise(FusionSettings settings, const NoiseEstimate& noise);
 
+/// Returns the settings without the options that with_noise() gave them.
+[[nodiscard]] FusionSettings without_noise(FusionSettings settings, const NoiseEstimate& noise);
+
 }  // namespace waymark::drive

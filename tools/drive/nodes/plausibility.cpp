@@ -228,13 +228,10 @@ std::string warning_of_accelerations(std::span<const OdometrySample> odometry) {
       kLargest, 100 * share);
 }
 
-std::vector<std::string> compare_shapes(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
-                                        const std::optional<GeodeticPoint>& place) {
+std::vector<std::string> compare_shapes(std::span<const Fix> fixes,
+                                        std::span<const Eigen::Vector3d> antenna) {
   if (fixes.empty()) return {};
-  const ReckonedFixes receiver = of_receiver(fixes, antenna, fixes.front().source);
-  Shape shape = shape_of(receiver);
-  if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
-  return shape.sentences;
+  return shape_of(of_receiver(fixes, antenna, fixes.front().source)).sentences;
 }
 
 std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,

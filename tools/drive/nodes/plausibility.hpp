@@ -31,11 +31,9 @@ namespace waymark::drive {
     std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
     const std::optional<GeodeticPoint>& place = {}, std::span<const std::string> receivers = {});
 
-/// Returns the sentences about turns and distances alone. @param fixes of one receiver
-/// @param antenna, place as above
+/// Returns the sentences about turns and distances alone. @param fixes of one receiver @param antenna as above
 [[nodiscard]] std::vector<std::string> compare_shapes(std::span<const Fix> fixes,
-                                                      std::span<const Eigen::Vector3d> antenna,
-                                                      const std::optional<GeodeticPoint>& place = {});
+                                                      std::span<const Eigen::Vector3d> antenna);
 
 /// Returns a warning if the acceleration across the vehicle exceeds 10 m/s^2 in 5 % of the samples above
 /// 2 m/s: a wrong unit of the yaw rate also shows without turns in the fixes. Empty otherwise.

@@ -78,8 +78,7 @@ std::string Estimator::source_of(const Sample& sample) const {
   if (const auto* further = std::get_if<FurtherOdometry>(&sample))
     return description_.odometry[further->source].name;
   if (const auto* reading = std::get_if<SensorReading>(&sample)) {
-    const drive::SensorConfig& sensor = description_.sensors[reading->sensor];
-    return sensor.source.empty() ? sensor.name : sensor.source;
+    return description_.sensors[reading->sensor].source_name();
   }
   return description_.gnss[static_cast<std::size_t>(std::get<GeodeticFix>(sample).source)].name;
 }
@@ -455,8 +454,10 @@ void Estimator::adopt(Learned learned) {
   learned.window->catch_up(window_->inputs(), learned.inputs);
   if (!learned.window->solve()) return;
   const std::vector<StampedPose> former = window_->remaining();
-  for (const StampedPose& pose : former)
-    if (pose.stamp < learned.window->oldest()) says_.settle({&pose, 1});
+  const auto kept = std::find_if(former.begin(), former.end(), [&](const StampedPose& pose) {
+    return pose.stamp >= learned.window->oldest();
+  });
+  says_.settle({former.begin(), kept});
   window_ = std::move(learned.window);
   ++says_.counts.solutions;
   last_cycle_ = now_;

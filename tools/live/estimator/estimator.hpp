@@ -124,7 +124,6 @@ class Estimator {
   Learner learner_;
   drive::NoiseEstimate noise_;                        // the last that was learned
   Eigen::Matrix3d spread_ = Eigen::Matrix3d::Zero();  // of the newest pose: noise_spread.hpp
-  std::set<std::string> told_;                        // warnings, without their numbers
   std::unique_ptr<Window> window_;
   std::optional<Frame> frame_;
   std::optional<drive::Projection> projection_;

@@ -20,6 +20,23 @@ constexpr double kSettled_s = 8;   // of them, at least
 constexpr double kQuarter = 0.25;  // of a jump, by which fixes beside it may differ
 constexpr double kNextFix_s = 5;   // after the last one: the estimate has not left it
 
+/// Returns a step from the middle of the residuals so far, and how many of them are within a quarter of it.
+template <typename Residuals, typename Of>
+std::pair<double, std::size_t> step_from(const Residuals& agreed, const Eigen::Vector2d& to, Of of) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const auto& residual : agreed) {
+    x.push_back(of(residual).x());
+    y.push_back(of(residual).y());
+  }
+  const Eigen::Vector2d middle(upper_median(std::move(x)), upper_median(std::move(y)));
+  const double step_m = (to - middle).norm();
+  const auto near = std::count_if(agreed.begin(), agreed.end(), [&](const auto& residual) {
+    return (of(residual) - middle).norm() <= kQuarter * step_m;
+  });
+  return {step_m, static_cast<std::size_t>(near)};
+}
+
 }  // namespace
 
 bool FixJudge::is_thinned(const GeodeticFix& fix) {
@@ -64,34 +81,12 @@ std::string FixJudge::judged_by_gate(const Fix& fix, const Reckoning& reckoning)
   return fixes.back().status == FixStatus::rejected ? fixes.back().reason : "";
 }
 
-bool FixJudge::is_absurd(const Fix& fix, const Window& window) const {
+bool FixJudge::is_absurd(const Eigen::Vector2d& off, const Fix& fix, const Window& window) const {
   constexpr double kUnmodelled = 5;  // m: slow errors of a receiver
-  const Eigen::Vector2d off = fix.position - window.antenna_at(fix);
   const Eigen::Matrix2d spread = window.covariance().topLeftCorner<2, 2>() + 4 * fix.covariance +
                                  kUnmodelled * kUnmodelled * Eigen::Matrix2d::Identity();
   return off.dot(spread.inverse() * off) > live_.absurd;
 }
-
-namespace {
-
-/// Returns a step from the middle of the residuals so far, and how many of them are within a quarter of it.
-template <typename Residuals, typename Of>
-std::pair<double, std::size_t> step_from(const Residuals& agreed, const Eigen::Vector2d& to, Of of) {
-  std::vector<double> x;
-  std::vector<double> y;
-  for (const auto& residual : agreed) {
-    x.push_back(of(residual).x());
-    y.push_back(of(residual).y());
-  }
-  const Eigen::Vector2d middle(upper_median(std::move(x)), upper_median(std::move(y)));
-  const double step_m = (to - middle).norm();
-  const auto near = std::count_if(agreed.begin(), agreed.end(), [&](const auto& residual) {
-    return (of(residual) - middle).norm() <= kQuarter * step_m;
-  });
-  return {step_m, static_cast<std::size_t>(near)};
-}
-
-}  // namespace
 
 /// Tells whether the fixes of a receiver have left a place that they agreed on with the estimate, by more than
 /// dead reckoning from there explains, and not come back. Before and after, slow errors are the same in the frame,
@@ -150,7 +145,7 @@ std::string FixJudge::reason_against(const Fix& fix, const Reckoning& reckoning,
   if (std::string reason = judged_by_gate(fix, reckoning); !reason.empty()) return reason;
   if (window == nullptr) return "";
   const bool jumped = has_jumped(*residual_, fix.source, *window);
-  const std::string reason = is_absurd(fix, *window) ? "absurd" : jumped ? "jump" : "";
+  const std::string reason = is_absurd(residual_->off, fix, *window) ? "absurd" : jumped ? "jump" : "";
   if (!reason.empty()) doubt(fix, jumped);
   return reason;
 }

@@ -68,7 +68,7 @@ class FixJudge {
 
   [[nodiscard]] std::string judged_by_gate(const Fix& fix, const Reckoning& reckoning);
   [[nodiscard]] bool repeats(const Fix& fix, const Reckoning& reckoning);
-  [[nodiscard]] bool is_absurd(const Fix& fix, const Window& window) const;
+  [[nodiscard]] bool is_absurd(const Eigen::Vector2d& off, const Fix& fix, const Window& window) const;
   [[nodiscard]] bool has_jumped(const Residual& residual, int source, const Window& window) const;
   void doubt(const Fix& fix, bool at_once);
 

@@ -17,13 +17,7 @@ DriveSoFar::DriveSoFar(const drive::DriveDescription& description, double kept_s
     : odometries_(description.odometry.size()),
       fixes_(description.gnss.size()),
       readings_(description.sensors.size()),
-      scale_(description.scale()),
-      kept_s_(kept_s) {
-  for (const drive::OdometryConfig& odometry : description.odometry) odometry_names_.push_back(odometry.name);
-  for (const drive::GnssConfig& receiver : description.gnss) receiver_names_.push_back(receiver.name);
-  for (const drive::SensorConfig& sensor : description.sensors)
-    sensor_names_.push_back(sensor.source.empty() ? sensor.name : sensor.source);
-}
+      kept_s_(kept_s) {}
 
 void DriveSoFar::take(const Sample& sample) {
   if (const auto* odometry = std::get_if<OdometrySample>(&sample)) {
@@ -56,24 +50,25 @@ double DriveSoFar::length_s() const {
   return longest_s;
 }
 
-drive::DriveLogs DriveSoFar::logs() const {
+drive::DriveLogs DriveSoFar::logs(const drive::DriveDescription& description) const {
   drive::DriveLogs logs;
   const auto log_named = [&](const std::string& name) {
     drive::DriveLogs::Log log;
-    log.scale = scale_;
+    log.scale = description.scale();
     log.file = name;
     return log;
   };
   for (std::size_t i = 0; i < odometries_.size(); ++i) {
-    logs.odometry.push_back({log_named(odometry_names_[i])});
+    logs.odometry.push_back({log_named(description.odometry[i].name)});
     logs.odometry.back().front().data.odometry.assign(odometries_[i].begin(), odometries_[i].end());
   }
   for (std::size_t i = 0; i < fixes_.size(); ++i) {
-    logs.gnss.push_back(log_named(receiver_names_[i]));
+    logs.gnss.push_back(log_named(description.gnss[i].name));
     logs.gnss.back().data.fixes.assign(fixes_[i].begin(), fixes_[i].end());
     logs.velocity.emplace_back();
   }
-  for (const std::string& name : sensor_names_) logs.sensors.push_back(log_named(name));
+  for (const drive::SensorConfig& sensor : description.sensors)
+    logs.sensors.push_back(log_named(sensor.source_name()));
   return logs;
 }
 
@@ -106,10 +101,7 @@ drive::DriveDescription described_so_far(drive::DriveDescription description, co
     receiver.withheld = false;
     receiver.velocity.reset();
   }
-  if (frame.zone != 0) {
-    description.utm_zone = frame.north ? frame.zone : -frame.zone;
-    description.utm_origin = Eigen::Vector2d(frame.origin_easting_m, frame.origin_northing_m);
-  }
+  description.state_frame(frame);
   return description;
 }
 

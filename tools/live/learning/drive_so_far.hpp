@@ -3,7 +3,6 @@
 #pragma once
 
 #include <deque>
-#include <string>
 #include <vector>
 
 #include <waymark/tools/drive/logs/prepare.hpp>
@@ -21,8 +20,8 @@ class DriveSoFar {
   void clear();
   /// Returns the time from the first to the last sample of the odometries.
   [[nodiscard]] double length_s() const;
-  /// Returns odometry and fixes; the logs of sensors are empty.
-  [[nodiscard]] drive::DriveLogs logs() const;
+  /// Returns odometry and fixes; the logs of sensors are empty. @param description of the drive
+  [[nodiscard]] drive::DriveLogs logs(const drive::DriveDescription& description) const;
   /// Returns the readings of each sensor, in the frame.
   [[nodiscard]] std::vector<SensorTable> readings() const;
 
@@ -30,10 +29,6 @@ class DriveSoFar {
   std::vector<std::deque<OdometrySample>> odometries_;
   std::vector<std::deque<GeodeticFix>> fixes_;       // by receiver
   std::vector<std::deque<SensorReading>> readings_;  // by sensor
-  std::vector<std::string> odometry_names_;
-  std::vector<std::string> receiver_names_;
-  std::vector<std::string> sensor_names_;
-  TimeScale scale_;
   double kept_s_;
 };
 

@@ -35,19 +35,6 @@ Eigen::Matrix3d mean_of(const std::vector<drive::PoseSpread>& spread) {
   return mean;
 }
 
-/// Returns settings without the values of parameters that were estimated.
-drive::FusionSettings without(drive::FusionSettings settings, const drive::NoiseEstimate& noise) {
-  for (const drive::NoiseParameter& parameter : noise.parameters) {
-    if (!parameter.source.empty()) {
-      settings.sources[parameter.source].options.erase(parameter.option);
-      continue;
-    }
-    if (parameter.owner == settings.odometry_model) settings.odometry_options.erase(parameter.option);
-    if (parameter.owner == settings.modeling) settings.modeling_options.erase(parameter.option);
-  }
-  return settings;
-}
-
 }  // namespace
 
 Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& description,
@@ -56,11 +43,12 @@ Lesson learn(const DriveSoFar& so_far, const drive::DriveDescription& descriptio
   Lesson lesson;
   lesson.length_s = so_far.length_s();
   try {
-    drive::PreparedDrive drive = drive::prepare_drive(so_far.logs(), description);
+    drive::PreparedDrive drive = drive::prepare_drive(so_far.logs(description), description);
     take_readings(so_far.readings(), registry, drive);
     drive::ModeledDrive modeled = drive::Fusion(drive, registry, between).estimated(stated);
     lesson.noise = noise_ahead(std::move(modeled.noise), lesson.length_s);
-    lesson.setup.settings = drive::with_noise(without(modeled.settings, lesson.noise), lesson.noise);
+    lesson.setup.settings =
+        drive::with_noise(drive::without_noise(std::move(modeled.settings), lesson.noise), lesson.noise);
     lesson.spread = mean_of(lesson.noise.spread);
     lesson.noise.spread.clear();
     lesson.setup.delays_s = std::move(modeled.placed.time_offsets_s);

@@ -121,10 +121,7 @@ std::vector<LagResult> study_lags(const drive::DriveFile& file, const drive::Fus
   own.settings = settings;
   put_nodes_first(own.description);
   drive::resolve_sensors(own.description, registry);
-  if (drive.frame.zone != 0) {
-    own.description.utm_zone = drive.frame.north ? drive.frame.zone : -drive.frame.zone;
-    own.description.utm_origin = Eigen::Vector2d(drive.frame.origin_easting_m, drive.frame.origin_northing_m);
-  }
+  own.description.state_frame(drive.frame);
   const std::vector<Sample> samples = Session(own, {}, registry).decode_files();
   std::vector<LagResult> results;
   for (const double window_s : windows_s) {

@@ -46,20 +46,32 @@ std::future<Learned> in_another_thread(std::function<Learned()> work) {
   });
 }
 
+/// The time of what an estimator does with a sample, by what it does.
+class Stopwatch {
+ public:
+  Stopwatch(const Estimator& estimator, Latencies& latencies)
+      : counts_(estimator.counts()),
+        latencies_(latencies),
+        solutions_(counts_.solutions),
+        lessons_(counts_.lessons) {}
+
+  /// Ends the time.
+  void stop() {
+    LatencyHistogram& of = counts_.lessons > lessons_       ? latencies_.learn
+                           : counts_.solutions > solutions_ ? latencies_.solve
+                                                            : latencies_.predict;
+    of.add(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin_).count());
+  }
+
+ private:
+  const Counts& counts_;
+  Latencies& latencies_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::size_t solutions_;
+  std::size_t lessons_;
+};
+
 }  // namespace
-
-Stopwatch::Stopwatch(const Estimator& estimator, Latencies& latencies)
-    : estimator_(estimator),
-      latencies_(latencies),
-      solutions_(estimator.counts().solutions),
-      lessons_(estimator.counts().lessons) {}
-
-void Stopwatch::stop() {
-  LatencyHistogram& of = estimator_.counts().lessons > lessons_       ? latencies_.learn
-                         : estimator_.counts().solutions > solutions_ ? latencies_.solve
-                                                                      : latencies_.predict;
-  of.add(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin_).count());
-}
 
 Session::Session(drive::DriveFile file, const LiveSettings& settings, const TypeRegistry& registry)
     : file_(resolved(std::move(file), registry)),

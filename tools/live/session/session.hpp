@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,21 +25,6 @@ struct Latencies {
   LatencyHistogram solve;    ///< from the bytes of a fix to the lines of the corrected pose
   /// the same where the noise of the drive so far was taken over; a replay waits for the search in it
   LatencyHistogram learn;
-};
-
-/// The time of what an estimator does with a sample, by what it does.
-class Stopwatch {
- public:
-  Stopwatch(const Estimator& estimator, Latencies& latencies);
-  /// Ends the time.
-  void stop();
-
- private:
-  const Estimator& estimator_;
-  Latencies& latencies_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::size_t solutions_;
-  std::size_t lessons_;
 };
 
 class Session {

@@ -38,7 +38,7 @@ std::vector<drive::PreparedSensor> sensors_of(const drive::DriveDescription& des
   std::vector<drive::PreparedSensor> sensors;
   for (const drive::SensorConfig& config : description.sensors) {
     drive::PreparedSensor sensor{.name = config.name, .options = config.options, .place = config.place};
-    sensor.source = config.source.empty() ? config.name : config.source;
+    sensor.source = config.source_name();
     sensor.readings.columns = config.log ? config.log->request.readings.size() : 0;
     sensors.push_back(std::move(sensor));
   }
