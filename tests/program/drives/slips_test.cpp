@@ -218,14 +218,15 @@ std::string drive_off_by(const std::string& folder, double seconds) {
 
 }  // namespace
 
-TEST_CASE("slips: the clock, sign and unit of a second odometry are compared with the fixes, by its name") {
+TEST_CASE("slips: an odometry whose clock, sign or unit is wrong is named and left out if another one fits") {
   const std::string folder = fresh_folder();
   REQUIRE(run({"simulate", "--preset", "two-odometries", "--duration", "300", "--seed", "3", "-o",
                folder + "drive"})
               .code == 0);
-  const std::string file = folder + "drive/visual.csv";
-  const std::string log = read_text(file);
-  const auto warnings_with = [&](double late_s, double scale, double sign) {
+  const auto fused_with = [&](const std::string& of, double late_s, double scale, double sign,
+                              std::vector<std::string> more = {}) {
+    const std::string file = folder + "drive/" + of + ".csv";
+    const std::string log = read_text(file);
     std::istringstream rows(log);
     std::string text;
     for (std::string row; std::getline(rows, row);) {
@@ -236,14 +237,41 @@ TEST_CASE("slips: the clock, sign and unit of a second odometry are compared wit
         text += row + "\n";
     }
     write_text(file, text);
-    return run({"run", folder + "drive/drive.yaml", "-o", folder + "out"}).err;
+    more.insert(more.begin(), {"run", folder + "drive/drive.yaml", "-o", folder + "out", "--json"});
+    const RunResult result = run(more);
+    write_text(file, log);
+    REQUIRE(result.code == 0);
+    const nlohmann::json position =
+        nlohmann::json::parse(read_text(folder + "out/metrics.json"))["evaluations"][0]["truth"]["fused"];
+    return std::pair(result.err, position["position"]["rmse_m"].get<double>());
   };
-  CHECK_FALSE(contains(warnings_with(0, 1, 1), "warning: visual"));
-  const std::string late = warnings_with(0.7, 1, 1);
+  const auto [sound, sound_m] = fused_with("visual", 0, 1, 1);
+  CHECK_FALSE(contains(sound, "warning: visual"));
+  CHECK_FALSE(contains(sound, "left out"));
+
+  const auto [late, without_visual_m] = fused_with("visual", 0.7, 1, 1);
   CHECK(contains(late, "warning: visual's clock seems 0.7"));
-  CHECK(contains(late, "for its log"));
-  CHECK(contains(warnings_with(0, 1, -1), "warning: visual: the odometry turns against the fixes"));
-  CHECK(contains(warnings_with(0, 3.6, 1), "warning: visual: the odometry's distance between fixes is 3."));
+  CHECK(contains(late, "for its log, or --sync. It is left out; wheels fits"));
+  const auto [turned, turned_m] = fused_with("visual", 0, 1, -1);
+  CHECK(contains(turned, "warning: visual: the odometry turns against the fixes"));
+  CHECK(turned_m == Approx(without_visual_m).epsilon(1e-6));
+  const auto [mended, mended_m] = fused_with("visual", 0.7, 1, 1, {"--sync"});
+  CHECK_FALSE(contains(mended, "left out; wheels"));
+  CHECK(mended_m == Approx(sound_m).epsilon(0.03));
+  const nlohmann::json each =
+      nlohmann::json::parse(run({"sync", folder + "drive/drive.yaml", "--json"}).out)["odometries"];
+  REQUIRE(each.size() == 2);
+  CHECK(each[1]["name"] == "visual");
+  CHECK(each[1]["yaw_rate"]["late_s"].get<double>() == Approx(0).margin(0.05));
+
+  // The nodes come from wheels.
+  const auto [fast, without_wheels_m] = fused_with("wheels", 0, 3.6, 1);
+  CHECK(contains(fast, "warning: wheels: the odometry's distance between fixes is 3."));
+  CHECK(contains(fast, "It is left out; visual fits"));
+  CHECK(without_wheels_m < 1.5 * sound_m);
+  const auto [hour, hour_m] = fused_with("wheels", 3600, 1, 1);
+  CHECK(contains(hour, "1 h of a time zone"));
+  CHECK(hour_m == Approx(without_wheels_m).epsilon(1e-6));
 }
 
 TEST_CASE("slips: a clock off by 1 s or by leap seconds is named before the fusion, and --sync mends it") {

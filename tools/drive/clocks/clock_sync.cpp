@@ -161,6 +161,11 @@ bool ClockOffset::is_significant() const {
   return std::abs(late_s) > kOffsetSigmas * std::hypot(sigma_s, kSmoothing_s);
 }
 
+std::optional<ClockOffset> SyncReport::common() const {
+  if (!speed) return yaw_rate;
+  return yaw_rate && yaw_rate->sigma_s < speed->sigma_s ? yaw_rate : speed;
+}
+
 SyncReport estimate_clock_offsets(const std::vector<OdometrySample>& odometry, const std::vector<Fix>& fixes,
                                   const SyncOptions& options) {
   if (fixes.empty() || odometry.size() < 2) return {};

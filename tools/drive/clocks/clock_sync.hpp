@@ -34,6 +34,9 @@ struct SyncReport {
   std::optional<ClockOffset> speed;
   /// empty: there are too few turns, or no correlation beyond chance
   std::optional<ClockOffset> yaw_rate;
+
+  /// Returns the offset of a clock that both share: the one that is known better.
+  [[nodiscard]] std::optional<ClockOffset> common() const;
 };
 
 struct SyncOptions {

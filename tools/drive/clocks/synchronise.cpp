@@ -7,25 +7,25 @@
 
 #include <waymark/tools/drive/clocks/clock_check.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/clocks/offset_names.hpp>
 #include <waymark/tools/drive/logs/clock_offsets.hpp>
 
 namespace waymark::drive {
 namespace {
 
 /// Adds an offset to a delay if it is significant. A note is made in either case.
-bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity, double& delay_s,
+bool apply_offset(const std::optional<ClockOffset>& offset, const std::string& quantity, double& delay_s,
                   std::vector<std::string>& notes) {
   if (!offset) {
-    notes.push_back(
-        fmt::format("sync: no offset of the {} was found; its stamps stay as they are", quantity));
+    notes.push_back(fmt::format("sync: no offset of {} was found; its stamps stay as they are", quantity));
     return false;
   }
   const bool is_one = offset->is_significant();
   if (is_one) delay_s += offset->late_s;
   notes.push_back(
-      fmt::format("sync: the odometry's {} {} late by {:.3f} s{} (sigma {:.3f} s, correlation {:.4f}); {}",
-                  quantity, is_one ? "was" : "seems", offset->late_s, offset_in_words(*offset),
-                  offset->sigma_s, offset->correlation,
+      fmt::format("sync: {} {} late by {:.3f} s{} (sigma {:.3f} s, correlation {:.4f}); {}", quantity,
+                  is_one ? "was" : "seems", offset->late_s, offset_in_words(*offset), offset->sigma_s,
+                  offset->correlation,
                   is_one ? "applied" : "within what smoothing and three sigmas explain, so not applied"));
   return is_one;
 }
@@ -35,6 +35,34 @@ bool apply_offset(const std::optional<ClockOffset>& offset, const char* quantity
 bool share_a_clock(const OdometryConfig& odometry, const ClockOffset& offset) {
   constexpr double kFilter_s = 1.5;  // no filter is slower
   return odometry.logs.size() == 1 || std::abs(offset.late_s) > kFilter_s;
+}
+
+/// Whether what is said of one half does not contradict the offset of the other.
+bool allows(const std::optional<ClockOffset>& half, const ClockOffset& offset) {
+  if (!half) return true;
+  const double sigma_s = std::hypot(half->sigma_s, offset.sigma_s, kSmoothing_s);
+  return std::abs(half->late_s - offset.late_s) <= kOffsetSigmas * sigma_s;
+}
+
+/// @param whose "the odometry's"
+void synchronise(const std::string& whose, const SyncReport& report, OdometryConfig& odometry,
+                 std::vector<std::string>& notes) {
+  const bool speed_moved = apply_offset(report.speed, whose + " speed", odometry.speed_delay_s, notes);
+  const bool yaw_rate_moved =
+      apply_offset(report.yaw_rate, whose + " yaw rate", odometry.yaw_rate_delay_s, notes);
+  const std::string both =
+      fmt::format("sync: {} yaw rate and speed are of one clock; both are moved together", whose);
+  const auto takes_along = [&](const std::optional<ClockOffset>& moved,
+                               const std::optional<ClockOffset>& other) {
+    return share_a_clock(odometry, *moved) && allows(other, *moved);
+  };
+  if (speed_moved && !yaw_rate_moved && takes_along(report.speed, report.yaw_rate)) {
+    odometry.yaw_rate_delay_s += report.speed->late_s;
+    notes.push_back(both);
+  } else if (yaw_rate_moved && !speed_moved && takes_along(report.yaw_rate, report.speed)) {
+    odometry.speed_delay_s += report.yaw_rate->late_s;
+    notes.push_back(both);
+  }
 }
 
 }  // namespace
@@ -48,17 +76,10 @@ OdometryConfig& source_of_nodes(const std::string& name, DriveDescription& descr
 void synchronise(DriveLogs& logs, DriveDescription& description) {
   std::vector<std::string> notes = put_on_told_time(logs);
   const LoggedMotion motion = logged_motion(logs, description);
-  const SyncReport report = estimate_clock_offsets(motion.odometry, motion.fixes, {});
-  OdometryConfig& odometry = source_of_nodes(motion.source, description);
-  const bool speed_moved = apply_offset(report.speed, "speed", odometry.speed_delay_s, notes);
-  const bool yaw_rate_moved = apply_offset(report.yaw_rate, "yaw rate", odometry.yaw_rate_delay_s, notes);
-  const char* both = "sync: yaw rate and speed are of one clock; both are moved together";
-  if (speed_moved && !report.yaw_rate && share_a_clock(odometry, *report.speed)) {
-    odometry.yaw_rate_delay_s += report.speed->late_s;
-    notes.emplace_back(both);
-  } else if (yaw_rate_moved && !report.speed && share_a_clock(odometry, *report.yaw_rate)) {
-    odometry.speed_delay_s += report.yaw_rate->late_s;
-    notes.emplace_back(both);
+  for (const PreparedOdometry& source : motion.odometries) {
+    const std::string whose = motion.odometries.size() > 1 ? source.name + "'s" : "the odometry's";
+    synchronise(whose, estimate_clock_offsets(source.samples, motion.fixes, {}),
+                source_of_nodes(source.name, description), notes);
   }
   logs.notes.insert(logs.notes.end(), notes.begin(), notes.end());
 }

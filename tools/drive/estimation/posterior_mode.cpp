@@ -20,7 +20,7 @@ constexpr double kNear = 0.05;        // where the search ends
 constexpr int kMostSearchSteps = 40;  // evaluations
 constexpr int kMostNewtonSteps = 20;
 constexpr double kSettled = 5e-5;        // gain of cost, a hundredth of a deviation; its step is still taken
-constexpr double kShare = 0.15;          // of a deviation, the differences of the gradient
+constexpr double kOfDeviation = 0.15;    // of a deviation, the differences of the gradient
 constexpr double kFine = 0.25;           // of them, for the covariance
 constexpr double kTolerated = 1e-5;      // rise of cost in a step: rounding
 constexpr double kLongestStep = 1.0;     // in deviations of the priors
@@ -103,7 +103,7 @@ double evaluate(unsigned size, const double* coordinates, double* gradient, void
 /// Returns steps that are a share of what each coordinate is known to alone. Far smaller ones see
 /// rounding, far larger ones the derivatives of higher order.
 VectorXd fitting_steps(const VectorXd& curvature) {
-  return kShare * curvature.array().max(kLeastCurvature).rsqrt().min(1.0);
+  return kOfDeviation * curvature.array().max(kLeastCurvature).rsqrt().min(1.0);
 }
 
 /// Returns the curvature at the centre, from the gradients beside it.

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <waymark/tools/drive/coordinates/projection.hpp>
 #include <waymark/tools/drive/model/start_search.hpp>
@@ -69,6 +72,37 @@ std::vector<Eigen::Vector3d> poses_of_fixes(const PlacedDrive& placed) {
   return poses;
 }
 
+void reject_all_of(int source, PlacedDrive& placed) {
+  for (Fix& fix : placed.fixes) {
+    if (fix.source != source || fix.status != FixStatus::accepted) continue;
+    fix.status = FixStatus::rejected;
+    fix.reason = "contradicts";
+    --placed.gate.accepted;
+    ++placed.gate.rejected;
+    ++placed.gate.reasons[fix.reason];
+  }
+}
+
+/// Names receivers that differ all drive long. Those that are outvoted are rejected. @returns whether one is
+bool leave_out_outvoted(std::span<const std::size_t> voices, PlacedDrive& placed) {
+  const ComparedReceivers compared = compare_receivers(placed.fixes, poses_of_fixes(placed));
+  const std::vector<int> wrong = outvoted(compared, voices);
+  const bool any = !wrong.empty();
+  for (const int source : wrong) reject_all_of(source, placed);
+  for (const ConstantDifference& difference : compared.differ) {
+    std::string end = difference.late_s ? ""
+                                        : ". The fused positions lie between them, and their covariances "
+                                          "do not tell";
+    for (const int source : {difference.first, difference.second}) {
+      const auto is_wrong = std::find(wrong.begin(), wrong.end(), source);
+      if (is_wrong != wrong.end())
+        end = fmt::format(". {} is left out, because two others agree", receiver_name(placed, source));
+    }
+    placed.warnings.push_back(warning_of(difference, placed.receivers) + end);
+  }
+  return any;
+}
+
 /// Rejects fixes of sources that contradict the others, and names these.
 void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
   std::vector<std::string> names;
@@ -87,9 +121,8 @@ void let_sources_agree(const FusionSettings& settings, PlacedDrive& placed) {
     placed.warnings.push_back(
         warning_of(disagreement, names[disagreement.source], placed.timeline.stamps.front()));
   }
-  for (const ConstantDifference& difference : constant_differences(placed.fixes, poses_of_fixes(placed)))
-    placed.warnings.push_back(warning_of(difference, placed.receivers));
-  if (!found.empty())
+  const bool any_outvoted = leave_out_outvoted(voices, placed);
+  if (!found.empty() || any_outvoted)
     placed.start = make_start(placed.timeline, placed.fixes, placed.standstill_mps, settings.initial_guess);
 }
 
@@ -140,8 +173,9 @@ PlacedDrive place_drive(const PreparedDrive& drive, const Timeline& timeline, co
       dead_reckon(timeline, Eigen::Vector3d::Zero(), placed.standstill_mps);
   const std::vector<Eigen::Vector3d> antenna = antenna_at_fixes(timeline, reckoned, placed.fixes);
   placed.warnings = drive.report.warnings;
+  const std::string of_several = drive.relative.empty() ? std::string() : drive.odometry_name;
   for (std::string& warning :
-       compare_odometry_with_fixes(placed.fixes, antenna, place_of(drive), placed.receivers))
+       compare_odometry_with_fixes(placed.fixes, antenna, place_of(drive), placed.receivers, of_several))
     placed.warnings.push_back(std::move(warning));
   placed.gate = apply_gate(placed.fixes, antenna, gates_of(placed, settings, registry));
   require_accepted_fix(placed.gate);

@@ -23,10 +23,27 @@ struct Seen {
   double claims_m = 0;
 };
 
+/// Returns the speed of the vehicle at each fix, along its heading; 0 where it is not known.
+std::vector<double> speeds_at(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> poses) {
+  constexpr double kApart_s = 0.5;
+  constexpr double kLongest_s = 2;
+  std::vector<double> speeds(fixes.size(), 0.0);
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    while (before + 1 < i && seconds_between(fixes[before + 1].stamp, fixes[i].stamp) >= kApart_s) ++before;
+    const double apart_s = seconds_between(fixes[before].stamp, fixes[i].stamp);
+    if (apart_s < kApart_s || apart_s > kLongest_s) continue;
+    speeds[i] =
+        rotate(-poses[i][2], Eigen::Vector2d(poses[i].head<2>() - poses[before].head<2>())).x() / apart_s;
+  }
+  return speeds;
+}
+
 /// Differences between two receivers, one for each pair of fixes.
 struct Differences {
   std::array<std::vector<double>, 2> in_frame;
   std::array<std::vector<double>, 2> in_body;
+  std::vector<double> speed_mps;
   std::vector<double> first_claims_m;
   std::vector<double> second_claims_m;
   Stamp from{};
@@ -37,6 +54,7 @@ using Pairs = std::map<std::pair<int, int>, Differences>;
 
 Pairs pairs_of(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> poses) {
   constexpr double kTogether_s = 1;
+  const std::vector<double> speeds = speeds_at(fixes, poses);
   Pairs pairs;
   std::map<int, Seen> newest;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
@@ -55,6 +73,7 @@ Pairs pairs_of(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> pose
         all.in_frame[axis].push_back(difference[static_cast<Eigen::Index>(axis)]);
         all.in_body[axis].push_back(turned[static_cast<Eigen::Index>(axis)]);
       }
+      all.speed_mps.push_back(speeds[i]);
       all.first_claims_m.push_back(before.claims_m);
       all.second_claims_m.push_back(seen.claims_m);
     }
@@ -75,13 +94,51 @@ Middle middle_of(const std::array<std::vector<double>, 2>& axes) {
   return {{x.value, y.value}, std::hypot(x.spread, y.spread)};
 }
 
-std::optional<ConstantDifference> judged(const std::pair<int, int>& sources, const Differences& all) {
+constexpr std::size_t kFewestPairs = 20;
+
+/// Tells whether a median is more than what both claim and what it is known to.
+bool counts(const Middle& middle, const Differences& all, double claims_m) {
   constexpr double kClaims = 2;
   constexpr double kSigmas = 3;
   constexpr double kErrorsLast_s = 60;
+  const double independent = std::max(1.0, seconds_between(all.from, all.to) / kErrorsLast_s);
+  return middle.value.norm() >=
+         std::max(kClaims * claims_m, kSigmas * middle.spread / std::sqrt(independent));
+}
+
+/// Returns how much further behind the second antenna is for each m/s, from the faster and the slower half.
+/// Empty if the speed is about the same all the time.
+std::optional<double> behind_by_speed_s(const Differences& all) {
+  constexpr double kLeastApart_mps = 3;
+  const double middle_mps = upper_median(all.speed_mps);
+  std::array<std::vector<double>, 2> forwards;
+  std::array<std::vector<double>, 2> speeds;
+  for (std::size_t i = 0; i < all.speed_mps.size(); ++i) {
+    const std::size_t half = all.speed_mps[i] < middle_mps ? 0 : 1;
+    forwards[half].push_back(all.in_body[0][i]);
+    speeds[half].push_back(all.speed_mps[i]);
+  }
+  if (std::min(forwards[0].size(), forwards[1].size()) < kFewestPairs / 2) return std::nullopt;
+  const double apart_mps = upper_median(speeds[1]) - upper_median(speeds[0]);
+  if (apart_mps < kLeastApart_mps) return std::nullopt;
+  return (upper_median(forwards[0]) - upper_median(forwards[1])) / apart_mps;
+}
+
+/// Returns how late the second receiver is, if that explains the difference.
+std::optional<double> lateness(const Differences& all, double difference_m, double claims_m) {
+  constexpr double kMost = 0.5;  // of the difference
+  const std::optional<double> late_s = behind_by_speed_s(all);
+  if (!late_s) return std::nullopt;
+  std::array<std::vector<double>, 2> left = all.in_body;
+  for (std::size_t i = 0; i < left[0].size(); ++i) left[0][i] += *late_s * all.speed_mps[i];
+  const Middle middle = middle_of(left);
+  if (counts(middle, all, claims_m) || middle.value.norm() > kMost * difference_m) return std::nullopt;
+  return late_s;
+}
+
+/// @returns empty if they agree
+std::optional<ConstantDifference> judged(const std::pair<int, int>& sources, const Differences& all) {
   constexpr double kBody = 1.1;
-  constexpr std::size_t kFewest = 20;
-  if (all.first_claims_m.size() < kFewest) return std::nullopt;
   const Middle frame = middle_of(all.in_frame);
   const Middle body = middle_of(all.in_body);
   ConstantDifference difference{.first = sources.first, .second = sources.second};
@@ -90,45 +147,81 @@ std::optional<ConstantDifference> judged(const std::pair<int, int>& sources, con
   difference.second_m = difference.in_body ? body.value : frame.value;
   difference.first_claims_m = upper_median(all.first_claims_m);
   difference.second_claims_m = upper_median(all.second_claims_m);
-  const double independent = std::max(1.0, seconds_between(all.from, all.to) / kErrorsLast_s);
-  const double sigma_m = (difference.in_body ? body : frame).spread / std::sqrt(independent);
   const double claims_m = std::hypot(difference.first_claims_m, difference.second_claims_m);
-  if (difference.second_m.norm() < std::max(kClaims * claims_m, kSigmas * sigma_m)) return std::nullopt;
+  if (!counts(difference.in_body ? body : frame, all, claims_m)) return std::nullopt;
+  if (difference.in_body || !difference.turned)
+    difference.late_s = lateness(all, difference.second_m.norm(), claims_m);
   return difference;
+}
+
+/// Returns what the receivers differ by, where, and what to do.
+std::string explanation(const ConstantDifference& difference) {
+  constexpr const char* kPlace = "state the place of the antennas (antenna: [forwards, left])";
+  constexpr const char* kDatum =
+      "one of them has another datum, reference station or projection; leave it out, or state accuracies that "
+      "contain this (accuracy: {default_sigma: ...})";
+  if (!difference.turned) return std::string(kPlace) + "; or " + kDatum;
+  return difference.in_body ? kPlace : kDatum;
 }
 
 }  // namespace
 
-std::vector<ConstantDifference> constant_differences(std::span<const Fix> fixes,
-                                                     std::span<const Eigen::Vector3d> poses) {
-  std::vector<ConstantDifference> found;
-  for (const auto& [sources, all] : pairs_of(fixes, poses))
-    if (const auto difference = judged(sources, all)) found.push_back(*difference);
+ComparedReceivers compare_receivers(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> poses) {
+  ComparedReceivers compared;
+  for (const auto& [sources, all] : pairs_of(fixes, poses)) {
+    if (all.first_claims_m.size() < kFewestPairs) continue;
+    if (const auto difference = judged(sources, all))
+      compared.differ.push_back(*difference);
+    else
+      compared.agree.push_back(sources);
+  }
+  return compared;
+}
+
+std::vector<int> outvoted(const ComparedReceivers& compared, std::span<const std::size_t> voices) {
+  std::map<int, std::vector<int>> opponents;
+  for (const ConstantDifference& difference : compared.differ) {
+    if (difference.late_s) continue;
+    opponents[difference.first].push_back(difference.second);
+    opponents[difference.second].push_back(difference.first);
+  }
+  const auto voice = [&](int source) { return voices[static_cast<std::size_t>(source)]; };
+  std::vector<int> found;
+  for (const auto& [source, others] : opponents) {
+    const auto is_opponent = [&, own = source, all = others](int other) {
+      return voice(other) != voice(own) && std::find(all.begin(), all.end(), other) != all.end();
+    };
+    if (std::any_of(compared.agree.begin(), compared.agree.end(), [&](const std::pair<int, int>& pair) {
+          return voice(pair.first) != voice(pair.second) && is_opponent(pair.first) &&
+                 is_opponent(pair.second);
+        }))
+      found.push_back(source);
+  }
   return found;
 }
 
 std::string warning_of(const ConstantDifference& difference, std::span<const std::string> names,
                        const std::string& time) {
-  constexpr const char* kPlace = "state the place of the antennas (antenna: [forwards, left])";
-  constexpr const char* kDatum =
-      "one of them has another datum, reference station or projection; leave it out, or state accuracies that "
-      "contain this (accuracy: {default_sigma: ...})";
   const Eigen::Vector2d& by = difference.second_m;
+  const std::string& first = names[static_cast<std::size_t>(difference.first)];
+  const std::string& second = names[static_cast<std::size_t>(difference.second)];
+  if (difference.late_s) {
+    const bool is_second = *difference.late_s > 0;
+    return fmt::format(
+        "the fixes of {} are {:.2f} s later than those of {} {}: they are {:.3g} m away, and further the faster "
+        "the vehicle is; state 'delay: {:.2f}' for {}",
+        is_second ? second : first, std::abs(*difference.late_s), is_second ? first : second, time, by.norm(),
+        std::abs(*difference.late_s), is_second ? second : first);
+  }
   const std::string where =
       difference.in_body
           ? fmt::format("{:.2g} m {} and {:.2g} m to the {} of where its antenna is stated", std::abs(by.x()),
                         by.x() < 0 ? "behind" : "before", std::abs(by.y()), by.y() < 0 ? "right" : "left")
           : fmt::format("{:.2g} m to the {} and {:.2g} m to the {}", std::abs(by.x()),
                         by.x() < 0 ? "west" : "east", std::abs(by.y()), by.y() < 0 ? "south" : "north");
-  return fmt::format(
-      "{} is {:.3g} m away from {} {}, {}, though they claim {:.2g} and {:.2g} m: {}. The fused "
-      "positions lie between them, and their covariances do not tell",
-      names[static_cast<std::size_t>(difference.second)], by.norm(),
-      names[static_cast<std::size_t>(difference.first)], time, where, difference.second_claims_m,
-      difference.first_claims_m,
-      !difference.turned   ? std::string(kPlace) + "; or " + kDatum
-      : difference.in_body ? kPlace
-                           : kDatum);
+  return fmt::format("{} is {:.3g} m away from {} {}, {}, though they claim {:.2g} and {:.2g} m: {}", second,
+                     by.norm(), first, time, where, difference.second_claims_m, difference.first_claims_m,
+                     explanation(difference));
 }
 
 }  // namespace waymark::drive

@@ -18,6 +18,8 @@ namespace {
 constexpr std::array<double, 3> kSlides_s = {5, 10, 20};
 /// The fixes stay for so long on both sides of a jump.
 constexpr double kSettled_s = 10;
+/// What takes longer than from a fix to the next one is so many times what is usual.
+constexpr double kUnusual = 5;
 /// Of a jump: what the fixes beside it may differ from the odometry.
 constexpr double kQuarter = 0.25;
 
@@ -95,7 +97,20 @@ struct Residual {
   std::size_t to = 0;
   Eigen::Vector2d by = Eigen::Vector2d::Zero();
   double beside_m = 0;  ///< the larger Side::usual_m before and after it
-  bool moves = false;
+  double way_m = 0;     ///< of the odometry
+};
+
+/// How large residuals usually are while the vehicle moves. Infinite if few are known.
+struct Usual {
+  double size_m = std::numeric_limits<double>::infinity();
+  double per_metre = 0;  ///< of the way: headings that wander leave more on a fast road
+
+  /// Where the speed varies little on a drive both are the same; on such a way alone less is unusual: 3.8 times
+  /// the median of a normal distribution in the plane is exceeded once in 20,000 times.
+  [[nodiscard]] double on(double way_m) const {
+    constexpr double kOfWay = 3.8 / kUnusual;
+    return std::max(size_m, kOfWay * per_metre * way_m);
+  }
 };
 
 /// Returns fixes at least half a second apart.
@@ -161,7 +176,6 @@ std::vector<Side> sides_of(const ReckonedFixes& receiver, const std::vector<std:
 std::vector<Residual> residuals_over(double slide_s, const ReckonedFixes& receiver,
                                      const std::vector<std::size_t>& kept, const std::vector<Side>& before,
                                      const std::vector<Side>& after) {
-  constexpr double kMoves_m = 20;
   constexpr double kLongest_s = 30;
   std::vector<Residual> residuals;
   std::size_t to = 0;
@@ -178,34 +192,39 @@ std::vector<Residual> residuals_over(double slide_s, const ReckonedFixes& receiv
     const Eigen::Vector2d second = receiver.antenna[kept[to]].head<2>() - middle;
     residuals.push_back({kept[i], kept[to],
                          step.gnss - Eigen::Rotation2Dd(angle) * first - Eigen::Rotation2Dd(turned) * second,
-                         std::max(before[i].usual_m, after[to].usual_m), step.odometry.norm() >= kMoves_m});
+                         std::max(before[i].usual_m, after[to].usual_m), step.odometry.norm()});
   }
   return residuals;
 }
 
-/// Returns how large a residual usually is while the vehicle moves. Infinite if few are known.
-double usual_m(const std::vector<Residual>& residuals) {
+Usual usual_of(const std::vector<Residual>& residuals) {
+  constexpr double kMoves_m = 20;
   constexpr std::size_t kFewest = 20;
   std::vector<double> sizes;
-  for (const Residual& residual : residuals)
-    if (residual.moves) sizes.push_back(residual.by.norm());
-  return sizes.size() < kFewest ? std::numeric_limits<double>::infinity() : upper_median(std::move(sizes));
+  std::vector<double> per_metre;
+  for (const Residual& residual : residuals) {
+    if (residual.way_m < kMoves_m) continue;
+    sizes.push_back(residual.by.norm());
+    per_metre.push_back(residual.by.norm() / residual.way_m);
+  }
+  if (sizes.size() < kFewest) return {};
+  return {upper_median(std::move(sizes)), upper_median(std::move(per_metre))};
 }
 
 /// Returns what may be a jump that takes longer than from a fix to the next one, the clearest first.
 std::vector<Jump> slides_of(const ReckonedFixes& receiver) {
-  constexpr double kUnusual = 5;
   const std::vector<std::size_t> kept = sparse_fixes(receiver);
   const std::vector<Side> before = sides_of(receiver, kept, -1);
   const std::vector<Side> after = sides_of(receiver, kept, 1);
   std::vector<Jump> slides;
   for (const double slide_s : kSlides_s) {
     const std::vector<Residual> residuals = residuals_over(slide_s, receiver, kept, before, after);
-    const double usual = usual_m(residuals);
-    for (const auto& [from, to, by, beside_m, moves] : residuals) {
-      const double least = std::max(kUnusual * usual, least_m(receiver, from, to));
+    const Usual usual = usual_of(residuals);
+    for (const auto& [from, to, by, beside_m, way_m] : residuals) {
+      const double usual_m = usual.on(way_m);
+      const double least = std::max(kUnusual * usual_m, least_m(receiver, from, to));
       if (by.norm() < least || beside_m > kQuarter * by.norm()) continue;
-      slides.push_back({.first = from + 1, .settled = to, .by = by, .usual_m = usual});
+      slides.push_back({.first = from + 1, .settled = to, .by = by, .usual_m = usual_m});
     }
   }
   const auto clearness = [](const Jump& slide) { return slide.by.norm() / slide.usual_m; };

@@ -119,20 +119,18 @@ std::string small_factor(const ReckonedFixes& receiver) {
       1 / factor.value, factors.size(), factor.sigma);
 }
 
-/// What is wrong with turns and distances.
-struct Shape {
-  std::vector<std::string> sentences;
-  bool spoils_jumps = false;  ///< jumps mean nothing then
-};
-
 Shape shape_of(const ReckonedFixes& receiver) {
   const std::vector<TurnPair> turns = turns_between(receiver);
   // Turns of another size distort all lengths, and lengths of another unit all differences of them.
-  if (std::string size = size_of_turns(turns); !size.empty()) return {{std::move(size)}, true};
+  if (std::string size = size_of_turns(turns); !size.empty()) return {{std::move(size)}, true, true};
   Shape shape;
-  if (std::string sign = sign_of_turns(turns); !sign.empty()) shape.sentences.push_back(std::move(sign));
+  if (std::string sign = sign_of_turns(turns); !sign.empty()) {
+    shape.sentences.push_back(std::move(sign));
+    shape.contradicts = true;
+  }
   if (std::string factor = large_factor(receiver); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
+    shape.contradicts = true;
     shape.spoils_jumps = true;
   } else if (factor = small_factor(receiver); !factor.empty()) {
     shape.sentences.push_back(std::move(factor));
@@ -228,16 +226,16 @@ std::string warning_of_accelerations(std::span<const OdometrySample> odometry) {
       kLargest, 100 * share);
 }
 
-std::vector<std::string> compare_shapes(std::span<const Fix> fixes,
-                                        std::span<const Eigen::Vector3d> antenna) {
+Shape compare_shapes(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna) {
   if (fixes.empty()) return {};
-  return shape_of(of_receiver(fixes, antenna, fixes.front().source)).sentences;
+  return shape_of(of_receiver(fixes, antenna, fixes.front().source));
 }
 
 std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
                                                      std::span<const Eigen::Vector3d> antenna,
                                                      const std::optional<GeodeticPoint>& place,
-                                                     std::span<const std::string> receivers) {
+                                                     std::span<const std::string> receivers,
+                                                     const std::string& odometry) {
   std::vector<std::string> warnings;
   std::vector<Fix> live(fixes.begin(), fixes.end());
   std::vector<Eigen::Vector3d> reckoned(antenna.begin(), antenna.end());
@@ -252,7 +250,8 @@ std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
   const ReckonedFixes receiver = of_receiver(live, reckoned, first);
   Shape shape = shape_of(receiver);
   if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
-  warnings.insert(warnings.end(), shape.sentences.begin(), shape.sentences.end());
+  for (const std::string& sentence : shape.sentences)
+    warnings.push_back((odometry.empty() ? "" : odometry + ": ") + sentence);
   if (shape.spoils_jumps) return warnings;
   for (std::string& jump : jumps_in_words(receiver)) warnings.push_back(std::move(jump));
   for (int source = 0; source < std::ssize(receivers); ++source) {

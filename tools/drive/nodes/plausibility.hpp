@@ -27,13 +27,20 @@ namespace waymark::drive {
 /// wrapped; same length and order as `fixes`
 /// @param place of the drive; empty: not known
 /// @param receivers names by Fix::source
+/// @param odometry its name, if it is one of several
 [[nodiscard]] std::vector<std::string> compare_odometry_with_fixes(
     std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
-    const std::optional<GeodeticPoint>& place = {}, std::span<const std::string> receivers = {});
+    const std::optional<GeodeticPoint>& place = {}, std::span<const std::string> receivers = {},
+    const std::string& odometry = {});
 
-/// Returns the sentences about turns and distances alone. @param fixes of one receiver @param antenna as above
-[[nodiscard]] std::vector<std::string> compare_shapes(std::span<const Fix> fixes,
-                                                      std::span<const Eigen::Vector3d> antenna);
+/// What is wrong with turns and distances.
+struct Shape {
+  std::vector<std::string> sentences;
+  bool contradicts = false;   ///< a sign or a unit is wrong, which no prior allows
+  bool spoils_jumps = false;  ///< jumps mean nothing then
+};
+/// Compares turns and distances alone. @param fixes of one receiver @param antenna as above
+[[nodiscard]] Shape compare_shapes(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna);
 
 /// Returns a warning if the acceleration across the vehicle exceeds 10 m/s^2 in 5 % of the samples above
 /// 2 m/s: a wrong unit of the yaw rate also shows without turns in the fixes. Empty otherwise.

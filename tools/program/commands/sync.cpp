@@ -6,6 +6,7 @@
 #include <waymark/core/base/error.hpp>
 #include <waymark/tools/drive/clocks/clock_check.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/clocks/offset_names.hpp>
 #include <waymark/tools/drive/clocks/synchronise.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/clock_offsets.hpp>
@@ -33,9 +34,21 @@ nlohmann::ordered_json json_of(const std::optional<drive::ClockOffset>& offset) 
           {"samples", offset->samples}};
 }
 
-nlohmann::ordered_json json_of(const drive::SyncReport& report,
+/// What is found for one odometry.
+struct Synchronised {
+  std::string name;
+  drive::SyncReport report;
+};
+
+/// @param all at least one
+nlohmann::ordered_json json_of(const std::vector<Synchronised>& all,
                                const std::vector<drive::ClockReport>& clocks) {
-  nlohmann::ordered_json json{{"speed", json_of(report.speed)}, {"yaw_rate", json_of(report.yaw_rate)}};
+  const drive::SyncReport& first = all.front().report;
+  nlohmann::ordered_json json{{"speed", json_of(first.speed)}, {"yaw_rate", json_of(first.yaw_rate)}};
+  json["odometries"] = nlohmann::ordered_json::array();
+  for (const auto& [name, report] : all)
+    json["odometries"].push_back(
+        {{"name", name}, {"speed", json_of(report.speed)}, {"yaw_rate", json_of(report.yaw_rate)}});
   json["clocks"] = nlohmann::ordered_json::array();
   for (const drive::ClockReport& clock : clocks)
     json["clocks"].push_back({{"file", clock.file},
@@ -54,10 +67,11 @@ text::Row row_of(const std::string& quantity, const drive::ClockOffset& offset) 
           offset.against};
 }
 
-std::string table_of(const drive::SyncReport& report, const drive::OdometryConfig& odometry,
-                     const text::TextLook& look) {
-  text::Table table{
-      .columns = {"odometry's", "late by [s]", "sigma [s]", "correlation", "samples", "against"}};
+/// @param name of one of several; empty: there is one
+std::string table_of(const std::string& name, const drive::SyncReport& report,
+                     const drive::OdometryConfig& odometry, const text::TextLook& look) {
+  text::Table table{.columns = {(name.empty() ? "odometry" : name) + "'s", "late by [s]", "sigma [s]",
+                                "correlation", "samples", "against"}};
   if (report.speed) table.rows.push_back(row_of("speed", *report.speed));
   if (report.yaw_rate) table.rows.push_back(row_of("yaw rate", *report.yaw_rate));
   std::string text = table.rows.empty() ? "" : text::table_text(table, look);
@@ -71,9 +85,10 @@ std::string table_of(const drive::SyncReport& report, const drive::OdometryConfi
   if (!speed_is_late && !yaw_rate_is_late)
     return text + "Nothing to apply: no offset is larger than what smoothing and three sigmas explain.\n";
   const drive::ClockOffset& one = speed_is_late ? *report.speed : *report.yaw_rate;
-  if (const std::string name = drive::name_of_offset(one.late_s, 0.5); !name.empty())
-    text += "That is " + name + ".\n";
-  text += "To apply it: --sync of run and convert, or in the drive.yaml under 'odometry':\n";
+  if (const std::string known = drive::name_of_offset(one.late_s, 0.5); !known.empty())
+    text += "That is " + known + ".\n";
+  text += "To apply it: --sync of run and convert, or in the drive.yaml under '" +
+          (name.empty() ? "odometry" : name) + "':\n";
   if (speed_is_late)
     text += fmt::format("  speed_delay: {:.3f}\n", odometry.speed_delay_s + report.speed->late_s);
   if (yaw_rate_is_late)
@@ -92,18 +107,25 @@ ExitCode synchronise(const SyncCommand& command) {
   const drive::DriveLogs logs = drive::read_drive_logs(description, registry, watch_reading(console));
   console.progress("comparing clocks");
   const drive::LoggedMotion motion = drive::logged_motion(logs, description);
-  const drive::SyncReport report =
-      drive::estimate_clock_offsets(motion.odometry, motion.fixes, command.options);
+  std::vector<Synchronised> all;
+  for (const drive::PreparedOdometry& source : motion.odometries)
+    all.push_back(
+        {source.name, drive::estimate_clock_offsets(source.samples, motion.fixes, command.options)});
   std::vector<drive::ClockReport> clocks;
   for (const drive::DriveLogs::Log& log : logs.gnss)
     if (const auto clock = drive::clock_of(log)) clocks.push_back(*clock);
   console.end_progress();
   for (const std::string& note : logs.notes) console.detail("note: " + note);
   if (command.common.json) {
-    console.result(json_document("sync", json_of(report, clocks)));
+    console.result(json_document("sync", json_of(all, clocks)));
     return kSuccess;
   }
-  std::string text = table_of(report, drive::source_of_nodes(motion.source, description), console.look());
+  std::string text;
+  for (const auto& [name, report] : all) {
+    if (!text.empty()) text += "\n";
+    text += table_of(all.size() > 1 ? name : std::string(), report,
+                     drive::source_of_nodes(name, description), console.look());
+  }
   for (const drive::ClockReport& clock : clocks)
     text += fmt::format(
         "\n{}: its stamps are {:.3f} s ahead of the GNSS time in its {} messages (median; usual "

@@ -7,6 +7,7 @@
 #include <waymark/formats/logs/log_readers.hpp>
 #include <waymark/tools/drive/clocks/clock_check.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
+#include <waymark/tools/drive/clocks/offset_names.hpp>
 #include <waymark/tools/drive/description/drive_file.hpp>
 #include <waymark/tools/drive/logs/clock_offsets.hpp>
 

@@ -49,7 +49,7 @@ Scene circle(const Eigen::Vector2d& in_frame, const Eigen::Vector2d& in_body) {
 
 TEST_CASE("constant difference: another datum is told in the axes of the frame") {
   const Scene scene = circle({8, -6}, {0, 0});
-  const std::vector<ConstantDifference> found = constant_differences(scene.fixes, scene.poses);
+  const std::vector<ConstantDifference> found = compare_receivers(scene.fixes, scene.poses).differ;
   REQUIRE(found.size() == 1);
   CHECK_FALSE(found[0].in_body);
   CHECK(found[0].turned);
@@ -62,7 +62,7 @@ TEST_CASE("constant difference: another datum is told in the axes of the frame")
 
 TEST_CASE("constant difference: an antenna elsewhere is told in the axes of the vehicle") {
   const Scene scene = circle({0, 0}, {-9, 1});
-  const std::vector<ConstantDifference> found = constant_differences(scene.fixes, scene.poses);
+  const std::vector<ConstantDifference> found = compare_receivers(scene.fixes, scene.poses).differ;
   REQUIRE(found.size() == 1);
   CHECK(found[0].in_body);
   CHECK((found[0].second_m - Eigen::Vector2d(-9, 1)).norm() < 2.5);
@@ -72,9 +72,9 @@ TEST_CASE("constant difference: an antenna elsewhere is told in the axes of the 
 
 TEST_CASE("constant difference: receivers that agree within their claims are not named") {
   const Scene alike = circle({0, 0}, {0, 0});
-  CHECK(constant_differences(alike.fixes, alike.poses).empty());
+  CHECK(compare_receivers(alike.fixes, alike.poses).differ.empty());
   const Scene near = circle({2, 2}, {0, 0});
-  CHECK(constant_differences(near.fixes, near.poses).empty());
+  CHECK(compare_receivers(near.fixes, near.poses).differ.empty());
 }
 
 TEST_CASE("constant difference: a straight way does not tell an antenna from a datum") {
@@ -85,13 +85,65 @@ TEST_CASE("constant difference: a straight way does not tell an antenna from a d
         Eigen::Vector2d(x + (scene.fixes[i].source == 1 ? 8 : 0), 0) - scene.poses[i].head<2>();
     scene.poses[i] = {x, 0, 0};
   }
-  const std::vector<ConstantDifference> found = constant_differences(scene.fixes, scene.poses);
+  const std::vector<ConstantDifference> found = compare_receivers(scene.fixes, scene.poses).differ;
   REQUIRE(found.size() == 1);
   CHECK_FALSE(found[0].turned);
   const std::array<std::string, 2> names{"front", "rear"};
   CHECK_THAT(warning_of(found[0], names, "for minutes"), Catch::Contains("for minutes") &&
                                                              Catch::Contains("another datum") &&
                                                              Catch::Contains("antenna: ["));
+}
+
+TEST_CASE("constant difference: what grows with the speed is a clock, and its lateness is told") {
+  Scene scene = circle({0, 0}, {0, 0});
+  double way = 0;
+  for (std::size_t i = 0; i < scene.fixes.size(); ++i) {
+    const double t = seconds_between(Stamp{}, scene.fixes[i].stamp);
+    const double speed = 10 + 8 * std::sin(0.05 * t);  // 2 to 18 m/s
+    if (i > 0) way += speed * seconds_between(scene.fixes[i - 1].stamp, scene.fixes[i].stamp);
+    const double heading = way / 200;
+    const Eigen::Vector3d pose(200 * std::sin(heading), -200 * std::cos(heading), heading);
+    scene.fixes[i].position += pose.head<2>() - scene.poses[i].head<2>();
+    if (scene.fixes[i].source == 1)
+      scene.fixes[i].position -= rotate(heading, Eigen::Vector2d(0.8 * speed, 0));
+    scene.poses[i] = pose;
+  }
+  const std::vector<ConstantDifference> found = compare_receivers(scene.fixes, scene.poses).differ;
+  REQUIRE(found.size() == 1);
+  REQUIRE(found[0].late_s);
+  CHECK(*found[0].late_s == Approx(0.8).margin(0.3));  // 10 errors of 2 m in each half, 14 m/s apart
+  const std::array<std::string, 2> names{"front", "rear"};
+  CHECK_THAT(warning_of(found[0], names), Catch::StartsWith("the fixes of rear are 0.") &&
+                                              Catch::Contains("later than those of front") &&
+                                              Catch::Contains("for rear"));
+  // An antenna that is elsewhere is so at any speed.
+  for (std::size_t i = 0; i < scene.fixes.size(); ++i) {
+    const double heading = scene.poses[i][2];
+    if (scene.fixes[i].source != 1) continue;
+    const double t = seconds_between(Stamp{}, scene.fixes[i].stamp);
+    scene.fixes[i].position += rotate(heading, Eigen::Vector2d(0.8 * (10 + 8 * std::sin(0.05 * t)) - 9, 0));
+  }
+  const std::vector<ConstantDifference> antenna = compare_receivers(scene.fixes, scene.poses).differ;
+  REQUIRE(antenna.size() == 1);
+  CHECK_FALSE(antenna[0].late_s);
+}
+
+TEST_CASE("constant difference: of three the one that differs from two that agree is outvoted") {
+  ComparedReceivers compared{.differ = {{.first = 0, .second = 2}, {.first = 1, .second = 2}},
+                             .agree = {{0, 1}}};
+  const std::array<std::size_t, 3> apart{0, 1, 2};
+  CHECK(outvoted(compared, apart) == std::vector<int>{2});
+  // Two with common errors are one voice, and nobody knows which of the two is wrong.
+  const std::array<std::size_t, 3> together{0, 0, 1};
+  CHECK(outvoted(compared, together).empty());
+  // All three differ.
+  compared.differ.push_back({.first = 0, .second = 1});
+  compared.agree.clear();
+  CHECK(outvoted(compared, apart).empty());
+  // A clock is no place.
+  compared.agree = {{0, 1}};
+  compared.differ = {{.first = 0, .second = 2, .late_s = 0.5}, {.first = 1, .second = 2, .late_s = 0.5}};
+  CHECK(outvoted(compared, apart).empty());
 }
 
 }  // namespace constant_difference_test

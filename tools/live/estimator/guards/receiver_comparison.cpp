@@ -34,7 +34,7 @@ std::vector<drive::ConstantDifference> ReceiverComparison::news() {
   fixes_.erase(fixes_.begin(), fixes_.begin() + static_cast<std::ptrdiff_t>(old));
   poses_.erase(poses_.begin(), poses_.begin() + static_cast<std::ptrdiff_t>(old));
   std::vector<drive::ConstantDifference> found;
-  for (const drive::ConstantDifference& difference : drive::constant_differences(fixes_, poses_))
+  for (const drive::ConstantDifference& difference : drive::compare_receivers(fixes_, poses_).differ)
     if (told_.emplace(difference.first, difference.second).second) found.push_back(difference);
   return found;
 }
