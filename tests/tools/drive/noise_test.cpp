@@ -439,6 +439,22 @@ TEST_CASE("coarse: straight ways are merged up to a second, turns as far as a tw
   CHECK(turning.timeline.intervals.size() > 2 * steady.timeline.intervals.size());
 }
 
+TEST_CASE("coarse: the noise of a poor gyro keeps no nodes, its motion does") {
+  PreparedDrive drive = make_drive({}, 5);
+  const auto intervals = [&](double noise, double turns) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal(0, noise);
+    for (OdometrySample& sample : drive.odometry)
+      sample.yaw_rate_radps =
+          turns * std::sin(2 * seconds_between(drive.odometry[0].stamp, sample.stamp)) + normal(random);
+    return coarsen(place_drive(drive, timeline_of(drive), complete_settings(), registry()), {})
+        .drive.timeline.intervals.size();
+  };
+  const std::size_t straight = intervals(0, 0);
+  CHECK(intervals(0.06, 0) < straight * 6 / 5);  // at 10 Hz 0.02 rad/sqrt(s): 0.2 s of it miss by 6 mm
+  CHECK(intervals(1e-4, 0.5) > 2 * straight);
+}
+
 TEST_CASE("coarse: readings a period apart are kept, all rows of each, and jitter costs none") {
   PreparedSensor sensor;
   sensor.readings.columns = 1;

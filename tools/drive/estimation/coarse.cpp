@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include <waymark/core/base/detail/median.hpp>
 #include <waymark/types_se2/se2.hpp>
 
 namespace waymark::drive {
@@ -48,10 +49,28 @@ void merge(Interval& whole, const Interval& part) {
   whole.dt_s = dt;
 }
 
+/// Returns the noise of the yaw rate of an odometry by its second differences, rad/sqrt(s): an interval has the
+/// mean of two readings, so that their variance is that of one reading. 0 if few tell.
+double yaw_noise_of(std::span<const Interval> intervals, double standstill_mps) {
+  constexpr std::size_t kFewest = 20;
+  constexpr double kOfNormal = 1.4826;  // standard deviation by the median of the size
+  std::vector<double> noise;
+  for (std::size_t i = 1; i + 1 < intervals.size(); ++i) {
+    const auto counts = [&](const Interval& of) { return !of.bridged && !of.stands(standstill_mps); };
+    const Interval& here = intervals[i];
+    if (!counts(intervals[i - 1]) || !counts(here) || !counts(intervals[i + 1])) continue;
+    const double bend =
+        intervals[i - 1].yaw_rate_radps - 2 * here.yaw_rate_radps + intervals[i + 1].yaw_rate_radps;
+    noise.push_back(std::abs(bend) * std::sqrt(here.dt_s));
+  }
+  return noise.size() < kFewest ? 0 : kOfNormal * upper_median(std::move(noise));
+}
+
 /// Merges intervals one after the other.
 class Merger {
  public:
-  explicit Merger(const Interval& first) { begin(first); }
+  /// @param yaw_noise as of yaw_noise_of()
+  Merger(const Interval& first, double yaw_noise) : yaw_noise_(yaw_noise) { begin(first); }
 
   [[nodiscard]] const Interval& open() const { return open_; }
   void begin(const Interval& first) {
@@ -64,18 +83,26 @@ class Merger {
     Interval whole = open_;
     merge(whole, part);
     const Pose2<double> way = compose(way_, way_of(part));
-    if ((way.position - way_of(whole).position).norm() > kEndsWithin_m) return false;
+    if ((way.position - way_of(whole).position).norm() > ends_within_m(whole)) return false;
     open_ = whole;
     way_ = way;
     return true;
   }
 
  private:
-  static constexpr double kEndsWithin_m = 0.001;
+  /// A millimetre, or how far the noise of the yaw rate leads astray. The mean twist keeps the turn; what the
+  /// noise does on the way to it is half of that (a Brownian bridge), is no motion, and the model of the merged
+  /// interval has it.
+  [[nodiscard]] double ends_within_m(const Interval& interval) const {
+    constexpr double kLeast_m = 0.001;
+    const double astray_m = interval.speed_mps * yaw_noise_ * std::sqrt(std::pow(interval.dt_s, 3) / 3);
+    return std::max(kLeast_m, std::abs(astray_m));
+  }
   static Pose2<double> way_of(const Interval& interval) {
     return se2_exp<double>({interval.speed_mps * interval.dt_s, 0, interval.yaw_rate_radps * interval.dt_s});
   }
 
+  double yaw_noise_;
   Interval open_;
   Pose2<double> way_;  ///< of the parts
 };
@@ -225,7 +252,7 @@ CoarseDrive coarsen(const PlacedDrive& placed, std::span<const PreparedSensor> s
   };
   const auto stands = [&](const Interval& i) { return i.stands(placed.standstill_mps); };
   add_node(0);
-  Merger merger(timeline.intervals.front());
+  Merger merger(timeline.intervals.front(), yaw_noise_of(timeline.intervals, placed.standstill_mps));
   for (std::size_t i = 1; i < timeline.intervals.size(); ++i) {
     const Interval& next = timeline.intervals[i];
     const Interval& open = merger.open();

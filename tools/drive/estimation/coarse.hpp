@@ -12,8 +12,9 @@ struct CoarseDrive {
 
 /// Keeps accepted fixes at least `fix_period_s` apart per receiver (a tenth less, for jitter).
 /// Merges intervals between nodes without such a fix up to `node_period_s`, driving and standing
-/// ones separately, as long as their mean twist ends within 1 mm of where they end: for a yaw
-/// acceleration a it misses by v a T^3 / 12 across, so that turns keep more nodes than straight ways.
+/// ones separately, as long as their mean twist ends within 1 mm of where they end, or within what the
+/// noise of the yaw rate readings leads astray in that time: for a yaw acceleration a it misses by v a T^3 / 12
+/// across, so that turns keep more nodes than straight ways, and noise of q rad/sqrt(s) by v q sqrt(T^3 / 12).
 /// The process noise is additive in time and way, and is the same for any merging. The counts of the gate
 /// stay those of the whole drive. Of the readings of each sensor those are kept that lie nearest to a node
 /// that is kept, and every quarter of a second there is such a node if there is a reading.
