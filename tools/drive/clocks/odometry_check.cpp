@@ -52,6 +52,22 @@ std::optional<ClockOffset> offset_to(const std::vector<OdometrySample>& odometry
   return offset;
 }
 
+/// Returns the offset of the clock of an odometry, if the fixes of every receiver show that it has one: one that
+/// shows to some of them is theirs.
+std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
+                                        const std::vector<Fix>& fixes) {
+  std::map<int, std::vector<Fix>> receivers;
+  for (const Fix& fix : fixes) receivers[fix.source].push_back(fix);
+  std::optional<ClockOffset> shown;
+  for (const auto& [source, of_one] : receivers) {
+    if (of_one.size() < kFewestCompared) continue;
+    const std::optional<ClockOffset> offset = offset_to(odometry, of_one);
+    if (!offset) return std::nullopt;
+    if (!shown || offset->sigma_s < shown->sigma_s) shown = offset;
+  }
+  return shown;
+}
+
 /// @param odometry "the odometry" or the name of one of several @param cure what to do
 std::string clock_warning(const std::string& odometry, const ClockOffset& offset, const std::string& cure) {
   return fmt::format("{}'s clock seems {:.2f} +- {:.2f} s late against the fixes{}, correlation {:.3f}: {}",
@@ -129,8 +145,8 @@ void check_several(PreparedDrive& drive) {
   std::vector<Verdict> verdicts;
   for (const PreparedOdometry& source : drive.relative) verdicts.push_back(verdict_on(source, drive.fixes));
   std::vector<std::string> left_out;
-  bool has_nodes =
-      false;  // they come from the first that is kept, and are compared again when they are placed
+  // Nodes come from the first that is kept. It is compared again when they are placed.
+  bool has_nodes = false;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     Verdict& verdict = verdicts[i];
     const PreparedOdometry* other =
@@ -147,20 +163,6 @@ void check_several(PreparedDrive& drive) {
 }
 
 }  // namespace
-
-std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
-                                        const std::vector<Fix>& fixes) {
-  std::map<int, std::vector<Fix>> receivers;
-  for (const Fix& fix : fixes) receivers[fix.source].push_back(fix);
-  std::optional<ClockOffset> shown;
-  for (const auto& [source, of_one] : receivers) {
-    if (of_one.size() < kFewestCompared) continue;
-    const std::optional<ClockOffset> offset = offset_to(odometry, of_one);
-    if (!offset) return std::nullopt;
-    if (!shown || offset->sigma_s < shown->sigma_s) shown = offset;
-  }
-  return shown;
-}
 
 void check_odometries(PreparedDrive& drive, const std::function<std::string(const ClockOffset&)>& remedy) {
   if (!drive.relative.empty()) return check_several(drive);

@@ -3,23 +3,16 @@
 #pragma once
 
 #include <functional>
-#include <optional>
-#include <vector>
+#include <string>
 
-#include <waymark/core/drive/sample.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 
 namespace waymark::drive {
 
-/// Returns the offset of the clock of an odometry, if the fixes of every receiver show that it has one: late by
-/// 0.2 s or early by 0.3 s and more.
-[[nodiscard]] std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
-                                                      const std::vector<Fix>& fixes);
-
-/// Warns of a clock that is off. Of several odometries each one is compared: its clock, the sign and the unit of
-/// its turns and distances. One in which these are wrong is left out with a warning, if another one that spans as
-/// many fixes fits them.
+/// Warns of a clock that is late by 0.2 s or early by 0.3 s and more against every receiver. Of several odometries
+/// each one is compared: its clock, the sign and the unit of its turns and distances. One in which these are wrong
+/// is left out with a warning, if another one that spans as many fixes fits them.
 /// @param remedy what to do if the only odometry has another clock
 void check_odometries(PreparedDrive& drive, const std::function<std::string(const ClockOffset&)>& remedy);
 

@@ -114,6 +114,8 @@ TEST_CASE("sync: the name of an offset is what it usually is") {
   CHECK(name_of_offset(604'800, 0.5) == "a GPS week");
   CHECK(name_of_offset(-1'209'600, 0.5) == "2 GPS weeks");
   CHECK(name_of_offset(619'315'200, 0.5) == "1024 GPS weeks (a rollover of the week number)");
+  CHECK(name_of_offset(-619'315'195, 0.5) ==
+        "1024 GPS weeks (a rollover of the week number) and 5 leap seconds");
   CHECK(name_of_offset(315'964'782, 0.5) ==
         "the GPS epoch against the Unix epoch and 18 leap seconds (GPS time against UTC)");
   CHECK(name_of_offset(0, 0.5).empty());
