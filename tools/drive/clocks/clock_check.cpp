@@ -70,6 +70,27 @@ void refuse_wrong_clock(const DriveLogs& logs, const DriveDescription& descripti
   if (offset && std::abs(offset->late_s) > kOneClock_s) refuse(motion, offset, description);
 }
 
+/// Prepares a drive of several odometries again, without those that the fixes contradict.
+PreparedDrive without_contradicted(PreparedDrive drive, const DriveLogs& logs,
+                                   const DriveDescription& description) {
+  const OdometryCheck check = check_odometries(drive);
+  if (!check.left_out.empty()) {
+    DriveLogs fewer = logs;
+    DriveDescription rest = description;
+    for (std::size_t i = rest.odometry.size(); i-- > 0;) {
+      if (std::find(check.left_out.begin(), check.left_out.end(), rest.odometry[i].name) ==
+          check.left_out.end())
+        continue;
+      rest.odometry.erase(rest.odometry.begin() + static_cast<std::ptrdiff_t>(i));
+      fewer.odometry.erase(fewer.odometry.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    drive = prepare_drive(fewer, rest);
+  }
+  std::vector<std::string>& warnings = drive.report.warnings;
+  warnings.insert(warnings.end(), check.warnings.begin(), check.warnings.end());
+  return drive;
+}
+
 }  // namespace
 
 LoggedMotion logged_motion(const DriveLogs& logs, const DriveDescription& description) {
@@ -107,7 +128,9 @@ PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription
   const PrepareReport& report = drive.report;
   if (report.fixes_outside_odometry > drive.fixes.size() + report.fixes_thinned)
     refuse_wrong_clock(logs, description);
-  check_odometries(drive, remedy);
+  if (!drive.relative.empty()) return without_contradicted(std::move(drive), logs, description);
+  if (const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes))
+    drive.report.warnings.push_back(clock_warning("the odometry", *offset, remedy(*offset)));
   return drive;
 }
 

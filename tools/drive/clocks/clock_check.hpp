@@ -8,7 +8,8 @@
 
 namespace waymark::drive {
 
-/// prepare_drive(), and check_odometries() (odometry_check.hpp).
+/// prepare_drive(), and a warning if odometry and fixes fit at another offset of their clocks. Several odometries
+/// are compared one by one, and those that the fixes contradict are left out (odometry_check.hpp).
 /// @throws InputError what prepare_drive throws; and if most fixes lie outside the odometry and their motion
 /// fits elsewhere, or nowhere: it names the offset and the remedy
 [[nodiscard]] PreparedDrive prepare_on_one_clock(const DriveLogs& logs, const DriveDescription& description);

@@ -4,13 +4,11 @@
 #include <cmath>
 #include <map>
 #include <string>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include <waymark/tools/drive/clocks/lag_search.hpp>
 #include <waymark/tools/drive/clocks/offset_names.hpp>
-#include <waymark/tools/drive/model/without_source.hpp>
 #include <waymark/tools/drive/nodes/plausibility.hpp>
 #include <waymark/tools/drive/nodes/timeline.hpp>
 
@@ -26,148 +24,172 @@ bool is_near_zero(double late_s) {
   return late_s > -kLateFixes_s && late_s < kLateOdometry_s;
 }
 
-/// Compares the neighbourhood of zero with a minute about it, and with everything if nothing fits at zero.
-bool fits_elsewhere(const LagSearch& search) {
-  constexpr double kFar_s = 60;
-  constexpr double kLead = 12;
-  constexpr double kFits = 0.5;
-  const std::optional<Lag> near = search.best(-kLateFixes_s, kLateOdometry_s);
-  const std::optional<Lag> far = search.best(-kFar_s, kFar_s);
-  if (!near || !far) return false;
-  const bool better = !is_near_zero(far->late_s) && far->score > near->score + kLead;
-  const bool fits = std::max(near->speed_correlation, near->turn_correlation) > kFits;
-  return better || !fits;
-}
+/// What a receiver says of the clock of an odometry.
+struct ClockVerdict {
+  std::optional<ClockOffset> offset;  ///< empty: it shows none
+  std::optional<Lag> near;            ///< the best fit near zero, if the motion of both tells
+  bool fits = false;                  ///< near zero, and nowhere better
+};
 
 constexpr std::size_t kFewestCompared = 30;  // fixes, and samples
+constexpr double kFits = 0.5;                // correlation
 
-/// Returns the offset of the clock of an odometry to that of a receiver, if it shows.
-std::optional<ClockOffset> offset_to(const std::vector<OdometrySample>& odometry,
-                                     const std::vector<Fix>& fixes) {
-  if (odometry.size() < kFewestCompared) return std::nullopt;
+/// Compares the neighbourhood of zero with a minute about it, and with everything if nothing fits at zero.
+ClockVerdict clock_verdict(const std::vector<OdometrySample>& odometry, const std::vector<Fix>& fixes) {
+  constexpr double kFar_s = 60;
+  constexpr double kLead = 12;
+  if (odometry.size() < kFewestCompared || fixes.size() < kFewestCompared) return {};
   const auto [speeds, turns] = receiver_motion(of_one_receiver(fixes));
-  if (!fits_elsewhere(LagSearch(odometry, speeds, turns))) return std::nullopt;
+  const LagSearch search(odometry, speeds, turns);
+  ClockVerdict verdict;
+  verdict.near = search.best(-kLateFixes_s, kLateOdometry_s);
+  const std::optional<Lag> far = search.best(-kFar_s, kFar_s);
+  if (!verdict.near || !far) return verdict;
+  const bool is_better = !is_near_zero(far->late_s) && far->score > verdict.near->score + kLead;
+  verdict.fits =
+      !is_better && std::max(verdict.near->speed_correlation, verdict.near->turn_correlation) > kFits;
+  if (verdict.fits) return verdict;
   const std::optional<ClockOffset> offset = estimate_clock_offsets(odometry, fixes, {}).common();
-  if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return std::nullopt;
-  return offset;
+  if (offset && offset->is_significant() && !is_near_zero(offset->late_s)) verdict.offset = offset;
+  return verdict;
 }
 
-/// Returns the offset of the clock of an odometry, if the fixes of every receiver show that it has one: one that
-/// shows to some of them is theirs.
-std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
-                                        const std::vector<Fix>& fixes) {
-  std::map<int, std::vector<Fix>> receivers;
-  for (const Fix& fix : fixes) receivers[fix.source].push_back(fix);
+bool are_alike(const ClockOffset& a, const ClockOffset& b) {
+  return std::abs(a.late_s - b.late_s) <= kOffsetSigmas * std::hypot(a.sigma_s, b.sigma_s, kSmoothing_s);
+}
+
+using Receivers = std::map<int, std::vector<Fix>>;
+
+/// Returns the fixes that count, by receiver.
+Receivers receivers_of(const std::vector<Fix>& fixes) {
+  Receivers receivers;
+  for (const Fix& fix : fixes)
+    if (fix.status != FixStatus::withheld) receivers[fix.source].push_back(fix);
+  return receivers;
+}
+
+/// What the fixes say of one of several odometries.
+struct Verdict {
+  std::vector<std::string> sentences;
+  bool contradicts = false;            ///< clock, unit or sign are wrong
+  std::optional<ClockOffset> clock{};  ///< that is wrong
+  std::optional<Lag> near{};           ///< how its motion fits near zero
+  std::size_t covered = 0;             ///< fixes between its samples, by its right clock
+};
+
+/// Returns the fixes between the first and the last sample of an odometry whose stamps are late.
+std::vector<Fix> within(const std::vector<OdometrySample>& samples, const std::vector<Fix>& fixes,
+                        double late_s = 0) {
+  std::vector<Fix> result;
+  for (const Fix& fix : fixes) {
+    const Stamp by_odometry = fix.stamp.later(late_s);
+    if (by_odometry >= samples.front().stamp && by_odometry <= samples.back().stamp) result.push_back(fix);
+  }
+  return result;
+}
+
+/// Returns the offset of a clock that is so far off that it leaves few fixes within the odometry.
+std::optional<ClockOffset> far_offset(const std::vector<OdometrySample>& samples,
+                                      const Receivers& receivers) {
   std::optional<ClockOffset> shown;
-  for (const auto& [source, of_one] : receivers) {
-    if (of_one.size() < kFewestCompared) continue;
-    const std::optional<ClockOffset> offset = offset_to(odometry, of_one);
-    if (!offset) return std::nullopt;
+  for (const auto& [source, fixes] : receivers) {
+    if (fixes.size() < kFewestCompared) continue;
+    const std::optional<ClockOffset> offset = estimate_clock_offsets(samples, fixes, {}).common();
+    if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return std::nullopt;
+    if (shown && !are_alike(*shown, *offset)) return std::nullopt;
     if (!shown || offset->sigma_s < shown->sigma_s) shown = offset;
   }
   return shown;
 }
 
-/// @param odometry "the odometry" or the name of one of several @param cure what to do
+void add_shape(const PreparedOdometry& source, const std::vector<Fix>& receiver, Verdict& verdict) {
+  constexpr double kStands_mps = 0.01;
+  const Timeline timeline = build_timeline(source.samples, receiver, {.gap_s = source.gap_s});
+  const std::vector<Eigen::Vector3d> poses = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStands_mps);
+  const Shape shape = compare_shapes(receiver, antenna_at_fixes(timeline, poses, receiver));
+  for (const std::string& sentence : shape.sentences)
+    verdict.sentences.push_back(source.name + ": " + sentence);
+  verdict.contradicts = shape.contradicts;
+}
+
+/// @param fixes of all receivers, without those withheld
+Verdict verdict_on(const PreparedOdometry& source, const std::vector<Fix>& fixes) {
+  const std::vector<OdometrySample>& samples = source.samples;
+  const std::vector<Fix> compared = within(samples, fixes);
+  Verdict verdict;
+  const bool is_far = compared.size() < kFewestCompared;
+  verdict.clock = is_far ? far_offset(samples, receivers_of(fixes)) : offset_shown(samples, compared);
+  verdict.covered = within(samples, fixes, verdict.clock ? verdict.clock->late_s : 0).size();
+  if (verdict.clock) {
+    verdict.contradicts = true;
+    verdict.sentences.push_back(clock_warning(
+        source.name, *verdict.clock,
+        fmt::format("state 'time: {{offset: {:.2f}}}' for its log, or --sync", -verdict.clock->late_s)));
+    return verdict;
+  }
+  if (!is_far && samples.size() >= kFewestCompared) {
+    std::vector<Fix> receiver;
+    for (const Fix* fix : of_one_receiver(compared)) receiver.push_back(*fix);
+    verdict.near = clock_verdict(samples, receiver).near;
+    add_shape(source, receiver, verdict);
+  }
+  // Turns that are far too large wind up, and the fixes no longer tell by how much.
+  if (const std::string warning = warning_of_accelerations(samples);
+      !verdict.contradicts && !warning.empty()) {
+    verdict.sentences.push_back(source.name + ": " + warning);
+    verdict.contradicts = true;
+  }
+  return verdict;
+}
+
+/// Tells whether one odometry shows by its own motion that the fault of another one is not that of the fixes.
+bool stands_for(const Verdict& other, const Verdict& wrong) {
+  constexpr double kAsMany = 0.95;
+  if (other.contradicts || !other.near) return false;
+  if (static_cast<double>(other.covered) < kAsMany * static_cast<double>(wrong.covered)) return false;
+  // Late fixes and mirrored ones are those of both, though a poor odometry does not show it.
+  return std::min(other.near->speed_correlation, other.near->turn_correlation) > kFits;
+}
+
+}  // namespace
+
+std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
+                                        const std::vector<Fix>& fixes) {
+  std::optional<ClockOffset> shown;
+  for (const auto& [source, receiver] : receivers_of(fixes)) {
+    const ClockVerdict verdict = clock_verdict(odometry, receiver);
+    if (verdict.fits) return std::nullopt;
+    if (!verdict.offset) continue;
+    if (shown && !are_alike(*shown, *verdict.offset)) return std::nullopt;
+    if (!shown || verdict.offset->sigma_s < shown->sigma_s) shown = verdict.offset;
+  }
+  return shown;
+}
+
 std::string clock_warning(const std::string& odometry, const ClockOffset& offset, const std::string& cure) {
   return fmt::format("{}'s clock seems {:.2f} +- {:.2f} s late against the fixes{}, correlation {:.3f}: {}",
                      odometry, offset.late_s, std::hypot(offset.sigma_s, kSmoothing_s),
                      offset_in_words(offset), offset.correlation, cure);
 }
 
-/// What the fixes say against one of several odometries.
-struct Verdict {
-  std::vector<std::string> sentences;
-  bool contradicts = false;  ///< clock, unit or sign are wrong
-  bool is_shape = false;     ///< the sentences are those of compare_shapes()
-  bool fits = false;         ///< none of them is, and enough fixes were compared
-  std::size_t spans = 0;     ///< how many lie within it
-};
-
-Verdict on_clock(const PreparedOdometry& source, const ClockOffset& offset, std::size_t spans) {
-  return {.sentences = {clock_warning(
-              source.name, offset,
-              fmt::format("state 'time: {{offset: {:.2f}}}' for its log, or --sync", -offset.late_s))},
-          .contradicts = true,
-          .spans = spans};
-}
-
-/// @param fixes of all receivers
-Verdict verdict_on(const PreparedOdometry& source, const std::vector<Fix>& fixes) {
-  const std::vector<OdometrySample>& samples = source.samples;
-  std::vector<Fix> within;
-  for (const Fix& fix : fixes)
-    if (fix.stamp >= samples.front().stamp && fix.stamp <= samples.back().stamp) within.push_back(fix);
-  Verdict verdict;
-  verdict.spans = within.size();
-  if (const std::optional<ClockOffset> offset = offset_shown(samples, within))
-    return on_clock(source, *offset, verdict.spans);
-  if (within.size() < kFewestCompared || samples.size() < kFewestCompared) {
-    // A clock that is far off leaves no fix within.
-    const std::optional<ClockOffset> far = estimate_clock_offsets(samples, fixes, {}).common();
-    return far && far->is_significant() && !is_near_zero(far->late_s) ? on_clock(source, *far, verdict.spans)
-                                                                      : verdict;
-  }
-  std::vector<Fix> receiver;
-  for (const Fix* fix : of_one_receiver(within)) receiver.push_back(*fix);
-  constexpr double kStands_mps = 0.01;
-  const Timeline timeline = build_timeline(samples, receiver, {.gap_s = source.gap_s});
-  const std::vector<Eigen::Vector3d> poses = dead_reckon(timeline, Eigen::Vector3d::Zero(), kStands_mps);
-  Shape shape = compare_shapes(receiver, antenna_at_fixes(timeline, poses, receiver));
-  verdict.is_shape = true;
-  // Turns that are far too large wind up, and the fixes no longer tell by how much.
-  if (std::string warning = warning_of_accelerations(samples); !shape.contradicts && !warning.empty()) {
-    shape.sentences.push_back(std::move(warning));
-    shape.contradicts = true;
-    verdict.is_shape = false;
-  }
-  for (const std::string& sentence : shape.sentences)
-    verdict.sentences.push_back(source.name + ": " + sentence);
-  verdict.contradicts = shape.contradicts;
-  verdict.fits = !shape.contradicts && receiver.size() >= kFewestCompared;
-  return verdict;
-}
-
-/// Returns the one that fits and spans the most fixes, if it can stand for a source that does not fit.
-const PreparedOdometry* stands_for(const Verdict& wrong, const std::vector<Verdict>& verdicts,
-                                   const std::vector<PreparedOdometry>& relative) {
-  constexpr double kAsMany = 0.95;
-  const auto best =
-      std::max_element(verdicts.begin(), verdicts.end(), [](const Verdict& a, const Verdict& b) {
-        return (a.fits ? a.spans + 1 : 0) < (b.fits ? b.spans + 1 : 0);
-      });
-  const bool can =
-      best->fits && static_cast<double>(best->spans) >= kAsMany * static_cast<double>(wrong.spans);
-  return can ? &relative[static_cast<std::size_t>(best - verdicts.begin())] : nullptr;
-}
-
-void check_several(PreparedDrive& drive) {
+OdometryCheck check_odometries(const PreparedDrive& drive) {
+  std::vector<Fix> fixes = drive.fixes;
+  std::erase_if(fixes, [](const Fix& fix) { return fix.status == FixStatus::withheld; });
   std::vector<Verdict> verdicts;
-  for (const PreparedOdometry& source : drive.relative) verdicts.push_back(verdict_on(source, drive.fixes));
-  std::vector<std::string> left_out;
-  // Nodes come from the first that is kept. It is compared again when they are placed.
-  bool has_nodes = false;
+  for (const PreparedOdometry& source : drive.relative) verdicts.push_back(verdict_on(source, fixes));
+  OdometryCheck check;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
-    Verdict& verdict = verdicts[i];
-    const PreparedOdometry* other =
-        verdict.contradicts ? stands_for(verdict, verdicts, drive.relative) : nullptr;
-    if (other != nullptr) {
-      left_out.push_back(drive.relative[i].name);
-      verdict.sentences.back() += fmt::format(". It is left out; {} fits", other->name);
-    } else if (!std::exchange(has_nodes, true) && verdict.is_shape) {
-      continue;
+    Verdict& wrong = verdicts[i];
+    const auto other = std::find_if(verdicts.begin(), verdicts.end(),
+                                    [&](const Verdict& verdict) { return stands_for(verdict, wrong); });
+    if (wrong.contradicts && other != verdicts.end()) {
+      check.left_out.push_back(drive.relative[i].name);
+      const auto place = static_cast<std::size_t>(other - verdicts.begin());
+      wrong.sentences.back() += fmt::format(". It is left out; {} fits", drive.relative[place].name);
     }
-    for (std::string& sentence : verdict.sentences) drive.report.warnings.push_back(std::move(sentence));
+    check.warnings.insert(check.warnings.end(), wrong.sentences.begin(), wrong.sentences.end());
   }
-  for (const std::string& name : left_out) drive = without_source(drive, {name, "odometry"});
-}
-
-}  // namespace
-
-void check_odometries(PreparedDrive& drive, const std::function<std::string(const ClockOffset&)>& remedy) {
-  if (!drive.relative.empty()) return check_several(drive);
-  if (const std::optional<ClockOffset> offset = offset_shown(drive.odometry, drive.fixes))
-    drive.report.warnings.push_back(clock_warning("the odometry", *offset, remedy(*offset)));
+  return check;
 }
 
 }  // namespace waymark::drive

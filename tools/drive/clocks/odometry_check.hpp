@@ -2,18 +2,35 @@
 /// unit, sign or clock is wrong; beside a sound one it draws the poses away.
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include <waymark/core/drive/sample.hpp>
 #include <waymark/tools/drive/clocks/clock_sync.hpp>
 #include <waymark/tools/drive/logs/prepare.hpp>
 
 namespace waymark::drive {
 
-/// Warns of a clock that is late by 0.2 s or early by 0.3 s and more against every receiver. Of several odometries
-/// each one is compared: its clock, the sign and the unit of its turns and distances. One in which these are wrong
-/// is left out with a warning, if another one that spans as many fixes fits them.
-/// @param remedy what to do if the only odometry has another clock
-void check_odometries(PreparedDrive& drive, const std::function<std::string(const ClockOffset&)>& remedy);
+/// Returns the offset of the clock of an odometry, if it is late by 0.2 s or early by 0.3 s and more against every
+/// receiver whose motion tells, by about as much. If it fits one of them, the clock is that of another receiver.
+/// Withheld fixes do not count.
+[[nodiscard]] std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
+                                                      const std::vector<Fix>& fixes);
+
+/// @param odometry "the odometry" or the name of one of several @param cure what to do
+[[nodiscard]] std::string clock_warning(const std::string& odometry, const ClockOffset& offset,
+                                        const std::string& cure);
+
+/// What the fixes say against the odometries of a drive.
+struct OdometryCheck {
+  std::vector<std::string> warnings;
+  std::vector<std::string> left_out;  ///< names
+};
+
+/// Compares each of several odometries: its clock, the sign and the unit of its turns and distances. One in which
+/// these are wrong is to be left out, if another one shows by its own motion that it fits and covers nearly as many
+/// fixes.
+[[nodiscard]] OdometryCheck check_odometries(const PreparedDrive& drive);
 
 }  // namespace waymark::drive

@@ -23,7 +23,7 @@ constexpr double kMostZone_s = 14 * 3600;
 struct Known {
   double seconds;
   std::string name;
-  int fewest_leaps = 13;  ///< beside it
+  bool is_rollover = false;
 };
 
 /// Returns the large offsets nearest to one, and none at all: leap seconds may be beside each.
@@ -36,7 +36,7 @@ std::vector<Known> large_offsets(double seconds) {
   if (rollovers != 0)
     known.push_back({rollovers * kRollover_s,
                      fmt::format("{} GPS weeks (a rollover of the week number)", 1024 * std::abs(rollovers)),
-                     1});  // the date of a whole rollover before had fewer
+                     true});
   if (weeks != 0 && std::abs(weeks) < 4000)
     known.push_back({weeks * kWeek_s, std::abs(weeks) == 1 ? std::string("a GPS week")
                                                            : fmt::format("{} GPS weeks", std::abs(weeks))});
@@ -46,14 +46,15 @@ std::vector<Known> large_offsets(double seconds) {
   return known;
 }
 
-/// Empty: it is no number of leap seconds. GPS time has been ahead of UTC by 13 s from 1999, 18 s from 2017.
-std::optional<std::string> leap_name(double seconds, int fewest, double tolerance_s) {
+/// Empty: it is no number of leap seconds. GPS time has been ahead of UTC by 13 s from 1999, 18 s from 2017. Within
+/// the 1024 weeks before these days 4 or 5 were added.
+std::optional<std::string> leap_name(double seconds, bool beside_rollover, double tolerance_s) {
   const double count = std::round(std::abs(seconds));
   if (std::abs(std::abs(seconds) - count) > tolerance_s) return std::nullopt;
   if (count == 0) return "";
-  constexpr double kMostLeaps = 18;
-  if (count < fewest || count > kMostLeaps) return std::nullopt;
-  return fmt::format("{} leap seconds{}", count, count < 13 ? "" : " (GPS time against UTC)");
+  if (beside_rollover && (count == 4 || count == 5)) return fmt::format("{} leap seconds", count);
+  if (count < 13 || count > 18) return std::nullopt;
+  return fmt::format("{} leap seconds (GPS time against UTC)", count);
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ std::optional<std::string> leap_name(double seconds, int fewest, double toleranc
 std::string name_of_offset(double seconds, double tolerance_s) {
   for (const Known& known : large_offsets(seconds)) {
     const std::optional<std::string> leap =
-        leap_name(seconds - known.seconds, known.fewest_leaps, tolerance_s);
+        leap_name(seconds - known.seconds, known.is_rollover, tolerance_s);
     if (!leap) {
       if (known.seconds != 0 && std::abs(seconds - known.seconds) <= tolerance_s) return known.name;
       continue;

@@ -44,9 +44,16 @@ bool allows(const std::optional<ClockOffset>& half, const ClockOffset& offset) {
   return std::abs(half->late_s - offset.late_s) <= kOffsetSigmas * sigma_s;
 }
 
-/// @param whose "the odometry's"
-void synchronise(const std::string& whose, const SyncReport& report, OdometryConfig& odometry,
-                 std::vector<std::string>& notes) {
+}  // namespace
+
+OdometryConfig& config_of(const std::string& name, DriveDescription& description) {
+  const auto found = std::find_if(description.odometry.begin(), description.odometry.end(),
+                                  [&](const OdometryConfig& odometry) { return odometry.name == name; });
+  return found == description.odometry.end() ? description.odometry.emplace_back() : *found;
+}
+
+void apply_offsets(const std::string& whose, const SyncReport& report, OdometryConfig& odometry,
+                   std::vector<std::string>& notes) {
   const bool speed_moved = apply_offset(report.speed, whose + " speed", odometry.speed_delay_s, notes);
   const bool yaw_rate_moved =
       apply_offset(report.yaw_rate, whose + " yaw rate", odometry.yaw_rate_delay_s, notes);
@@ -65,21 +72,13 @@ void synchronise(const std::string& whose, const SyncReport& report, OdometryCon
   }
 }
 
-}  // namespace
-
-OdometryConfig& source_of_nodes(const std::string& name, DriveDescription& description) {
-  const auto found = std::find_if(description.odometry.begin(), description.odometry.end(),
-                                  [&](const OdometryConfig& odometry) { return odometry.name == name; });
-  return found == description.odometry.end() ? description.odometry.emplace_back() : *found;
-}
-
 void synchronise(DriveLogs& logs, DriveDescription& description) {
   std::vector<std::string> notes = put_on_told_time(logs);
   const LoggedMotion motion = logged_motion(logs, description);
   for (const PreparedOdometry& source : motion.odometries) {
     const std::string whose = motion.odometries.size() > 1 ? source.name + "'s" : "the odometry's";
-    synchronise(whose, estimate_clock_offsets(source.samples, motion.fixes, {}),
-                source_of_nodes(source.name, description), notes);
+    apply_offsets(whose, estimate_clock_offsets(source.samples, motion.fixes, {}),
+                  config_of(source.name, description), notes);
   }
   logs.notes.insert(logs.notes.end(), notes.begin(), notes.end());
 }

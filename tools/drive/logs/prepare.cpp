@@ -236,7 +236,7 @@ void judge_odometry(PreparedDrive& drive) {
     mend_speeds(drive);
   }
   if (!drive.fixes.empty()) mend_by_fixes(drive);
-  if (!drive.relative.empty() && !drive.fixes.empty()) return;  // odometry_check.hpp judges each one
+  if (!drive.relative.empty() && !drive.fixes.empty()) return;  // each one is judged (odometry_check.hpp)
   if (std::string warning = warning_of_accelerations(drive.odometry); !warning.empty())
     drive.report.warnings.push_back(std::move(warning));
 }

@@ -90,13 +90,11 @@ bool leave_out_outvoted(std::span<const std::size_t> voices, PlacedDrive& placed
   const bool any = !wrong.empty();
   for (const int source : wrong) reject_all_of(source, placed);
   for (const ConstantDifference& difference : compared.differ) {
-    std::string end = difference.late_s ? ""
-                                        : ". The fused positions lie between them, and their covariances "
-                                          "do not tell";
+    std::string end = consequence_of(difference);
     for (const int source : {difference.first, difference.second}) {
       const auto is_wrong = std::find(wrong.begin(), wrong.end(), source);
       if (is_wrong != wrong.end())
-        end = fmt::format(". {} is left out, because two others agree", receiver_name(placed, source));
+        end = fmt::format(". {} is left out, because others agree", receiver_name(placed, source));
     }
     placed.warnings.push_back(warning_of(difference, placed.receivers) + end);
   }

@@ -302,7 +302,8 @@ std::vector<Disagreement> leave_out_contradictions(std::span<std::vector<Odometr
     first = std::min(first, samples->front().stamp);
     last = std::max(last, samples->back().stamp);
   }
-  if (count < 3) return {};
+  constexpr double kLongest_s = 30 * 86400;  // longer is a wrong clock, not a drive
+  if (count < 3 || seconds_between(first, last) > kLongest_s) return {};
   Windows windows{.start = first, .statements = {}};
   windows.statements.assign(windows.of(last) + 1, Statements(sources.size()));
   for (std::size_t s = 0; s < sources.size(); ++s) add_motion(*sources[s], s, windows);

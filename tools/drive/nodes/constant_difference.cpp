@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,11 +25,11 @@ struct Seen {
   double claims_m = 0;
 };
 
-/// Returns the speed of the vehicle at each fix, along its heading; 0 where it is not known.
+/// Returns the speed of the vehicle at each fix, along its heading; NaN where it is not known.
 std::vector<double> speeds_at(std::span<const Fix> fixes, std::span<const Eigen::Vector3d> poses) {
   constexpr double kApart_s = 0.5;
-  constexpr double kLongest_s = 2;
-  std::vector<double> speeds(fixes.size(), 0.0);
+  constexpr double kLongest_s = 10;
+  std::vector<double> speeds(fixes.size(), std::numeric_limits<double>::quiet_NaN());
   std::size_t before = 0;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     while (before + 1 < i && seconds_between(fixes[before + 1].stamp, fixes[i].stamp) >= kApart_s) ++before;
@@ -106,31 +108,48 @@ bool counts(const Middle& middle, const Differences& all, double claims_m) {
          std::max(kClaims * claims_m, kSigmas * middle.spread / std::sqrt(independent));
 }
 
+/// Where the second antenna is ahead, with the speed.
+struct AtSpeed {
+  double speed_mps;
+  double forwards_m;
+};
+
 /// Returns how much further behind the second antenna is for each m/s, from the faster and the slower half.
 /// Empty if the speed is about the same all the time.
-std::optional<double> behind_by_speed_s(const Differences& all) {
+std::optional<double> behind_by_speed_s(std::vector<AtSpeed> all) {
   constexpr double kLeastApart_mps = 3;
-  const double middle_mps = upper_median(all.speed_mps);
-  std::array<std::vector<double>, 2> forwards;
-  std::array<std::vector<double>, 2> speeds;
-  for (std::size_t i = 0; i < all.speed_mps.size(); ++i) {
-    const std::size_t half = all.speed_mps[i] < middle_mps ? 0 : 1;
-    forwards[half].push_back(all.in_body[0][i]);
-    speeds[half].push_back(all.speed_mps[i]);
-  }
-  if (std::min(forwards[0].size(), forwards[1].size()) < kFewestPairs / 2) return std::nullopt;
-  const double apart_mps = upper_median(speeds[1]) - upper_median(speeds[0]);
-  if (apart_mps < kLeastApart_mps) return std::nullopt;
-  return (upper_median(forwards[0]) - upper_median(forwards[1])) / apart_mps;
+  if (all.size() < kFewestPairs) return std::nullopt;
+  std::sort(all.begin(), all.end(),
+            [](const AtSpeed& a, const AtSpeed& b) { return a.speed_mps < b.speed_mps; });
+  const auto middles = [&](std::size_t begin, std::size_t end) {
+    std::vector<double> speeds;
+    std::vector<double> forwards;
+    for (std::size_t i = begin; i < end; ++i) {
+      speeds.push_back(all[i].speed_mps);
+      forwards.push_back(all[i].forwards_m);
+    }
+    return AtSpeed{upper_median(std::move(speeds)), upper_median(std::move(forwards))};
+  };
+  const AtSpeed slow = middles(0, all.size() / 2);
+  const AtSpeed fast = middles(all.size() / 2, all.size());
+  if (fast.speed_mps - slow.speed_mps < kLeastApart_mps) return std::nullopt;
+  return (slow.forwards_m - fast.forwards_m) / (fast.speed_mps - slow.speed_mps);
 }
 
 /// Returns how late the second receiver is, if that explains the difference.
 std::optional<double> lateness(const Differences& all, double difference_m, double claims_m) {
   constexpr double kMost = 0.5;  // of the difference
-  const std::optional<double> late_s = behind_by_speed_s(all);
+  std::vector<AtSpeed> known;
+  for (std::size_t i = 0; i < all.speed_mps.size(); ++i)
+    if (std::isfinite(all.speed_mps[i])) known.push_back({all.speed_mps[i], all.in_body[0][i]});
+  const std::optional<double> late_s = behind_by_speed_s(std::move(known));
   if (!late_s) return std::nullopt;
-  std::array<std::vector<double>, 2> left = all.in_body;
-  for (std::size_t i = 0; i < left[0].size(); ++i) left[0][i] += *late_s * all.speed_mps[i];
+  std::array<std::vector<double>, 2> left;
+  for (std::size_t i = 0; i < all.speed_mps.size(); ++i) {
+    if (!std::isfinite(all.speed_mps[i])) continue;
+    left[0].push_back(all.in_body[0][i] + *late_s * all.speed_mps[i]);
+    left[1].push_back(all.in_body[1][i]);
+  }
   const Middle middle = middle_of(left);
   if (counts(middle, all, claims_m) || middle.value.norm() > kMost * difference_m) return std::nullopt;
   return late_s;
@@ -179,23 +198,34 @@ ComparedReceivers compare_receivers(std::span<const Fix> fixes, std::span<const 
 }
 
 std::vector<int> outvoted(const ComparedReceivers& compared, std::span<const std::size_t> voices) {
-  std::map<int, std::vector<int>> opponents;
+  std::map<int, std::set<int>> friends;
+  std::map<int, std::set<int>> opponents;
+  for (const auto& [first, second] : compared.agree) {
+    friends[first].insert(second);
+    friends[second].insert(first);
+  }
   for (const ConstantDifference& difference : compared.differ) {
     if (difference.late_s) continue;
-    opponents[difference.first].push_back(difference.second);
-    opponents[difference.second].push_back(difference.first);
+    opponents[difference.first].insert(difference.second);
+    opponents[difference.second].insert(difference.first);
   }
-  const auto voice = [&](int source) { return voices[static_cast<std::size_t>(source)]; };
+  const auto voices_of = [&](const std::set<int>& receivers) {
+    std::set<std::size_t> distinct;
+    for (const int receiver : receivers) distinct.insert(voices[static_cast<std::size_t>(receiver)]);
+    return distinct.size();
+  };
   std::vector<int> found;
-  for (const auto& [source, others] : opponents) {
-    const auto is_opponent = [&, own = source, all = others](int other) {
-      return voice(other) != voice(own) && std::find(all.begin(), all.end(), other) != all.end();
-    };
-    if (std::any_of(compared.agree.begin(), compared.agree.end(), [&](const std::pair<int, int>& pair) {
-          return voice(pair.first) != voice(pair.second) && is_opponent(pair.first) &&
-                 is_opponent(pair.second);
-        }))
-      found.push_back(source);
+  for (const auto& [source, against] : opponents) {
+    std::set<int> with = friends[source];
+    with.insert(source);
+    const std::size_t own = std::max<std::size_t>(voices_of(with), 1);
+    const bool is_outvoted = std::any_of(against.begin(), against.end(), [&](int opponent) {
+      std::set<int> camp{opponent};  // those against it that agree with this one
+      for (const int other : friends[opponent])
+        if (against.contains(other)) camp.insert(other);
+      return voices_of(camp) > own;
+    });
+    if (is_outvoted) found.push_back(source);
   }
   return found;
 }
@@ -209,7 +239,7 @@ std::string warning_of(const ConstantDifference& difference, std::span<const std
     const bool is_second = *difference.late_s > 0;
     return fmt::format(
         "the fixes of {} are {:.2f} s later than those of {} {}: they are {:.3g} m away, and further the faster "
-        "the vehicle is; state 'delay: {:.2f}' for {}",
+        "the vehicle is; add {:.2f} to the 'delay' of {}",
         is_second ? second : first, std::abs(*difference.late_s), is_second ? first : second, time, by.norm(),
         std::abs(*difference.late_s), is_second ? second : first);
   }
@@ -222,6 +252,10 @@ std::string warning_of(const ConstantDifference& difference, std::span<const std
   return fmt::format("{} is {:.3g} m away from {} {}, {}, though they claim {:.2g} and {:.2g} m: {}", second,
                      by.norm(), first, time, where, difference.second_claims_m, difference.first_claims_m,
                      explanation(difference));
+}
+
+std::string consequence_of(const ConstantDifference& difference) {
+  return difference.late_s ? "" : ". The fused positions lie between them, and their covariances do not tell";
 }
 
 }  // namespace waymark::drive

@@ -1,5 +1,6 @@
 /// Whether two receivers differ all drive long by more than they claim. The fused positions lie between
-/// them then, and no covariance tells. Of three, the one that differs from two that agree is known to be wrong.
+/// them then, and no covariance tells. Of three, the one that differs from two that agree is known to be wrong;
+/// of two and two, nobody is.
 #pragma once
 
 #include <optional>
@@ -43,7 +44,8 @@ struct ComparedReceivers {
 [[nodiscard]] ComparedReceivers compare_receivers(std::span<const Fix> fixes,
                                                   std::span<const Eigen::Vector3d> poses);
 
-/// Returns the receivers that differ from two others that agree, and not by their clocks.
+/// Returns the receivers that differ, not by their clocks, from others that agree and are more than those that agree
+/// with them.
 /// @param voices of each Fix::source: sources with common errors have one voice
 [[nodiscard]] std::vector<int> outvoted(const ComparedReceivers& compared,
                                         std::span<const std::size_t> voices);
@@ -51,5 +53,8 @@ struct ComparedReceivers {
 /// @param names by Fix::source @param time in which it was seen
 [[nodiscard]] std::string warning_of(const ConstantDifference& difference, std::span<const std::string> names,
                                      const std::string& time = "all drive long");
+
+/// Returns the sentence that follows if both are used; empty for clocks, which the model may find.
+[[nodiscard]] std::string consequence_of(const ConstantDifference& difference);
 
 }  // namespace waymark::drive

@@ -249,9 +249,11 @@ std::vector<std::string> compare_odometry_with_fixes(std::span<const Fix> fixes,
   const int first = fixes.empty() ? 0 : fixes.front().source;
   const ReckonedFixes receiver = of_receiver(live, reckoned, first);
   Shape shape = shape_of(receiver);
+  const std::vector<std::string> known = odometry.empty() ? std::vector<std::string>() : shape.sentences;
   if (place && !shape.sentences.empty()) name_slips(receiver, *place, shape);
   for (const std::string& sentence : shape.sentences)
-    warnings.push_back((odometry.empty() ? "" : odometry + ": ") + sentence);
+    if (std::find(known.begin(), known.end(), sentence) == known.end())
+      warnings.push_back((odometry.empty() ? "" : odometry + ": ") + sentence);
   if (shape.spoils_jumps) return warnings;
   for (std::string& jump : jumps_in_words(receiver)) warnings.push_back(std::move(jump));
   for (int source = 0; source < std::ssize(receivers); ++source) {

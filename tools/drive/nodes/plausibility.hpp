@@ -27,7 +27,8 @@ namespace waymark::drive {
 /// wrapped; same length and order as `fixes`
 /// @param place of the drive; empty: not known
 /// @param receivers names by Fix::source
-/// @param odometry its name, if it is one of several
+/// @param odometry its name, if it is one of several: its turns and distances were told before
+/// (odometry_check.hpp), and only what explains them otherwise is
 [[nodiscard]] std::vector<std::string> compare_odometry_with_fixes(
     std::span<const Fix> fixes, std::span<const Eigen::Vector3d> antenna,
     const std::optional<GeodeticPoint>& place = {}, std::span<const std::string> receivers = {},

@@ -351,7 +351,7 @@ void Estimator::compare_receivers(const Fix& fix) {
   for (const drive::GnssConfig& receiver : description_.gnss) names.push_back(receiver.name);
   for (const drive::ConstantDifference& difference : news)
     say("receivers", names[static_cast<std::size_t>(difference.second)],
-        drive::warning_of(difference, names, "for minutes"));
+        drive::warning_of(difference, names, "for minutes") + drive::consequence_of(difference));
 }
 
 void Estimator::begin_at_believed(int source) {

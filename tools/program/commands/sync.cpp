@@ -89,10 +89,13 @@ std::string table_of(const std::string& name, const drive::SyncReport& report,
     text += "That is " + known + ".\n";
   text += "To apply it: --sync of run and convert, or in the drive.yaml under '" +
           (name.empty() ? "odometry" : name) + "':\n";
-  if (speed_is_late)
-    text += fmt::format("  speed_delay: {:.3f}\n", odometry.speed_delay_s + report.speed->late_s);
-  if (yaw_rate_is_late)
-    text += fmt::format("  yaw_rate_delay: {:.3f}\n", odometry.yaw_rate_delay_s + report.yaw_rate->late_s);
+  drive::OdometryConfig moved = odometry;
+  std::vector<std::string> notes;
+  drive::apply_offsets("", report, moved, notes);
+  if (moved.speed_delay_s != odometry.speed_delay_s)
+    text += fmt::format("  speed_delay: {:.3f}\n", moved.speed_delay_s);
+  if (moved.yaw_rate_delay_s != odometry.yaw_rate_delay_s)
+    text += fmt::format("  yaw_rate_delay: {:.3f}\n", moved.yaw_rate_delay_s);
   return text;
 }
 
@@ -123,8 +126,8 @@ ExitCode synchronise(const SyncCommand& command) {
   std::string text;
   for (const auto& [name, report] : all) {
     if (!text.empty()) text += "\n";
-    text += table_of(all.size() > 1 ? name : std::string(), report,
-                     drive::source_of_nodes(name, description), console.look());
+    text += table_of(all.size() > 1 ? name : std::string(), report, drive::config_of(name, description),
+                     console.look());
   }
   for (const drive::ClockReport& clock : clocks)
     text += fmt::format(

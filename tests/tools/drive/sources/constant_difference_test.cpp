@@ -115,7 +115,7 @@ TEST_CASE("constant difference: what grows with the speed is a clock, and its la
   const std::array<std::string, 2> names{"front", "rear"};
   CHECK_THAT(warning_of(found[0], names), Catch::StartsWith("the fixes of rear are 0.") &&
                                               Catch::Contains("later than those of front") &&
-                                              Catch::Contains("for rear"));
+                                              Catch::Contains("'delay' of rear"));
   // An antenna that is elsewhere is so at any speed.
   for (std::size_t i = 0; i < scene.fixes.size(); ++i) {
     const double heading = scene.poses[i][2];
@@ -140,6 +140,20 @@ TEST_CASE("constant difference: of three the one that differs from two that agre
   compared.differ.push_back({.first = 0, .second = 1});
   compared.agree.clear();
   CHECK(outvoted(compared, apart).empty());
+  // Two and two: nobody knows.
+  const std::array<std::size_t, 4> four{0, 1, 2, 3};
+  const ComparedReceivers camps{.differ = {{.first = 0, .second = 2},
+                                           {.first = 0, .second = 3},
+                                           {.first = 1, .second = 2},
+                                           {.first = 1, .second = 3}},
+                                .agree = {{0, 1}, {2, 3}}};
+  CHECK(outvoted(camps, four).empty());
+  // Three and two: the two are wrong.
+  ComparedReceivers majority = camps;
+  majority.agree.insert(majority.agree.end(), {{0, 4}, {1, 4}});
+  majority.differ.insert(majority.differ.end(), {{.first = 2, .second = 4}, {.first = 3, .second = 4}});
+  const std::array<std::size_t, 5> five{0, 1, 2, 3, 4};
+  CHECK(outvoted(majority, five) == std::vector<int>{2, 3});
   // A clock is no place.
   compared.agree = {{0, 1}};
   compared.differ = {{.first = 0, .second = 2, .late_s = 0.5}, {.first = 1, .second = 2, .late_s = 0.5}};
