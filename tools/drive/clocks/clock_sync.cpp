@@ -161,6 +161,10 @@ bool ClockOffset::is_significant() const {
   return std::abs(late_s) > kOffsetSigmas * std::hypot(sigma_s, kSmoothing_s);
 }
 
+bool ClockOffset::may_be(const ClockOffset& other) const {
+  return std::abs(late_s - other.late_s) <= kOffsetSigmas * std::hypot(sigma_s, other.sigma_s, kSmoothing_s);
+}
+
 std::optional<ClockOffset> SyncReport::common() const {
   if (!speed) return yaw_rate;
   return yaw_rate && yaw_rate->sigma_s < speed->sigma_s ? yaw_rate : speed;

@@ -27,6 +27,8 @@ struct ClockOffset {
 
   /// Tells whether it differs from 0 by more than kOffsetSigmas of sigma_s and kSmoothing_s together.
   [[nodiscard]] bool is_significant() const;
+  /// Tells whether another one may be the same: within kOffsetSigmas of both sigmas and kSmoothing_s together.
+  [[nodiscard]] bool may_be(const ClockOffset& other) const;
 };
 
 struct SyncReport {

@@ -24,6 +24,21 @@ bool is_near_zero(double late_s) {
   return late_s > -kLateFixes_s && late_s < kLateOdometry_s;
 }
 
+/// Returns the offset of the clock of an odometry to that of a receiver, wherever it is; empty near zero.
+std::optional<ClockOffset> offset_to(const std::vector<OdometrySample>& odometry,
+                                     const std::vector<Fix>& fixes) {
+  const std::optional<ClockOffset> offset = estimate_clock_offsets(odometry, fixes, {}).common();
+  if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return std::nullopt;
+  return offset;
+}
+
+/// Takes what one more receiver says. The best known one stands. @returns whether it is that of those before
+bool take(const ClockOffset& offset, std::optional<ClockOffset>& shown) {
+  if (shown && !shown->may_be(offset)) return false;
+  if (!shown || offset.sigma_s < shown->sigma_s) shown = offset;
+  return true;
+}
+
 /// What a receiver says of the clock of an odometry.
 struct ClockVerdict {
   std::optional<ClockOffset> offset;  ///< empty: it shows none
@@ -48,14 +63,8 @@ ClockVerdict clock_verdict(const std::vector<OdometrySample>& odometry, const st
   const bool is_better = !is_near_zero(far->late_s) && far->score > verdict.near->score + kLead;
   verdict.fits =
       !is_better && std::max(verdict.near->speed_correlation, verdict.near->turn_correlation) > kFits;
-  if (verdict.fits) return verdict;
-  const std::optional<ClockOffset> offset = estimate_clock_offsets(odometry, fixes, {}).common();
-  if (offset && offset->is_significant() && !is_near_zero(offset->late_s)) verdict.offset = offset;
+  if (!verdict.fits) verdict.offset = offset_to(odometry, fixes);
   return verdict;
-}
-
-bool are_alike(const ClockOffset& a, const ClockOffset& b) {
-  return std::abs(a.late_s - b.late_s) <= kOffsetSigmas * std::hypot(a.sigma_s, b.sigma_s, kSmoothing_s);
 }
 
 using Receivers = std::map<int, std::vector<Fix>>;
@@ -66,6 +75,24 @@ Receivers receivers_of(const std::vector<Fix>& fixes) {
   for (const Fix& fix : fixes)
     if (fix.status != FixStatus::withheld) receivers[fix.source].push_back(fix);
   return receivers;
+}
+
+/// What each receiver says, by Fix::source.
+using ClockVerdicts = std::map<int, ClockVerdict>;
+
+ClockVerdicts clock_verdicts(const std::vector<OdometrySample>& odometry, const std::vector<Fix>& fixes) {
+  ClockVerdicts verdicts;
+  for (const auto& [source, receiver] : receivers_of(fixes))
+    verdicts[source] = clock_verdict(odometry, receiver);
+  return verdicts;
+}
+
+/// Returns the offset that all receivers show that tell; empty if the odometry fits one of them.
+std::optional<ClockOffset> offset_in(const ClockVerdicts& verdicts) {
+  std::optional<ClockOffset> shown;
+  for (const auto& [source, verdict] : verdicts)
+    if (verdict.fits || (verdict.offset && !take(*verdict.offset, shown))) return std::nullopt;
+  return shown;
 }
 
 /// What the fixes say of one of several odometries.
@@ -94,10 +121,8 @@ std::optional<ClockOffset> far_offset(const std::vector<OdometrySample>& samples
   std::optional<ClockOffset> shown;
   for (const auto& [source, fixes] : receivers) {
     if (fixes.size() < kFewestCompared) continue;
-    const std::optional<ClockOffset> offset = estimate_clock_offsets(samples, fixes, {}).common();
-    if (!offset || !offset->is_significant() || is_near_zero(offset->late_s)) return std::nullopt;
-    if (shown && !are_alike(*shown, *offset)) return std::nullopt;
-    if (!shown || offset->sigma_s < shown->sigma_s) shown = offset;
+    const std::optional<ClockOffset> offset = offset_to(samples, fixes);
+    if (!offset || !take(*offset, shown)) return std::nullopt;
   }
   return shown;
 }
@@ -118,7 +143,8 @@ Verdict verdict_on(const PreparedOdometry& source, const std::vector<Fix>& fixes
   const std::vector<Fix> compared = within(samples, fixes);
   Verdict verdict;
   const bool is_far = compared.size() < kFewestCompared;
-  verdict.clock = is_far ? far_offset(samples, receivers_of(fixes)) : offset_shown(samples, compared);
+  const ClockVerdicts clocks = clock_verdicts(samples, compared);
+  verdict.clock = is_far ? far_offset(samples, receivers_of(fixes)) : offset_in(clocks);
   verdict.covered = within(samples, fixes, verdict.clock ? verdict.clock->late_s : 0).size();
   if (verdict.clock) {
     verdict.contradicts = true;
@@ -130,7 +156,7 @@ Verdict verdict_on(const PreparedOdometry& source, const std::vector<Fix>& fixes
   if (!is_far && samples.size() >= kFewestCompared) {
     std::vector<Fix> receiver;
     for (const Fix* fix : of_one_receiver(compared)) receiver.push_back(*fix);
-    verdict.near = clock_verdict(samples, receiver).near;
+    verdict.near = clocks.at(receiver.front().source).near;
     add_shape(source, receiver, verdict);
   }
   // Turns that are far too large wind up, and the fixes no longer tell by how much.
@@ -155,15 +181,7 @@ bool stands_for(const Verdict& other, const Verdict& wrong) {
 
 std::optional<ClockOffset> offset_shown(const std::vector<OdometrySample>& odometry,
                                         const std::vector<Fix>& fixes) {
-  std::optional<ClockOffset> shown;
-  for (const auto& [source, receiver] : receivers_of(fixes)) {
-    const ClockVerdict verdict = clock_verdict(odometry, receiver);
-    if (verdict.fits) return std::nullopt;
-    if (!verdict.offset) continue;
-    if (shown && !are_alike(*shown, *verdict.offset)) return std::nullopt;
-    if (!shown || verdict.offset->sigma_s < shown->sigma_s) shown = verdict.offset;
-  }
-  return shown;
+  return offset_in(clock_verdicts(odometry, fixes));
 }
 
 std::string clock_warning(const std::string& odometry, const ClockOffset& offset, const std::string& cure) {

@@ -37,13 +37,6 @@ bool share_a_clock(const OdometryConfig& odometry, const ClockOffset& offset) {
   return odometry.logs.size() == 1 || std::abs(offset.late_s) > kFilter_s;
 }
 
-/// Whether what is said of one half does not contradict the offset of the other.
-bool allows(const std::optional<ClockOffset>& half, const ClockOffset& offset) {
-  if (!half) return true;
-  const double sigma_s = std::hypot(half->sigma_s, offset.sigma_s, kSmoothing_s);
-  return std::abs(half->late_s - offset.late_s) <= kOffsetSigmas * sigma_s;
-}
-
 }  // namespace
 
 OdometryConfig& config_of(const std::string& name, DriveDescription& description) {
@@ -61,7 +54,7 @@ void apply_offsets(const std::string& whose, const SyncReport& report, OdometryC
       fmt::format("sync: {} yaw rate and speed are of one clock; both are moved together", whose);
   const auto takes_along = [&](const std::optional<ClockOffset>& moved,
                                const std::optional<ClockOffset>& other) {
-    return share_a_clock(odometry, *moved) && allows(other, *moved);
+    return share_a_clock(odometry, *moved) && (!other || other->may_be(*moved));
   };
   if (speed_moved && !yaw_rate_moved && takes_along(report.speed, report.yaw_rate)) {
     odometry.yaw_rate_delay_s += report.speed->late_s;

@@ -87,7 +87,6 @@ void reject_all_of(int source, PlacedDrive& placed) {
 bool leave_out_outvoted(std::span<const std::size_t> voices, PlacedDrive& placed) {
   const ComparedReceivers compared = compare_receivers(placed.fixes, poses_of_fixes(placed));
   const std::vector<int> wrong = outvoted(compared, voices);
-  const bool any = !wrong.empty();
   for (const int source : wrong) reject_all_of(source, placed);
   for (const ConstantDifference& difference : compared.differ) {
     std::string end = consequence_of(difference);
@@ -98,7 +97,7 @@ bool leave_out_outvoted(std::span<const std::size_t> voices, PlacedDrive& placed
     }
     placed.warnings.push_back(warning_of(difference, placed.receivers) + end);
   }
-  return any;
+  return !wrong.empty();
 }
 
 /// Rejects fixes of sources that contradict the others, and names these.

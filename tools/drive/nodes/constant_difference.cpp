@@ -218,7 +218,7 @@ std::vector<int> outvoted(const ComparedReceivers& compared, std::span<const std
   for (const auto& [source, against] : opponents) {
     std::set<int> with = friends[source];
     with.insert(source);
-    const std::size_t own = std::max<std::size_t>(voices_of(with), 1);
+    const std::size_t own = voices_of(with);
     const bool is_outvoted = std::any_of(against.begin(), against.end(), [&](int opponent) {
       std::set<int> camp{opponent};  // those against it that agree with this one
       for (const int other : friends[opponent])
